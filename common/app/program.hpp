@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "common/config/section.hpp"
+#include "common/coupling/mesh_motion.hpp"
+#include "common/coupling/participant.hpp"
+
+namespace couplet {
+
+/// What `simulation:` in the YAML says to every program.
+struct SimulationParameters {
+  std::string name = "case";
+  double end_time = 0, time_step = 0;       // [s]
+  std::filesystem::path output_folder;      // relative to the YAML's folder unless absolute
+  double output_interval = 0;               // [s]; 0: only the start and the end
+  double checkpoint_interval = 0;           // [s]; 0: only at the end
+};
+void declare(config::Section& section, SimulationParameters& parameters);
+
+/// What a program gets to build its participant from, after configuration was validated and MPI set up.
+struct ParticipantContext {
+  MPI_Comm comm = MPI_COMM_SELF;        ///< the ranks of this participant
+  std::string name;                     ///< its key under `participants:`
+  std::filesystem::path case_folder;    ///< folder of the YAML: relative paths start here
+  std::filesystem::path output_folder;  ///< <output>/<name>, made already
+  SimulationParameters simulation;
+  bool coupled = false;                 ///< false: standalone run
+  Scheme scheme = Scheme::standalone;
+  /// Intercommunicator to the mesh mover (for a fluid) or to the fluid (for a mover); MPI_COMM_NULL without one.
+  MPI_Comm mesh_peer = MPI_COMM_NULL;
+  double restart_time = std::numeric_limits<double>::quiet_NaN();  ///< NaN: fresh start
+};
+
+/// One program = its name, the declaration of its parameters, and how to make its participant from them.
+struct Program {
+  std::string name;         ///< "solid_solver"
+  std::string description;  ///< one line for --help
+  /// Declares the parameters of `participants.<name>`; called for checking, documentation and reading.
+  config::Section::Declare declare;
+  /// Called once after reading; the parameters are those that `declare` filled.
+  std::function<std::unique_ptr<Participant>(const ParticipantContext&)> make;
+};
+
+/// main() of a physics program:
+///   prog case.yaml [--participant NAME] [--check] [--docs] [--schema] [--print-config] [--set a.b=v] [--restart FOLDER] [-v|-q]
+/// Runs alone (one program in the MPI job) or as part of a coupled job. Returns the exit code.
+int run_program(int argc, char** argv, const Program& program);
+
+}  // namespace couplet

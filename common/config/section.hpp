@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/base/types.hpp"
+
+namespace couplet::config {
+
+/// Whatever a Section does with the declarations: read and validate a YAML node, write the Markdown reference,
+/// write the JSON schema, print the effective values. See load.hpp.
+class Visitor;
+
+/// Range and documentation of one key, chained onto its declaration:
+///   s.value("youngs-modulus", p.youngs_modulus).unit("Pa").positive().required().doc("Young's modulus");
+/// A key that is not required keeps the value its target already has: that is its default.
+/// The declaration takes effect when the Key goes out of scope, i.e. at the end of the statement.
+class Key {
+ public:
+  Key& unit(std::string_view si_unit);          ///< accepts "5.6 MPa", "0.1 s", plain numbers in this SI unit
+  Key& required();
+  Key& range(double lowest, double highest);    ///< inclusive
+  Key& positive();                              ///< > 0
+  Key& not_negative();                          ///< >= 0
+  Key& size(std::size_t n);                     ///< of a list of numbers
+  Key& doc(std::string_view text);
+
+  struct Facts {
+    std::string name, unit, doc;
+    bool required = false;
+    double lowest = -std::numeric_limits<double>::infinity();
+    double highest = std::numeric_limits<double>::infinity();
+    bool open_lowest = false;
+    std::optional<std::size_t> size;
+  };
+  using Target = std::function<void(Visitor&, const Facts&)>;
+  Key(Visitor& visitor, std::string_view name, Target target);
+  ~Key() noexcept(false);
+  Key(const Key&) = delete;
+
+ private:
+  Visitor& visitor_;
+  Facts facts_;
+  Target target_;
+};
+
+/// A number or an expression in x, y, z, t (muParser syntax), kept as text; see fv/expression.hpp for evaluation.
+struct ExpressionText {
+  std::string text = "0";
+};
+
+/// One mapping of the YAML file. Parameters are declared once, bound to the members they fill:
+///
+///   void declare(config::Section& s, SolidParameters& p) {
+///     s.value("density", p.density).unit("kg/m^3").positive().required().doc("density");
+///     s.choice("analysis", p.analysis, {{"static", Analysis::steady}, {"dynamic", Analysis::dynamic}}).doc("...");
+///     s.section("output", [&](config::Section& o) { declare(o, p.output); }, "what is written");
+///     s.map("boundaries", p.boundaries, [](config::Section& b, Boundary& v) { declare(b, v); }, "patch", "...");
+///     s.check([&] { return p.a < p.b ? "" : "'a' must be below 'b'"; }, "a");
+///   }
+///
+/// Names are kebab-case (asserted). Unknown keys, duplicate keys, wrong types, units and ranges are all collected with
+/// file:line:column and reported together.
+class Section {
+ public:
+  explicit Section(Visitor& visitor) : visitor_(visitor) {}
+
+  Key value(std::string_view name, double& target);
+  Key value(std::string_view name, int& target);
+  Key value(std::string_view name, bool& target);
+  Key value(std::string_view name, std::string& target);
+  Key value(std::string_view name, ExpressionText& target);
+  Key value(std::string_view name, Vec3& target);                       ///< list of 2 or 3 numbers
+  Key value(std::string_view name, std::vector<double>& target);
+  Key value(std::string_view name, std::vector<std::string>& target);
+  Key value(std::string_view name, std::vector<ExpressionText>& target);
+  /// optional<T>: stays empty when the key is absent.
+  Key value(std::string_view name, std::optional<double>& target);
+  Key value(std::string_view name, std::optional<std::string>& target);
+  Key value(std::string_view name, std::optional<ExpressionText>& target);
+
+  /// A word out of a fixed list.
+  template <class E>
+  Key choice(std::string_view name, E& target, const std::vector<std::pair<std::string, E>>& words) {
+    std::vector<std::string> names;
+    std::string current;
+    for (const auto& [word, value] : words) {
+      names.push_back(word);
+      if (value == target) current = word;
+    }
+    return choice_by_name(name, names, current, [&target, words](const std::string& word) {
+      for (const auto& [w, value] : words)
+        if (w == word) target = value;
+    });
+  }
+
+  using Declare = std::function<void(Section&)>;
+  /// A mapping below this one; absent means all its defaults (its required keys are then reported as missing).
+  void section(std::string_view name, const Declare& declare, std::string_view doc);
+  /// An effect: present in the YAML or not there at all.
+  template <class T>
+  void optional_section(std::string_view name, std::optional<T>& target,
+                        const std::function<void(Section&, T&)>& declare, std::string_view doc) {
+    optional_by_name(name, doc, [&target, declare](Section& s) {
+      if (!target) target.emplace();
+      declare(s, *target);
+    });
+  }
+  /// A mapping with names of the user's choice, e.g. one entry a patch. `what` is the kind of name, for messages.
+  template <class T>
+  void map(std::string_view name, std::map<std::string, T>& target,
+           const std::function<void(Section&, T&)>& declare, std::string_view what, std::string_view doc) {
+    map_by_name(name, what, doc, [&target, declare](const std::string& key, Section& s) { declare(s, target[key]); });
+  }
+  /// A sequence of mappings.
+  template <class T>
+  void list(std::string_view name, std::vector<T>& target, const std::function<void(Section&, T&)>& declare,
+            std::string_view doc) {
+    list_by_name(name, doc, [&target, declare](std::size_t i, Section& s) {
+      if (target.size() <= i) target.resize(i + 1);
+      declare(s, target[i]);
+    });
+  }
+  /// A mapping whose key `name` (a word) decides which further keys are valid, e.g. type: inlet | outlet | wall.
+  template <class E>
+  void variant(std::string_view name, E& target, const std::vector<std::tuple<std::string, E, Declare>>& cases,
+               std::string_view doc) {
+    std::vector<std::pair<std::string, Declare>> by_name;
+    std::string current;
+    for (const auto& [word, value, declare] : cases) {
+      by_name.emplace_back(word, declare);
+      if (value == target) current = word;
+    }
+    variant_by_name(name, by_name, current, doc, [&target, cases](const std::string& word) {
+      for (const auto& [w, value, declare] : cases)
+        if (w == word) target = value;
+    });
+  }
+  /// Cross-rule, run after this section was read without error: an empty text is a pass; `key` is where it points.
+  void check(const std::function<std::string()>& rule, std::string_view key);
+
+ private:
+  Key choice_by_name(std::string_view name, const std::vector<std::string>& words, const std::string& current,
+                     std::function<void(const std::string&)> set);
+  void optional_by_name(std::string_view name, std::string_view doc, const Declare& declare);
+  void map_by_name(std::string_view name, std::string_view what, std::string_view doc,
+                   const std::function<void(const std::string&, Section&)>& declare);
+  void list_by_name(std::string_view name, std::string_view doc,
+                    const std::function<void(std::size_t, Section&)>& declare);
+  void variant_by_name(std::string_view name, const std::vector<std::pair<std::string, Declare>>& cases,
+                       const std::string& current, std::string_view doc,
+                       std::function<void(const std::string&)> set);
+  Visitor& visitor_;
+};
+
+}  // namespace couplet::config

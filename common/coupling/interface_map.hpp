@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/coupling/participant.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// Between the values a rank holds on some patches and the interface vectors on rank 0 (each vertex by ascending
+/// point_id, each face by ascending boundary_id, once). All calls collective over mesh.comm.
+class InterfaceMap {
+ public:
+  /// Throws Error naming the patches that exist if one is unknown.
+  InterfaceMap(const Mesh& mesh, const std::vector<std::string>& patches);
+
+  /// Local points on these patches, owned or ghost (a vertex may lie on several ranks); ascending.
+  const std::vector<Index>& points() const { return points_; }
+  /// Boundary faces (face indices) of owned cells on these patches, ascending.
+  const std::vector<Index>& faces() const { return faces_; }
+
+  /// dim, vertices, face_centres, face_areas of the reference configuration on rank 0; takes and gives stay empty.
+  Interface describe() const;
+  /// Rank 0's vector (vertices x components) to values at points(), in that order, on every rank.
+  std::vector<double> scatter_vertices(const std::vector<double>& on_root, int components) const;
+  std::vector<double> scatter_faces(const std::vector<double>& on_root, int components) const;
+  /// Values at points() / faces() to the vector on rank 0 (empty elsewhere). Vertices: the owner's value counts.
+  std::vector<double> gather_vertices(std::span<const double> local, int components) const;
+  std::vector<double> gather_faces(std::span<const double> local, int components) const;
+
+ private:
+  const Mesh* mesh_;
+  std::vector<Index> points_, faces_;
+  // Positions in the root's vectors of what this rank sends (owned) and of what it wants, and on rank 0 the same of all.
+  std::vector<Index> point_position_, face_position_;
+  std::vector<Index> owned_points_;  // entries of points_ that this rank owns
+  Index n_vertices_ = 0, n_faces_ = 0;
+};
+
+}  // namespace couplet

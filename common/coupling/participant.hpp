@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/base/types.hpp"
+
+namespace couplet {
+
+class CheckpointWriter;
+class CheckpointReader;
+
+enum class Scheme : int { standalone, explicit_, semi_implicit, implicit };
+
+/// What a participant shows of itself at its interface. Filled on rank 0 of the participant only: every vertex and
+/// face once, in an order that does not depend on the number of ranks (see InterfaceMap). 2-D: z = 0, no duplicate layer.
+struct Interface {
+  enum class Place : int { vertices, faces };
+  struct Datum {
+    std::string name;  ///< "displacement", "velocity", "pressure-force", "viscous-force", ...
+    std::string unit;
+    Place place = Place::vertices;
+  };
+  int dim = 3;
+  std::vector<Vec3> vertices;      ///< reference configuration [m]
+  std::vector<Vec3> face_centres;  ///< reference configuration [m]
+  std::vector<Vec3> face_areas;    ///< out of this participant [m^2]
+  std::vector<Datum> takes, gives;
+  bool empty() const { return vertices.empty() && face_centres.empty(); }
+};
+
+/// Interface values by name: entries x dim, entry by entry. On rank 0 of the participant; empty on its other ranks.
+///   displacement  vertices  t^{n+1}, relative to the reference configuration [m]
+///   velocity      vertices  t^{n+1}, the structure's own [m/s]
+///   pressure-force, viscous-force  faces  mean over the step (t^{n+1/2}), acting on the receiver [N] (per metre depth in 2-D)
+using Exchange = std::map<std::string, std::vector<double>>;
+
+struct Step {
+  double time = 0;  ///< t^n
+  double dt = 0;
+  Scheme scheme = Scheme::standalone;
+  int number = 0;
+};
+
+/// A physics program seen from outside. All calls are collective over its ranks.
+///
+/// Contract (tests/contract holds every implementation to it): solve() starts from the accepted state n, so equal input
+/// gives equal output to solver tolerance (warm starts are fine); only accept_step() changes state n; begin_step() may
+/// be called again with another dt without accept_step() in between; load(save()) continues bit for bit on equal ranks.
+/// A step that cannot be solved throws SolveFailure on every rank and leaves state n as it was.
+class Participant {
+ public:
+  virtual ~Participant() = default;
+  virtual Interface initialise() = 0;
+  /// Largest step this participant advises now [s]; infinity if it has no wish.
+  virtual double suggest_dt() { return std::numeric_limits<double>::infinity(); }
+  virtual void begin_step(const Step& step) = 0;
+  virtual Exchange solve(const Exchange& in) = 0;
+  virtual void accept_step() = 0;
+  virtual void save(CheckpointWriter& file) const = 0;
+  virtual void load(CheckpointReader& file) = 0;
+  /// Writes fields for this accepted time (called when output is due). `number` counts outputs from 0.
+  virtual void write_output(double time, int number) = 0;
+  /// Monitors and probes after each accepted step.
+  virtual void write_monitors(double time) = 0;
+  /// Sentences about effects left out and whether that was sound; printed at the end by rank 0.
+  virtual std::vector<std::string> judge_left_out_effects() { return {}; }
+};
+
+}  // namespace couplet

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace couplet {
+
+/// One participant's state at an accepted time, one HDF5 file. Arrays are written rank by rank as they are (bit for bit
+/// on equal ranks). Written under a temporary name, flushed and renamed in close(), so the last good file is never lost.
+class CheckpointWriter {
+ public:
+  CheckpointWriter(MPI_Comm comm, const std::filesystem::path& file);
+  ~CheckpointWriter();
+  CheckpointWriter(const CheckpointWriter&) = delete;
+  /// Collective: every rank writes its own part.
+  void write(const std::string& name, std::span<const double> values);
+  /// The same on all ranks (rank 0's counts).
+  void write_scalar(const std::string& name, double value);
+  void close();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Throws Error naming the file and what is wrong: missing, truncated, not a checkpoint, other number of ranks, missing
+/// array or another size than expected.
+class CheckpointReader {
+ public:
+  CheckpointReader(MPI_Comm comm, const std::filesystem::path& file);
+  ~CheckpointReader();
+  CheckpointReader(const CheckpointReader&) = delete;
+  /// Fills `values`, whose size must be what this rank wrote.
+  void read(const std::string& name, std::span<double> values);
+  /// As many values as this rank wrote.
+  std::vector<double> read(const std::string& name);
+  double read_scalar(const std::string& name);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/linalg/linear_solver.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <utility>
+
+#include "common/linalg/petsc_check.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+bool is_direct(LinearMethod method) {
+  return method == LinearMethod::direct || method == LinearMethod::direct_symmetric;
+}
+
+void choose_direct(KSP ksp, PC pc, MPI_Comm comm, bool symmetric) {
+  petsc_check(KSPSetType(ksp, KSPPREONLY));
+  petsc_check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
+  const bool parallel = comm_size(comm) > 1;
+  petsc_check(PCFactorSetMatSolverType(pc, parallel ? MATSOLVERMUMPS : MATSOLVERPETSC));
+  if (!parallel) petsc_check(PCFactorSetMatOrderingType(pc, MATORDERINGND));
+}
+
+// ML's smoothed aggregation with one symmetric SOR sweep: the best packaged preconditioner on FV Laplacians.
+void choose_ml(PC pc) {
+  petsc_check(PCSetType(pc, PCML));
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_levels_ksp_type", "richardson"));
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_levels_ksp_max_it", "1"));
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_levels_pc_type", "sor"));
+  // A singular (pure Neumann) coarse matrix has no LU: SVD takes its pseudo-inverse; it is a few dozen rows.
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_coarse_ksp_type", "preonly"));
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_coarse_pc_type", "redundant"));
+  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_coarse_redundant_pc_type", "svd"));
+  petsc_check(PCSetOptionsPrefix(pc, "couplet_ml_"));
+  petsc_check(PCSetFromOptions(pc));
+}
+
+void choose_method(KSP ksp, PC pc, MPI_Comm comm, LinearMethod method) {
+  switch (method) {
+    case LinearMethod::direct: return choose_direct(ksp, pc, comm, false);
+    case LinearMethod::direct_symmetric: return choose_direct(ksp, pc, comm, true);
+    case LinearMethod::cg_multigrid:
+      petsc_check(KSPSetType(ksp, KSPCG));
+      petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
+      return choose_ml(pc);
+    case LinearMethod::gmres_multigrid:
+      petsc_check(KSPSetType(ksp, KSPGMRES));
+      petsc_check(KSPSetPCSide(ksp, PC_RIGHT));
+      petsc_check(PCSetType(pc, PCHYPRE));
+      petsc_check(PCHYPRESetType(pc, "boomeramg"));
+      return;
+    case LinearMethod::bicgstab_ilu:
+      petsc_check(KSPSetType(ksp, KSPBCGS));
+      petsc_check(KSPSetPCSide(ksp, PC_RIGHT));
+      petsc_check(PCSetType(pc, PCBJACOBI));
+      return;
+  }
+}
+
+}  // namespace
+
+LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const LinearOptions& options)
+    : what_(std::move(what)), options_(options), matrix_(&matrix) {
+  petsc_check(KSPCreate(matrix.comm(), &ksp_));
+  petsc_check(KSPSetOperators(ksp_, matrix.petsc(), matrix.petsc()));
+  PC pc = nullptr;
+  petsc_check(KSPGetPC(ksp_, &pc));
+  choose_method(ksp_, pc, matrix.comm(), options.method);
+  if (!is_direct(options.method)) petsc_check(KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE));
+  if (options.constant_null_space) {
+    MatNullSpace constants = nullptr;
+    petsc_check(MatNullSpaceCreate(matrix.comm(), PETSC_TRUE, 0, nullptr, &constants));
+    petsc_check(MatSetNullSpace(matrix.petsc(), constants));
+    petsc_check(MatNullSpaceDestroy(&constants));
+  }
+  petsc_check(MatCreateVecs(matrix.petsc(), &x_, &b_));
+}
+
+LinearSolver::~LinearSolver() {
+  if (!ksp_ || std::uncaught_exceptions() > 0) return;  // collective: not during unwinding
+  KSPDestroy(&ksp_);
+  VecDestroy(&b_);
+  VecDestroy(&x_);
+}
+
+void LinearSolver::matrix_changed() {
+  if (is_direct(options_.method)) rebuild_ = true;
+}
+
+void LinearSolver::refresh() { rebuild_ = true; }
+
+SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double> x) {
+  return solve(b, x, options_.relative_tolerance, options_.absolute_tolerance);
+}
+
+SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double> x, double relative_tolerance,
+                                    double absolute_tolerance) {
+  const auto start = std::chrono::steady_clock::now();
+  petsc_check(KSPSetReusePreconditioner(ksp_, rebuild_ ? PETSC_FALSE : PETSC_TRUE));
+  if (rebuild_) petsc_check(KSPSetOperators(ksp_, matrix_->petsc(), matrix_->petsc()));
+  petsc_check(
+      KSPSetTolerances(ksp_, relative_tolerance, absolute_tolerance, PETSC_DEFAULT, options_.max_iterations));
+  petsc_check(VecPlaceArray(b_, b.data()));
+  petsc_check(VecPlaceArray(x_, x.data()));
+  const PetscErrorCode code = KSPSolve(ksp_, b_, x_);
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  SolveStatistics statistics;
+  PetscInt iterations = 0;
+  if (code == 0) {
+    petsc_check(KSPGetConvergedReason(ksp_, &reason));
+    petsc_check(KSPGetIterationNumber(ksp_, &iterations));
+    petsc_check(KSPGetResidualNorm(ksp_, &statistics.residual));
+  }
+  PetscReal norm = 0;
+  if (code == 0) petsc_check(VecNorm(x_, NORM_2, &norm));
+  petsc_check(VecResetArray(b_));
+  petsc_check(VecResetArray(x_));
+  petsc_check(code);
+  if (reason < 0 || !std::isfinite(norm))
+    throw SolveFailure("The linear solver for {} did not converge: {} after {} iterations, residual {:.3e}{}.", what_,
+                       KSPConvergedReasons[reason], int(iterations), statistics.residual,
+                       std::isfinite(norm) ? "" : ", the solution is not finite");
+  statistics.iterations = static_cast<int>(iterations);
+  total_iterations_ += statistics.iterations;
+  if (rebuild_) {
+    rebuild_ = false;
+    ++built_;
+    fresh_iterations_ = statistics.iterations;
+  } else if (!is_direct(options_.method) && statistics.iterations > 2 * fresh_iterations_ + 2) {
+    rebuild_ = true;
+  }
+  statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return statistics;
+}
+
+}  // namespace couplet

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <petscksp.h>
+
+#include <span>
+#include <string>
+
+#include "common/linalg/matrix.hpp"
+
+namespace couplet {
+
+enum class LinearMethod {
+  direct,           ///< LU: PETSc's own on one rank, MUMPS on several
+  direct_symmetric, ///< Cholesky: the same
+  cg_multigrid,     ///< CG with smoothed aggregation (ML), symmetric SOR
+  gmres_multigrid,  ///< GMRES with BoomerAMG
+  bicgstab_ilu,     ///< BiCGStab with ILU(0), block Jacobi over the ranks
+};
+
+struct LinearOptions {
+  LinearMethod method = LinearMethod::cg_multigrid;
+  double relative_tolerance = 1e-8;   ///< of |r| / |b|
+  double absolute_tolerance = 1e-50;  ///< of |r|; may also be given with each solve
+  int max_iterations = 500;
+  bool constant_null_space = false;   ///< pure Neumann: the constant is removed from b and x
+};
+
+struct SolveStatistics {
+  int iterations = 0;
+  double initial_residual = 0, residual = 0;
+  double seconds = 0;
+};
+
+/// A Krylov or direct solver whose preconditioner is kept until it is told to refresh.
+class LinearSolver {
+ public:
+  /// `what` names the unknown in error messages, e.g. "pressure".
+  LinearSolver(std::string what, const SparseMatrix& matrix, const LinearOptions& options);
+  ~LinearSolver();
+  LinearSolver(const LinearSolver&) = delete;
+  LinearSolver& operator=(const LinearSolver&) = delete;
+
+  /// Solves A x = b on the owned rows; x holds the initial guess on entry. Throws SolveFailure with the name and
+  /// PETSc's reason if it did not converge or the result is not finite. Collective.
+  SolveStatistics solve(std::span<const double> b, std::span<double> x);
+  SolveStatistics solve(std::span<const double> b, std::span<double> x, double relative_tolerance,
+                        double absolute_tolerance);
+  /// The matrix values changed: direct methods factorise again at the next solve; Krylov methods keep their
+  /// preconditioner while iterations stay below twice (plus 2) those seen right after it was made.
+  void matrix_changed();
+  /// Builds the preconditioner anew at the next solve.
+  void refresh();
+  int preconditioners_built() const { return built_; }
+  int total_iterations() const { return total_iterations_; }
+
+ private:
+  std::string what_;
+  LinearOptions options_;
+  const SparseMatrix* matrix_;
+  KSP ksp_ = nullptr;
+  ::Vec b_ = nullptr, x_ = nullptr;
+  bool rebuild_ = true;
+  int fresh_iterations_ = -1;
+  int built_ = 0, total_iterations_ = 0;
+};
+
+}  // namespace couplet
