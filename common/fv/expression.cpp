@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/fv/expression.hpp"
+
+#include <muParser.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+
+// muParser binds variables by address, so they live beside the parser in one block that never moves.
+struct Expression::State {
+  std::string text = "0", where;
+  mu::Parser parser;
+  std::array<double, 4> xyzt{};
+  bool uses_time = false, uses_space = false;
+  double constant = 0;
+
+  State() = default;
+  State(std::string source, std::string place) : text(std::move(source)), where(std::move(place)) {
+    static constexpr std::array<const char*, 4> names{"x", "y", "z", "t"};
+    try {
+      for (std::size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &xyzt[i]);
+      parser.DefineConst("pi", std::numbers::pi);
+      parser.SetExpr(text);
+      const auto used = parser.GetUsedVar();
+      uses_time = used.contains("t");
+      uses_space = used.contains("x") || used.contains("y") || used.contains("z");
+      for (const auto& [name, address] : used)
+        if (!address) fail_unknown(name);
+      constant = parser.Eval();
+    } catch (const mu::Parser::exception_type& e) {
+      fail(column_of(e), e.GetToken().empty() ? e.GetMsg() : "unexpected '" + e.GetToken() + "'");
+    }
+    if (!uses_time && !uses_space) require_finite(constant);
+  }
+
+  static std::size_t column_of(const mu::Parser::exception_type& e) {
+    return e.GetPos() < 0 ? 1 : static_cast<std::size_t>(e.GetPos()) + 1;
+  }
+
+  [[noreturn]] void fail(std::size_t column, const std::string& what) const {
+    throw Error(
+        "{}the expression '{}' cannot be read at column {}: {}. Known are the variables x, y, z [m] and t "
+        "[s], the "
+        "constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, "
+        "abs, min, max.",
+        where.empty() ? "" : where + ": ", text, column, what);
+  }
+
+  [[noreturn]] void fail_unknown(const std::string& name) const {
+    const auto found = text.find(name);
+    fail(found == std::string::npos ? 1 : found + 1, "unknown name '" + name + "'");
+  }
+
+  void require_finite(double value) const {
+    if (std::isfinite(value)) return;
+    throw Error(
+        "{}the expression '{}' gives {} at x = {:g}, y = {:g}, z = {:g}, t = {:g}; a finite number is "
+        "needed.",
+        where.empty() ? "" : where + ": ", text, value, xyzt[0], xyzt[1], xyzt[2], xyzt[3]);
+  }
+
+  double at(const Vec3& x, double t) {
+    xyzt = {x[0], x[1], x[2], t};
+    const double value = parser.Eval();
+    require_finite(value);
+    return value;
+  }
+};
+
+Expression::Expression() : state_(std::make_unique<State>()) {}
+Expression::Expression(const config::ExpressionText& text, std::string where)
+    : state_(std::make_unique<State>(text.text, std::move(where))) {}
+Expression::Expression(double constant) : state_(std::make_unique<State>()) {
+  state_->text = fmt::format("{}", constant);
+  state_->constant = constant;
+}
+Expression::~Expression() = default;
+Expression::Expression(Expression&&) noexcept = default;
+Expression& Expression::operator=(Expression&&) noexcept = default;
+
+double Expression::operator()(const Vec3& x, double t) const {
+  return uses_space() || uses_time() ? state_->at(x, t) : state_->constant;
+}
+
+void Expression::evaluate(std::span<const Vec3> points, double t, std::span<double> values, int stride,
+                          int offset) const {
+  const bool same_everywhere = !uses_space();
+  const double common = same_everywhere ? (*this)(Vec3::Zero(), t) : 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    values[stride * i + offset] = same_everywhere ? common : state_->at(points[i], t);
+}
+
+const std::string& Expression::text() const { return state_->text; }
+bool Expression::uses_time() const { return state_->uses_time; }
+bool Expression::uses_space() const { return state_->uses_space; }
+bool Expression::is_zero() const { return !uses_time() && !uses_space() && state_->constant == 0; }
+
+std::vector<Expression> make_expressions(const std::vector<config::ExpressionText>& texts, int dim,
+                                         const std::string& where) {
+  if (std::ssize(texts) != dim)
+    throw Error("{}: {} components are given where the {}-dimensional scene needs {}.", where, texts.size(),
+                dim, dim);
+  std::vector<Expression> expressions;
+  for (int c = 0; c < dim; ++c) expressions.emplace_back(texts[c], fmt::format("{}[{}]", where, c));
+  return expressions;
+}
+
+}  // namespace couplet
