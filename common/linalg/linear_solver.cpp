@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/linalg/linear_solver.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -16,12 +17,16 @@ bool is_direct(LinearMethod method) {
   return method == LinearMethod::direct || method == LinearMethod::direct_symmetric;
 }
 
-void choose_direct(KSP ksp, PC pc, MPI_Comm comm, bool symmetric) {
+// PETSc's own factorisation has no dense kernels: it wins on small matrices (low overhead), MUMPS on large
+// ones.
+constexpr GlobalIndex largest_for_petsc = 12000;
+
+void choose_direct(KSP ksp, PC pc, const SparseMatrix& matrix, bool symmetric) {
   petsc_check(KSPSetType(ksp, KSPPREONLY));
   petsc_check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
-  const bool parallel = comm_size(comm) > 1;
-  petsc_check(PCFactorSetMatSolverType(pc, parallel ? MATSOLVERMUMPS : MATSOLVERPETSC));
-  if (!parallel) petsc_check(PCFactorSetMatOrderingType(pc, MATORDERINGND));
+  const bool mumps = comm_size(matrix.comm()) > 1 || matrix.n_owned_rows() > largest_for_petsc;
+  petsc_check(PCFactorSetMatSolverType(pc, mumps ? MATSOLVERMUMPS : MATSOLVERPETSC));
+  if (!mumps) petsc_check(PCFactorSetMatOrderingType(pc, MATORDERINGND));
 }
 
 // ML's smoothed aggregation with one symmetric SOR sweep: the best packaged preconditioner on FV Laplacians.
@@ -38,10 +43,12 @@ void choose_ml(PC pc) {
   petsc_check(PCSetFromOptions(pc));
 }
 
-void choose_method(KSP ksp, PC pc, MPI_Comm comm, LinearMethod method) {
+void choose_method(KSP ksp, PC pc, const SparseMatrix& matrix, LinearMethod method) {
   switch (method) {
-    case LinearMethod::direct: return choose_direct(ksp, pc, comm, false);
-    case LinearMethod::direct_symmetric: return choose_direct(ksp, pc, comm, true);
+    case LinearMethod::direct:
+      return choose_direct(ksp, pc, matrix, false);
+    case LinearMethod::direct_symmetric:
+      return choose_direct(ksp, pc, matrix, true);
     case LinearMethod::cg_multigrid:
       petsc_check(KSPSetType(ksp, KSPCG));
       petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
@@ -68,7 +75,7 @@ LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const L
   petsc_check(KSPSetOperators(ksp_, matrix.petsc(), matrix.petsc()));
   PC pc = nullptr;
   petsc_check(KSPGetPC(ksp_, &pc));
-  choose_method(ksp_, pc, matrix.comm(), options.method);
+  choose_method(ksp_, pc, matrix, options.method);
   if (!is_direct(options.method)) petsc_check(KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE));
   if (options.constant_null_space) {
     MatNullSpace constants = nullptr;
@@ -99,32 +106,19 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
 SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double> x, double relative_tolerance,
                                     double absolute_tolerance) {
   const auto start = std::chrono::steady_clock::now();
-  petsc_check(KSPSetReusePreconditioner(ksp_, rebuild_ ? PETSC_FALSE : PETSC_TRUE));
-  if (rebuild_) petsc_check(KSPSetOperators(ksp_, matrix_->petsc(), matrix_->petsc()));
   petsc_check(
       KSPSetTolerances(ksp_, relative_tolerance, absolute_tolerance, PETSC_DEFAULT, options_.max_iterations));
-  petsc_check(VecPlaceArray(b_, b.data()));
-  petsc_check(VecPlaceArray(x_, x.data()));
-  const PetscErrorCode code = KSPSolve(ksp_, b_, x_);
-  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
   SolveStatistics statistics;
-  PetscInt iterations = 0;
-  if (code == 0) {
-    petsc_check(KSPGetConvergedReason(ksp_, &reason));
-    petsc_check(KSPGetIterationNumber(ksp_, &iterations));
-    petsc_check(KSPGetResidualNorm(ksp_, &statistics.residual));
+  KSPConvergedReason reason = attempt(b, x, statistics);
+  if (reason < 0 && !rebuild_) {
+    // The kept preconditioner no longer fits the matrix: one more try with a fresh one.
+    rebuild_ = true;
+    std::fill(x.begin(), x.end(), 0.0);
+    reason = attempt(b, x, statistics);
   }
-  PetscReal norm = 0;
-  if (code == 0) petsc_check(VecNorm(x_, NORM_2, &norm));
-  petsc_check(VecResetArray(b_));
-  petsc_check(VecResetArray(x_));
-  petsc_check(code);
-  if (reason < 0 || !std::isfinite(norm))
-    throw SolveFailure("The linear solver for {} did not converge: {} after {} iterations, residual {:.3e}{}.", what_,
-                       KSPConvergedReasons[reason], int(iterations), statistics.residual,
-                       std::isfinite(norm) ? "" : ", the solution is not finite");
-  statistics.iterations = static_cast<int>(iterations);
-  total_iterations_ += statistics.iterations;
+  if (reason < 0)
+    throw SolveFailure("The linear solver for {} did not converge: {} after {} iterations, residual {:.3e}.",
+                       what_, KSPConvergedReasons[reason], statistics.iterations, statistics.residual);
   if (rebuild_) {
     rebuild_ = false;
     ++built_;
@@ -134,6 +128,29 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
   }
   statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return statistics;
+}
+
+/// One KSPSolve; a result that is not finite counts as not converged.
+KSPConvergedReason LinearSolver::attempt(std::span<const double> b, std::span<double> x,
+                                         SolveStatistics& statistics) {
+  petsc_check(KSPSetReusePreconditioner(ksp_, rebuild_ ? PETSC_FALSE : PETSC_TRUE));
+  if (rebuild_) petsc_check(KSPSetOperators(ksp_, matrix_->petsc(), matrix_->petsc()));
+  petsc_check(VecPlaceArray(b_, b.data()));
+  petsc_check(VecPlaceArray(x_, x.data()));
+  const PetscErrorCode code = KSPSolve(ksp_, b_, x_);
+  PetscReal norm = 0;
+  if (code == 0) petsc_check(VecNorm(x_, NORM_2, &norm));
+  petsc_check(VecResetArray(b_));
+  petsc_check(VecResetArray(x_));
+  petsc_check(code);
+  KSPConvergedReason reason = KSP_CONVERGED_ITERATING;
+  PetscInt iterations = 0;
+  petsc_check(KSPGetConvergedReason(ksp_, &reason));
+  petsc_check(KSPGetIterationNumber(ksp_, &iterations));
+  petsc_check(KSPGetResidualNorm(ksp_, &statistics.residual));
+  statistics.iterations += static_cast<int>(iterations);
+  total_iterations_ += static_cast<int>(iterations);
+  return std::isfinite(norm) ? reason : std::min(reason, KSP_DIVERGED_NANORINF);
 }
 
 }  // namespace couplet

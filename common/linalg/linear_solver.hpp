@@ -11,11 +11,11 @@
 namespace couplet {
 
 enum class LinearMethod {
-  direct,           ///< LU: PETSc's own on one rank, MUMPS on several
-  direct_symmetric, ///< Cholesky: the same
-  cg_multigrid,     ///< CG with smoothed aggregation (ML), symmetric SOR
-  gmres_multigrid,  ///< GMRES with BoomerAMG
-  bicgstab_ilu,     ///< BiCGStab with ILU(0), block Jacobi over the ranks
+  direct,            ///< LU: PETSc's own for small matrices on one rank, else MUMPS
+  direct_symmetric,  ///< Cholesky: the same
+  cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
+  gmres_multigrid,   ///< GMRES with BoomerAMG
+  bicgstab_ilu,      ///< BiCGStab with ILU(0), block Jacobi over the ranks
 };
 
 struct LinearOptions {
@@ -23,12 +23,12 @@ struct LinearOptions {
   double relative_tolerance = 1e-8;   ///< of |r| / |b|
   double absolute_tolerance = 1e-50;  ///< of |r|; may also be given with each solve
   int max_iterations = 500;
-  bool constant_null_space = false;   ///< pure Neumann: the constant is removed from b and x
+  bool constant_null_space = false;  ///< pure Neumann: the constant is removed from b and x
 };
 
 struct SolveStatistics {
   int iterations = 0;
-  double initial_residual = 0, residual = 0;
+  double residual = 0;
   double seconds = 0;
 };
 
@@ -41,13 +41,14 @@ class LinearSolver {
   LinearSolver(const LinearSolver&) = delete;
   LinearSolver& operator=(const LinearSolver&) = delete;
 
-  /// Solves A x = b on the owned rows; x holds the initial guess on entry. Throws SolveFailure with the name and
-  /// PETSc's reason if it did not converge or the result is not finite. Collective.
+  /// Solves A x = b on the owned rows; x holds the initial guess on entry. Throws SolveFailure with the name
+  /// and PETSc's reason if it did not converge or the result is not finite. Collective.
   SolveStatistics solve(std::span<const double> b, std::span<double> x);
   SolveStatistics solve(std::span<const double> b, std::span<double> x, double relative_tolerance,
                         double absolute_tolerance);
   /// The matrix values changed: direct methods factorise again at the next solve; Krylov methods keep their
-  /// preconditioner while iterations stay below twice (plus 2) those seen right after it was made.
+  /// preconditioner while iterations stay below twice (plus 2) those seen right after it was made, and make
+  /// it anew when it fails.
   void matrix_changed();
   /// Builds the preconditioner anew at the next solve.
   void refresh();
@@ -55,6 +56,8 @@ class LinearSolver {
   int total_iterations() const { return total_iterations_; }
 
  private:
+  KSPConvergedReason attempt(std::span<const double> b, std::span<double> x, SolveStatistics& statistics);
+
   std::string what_;
   LinearOptions options_;
   const SparseMatrix* matrix_;
