@@ -3,6 +3,7 @@
 
 #include <muParser.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -33,13 +34,20 @@ struct Expression::State {
         if (!address) fail_unknown(name);
       constant = parser.Eval();
     } catch (const mu::Parser::exception_type& e) {
-      fail(column_of(e), e.GetToken().empty() ? e.GetMsg() : "unexpected '" + e.GetToken() + "'");
+      fail(column_of(e), reason_of(e));
     }
     if (!uses_time && !uses_space) require_finite(constant);
   }
 
-  static std::size_t column_of(const mu::Parser::exception_type& e) {
-    return e.GetPos() < 0 ? 1 : static_cast<std::size_t>(e.GetPos()) + 1;
+  std::size_t column_of(const mu::Parser::exception_type& e) const {
+    return e.GetPos() < 0 ? 1 : std::min(static_cast<std::size_t>(e.GetPos()), text.size()) + 1;
+  }
+
+  static std::string reason_of(const mu::Parser::exception_type& e) {
+    if (e.GetCode() == mu::ecMISSING_PARENS) return "a ')' is missing";
+    if (e.GetCode() == mu::ecUNEXPECTED_EOF) return "it ends too early";
+    if (e.GetToken().empty()) return "it is not a complete expression";
+    return "unexpected '" + e.GetToken() + "'";
   }
 
   [[noreturn]] void fail(std::size_t column, const std::string& what) const {
