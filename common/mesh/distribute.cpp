@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <numeric>
+
+#include "common/mesh/load.hpp"
+#include "common/mesh/on_root.hpp"
+#include "common/mesh/partition.hpp"
+#include "common/mesh/topology.hpp"
+
+namespace couplet {
+namespace {
+
+/// The whole mesh with its faces and its partition; the same on all ranks while the local parts are cut out.
+struct WholeMesh {
+  RawMesh raw;
+  Faces faces;
+  std::vector<int> part;  // rank of each cell
+};
+
+WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
+  WholeMesh whole;
+  on_root(comm, [&] {
+    whole.raw = raw;
+    drop_unused_points(whole.raw);
+    orient_cells(whole.raw);
+    whole.faces = build_faces(whole.raw);
+    const Index n = whole.raw.cell_points.size();
+    if (n < comm_size(comm))
+      throw Error(
+          "The mesh has {} cells, fewer than the {} ranks it is to be shared by. Start fewer processes.", n,
+          comm_size(comm));
+    const std::span<const Index> owner(whole.faces.owner);
+    whole.part =
+        partition(make_graph(n, owner.first(whole.faces.n_interior), whole.faces.neighbour), comm_size(comm));
+    whole.raw.boundary_points = {};  // now in `faces`
+  });
+  if (comm_size(comm) == 1) return whole;
+  MPI_Bcast(&whole.raw.dim, 1, MPI_INT, 0, comm);
+  broadcast(comm, whole.raw.points);
+  broadcast(comm, whole.raw.cell_type);
+  broadcast(comm, whole.raw.cell_points);
+  broadcast(comm, whole.raw.cell_zone);
+  broadcast(comm, whole.raw.zones);
+  broadcast(comm, whole.raw.patches);
+  MPI_Bcast(&whole.faces.n_interior, 1, MPI_INT32_T, 0, comm);
+  broadcast(comm, whole.faces.points);
+  broadcast(comm, whole.faces.owner);
+  broadcast(comm, whole.faces.neighbour);
+  broadcast(comm, whole.faces.patch);
+  broadcast(comm, whole.part);
+  return whole;
+}
+
+/// Index map of entries known by `ids` (owned ones first); the owners tell where they keep what is a ghost
+/// here.
+IndexMap make_index_map(MPI_Comm comm, std::span<const GlobalIndex> ids, Index n_owned,
+                        const std::vector<int>& ghost_owner) {
+  std::vector<std::pair<GlobalIndex, Index>> owned(n_owned);
+  for (Index i = 0; i < n_owned; ++i) owned[i] = {ids[i], i};
+  std::sort(owned.begin(), owned.end());
+
+  std::vector<std::vector<GlobalIndex>> wanted(comm_size(comm));
+  for (std::size_t g = 0; g < ghost_owner.size(); ++g) wanted[ghost_owner[g]].push_back(ids[n_owned + g]);
+  std::vector<std::vector<Index>> answers(comm_size(comm));
+  const auto asked = all_to_all(comm, wanted);
+  for (std::size_t r = 0; r < asked.size(); ++r)
+    for (const GlobalIndex id : asked[r])
+      answers[r].push_back(std::lower_bound(owned.begin(), owned.end(), std::pair(id, Index(0)))->second);
+  const auto told = all_to_all(comm, answers);
+  std::vector<Index> remote, next(told.size(), 0);
+  for (const int r : ghost_owner) remote.push_back(told[r][next[r]++]);
+  return IndexMap(comm, n_owned, ghost_owner, remote);
+}
+
+/// Cuts this rank's part out of the whole mesh.
+class LocalPart {
+ public:
+  LocalPart(MPI_Comm comm, const WholeMesh& whole)
+      : comm_(comm), rank_(comm_rank(comm)), raw_(whole.raw), faces_(whole.faces), part_(whole.part) {}
+
+  Mesh build() {
+    mesh_.comm = comm_;
+    mesh_.dim = raw_.dim;
+    mesh_.zones = raw_.zones;
+    choose_cells();
+    choose_points();
+    fill_cells();
+    fill_interior_faces();
+    fill_boundary_faces();
+    return std::move(mesh_);
+  }
+
+ private:
+  void choose_cells() {
+    const Index n = raw_.cell_points.size();
+    std::vector<Index> mine;
+    std::vector<char> touched(raw_.points.size(), 0);
+    cell_local_.assign(n, -1);
+    for (Index c = 0; c < n; ++c) {
+      if (part_[c] != rank_) continue;
+      cell_local_[c] = static_cast<Index>(mine.size());
+      mine.push_back(c);
+      for (const Index p : raw_.cell_points[c]) touched[p] = 1;
+    }
+    std::vector<Index> first, second;
+    for (Index f = 0; f < faces_.n_interior; ++f) {
+      const Index a = cell_local_[faces_.owner[f]], b = cell_local_[faces_.neighbour[f]];
+      if (a < 0 || b < 0) continue;
+      first.push_back(a);
+      second.push_back(b);
+    }
+    for (const Index i : reverse_cuthill_mckee(make_graph(static_cast<Index>(mine.size()), first, second)))
+      mesh_.cell_id.push_back(mine[i]);
+    const auto n_owned = static_cast<Index>(mesh_.cell_id.size());
+
+    for (Index c = 0; c < n; ++c) {
+      const auto points = raw_.cell_points[c];
+      if (part_[c] != rank_ &&
+          std::any_of(points.begin(), points.end(), [&](Index p) { return touched[p] != 0; }))
+        mesh_.cell_id.push_back(c);
+    }
+    std::stable_sort(mesh_.cell_id.begin() + n_owned, mesh_.cell_id.end(),
+                     [&](GlobalIndex a, GlobalIndex b) { return part_[a] < part_[b]; });
+    std::vector<int> ghost_owner;
+    for (std::size_t i = 0; i < mesh_.cell_id.size(); ++i) {
+      const GlobalIndex c = mesh_.cell_id[i];
+      cell_local_[c] = static_cast<Index>(i);
+      if (Index(i) >= n_owned) ghost_owner.push_back(part_[c]);
+    }
+    mesh_.cells = make_index_map(comm_, mesh_.cell_id, n_owned, ghost_owner);
+  }
+
+  /// The owner of a point is the smallest rank that owns a cell touching it.
+  void choose_points() {
+    std::vector<int> point_owner(raw_.points.size(), comm_size(comm_));
+    for (Index c = 0; c < raw_.cell_points.size(); ++c)
+      for (const Index p : raw_.cell_points[c]) point_owner[p] = std::min(point_owner[p], part_[c]);
+
+    std::vector<GlobalIndex> ghosts;
+    std::vector<char> seen(raw_.points.size(), 0);
+    for (const GlobalIndex c : mesh_.cell_id)
+      for (const Index p : raw_.cell_points[static_cast<Index>(c)]) {
+        if (seen[p]) continue;
+        seen[p] = 1;
+        (point_owner[p] == rank_ ? mesh_.point_id : ghosts).push_back(p);
+      }
+    const auto n_owned = static_cast<Index>(mesh_.point_id.size());
+    mesh_.point_id.insert(mesh_.point_id.end(), ghosts.begin(), ghosts.end());
+    std::vector<int> ghost_owner;
+    for (const GlobalIndex p : ghosts) ghost_owner.push_back(point_owner[p]);
+    mesh_.points = make_index_map(comm_, mesh_.point_id, n_owned, ghost_owner);
+
+    point_local_.assign(raw_.points.size(), -1);
+    for (std::size_t i = 0; i < mesh_.point_id.size(); ++i) {
+      point_local_[mesh_.point_id[i]] = static_cast<Index>(i);
+      mesh_.reference_points.push_back(raw_.points[mesh_.point_id[i]]);
+    }
+  }
+
+  void push_points(Csr& rows, std::span<const Index> whole) {
+    for (const Index p : whole) rows.index.push_back(point_local_[p]);
+    rows.offset.push_back(static_cast<Index>(rows.index.size()));
+  }
+
+  void fill_cells() {
+    for (const GlobalIndex c : mesh_.cell_id) {
+      mesh_.cell_type.push_back(raw_.cell_type[c]);
+      mesh_.cell_zone.push_back(raw_.cell_zone[c]);
+      push_points(mesh_.cell_points, raw_.cell_points[static_cast<Index>(c)]);
+    }
+  }
+
+  void fill_interior_faces() {
+    const auto owned = [&](Index cell) { return cell >= 0 && cell < mesh_.cells.n_owned(); };
+    std::vector<Index> chosen;
+    for (Index f = 0; f < faces_.n_interior; ++f)
+      if (owned(cell_local_[faces_.owner[f]]) || owned(cell_local_[faces_.neighbour[f]])) chosen.push_back(f);
+    const auto key = [&](Index f) {
+      return std::pair(cell_local_[faces_.owner[f]], cell_local_[faces_.neighbour[f]]);
+    };
+    std::sort(chosen.begin(), chosen.end(), [&](Index a, Index b) { return key(a) < key(b); });
+    for (const Index f : chosen) {
+      mesh_.owner.push_back(key(f).first);
+      mesh_.neighbour.push_back(key(f).second);
+      push_points(mesh_.face_points, faces_.points[f]);
+    }
+    mesh_.n_interior = static_cast<Index>(chosen.size());
+  }
+
+  void fill_boundary_faces() {
+    struct Chosen {
+      bool ghost;
+      int patch;
+      Index cell, id;
+      auto operator<=>(const Chosen&) const = default;
+    };
+    std::vector<Chosen> chosen;
+    for (Index b = 0; b < faces_.n_boundary(); ++b) {
+      const Index cell = cell_local_[faces_.owner[faces_.n_interior + b]];
+      if (cell >= 0) chosen.push_back({cell >= mesh_.cells.n_owned(), faces_.patch[b], cell, b});
+    }
+    std::sort(chosen.begin(), chosen.end());
+    for (const std::string& name : raw_.patches) mesh_.patches.push_back({name});
+    Index n_owned = 0;
+    std::vector<int> ghost_owner;
+    for (const Chosen& f : chosen) {
+      Patch& patch = mesh_.patches[f.patch];
+      ++(f.ghost ? patch.ghost_count : patch.count);
+      if (f.ghost)
+        ghost_owner.push_back(part_[mesh_.cell_id[f.cell]]);
+      else
+        ++n_owned;
+      mesh_.owner.push_back(f.cell);
+      mesh_.boundary_id.push_back(f.id);
+      push_points(mesh_.face_points, faces_.points[faces_.n_interior + f.id]);
+    }
+    Index at = mesh_.n_interior;
+    for (Patch& p : mesh_.patches) at = (p.first = at) + p.count;
+    for (Patch& p : mesh_.patches) at = (p.ghost_first = at) + p.ghost_count;
+    mesh_.boundary = make_index_map(comm_, mesh_.boundary_id, n_owned, ghost_owner);
+  }
+
+  MPI_Comm comm_;
+  int rank_;
+  const RawMesh& raw_;
+  const Faces& faces_;
+  const std::vector<int>& part_;
+  std::vector<Index> cell_local_, point_local_;  // -1: not on this rank
+  Mesh mesh_;
+};
+
+}  // namespace
+
+Mesh distribute(MPI_Comm comm, const RawMesh& raw) {
+  Mesh mesh = LocalPart(comm, prepare(comm, raw)).build();
+  mesh.reference = compute_geometry(mesh, mesh.reference_points);
+  return mesh;
+}
+
+}  // namespace couplet

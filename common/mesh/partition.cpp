@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mesh/partition.hpp"
+
+#include <petscmat.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "common/linalg/petsc_check.hpp"
+
+namespace couplet {
+
+Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> second) {
+  Csr graph;
+  graph.offset.assign(n + 1, 0);
+  for (std::size_t e = 0; e < first.size(); ++e) {
+    ++graph.offset[first[e] + 1];
+    ++graph.offset[second[e] + 1];
+  }
+  std::partial_sum(graph.offset.begin(), graph.offset.end(), graph.offset.begin());
+  graph.index.resize(graph.offset.back());
+  std::vector<Index> next(graph.offset.begin(), graph.offset.end() - 1);
+  for (std::size_t e = 0; e < first.size(); ++e) {
+    graph.index[next[first[e]]++] = second[e];
+    graph.index[next[second[e]]++] = first[e];
+  }
+  for (Index i = 0; i < n; ++i)
+    std::sort(graph.index.begin() + graph.offset[i], graph.index.begin() + graph.offset[i + 1]);
+  return graph;
+}
+
+std::vector<int> partition(const Csr& graph, int parts) {
+  const Index n = graph.size();
+  if (parts == 1) return std::vector<int>(n, 0);
+  // PETSc frees both arrays with the matrix.
+  PetscInt *rows = nullptr, *columns = nullptr;
+  petsc_check(PetscMalloc1(n + 1, &rows));
+  petsc_check(PetscMalloc1(std::max<std::size_t>(1, graph.index.size()), &columns));
+  std::copy(graph.offset.begin(), graph.offset.end(), rows);
+  std::copy(graph.index.begin(), graph.index.end(), columns);
+  Mat adjacency = nullptr;
+  MatPartitioning tool = nullptr;
+  IS result = nullptr;
+  petsc_check(MatCreateMPIAdj(PETSC_COMM_SELF, n, n, rows, columns, nullptr, &adjacency));
+  petsc_check(MatPartitioningCreate(PETSC_COMM_SELF, &tool));
+  petsc_check(MatPartitioningSetType(tool, MATPARTITIONINGPTSCOTCH));
+  petsc_check(MatPartitioningSetAdjacency(tool, adjacency));
+  petsc_check(MatPartitioningSetNParts(tool, parts));
+  petsc_check(MatPartitioningApply(tool, &result));
+  const PetscInt* part = nullptr;
+  petsc_check(ISGetIndices(result, &part));
+  std::vector<int> parts_of(part, part + n);
+  petsc_check(ISRestoreIndices(result, &part));
+  petsc_check(ISDestroy(&result));
+  petsc_check(MatPartitioningDestroy(&tool));
+  petsc_check(MatDestroy(&adjacency));
+  return parts_of;
+}
+
+namespace {
+
+/// Nodes reachable from `start`, breadth first, neighbours by ascending degree; marks them with `stamp`.
+void breadth_first(const Csr& graph, Index start, int stamp, std::vector<int>& mark,
+                   std::vector<Index>& order) {
+  order.assign(1, start);
+  mark[start] = stamp;
+  std::vector<Index> next;
+  for (std::size_t at = 0; at < order.size(); ++at) {
+    next.clear();
+    for (const Index n : graph[order[at]]) {
+      if (mark[n] == stamp) continue;
+      mark[n] = stamp;
+      next.push_back(n);
+    }
+    std::stable_sort(next.begin(), next.end(),
+                     [&](Index a, Index b) { return graph[a].size() < graph[b].size(); });
+    order.insert(order.end(), next.begin(), next.end());
+  }
+}
+
+}  // namespace
+
+std::vector<Index> reverse_cuthill_mckee(const Csr& graph) {
+  const Index n = graph.size();
+  std::vector<Index> result, component;
+  result.reserve(n);
+  std::vector<int> mark(n, 0);
+  for (Index seed = 0; seed < n; ++seed) {
+    if (mark[seed] != 0) continue;
+    // The last node of a breadth-first walk lies far out; two walks give a start near an end of the graph.
+    breadth_first(graph, seed, 1, mark, component);
+    breadth_first(graph, component.back(), 2, mark, component);
+    breadth_first(graph, component.back(), 3, mark, component);
+    result.insert(result.end(), component.begin(), component.end());
+  }
+  std::reverse(result.begin(), result.end());
+  return result;
+}
+
+}  // namespace couplet

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// Undirected graph of `n` nodes from its edges (first[i], second[i]): per node its neighbours, ascending.
+Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> second);
+
+/// A part 0 .. parts - 1 for every node, by PT-Scotch through PETSc. Serial: to be called on one rank.
+std::vector<int> partition(const Csr& graph, int parts);
+
+/// Reverse Cuthill-McKee: order[i] is the node that comes i-th. Components one after the other.
+std::vector<Index> reverse_cuthill_mckee(const Csr& graph);
+
+}  // namespace couplet

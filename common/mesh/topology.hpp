@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/mesh/load.hpp"
+
+namespace couplet {
+
+/// All faces of a whole mesh. Interior faces first, by (owner, neighbour), the owner being the cell with the
+/// smaller number; then the boundary faces, in the order of their boundary elements. Points turn right-handed
+/// out of the owner.
+struct Faces {
+  Index n_interior = 0;
+  Csr points;
+  std::vector<Index> owner;
+  std::vector<Index> neighbour;  ///< interior faces only
+  std::vector<int> patch;        ///< boundary faces only
+  Index n_boundary() const { return static_cast<Index>(owner.size()) - n_interior; }
+};
+
+/// Throws Error naming the place if a boundary face is in no patch or in two, if a boundary element is no
+/// boundary face, or if more than two cells share a face.
+Faces build_faces(const RawMesh& raw);
+
+/// Faces of cells that no other cell shares, as boundary elements (for generators, which then name the
+/// patches).
+Csr outer_faces(const RawMesh& raw);
+
+/// Turns inverted cells (clockwise in 2-D) right side out. Throws Error for a cell without volume, for a 2-D
+/// mesh out of the plane z = 0, and for a mesh without cells.
+void orient_cells(RawMesh& raw);
+
+/// Points that no cell uses are dropped (a .msh may carry centres of circles); the order of the others stays.
+void drop_unused_points(RawMesh& raw);
+
+/// "(1, 2.5)" in 2-D, "(1, 2.5, 3)" in 3-D.
+std::string place(const Vec3& x, int dim);
+
+}  // namespace couplet

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/mesh/load.hpp"
+
+namespace couplet::test {
+
+struct Box {
+  const char* name;
+  BoxCells cells;
+};
+
+inline const std::vector<Box>& boxes() {
+  static const std::vector<Box> all{{"quadrilaterals", BoxCells::quadrilaterals},
+                                    {"triangles", BoxCells::triangles},
+                                    {"hexahedra", BoxCells::hexahedra},
+                                    {"tetrahedra", BoxCells::tetrahedra},
+                                    {"prisms", BoxCells::prisms},
+                                    {"mixed", BoxCells::mixed}};
+  return all;
+}
+
+inline const Vec3 lower(1, -2, 0.5), upper(3, 1, 1.5);
+
+/// A distorted box of 4 x 5 x 3 grid cells between `lower` and `upper`.
+inline RawMesh distorted_box(BoxCells cells) {
+  RawMesh raw = make_box(cells, {4, 5, 3}, lower, upper);
+  perturb_interior(raw, 0.2, 7);
+  return raw;
+}
+
+inline double box_volume(int dim) {
+  const Vec3 size = upper - lower;
+  return dim == 2 ? size[0] * size[1] : size.prod();
+}
+
+}  // namespace couplet::test
