@@ -9,15 +9,16 @@
 
 namespace couplet::config {
 
-/// A parsed YAML file: text, positions and duplicate keys known. Throws Error with file:line:column on broken YAML,
-/// duplicate keys (with both places) or an unreadable file.
+/// A parsed YAML file: text, positions and duplicate keys known. Throws Error with file:line:column on broken
+/// YAML, duplicate keys (with both places) or an unreadable file.
 class Document {
  public:
   static Document read(const std::filesystem::path& file);
   static Document parse(const std::string& text, const std::string& name = "<text>");
   ~Document();
   Document(Document&&) noexcept;
-  /// Overrides one value: "participants.solid.material.density=1000" (command line --set). Throws Error on a bad path.
+  /// Overrides one value: "participants.solid.material.density=1000" (command line --set). Throws Error on a
+  /// bad path.
   void set(const std::string& assignment);
   const std::string& name() const;
   /// Same for equal text after overrides; compared at the roll call of a coupled job.
@@ -30,9 +31,11 @@ class Document {
   std::unique_ptr<Content> content_;
 };
 
-/// Reads the mapping at `path` (dotted, "" is the whole file, e.g. "participants.solid") into whatever `declare` binds.
-/// Every message is "file:line:column: key.path: text". Returns all of them, in file order; empty means valid.
-std::vector<std::string> load(const Document& document, const std::string& path, const Section::Declare& declare);
+/// Reads the mapping at `path` (dotted, "" is the whole file, e.g. "participants.solid") into whatever
+/// `declare` binds. Every message is "file:line:column: key.path: text". Returns all of them, in file order;
+/// empty means valid.
+std::vector<std::string> load(const Document& document, const std::string& path,
+                              const Section::Declare& declare);
 /// The same; throws one Error with all messages, one a line.
 void load_or_throw(const Document& document, const std::string& path, const Section::Declare& declare);
 

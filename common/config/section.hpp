@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -15,8 +16,8 @@
 
 namespace couplet::config {
 
-/// Whatever a Section does with the declarations: read and validate a YAML node, write the Markdown reference,
-/// write the JSON schema, print the effective values. See load.hpp.
+/// Whatever a Section does with the declarations: read and validate a YAML node, write the Markdown
+/// reference, write the JSON schema, print the effective values. See load.hpp.
 class Visitor;
 
 /// Range and documentation of one key, chained onto its declaration:
@@ -25,12 +26,12 @@ class Visitor;
 /// The declaration takes effect when the Key goes out of scope, i.e. at the end of the statement.
 class Key {
  public:
-  Key& unit(std::string_view si_unit);          ///< accepts "5.6 MPa", "0.1 s", plain numbers in this SI unit
+  Key& unit(std::string_view si_unit);  ///< accepts "5.6 MPa", "0.1 s", plain numbers in this SI unit
   Key& required();
-  Key& range(double lowest, double highest);    ///< inclusive
-  Key& positive();                              ///< > 0
-  Key& not_negative();                          ///< >= 0
-  Key& size(std::size_t n);                     ///< of a list of numbers
+  Key& range(double lowest, double highest);  ///< inclusive
+  Key& positive();                            ///< > 0
+  Key& not_negative();                        ///< >= 0
+  Key& size(std::size_t n);                   ///< of a list of numbers
   Key& doc(std::string_view text);
 
   struct Facts {
@@ -52,7 +53,8 @@ class Key {
   Target target_;
 };
 
-/// A number or an expression in x, y, z, t (muParser syntax), kept as text; see fv/expression.hpp for evaluation.
+/// A number or an expression in x, y, z, t (muParser syntax), kept as text; see fv/expression.hpp for
+/// evaluation.
 struct ExpressionText {
   std::string text = "0";
 };
@@ -61,24 +63,26 @@ struct ExpressionText {
 ///
 ///   void declare(config::Section& s, SolidParameters& p) {
 ///     s.value("density", p.density).unit("kg/m^3").positive().required().doc("density");
-///     s.choice("analysis", p.analysis, {{"static", Analysis::steady}, {"dynamic", Analysis::dynamic}}).doc("...");
-///     s.section("output", [&](config::Section& o) { declare(o, p.output); }, "what is written");
-///     s.map("boundaries", p.boundaries, [](config::Section& b, Boundary& v) { declare(b, v); }, "patch", "...");
-///     s.check([&] { return p.a < p.b ? "" : "'a' must be below 'b'"; }, "a");
+///     s.choice("analysis", p.analysis, {{"static", Analysis::steady}, {"dynamic",
+///     Analysis::dynamic}}).doc("..."); s.section("output", [&](config::Section& o) { declare(o, p.output);
+///     }, "what is written"); s.map("boundaries", p.boundaries, [](config::Section& b, Boundary& v) {
+///     declare(b, v); }, "patch", "..."); s.check([&] { return p.a < p.b ? "" : "'a' must be below 'b'"; },
+///     "a");
 ///   }
 ///
-/// Names are kebab-case (asserted). Unknown keys, duplicate keys, wrong types, units and ranges are all collected with
-/// file:line:column and reported together.
+/// Names are kebab-case (asserted). Unknown keys, duplicate keys, wrong types, units and ranges are all
+/// collected with file:line:column and reported together.
 class Section {
  public:
   explicit Section(Visitor& visitor) : visitor_(visitor) {}
+  Section(const Section&) = delete;
 
   Key value(std::string_view name, double& target);
   Key value(std::string_view name, int& target);
   Key value(std::string_view name, bool& target);
   Key value(std::string_view name, std::string& target);
   Key value(std::string_view name, ExpressionText& target);
-  Key value(std::string_view name, Vec3& target);                       ///< list of 2 or 3 numbers
+  Key value(std::string_view name, Vec3& target);  ///< list of 2 or 3 numbers
   Key value(std::string_view name, std::vector<double>& target);
   Key value(std::string_view name, std::vector<std::string>& target);
   Key value(std::string_view name, std::vector<ExpressionText>& target);
@@ -103,57 +107,65 @@ class Section {
   }
 
   using Declare = std::function<void(Section&)>;
-  /// A mapping below this one; absent means all its defaults (its required keys are then reported as missing).
+  /// A mapping below this one; absent means all its defaults (its required keys are then reported as
+  /// missing).
   void section(std::string_view name, const Declare& declare, std::string_view doc);
   /// An effect: present in the YAML or not there at all.
   template <class T>
   void optional_section(std::string_view name, std::optional<T>& target,
                         const std::function<void(Section&, T&)>& declare, std::string_view doc) {
-    optional_by_name(name, doc, [&target, declare](Section& s) {
+    optional_by_name(name, target.has_value(), doc, [&target, declare](Section& s) {
       if (!target) target.emplace();
       declare(s, *target);
     });
   }
-  /// A mapping with names of the user's choice, e.g. one entry a patch. `what` is the kind of name, for messages.
+  /// A mapping with names of the user's choice, e.g. one entry a patch. `what` is the kind of name, for
+  /// messages.
   template <class T>
   void map(std::string_view name, std::map<std::string, T>& target,
            const std::function<void(Section&, T&)>& declare, std::string_view what, std::string_view doc) {
-    map_by_name(name, what, doc, [&target, declare](const std::string& key, Section& s) { declare(s, target[key]); });
+    std::vector<std::string> present;
+    for (const auto& [key, value] : target) present.push_back(key);
+    map_by_name(name, present, what, doc,
+                [&target, declare](const std::string& key, Section& s) { declare(s, target[key]); });
   }
   /// A sequence of mappings.
   template <class T>
   void list(std::string_view name, std::vector<T>& target, const std::function<void(Section&, T&)>& declare,
             std::string_view doc) {
-    list_by_name(name, doc, [&target, declare](std::size_t i, Section& s) {
+    list_by_name(name, target.size(), doc, [&target, declare](std::size_t i, Section& s) {
       if (target.size() <= i) target.resize(i + 1);
       declare(s, target[i]);
     });
   }
-  /// A mapping whose key `name` (a word) decides which further keys are valid, e.g. type: inlet | outlet | wall.
+  /// The key `name` (a word) of this mapping decides which further keys of it are valid, e.g. type: inlet |
+  /// outlet | wall. Absent means what `target` holds already, unless it is `required`.
   template <class E>
-  void variant(std::string_view name, E& target, const std::vector<std::tuple<std::string, E, Declare>>& cases,
-               std::string_view doc) {
+  void variant(std::string_view name, E& target,
+               const std::vector<std::tuple<std::string, E, Declare>>& cases, std::string_view doc,
+               bool required = false) {
     std::vector<std::pair<std::string, Declare>> by_name;
     std::string current;
     for (const auto& [word, value, declare] : cases) {
       by_name.emplace_back(word, declare);
       if (value == target) current = word;
     }
-    variant_by_name(name, by_name, current, doc, [&target, cases](const std::string& word) {
+    variant_by_name(name, by_name, required ? "" : current, doc, [&target, cases](const std::string& word) {
       for (const auto& [w, value, declare] : cases)
         if (w == word) target = value;
     });
   }
-  /// Cross-rule, run after this section was read without error: an empty text is a pass; `key` is where it points.
+  /// Cross-rule: declare it after the keys it looks at. It runs at once if this section was read without
+  /// error so far; an empty text is a pass; `key` is where the message points.
   void check(const std::function<std::string()>& rule, std::string_view key);
 
  private:
   Key choice_by_name(std::string_view name, const std::vector<std::string>& words, const std::string& current,
                      std::function<void(const std::string&)> set);
-  void optional_by_name(std::string_view name, std::string_view doc, const Declare& declare);
-  void map_by_name(std::string_view name, std::string_view what, std::string_view doc,
-                   const std::function<void(const std::string&, Section&)>& declare);
-  void list_by_name(std::string_view name, std::string_view doc,
+  void optional_by_name(std::string_view name, bool present, std::string_view doc, const Declare& declare);
+  void map_by_name(std::string_view name, const std::vector<std::string>& present, std::string_view what,
+                   std::string_view doc, const std::function<void(const std::string&, Section&)>& declare);
+  void list_by_name(std::string_view name, std::size_t present, std::string_view doc,
                     const std::function<void(std::size_t, Section&)>& declare);
   void variant_by_name(std::string_view name, const std::vector<std::pair<std::string, Declare>>& cases,
                        const std::string& current, std::string_view doc,

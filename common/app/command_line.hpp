@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/log/log.hpp"
+
+namespace couplet {
+
+/// What a program was asked to do; the same for all programs.
+struct CommandLine {
+  enum class Task { run, check, docs, schema, print_config } task = Task::run;
+  std::filesystem::path case_file;       ///< empty for docs and schema
+  std::string participant;               ///< empty: the only one in the YAML that names this program
+  std::vector<std::string> overrides;    ///< "a.b=v", for config::Document::set
+  std::filesystem::path restart_folder;  ///< empty: fresh start
+  log::Verbosity verbosity = log::Verbosity::normal;
+};
+
+/// How a program presents itself in --help.
+struct ProgramText {
+  std::string name;                   ///< "solid_solver"
+  std::string description;            ///< one line
+  std::vector<std::string> top_keys;  ///< "density  density [kg/m^3]": what --help lists of the configuration
+};
+
+/// What to do now: go on with the command line, or leave with this exit code after `output` was printed
+/// (--help,
+/// --version: 0 and standard output; a wrong command line: 2 and standard error).
+struct ParsedCommandLine {
+  CommandLine command_line;
+  std::optional<int> exit_code;
+  std::string output;
+};
+ParsedCommandLine parse_command_line(int argc, const char* const* argv, const ProgramText& program);
+
+/// "couplet 0.1.0".
+std::string version_text();
+
+}  // namespace couplet

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/config/document.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+
+namespace couplet::config {
+namespace {
+
+void find_duplicates(const YAML::Node& node, const std::string& path, std::vector<Message>& messages) {
+  if (node.IsSequence()) {
+    for (std::size_t i = 0; i < node.size(); ++i)
+      find_duplicates(node[i], fmt::format("{}[{}]", path, i), messages);
+  }
+  if (!node.IsMap()) return;
+  std::map<std::string, Place> seen;
+  for (const auto& item : node) {
+    if (!item.first.IsScalar()) {
+      messages.push_back({place_of(item.first), path, "a key must be a single word."});
+      continue;
+    }
+    const std::string& name = item.first.Scalar();
+    const std::string here = join_path(path, name);
+    const Place place = place_of(item.first);
+    const auto [first, is_new] = seen.emplace(name, place);
+    if (!is_new)
+      messages.push_back({place, here,
+                          fmt::format("this key stands here twice (first at {}:{}); remove one of the two.",
+                                      first->second.line, first->second.column)});
+    find_duplicates(item.second, here, messages);
+  }
+}
+
+YAML::Node parse_yaml(const std::string& text, const std::string& name) {
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw Error("{}:{}:{}: this is not valid YAML: {}.", name, error.mark.line + 1, error.mark.column + 1,
+                error.msg);
+  }
+}
+
+std::string describe(const std::string& path) { return path.empty() ? "the top level" : "'" + path + "'"; }
+
+/// The entry `part` of the node at `path`; throws if a step of a --set path does not exist.
+YAML::Node step_into(const YAML::Node& node, const std::string& path, const std::string& part,
+                     const std::string& option) {
+  if (node.IsSequence()) {
+    const bool is_number = !part.empty() && part.find_first_not_of("0123456789") == std::string::npos;
+    if (!is_number || part.size() > 6 || std::stoul(part) >= node.size())
+      throw Error("{}: {} is a list of {} entries, so an entry number from 0 is expected in place of '{}'.",
+                  option, describe(path), node.size(), part);
+    return node[std::stoul(part)];
+  }
+  if (!node.IsMap())
+    throw Error("{}: {} is a single value, so '{}' cannot be set below it.", option, describe(path), part);
+  const Entry entry = find(node, part);
+  if (!entry.found)
+    throw Error(
+        "{}: there is no '{}' in {}. {} (A missing mapping can be given as a whole: --set '{}={{key: "
+        "value}}'.)",
+        option, part, describe(path), did_you_mean(part, key_names(node), "keys"), join_path(path, part));
+  return entry.node;
+}
+
+}  // namespace
+
+Document::Document() : content_(std::make_unique<Content>()) {}
+Document::~Document() = default;
+Document::Document(Document&&) noexcept = default;
+
+Document Document::read(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error))
+    throw Error("{}: this file does not exist. Give the path of the case's YAML file.", file.string());
+  if (std::filesystem::is_directory(file, error))
+    throw Error("{}: this is a folder; give the YAML file in it, for example {}.", file.string(),
+                (file / "case.yaml").string());
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (!stream) throw Error("{}: this file cannot be read.", file.string());
+  return parse(text.str(), file.string());
+}
+
+Document Document::parse(const std::string& text, const std::string& name) {
+  Document document;
+  Content& content = *document.content_;
+  content.name = name;
+  content.text = text;
+  content.root = parse_yaml(text, name);
+  std::vector<Message> messages;
+  find_duplicates(content.root, "", messages);
+  if (!messages.empty()) throw Error(join(format_all(name, messages), "\n"));
+  return document;
+}
+
+void Document::set(const std::string& assignment) {
+  const std::string option = "--set " + assignment;
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw Error("{}: expected key=value, for example --set simulation.end-time='2 s'.", option);
+  const std::string path(trim(assignment.substr(0, equals)));
+  const std::vector<std::string> parts = split(path, '.');
+  YAML::Node value;
+  try {
+    value = YAML::Load(assignment.substr(equals + 1));
+  } catch (const YAML::Exception& error) {
+    throw Error("{}: the value is not valid YAML: {}.", option, error.msg);
+  }
+  std::string walked;
+  YAML::Node node = content_->root;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].empty()) throw Error("{}: the path '{}' has an empty part.", option, path);
+    const bool last = i + 1 == parts.size();
+    if (last && node.IsMap()) {
+      // operator[] would not find a key whose text YAML reads as a number or a truth value.
+      if (const Entry entry = find(node, parts[i]); entry.found) {
+        YAML::Node target = entry.node;
+        target = value;
+      } else {
+        node.force_insert(parts[i], value);
+      }
+    } else {
+      YAML::Node next = step_into(node, walked, parts[i], option);
+      if (last) next = value;
+      node.reset(next);
+    }
+    walked = join_path(walked, parts[i]);
+  }
+  content_->overrides.emplace_back(path, option);
+}
+
+const std::string& Document::name() const { return content_->name; }
+
+std::size_t Document::hash() const {
+  std::string all = content_->text;
+  for (const auto& [path, option] : content_->overrides) all += '\0' + option;
+  return stable_hash(all);
+}
+
+Place place_of(const YAML::Node& node) {
+  const YAML::Mark mark = node.Mark();
+  if (mark.is_null()) return {};
+  return {mark.line + 1, mark.column + 1, ""};
+}
+
+std::string join_path(const std::string& parent, std::string_view name) {
+  return parent.empty() ? std::string(name) : fmt::format("{}.{}", parent, name);
+}
+
+std::vector<std::string> key_names(const YAML::Node& map) {
+  std::vector<std::string> names;
+  if (map.IsMap())
+    for (const auto& item : map) names.push_back(item.first.Scalar());
+  return names;
+}
+
+Entry find(const YAML::Node& map, std::string_view name) {
+  if (map.IsMap())
+    for (const auto& item : map)
+      if (item.first.Scalar() == name) return {true, place_of(item.first), item.second};
+  return {};
+}
+
+std::string format(const std::string& file, const Message& message) {
+  const Place& place = message.place;
+  std::string where = file;
+  if (!place.override_text.empty())
+    where = place.override_text;
+  else if (place.line > 0)
+    where = fmt::format("{}:{}:{}", file, place.line, place.column);
+  return message.path.empty() ? fmt::format("{}: {}", where, message.text)
+                              : fmt::format("{}: {}: {}", where, message.path, message.text);
+}
+
+std::vector<std::string> format_all(const std::string& file, std::vector<Message> messages) {
+  const auto order = [](const Message& m) {
+    return std::make_tuple(!m.place.override_text.empty(), m.place.line, m.place.column);
+  };
+  std::stable_sort(messages.begin(), messages.end(),
+                   [&](const Message& a, const Message& b) { return order(a) < order(b); });
+  std::vector<std::string> lines;
+  std::set<std::string> seen;
+  for (const Message& message : messages) {
+    std::string line = format(file, message);
+    if (seen.insert(line).second) lines.push_back(std::move(line));
+  }
+  return lines;
+}
+
+}  // namespace couplet::config

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/config/load.hpp"
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/config/document.hpp"
+#include "common/config/reader.hpp"
+
+namespace couplet::config {
+namespace {
+
+/// The node at a dotted path and the place of its key; if a part is missing, found is false, the place is
+/// that of the last mapping on the way and `reached` its path.
+struct Located {
+  Entry entry;
+  std::string reached, missing;
+  std::vector<std::string> present;
+};
+
+Located locate(const Document::Content& content, const std::string& path) {
+  Located result;
+  result.entry.found = true;
+  result.entry.place.line = result.entry.place.column = 1;
+  // reset(), not =: assigning one YAML::Node to another changes the tree.
+  result.entry.node.reset(content.root);
+  if (path.empty()) return result;
+  for (const std::string& part : split(path, '.')) {
+    const Entry next = find(result.entry.node, part);
+    result.entry.found = next.found;
+    if (!next.found) {
+      result.missing = part;
+      result.present = key_names(result.entry.node);
+      return result;
+    }
+    result.entry.place = next.place;
+    result.entry.node.reset(next.node);
+    result.reached = join_path(result.reached, part);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<std::string> load(const Document& document, const std::string& path,
+                              const Section::Declare& declare) {
+  const Document::Content& content = document.content();
+  Located located = locate(content, path);
+  if (!located.entry.found) {
+    const auto meant = closest(located.missing, located.present);
+    const std::string text = meant ? fmt::format("this section is missing. Did you write '{}'?", *meant)
+                                   : std::string("this section is missing.");
+    return format_all(content.name,
+                      {{located.entry.place, join_path(located.reached, located.missing), text}});
+  }
+  if (path.empty() && content.root.IsNull())
+    return {fmt::format("{}:1:1: this file is empty.", content.name)};
+  Reader reader(content);
+  reader.read_mapping(located.entry.node, located.entry.place, path, declare);
+  return format_all(content.name, reader.messages());
+}
+
+void load_or_throw(const Document& document, const std::string& path, const Section::Declare& declare) {
+  const std::vector<std::string> messages = load(document, path, declare);
+  if (!messages.empty()) throw Error(join(messages, "\n"));
+}
+
+std::vector<std::string> keys_of(const Document& document, const std::string& path) {
+  const Located located = locate(document.content(), path);
+  return located.entry.found ? key_names(located.entry.node) : std::vector<std::string>{};
+}
+
+std::optional<std::string> text_of(const Document& document, const std::string& path) {
+  const Located located = locate(document.content(), path);
+  if (!located.entry.found || !located.entry.node.IsScalar()) return std::nullopt;
+  return located.entry.node.Scalar();
+}
+
+}  // namespace couplet::config

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/config/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/config/values.hpp"
+
+namespace couplet::config {
+namespace {
+
+/// The keys a declaration makes at its own level; touches no member.
+class NameCollector final : public Visitor {
+ public:
+  std::vector<std::string> names;
+
+  void key(const Facts& facts, const Slot&) override { names.push_back(facts.name); }
+  void section(std::string_view name, std::string_view, const Declare&) override { names.emplace_back(name); }
+  void optional(std::string_view name, bool, std::string_view, const Declare&) override {
+    names.emplace_back(name);
+  }
+  void map(std::string_view name, const std::vector<std::string>&, std::string_view, std::string_view,
+           const std::function<void(const std::string&, Section&)>&) override {
+    names.emplace_back(name);
+  }
+  void list(std::string_view name, std::size_t, std::string_view,
+            const std::function<void(std::size_t, Section&)>&) override {
+    names.emplace_back(name);
+  }
+  void variant(std::string_view name, const Cases& cases, const std::string&, std::string_view,
+               const std::function<void(const std::string&)>&) override {
+    names.emplace_back(name);
+    Section section(*this);
+    for (const auto& [word, declare] : cases) declare(section);
+  }
+  void check(const std::function<std::string()>&, std::string_view) override {}
+};
+
+std::vector<std::string> names_of(const Section::Declare& declare) {
+  NameCollector collector;
+  Section section(collector);
+  declare(section);
+  return collector.names;
+}
+
+std::string kind_of(const YAML::Node& node) {
+  if (node.IsSequence()) return "a list";
+  if (node.IsScalar()) return "'" + node.Scalar() + "'";
+  return "nothing";
+}
+
+}  // namespace
+
+void Reader::report(const Place& place, const std::string& path, const std::string& text) {
+  Place where = place;
+  for (const auto& [changed, option] : content_.overrides)
+    if (path == changed || path.starts_with(changed + ".") || path.starts_with(changed + "["))
+      where.override_text = option;
+  messages_.push_back({where, path, text});
+}
+
+Entry Reader::take(std::string_view name) {
+  Frame& frame = frames_.back();
+  frame.known.emplace_back(name);
+  return find(frame.node, name);
+}
+
+void Reader::read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
+                          const Declare& declare) {
+  const bool is_empty = !node.IsDefined() || node.IsNull();
+  if (!is_empty && !node.IsMap()) {
+    report(place, path, fmt::format("expected a mapping (keys with values), found {}.", kind_of(node)));
+    return;
+  }
+  frames_.push_back(
+      {is_empty ? YAML::Node(YAML::NodeType::Map) : node, place, path, {}, {}, messages_.size()});
+  Section section(*this);
+  declare(section);
+  report_unknown_keys();
+  frames_.pop_back();
+}
+
+void Reader::report_unknown_keys() {
+  const Frame frame = frames_.back();
+  for (const auto& item : frame.node) {
+    const std::string& name = item.first.Scalar();
+    if (std::find(frame.known.begin(), frame.known.end(), name) != frame.known.end()) continue;
+    const std::string path = join_path(frame.path, name);
+    std::vector<std::string> owners;
+    for (const auto& [key, owner] : frame.elsewhere)
+      if (key == name) owners.push_back(owner);
+    if (!owners.empty()) {
+      report(place_of(item.first), path,
+             fmt::format("this key does not belong here; it goes with {}.", join(owners, " or ")));
+      continue;
+    }
+    std::vector<std::string> free;
+    for (const std::string& known : frame.known)
+      if (!find(frame.node, known).found) free.push_back(known);
+    // A key that is there already cannot be meant, but shows what could stand here.
+    report(place_of(item.first), path,
+           "unknown key. " + did_you_mean(name, closest(name, free) ? free : frame.known, "keys"));
+  }
+}
+
+void Reader::key(const Facts& facts, const Slot& slot) {
+  const Frame& frame = frames_.back();
+  const std::string path = join_path(frame.path, facts.name);
+  const Entry entry = take(facts.name);
+  if (!entry.found) {
+    if (!facts.required) return;
+    const std::string type = describe_type(slot);
+    report(frame.place, path,
+           fmt::format("this required key is missing ({}{}{}).", facts.doc.empty() ? "" : facts.doc + ": ",
+                       type, facts.unit.empty() ? "" : " in " + facts.unit));
+    return;
+  }
+  try {
+    read_value(entry.node, facts, slot);
+  } catch (const Error& error) {
+    report(entry.place, path, error.what());
+  }
+}
+
+void Reader::section(std::string_view name, std::string_view, const Declare& declare) {
+  const Place outside = frames_.back().place;
+  const std::string path = join_path(frames_.back().path, name);
+  const Entry entry = take(name);
+  read_mapping(entry.node, entry.found ? entry.place : outside, path, declare);
+}
+
+void Reader::optional(std::string_view name, bool, std::string_view, const Declare& declare) {
+  const std::string path = join_path(frames_.back().path, name);
+  const Entry entry = take(name);
+  if (entry.found) read_mapping(entry.node, entry.place, path, declare);
+}
+
+void Reader::map(std::string_view name, const std::vector<std::string>&, std::string_view what,
+                 std::string_view, const std::function<void(const std::string&, Section&)>& declare) {
+  const std::string path = join_path(frames_.back().path, name);
+  const Entry entry = take(name);
+  if (!entry.found || entry.node.IsNull()) return;
+  if (!entry.node.IsMap()) {
+    report(
+        entry.place, path,
+        fmt::format("expected a mapping with one entry for each {}, found {}.", what, kind_of(entry.node)));
+    return;
+  }
+  for (const auto& item : entry.node) {
+    const std::string& key = item.first.Scalar();
+    read_mapping(item.second, place_of(item.first), join_path(path, key),
+                 [&](Section& s) { declare(key, s); });
+  }
+}
+
+void Reader::list(std::string_view name, std::size_t, std::string_view,
+                  const std::function<void(std::size_t, Section&)>& declare) {
+  const std::string path = join_path(frames_.back().path, name);
+  const Entry entry = take(name);
+  if (!entry.found || entry.node.IsNull()) return;
+  if (!entry.node.IsSequence()) {
+    report(entry.place, path,
+           fmt::format("expected a list of mappings, found {}.",
+                       entry.node.IsMap() ? "a mapping" : kind_of(entry.node)));
+    return;
+  }
+  for (std::size_t i = 0; i < entry.node.size(); ++i)
+    read_mapping(entry.node[i], place_of(entry.node[i]), fmt::format("{}[{}]", path, i),
+                 [&](Section& s) { declare(i, s); });
+}
+
+void Reader::variant(std::string_view name, const Cases& cases, const std::string& current,
+                     std::string_view doc, const std::function<void(const std::string&)>& set) {
+  const std::string path = join_path(frames_.back().path, name);
+  Word word{{}, current, set};
+  for (const auto& [text, declare] : cases) word.words.push_back(text);
+  const Entry entry = take(name);
+  std::string chosen = current;
+  if (entry.found || current.empty()) {
+    try {
+      if (!entry.found)
+        throw Error("this required key is missing ({}one of: {}).",
+                    doc.empty() ? "" : std::string(doc) + ": ", join(word.words));
+      word.set = [&](const std::string& text) {
+        chosen = text;
+        set(text);
+      };
+      read_value(entry.node, {}, word);
+    } catch (const Error& error) {
+      report(entry.found ? entry.place : frames_.back().place, path, error.what());
+      // Nobody knows which keys are valid now: take all of them as known, so that only the real mistake is
+      // reported.
+      for (const auto& [text, declare] : cases)
+        for (const std::string& key : names_of(declare)) frames_.back().known.push_back(key);
+      return;
+    }
+  }
+  Section section(*this);
+  for (const auto& [text, declare] : cases) {
+    if (text == chosen) {
+      declare(section);
+      continue;
+    }
+    for (const std::string& key : names_of(declare))
+      frames_.back().elsewhere.emplace_back(key, fmt::format("{}: {}", name, text));
+  }
+}
+
+void Reader::check(const std::function<std::string()>& rule, std::string_view key) {
+  const Frame& frame = frames_.back();
+  if (messages_.size() != frame.messages_before) return;
+  const std::string text = rule();
+  if (text.empty()) return;
+  const Entry entry = find(frame.node, key);
+  report(entry.found ? entry.place : frame.place, key.empty() ? frame.path : join_path(frame.path, key),
+         text);
+}
+
+}  // namespace couplet::config

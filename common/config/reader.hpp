@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/config/document.hpp"
+#include "common/config/visitor.hpp"
+
+namespace couplet::config {
+
+/// Fills the members from a mapping and collects everything that is wrong with it.
+class Reader final : public Visitor {
+ public:
+  explicit Reader(const Document::Content& content) : content_(content) {}
+
+  /// `node` may be undefined: all defaults, required keys are missing at `place`.
+  void read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
+                    const Declare& declare);
+  const std::vector<Message>& messages() const { return messages_; }
+
+  void key(const Facts& facts, const Slot& slot) override;
+  void section(std::string_view name, std::string_view doc, const Declare& declare) override;
+  void optional(std::string_view name, bool present, std::string_view doc, const Declare& declare) override;
+  void map(std::string_view name, const std::vector<std::string>& present, std::string_view what,
+           std::string_view doc, const std::function<void(const std::string&, Section&)>& declare) override;
+  void list(std::string_view name, std::size_t present, std::string_view doc,
+            const std::function<void(std::size_t, Section&)>& declare) override;
+  void variant(std::string_view name, const Cases& cases, const std::string& current, std::string_view doc,
+               const std::function<void(const std::string&)>& set) override;
+  void check(const std::function<std::string()>& rule, std::string_view key) override;
+
+ private:
+  /// The mapping that is being read.
+  struct Frame {
+    YAML::Node node;
+    Place place;
+    std::string path;
+    std::vector<std::string> known;
+    std::vector<std::pair<std::string, std::string>> elsewhere;  ///< key, the variant case it belongs to
+    std::size_t messages_before = 0;
+  };
+  Entry take(std::string_view name);
+  void report(const Place& place, const std::string& path, const std::string& text);
+  void report_unknown_keys();
+
+  const Document::Content& content_;
+  std::vector<Frame> frames_;
+  std::vector<Message> messages_;
+};
+
+}  // namespace couplet::config

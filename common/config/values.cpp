@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/config/values.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/base/units.hpp"
+
+namespace couplet::config {
+namespace {
+
+using Facts = Key::Facts;
+
+std::string example(const Facts& facts) {
+  return facts.unit.empty() ? "a number" : fmt::format("a number in {} or with its unit", facts.unit);
+}
+
+void check_range(double value, const Facts& facts) {
+  const bool good =
+      (facts.open_lowest ? value > facts.lowest : value >= facts.lowest) && value <= facts.highest;
+  if (!good)
+    throw Error("{} is out of range; expected a value {}.", format_quantity(value, facts.unit),
+                describe_range(facts));
+}
+
+const std::string& scalar(const YAML::Node& node, const std::string& expected) {
+  if (node.IsMap()) throw Error("expected {}, found a mapping.", expected);
+  if (node.IsSequence()) throw Error("expected {}, found a list.", expected);
+  if (!node.IsScalar() || node.Scalar().empty()) throw Error("this key has no value; expected {}.", expected);
+  return node.Scalar();
+}
+
+double read_number(const YAML::Node& node, const Facts& facts) {
+  const double value = parse_quantity(scalar(node, example(facts)), facts.unit);
+  check_range(value, facts);
+  return value;
+}
+
+int read_integer(const YAML::Node& node, const Facts& facts) {
+  const std::string& text = scalar(node, "a whole number");
+  const double value = parse_quantity(text, facts.unit);
+  if (value != std::nearbyint(value) || std::abs(value) > std::numeric_limits<int>::max())
+    throw Error("'{}' is not a whole number.", text);
+  check_range(value, facts);
+  return static_cast<int>(value);
+}
+
+bool read_bool(const YAML::Node& node) {
+  const std::string& text = scalar(node, "true or false");
+  bool value = false;
+  if (!YAML::convert<bool>::decode(node, value)) throw Error("'{}' is not one of: true, false.", text);
+  return value;
+}
+
+/// "2*sin(t)" starts with a number, too, but what follows is no unit.
+bool is_unit(const std::string& text) {
+  if (text.starts_with('/')) return false;
+  try {
+    parse_unit(text);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// A number with a unit becomes a number in the key's unit; anything else is an expression in that unit.
+ExpressionText read_expression(const YAML::Node& node, const Facts& facts) {
+  const std::string& text = scalar(
+      node, facts.unit.empty() ? "a number or an expression in x, y, z, t"
+                               : fmt::format("a number in {0}, with its unit, or an expression in x, y, z, t "
+                                             "that gives {0}",
+                                             facts.unit));
+  const auto quantity = split_quantity(text);
+  const bool is_expression =
+      !quantity || (!quantity->unit.empty() && !is_unit(quantity->unit) &&
+                    quantity->unit.find_first_of("+-*/^()<>=?:,&|!") != std::string::npos);
+  if (is_expression) return {text};
+  const double value = parse_quantity(text, facts.unit);
+  check_range(value, facts);
+  return {fmt::format("{}", value)};
+}
+
+template <class Read>
+auto read_list(const YAML::Node& node, const Facts& facts, const std::string& expected, const Read& read) {
+  if (!node.IsSequence())
+    throw Error("expected {}, found {}.", expected,
+                node.IsMap()      ? "a mapping"
+                : node.IsScalar() ? fmt::format("'{}'", node.Scalar())
+                                  : "nothing");
+  if (facts.size && node.size() != *facts.size)
+    throw Error("expected a list of {} entries, found {}.", *facts.size, node.size());
+  std::vector<decltype(read(node))> result;
+  for (std::size_t i = 0; i < node.size(); ++i) {
+    try {
+      result.push_back(read(node[i]));
+    } catch (const Error& error) {
+      throw Error("entry {} of the list: {}", i + 1, error.what());
+    }
+  }
+  return result;
+}
+
+std::string list_of(const Facts& facts, const std::string& things) {
+  std::string text =
+      facts.size ? fmt::format("a list of {} {}", *facts.size, things) : fmt::format("a list of {}", things);
+  return facts.unit.empty() ? text : fmt::format("{} in {} or with their units", text, facts.unit);
+}
+
+Vec3 read_vector(const YAML::Node& node, const Facts& facts) {
+  const auto values = read_list(node, facts, list_of(facts, "2 or 3 numbers"),
+                                [&](const YAML::Node& entry) { return read_number(entry, facts); });
+  if (values.size() != 2 && values.size() != 3)
+    throw Error("expected {}, found {} of them.", list_of(facts, "2 or 3 numbers"), values.size());
+  return {values[0], values[1], values.size() == 3 ? values[2] : 0.0};
+}
+
+std::string read_word(const YAML::Node& node, const Word& word) {
+  const std::string& text = scalar(node, fmt::format("one of: {}", join(word.words)));
+  for (const std::string& w : word.words)
+    if (w == text) return text;
+  const auto meant = closest(text, word.words);
+  throw Error("'{}' is not one of: {}.{}", text, join(word.words),
+              meant ? fmt::format(" Did you mean '{}'?", *meant) : "");
+}
+
+std::string quoted(const std::string& text) {
+  YAML::Emitter emitter;
+  emitter << text;
+  return emitter.c_str();
+}
+
+}  // namespace
+
+void read_value(const YAML::Node& node, const Facts& facts, const Slot& slot) {
+  const auto text = [](const YAML::Node& n) { return scalar(n, "a text"); };
+  std::visit(
+      Overloaded{
+          [&](double* v) { *v = read_number(node, facts); },
+          [&](int* v) { *v = read_integer(node, facts); },
+          [&](bool* v) { *v = read_bool(node); },
+          [&](std::string* v) { *v = text(node); },
+          [&](ExpressionText* v) { *v = read_expression(node, facts); },
+          [&](Vec3* v) { *v = read_vector(node, facts); },
+          [&](std::vector<double>* v) {
+            *v = read_list(node, facts, list_of(facts, "numbers"),
+                           [&](const YAML::Node& n) { return read_number(n, facts); });
+          },
+          [&](std::vector<std::string>* v) { *v = read_list(node, facts, list_of(facts, "texts"), text); },
+          [&](std::vector<ExpressionText>* v) {
+            *v = read_list(node, facts, list_of(facts, "numbers or expressions"),
+                           [&](const YAML::Node& n) { return read_expression(n, facts); });
+          },
+          [&](std::optional<double>* v) { *v = read_number(node, facts); },
+          [&](std::optional<std::string>* v) { *v = text(node); },
+          [&](std::optional<ExpressionText>* v) { *v = read_expression(node, facts); },
+          [&](const Word& v) { v.set(read_word(node, v)); },
+      },
+      slot);
+}
+
+std::string describe_range(const Facts& facts) {
+  const bool has_lowest = std::isfinite(facts.lowest), has_highest = std::isfinite(facts.highest);
+  const std::string highest = format_quantity(facts.highest, facts.unit);
+  const std::string lowest = format_quantity(facts.lowest, facts.unit);
+  if (has_lowest && has_highest)
+    return facts.open_lowest ? fmt::format("above {} and at most {}", lowest, highest)
+                             : fmt::format("from {} to {}", lowest, highest);
+  if (has_lowest) return fmt::format("{} {}", facts.open_lowest ? "above" : "at least", lowest);
+  if (has_highest) return fmt::format("at most {}", highest);
+  return "";
+}
+
+std::string describe_type(const Slot& slot) {
+  return std::visit(Overloaded{
+                        [](const double*) { return "number"; },
+                        [](const int*) { return "whole number"; },
+                        [](const bool*) { return "true or false"; },
+                        [](const std::string*) { return "text"; },
+                        [](const ExpressionText*) { return "number or expression"; },
+                        [](const Vec3*) { return "list of 2 or 3 numbers"; },
+                        [](const std::vector<double>*) { return "list of numbers"; },
+                        [](const std::vector<std::string>*) { return "list of texts"; },
+                        [](const std::vector<ExpressionText>*) { return "list of numbers or expressions"; },
+                        [](const std::optional<double>*) { return "number"; },
+                        [](const std::optional<std::string>*) { return "text"; },
+                        [](const std::optional<ExpressionText>*) { return "number or expression"; },
+                        [](const Word&) { return "word"; },
+                    },
+                    slot);
+}
+
+std::string format_value(const Slot& slot) {
+  const auto number = [](double v) { return fmt::format("{}", v); };
+  const auto list = [](const auto& values, const auto& print) {
+    std::vector<std::string> texts;
+    for (const auto& v : values) texts.push_back(print(v));
+    return fmt::format("[{}]", join(texts));
+  };
+  const auto expression = [](const ExpressionText& v) { return quoted(v.text); };
+  return std::visit(
+      Overloaded{
+          [&](const double* v) { return number(*v); },
+          [&](const int* v) { return fmt::format("{}", *v); },
+          [&](const bool* v) { return std::string(*v ? "true" : "false"); },
+          [&](const std::string* v) { return v->empty() ? std::string() : quoted(*v); },
+          [&](const ExpressionText* v) { return expression(*v); },
+          [&](const Vec3* v) { return fmt::format("[{}, {}, {}]", v->x(), v->y(), v->z()); },
+          [&](const std::vector<double>* v) { return list(*v, number); },
+          [&](const std::vector<std::string>* v) { return list(*v, quoted); },
+          [&](const std::vector<ExpressionText>* v) { return list(*v, expression); },
+          [&](const std::optional<double>* v) { return *v ? number(**v) : std::string(); },
+          [&](const std::optional<std::string>* v) { return *v ? quoted(**v) : std::string(); },
+          [&](const std::optional<ExpressionText>* v) { return *v ? expression(**v) : std::string(); },
+          [&](const Word& v) { return v.current; },
+      },
+      slot);
+}
+
+}  // namespace couplet::config

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+
+#include "common/config/visitor.hpp"
+
+namespace couplet::config {
+
+/// Writes the node's value to the member, in the key's unit and range. Throws Error with a sentence without
+/// place.
+void read_value(const YAML::Node& node, const Key::Facts& facts, const Slot& slot);
+
+/// "above 0 Pa", "from 0 to 0.5", "at most 3"; empty without limits.
+std::string describe_range(const Key::Facts& facts);
+
+/// "number", "list of texts", "one word": what a value of this slot looks like.
+std::string describe_type(const Slot& slot);
+
+/// The value in the member now, as it would stand in the YAML; empty optional: "".
+std::string format_value(const Slot& slot);
+
+}  // namespace couplet::config
