@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/base/types.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// Gradient at a face from the two nodes beside it and the vertices around it, thesis (2.53)-(2.58):
+///   grad_t phi = sum_V c_V phi_V                    surface Gauss theorem, edge values = mean of their end
+///   points n . grad phi = (phi_N - phi_P) / (d . n) + k . grad_t phi,   d = x_N - x_P,  k = n - d / (d . n)
+///   (over-relaxed)
+/// N is the neighbour cell's centre, on the boundary the face centre. Exact for linear fields on any (also
+/// warped) face.
+struct FaceGradient {
+  /// For the reference geometry.
+  explicit FaceGradient(const Mesh& mesh);
+  /// For another placement of the points. Allocates nothing.
+  void update(const Mesh& mesh, const Geometry& geometry, std::span<const Vec3> points);
+
+  std::vector<Vec3> normal;        ///< per local face: unit vector out of the owner
+  std::vector<double> inverse_dn;  ///< per local face: 1 / (d . n) [1/m]
+  std::vector<Vec3> skew;          ///< per local face: k
+  std::vector<Vec3> tangential;    ///< c_V, aligned with mesh.face_points.index [1/m]
+
+  /// grad_t at face f; `vertex` holds `D` values a local point: entry (i, j) is the derivative of component j
+  /// along i.
+  template <int D>
+  Tensor<D> tangential_gradient(const Mesh& mesh, Index f, std::span<const double> vertex) const {
+    Tensor<D> gradient = Tensor<D>::Zero();
+    for (Index e = mesh.face_points.offset[f]; e < mesh.face_points.offset[f + 1]; ++e) {
+      const double* value = vertex.data() + std::size_t(mesh.face_points.index[e]) * D;
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j) gradient(i, j) += tangential[e][i] * value[j];
+    }
+    return gradient;
+  }
+};
+
+}  // namespace couplet

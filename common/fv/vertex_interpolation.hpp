@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/base/types.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// How the values at the vertices of a patch are found.
+enum class PatchStencil {
+  open,      ///< cells and boundary faces around the vertex (traction, free surface, interface)
+  fixed,     ///< the surrounding faces of fixed patches only (Dirichlet)
+  symmetry,  ///< cells mirrored at the patch; the patch's own faces carry no value
+};
+
+/// Values at mesh points from the nodes around them: cell centres and boundary face centres.
+///
+/// Modified inverse distance, thesis (2.48)-(2.51) with the erratum of (2.50): w_i = (1 + lambda . r_i) /
+/// d_i, where r_i = (x_V - x_i) / d_i and sum_i r_i r_i^T lambda = - sum_i r_i; exact for linear fields
+/// whenever the nodes span the space. Where they do not, lambda is the least-norm solution (exact along the
+/// directions that are spanned), and where no weighted mean of the nodes can reach the point at all, the
+/// plain inverse distance is taken.
+///
+/// At symmetry planes the mirrored nodes are not stored: their weight equals that of the node itself, so that
+/// it is enough to look for lambda within the planes, and to remove a vector's component across them (see
+/// project()).
+///
+/// Node numbers: local cell i is node i, boundary face b (entry of mesh.boundary) is node
+/// mesh.cells.n_local() + b. Rows exist for the points of owned cells (those whose whole surroundings are on
+/// this rank); others are empty.
+class VertexInterpolation {
+ public:
+  /// `stencils`: one a patch. The weights are those of the reference geometry.
+  VertexInterpolation(const Mesh& mesh, std::span<const PatchStencil> stencils);
+
+  /// The weights for another placement of the points. Allocates nothing.
+  void update(const Geometry& geometry, std::span<const Vec3> points);
+
+  std::span<const Index> nodes(Index point) const {
+    return {node_.data() + offset_[point], std::size_t(offset_[point + 1] - offset_[point])};
+  }
+  std::span<const double> weights(Index point) const {
+    return {weight_.data() + offset_[point], std::size_t(offset_[point + 1] - offset_[point])};
+  }
+  /// The point lies on a fixed patch: its row holds faces of fixed patches; whoever knows better sets the
+  /// value itself.
+  bool is_fixed(Index point) const { return fixed_[point] != 0; }
+  /// I minus the directions across the symmetry planes the point lies on; I where there are none.
+  const Tensor3& projector(Index point) const { return projectors_[projector_of_[point]]; }
+  bool on_symmetry(Index point) const { return projector_of_[point] != 0; }
+
+  /// Values at this point: `cells` and `boundary` hold `components` a node. No projection.
+  template <int Components>
+  Vec<Components> scalar_at(Index point, std::span<const double> cells,
+                            std::span<const double> boundary) const {
+    Vec<Components> value = Vec<Components>::Zero();
+    for (std::int64_t i = offset_[point]; i < offset_[point + 1]; ++i) {
+      const double* node = node_[i] < n_cells_
+                               ? cells.data() + std::size_t(node_[i]) * Components
+                               : boundary.data() + std::size_t(node_[i] - n_cells_) * Components;
+      for (int c = 0; c < Components; ++c) value[c] += weight_[i] * node[c];
+    }
+    return value;
+  }
+  /// A vector field: the same, and no component across symmetry planes.
+  template <int D>
+  Vec<D> vector_at(Index point, std::span<const double> cells, std::span<const double> boundary) const {
+    const Vec<D> value = scalar_at<D>(point, cells, boundary);
+    return on_symmetry(point) ? Vec<D>(projector(point).template topLeftCorner<D, D>() * value) : value;
+  }
+
+ private:
+  struct Around;
+  void gather_rows(const Around& around, std::span<const PatchStencil> kind_of_face);
+  void find_projectors(const Around& around, std::span<const PatchStencil> kind_of_face);
+
+  const Mesh* mesh_;
+  Index n_cells_;
+  std::vector<std::int64_t> offset_;
+  std::vector<Index> node_;
+  std::vector<double> weight_;
+  std::vector<std::uint8_t> fixed_;
+  std::vector<Index> projector_of_;
+  std::vector<Tensor3> projectors_;  // [0] is the identity
+};
+
+}  // namespace couplet
