@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/config/section.hpp"
 #include "common/log/log.hpp"
 
 namespace couplet {
@@ -24,7 +25,7 @@ struct CommandLine {
 struct ProgramText {
   std::string name;                   ///< "solid_solver"
   std::string description;            ///< one line
-  std::vector<std::string> top_keys;  ///< "density  density [kg/m^3]": what --help lists of the configuration
+  config::Section::Declare declare;   ///< its parameters: --help lists the first level of them
 };
 
 /// What to do now: go on with the command line, or leave with this exit code after `output` was printed

@@ -30,9 +30,9 @@ class NameCollector final : public Visitor {
             const std::function<void(std::size_t, Section&)>&) override {
     names.emplace_back(name);
   }
-  void variant(std::string_view name, const Cases& cases, const std::string&, std::string_view,
+  void variant(const Facts& facts, const Cases& cases, const std::string&,
                const std::function<void(const std::string&)>&) override {
-    names.emplace_back(name);
+    names.push_back(facts.name);
     Section section(*this);
     for (const auto& [word, declare] : cases) declare(section);
   }
@@ -172,18 +172,18 @@ void Reader::list(std::string_view name, std::size_t, std::string_view,
                  [&](Section& s) { declare(i, s); });
 }
 
-void Reader::variant(std::string_view name, const Cases& cases, const std::string& current,
-                     std::string_view doc, const std::function<void(const std::string&)>& set) {
-  const std::string path = join_path(frames_.back().path, name);
+void Reader::variant(const Facts& facts, const Cases& cases, const std::string& current,
+                     const std::function<void(const std::string&)>& set) {
+  const std::string path = join_path(frames_.back().path, facts.name);
   Word word{{}, current, set};
   for (const auto& [text, declare] : cases) word.words.push_back(text);
-  const Entry entry = take(name);
+  const Entry entry = take(facts.name);
   std::string chosen = current;
-  if (entry.found || current.empty()) {
+  if (entry.found || facts.required) {
     try {
       if (!entry.found)
-        throw Error("this required key is missing ({}one of: {}).",
-                    doc.empty() ? "" : std::string(doc) + ": ", join(word.words));
+        throw Error("this required key is missing ({}one of: {}).", facts.doc.empty() ? "" : facts.doc + ": ",
+                    join(word.words));
       word.set = [&](const std::string& text) {
         chosen = text;
         set(text);
@@ -205,7 +205,7 @@ void Reader::variant(std::string_view name, const Cases& cases, const std::strin
       continue;
     }
     for (const std::string& key : names_of(declare))
-      frames_.back().elsewhere.emplace_back(key, fmt::format("{}: {}", name, text));
+      frames_.back().elsewhere.emplace_back(key, fmt::format("{}: {}", facts.name, text));
   }
 }
 

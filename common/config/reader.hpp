@@ -26,7 +26,7 @@ class Reader final : public Visitor {
            std::string_view doc, const std::function<void(const std::string&, Section&)>& declare) override;
   void list(std::string_view name, std::size_t present, std::string_view doc,
             const std::function<void(std::size_t, Section&)>& declare) override;
-  void variant(std::string_view name, const Cases& cases, const std::string& current, std::string_view doc,
+  void variant(const Facts& facts, const Cases& cases, const std::string& current,
                const std::function<void(const std::string&)>& set) override;
   void check(const std::function<std::string()>& rule, std::string_view key) override;
 

@@ -115,9 +115,13 @@ void Section::list_by_name(std::string_view name, std::size_t present, std::stri
 }
 void Section::variant_by_name(std::string_view name,
                               const std::vector<std::pair<std::string, Declare>>& cases,
-                              const std::string& current, std::string_view doc,
+                              const std::string& current, bool required, std::string_view doc,
                               std::function<void(const std::string&)> set) {
-  visitor_.variant(kebab(name), cases, current, doc, set);
+  Key::Facts facts;
+  facts.name = kebab(name);
+  facts.doc = doc;
+  facts.required = required || current.empty();
+  visitor_.variant(facts, cases, current, set);
 }
 void Section::check(const std::function<std::string()>& rule, std::string_view key) {
   visitor_.check(rule, key);

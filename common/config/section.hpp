@@ -150,7 +150,7 @@ class Section {
       by_name.emplace_back(word, declare);
       if (value == target) current = word;
     }
-    variant_by_name(name, by_name, required ? "" : current, doc, [&target, cases](const std::string& word) {
+    variant_by_name(name, by_name, current, required, doc, [&target, cases](const std::string& word) {
       for (const auto& [w, value, declare] : cases)
         if (w == word) target = value;
     });
@@ -168,7 +168,7 @@ class Section {
   void list_by_name(std::string_view name, std::size_t present, std::string_view doc,
                     const std::function<void(std::size_t, Section&)>& declare);
   void variant_by_name(std::string_view name, const std::vector<std::pair<std::string, Declare>>& cases,
-                       const std::string& current, std::string_view doc,
+                       const std::string& current, bool required, std::string_view doc,
                        std::function<void(const std::string&)> set);
   Visitor& visitor_;
 };

@@ -39,8 +39,9 @@ class Visitor {
                    const std::function<void(const std::string&, Section&)>& declare) = 0;
   virtual void list(std::string_view name, std::size_t present, std::string_view doc,
                     const std::function<void(std::size_t, Section&)>& declare) = 0;
-  virtual void variant(std::string_view name, const Cases& cases, const std::string& current,
-                       std::string_view doc, const std::function<void(const std::string&)>& set) = 0;
+  /// facts: name, doc, required.
+  virtual void variant(const Facts& facts, const Cases& cases, const std::string& current,
+                       const std::function<void(const std::string&)>& set) = 0;
   virtual void check(const std::function<std::string()>& rule, std::string_view key) = 0;
 };
 
