@@ -23,9 +23,9 @@ struct CommandLine {
 
 /// How a program presents itself in --help.
 struct ProgramText {
-  std::string name;                   ///< "solid_solver"
-  std::string description;            ///< one line
-  config::Section::Declare declare;   ///< its parameters: --help lists the first level of them
+  std::string name;                  ///< "solid_solver"
+  std::string description;           ///< one line
+  config::Section::Declare declare;  ///< its parameters: --help lists the first level of them
 };
 
 /// What to do now: go on with the command line, or leave with this exit code after `output` was printed

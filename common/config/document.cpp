@@ -154,6 +154,11 @@ std::string join_path(const std::string& parent, std::string_view name) {
   return parent.empty() ? std::string(name) : fmt::format("{}.{}", parent, name);
 }
 
+bool is_below(std::string_view path, std::string_view above) {
+  if (!path.starts_with(above)) return false;
+  return path.size() == above.size() || path[above.size()] == '.' || path[above.size()] == '[';
+}
+
 std::vector<std::string> key_names(const YAML::Node& map) {
   std::vector<std::string> names;
   if (map.IsMap())

@@ -37,6 +37,9 @@ std::vector<std::string> format_all(const std::string& file, std::vector<Message
 /// "a.b" and "c" give "a.b.c"; an empty parent gives "c".
 std::string join_path(const std::string& parent, std::string_view name);
 
+/// Is `path` the same as `above`, or something in it?
+bool is_below(std::string_view path, std::string_view above);
+
 /// The names of a mapping's keys in file order.
 std::vector<std::string> key_names(const YAML::Node& map);
 

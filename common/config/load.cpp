@@ -75,4 +75,14 @@ std::optional<std::string> text_of(const Document& document, const std::string& 
   return located.entry.node.Scalar();
 }
 
+std::string where(const Document& document, const std::string& path) {
+  const Document::Content& content = document.content();
+  Place place = locate(content, path).entry.place;
+  for (const auto& [changed, option] : content.overrides)
+    if (is_below(path, changed)) place.override_text = option;
+  std::string text = format(content.name, {place, path, ""});
+  text.erase(text.size() - 2);
+  return text;
+}
+
 }  // namespace couplet::config

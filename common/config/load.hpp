@@ -44,7 +44,12 @@ std::vector<std::string> keys_of(const Document& document, const std::string& pa
 /// The scalar at `path` as text, if it is there.
 std::optional<std::string> text_of(const Document& document, const std::string& path);
 
-/// Markdown reference: a table a section (key, type, unit, default, range, meaning).
+/// "case.yaml:12:5: participants.solid.program", the start of a message of one's own; with the place of the
+/// nearest mapping above if there is no such key.
+std::string where(const Document& document, const std::string& path);
+
+/// Markdown reference: a table a section (key, type, unit, default, range, meaning). It and the schema put
+/// placeholder entries into the maps, lists and optional members: give them a fresh object.
 std::string markdown(const std::string& title, const Section::Declare& declare);
 /// JSON schema (draft 2020-12) of the section, for editors.
 std::string json_schema(const std::string& title, const Section::Declare& declare);

@@ -57,8 +57,7 @@ std::string kind_of(const YAML::Node& node) {
 void Reader::report(const Place& place, const std::string& path, const std::string& text) {
   Place where = place;
   for (const auto& [changed, option] : content_.overrides)
-    if (path == changed || path.starts_with(changed + ".") || path.starts_with(changed + "["))
-      where.override_text = option;
+    if (is_below(path, changed)) where.override_text = option;
   messages_.push_back({where, path, text});
 }
 

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <sstream>
+
+#include "common/config/description.hpp"
+
+namespace couplet {
+namespace {
+
+// Equal to the project's version in CMakeLists.txt; a test compares them.
+constexpr const char* version = "0.1.0";
+
+/// The first level of the program's parameters, a line each.
+std::string list_keys(const config::Section::Declare& declare) {
+  const std::vector<config::Item> items = config::describe(declare, config::Describe::everything);
+  std::size_t width = 0;
+  for (const config::Item& item : items) width = std::max(width, item.facts.name.size());
+  std::string out;
+  for (const config::Item& item : items) {
+    const config::Key::Facts& facts = item.facts;
+    out += fmt::format("  {:<{}}  {}{}{}\n", facts.name, width, facts.doc,
+                       facts.unit.empty() ? "" : fmt::format(" [{}]", facts.unit),
+                       facts.required ? " (required)" : "");
+  }
+  return out;
+}
+
+std::string footer(const ProgramText& program) {
+  return fmt::format(
+      "Keys of this program's section under 'participants' in the YAML file ({0} --docs tells "
+      "everything):\n{1}\n"
+      "Alone:    mpirun -n 4 {0} case.yaml --participant NAME\n"
+      "Coupled:  mpirun -n 1 coupler case.yaml : -n 2 fluid_solver case.yaml : -n 1 solid_solver case.yaml"
+      " : -n 1 mesh_mover case.yaml\n"
+      "          Every program gets the same YAML file and the same --set options.\n"
+      "Exit code: 0 done, 1 the run failed, 2 the configuration or the command line is wrong.\n",
+      program.name, list_keys(program.declare));
+}
+
+}  // namespace
+
+std::string version_text() { return fmt::format("couplet {}", version); }
+
+ParsedCommandLine parse_command_line(int argc, const char* const* argv, const ProgramText& program) {
+  ParsedCommandLine result;
+  CommandLine& line = result.command_line;
+  bool check = false, docs = false, schema = false, print_config = false, verbose = false, quiet = false;
+
+  CLI::App app(program.description, program.name);
+  app.footer([&] { return footer(program); });
+  app.set_version_flag("--version", version_text());
+  app.add_option("case", line.case_file, "YAML file of the case")->type_name("case.yaml");
+  app.add_option("--participant", line.participant,
+                 "name under 'participants' in the YAML file; needed if several have this program")
+      ->type_name("NAME");
+  app.add_option("--set", line.overrides,
+                 "set one value, for example --set simulation.end-time='2 s'; repeatable")
+      ->type_name("a.b=v")
+      ->allow_extra_args(false);
+  app.add_option("--restart", line.restart_folder, "go on from the checkpoints in this folder")
+      ->type_name("FOLDER");
+  CLI::Option* check_option =
+      app.add_flag("--check", check, "only check the configuration: exit code 0 or 2");
+  CLI::Option* docs_option = app.add_flag("--docs", docs, "print the reference of all keys as Markdown");
+  CLI::Option* schema_option =
+      app.add_flag("--schema", schema, "print the JSON schema of all keys, for editors");
+  CLI::Option* print_option =
+      app.add_flag("--print-config", print_config, "print all values in force as YAML");
+  const std::vector<CLI::Option*> tasks{check_option, docs_option, schema_option, print_option};
+  for (CLI::Option* a : tasks)
+    for (CLI::Option* b : tasks)
+      if (a != b) a->excludes(b);
+  CLI::Option* verbose_option = app.add_flag("-v,--verbose", verbose, "every rank tells more");
+  app.add_flag("-q,--quiet", quiet, "warnings and errors only")->excludes(verbose_option);
+
+  try {
+    app.parse(argc, argv);
+    if (line.case_file.empty() && !docs && !schema)
+      throw CLI::ValidationError("Give the YAML file of the case, for example: " + program.name +
+                                 " case.yaml");
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out, err;
+    result.exit_code = app.exit(error, out, err) == 0 ? 0 : 2;
+    result.output = out.str() + err.str();
+    return result;
+  }
+  using Task = CommandLine::Task;
+  if (check) line.task = Task::check;
+  if (docs) line.task = Task::docs;
+  if (schema) line.task = Task::schema;
+  if (print_config) line.task = Task::print_config;
+  line.verbosity = verbose ? log::Verbosity::verbose : quiet ? log::Verbosity::quiet : log::Verbosity::normal;
+  return result;
+}
+
+}  // namespace couplet

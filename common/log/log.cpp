@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/log/log.hpp"
+
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/basic_file_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+
+#include <memory>
+#include <vector>
+
+#include "common/base/error.hpp"
+
+namespace couplet::log {
+namespace {
+
+/// Errors go to standard error alone.
+class BelowError final : public spdlog::sinks::stdout_sink_mt {
+ public:
+  void log(const spdlog::details::log_msg& message) override {
+    if (message.level < spdlog::level::err) spdlog::sinks::stdout_sink_mt::log(message);
+  }
+};
+
+/// "warning: " in front of warnings, "error: " in front of errors, nothing in front of ordinary lines.
+class Kind final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
+    std::string_view text;
+    if (message.level == spdlog::level::warn) text = "warning: ";
+    if (message.level >= spdlog::level::err) text = "error: ";
+    out.append(text.data(), text.data() + text.size());
+  }
+  std::unique_ptr<spdlog::custom_flag_formatter> clone() const override { return std::make_unique<Kind>(); }
+};
+
+std::string pattern(const std::string& participant, int rank) {
+  std::string name;
+  for (const char c : participant) name += c == '%' ? std::string("%%") : std::string(1, c);
+  return fmt::format("[{} {}] %*%v", name, rank);
+}
+
+}  // namespace
+
+void setup(const std::string& participant, int rank, Verbosity verbosity, const std::string& file) {
+  std::vector<spdlog::sink_ptr> sinks{std::make_shared<BelowError>()};
+  sinks.push_back(std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  sinks.back()->set_level(spdlog::level::err);
+  if (!file.empty() && rank == 0) {
+    try {
+      sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(file));
+    } catch (const spdlog::spdlog_ex&) {
+      throw Error(
+          "The log file '{}' cannot be opened for writing. Check the output folder and its permissions.",
+          file);
+    }
+  }
+  const auto logger = std::make_shared<spdlog::logger>(participant, sinks.begin(), sinks.end());
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
+  formatter->add_flag<Kind>('*').set_pattern(pattern(participant, rank));
+  logger->set_formatter(std::move(formatter));
+  if (verbosity == Verbosity::verbose)
+    logger->set_level(spdlog::level::debug);
+  else
+    logger->set_level(verbosity == Verbosity::normal && rank == 0 ? spdlog::level::info
+                                                                  : spdlog::level::warn);
+  // Standard output is a pipe under mpirun; a line a step is worth its flush.
+  logger->flush_on(spdlog::level::info);
+  spdlog::set_default_logger(logger);
+}
+
+}  // namespace couplet::log
