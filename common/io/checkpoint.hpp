@@ -11,8 +11,9 @@
 
 namespace couplet {
 
-/// One participant's state at an accepted time, one HDF5 file. Arrays are written rank by rank as they are (bit for bit
-/// on equal ranks). Written under a temporary name, flushed and renamed in close(), so the last good file is never lost.
+/// One participant's state at an accepted time, one HDF5 file. Arrays are written rank by rank as they are
+/// (bit for bit on equal ranks). Written under a temporary name, flushed and renamed in close(), so the last
+/// good file is never lost.
 class CheckpointWriter {
  public:
   CheckpointWriter(MPI_Comm comm, const std::filesystem::path& file);
@@ -29,8 +30,8 @@ class CheckpointWriter {
   std::unique_ptr<State> state_;
 };
 
-/// Throws Error naming the file and what is wrong: missing, truncated, not a checkpoint, other number of ranks, missing
-/// array or another size than expected.
+/// Throws Error naming the file and what is wrong: missing, truncated, not a checkpoint, other number of
+/// ranks, missing array or another size than expected.
 class CheckpointReader {
  public:
   CheckpointReader(MPI_Comm comm, const std::filesystem::path& file);

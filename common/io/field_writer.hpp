@@ -13,20 +13,22 @@ namespace couplet {
 
 struct OutputField {
   enum class Place { cells, points };
-  std::string name;          ///< "velocity"
-  std::string unit;          ///< "m/s"; shown in ParaView as "velocity [m/s]"
+  std::string name;  ///< "velocity"
+  std::string unit;  ///< "m/s"; shown in ParaView as "velocity [m/s]"
   Place place = Place::cells;
-  int components = 1;        ///< 1, 2 or 3; 2 is padded to 3 in the file
+  int components = 1;              ///< 1, 2 or 3; 2 is padded to 3 in the file
   std::span<const double> values;  ///< per local cell or point (ghosts are ignored), entry by entry
 };
 
-/// Time series of one participant: <folder>/<name>.h5 with an XDMF index <folder>/<name>.xdmf that Debian's ParaView opens
-/// while the run goes on. The HDF5 file is opened, written and closed each time; the index is rewritten atomically.
-/// Moving meshes write their points each time; fixed ones once. Collective over mesh.comm.
+/// Time series of one participant: <folder>/<name>.h5 with an XDMF index <folder>/<name>.xdmf that Debian's
+/// ParaView opens while the run goes on. The HDF5 file is opened, written and closed each time; the index is
+/// rewritten atomically. Moving meshes write their points each time; fixed ones once. Collective over
+/// mesh.comm.
 class FieldWriter {
  public:
   /// restart_time: entries later than this in an existing series are dropped; NaN starts a new series.
-  FieldWriter(const Mesh& mesh, std::filesystem::path folder, std::string name, bool moving, double restart_time);
+  FieldWriter(const Mesh& mesh, std::filesystem::path folder, std::string name, bool moving,
+              double restart_time);
   ~FieldWriter();
   FieldWriter(const FieldWriter&) = delete;
   /// `points`: per local point; used when moving.

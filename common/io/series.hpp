@@ -10,8 +10,9 @@
 
 namespace couplet {
 
-/// A CSV time series: first line "time [s],name [unit],...", one line a row, flushed after each. To be made on one rank.
-/// On restart rows later than restart_time are dropped and the rest is kept.
+/// A CSV time series: first line "time [s],name [unit],...", one line a row, flushed after each. To be made
+/// on one rank. `columns` holds all columns, the time first: {"time [s]", "tip x [m]"}; a row has as many
+/// values. On restart rows later than restart_time are dropped and the rest is kept.
 class Series {
  public:
   Series(const std::filesystem::path& file, const std::vector<std::string>& columns,

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/field_writer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/io/hdf5.hpp"
+#include "common/io/xdmf.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr const char* format_name = "couplet fields";
+
+std::string step_name(int number) { return fmt::format("steps/{:06d}", number); }
+
+// Cells in the words of XDMF: one kind only, then a table of points a cell; or mixed, then a flat list of
+// code, points.
+struct Topology {
+  std::int64_t kind = 0;  // XDMF code of all cells; 0: mixed
+  std::uint64_t width = 1;
+  std::vector<std::int64_t> values;
+};
+
+Topology make_topology(const Mesh& mesh) {
+  const Index n = mesh.cells.n_owned();
+  std::int64_t lowest = std::numeric_limits<std::int64_t>::max(), highest = 0;
+  for (Index c = 0; c < n; ++c) {
+    lowest = std::min(lowest, xdmf::cell_code(mesh.cell_type[c]));
+    highest = std::max(highest, xdmf::cell_code(mesh.cell_type[c]));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT64_T, MPI_MIN, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, &highest, 1, MPI_INT64_T, MPI_MAX, mesh.comm);
+  Topology topology;
+  if (lowest == highest) {
+    topology.kind = lowest;
+    topology.width = xdmf::points_of(lowest);
+  }
+  for (Index c = 0; c < n; ++c) {
+    if (topology.kind == 0) topology.values.push_back(xdmf::cell_code(mesh.cell_type[c]));
+    const auto points = mesh.cell_points[c];
+    // VTK's prism stands on its head: the normal of its first triangle looks outwards, ours looks inwards.
+    constexpr int prism[6] = {0, 2, 1, 3, 5, 4};
+    for (std::size_t i = 0; i < points.size(); ++i)
+      topology.values.push_back(
+          mesh.points.global(points[mesh.cell_type[c] == CellType::prism ? std::size_t(prism[i]) : i]));
+  }
+  return topology;
+}
+
+}  // namespace
+
+struct FieldWriter::State {
+  const Mesh& mesh;
+  std::filesystem::path folder;
+  std::string name;
+  bool moving;
+  xdmf::Series index;  // complete on rank 0 only
+  int number = 0;      // of the next entry
+  hdf5::Rows point_rows, cell_rows;
+
+  std::filesystem::path file() const { return folder / (name + ".h5"); }
+
+  void write_points(const hdf5::Handle& id, const std::string& path, std::span<const Vec3> points) const {
+    std::vector<double> flat(3 * std::size_t(mesh.points.n_owned()));
+    for (Index p = 0; p < mesh.points.n_owned(); ++p)
+      for (int d = 0; d < 3; ++d) flat[3 * std::size_t(p) + d] = points[p][d];
+    hdf5::Rows rows = point_rows;
+    rows.width = 3;
+    hdf5::write_table(id, path, rows, flat.data());
+  }
+
+  void write_field(const hdf5::Handle& id, const std::string& path, const OutputField& field) const {
+    const bool on_cells = field.place == OutputField::Place::cells;
+    const IndexMap& map = on_cells ? mesh.cells : mesh.points;
+    const std::size_t n = map.n_owned(), components = field.components;
+    if (field.values.size() < n * components)
+      throw Error("The output field '{}' has {} values for {} {} with {} components.", field.name,
+                  field.values.size(), n, on_cells ? "cells" : "points", components);
+    hdf5::Rows rows = on_cells ? cell_rows : point_rows;
+    rows.width = components == 2 ? 3 : components;
+    if (components != 2) return hdf5::write_table(id, path, rows, field.values.data());
+    std::vector<double> padded(3 * n, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      padded[3 * i] = field.values[2 * i];
+      padded[3 * i + 1] = field.values[2 * i + 1];
+    }
+    hdf5::write_table(id, path, rows, padded.data());
+  }
+
+  void start();
+  bool continue_from(double restart_time);
+  void read_entries(hid_t id, double restart_time);
+};
+
+void FieldWriter::State::start() {
+  const hdf5::Handle id = hdf5::create_file(mesh.comm, file());
+  hdf5::write_attribute(id, "format", std::string(format_name));
+  hdf5::write_attribute(id, "ranks", double(comm_size(mesh.comm)));
+  const Topology topology = make_topology(mesh);
+  const hdf5::Rows rows =
+      hdf5::distribute_rows(mesh.comm, topology.values.size() / topology.width, topology.width);
+  hdf5::write_table(id, "mesh/cells", rows, topology.values.data());
+  hdf5::write_table(id, "mesh/cell-id", cell_rows, mesh.cell_id.data());
+  hdf5::write_table(id, "mesh/point-id", point_rows, mesh.point_id.data());
+  write_points(id, "mesh/coordinates", mesh.reference_points);
+  hdf5::write_attribute(id, "kind", double(topology.kind));
+  index = {file().filename().string(),
+           topology.kind,
+           rows.total * rows.width,
+           cell_rows.total,
+           point_rows.total,
+           moving,
+           {}};
+}
+
+void FieldWriter::State::read_entries(hid_t id, double restart_time) {
+  const double last = restart_time + 1e-9 * std::abs(restart_time);
+  for (const std::string& entry : hdf5::members(id, "steps")) {
+    const hdf5::Handle group(H5Gopen2(id, ("steps/" + entry).c_str(), H5P_DEFAULT), H5Gclose);
+    const double time = hdf5::read_attribute(group, "time");
+    if (time > last) break;
+    xdmf::Entry one{"steps/" + entry, time, {}};
+    for (const std::string place : {"cells", "points"})
+      for (const std::string& field : hdf5::members(group, place)) {
+        const hdf5::Handle table(H5Dopen2(group, (place + "/" + field).c_str(), H5P_DEFAULT), H5Dclose);
+        one.fields.push_back({field, hdf5::read_text_attribute(table, "unit"), place == "cells",
+                              static_cast<int>(hdf5::read_attribute(table, "components"))});
+      }
+    index.entries.push_back(std::move(one));
+  }
+}
+
+bool FieldWriter::State::continue_from(double restart_time) {
+  int there = comm_rank(mesh.comm) == 0 && std::filesystem::exists(file()) ? 1 : 0;
+  MPI_Bcast(&there, 1, MPI_INT, 0, mesh.comm);
+  if (there == 0) return false;
+  std::string trouble;
+  std::vector<std::string> dropped;
+  try {
+    const hdf5::Handle id = hdf5::open_file_to_read(file());
+    if (hdf5::read_attribute(id, "ranks") != comm_size(mesh.comm) ||
+        hdf5::table_length(id, "mesh/cell-id") != cell_rows.total ||
+        hdf5::table_length(id, "mesh/point-id") != point_rows.total)
+      throw Error("it was written on another mesh or another number of ranks");
+    index = {file().filename().string(),
+             std::int64_t(hdf5::read_attribute(id, "kind")),
+             0,
+             cell_rows.total,
+             point_rows.total,
+             moving,
+             {}};
+    index.topology_size = hdf5::table_length(id, "mesh/cells");
+    if (index.kind != 0) index.topology_size *= xdmf::points_of(index.kind);
+    read_entries(id, restart_time);
+    const std::vector<std::string> all = hdf5::members(id, "steps");
+    dropped.assign(all.begin() + std::ptrdiff_t(index.entries.size()), all.end());
+  } catch (const Error& error) {
+    trouble = fmt::format("The output '{}' cannot be continued: {} Move it away or restart without it.",
+                          file().string(), error.what());
+  }
+  hdf5::throw_together(mesh.comm, trouble);
+  number = static_cast<int>(index.entries.size());
+  if (dropped.empty()) return true;
+  const hdf5::Handle id = hdf5::open_file_to_write(mesh.comm, file());
+  for (const std::string& entry : dropped) H5Ldelete(id, ("steps/" + entry).c_str(), H5P_DEFAULT);
+  return true;
+}
+
+FieldWriter::FieldWriter(const Mesh& mesh, std::filesystem::path folder, std::string name, bool moving,
+                         double restart_time)
+    : state_(
+          std::make_unique<State>(State{mesh, std::move(folder), std::move(name), moving, {}, 0, {}, {}})) {
+  State& s = *state_;
+  s.point_rows = hdf5::distribute_rows(mesh.comm, mesh.points.n_owned(), 1);
+  s.cell_rows = hdf5::distribute_rows(mesh.comm, mesh.cells.n_owned(), 1);
+  std::string trouble;
+  if (comm_rank(mesh.comm) == 0) {
+    std::error_code code;
+    std::filesystem::create_directories(s.folder, code);
+    if (!std::filesystem::is_directory(s.folder))
+      trouble =
+          fmt::format("The output folder '{}' could not be made ({}).", s.folder.string(), code.message());
+  }
+  hdf5::throw_together(mesh.comm, trouble);
+  if (std::isnan(restart_time) || !s.continue_from(restart_time)) s.start();
+  if (comm_rank(mesh.comm) == 0) xdmf::write(s.folder / (s.name + ".xdmf"), s.index);
+}
+
+FieldWriter::~FieldWriter() = default;
+
+void FieldWriter::write(double time, std::span<const Vec3> points, const std::vector<OutputField>& fields) {
+  State& s = *state_;
+  xdmf::Entry entry{step_name(s.number), time, {}};
+  {
+    const hdf5::Handle id = hdf5::open_file_to_write(s.mesh.comm, s.file());
+    const hdf5::Handle group = hdf5::make_group(id, entry.group);
+    hdf5::write_attribute(group, "time", time);
+    if (s.moving) s.write_points(id, entry.group + "/coordinates", points);
+    for (const OutputField& field : fields) {
+      const bool on_cells = field.place == OutputField::Place::cells;
+      const std::string path =
+          fmt::format("{}/{}/{}", entry.group, on_cells ? "cells" : "points", field.name);
+      s.write_field(id, path, field);
+      const hdf5::Handle table(H5Dopen2(id, path.c_str(), H5P_DEFAULT), H5Dclose);
+      const int components = field.components == 2 ? 3 : field.components;
+      hdf5::write_attribute(table, "unit", field.unit);
+      hdf5::write_attribute(table, "components", double(components));
+      entry.fields.push_back({field.name, field.unit, on_cells, components});
+    }
+  }
+  ++s.number;
+  s.index.entries.push_back(std::move(entry));
+  if (comm_rank(s.mesh.comm) == 0) xdmf::write(s.folder / (s.name + ".xdmf"), s.index);
+}
+
+}  // namespace couplet

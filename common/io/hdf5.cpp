@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/hdf5.hpp"
+
+#include <algorithm>
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet::hdf5 {
+namespace {
+
+herr_t keep_first_reason(unsigned, const H5E_error2_t* entry, void* text) {
+  auto& reason = *static_cast<std::string*>(text);
+  if (reason.empty() && entry->desc != nullptr) reason = entry->desc;
+  return 0;
+}
+
+// Throws with HDF5's own reason when `id` is negative.
+Handle checked(hid_t id, herr_t (*close)(hid_t), const char* action, const std::string& what) {
+  if (id < 0) throw Error("HDF5 could not {} '{}' ({}).", action, what, reason());
+  return {id, close};
+}
+
+void check(herr_t status, const char* action, const std::string& what) {
+  if (status < 0) throw Error("HDF5 could not {} '{}' ({}).", action, what, reason());
+}
+
+Handle file_access(MPI_Comm comm) {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  // A viewer that has the file open must not stop the run.
+  H5Pset_file_locking(access, false, true);
+  if (comm_size(comm) > 1) {
+    H5Pset_fapl_mpio(access, comm, MPI_INFO_NULL);
+    H5Pset_all_coll_metadata_ops(access, true);
+    H5Pset_coll_metadata_write(access, true);
+  }
+  return access;
+}
+
+Handle serial_access() {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access, false, true);
+  return access;
+}
+
+Handle file_space(const Rows& rows) {
+  const hsize_t size[2] = {rows.total, rows.width};
+  return {H5Screate_simple(rows.width == 1 ? 1 : 2, size, nullptr), H5Sclose};
+}
+
+void select(const Handle& space, const Rows& rows) {
+  const hsize_t start[2] = {rows.first, 0}, count[2] = {rows.count, rows.width};
+  if (rows.count == 0)
+    H5Sselect_none(space);
+  else
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, count, nullptr);
+}
+
+Handle memory_space(const Rows& rows) {
+  const hsize_t size[1] = {rows.count * rows.width};
+  Handle space(H5Screate_simple(1, size, nullptr), H5Sclose);
+  if (rows.count == 0) H5Sselect_none(space);
+  return space;
+}
+
+// Whether the file of this object was opened by several ranks together.
+bool is_shared(hid_t object) {
+  const Handle file(H5Iget_file_id(object), H5Fclose);
+  const Handle access(H5Fget_access_plist(file), H5Pclose);
+  return H5Pget_driver(access) == H5FD_MPIO;
+}
+
+void write_any(hid_t place, const std::string& path, const Rows& rows, hid_t type, const void* values) {
+  const Quiet quiet;
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links, 1);
+  const Handle space = file_space(rows);
+  const Handle table = checked(H5Dcreate2(place, path.c_str(), type, space, links, H5P_DEFAULT, H5P_DEFAULT),
+                               H5Dclose, "make the table", path);
+  if (rows.total == 0) return;
+  select(space, rows);
+  const Handle memory = memory_space(rows);
+  const Handle transfer(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
+  if (is_shared(table)) H5Pset_dxpl_mpio(transfer, H5FD_MPIO_COLLECTIVE);
+  check(H5Dwrite(table, type, memory, space, transfer, values), "write the table", path);
+}
+
+void read_any(hid_t place, const std::string& path, const Rows& rows, hid_t type, void* values) {
+  const Quiet quiet;
+  const Handle table = checked(H5Dopen2(place, path.c_str(), H5P_DEFAULT), H5Dclose, "open the table", path);
+  if (rows.count == 0) return;
+  const Handle space(H5Dget_space(table), H5Sclose);
+  select(space, rows);
+  const Handle memory = memory_space(rows);
+  check(H5Dread(table, type, memory, space, H5P_DEFAULT, values), "read the table", path);
+}
+
+}  // namespace
+
+Quiet::Quiet() {
+  H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Quiet::~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+
+std::string reason() {
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first_reason, &text);
+  return text.empty() ? "no reason given" : text;
+}
+
+Handle create_file(MPI_Comm comm, const std::filesystem::path& file) {
+  const Quiet quiet;
+  return checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, file_access(comm)), H5Fclose, "create",
+                 file.string());
+}
+
+Handle open_file_to_write(MPI_Comm comm, const std::filesystem::path& file) {
+  const Quiet quiet;
+  return checked(H5Fopen(file.c_str(), H5F_ACC_RDWR, file_access(comm)), H5Fclose, "open", file.string());
+}
+
+Handle open_file_to_read(const std::filesystem::path& file) {
+  const Quiet quiet;
+  return checked(H5Fopen(file.c_str(), H5F_ACC_RDONLY, serial_access()), H5Fclose, "open", file.string());
+}
+
+bool exists(hid_t place, const std::string& path) {
+  const Quiet quiet;
+  // H5Lexists wants every group on the way to exist.
+  for (std::size_t slash = path.find('/', 1); slash != std::string::npos; slash = path.find('/', slash + 1))
+    if (H5Lexists(place, path.substr(0, slash).c_str(), H5P_DEFAULT) <= 0) return false;
+  return H5Lexists(place, path.c_str(), H5P_DEFAULT) > 0;
+}
+
+Handle make_group(hid_t place, const std::string& path) {
+  const Quiet quiet;
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose);
+  H5Pset_create_intermediate_group(links, 1);
+  return checked(H5Gcreate2(place, path.c_str(), links, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, "make the group",
+                 path);
+}
+
+Rows distribute_rows(MPI_Comm comm, std::size_t count, std::size_t width) {
+  const auto mine = static_cast<GlobalIndex>(count);
+  return {static_cast<std::uint64_t>(exclusive_scan(comm, mine)), count,
+          static_cast<std::uint64_t>(sum(comm, mine)), width};
+}
+
+void write_table(hid_t place, const std::string& path, const Rows& rows, const double* values) {
+  write_any(place, path, rows, H5T_NATIVE_DOUBLE, values);
+}
+
+void write_table(hid_t place, const std::string& path, const Rows& rows, const std::int64_t* values) {
+  write_any(place, path, rows, H5T_NATIVE_INT64, values);
+}
+
+void read_table(hid_t place, const std::string& path, const Rows& rows, double* values) {
+  read_any(place, path, rows, H5T_NATIVE_DOUBLE, values);
+}
+
+void read_table(hid_t place, const std::string& path, const Rows& rows, std::int64_t* values) {
+  read_any(place, path, rows, H5T_NATIVE_INT64, values);
+}
+
+std::uint64_t table_length(hid_t place, const std::string& path) {
+  const Quiet quiet;
+  const Handle table = checked(H5Dopen2(place, path.c_str(), H5P_DEFAULT), H5Dclose, "open the table", path);
+  const Handle space(H5Dget_space(table), H5Sclose);
+  hsize_t size[2] = {0, 0};
+  if (H5Sget_simple_extent_ndims(space) > 2)
+    throw Error("The table '{}' has more than two dimensions.", path);
+  H5Sget_simple_extent_dims(space, size, nullptr);
+  return size[0];
+}
+
+void write_attribute(hid_t object, const std::string& name, double value) {
+  const Quiet quiet;
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle attribute =
+      checked(H5Acreate2(object, name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+              "make the attribute", name);
+  check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value), "write the attribute", name);
+}
+
+void write_attribute(hid_t object, const std::string& name, const std::string& text) {
+  const Quiet quiet;
+  const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type, std::max<std::size_t>(text.size(), 1));
+  const Handle attribute = checked(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
+                                   H5Aclose, "make the attribute", name);
+  check(H5Awrite(attribute, type, text.c_str()), "write the attribute", name);
+}
+
+double read_attribute(hid_t object, const std::string& name) {
+  const Quiet quiet;
+  const Handle attribute =
+      checked(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, "open the attribute", name);
+  double value = 0;
+  check(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value), "read the attribute", name);
+  return value;
+}
+
+std::string read_text_attribute(hid_t object, const std::string& name) {
+  const Quiet quiet;
+  const Handle attribute =
+      checked(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, "open the attribute", name);
+  const Handle type(H5Aget_type(attribute), H5Tclose);
+  std::string text(H5Tget_size(type), '\0');
+  check(H5Aread(attribute, type, text.data()), "read the attribute", name);
+  return text;
+}
+
+std::vector<std::string> members(hid_t place, const std::string& group) {
+  std::vector<std::string> names;
+  if (!exists(place, group)) return names;
+  const Quiet quiet;
+  const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
+    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
+    return 0;
+  };
+  check(H5Literate_by_name(place, group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names,
+                           H5P_DEFAULT),
+        "list the group", group);
+  return names;
+}
+
+void throw_together(MPI_Comm comm, const std::string& text) {
+  const int none = comm_size(comm);
+  int first = text.empty() ? none : comm_rank(comm);
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm);
+  if (first == none) return;
+  std::string agreed = text;
+  broadcast(comm, agreed, first);
+  throw Error(agreed);
+}
+
+}  // namespace couplet::hdf5

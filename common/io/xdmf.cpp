@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/xdmf.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "common/base/error.hpp"
+
+namespace couplet::xdmf {
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
+  }
+  return out;
+}
+
+const char* kind_name(std::int64_t code) {
+  switch (code) {
+    case 4:
+      return "Triangle";
+    case 5:
+      return "Quadrilateral";
+    case 6:
+      return "Tetrahedron";
+    case 7:
+      return "Pyramid";
+    case 8:
+      return "Wedge";
+    case 9:
+      return "Hexahedron";
+    default:
+      return "Mixed";
+  }
+}
+
+std::string topology(const Series& s) {
+  const std::string size =
+      s.kind == 0 ? fmt::format("{}", s.topology_size) : fmt::format("{} {}", s.n_cells, points_of(s.kind));
+  return fmt::format(
+      "        <Topology TopologyType=\"{}\" NumberOfElements=\"{}\">\n"
+      "          <DataItem Format=\"HDF\" NumberType=\"Int\" Precision=\"8\" "
+      "Dimensions=\"{}\">{}:/mesh/cells</DataItem>\n"
+      "        </Topology>\n",
+      kind_name(s.kind), s.n_cells, size, escaped(s.file));
+}
+
+std::string attribute(const Series& s, const Entry& entry, const Field& field) {
+  const std::uint64_t n = field.on_cells ? s.n_cells : s.n_points;
+  const std::string size =
+      field.components == 1 ? fmt::format("{}", n) : fmt::format("{} {}", n, field.components);
+  const std::string shown = field.unit.empty() ? field.name : fmt::format("{} [{}]", field.name, field.unit);
+  const char* type = field.components == 1 ? "Scalar" : field.components == 3 ? "Vector" : "Matrix";
+  return fmt::format(
+      "        <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">\n"
+      "          <DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
+      "Dimensions=\"{}\">{}:/{}/{}/{}</DataItem>\n"
+      "        </Attribute>\n",
+      escaped(shown), type, field.on_cells ? "Cell" : "Node", size, escaped(s.file), entry.group,
+      field.on_cells ? "cells" : "points", escaped(field.name));
+}
+
+std::string grid(const Series& s, const Entry& entry) {
+  std::string text = fmt::format(
+      "      <Grid Name=\"mesh\" GridType=\"Uniform\">\n        <Time Value=\"{}\"/>\n", entry.time);
+  text += topology(s);
+  text += fmt::format(
+      "        <Geometry GeometryType=\"XYZ\">\n"
+      "          <DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"{} "
+      "3\">{}:/{}/coordinates</DataItem>\n"
+      "        </Geometry>\n",
+      s.n_points, escaped(s.file), s.moving ? entry.group : "mesh");
+  for (const Field& field : entry.fields) text += attribute(s, entry, field);
+  return text + "      </Grid>\n";
+}
+
+}  // namespace
+
+std::int64_t cell_code(CellType type) {
+  switch (type) {
+    case CellType::triangle:
+      return 4;
+    case CellType::quadrilateral:
+      return 5;
+    case CellType::tetrahedron:
+      return 6;
+    case CellType::pyramid:
+      return 7;
+    case CellType::prism:
+      return 8;
+    case CellType::hexahedron:
+      return 9;
+  }
+  return 0;
+}
+
+std::uint64_t points_of(std::int64_t code) {
+  constexpr std::uint64_t points[] = {3, 4, 4, 5, 6, 8};
+  return points[code - 4];
+}
+
+void write(const std::filesystem::path& index, const Series& series) {
+  const std::filesystem::path part = index.string() + ".part";
+  {
+    std::ofstream file(part);
+    file << "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
+            "    <Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
+    for (const Entry& entry : series.entries) file << grid(series, entry);
+    file << "    </Grid>\n  </Domain>\n</Xdmf>\n";
+    if (!file.flush()) throw Error("The index '{}' could not be written. Is the disk full?", index.string());
+  }
+  std::filesystem::rename(part, index);
+}
+
+}  // namespace couplet::xdmf

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/mesh/mesh.hpp"
+
+/// The XDMF 2 index of an HDF5 series: plain text, written whole each time.
+namespace couplet::xdmf {
+
+/// XDMF's own number of a cell type in a mixed topology; its points go in VTK order.
+std::int64_t cell_code(CellType type);
+/// Points of a cell with this code.
+std::uint64_t points_of(std::int64_t code);
+
+struct Field {
+  std::string name, unit;
+  bool on_cells = true;
+  int components = 1;
+};
+
+struct Entry {
+  std::string group;  ///< where it is in the HDF5 file
+  double time = 0;    ///< [s]
+  std::vector<Field> fields;
+};
+
+struct Series {
+  std::string file;       ///< HDF5 file, relative to the index
+  std::int64_t kind = 0;  ///< code of all cells; 0: mixed
+  std::uint64_t topology_size = 0, n_cells = 0, n_points = 0;
+  bool moving = false;
+  std::vector<Entry> entries;
+};
+
+/// Replaces the index in one go (rename), so that a viewer never sees half of it.
+void write(const std::filesystem::path& index, const Series& series);
+
+}  // namespace couplet::xdmf

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+#include <random>
+
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "tests/unit/io/scratch.hpp"
+
+namespace couplet {
+namespace {
+
+using ::testing::HasSubstr;
+
+const MPI_Comm world = MPI_COMM_WORLD;
+
+// Another count on every rank (none on the last of three), with values that printing would spoil.
+std::vector<double> awkward_values() {
+  const int rank = comm_rank(world);
+  std::mt19937_64 random(42 + rank);
+  std::vector<double> values(rank == 2 ? 0 : 1000 + 17 * rank);
+  for (double& v : values) v = std::ldexp(double(random()) / 3, int(random() % 200) - 100);
+  if (values.size() > 4) {
+    values[0] = -0.0;
+    values[1] = std::numeric_limits<double>::quiet_NaN();
+    values[2] = std::numeric_limits<double>::denorm_min();
+    values[3] = std::numeric_limits<double>::infinity();
+  }
+  return values;
+}
+
+void write_one(const std::filesystem::path& file, const std::vector<double>& values, double time = 1.25) {
+  CheckpointWriter writer(world, file);
+  writer.write("solid/displacement", values);
+  writer.write_scalar("time", time);
+  writer.close();
+}
+
+// Changes the file as a crash or a bad disk would, seen by all ranks.
+template <class Action>
+void damage(const std::filesystem::path& file, Action&& action) {
+  if (comm_rank(world) == 0) action(file);
+  MPI_Barrier(world);
+}
+
+TEST(Checkpoint, comes_back_bit_for_bit) {
+  const Scratch scratch;
+  const std::vector<double> values = awkward_values();
+  write_one(scratch / "a.h5", values, 0.1 + 0.2);
+  CheckpointReader reader(world, scratch / "a.h5");
+  const std::vector<double> back = reader.read("solid/displacement");
+  ASSERT_EQ(back.size(), values.size());
+  EXPECT_EQ(std::memcmp(back.data(), values.data(), values.size() * sizeof(double)), 0);
+  std::vector<double> filled(values.size());
+  reader.read("solid/displacement", filled);
+  EXPECT_EQ(std::memcmp(filled.data(), values.data(), values.size() * sizeof(double)), 0);
+  EXPECT_EQ(reader.read_scalar("time"), 0.1 + 0.2);
+}
+
+TEST(Checkpoint, an_array_that_is_empty_everywhere_comes_back_empty) {
+  const Scratch scratch;
+  write_one(scratch / "a.h5", {});
+  CheckpointReader reader(world, scratch / "a.h5");
+  EXPECT_TRUE(reader.read("solid/displacement").empty());
+}
+
+TEST(Checkpoint, the_last_good_file_stays_until_the_new_one_is_closed) {
+  const Scratch scratch;
+  const auto file = scratch / "a.h5";
+  write_one(file, {1.0}, 1);
+  {
+    CheckpointWriter abandoned(world, file);
+    abandoned.write_scalar("time", 2);
+    EXPECT_EQ(CheckpointReader(world, file).read_scalar("time"), 1);
+  }
+  EXPECT_EQ(CheckpointReader(world, file).read_scalar("time"), 1);
+  EXPECT_FALSE(std::filesystem::exists(file.string() + ".part"));
+  write_one(file, {1.0}, 3);
+  EXPECT_EQ(CheckpointReader(world, file).read_scalar("time"), 3);
+}
+
+TEST(Checkpoint, a_missing_file_is_named_on_every_rank) {
+  const Scratch scratch;
+  EXPECT_THAT(error_of([&] { CheckpointReader(world, scratch / "b.h5"); }),
+              HasSubstr("There is no checkpoint '"));
+}
+
+TEST(Checkpoint, a_truncated_file_is_refused_on_every_rank) {
+  const Scratch scratch;
+  const auto file = scratch / "a.h5";
+  write_one(file, awkward_values());
+  const auto size = std::filesystem::file_size(file);
+  for (const double part : {0.9, 0.5, 0.2}) {
+    damage(file,
+           [&](const auto& f) { std::filesystem::resize_file(f, std::uintmax_t(part * double(size))); });
+    EXPECT_THAT(error_of([&] { CheckpointReader(world, file); }),
+                ::testing::AllOf(HasSubstr("is truncated or corrupted."), HasSubstr("(truncated file:")))
+        << part;
+  }
+  damage(file, [](const auto& f) { std::filesystem::resize_file(f, 0); });
+  EXPECT_THAT(error_of([&] { CheckpointReader(world, file); }), HasSubstr("it is not an HDF5 file"));
+}
+
+TEST(Checkpoint, a_flipped_bit_in_the_values_is_noticed) {
+  const Scratch scratch;
+  const auto file = scratch / "a.h5";
+  std::vector<double> values(500, 12345.678);
+  write_one(file, values);
+  damage(file, [](const auto& f) {
+    std::ifstream in(f, std::ios::binary);
+    std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    const double mark = 12345.678;
+    std::string pattern(sizeof mark, '\0');
+    std::memcpy(pattern.data(), &mark, sizeof mark);
+    const auto at = bytes.find(pattern);
+    ASSERT_NE(at, std::string::npos);
+    bytes[at] = char(bytes[at] ^ 1);
+    std::ofstream(f, std::ios::binary) << bytes;
+  });
+  CheckpointReader reader(world, file);
+  EXPECT_THAT(error_of([&] { reader.read("solid/displacement", values); }),
+              HasSubstr("the checksum of the array 'solid/displacement' is wrong on rank 0"));
+}
+
+TEST(Checkpoint, other_files_are_not_taken_for_checkpoints) {
+  const Scratch scratch;
+  const auto file = scratch / "a.h5";
+  damage(file, [](const auto& f) { std::ofstream(f) << "hello"; });
+  EXPECT_THAT(error_of([&] { CheckpointReader(world, file); }), HasSubstr("is not a checkpoint"));
+}
+
+TEST(Checkpoint, another_number_of_ranks_is_refused_with_both_numbers) {
+  const Scratch scratch;
+  const auto file = scratch / "a.h5";
+  write_one(file, awkward_values());
+  // One rank alone reads what all wrote, or the other way round.
+  const int size = comm_size(world);
+  if (size == 1) return;
+  if (comm_rank(world) == 0) {
+    const std::string text = error_of([&] { CheckpointReader(MPI_COMM_SELF, file); });
+    EXPECT_THAT(text, HasSubstr(fmt::format("was written on {} ranks, this run has 1", size)));
+  }
+  MPI_Barrier(world);
+}
+
+TEST(Checkpoint, a_missing_name_or_another_size_is_told_on_every_rank) {
+  const Scratch scratch;
+  write_one(scratch / "a.h5", awkward_values());
+  CheckpointReader reader(world, scratch / "a.h5");
+  EXPECT_THAT(error_of([&] { reader.read("fluid/velocity"); }), HasSubstr("has no array 'fluid/velocity'"));
+  EXPECT_THAT(error_of([&] { reader.read_scalar("dt"); }), HasSubstr("has no value 'dt'"));
+  // Only rank 0 asks for a wrong size: all must hear of it.
+  std::vector<double> values(awkward_values().size() + (comm_rank(world) == 0 ? 1 : 0));
+  EXPECT_THAT(error_of([&] { reader.read("solid/displacement", values); }),
+              HasSubstr("holds 1000 values of 'solid/displacement' on rank 0, but 1001 are expected"));
+  EXPECT_EQ(reader.read_scalar("time"), 1.25);
+}
+
+TEST(Checkpoint, a_folder_that_cannot_be_made_is_named) {
+  const Scratch scratch;
+  damage(scratch / "file", [](const auto& f) { std::ofstream(f) << "in the way"; });
+  EXPECT_THAT(error_of([&] { CheckpointWriter(world, scratch / "file" / "a.h5"); }),
+              HasSubstr("could not be made"));
+}
+
+}  // namespace
+}  // namespace couplet

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "common/base/error.hpp"
+#include "common/io/field_writer.hpp"
+#include "common/io/hdf5.hpp"
+#include "common/mesh/load.hpp"
+#include "tests/unit/io/scratch.hpp"
+
+namespace couplet {
+namespace {
+
+using ::testing::HasSubstr;
+
+const MPI_Comm world = MPI_COMM_WORLD;
+const double nan_time = std::numeric_limits<double>::quiet_NaN();
+
+Mesh make_mesh(BoxCells cells, int n = 4) {
+  const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
+  RawMesh raw;
+  if (comm_rank(world) == 0)
+    raw = make_box(cells, {n, 3, flat ? 1 : 2}, Vec3::Zero(), Vec3(2, 1, flat ? 0 : 1));
+  return distribute(world, raw);
+}
+
+void write(FieldWriter& writer, const Mesh& mesh, double time) {
+  std::vector<double> pressure, velocity;
+  for (const GlobalIndex id : mesh.cell_id) {
+    pressure.push_back(double(id) + time);
+    for (int d = 0; d < mesh.dim; ++d) velocity.push_back(double(10 * id + d));
+  }
+  std::vector<Vec3> points = mesh.reference_points;
+  for (Vec3& x : points) x[0] += time * x[1];
+  writer.write(time, points,
+               {{"pressure", "Pa", OutputField::Place::cells, 1, pressure},
+                {"velocity", "m/s", OutputField::Place::cells, mesh.dim, velocity}});
+}
+
+std::string index_of(const Scratch& scratch) {
+  std::ifstream in(scratch / "fluid.xdmf");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+int count(const std::string& text, const std::string& word) {
+  int n = 0;
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++n;
+  return n;
+}
+
+TEST(FieldWriter, every_cell_and_point_is_written_once_with_its_own_values) {
+  const Scratch scratch;
+  for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::mixed}) {
+    const Mesh mesh = make_mesh(cells);
+    FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time);
+    write(writer, mesh, 0.5);
+    const hdf5::Handle file = hdf5::open_file_to_read(scratch / "fluid.h5");
+    const std::uint64_t n = hdf5::table_length(file, "mesh/cell-id"),
+                        np = hdf5::table_length(file, "mesh/point-id");
+    EXPECT_EQ(n, std::uint64_t(mesh.cells.n_global()));
+    EXPECT_EQ(np, std::uint64_t(mesh.points.n_global()));
+    std::vector<std::int64_t> cell_id(n), point_id(np);
+    std::vector<double> pressure(n), velocity(3 * n);
+    hdf5::read_table(file, "mesh/cell-id", {0, n, n, 1}, cell_id.data());
+    hdf5::read_table(file, "mesh/point-id", {0, np, np, 1}, point_id.data());
+    hdf5::read_table(file, "steps/000000/cells/pressure", {0, n, n, 1}, pressure.data());
+    hdf5::read_table(file, "steps/000000/cells/velocity", {0, n, n, 3}, velocity.data());
+    for (std::uint64_t c = 0; c < n; ++c) {
+      EXPECT_EQ(pressure[c], double(cell_id[c]) + 0.5);
+      EXPECT_EQ(velocity[3 * c + 1], double(10 * cell_id[c] + 1));
+      EXPECT_EQ(velocity[3 * c + 2], mesh.dim == 2 ? 0.0 : double(10 * cell_id[c] + 2));
+    }
+    std::sort(cell_id.begin(), cell_id.end());
+    std::sort(point_id.begin(), point_id.end());
+    for (std::uint64_t c = 0; c < n; ++c) EXPECT_EQ(cell_id[c], std::int64_t(c));
+    for (std::uint64_t p = 0; p < np; ++p) EXPECT_EQ(point_id[p], std::int64_t(p));
+  }
+}
+
+TEST(FieldWriter, the_index_lists_each_time_after_it_was_written) {
+  const Scratch scratch;
+  const Mesh mesh = make_mesh(BoxCells::triangles);
+  FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time);
+  for (int i = 0; i < 3; ++i) {
+    write(writer, mesh, 0.25 * i);
+    MPI_Barrier(world);
+    const std::string index = index_of(scratch);
+    EXPECT_EQ(count(index, "<Time "), i + 1);
+    EXPECT_THAT(index, HasSubstr(fmt::format("<Time Value=\"{}\"/>", 0.25 * i)));
+    EXPECT_EQ(count(index, "Name=\"velocity [m/s]\" AttributeType=\"Vector\" Center=\"Cell\""), i + 1);
+    MPI_Barrier(world);
+  }
+}
+
+TEST(FieldWriter, a_fixed_mesh_writes_its_points_once) {
+  const Scratch scratch;
+  const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
+  FieldWriter writer(mesh, scratch / "", "fluid", false, nan_time);
+  write(writer, mesh, 0);
+  const hdf5::Handle file = hdf5::open_file_to_read(scratch / "fluid.h5");
+  EXPECT_FALSE(hdf5::exists(file, "steps/000000/coordinates"));
+  EXPECT_EQ(count(index_of(scratch), "fluid.h5:/mesh/coordinates"), 1);
+}
+
+TEST(FieldWriter, a_restart_drops_the_later_times_and_goes_on) {
+  const Scratch scratch;
+  const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
+  {
+    FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time);
+    for (int i = 0; i < 5; ++i) write(writer, mesh, 0.25 * i);
+  }
+  FieldWriter writer(mesh, scratch / "", "fluid", true, 0.5);
+  MPI_Barrier(world);
+  EXPECT_EQ(count(index_of(scratch), "<Time "), 3);
+  MPI_Barrier(world);
+  write(writer, mesh, 0.6);
+  MPI_Barrier(world);
+  EXPECT_EQ(count(index_of(scratch), "<Time "), 4);
+  const hdf5::Handle file = hdf5::open_file_to_read(scratch / "fluid.h5");
+  EXPECT_EQ(hdf5::members(file, "steps").size(), 4u);
+  const hdf5::Handle last(H5Gopen2(file, "steps/000003", H5P_DEFAULT), H5Gclose);
+  EXPECT_EQ(hdf5::read_attribute(last, "time"), 0.6);
+}
+
+TEST(FieldWriter, a_restart_on_another_mesh_is_refused_on_every_rank) {
+  const Scratch scratch;
+  const Mesh mesh = make_mesh(BoxCells::quadrilaterals), other = make_mesh(BoxCells::quadrilaterals, 5);
+  { FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time); }
+  EXPECT_THAT(error_of([&] { FieldWriter(other, scratch / "", "fluid", true, 0.5); }),
+              HasSubstr("written on another mesh or another number of ranks"));
+}
+
+TEST(FieldWriter, a_field_of_the_wrong_size_is_refused) {
+  const Scratch scratch;
+  const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
+  FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time);
+  const std::vector<double> values(1);
+  EXPECT_THAT(error_of([&] {
+                writer.write(0, mesh.reference_points, {{"p", "Pa", OutputField::Place::points, 3, values}});
+              }),
+              HasSubstr("The output field 'p' has 1 values"));
+}
+
+}  // namespace
+}  // namespace couplet

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "common/base/error.hpp"
+#include "common/io/series.hpp"
+#include "tests/unit/io/scratch.hpp"
+
+namespace couplet {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// A series lives on one rank: each rank has its own file here.
+std::filesystem::path own_file(const Scratch& scratch) {
+  return scratch / fmt::format("tip{}.csv", comm_rank(MPI_COMM_WORLD));
+}
+
+const std::vector<std::string> columns{"time [s]", "tip x [m]"};
+
+void write_three(const std::filesystem::path& file) {
+  Series series(file, columns);
+  for (int i = 1; i <= 3; ++i) series.row(std::vector<double>{0.1 * i, 1.0 / i});
+}
+
+TEST(Series, a_row_is_on_disk_at_once_with_all_its_digits) {
+  const Scratch scratch;
+  Series series(own_file(scratch), columns);
+  series.row(std::vector<double>{0.1 + 0.2, 1.0 / 3});
+  EXPECT_EQ(text_of(own_file(scratch)), "time [s],tip x [m]\n0.30000000000000004,0.3333333333333333\n");
+}
+
+TEST(Series, a_fresh_start_forgets_the_old_rows) {
+  const Scratch scratch;
+  write_three(own_file(scratch));
+  Series series(own_file(scratch), columns);
+  EXPECT_EQ(text_of(own_file(scratch)), "time [s],tip x [m]\n");
+}
+
+TEST(Series, a_restart_drops_the_later_rows_and_keeps_the_others) {
+  const Scratch scratch;
+  write_three(own_file(scratch));
+  {
+    Series series(own_file(scratch), columns, 0.2);
+    series.row(std::vector<double>{0.25, 7});
+  }
+  EXPECT_EQ(text_of(own_file(scratch)), "time [s],tip x [m]\n0.1,1\n0.2,0.5\n0.25,7\n");
+}
+
+TEST(Series, a_row_cut_by_a_crash_is_dropped) {
+  const Scratch scratch;
+  write_three(own_file(scratch));
+  std::ofstream(own_file(scratch), std::ios::app) << "0.4,0.2";
+  Series(own_file(scratch), columns, 5.0);
+  EXPECT_EQ(text_of(own_file(scratch)),
+            "time [s],tip x [m]\n0.1,1\n0.2,0.5\n0.30000000000000004,0.3333333333333333\n");
+}
+
+TEST(Series, a_restart_without_an_old_file_begins_one) {
+  const Scratch scratch;
+  Series(own_file(scratch), columns, 0.2);
+  EXPECT_EQ(text_of(own_file(scratch)), "time [s],tip x [m]\n");
+}
+
+TEST(Series, other_columns_are_not_mixed_into_an_old_file) {
+  const Scratch scratch;
+  write_three(own_file(scratch));
+  EXPECT_THAT(error_of([&] {
+                Series(own_file(scratch), {"time [s]", "force [N]"}, 0.2);
+              }),
+              HasSubstr("cannot be continued: its columns are 'time [s],tip x [m]', those of this run"));
+}
+
+TEST(Series, a_row_of_another_length_is_refused) {
+  const Scratch scratch;
+  Series series(own_file(scratch), columns);
+  EXPECT_THAT(error_of([&] { series.row(std::vector<double>{1.0}); }),
+              HasSubstr("has 1 values, its head 2 columns"));
+}
+
+}  // namespace
+}  // namespace couplet
