@@ -9,6 +9,22 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+namespace {
+
+/// Stays within the cell's bounding box however it is turned over; the centroid of a cell without volume does
+/// not.
+Vec3 mean_face_centre(const Mesh& mesh, const Geometry& geometry, Index cell) {
+  Vec3 sum = Vec3::Zero();
+  int n = 0;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    if (mesh.owner[f] != cell && (f >= mesh.n_interior || mesh.neighbour[f] != cell)) continue;
+    sum += geometry.face_centre[f];
+    ++n;
+  }
+  return sum / n;
+}
+
+}  // namespace
 
 MeshQuality measure_quality(const Mesh& mesh, const Geometry& geometry) {
   MeshQuality q{std::numeric_limits<double>::max(), -std::numeric_limits<double>::max(), 0, 0};
@@ -43,10 +59,14 @@ std::optional<CellTrouble> find_inverted(const Mesh& mesh, const Geometry& geome
     };
     return key(a) < key(b);
   };
+  Index cell = -1;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    const CellTrouble here{mesh.cell_id[c], geometry.cell_centre[c], geometry.volume[c]};
-    if (!(here.volume > 0) && worse(here, worst)) worst = here;
+    const CellTrouble here{mesh.cell_id[c], Vec3::Zero(), geometry.volume[c]};
+    if (here.volume > 0 || !worse(here, worst)) continue;
+    worst = here;
+    cell = c;
   }
+  if (cell >= 0) worst.centre = mean_face_centre(mesh, geometry, cell);
   if (!any(mesh.comm, !(worst.volume > 0))) return std::nullopt;
   const std::vector<CellTrouble> all = all_gather(mesh.comm, std::vector<CellTrouble>{worst});
   return *std::min_element(all.begin(), all.end(), worse);

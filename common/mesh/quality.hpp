@@ -21,12 +21,12 @@ MeshQuality measure_quality(const Mesh& mesh, const Geometry& geometry);
 
 struct CellTrouble {
   GlobalIndex cell_id;
-  Vec3 centre;    ///< mean of the cell's points: an inverted cell has no centroid to speak of [m]
+  Vec3 centre;    ///< mean of its face centres: an inverted cell has no centroid to speak of [m]
   double volume;  ///< [m^3]
 };
 
 /// The cell with the smallest volume if that is not positive (or not a number), else nothing. Collective; the
-/// same answer on all ranks. `points` gives the place.
+/// same answer on all ranks.
 std::optional<CellTrouble> find_inverted(const Mesh& mesh, const Geometry& geometry);
 
 }  // namespace couplet

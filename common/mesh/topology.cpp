@@ -124,7 +124,7 @@ void check_elements(const RawMesh& raw, std::span<const HalfFace> cells, std::sp
   if (cells.size() == 2)
     throw Error(
         "Patch '{}' has a face at {} that lies between two cells. A patch must lie on the boundary; remove "
-        "the inner surface from the physical group.",
+        "the inner surface from the physical group (or the mesh has every cell twice).",
         name, where());
   for (const HalfFace& e : elements)
     if (raw.boundary_patch[e.element()] != raw.boundary_patch[elements[0].element()])

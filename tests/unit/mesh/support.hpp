@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
+#include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
 
 namespace couplet::test {
@@ -36,5 +41,32 @@ inline double box_volume(int dim) {
   const Vec3 size = upper - lower;
   return dim == 2 ? size[0] * size[1] : size.prod();
 }
+
+inline const std::filesystem::path data = TEST_DATA;
+
+/// What `work` throws, as text; "" if nothing.
+template <class Work>
+std::string error_of(Work&& work) {
+  try {
+    work();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+/// A folder of this process that goes away at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() { std::filesystem::create_directories(path); }
+  ~TemporaryFolder() { std::filesystem::remove_all(path); }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(path / name) << text;
+    return path / name;
+  }
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("couplet-test-mesh-" + std::to_string(getpid()));
+};
 
 }  // namespace couplet::test

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/base/error.hpp"
+#include "common/mesh/load.hpp"
+#include "common/mesh/on_root.hpp"
+
+namespace couplet {
+
+Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim) {
+  RawMesh raw;
+  on_root(comm, [&] {
+    if (!std::filesystem::is_regular_file(file))
+      throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
+                  file.string());
+    const std::string kind = file.extension().string();
+    if (kind != ".msh" && kind != ".geo")
+      throw Error(
+          "The mesh file '{}' is neither .msh nor .geo. Convert it with gmsh or meshio to .msh 4.1 with "
+          "physical names.",
+          file.string());
+    raw = read_msh(kind == ".geo" ? mesh_geo(file, dim) : file);
+    if (raw.cell_type.empty())
+      throw Error("The mesh '{}' has no cells. Put the {} into a physical group, else gmsh does not save {}.",
+                  file.string(), dim == 2 ? "surface" : "volume", dim == 2 ? "its triangles" : "its cells");
+    if (raw.dim != dim)
+      throw Error(
+          "The mesh '{}' is {}-dimensional, but 'dimension: {}' is asked for.{}", file.string(), raw.dim, dim,
+          dim == 3 ? " Put the volume into a physical group, else gmsh does not save its cells." : "");
+  });
+  try {
+    return distribute(comm, raw);
+  } catch (const Error& e) {
+    throw Error("The mesh '{}' cannot be used. {}", file.string(), e.what());
+  }
+}
+
+}  // namespace couplet

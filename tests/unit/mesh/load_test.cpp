@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "common/mesh/load.hpp"
+#include "common/parallel/collective.hpp"
+#include "support.hpp"
+
+namespace couplet {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// One folder for all ranks.
+class LoadMesh : public ::testing::Test {
+ protected:
+  LoadMesh() {
+    std::string name = own_.path.string();
+    broadcast(MPI_COMM_WORLD, name);
+    folder = name;
+  }
+  ~LoadMesh() override { MPI_Barrier(MPI_COMM_WORLD); }
+  std::filesystem::path write(const std::string& name, const std::string& text) {
+    if (comm_rank(MPI_COMM_WORLD) == 0) std::ofstream(folder / name) << text;
+    MPI_Barrier(MPI_COMM_WORLD);
+    return folder / name;
+  }
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      names.push_back(entry.path().filename());
+    return names;
+  }
+  static std::string error(const std::filesystem::path& file, int dim) {
+    return test::error_of([&] { load_mesh(MPI_COMM_WORLD, file, dim); });
+  }
+
+  std::filesystem::path folder;
+
+ private:
+  test::TemporaryFolder own_;
+};
+
+const std::string square =
+    "Point(1) = {0,0,0,h}; Point(2) = {1,0,0,h}; Point(3) = {1,1,0,h}; Point(4) = {0,1,0,h};\n"
+    "Line(1) = {1,2}; Line(2) = {2,3}; Line(3) = {3,4}; Line(4) = {4,1};\n"
+    "Curve Loop(1) = {1,2,3,4}; Plane Surface(1) = {1};\n"
+    "Physical Curve(\"around\") = {1,2,3,4}; Physical Surface(\"inside\") = {1};\n";
+
+TEST_F(LoadMesh, reads_a_file_on_any_number_of_ranks) {
+  const Mesh mesh = load_mesh(MPI_COMM_WORLD, test::data / "solid_41_binary.msh", 3);
+  double volume = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
+  EXPECT_NEAR(sum(MPI_COMM_WORLD, volume), 2.5, 1e-13);
+  EXPECT_EQ(mesh.zones, (std::vector<std::string>{"lower", "upper"}));
+}
+
+TEST_F(LoadMesh, meshes_a_geo_once_even_if_all_ask_at_the_same_time) {
+  const auto geo = write("square.geo", "h = 0.3;\n" + square);
+  const auto first = mesh_geo(geo, 2);
+  MPI_Barrier(MPI_COMM_WORLD);
+  const auto time = std::filesystem::last_write_time(first);
+  EXPECT_EQ(files().size(), 2u) << "the .geo and one mesh, nothing temporary";
+  EXPECT_EQ(mesh_geo(geo, 2), first);
+  EXPECT_EQ(std::filesystem::last_write_time(first), time) << "not meshed again";
+  EXPECT_THAT(first.filename().string(), ::testing::MatchesRegex("square\\.[0-9a-f]+\\.cache\\.msh"));
+  const Mesh mesh = load_mesh(MPI_COMM_WORLD, geo, 2);
+  EXPECT_NE(mesh.find_patch("around"), nullptr);
+}
+
+TEST_F(LoadMesh, meshes_again_when_the_geo_or_a_file_it_includes_changed) {
+  write("size.geo", "h = 0.5;\n");
+  const auto geo = write("square.geo", "Include \"size.geo\";\n" + square);
+  const GlobalIndex coarse = load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global();
+  write("size.geo", "h = 0.2;\n");
+  EXPECT_GT(load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global(), 2 * coarse);
+}
+
+TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
+  EXPECT_EQ(error(folder / "none.msh", 3),
+            "The mesh file '" + (folder / "none.msh").string() +
+                "' does not exist. The path is relative to the folder of the YAML file.");
+  EXPECT_THAT(error(write("mesh.vtk", ""), 3), HasSubstr("is neither .msh nor .geo."));
+  EXPECT_THAT(error(test::data / "plane_41_ascii.msh", 3),
+              HasSubstr("is 2-dimensional, but 'dimension: 3' is asked for."));
+  EXPECT_THAT(error(write("bad.msh", "hello"), 3),
+              HasSubstr("bad.msh:1: Expected a section such as $Nodes here"));
+}
+
+TEST_F(LoadMesh, tells_what_gmsh_did_not_understand) {
+  const std::string text = error(write("wrong.geo", "Point(1) = {0,0,0,1};\nnonsense;\n"), 2);
+  EXPECT_THAT(text,
+              HasSubstr("gmsh could not mesh '" + (folder / "wrong.geo").string() + "' (exit code 1)."));
+  EXPECT_THAT(text, HasSubstr("line 2"));
+  MPI_Barrier(MPI_COMM_WORLD);
+  EXPECT_EQ(files().size(), 1u) << "nothing temporary is left";
+}
+
+TEST_F(LoadMesh, tells_how_to_install_gmsh_when_it_is_missing) {
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder.c_str(), 1);
+  const std::string text = error(write("square.geo", "h = 0.3;\n" + square), 2);
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_EQ(text,
+            "A .geo is meshed by the program 'gmsh', which is not on the PATH. Install it (Debian: apt "
+            "install gmsh) "
+            "or give a .msh file instead.");
+}
+
+TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {
+  const RawMesh raw = make_box(BoxCells::quadrilaterals, {1, 1, 0}, Vec3::Zero(), Vec3::Ones());
+  const int size = comm_size(MPI_COMM_WORLD);
+  const std::string text = test::error_of([&] { distribute(MPI_COMM_WORLD, raw); });
+  EXPECT_EQ(text,
+            size == 1
+                ? ""
+                : fmt::format("The mesh has 1 cells, fewer than the {} ranks it is to be shared by. Start "
+                              "fewer processes.",
+                              size));
+}
+
+}  // namespace
+}  // namespace couplet

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mesh/quality.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "support.hpp"
+
+namespace couplet {
+namespace {
+
+Mesh square_box() {
+  return distribute(MPI_COMM_WORLD,
+                    make_box(BoxCells::quadrilaterals, {4, 2, 0}, Vec3::Zero(), Vec3(4, 2, 0)));
+}
+
+TEST(Quality, of_squares_is_perfect) {
+  const Mesh mesh = square_box();
+  const MeshQuality q = measure_quality(mesh, mesh.reference);
+  EXPECT_NEAR(q.min_volume, 1, 1e-14);
+  EXPECT_NEAR(q.max_volume, 1, 1e-14);
+  EXPECT_NEAR(q.max_non_orthogonality, 0, 1e-6);
+  EXPECT_NEAR(q.max_skewness, 0, 1e-14);
+}
+
+TEST(Quality, of_sheared_squares_has_the_angle_of_the_shear_and_no_skewness) {
+  const Mesh mesh = square_box();
+  std::vector<Vec3> points(mesh.reference_points);
+  for (Vec3& x : points) x[0] += 0.5 * x[1];
+  const MeshQuality q = measure_quality(mesh, compute_geometry(mesh, points));
+  EXPECT_NEAR(q.max_non_orthogonality, std::atan(0.5) * 180 / M_PI, 1e-9);
+  EXPECT_NEAR(q.max_skewness, 0, 1e-14);
+  EXPECT_NEAR(q.max_volume, 1, 1e-14);
+}
+
+TEST(Quality, skewness_is_the_offset_of_the_face_centre_over_the_distance_of_the_cells) {
+  // Two trapezoids: the common edge x = 0 from y = 0 to 1, the outer edges twice as long.
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {2, 1, 0}, {-1, 0, 0}, {1, 1, 0});
+  for (Vec3& x : raw.points)
+    if (x[0] != 0 && x[1] > 0) x[1] = 2;
+  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
+  // Centroid of the trapezoid with sides 1 (x = 0) and 2 (x = 1): x = 5/9, y = 7/9. The line between the
+  // centroids pierces x = 0 at y = 7/9; the edge's centre is at 1/2.
+  const MeshQuality q = measure_quality(mesh, mesh.reference);
+  EXPECT_NEAR(q.max_skewness, (7.0 / 9 - 0.5) / (10.0 / 9), 1e-14);
+}
+
+TEST(FindInverted, is_silent_for_a_good_mesh) {
+  const Mesh mesh = square_box();
+  EXPECT_FALSE(find_inverted(mesh, mesh.reference).has_value());
+}
+
+TEST(FindInverted, names_the_worst_cell_and_its_place_on_every_rank) {
+  const Mesh mesh = square_box();
+  std::vector<Vec3> points(mesh.reference_points);
+  // The point (1, 1) far out to the right: cell 1 (and its neighbour above) turn over.
+  for (Vec3& x : points)
+    if ((x - Vec3(1, 1, 0)).norm() < 0.1) x = Vec3(5, 0.5, 0);
+  const auto trouble = find_inverted(mesh, compute_geometry(mesh, points));
+  ASSERT_TRUE(trouble.has_value());
+  // Cell 1 is (1,0) (2,0) (2,1) (5,0.5): by the shoelace formula its area is (0 + 2 + (1 - 5) - 0.5) / 2.
+  EXPECT_EQ(trouble->cell_id, 1);
+  EXPECT_NEAR(trouble->volume, -1.25, 1e-14);
+  EXPECT_LT((trouble->centre - Vec3(2.5, 0.375, 0)).norm(), 1e-14);
+}
+
+TEST(FindInverted, takes_a_volume_that_is_not_a_number_for_the_worst) {
+  const Mesh mesh = square_box();
+  Geometry g = mesh.reference;
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) {
+    if (mesh.cell_id[c] == 3) g.volume[c] = std::numeric_limits<double>::quiet_NaN();
+    if (mesh.cell_id[c] == 6) g.volume[c] = -1;
+  }
+  const auto trouble = find_inverted(mesh, g);
+  ASSERT_TRUE(trouble.has_value());
+  EXPECT_EQ(trouble->cell_id, 3);
+}
+
+}  // namespace
+}  // namespace couplet
