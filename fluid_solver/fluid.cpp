@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/fluid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/log/timer.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+constexpr int most_sub_steps = 100000;
+// The implicit viscous term costs about this much more a sub-step.
+constexpr double implicit_cost = 1.5;
+
+double parts(double dt, double limit) {
+  return std::isfinite(limit) ? std::max(1.0, std::ceil(dt / limit - 1e-9)) : 1.0;
+}
+
+}  // namespace
+
+template <int D>
+Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving_mesh, double start_time)
+    : mesh_(mesh),
+      parameters_(parameters),
+      moving_(moving_mesh),
+      boundary_(mesh, parameters_),
+      step_(mesh, boundary_, parameters_),
+      step_size_(mesh, boundary_, parameters.viscosity / parameters.density) {
+  start(start_time);
+}
+
+template <int D>
+void Fluid<D>::start(double time) {
+  State<D>& s = accepted_;
+  s.time = time;
+  s.placement = make_placement<D>(mesh_, mesh_.reference);
+  if (moving_) s.points = mesh_.reference_points;
+  const Placement<D>& at = *s.placement;
+  s.u.assign(mesh_.cells.n_local(), Vec<D>::Zero());
+  s.w.assign(mesh_.boundary.n_owned(), Vec<D>::Zero());
+  s.u_boundary = s.w;
+  if (!parameters_.initial_velocity.empty()) {
+    const auto expressions = make_expressions(parameters_.initial_velocity, D, "initial-velocity");
+    for (int c = 0; c < D; ++c) {
+      expressions[c].evaluate(mesh_.reference.cell_centre, time, flat<D>(s.u), D, c);
+      expressions[c].evaluate(at.boundary_centre, time, flat<D>(s.u_boundary), D, c);
+    }
+  }
+  boundary_.velocity_at(time, at.boundary_centre, s.w);
+  for (std::size_t b = 0; b < s.w.size(); ++b)
+    if (boundary_.kind()[b] == FaceKind::pressure) s.u_boundary[b] = s.u[mesh_.owner[mesh_.n_interior + b]];
+  step_.project_initial(s);
+  const Expression initial_pressure(parameters_.initial_pressure, "initial-pressure");
+  if (!initial_pressure.is_zero()) {
+    auto level = std::make_shared<PressureLevel<D>>();
+    level->time = time;
+    level->p.resize(mesh_.cells.n_local());
+    level->boundary.resize(s.w.size());
+    initial_pressure.evaluate(mesh_.reference.cell_centre, time, level->p);
+    initial_pressure.evaluate(at.boundary_centre, time, level->boundary);
+    step_.set_gradient(at, *level);
+    s.pressure[0] = level;
+  }
+  s.implicit = parameters_.viscous == ViscousTreatment::implicit;
+}
+
+template <int D>
+void Fluid<D>::restore(State<D> state) {
+  accepted_ = std::move(state);
+}
+
+template <int D>
+void Fluid<D>::begin_step(double time, double dt) {
+  time_ = time;
+  dt_ = dt;
+  accepted_.time = time;
+  trial_ = accepted_;
+  statistics_.limits = step_size_.limits(trial_);
+  if (parameters_.viscous == ViscousTreatment::automatic) choose_viscous_treatment();
+  statistics_.sub_steps = 0;
+}
+
+// With a step of its own the fluid keeps it whatever the treatment: implicit if the explicit one would not be
+// stable. Else the cheaper one; a change starts the multi-step schemes anew, so it needs a clear gain.
+template <int D>
+void Fluid<D>::choose_viscous_treatment() {
+  const StepLimits& limits = statistics_.limits;
+  bool implicit = trial_.implicit;
+  if (parameters_.time_step) {
+    const double own = dt_ / parts(dt_, *parameters_.time_step);
+    implicit = limits.explicit_viscous * parameters_.safety_factor < own * (implicit ? 1.3 : 1.0);
+  } else {
+    const double with_explicit = parts(dt_, parameters_.safety_factor * limits.explicit_viscous);
+    const double with_implicit =
+        implicit_cost * parts(dt_, parameters_.safety_factor * limits.implicit_viscous);
+    if (implicit && with_explicit < 0.7 * with_implicit) implicit = false;
+    if (!implicit && with_implicit < 0.9 * with_explicit) implicit = true;
+  }
+  if (implicit == trial_.implicit) return;
+  trial_.implicit = implicit;
+  trial_.dt_old = 0;
+}
+
+/// Equal parts of what remains, each within the limit of the present flow.
+template <int D>
+double Fluid<D>::next_size(double remaining, bool& last) {
+  double limit = 0;
+  if (parameters_.time_step) {
+    limit = *parameters_.time_step;
+  } else {
+    const StepLimits limits = statistics_.sub_steps == 0 ? statistics_.limits : step_size_.limits(trial_);
+    limit = parameters_.safety_factor * (trial_.implicit ? limits.implicit_viscous : limits.explicit_viscous);
+  }
+  const double n = parts(remaining, limit);
+  if (!(n + statistics_.sub_steps <= most_sub_steps))
+    throw SolveFailure(
+        "The fluid would need more than {} sub-steps of {:.3g} s for the step of {:.3g} s at t = {:.6g} s.",
+        most_sub_steps, limit, dt_, time_);
+  last = n == 1;
+  return remaining / n;
+}
+
+template <int D>
+SubStep<D> Fluid<D>::make_sub_step(double dt, double done, std::span<const Vec3> points) const {
+  SubStep<D> step;
+  step.dt = dt;
+  step.to = trial_.placement;
+  if (!moving_) return step;
+  const double s = done / dt_;
+  if (s == 1 || points.empty()) {
+    step.points = points.empty() ? accepted_.points : std::vector<Vec3>(points.begin(), points.end());
+  } else {
+    step.points.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i)
+      step.points[i] = accepted_.points[i] + s * (points[i] - accepted_.points[i]);
+  }
+  step.to = make_placement<D>(mesh_, step.points);
+  step.swept = swept_volumes(mesh_, trial_.points, step.points);
+  step.swept.resize(mesh_.n_flux_faces());
+  return step;
+}
+
+template <int D>
+Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_velocity,
+                                      const SubStep<D>& step) const {
+  const double s = done / dt_;
+  Vectors<D> w(accepted_.w.size(), Vec<D>::Zero());
+  if (!interface_velocity.empty())
+    for (std::size_t b = 0; b < w.size(); ++b)
+      if (boundary_.is_interface(b)) w[b] = accepted_.w[b] + s * (interface_velocity[b] - accepted_.w[b]);
+  boundary_.velocity_at(time_ + done, step.to->boundary_centre, w);
+  return w;
+}
+
+// The implicit predictor needs the pressure of the step before: at the very first step it comes from a trial
+// of the step.
+template <int D>
+void Fluid<D>::start_pressure(const SubStep<D>& step, const Vectors<D>& w) {
+  State<D> probe = trial_;
+  step_.predict(probe, step, w);
+  step_.project(probe, w);
+  trial_.pressure[0] = step_.pressure_level(trial_);
+}
+
+template <int D>
+void Fluid<D>::add_forces(double share) {
+  pressure_force_ = pressure_done_;
+  viscous_force_ = viscous_done_;
+  for (std::size_t b = 0; b < pressure_force_.size(); ++b) {
+    pressure_force_[b] += share * step_.pressure_force()[b];
+    viscous_force_[b] += share * step_.viscous_force()[b];
+  }
+}
+
+template <int D>
+void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity) {
+  if (statistics_.sub_steps > 0) {  // a repetition of the whole step
+    const bool implicit = trial_.implicit;
+    trial_ = accepted_;
+    if (trial_.implicit != implicit) {
+      trial_.implicit = implicit;
+      trial_.dt_old = 0;
+    }
+    statistics_.sub_steps = 0;
+  }
+  pressure_done_.assign(accepted_.w.size(), Vec<D>::Zero());
+  viscous_done_ = pressure_done_;
+  double done = 0;
+  for (bool last = false; !last;) {
+    const double dt = next_size(dt_ - done, last);
+    const double end = last ? dt_ : done + dt;
+    SubStep<D> sub_step = make_sub_step(dt, end, points);
+    last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
+    if (trial_.implicit && !trial_.pressure[0]) start_pressure(sub_step, last_w_);
+    step_.predict(trial_, std::move(sub_step), last_w_);
+    ++statistics_.sub_steps;
+    ++statistics_.all_sub_steps;
+    if (last) break;
+    step_.project(trial_, last_w_);
+    add_forces(dt / dt_);
+    pressure_done_.swap(pressure_force_);
+    viscous_done_.swap(viscous_force_);
+    step_.finish(trial_);
+    done = end;
+  }
+}
+
+template <int D>
+void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity) {
+  if (!wall_velocity.empty())
+    for (std::size_t b = 0; b < last_w_.size(); ++b)
+      if (boundary_.is_interface(b)) last_w_[b] = wall_velocity[b];
+  step_.project(trial_, last_w_);
+  ++statistics_.pressure_solves;
+  add_forces(step_.size() / dt_);
+}
+
+template <int D>
+void Fluid<D>::solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity) {
+  prepare(points, wall_velocity);
+  solve_pressure(wall_velocity);
+}
+
+template <int D>
+void Fluid<D>::accept() {
+  step_.finish(trial_);
+  trial_.time = time_ + dt_;
+  std::swap(accepted_, trial_);
+  statistics_.pressure_iterations = step_.statistics().pressure_iterations;
+  statistics_.viscous_iterations = step_.statistics().viscous_iterations;
+}
+
+template class Fluid<2>;
+template class Fluid<3>;
+
+}  // namespace couplet::fluid

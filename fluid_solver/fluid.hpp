@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "fluid_solver/fractional_step.hpp"
+#include "fluid_solver/step_size.hpp"
+
+namespace couplet::fluid {
+
+struct FluidStatistics {
+  int sub_steps = 0;  ///< of the last step
+  long all_sub_steps = 0, pressure_iterations = 0, viscous_iterations = 0, pressure_solves = 0;
+  StepLimits limits;  ///< at the begin of the last step
+};
+
+/// The fluid through whole coupling steps: cuts them into stable sub-steps, moves the mesh and the walls
+/// linearly within them, and keeps the accepted state apart from the trial.
+///
+///   begin_step; prepare(points, w); solve_pressure(w') ...; accept
+///
+/// prepare() does all but the last pressure equation with the wall velocity w (predicted). solve_pressure(w')
+/// then costs one pressure equation and may be repeated. The impulse of the added mass is exact for any
+/// number of sub-steps: each contributes rho mu dw, and the dw add up to w'^{n+1} - w^n.
+template <int D>
+class Fluid {
+ public:
+  Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving_mesh, double start_time = 0);
+
+  void begin_step(double time, double dt);
+  /// `points`: at t^{n+1}, empty if the mesh rests. `wall_velocity`: per boundary face at t^{n+1} [m/s], only
+  /// the interface faces count (empty: at rest). Collective.
+  void prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
+  void solve_pressure(const Vectors<D>& wall_velocity);
+  /// prepare and solve_pressure.
+  void solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
+  void accept();
+
+  const State<D>& state() const { return accepted_; }
+  /// For checkpoints: replaces the accepted state.
+  void restore(State<D> state);
+  /// Time means over the coupling step of the forces on what is outside, per boundary face [N].
+  const Vectors<D>& pressure_force() const { return pressure_force_; }
+  const Vectors<D>& viscous_force() const { return viscous_force_; }
+
+  const Boundary<D>& boundary() const { return boundary_; }
+  const Mesh& mesh() const { return mesh_; }
+  const FluidParameters& parameters() const { return parameters_; }
+  const FluidStatistics& statistics() const { return statistics_; }
+  double largest_peclet() const { return step_size_.largest_peclet(); }
+  bool moving() const { return moving_; }
+
+ private:
+  void start(double time);
+  void choose_viscous_treatment();
+  double next_size(double remaining, bool& last);
+  SubStep<D> make_sub_step(double dt, double done, std::span<const Vec3> points) const;
+  Vectors<D> wall_velocity_at(double done, const Vectors<D>& interface_velocity,
+                              const SubStep<D>& step) const;
+  void start_pressure(const SubStep<D>& step, const Vectors<D>& w);
+  void add_forces(double share);
+
+  const Mesh& mesh_;
+  FluidParameters parameters_;
+  bool moving_;
+  Boundary<D> boundary_;
+  FractionalStep<D> step_;
+  StepSize<D> step_size_;
+  State<D> accepted_, trial_;
+  double time_ = 0, dt_ = 0;
+  Vectors<D> last_w_;                        // given velocities at the end of the last sub-step
+  Vectors<D> pressure_done_, viscous_done_;  // time integrals over the finished sub-steps / dt_
+  Vectors<D> pressure_force_, viscous_force_;
+  FluidStatistics statistics_;
+};
+
+}  // namespace couplet::fluid

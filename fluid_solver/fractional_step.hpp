@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "fluid_solver/pressure.hpp"
+#include "fluid_solver/rates.hpp"
+#include "fluid_solver/state.hpp"
+#include "fluid_solver/viscous_solver.hpp"
+
+namespace couplet::fluid {
+
+/// Where one sub-step goes.
+template <int D>
+struct SubStep {
+  double dt = 0;                           ///< [s]
+  std::shared_ptr<const Placement<D>> to;  ///< of the points at t^{n+1}
+  std::vector<double> swept;               ///< dV_f per flux face [m^3]; empty: the mesh rests
+  std::vector<Vec3> points;                ///< at t^{n+1}; empty: the mesh rests
+};
+
+struct StepStatistics {
+  int pressure_iterations = 0, viscous_iterations = 0;
+};
+
+/// One step of the non-incremental projection method on a moving mesh, in three parts, so that a
+/// semi-implicit coupling can repeat the middle one:
+///   predict   V' u^p = V u^n + dt [(1 + r/2) R^n - r/2 R^{n-1}] + sum dV_f u_f~ - (dt/rho) sum p_f^{n-1/2}
+///   (S^{n+1/2} - S^{n+1}) project   sum g (p_N - p_P) = (rho/dt) sum phi^p                      p =
+///   p^{n+1/2} finish    phi = phi^p - (dt/rho) g dp,  u^{n+1} = u^p - dt/(rho V') sum p_f S^{n+1}
+/// r = dt/dt_old; u~ = (1 + r/2) u^n - r/2 u^{n-1}; the thesis's (4.5)-(4.8) with its errata (density, sign
+/// of diffusion).
+template <int D>
+class FractionalStep {
+ public:
+  FractionalStep(const Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters);
+
+  /// `w`: given velocity per boundary face at t^{n+1}, as far as it is known. Collective.
+  void predict(const State<D>& from, SubStep<D> step, const Vectors<D>& w);
+  /// May be called again with another w after one predict(). Collective.
+  void project(const State<D>& from, const Vectors<D>& w);
+  /// Turns level n into level n+1. Throws SolveFailure naming time and place if the velocity is not finite.
+  /// Collective.
+  void finish(State<D>& state);
+  /// Makes the initial velocity divergence-free: state.u, w and u_boundary (u at the faces) are given, phi is
+  /// filled.
+  void project_initial(State<D>& state);
+
+  /// The result of the last project() as a level of history of `from`. Collective.
+  std::shared_ptr<const PressureLevel<D>> pressure_level(const State<D>& from) const;
+  /// Fills level.gradient from p and boundary. Collective.
+  void set_gradient(const Placement<D>& at, PressureLevel<D>& level) const;
+  /// Of the last project(), acting on what is outside the fluid [N]: +p_b S^{n+1/2} and the wall shear.
+  const Vectors<D>& pressure_force() const { return pressure_force_; }
+  const Vectors<D>& viscous_force() const { return viscous_force_; }
+  const StepStatistics& statistics() const { return statistics_; }
+  double size() const { return step_.dt; }
+
+ private:
+  void add_swept(const State<D>& from, double e0, double e1);
+  void add_old_pressure(const State<D>& from, bool implicit);
+  void solve_viscous(const State<D>& from, const Vectors<D>& w, double a);
+  void add_back_old_pressure(const State<D>& from);
+  void predict_flux(const State<D>& from);
+  void extrapolate_pressure(const State<D>& from);
+  void set_boundary_flux(const Vectors<D>& w);
+  void balance_closed_domain();
+  void set_boundary_pressure(const State<D>& from, const Vectors<D>& w);
+  void set_forces(const State<D>& from);
+  void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
+                         const std::vector<double>& boundary, Vectors<D>& sum) const;
+  void correct(State<D>& state);
+  void check(const State<D>& state);
+
+  const Mesh& mesh_;
+  const Boundary<D>& boundary_;
+  const FluidParameters& parameters_;
+  double rho_, nu_;
+  bool oblique_ = false;  // the non-orthogonal parts are needed
+  RateOperator<D> rate_operator_;
+  ViscousSolver<D> viscous_solver_;
+  PressureEquation<D> pressure_;
+  std::shared_ptr<const Placement<D>> assembled_;  // placement of the pressure matrix
+
+  SubStep<D> step_;
+  Rates<D> rates_;
+  Vectors<D> right_side_, u_p_, w_, u_boundary_, gradient_guess_, shear_;
+  std::vector<double> phi_p_, b_, p_, p_boundary_;
+  Vectors<D> pressure_force_, viscous_force_;
+  StepStatistics statistics_;
+  double speed_scale_ = 0;
+};
+
+}  // namespace couplet::fluid

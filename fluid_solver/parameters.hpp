@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/section.hpp"
+
+namespace couplet::fluid {
+
+enum class BoundaryType { inlet, outlet, no_slip, moving_wall, slip, interface };
+enum class ViscousTreatment { automatic, explicit_, implicit };
+
+struct BoundaryParameters {
+  BoundaryType type = BoundaryType::no_slip;
+  std::vector<config::ExpressionText> velocity;  // [m/s], inlet and moving wall
+  std::optional<double> ramp;                    // [s], inlet
+  config::ExpressionText pressure;               // [Pa], outlet
+};
+
+struct ProbeParameters {
+  Vec3 point = Vec3::Zero();  // [m]
+};
+
+struct FluidParameters {
+  std::string mesh;
+  int dimension = 3;
+  double density = 0;    // [kg/m^3]
+  double viscosity = 0;  // dynamic [Pa s]
+  std::map<std::string, BoundaryParameters> boundaries;
+  std::optional<double> time_step;  // [s]; empty: by the stability limit
+  double safety_factor = 0.8;
+  ViscousTreatment viscous = ViscousTreatment::automatic;
+  double pressure_tolerance = 1e-6;
+  std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
+  config::ExpressionText initial_pressure;               // [Pa]
+  bool flux_memory = true;
+  std::map<std::string, ProbeParameters> probes;
+};
+
+void declare(config::Section& section, FluidParameters& parameters);
+
+}  // namespace couplet::fluid

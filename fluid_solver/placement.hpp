@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/mesh/mesh.hpp"
+
+namespace couplet::fluid {
+
+template <int D>
+using Vectors = std::vector<Vec<D>>;
+
+/// The doubles of an array of vectors, for halo updates, output and checkpoints.
+template <int D>
+std::span<double> flat(Vectors<D>& values) {
+  return {values.empty() ? nullptr : values.front().data(), values.size() * D};
+}
+template <int D>
+std::span<const double> flat(const Vectors<D>& values) {
+  return {values.empty() ? nullptr : values.front().data(), values.size() * D};
+}
+
+/// What the face loops need of one placement of the points. Faces are the flux faces of the mesh (interior,
+/// then the boundary of owned cells).
+template <int D>
+struct Placement {
+  std::vector<double> volume;  ///< V [m^3], per local cell
+  Vectors<D> area;             ///< S [m^2], out of the owner
+  std::vector<double>
+      conductance;     ///< g = |S|^2 / (S.d) [m], over-relaxed; d from owner to neighbour (or face) centre
+  Vectors<D> oblique;  ///< k = S - g d [m^2], tangential; zero on orthogonal meshes
+  std::vector<double> weight;  ///< of the owner in the linear interpolation to the face, per interior face
+  Vectors<D> centre;           ///< per local cell [m]
+  std::vector<Vec3> boundary_centre;  ///< per owned boundary face [m]
+  double obliqueness = 0;             ///< largest |k|/|S| on this rank
+};
+
+template <int D>
+std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geometry& geometry);
+template <int D>
+std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<const Vec3> points) {
+  return make_placement<D>(mesh, compute_geometry(mesh, points));
+}
+
+}  // namespace couplet::fluid

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// The predictor of FractionalStep: everything before the pressure equation.
+#include <algorithm>
+#include <cmath>
+
+#include "fluid_solver/fractional_step.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// Modified Crank-Nicolson a L u^{n+1} + b L u^n + c L u^{n-1}: second order for any step ratio, and it damps
+// stiff modes.
+constexpr double c_modified = 1.0 / 16;
+
+}  // namespace
+
+template <int D>
+void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vectors<D>& w) {
+  step_ = std::move(step);
+  w_ = w;
+  const bool moving = !step_.swept.empty();
+  const bool implicit = from.implicit;
+  if (moving)
+    for (std::size_t b = 0; b < w_.size(); ++b)
+      if (boundary_.kind()[b] == FaceKind::slip) {
+        const Index f = mesh_.n_interior + static_cast<Index>(b);
+        w_[b] = step_.swept[f] / (step_.dt * step_.to->area[f].squaredNorm()) * step_.to->area[f];
+      }
+  const double dt = step_.dt, ratio = from.dt_old > 0 ? dt / from.dt_old : 0;
+  const double e0 = 1 + ratio / 2, e1 = -ratio / 2;
+
+  rate_operator_.apply(from, implicit, oblique_, rates_);
+  wall_shear<D>(mesh_, *from.placement, parameters_.viscosity, from.u, from.u_boundary, shear_);
+  right_side_.resize(from.u.size());
+  const std::vector<double>& volume = from.placement->volume;
+  for (Index c = 0; c < mesh_.cells.n_local(); ++c)
+    right_side_[c] = volume[c] * from.u[c] + dt * e0 * rates_.rate[c];
+  if (ratio > 0)
+    for (Index c = 0; c < mesh_.cells.n_local(); ++c) right_side_[c] += dt * e1 * from.rates_old.rate[c];
+  if (moving) add_swept(from, e0, e1);
+  if (moving || implicit) add_old_pressure(from, implicit);
+  u_p_.resize(from.u.size());
+  viscous_force_.resize(shear_.size());
+  if (implicit) {
+    const double c = ratio > 0 ? c_modified : 0, a = ratio > 0 ? 0.5 + c / ratio : 1, b = 1 - a - c;
+    for (Index i = 0; i < mesh_.cells.n_owned(); ++i) right_side_[i] += dt * b * rates_.viscous[i];
+    if (ratio > 0)
+      for (Index i = 0; i < mesh_.cells.n_owned(); ++i) right_side_[i] += dt * c * from.rates_old.viscous[i];
+    solve_viscous(from, w_, a);
+  } else {
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) u_p_[c] = right_side_[c] / step_.to->volume[c];
+    for (std::size_t b = 0; b < shear_.size(); ++b)
+      viscous_force_[b] = ratio > 0 ? Vec<D>(e0 * shear_[b] + e1 * from.shear_old[b]) : shear_[b];
+  }
+  mesh_.cells.update_ghosts(flat<D>(u_p_), D);
+  extrapolate_pressure(from);
+  predict_flux(from);
+  if (assembled_ != step_.to) {
+    pressure_.set(*step_.to);
+    assembled_ = step_.to;
+  }
+}
+
+// sum dV_f u~_f with u~ extrapolated to n+1/2: with the rates of a mesh held still this is the "split" ALE
+// form, second order in time and exact for a uniform flow.
+template <int D>
+void FractionalStep<D>::add_swept(const State<D>& from, double e0, double e1) {
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    Vec<D> value = 0.5 * e0 * (from.u[p] + from.u[n]);
+    if (e1 != 0) value += 0.5 * e1 * (from.u_old[p] + from.u_old[n]);
+    right_side_[p] += step_.swept[f] * value;
+    right_side_[n] -= step_.swept[f] * value;
+  }
+  for (std::size_t b = 0; b < from.u_boundary.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    Vec<D> value = e0 * from.u_boundary[b];
+    if (e1 != 0) value += e1 * from.u_boundary_old[b];
+    right_side_[mesh_.owner[f]] += step_.swept[f] * value;
+  }
+}
+
+// Explicit viscous term: -(dt/rho) sum p_f^{n-1/2} (S^{n+1/2} - S^{n+1}), which makes the pressure force
+// second order in time on a moving mesh. Implicit: -(dt/rho) sum p_f^{n-1/2} S^{n+1/2}, so that the wall
+// velocity is the right boundary value of the predictor; add_back_old_pressure() returns the part on S^{n+1}.
+template <int D>
+void FractionalStep<D>::add_old_pressure(const State<D>& from, bool implicit) {
+  if (!from.pressure[0]) return;
+  const PressureLevel<D>& level = *from.pressure[0];
+  const double factor = step_.dt / rho_;
+  const Placement<D>&old = *from.placement, &now = *step_.to;
+  if (step_.swept.empty()) {  // S does not change: the gradient of that step is still at hand
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+      right_side_[c] -= factor * now.volume[c] * level.gradient[c];
+    return;
+  }
+  const double keep = implicit ? 0 : 1;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const double value = now.weight[f] * level.p[p] + (1 - now.weight[f]) * level.p[n];
+    const Vec<D> part = factor * value * (0.5 * (old.area[f] + now.area[f]) - keep * now.area[f]);
+    right_side_[p] -= part;
+    right_side_[n] += part;
+  }
+  for (std::size_t b = 0; b < level.boundary.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    right_side_[mesh_.owner[f]] -=
+        factor * level.boundary[b] * (0.5 * (old.area[f] + now.area[f]) - keep * now.area[f]);
+  }
+}
+
+template <int D>
+void FractionalStep<D>::solve_viscous(const State<D>& from, const Vectors<D>& w, double a) {
+  const double ratio = from.dt_old > 0 ? step_.dt / from.dt_old : 0;
+  for (Index c = 0; c < mesh_.cells.n_local(); ++c)
+    u_p_[c] = ratio > 0 ? Vec<D>(from.u[c] + ratio * (from.u[c] - from.u_old[c])) : from.u[c];
+  const double tolerance = std::min(1e-8, 1e-2 * parameters_.pressure_tolerance);
+  statistics_.viscous_iterations +=
+      viscous_solver_.solve(*step_.to, a * nu_ * step_.dt, w, tolerance, right_side_, u_p_);
+  boundary_.close(mesh_, *step_.to, u_p_, w, u_boundary_);
+  wall_shear<D>(mesh_, *step_.to, parameters_.viscosity, u_p_, u_boundary_, viscous_force_);
+  for (std::size_t b = 0; b < shear_.size(); ++b) viscous_force_[b] = 0.5 * (viscous_force_[b] + shear_[b]);
+  add_back_old_pressure(from);
+}
+
+template <int D>
+void FractionalStep<D>::add_back_old_pressure(const State<D>& from) {
+  if (!from.pressure[0]) return;
+  const PressureLevel<D>& level = *from.pressure[0];
+  const double factor = step_.dt / rho_;
+  if (step_.swept.empty()) {
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) u_p_[c] += factor * level.gradient[c];
+    return;
+  }
+  pressure_gradient(*step_.to, level.p, level.boundary, right_side_);
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) u_p_[c] += factor / step_.to->volume[c] * right_side_[c];
+}
+
+/// phi^p = (mean u^p).S^{n+1} + delta^n - (dt/rho) grad p~ . k. The memory delta^n = phi^n - (mean u^n).S^n,
+/// on interior faces only, keeps the flux free of an error that would grow as 1/dt.
+template <int D>
+void FractionalStep<D>::predict_flux(const State<D>& from) {
+  const Placement<D>& now = *step_.to;
+  phi_p_.resize(mesh_.n_flux_faces());
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    phi_p_[f] = 0.5 * (u_p_[mesh_.owner[f]] + u_p_[mesh_.neighbour[f]]).dot(now.area[f]);
+  if (parameters_.flux_memory && !from.memory.empty())
+    for (Index f = 0; f < mesh_.n_interior; ++f) phi_p_[f] += from.memory[f];
+  for (std::size_t b = 0; b < w_.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    if (boundary_.kind()[b] == FaceKind::pressure) phi_p_[f] = u_p_[mesh_.owner[f]].dot(now.area[f]);
+  }
+  if (gradient_guess_.empty()) return;
+  const double factor = step_.dt / rho_;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const double w = now.weight[f];
+    phi_p_[f] -=
+        factor * (w * gradient_guess_[mesh_.owner[f]] + (1 - w) * gradient_guess_[mesh_.neighbour[f]])
+                     .dot(now.oblique[f]);
+  }
+  for (std::size_t b = 0; b < w_.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    if (boundary_.kind()[b] == FaceKind::pressure)
+      phi_p_[f] -= factor * gradient_guess_[mesh_.owner[f]].dot(now.oblique[f]);
+  }
+}
+
+/// p~ at t^{n+1/2}, the guess of the pressure equation, through the levels at hand (three only where the
+/// solver's noise is small), and its gradient for the non-orthogonal part, linear.
+template <int D>
+void FractionalStep<D>::extrapolate_pressure(const State<D>& from) {
+  const std::size_t order = parameters_.pressure_tolerance >= 1e-3 ? 2 : 3;
+  const double t = from.time + step_.dt / 2;
+  std::vector<const PressureLevel<D>*> levels;
+  for (std::size_t k = 0; k < order && from.pressure[k]; ++k) levels.push_back(from.pressure[k].get());
+  p_.assign(mesh_.cells.n_local(), 0.0);
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    double weight = 1;
+    for (std::size_t j = 0; j < levels.size(); ++j)
+      if (j != k) weight *= (t - levels[j]->time) / (levels[k]->time - levels[j]->time);
+    for (std::size_t c = 0; c < p_.size(); ++c) p_[c] += weight * levels[k]->p[c];
+  }
+  gradient_guess_.clear();
+  if (!oblique_ || levels.empty()) return;
+  gradient_guess_ = levels[0]->gradient;
+  if (levels.size() < 2) return;
+  const double slope = (t - levels[0]->time) / (levels[0]->time - levels[1]->time);
+  for (std::size_t c = 0; c < gradient_guess_.size(); ++c)
+    gradient_guess_[c] += slope * (levels[0]->gradient[c] - levels[1]->gradient[c]);
+}
+
+template void FractionalStep<2>::predict(const State<2>&, SubStep<2>, const Vectors<2>&);
+template void FractionalStep<3>::predict(const State<3>&, SubStep<3>, const Vectors<3>&);
+
+}  // namespace couplet::fluid

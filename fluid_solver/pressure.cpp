@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/pressure.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+
+// Triplets: the diagonal of each owned cell first, then the neighbours face by face.
+template <int D>
+PressureEquation<D>::PressureEquation(const Mesh& mesh, const Boundary<D>& boundary)
+    : mesh_(mesh), boundary_(boundary) {
+  const Index owned = mesh.cells.n_owned();
+  std::vector<GlobalIndex> row(owned), column;
+  std::iota(row.begin(), row.end(), mesh.cells.first());
+  column = row;
+  const auto add = [&](Index from, Index to) {
+    if (from >= owned) return;
+    row.push_back(mesh.cells.global(from));
+    column.push_back(mesh.cells.global(to));
+  };
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    add(mesh.owner[f], mesh.neighbour[f]);
+    add(mesh.neighbour[f], mesh.owner[f]);
+  }
+  values_.resize(row.size());
+  matrix_ = std::make_unique<SparseMatrix>(mesh.comm, owned, std::move(row), std::move(column));
+}
+
+template <int D>
+void PressureEquation<D>::set(const Placement<D>& at) {
+  const Index owned = mesh_.cells.n_owned();
+  std::fill_n(values_.begin(), owned, 0.0);
+  std::size_t next = owned;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]}) {
+      if (cell >= owned) continue;
+      values_[cell] += at.conductance[f];
+      values_[next++] = -at.conductance[f];
+    }
+  }
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+    if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::pressure)
+      values_[mesh_.owner[f]] += at.conductance[f];
+  matrix_->fill(values_);
+  if (solver_) {
+    solver_->matrix_changed();
+  } else {
+    LinearOptions options;
+    options.constant_null_space = boundary_.closed();
+    solver_ = std::make_unique<LinearSolver>("pressure", *matrix_, options);
+  }
+}
+
+// A closed domain has a pressure up to a constant only if the fluxes add up to nothing.
+template <int D>
+void PressureEquation<D>::remove_mean(std::vector<double>& b) const {
+  const double mean =
+      sum(mesh_.comm, std::accumulate(b.begin(), b.end(), 0.0)) / static_cast<double>(mesh_.cells.n_global());
+  for (double& value : b) value -= mean;
+}
+
+template <int D>
+SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<double>& b,
+                                           std::vector<double>& p, double relative, double absolute) {
+  const Index owned = mesh_.cells.n_owned();
+  if (boundary_.closed()) remove_mean(b);
+  const SolveStatistics statistics = solver_->solve(b, std::span<double>(p).first(owned), relative, absolute);
+  if (boundary_.closed()) {
+    double sums[2] = {0, 0};
+    for (Index c = 0; c < owned; ++c) {
+      sums[0] += at.volume[c] * p[c];
+      sums[1] += at.volume[c];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+    for (Index c = 0; c < owned; ++c) p[c] -= sums[0] / sums[1];
+  }
+  mesh_.cells.update_ghosts(p);
+  return statistics;
+}
+
+template class PressureEquation<2>;
+template class PressureEquation<3>;
+
+}  // namespace couplet::fluid

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/linalg/linear_solver.hpp"
+#include "common/linalg/matrix.hpp"
+#include "fluid_solver/boundary.hpp"
+#include "fluid_solver/placement.hpp"
+
+namespace couplet::fluid {
+
+/// A = -sum_f g (p_N - p_P), and g p_P at faces of given pressure: symmetric, positive (semi-)definite. Faces
+/// of given flux have no entry. The places of the entries are fixed; a moved mesh only refills the values.
+template <int D>
+class PressureEquation {
+ public:
+  PressureEquation(const Mesh& mesh, const Boundary<D>& boundary);
+  /// Collective.
+  void set(const Placement<D>& at);
+  /// `b`: per owned cell, made compatible here when the domain is closed; `p`: per local cell, guess on
+  /// entry, mean zero in a closed domain, ghosts current on exit. Stops at max(relative |b|, absolute).
+  /// Collective.
+  SolveStatistics solve(const Placement<D>& at, std::vector<double>& b, std::vector<double>& p,
+                        double relative, double absolute);
+
+ private:
+  void remove_mean(std::vector<double>& b) const;
+  const Mesh& mesh_;
+  const Boundary<D>& boundary_;
+  std::unique_ptr<SparseMatrix> matrix_;
+  std::unique_ptr<LinearSolver> solver_;
+  std::vector<double> values_;
+};
+
+}  // namespace couplet::fluid

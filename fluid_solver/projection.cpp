@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// The second and third part of FractionalStep: pressure equation and correction.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/fractional_step.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// Absolute goal of the pressure equation relative to the size of the fluxes: below it there is only
+// round-off, on which a relative tolerance would spin (uniform flow, fluid at rest).
+constexpr double flux_floor = 3e-15;
+constexpr double explosion = 1e3;  // growth of the largest speed in one step that is called divergence
+
+}  // namespace
+
+template <int D>
+FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
+                                  const FluidParameters& parameters)
+    : mesh_(mesh),
+      boundary_(boundary),
+      parameters_(parameters),
+      rho_(parameters.density),
+      nu_(parameters.viscosity / parameters.density),
+      rate_operator_(mesh, boundary, nu_),
+      viscous_solver_(mesh, boundary),
+      pressure_(mesh, boundary) {}
+
+template <int D>
+void FractionalStep<D>::set_boundary_flux(const Vectors<D>& w) {
+  for (std::size_t b = 0; b < w.size(); ++b) {
+    if (boundary_.kind()[b] == FaceKind::pressure) continue;
+    if (boundary_.kind()[b] == FaceKind::velocity) w_[b] = w[b];
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    phi_p_[f] = w_[b].dot(step_.to->area[f]);
+  }
+  if (boundary_.closed()) balance_closed_domain();
+}
+
+// An incompressible fluid without an outlet needs boundary fluxes that add up to nothing. What a moving wall
+// leaves over (discretisation error) is spread over the interface, or over all moving faces, by their area.
+template <int D>
+void FractionalStep<D>::balance_closed_domain() {
+  enum { total, size, interface_area, other_area };
+  double sums[4] = {};
+  for (std::size_t b = 0; b < w_.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    const double area = step_.to->area[f].norm();
+    sums[total] += phi_p_[f];
+    sums[size] += std::abs(phi_p_[f]);
+    sums[boundary_.is_interface(b) ? interface_area : other_area] += area;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  const bool has_interface = sums[interface_area] > 0;
+  if (!has_interface && std::abs(sums[total]) > 1e-6 * sums[size])
+    throw Error(
+        "The fluid domain is closed, but the given velocities let {:.6g} m^3/s more out than in. Add an "
+        "outlet or "
+        "correct the velocities.",
+        sums[total]);
+  const double correction = sums[total] / (has_interface ? sums[interface_area] : sums[other_area]);
+  for (std::size_t b = 0; b < w_.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    if (!has_interface || boundary_.is_interface(b)) phi_p_[f] -= correction * step_.to->area[f].norm();
+  }
+}
+
+template <int D>
+void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w) {
+  const Placement<D>& now = *step_.to;
+  const double factor = rho_ / step_.dt;
+  set_boundary_flux(w);
+  p_boundary_.resize(w.size());
+  boundary_.pressure_at(from.time + step_.dt / 2, now.boundary_centre, p_boundary_);
+  b_.assign(mesh_.cells.n_local(), 0.0);
+  double size = 0;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    b_[mesh_.owner[f]] -= factor * phi_p_[f];
+    b_[mesh_.neighbour[f]] += factor * phi_p_[f];
+    size += phi_p_[f] * phi_p_[f];
+  }
+  for (std::size_t b = 0; b < w.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    b_[mesh_.owner[f]] -= factor * phi_p_[f];
+    size += phi_p_[f] * phi_p_[f];
+    if (boundary_.kind()[b] == FaceKind::pressure) b_[mesh_.owner[f]] += now.conductance[f] * p_boundary_[b];
+  }
+  b_.resize(mesh_.cells.n_owned());
+  const double floor = flux_floor * factor * std::sqrt(sum(mesh_.comm, size));
+  const SolveStatistics solved = pressure_.solve(now, b_, p_, parameters_.pressure_tolerance,
+                                                 std::max(floor, std::numeric_limits<double>::min()));
+  statistics_.pressure_iterations += solved.iterations;
+  set_boundary_pressure(from, w);
+  set_forces(from);
+}
+
+/// Wall: grad p . S = -(rho/dt) [(w^{n+1} - w^n) - (u^p - u^n)_P].S, the momentum balance along the normal;
+/// its first part is the added-mass pressure, exact for a rigidly moving box. p_b = p_P + (grad p . S - grad
+/// p~ . k)/g.
+template <int D>
+void FractionalStep<D>::set_boundary_pressure(const State<D>& from, const Vectors<D>& w) {
+  const Placement<D>& now = *step_.to;
+  for (std::size_t b = 0; b < w.size(); ++b) {
+    if (boundary_.kind()[b] == FaceKind::pressure) continue;
+    const Index f = mesh_.n_interior + static_cast<Index>(b), p = mesh_.owner[f];
+    const Vec<D> acceleration = (w_[b] - from.w[b]) - (u_p_[p] - from.u[p]);
+    double normal = -rho_ / step_.dt * acceleration.dot(now.area[f]);
+    if (!gradient_guess_.empty()) normal -= gradient_guess_[p].dot(now.oblique[f]);
+    p_boundary_[b] = p_[p] + normal / now.conductance[f];
+  }
+}
+
+template <int D>
+void FractionalStep<D>::set_forces(const State<D>& from) {
+  pressure_force_.resize(w_.size());
+  for (std::size_t b = 0; b < w_.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    pressure_force_[b] = 0.5 * p_boundary_[b] * (from.placement->area[f] + step_.to->area[f]);
+  }
+}
+
+/// sum p_f S per local cell, p_f linear between the cells.
+template <int D>
+void FractionalStep<D>::pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
+                                          const std::vector<double>& boundary, Vectors<D>& sum) const {
+  sum.assign(mesh_.cells.n_local(), Vec<D>::Zero());
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index o = mesh_.owner[f], n = mesh_.neighbour[f];
+    const Vec<D> part = (at.weight[f] * p[o] + (1 - at.weight[f]) * p[n]) * at.area[f];
+    sum[o] += part;
+    sum[n] -= part;
+  }
+  for (std::size_t b = 0; b < boundary.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    sum[mesh_.owner[f]] += boundary[b] * at.area[f];
+  }
+}
+
+template <int D>
+void FractionalStep<D>::set_gradient(const Placement<D>& at, PressureLevel<D>& level) const {
+  pressure_gradient(at, level.p, level.boundary, level.gradient);
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) level.gradient[c] /= at.volume[c];
+  if (oblique_) mesh_.cells.update_ghosts(flat<D>(level.gradient), D);
+}
+
+template <int D>
+std::shared_ptr<const PressureLevel<D>> FractionalStep<D>::pressure_level(const State<D>& from) const {
+  auto level = std::make_shared<PressureLevel<D>>();
+  level->time = from.time + step_.dt / 2;
+  level->p = p_;
+  level->boundary = p_boundary_;
+  set_gradient(*step_.to, *level);
+  return level;
+}
+
+template <int D>
+void FractionalStep<D>::correct(State<D>& s) {
+  const Placement<D>& now = *step_.to;
+  const double factor = step_.dt / rho_;
+  s.phi.swap(phi_p_);
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    s.phi[f] -= factor * now.conductance[f] * (p_[mesh_.neighbour[f]] - p_[mesh_.owner[f]]);
+  for (std::size_t b = 0; b < w_.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    if (boundary_.kind()[b] == FaceKind::pressure)
+      s.phi[f] -= factor * now.conductance[f] * (p_boundary_[b] - p_[mesh_.owner[f]]);
+  }
+  const auto level = pressure_level(s);
+  s.u_old.swap(s.u);
+  s.u.resize(u_p_.size());
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) s.u[c] = u_p_[c] - factor * level->gradient[c];
+  mesh_.cells.update_ghosts(flat<D>(s.u), D);
+  s.pressure = {level, s.pressure[0], s.pressure[1]};
+}
+
+template <int D>
+void FractionalStep<D>::finish(State<D>& s) {
+  correct(s);
+  s.u_boundary_old.swap(s.u_boundary);
+  s.w = w_;
+  boundary_.close(mesh_, *step_.to, s.u, s.w, s.u_boundary);
+  if (parameters_.flux_memory) {
+    s.memory.resize(mesh_.n_interior);
+    for (Index f = 0; f < mesh_.n_interior; ++f)
+      s.memory[f] = s.phi[f] - 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(step_.to->area[f]);
+  }
+  s.rates_old.rate.swap(rates_.rate);
+  s.rates_old.viscous.swap(rates_.viscous);
+  s.shear_old.swap(shear_);
+  s.placement = step_.to;
+  s.points.swap(step_.points);
+  s.mesh_flux.swap(step_.swept);
+  for (double& flux : s.mesh_flux) flux /= step_.dt;
+  s.dt_old = step_.dt;
+  s.time += step_.dt;
+  check(s);
+}
+
+// One reduction: largest speed and where, and the mass defect.
+template <int D>
+void FractionalStep<D>::check(const State<D>& s) {
+  struct {
+    double value;
+    int rank;
+  } fastest{-1, comm_rank(mesh_.comm)};
+  Index where = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const double speed = s.u[c].norm();
+    const double value = std::isfinite(speed) ? speed : std::numeric_limits<double>::infinity();
+    if (value > fastest.value) {
+      fastest.value = value;
+      where = c;
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &fastest, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh_.comm);
+  const bool too_fast = speed_scale_ > 0 && fastest.value > explosion * speed_scale_;
+  if (!std::isfinite(fastest.value) || too_fast) {
+    Vec3 place = Vec3::Zero();
+    place.template head<D>() = s.placement->centre[where];
+    double data[4] = {place.x(), place.y(), place.z(), double(mesh_.cell_id[where])};
+    MPI_Bcast(data, 4, MPI_DOUBLE, fastest.rank, mesh_.comm);
+    throw SolveFailure(
+        "The velocity of the fluid {} at t = {:.6g} s in cell {} at ({:.6g}, {:.6g}, {:.6g}) m. Try a "
+        "smaller "
+        "time step.",
+        std::isfinite(fastest.value) ? fmt::format("grew to {:.3g} m/s", fastest.value) : "is not finite",
+        s.time, GlobalIndex(data[3]), data[0], data[1], data[2]);
+  }
+  speed_scale_ = std::max(speed_scale_, fastest.value);
+}
+
+/// u = u0 - grad psi with phi free of divergence: the same equation with dt = 1 s, rho = 1. Where the given
+/// wall velocity differs from u0 at the wall (an inlet that starts at once) the field becomes the potential
+/// flow.
+template <int D>
+void FractionalStep<D>::project_initial(State<D>& s) {
+  oblique_ = max(mesh_.comm, s.placement->obliqueness) > 1e-9 || !s.points.empty();
+  const Placement<D>& at = *s.placement;
+  phi_p_.assign(mesh_.n_flux_faces(), 0.0);
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    phi_p_[f] = 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(at.area[f]);
+  for (std::size_t b = 0; b < s.w.size(); ++b)
+    phi_p_[mesh_.n_interior + b] = s.u_boundary[b].dot(at.area[mesh_.n_interior + b]);
+  step_ = {rho_, s.placement, {}, {}};  // dt/rho = 1
+  w_ = s.w;
+  gradient_guess_.clear();
+  u_p_ = s.u;
+  p_.assign(mesh_.cells.n_local(), 0.0);
+  p_boundary_.assign(s.w.size(), 0.0);
+  pressure_.set(at);
+  assembled_ = s.placement;
+  const Vectors<D> jump_from = s.u_boundary;
+  set_boundary_flux(s.w);
+  b_.assign(mesh_.cells.n_local(), 0.0);
+  double size = 0;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    b_[mesh_.owner[f]] -= phi_p_[f];
+    if (f < mesh_.n_interior) b_[mesh_.neighbour[f]] += phi_p_[f];
+    size += phi_p_[f] * phi_p_[f];
+  }
+  b_.resize(mesh_.cells.n_owned());
+  const double floor = 1e-14 * std::sqrt(sum(mesh_.comm, size));
+  pressure_.solve(at, b_, p_, std::min(1e-8, parameters_.pressure_tolerance),
+                  std::max(floor, std::numeric_limits<double>::min()));
+  for (std::size_t b = 0; b < s.w.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    if (boundary_.kind()[b] == FaceKind::pressure) continue;
+    p_boundary_[b] = p_[mesh_.owner[f]] - (s.w[b] - jump_from[b]).dot(at.area[f]) / at.conductance[f];
+  }
+  correct(s);
+  s.u_old.clear();
+  s.pressure = {};
+  boundary_.close(mesh_, at, s.u, s.w, s.u_boundary);
+  if (parameters_.flux_memory) {
+    s.memory.resize(mesh_.n_interior);
+    for (Index f = 0; f < mesh_.n_interior; ++f)
+      s.memory[f] = s.phi[f] - 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(at.area[f]);
+  }
+}
+
+template class FractionalStep<2>;
+template class FractionalStep<3>;
+
+}  // namespace couplet::fluid

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/rates.hpp"
+
+#include <algorithm>
+
+namespace couplet::fluid {
+
+template <int D>
+void velocity_gradient(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+                       const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient) {
+  gradient.assign(mesh.cells.n_local(), Tensor<D>::Zero());
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const Index p = mesh.owner[f], n = mesh.neighbour[f];
+    const Vec<D> value = at.weight[f] * u[p] + (1 - at.weight[f]) * u[n];
+    const Tensor<D> part = value * at.area[f].transpose();
+    gradient[p] += part;
+    gradient[n] -= part;
+  }
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+    gradient[mesh.owner[f]] += u_boundary[f - mesh.n_interior] * at.area[f].transpose();
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) gradient[c] /= at.volume[c];
+  mesh.cells.update_ghosts({gradient.empty() ? nullptr : gradient.front().data(), gradient.size() * D * D},
+                           D * D);
+}
+
+template <int D>
+template <bool Split>
+void RateOperator<D>::face_loop(const State<D>& s, Rates<D>& rates) const {
+  const Placement<D>& at = *s.placement;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const Vec<D> convective = -0.5 * s.phi[f] * (s.u[p] + s.u[n]);
+    const Vec<D> viscous = nu_ * at.conductance[f] * (s.u[n] - s.u[p]);
+    if constexpr (Split) {
+      rates.rate[p] += convective;
+      rates.rate[n] -= convective;
+      rates.viscous[p] += viscous;
+      rates.viscous[n] -= viscous;
+    } else {
+      const Vec<D> both = convective + viscous;
+      rates.rate[p] += both;
+      rates.rate[n] -= both;
+    }
+  }
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
+    const Index p = mesh_.owner[f];
+    const Vec<D>& on_face = s.u_boundary[f - mesh_.n_interior];
+    rates.rate[p] -= s.phi[f] * on_face;
+    (Split ? rates.viscous : rates.rate)[p] += nu_ * at.conductance[f] * (on_face - s.u[p]);
+  }
+}
+
+template <int D>
+void RateOperator<D>::add_oblique(const State<D>& s, Rates<D>& rates) {
+  const Placement<D>& at = *s.placement;
+  velocity_gradient<D>(mesh_, at, s.u, s.u_boundary, gradient_);
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const double w = at.weight[f];
+    const Vec<D> part = nu_ * (w * (gradient_[p] * at.oblique[f]) + (1 - w) * (gradient_[n] * at.oblique[f]));
+    rates.rate[p] += part;
+    rates.rate[n] -= part;
+  }
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+    if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity)
+      rates.rate[mesh_.owner[f]] += nu_ * (gradient_[mesh_.owner[f]] * at.oblique[f]);
+}
+
+template <int D>
+void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates) {
+  rates.rate.assign(mesh_.cells.n_local(), Vec<D>::Zero());
+  rates.viscous.assign(split ? mesh_.cells.n_local() : 0, Vec<D>::Zero());
+  split ? face_loop<true>(state, rates) : face_loop<false>(state, rates);
+  if (correct_oblique) add_oblique(state, rates);
+}
+
+template <int D>
+void wall_shear(const Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
+                const Vectors<D>& u_boundary, Vectors<D>& force) {
+  force.resize(u_boundary.size());
+  for (std::size_t b = 0; b < u_boundary.size(); ++b) {
+    const Index f = mesh.n_interior + static_cast<Index>(b);
+    const Vec<D> n = at.area[f].normalized();
+    const Vec<D> slip = u[mesh.owner[f]] - u_boundary[b];
+    force[b] = viscosity * at.conductance[f] * (slip - slip.dot(n) * n);
+  }
+}
+
+template void velocity_gradient<2>(const Mesh&, const Placement<2>&, const Vectors<2>&, const Vectors<2>&,
+                                   std::vector<Tensor<2>>&);
+template void velocity_gradient<3>(const Mesh&, const Placement<3>&, const Vectors<3>&, const Vectors<3>&,
+                                   std::vector<Tensor<3>>&);
+template class RateOperator<2>;
+template class RateOperator<3>;
+template void wall_shear<2>(const Mesh&, const Placement<2>&, double, const Vectors<2>&, const Vectors<2>&,
+                            Vectors<2>&);
+template void wall_shear<3>(const Mesh&, const Placement<3>&, double, const Vectors<3>&, const Vectors<3>&,
+                            Vectors<3>&);
+
+}  // namespace couplet::fluid

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "fluid_solver/boundary.hpp"
+#include "fluid_solver/state.hpp"
+
+namespace couplet::fluid {
+
+/// Gauss gradient du_i/dx_j per local cell (ghosts updated): (1/V) sum u_f S, u_f linear between the cells.
+/// Collective.
+template <int D>
+void velocity_gradient(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+                       const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient);
+
+/// R = -sum phi u_f + nu sum [g du + (grad u)_f . k], see reference [trias2014] for the skew-symmetric
+/// mid-point u_f. All at level n, on mesh n. `split`: the orthogonal viscous part goes to Rates::viscous.
+/// `correct_oblique`: the mesh is not orthogonal. Collective.
+template <int D>
+class RateOperator {
+ public:
+  RateOperator(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity)
+      : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity) {}
+  void apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates);
+
+ private:
+  template <bool Split>
+  void face_loop(const State<D>& state, Rates<D>& rates) const;
+  void add_oblique(const State<D>& state, Rates<D>& rates);
+  const Mesh& mesh_;
+  const Boundary<D>& boundary_;
+  double nu_;
+  std::vector<Tensor<D>> gradient_;
+};
+
+/// Viscous force of the fluid on each boundary face at level n [N]: mu g (u_P - u_b), tangential part. On a
+/// no-slip wall the normal part of mu (grad u + grad u^T).S vanishes for a divergence-free field.
+template <int D>
+void wall_shear(const Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
+                const Vectors<D>& u_boundary, Vectors<D>& force);
+
+}  // namespace couplet::fluid

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "fluid_solver/placement.hpp"
+
+namespace couplet::fluid {
+
+/// Volume-integrated rates of change of u on a mesh held still [m^4/s^2], per local cell (ghosts: not
+/// meaningful).
+template <int D>
+struct Rates {
+  Vectors<D> rate;     ///< convection, and the viscous parts that are treated explicitly
+  Vectors<D> viscous;  ///< orthogonal viscous part when it is treated implicitly; else empty
+};
+
+/// One projection pressure. It lives at the middle of its step.
+template <int D>
+struct PressureLevel {
+  double time = 0;               ///< t^{n-1/2} [s]
+  std::vector<double> p;         ///< per local cell [Pa]
+  std::vector<double> boundary;  ///< p_b per boundary face [Pa]
+  Vectors<D> gradient;           ///< (1/V) sum p_f S per local cell [Pa/m]
+};
+
+/// Everything that the next step needs: level n and the history of the multi-step schemes.
+template <int D>
+struct State {
+  double time = 0;        ///< t^n [s]
+  double dt_old = 0;      ///< size of the last step [s]; 0: no history, the next step is an Euler step
+  bool implicit = false;  ///< viscous term of the history (Rates::viscous is there)
+
+  Vectors<D> u;                ///< u^n per local cell, ghosts current [m/s]
+  Vectors<D> w;                ///< given velocity per boundary face at t^n [m/s]
+  Vectors<D> u_boundary;       ///< closed boundary velocity at t^n [m/s]
+  std::vector<double> phi;     ///< absolute volume flux per flux face at t^n [m^3/s]
+  std::vector<double> memory;  ///< delta^n per interior face [m^3/s]
+  std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;  ///< latest first; null: not there yet
+
+  Vectors<D> u_old, u_boundary_old;  ///< at t^{n-1}
+  Rates<D> rates_old;                ///< at t^{n-1}
+  Vectors<D> shear_old;              ///< viscous force on the boundary faces at t^{n-1} [N]
+
+  std::shared_ptr<const Placement<D>> placement;  ///< of the points at t^n
+  std::vector<Vec3> points;                       ///< moving mesh only
+  std::vector<double> mesh_flux;                  ///< dV_f/dt of the last step [m^3/s], moving mesh only
+};
+
+}  // namespace couplet::fluid

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/step_size.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+
+namespace couplet::fluid {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// AB2 is not quite stable on the imaginary axis: growth per step that the scheme's own damping elsewhere
+// makes up for.
+constexpr double tolerated_growth = 5e-4;
+constexpr double largest_courant =
+    1;  // accuracy: beyond it the explicit convection is no longer resolved in time
+
+// Roots of (1 + a d) z^2 - (1 - b d + 3/2 i k) z + (c d + i k / 2) = 0, the pair at constant step, a = 9/16,
+// b = 3/8, c = 1/16.
+bool stable(double k, double d) {
+  using namespace std::complex_literals;
+  const std::complex<double> p = 1 + 9.0 / 16 * d, q = -(1 - 3.0 / 8 * d + 1.5i * k), r = d / 16 + 0.5i * k;
+  const std::complex<double> root = std::sqrt(q * q - 4.0 * p * r);
+  return std::max(std::abs(-q + root), std::abs(-q - root)) <= 2 * std::abs(p) * (1 + tolerated_growth);
+}
+
+double compute_implicit_limit(double q) {
+  constexpr int waves = 48;
+  double low = 0, high = largest_courant;
+  const auto all_stable = [q](double courant) {
+    for (int i = 1; i <= waves; ++i) {
+      const double theta = std::numbers::pi * i / waves;
+      if (!stable(courant * std::sin(theta), q * courant * (1 - std::cos(theta)) / 2)) return false;
+    }
+    return true;
+  };
+  if (all_stable(high)) return high;
+  for (int i = 0; i < 30; ++i) (all_stable((low + high) / 2) ? low : high) = (low + high) / 2;
+  return low;
+}
+
+// The limit over log10(q) in [-2, 2].
+class LimitTable {
+ public:
+  LimitTable() {
+    for (int i = 0; i < n; ++i) values_[i] = compute_implicit_limit(std::pow(10.0, -2 + 4.0 * i / (n - 1)));
+  }
+  double operator()(double q) const {
+    if (!(q > 1e-2)) return values_.front();
+    if (q >= 1e2) return values_.back();
+    const double place = (std::log10(q) + 2) / 4 * (n - 1);
+    const int i = std::min(static_cast<int>(place), n - 2);
+    return std::min(values_[i], values_[i] + (place - i) * (values_[i + 1] - values_[i]));
+  }
+
+ private:
+  static constexpr int n = 81;
+  std::array<double, n> values_{};
+};
+
+double round_down(double value) {
+  if (!std::isfinite(value) || value <= 0) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 5);
+  return std::floor(value / unit) * unit;
+}
+
+}  // namespace
+
+double implicit_convective_limit(double q) {
+  static const LimitTable table;
+  return table(q);
+}
+
+double explicit_limit(double angle) {
+  constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90}, limit{1, 0.96, 0.91, 0.81, 0.63, 0.25};
+  const double a = angle * 180 / std::numbers::pi;
+  for (std::size_t i = 1; i < degrees.size(); ++i)
+    if (a <= degrees[i])
+      return limit[i - 1] + (a - degrees[i - 1]) / (degrees[i] - degrees[i - 1]) * (limit[i] - limit[i - 1]);
+  return limit.back();
+}
+
+template <int D>
+StepSize<D>::StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity)
+    : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity) {}
+
+template <int D>
+StepLimits StepSize<D>::limits(const State<D>& s) {
+  const Placement<D>& at = *s.placement;
+  convection_.assign(mesh_.cells.n_local(), 0.0);
+  diffusion_.assign(mesh_.cells.n_local(), 0.0);
+  least_ratio_.assign(mesh_.cells.n_local(), infinity);
+  const bool moving = !s.mesh_flux.empty();
+  double peclet = 0;
+  const auto add = [&](Index cell, double flux, double g, double ratio) {
+    convection_[cell] += 0.5 * flux;
+    diffusion_[cell] += 2 * nu_ * g;
+    least_ratio_[cell] = std::min(least_ratio_[cell], ratio);
+  };
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const double flux = std::abs(s.phi[f] - (moving ? s.mesh_flux[f] : 0.0));
+    const bool inside = f < mesh_.n_interior;
+    const bool given = inside || boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity;
+    const double g = given ? at.conductance[f] : 0;
+    const double ratio = inside && flux > 0 ? 4 * nu_ * g / flux : infinity;
+    if (inside) peclet = std::max(peclet, nu_ > 0 ? flux / (nu_ * g) : infinity);
+    add(mesh_.owner[f], flux, g, ratio);
+    if (inside) add(mesh_.neighbour[f], flux, g, ratio);
+  }
+  double least[3] = {infinity, infinity, -peclet};
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const double convection = convection_[c] /= at.volume[c], diffusion = diffusion_[c] /= at.volume[c];
+    const double size = std::hypot(convection, diffusion);
+    if (size > 0) least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion)) / size);
+    if (convection > 0)
+      least[1] = std::min(least[1], implicit_convective_limit(least_ratio_[c]) / convection);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, mesh_.comm);
+  peclet_ = -least[2];
+  return {round_down(least[0]), round_down(least[1])};
+}
+
+template class StepSize<2>;
+template class StepSize<3>;
+
+}  // namespace couplet::fluid

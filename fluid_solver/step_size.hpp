@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "fluid_solver/boundary.hpp"
+#include "fluid_solver/state.hpp"
+
+namespace couplet::fluid {
+
+/// Largest stable steps of the two treatments of the viscous term [s]; infinity for a fluid at rest without
+/// viscosity.
+struct StepLimits {
+  double explicit_viscous = 0;
+  double implicit_viscous = 0;
+};
+
+/// Eigenvalue bounds (Gershgorin) per cell, c = sum |phi - dV/dt| / (2 V) of convection and d = 2 nu sum g /
+/// V of diffusion, against the stability regions of AB2 (all explicit) and of the modified Crank-Nicolson /
+/// AB2 pair. The same on any number of ranks: rounded to six digits. Collective.
+template <int D>
+class StepSize {
+ public:
+  StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity);
+  StepLimits limits(const State<D>& state);
+  /// c per local cell of the last limits() [1/s] and d.
+  const std::vector<double>& convective_rate() const { return convection_; }
+  const std::vector<double>& viscous_rate() const { return diffusion_; }
+  /// Largest cell Peclet number |phi| / (nu g) of the last limits(), all ranks.
+  double largest_peclet() const { return peclet_; }
+
+ private:
+  const Mesh& mesh_;
+  const Boundary<D>& boundary_;
+  double nu_;
+  std::vector<double> convection_, diffusion_, least_ratio_;
+  double peclet_ = 0;
+};
+
+/// Largest c dt of AB2 with implicit diffusion when a wave exp(i theta) meets c sin(theta) and q c (1 -
+/// cos(theta))/2.
+double implicit_convective_limit(double q);
+/// Largest |lambda| dt of AB2 at this angle of lambda from the negative real axis [rad].
+double explicit_limit(double angle);
+
+}  // namespace couplet::fluid

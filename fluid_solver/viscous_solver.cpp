@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/viscous_solver.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "common/base/error.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+constexpr int most_iterations = 2000;
+
+template <std::size_t N>
+void sum_all(MPI_Comm comm, std::array<double, N>& values) {
+  MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(N), MPI_DOUBLE, MPI_SUM, comm);
+}
+
+}  // namespace
+
+template <int D>
+void ViscousSolver<D>::multiply(const Placement<D>& at, double beta, Vectors<D>& x, Vectors<D>& y) const {
+  mesh_.cells.update_ghosts(flat<D>(x), D);
+  for (Index c = 0; c < mesh_.cells.n_local(); ++c) y[c] = at.volume[c] * x[c];
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const Vec<D> part = beta * at.conductance[f] * (x[p] - x[n]);
+    y[p] += part;
+    y[n] -= part;
+  }
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
+    const FaceKind kind = boundary_.kind()[f - mesh_.n_interior];
+    const Index p = mesh_.owner[f];
+    if (kind == FaceKind::velocity) y[p] += beta * at.conductance[f] * x[p];
+    if (kind == FaceKind::slip) {
+      const Vec<D> n = at.area[f].normalized();
+      y[p] += beta * at.conductance[f] * x[p].dot(n) * n;
+    }
+  }
+}
+
+template <int D>
+int ViscousSolver<D>::solve(const Placement<D>& at, double beta, const Vectors<D>& w, double tolerance,
+                            Vectors<D>& b, Vectors<D>& u) {
+  const Index owned = mesh_.cells.n_owned();
+  r_.resize(u.size());
+  q_.resize(u.size());
+  search_.assign(u.size(), Vec<D>::Zero());
+  inverse_diagonal_.assign(at.volume.begin(), at.volume.end());
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const double a = beta * at.conductance[f];
+    inverse_diagonal_[mesh_.owner[f]] += a;
+    if (f < mesh_.n_interior) {
+      inverse_diagonal_[mesh_.neighbour[f]] += a;
+      continue;
+    }
+    const std::size_t face = f - mesh_.n_interior;
+    if (boundary_.kind()[face] == FaceKind::velocity) b[mesh_.owner[f]] += a * w[face];
+    if (boundary_.kind()[face] == FaceKind::slip) {
+      const Vec<D> n = at.area[f].normalized();
+      b[mesh_.owner[f]] += a * w[face].dot(n) * n;
+    }
+  }
+  for (Index c = 0; c < owned; ++c) inverse_diagonal_[c] = 1 / inverse_diagonal_[c];
+
+  multiply(at, beta, u, q_);
+  std::array<double, 3> sums{};  // |b|^2, |r|^2, r.z
+  for (Index c = 0; c < owned; ++c) {
+    r_[c] = b[c] - q_[c];
+    search_[c] = inverse_diagonal_[c] * r_[c];
+    sums[0] += b[c].squaredNorm();
+    sums[1] += r_[c].squaredNorm();
+    sums[2] += r_[c].dot(search_[c]);
+  }
+  sum_all(mesh_.comm, sums);
+  const double goal = tolerance * tolerance * sums[0];
+  double rz = sums[2], rr = sums[1];
+  int iterations = 0;
+  while (rr > goal && iterations < most_iterations) {
+    ++iterations;
+    multiply(at, beta, search_, q_);
+    std::array<double, 1> curvature{};
+    for (Index c = 0; c < owned; ++c) curvature[0] += search_[c].dot(q_[c]);
+    sum_all(mesh_.comm, curvature);
+    if (!(curvature[0] > 0)) break;
+    const double alpha = rz / curvature[0];
+    std::array<double, 2> next{};
+    for (Index c = 0; c < owned; ++c) {
+      u[c] += alpha * search_[c];
+      r_[c] -= alpha * q_[c];
+      const double size = r_[c].squaredNorm();
+      next[0] += size;
+      next[1] += inverse_diagonal_[c] * size;
+    }
+    sum_all(mesh_.comm, next);
+    rr = next[0];
+    const double gamma = next[1] / rz;
+    rz = next[1];
+    for (Index c = 0; c < owned; ++c) search_[c] = inverse_diagonal_[c] * r_[c] + gamma * search_[c];
+  }
+  // The round-off of b itself is all that can be asked for: a little above it counts as solved.
+  if (!(rr <= std::max(goal, 1e-26 * sums[0])))
+    throw SolveFailure(
+        "The implicit viscous term could not be solved: residual {:.3e} of {:.3e} after {} iterations.",
+        std::sqrt(rr), std::sqrt(sums[0]), iterations);
+  mesh_.cells.update_ghosts(flat<D>(u), D);
+  return iterations;
+}
+
+template class ViscousSolver<2>;
+template class ViscousSolver<3>;
+
+}  // namespace couplet::fluid
