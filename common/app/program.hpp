@@ -9,21 +9,12 @@
 #include <memory>
 #include <string>
 
+#include "common/app/simulation.hpp"
 #include "common/config/section.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
 
 namespace couplet {
-
-/// What `simulation:` in the YAML says to every program.
-struct SimulationParameters {
-  std::string name = "case";
-  double end_time = 0, time_step = 0;       // [s]
-  std::filesystem::path output_folder;      // relative to the YAML's folder unless absolute
-  double output_interval = 0;               // [s]; 0: only the start and the end
-  double checkpoint_interval = 0;           // [s]; 0: only at the end
-};
-void declare(config::Section& section, SimulationParameters& parameters);
 
 /// What a program gets to build its participant from, after configuration was validated and MPI set up.
 struct ParticipantContext {
@@ -32,9 +23,10 @@ struct ParticipantContext {
   std::filesystem::path case_folder;    ///< folder of the YAML: relative paths start here
   std::filesystem::path output_folder;  ///< <output>/<name>, made already
   SimulationParameters simulation;
-  bool coupled = false;                 ///< false: standalone run
+  bool coupled = false;  ///< false: standalone run
   Scheme scheme = Scheme::standalone;
-  /// Intercommunicator to the mesh mover (for a fluid) or to the fluid (for a mover); MPI_COMM_NULL without one.
+  /// Intercommunicator to the mesh mover (for a fluid) or to the fluid (for a mover); MPI_COMM_NULL without
+  /// one.
   MPI_Comm mesh_peer = MPI_COMM_NULL;
   double restart_time = std::numeric_limits<double>::quiet_NaN();  ///< NaN: fresh start
 };
@@ -50,7 +42,8 @@ struct Program {
 };
 
 /// main() of a physics program:
-///   prog case.yaml [--participant NAME] [--check] [--docs] [--schema] [--print-config] [--set a.b=v] [--restart FOLDER] [-v|-q]
+///   prog case.yaml [--participant NAME] [--check] [--docs] [--schema] [--print-config] [--set a.b=v]
+///   [--restart FOLDER] [-v|-q]
 /// Runs alone (one program in the MPI job) or as part of a coupled job. Returns the exit code.
 int run_program(int argc, char** argv, const Program& program);
 

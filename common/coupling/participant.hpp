@@ -15,8 +15,9 @@ class CheckpointReader;
 
 enum class Scheme : int { standalone, explicit_, semi_implicit, implicit };
 
-/// What a participant shows of itself at its interface. Filled on rank 0 of the participant only: every vertex and
-/// face once, in an order that does not depend on the number of ranks (see InterfaceMap). 2-D: z = 0, no duplicate layer.
+/// What a participant shows of itself at its interface. Filled on rank 0 of the participant only: every
+/// vertex and face once, in an order that does not depend on the number of ranks (see InterfaceMap). 2-D: z =
+/// 0, no duplicate layer.
 struct Interface {
   enum class Place : int { vertices, faces };
   struct Datum {
@@ -32,10 +33,12 @@ struct Interface {
   bool empty() const { return vertices.empty() && face_centres.empty(); }
 };
 
-/// Interface values by name: entries x dim, entry by entry. On rank 0 of the participant; empty on its other ranks.
+/// Interface values by name: entries x dim, entry by entry. On rank 0 of the participant; empty on its other
+/// ranks.
 ///   displacement  vertices  t^{n+1}, relative to the reference configuration [m]
 ///   velocity      vertices  t^{n+1}, the structure's own [m/s]
-///   pressure-force, viscous-force  faces  mean over the step (t^{n+1/2}), acting on the receiver [N] (per metre depth in 2-D)
+///   pressure-force, viscous-force  faces  mean over the step (t^{n+1/2}), acting on the receiver [N] (per
+///   metre depth in 2-D)
 using Exchange = std::map<std::string, std::vector<double>>;
 
 struct Step {
@@ -47,10 +50,11 @@ struct Step {
 
 /// A physics program seen from outside. All calls are collective over its ranks.
 ///
-/// Contract (tests/contract holds every implementation to it): solve() starts from the accepted state n, so equal input
-/// gives equal output to solver tolerance (warm starts are fine); only accept_step() changes state n; begin_step() may
-/// be called again with another dt without accept_step() in between; load(save()) continues bit for bit on equal ranks.
-/// A step that cannot be solved throws SolveFailure on every rank and leaves state n as it was.
+/// Contract (tests/contract holds every implementation to it): solve() starts from the accepted state n, so
+/// equal input gives equal output to solver tolerance (warm starts are fine); only accept_step() changes
+/// state n; begin_step() may be called again with another dt without accept_step() in between; load(save())
+/// continues bit for bit on equal ranks. A step that cannot be solved throws SolveFailure on every rank and
+/// leaves state n as it was.
 class Participant {
  public:
   virtual ~Participant() = default;

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/case_file.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+
+namespace couplet {
+namespace {
+
+void check_top_level(const config::Document& document, CaseFile& result) {
+  static const std::vector<std::string> known{"simulation", "participants", "coupling"};
+  for (const std::string& key : config::keys_of(document, ""))
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      result.errors.push_back(fmt::format("{}: unknown section '{}'. {}", document.name(), key,
+                                          did_you_mean(key, known, "sections")));
+}
+
+void list_expected(const config::Document& document, CaseFile& result) {
+  result.coupled = !config::keys_of(document, "coupling").empty();
+  if (result.coupled) result.expected.push_back({coupler_name, "coupler"});
+  for (const std::string& name : config::keys_of(document, "participants")) {
+    const auto program = config::text_of(document, "participants." + name + ".program");
+    if (name == coupler_name)
+      result.errors.push_back(fmt::format(
+          "{}: participants.coupler: the coupler is not a participant; its keys are in `coupling`.",
+          document.name()));
+    if (!program)
+      result.errors.push_back(fmt::format(
+          "{}: participants.{}: the key 'program' is missing: the name of the program that runs this "
+          "participant, for instance solid_solver.",
+          document.name(), name));
+    result.expected.push_back({name, program.value_or("?")});
+  }
+}
+
+/// Every role names a participant, and every participant has a role.
+void check_roles(const config::Document& document, CaseFile& result) {
+  if (!result.coupled) return;
+  std::vector<std::string> names, cast;
+  for (const Expected& e : result.expected)
+    if (e.participant != coupler_name) names.push_back(e.participant);
+  for (const std::string role : {"fluid", "structure", "mesh"}) {
+    const auto name = config::text_of(document, "coupling." + role + ".participant");
+    if (!name) continue;
+    cast.push_back(*name);
+    if (std::find(names.begin(), names.end(), *name) == names.end())
+      result.errors.push_back(fmt::format("{}: coupling.{}.participant: there is no participant '{}'. {}",
+                                          document.name(), role, *name,
+                                          did_you_mean(*name, names, "participants")));
+  }
+  for (const std::string& name : names)
+    if (std::find(cast.begin(), cast.end(), name) == cast.end())
+      result.errors.push_back(fmt::format(
+          "{}: participants.{}: this participant has no role in `coupling` (fluid, structure or mesh): give "
+          "it one or take it out.",
+          document.name(), name));
+}
+
+/// The participant that this program is to run; throws Error.
+std::string find_participant(const CommandLine& command_line, const ProgramKind& kind, const CaseFile& file) {
+  const std::string& source = file.document->name();
+  if (kind.is_coupler) {
+    if (!command_line.participant.empty() && command_line.participant != coupler_name)
+      throw Error("The coupler takes no --participant: it couples those that {} names.", source);
+    if (!file.coupled)
+      throw Error("{} has no `coupling` section: there is nothing for the coupler to do.", source);
+    return coupler_name;
+  }
+  std::vector<std::string> names, mine;
+  for (const Expected& e : file.expected) {
+    if (e.participant == coupler_name) continue;
+    names.push_back(e.participant);
+    if (e.program == kind.name) mine.push_back(e.participant);
+  }
+  if (names.empty())
+    throw Error("{} has no `participants` section, which says what {} is to run.", source, kind.name);
+  const std::string& wanted = command_line.participant;
+  if (!wanted.empty()) {
+    if (std::find(names.begin(), names.end(), wanted) == names.end())
+      throw Error("--participant {}: {} has no participant of this name. {}", wanted, source,
+                  did_you_mean(wanted, names, "participants"));
+    if (std::find(mine.begin(), mine.end(), wanted) == mine.end())
+      throw Error(
+          "Participant '{}' of {} is run by the program '{}', but '{}' was started for it.", wanted, source,
+          config::text_of(*file.document, "participants." + wanted + ".program").value_or("?"), kind.name);
+    return wanted;
+  }
+  if (mine.empty()) {
+    std::vector<std::string> pairs;
+    for (const Expected& e : file.expected)
+      if (e.participant != coupler_name) pairs.push_back(fmt::format("'{}' ({})", e.participant, e.program));
+    throw Error("No participant of {} is run by the program '{}'. Its participants are: {}.", source,
+                kind.name, join(pairs));
+  }
+  if (mine.size() > 1)
+    throw Error("{} participants of {} are run by the program '{}' ({}): say which one with --participant.",
+                mine.size(), source, kind.name, join(mine));
+  return mine.front();
+}
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+config::Section::Declare section_of(const ProgramKind& kind) {
+  if (kind.is_coupler) return kind.declare;
+  const auto program = std::make_shared<std::string>(kind.name);
+  return [kind, program](config::Section& section) {
+    section.value("program", *program).required().doc("the program that runs this participant");
+    kind.declare(section);
+  };
+}
+
+CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
+  CaseFile result;
+  try {
+    result.document.emplace(config::Document::read(command_line.case_file));
+    for (const std::string& assignment : command_line.overrides) result.document->set(assignment);
+    check_top_level(*result.document, result);
+    list_expected(*result.document, result);
+    check_roles(*result.document, result);
+    append(result.errors, config::load(*result.document, "simulation",
+                                       [&](config::Section& s) { declare(s, result.simulation); }));
+    result.participant = find_participant(command_line, kind, result);
+    append(result.errors,
+           config::load(*result.document, kind.is_coupler ? "coupling" : "participants." + result.participant,
+                        section_of(kind)));
+  } catch (const Error& error) {
+    result.errors.emplace_back(error.what());
+  }
+  return result;
+}
+
+}  // namespace couplet

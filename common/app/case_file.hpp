@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/app/command_line.hpp"
+#include "common/app/roll_call.hpp"
+#include "common/app/simulation.hpp"
+#include "common/config/load.hpp"
+
+namespace couplet {
+
+/// One of the programs of a job, as far as the YAML is concerned.
+struct ProgramKind {
+  std::string name;                  ///< "solid_solver"
+  std::string description;           ///< one line
+  bool is_coupler = false;           ///< reads `coupling` instead of a participant's section
+  config::Section::Declare declare;  ///< its keys, without `program`
+};
+
+/// The YAML file as one program sees it: what it could read, and all that is wrong with it.
+struct CaseFile {
+  std::optional<config::Document> document;  ///< empty if the file could not be read at all
+  std::string participant;                   ///< empty if it could not be found
+  SimulationParameters simulation;
+  std::vector<Expected> expected;  ///< the coupler first, if there is a `coupling` section
+  bool coupled = false;
+  std::vector<std::string> errors;
+};
+
+/// Reads the file, applies the overrides, finds this program's participant and fills what `kind.declare`
+/// binds. Throws nothing: all that is wrong is in `errors`.
+CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind);
+
+/// The declaration of the section that this program reads: its own keys and, for a participant, `program`.
+config::Section::Declare section_of(const ProgramKind& kind);
+
+}  // namespace couplet

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/job.hpp"
+
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "common/app/command_line.hpp"
+#include "common/app/questions.hpp"
+#include "common/app/step_loop.hpp"
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr int exit_failed = 1, exit_configuration = 2;
+
+int application_number() {
+  int* number = nullptr;
+  int found = 0;
+  MPI_Comm_get_attr(MPI_COMM_WORLD, MPI_APPNUM, &number, &found);
+  return found ? *number : 0;
+}
+
+Attendant introduce(const CommandLine& command_line, const ProgramKind& kind, const CaseFile& file) {
+  Attendant self;
+  self.program = kind.name;
+  self.participant = file.participant;
+  self.case_file = command_line.case_file.string();
+  self.case_hash = file.document ? file.document->hash() : 0;
+  self.restart = command_line.restart_folder.string();
+  self.named = !command_line.participant.empty();
+  self.application = application_number();
+  self.world_rank = comm_rank(MPI_COMM_WORLD);
+  self.errors = file.errors;
+  return self;
+}
+
+/// Folders, log and the checkpoint to continue from. Collective over job.comm.
+void prepare(Job& job, const CommandLine& command_line) {
+  job.case_folder = command_line.case_file.parent_path();
+  const std::filesystem::path output = job.case_folder / job.simulation.output_folder;
+  job.output_folder = output / job.name;
+  job.checkpoints = output / "checkpoints";
+  std::error_code failed;
+  if (job.rank == 0) std::filesystem::create_directories(job.output_folder, failed);
+  if (any(job.comm, bool(failed)))
+    throw Error("The output folder {} could not be made ({}). Its place is `simulation.output.folder` of {}.",
+                job.output_folder.string(), failed.message(), command_line.case_file.string());
+  log::setup(job.name, job.rank, command_line.verbosity, (job.output_folder / (job.name + ".log")).string());
+  job.restart_time = std::numeric_limits<double>::quiet_NaN();
+  if (command_line.restart_folder.empty()) return;
+  job.restart_folder = find_checkpoint(command_line.restart_folder);
+  job.restart_time = read_run_state(job.restart_folder).time;
+}
+
+/// Reports what was thrown, once a participant, and ends all programs of the job.
+[[noreturn]] void end_the_job(Watch& watch, const char* what, bool configuring) {
+  if (watch.claim_report()) log::error("{}", what);
+  watch.ending();
+  std::fflush(nullptr);
+  MPI_Abort(MPI_COMM_WORLD, configuring ? exit_configuration : exit_failed);
+  std::abort();
+}
+
+int attend(const CommandLine& command_line, const ProgramKind& kind,
+           const std::function<int(const Job&)>& run) {
+  CaseFile file = read_case(command_line, kind);
+  const std::string label = file.participant.empty() ? kind.name : file.participant;
+  Watch watch(MPI_COMM_WORLD, label);
+  log::setup(label, 0, command_line.verbosity);
+  try {
+    const std::vector<Attendant> attendants = roll_call(MPI_COMM_WORLD, introduce(command_line, kind, file));
+    Job job;
+    job.members = members(attendants);
+    const int world_rank = comm_rank(MPI_COMM_WORLD);
+    int color = 0, rank = 0;
+    for (const Member& m : job.members)
+      if (m.participant == file.participant) color = int(&m - job.members.data());
+    for (const Attendant& a : attendants)
+      rank += a.participant == file.participant && a.world_rank < world_rank;
+    FaultInjection faults(label, rank);
+    job.watch = &watch;
+    job.faults = &faults;
+    job.enter(Phase::roll_call);
+    const Verdict verdict = judge(attendants, file.expected, file.coupled);
+    if (!verdict.problem.empty()) {
+      if (world_rank == 0) fmt::print(stderr, "couplet: {}\n", verdict.problem);
+      return exit_configuration;
+    }
+    MPI_Comm_split(MPI_COMM_WORLD, color, world_rank, &job.comm);
+    job.rank = comm_rank(job.comm);
+    watch.set_rank(job.rank);
+    job.name = file.participant;
+    job.alone = verdict.alone;
+    job.document = &*file.document;
+    job.simulation = file.simulation;
+    prepare(job, command_line);
+    job.enter(Phase::initialise);
+    return run(job);
+  } catch (const std::exception& error) {
+    const bool of_the_user = dynamic_cast<const Error*>(&error) && !dynamic_cast<const SolveFailure*>(&error);
+    end_the_job(watch, error.what(), of_the_user && watch.phase() <= Phase::initialise);
+  }
+}
+
+}  // namespace
+
+const Member* Job::find(const std::string& participant) const {
+  for (const Member& m : members)
+    if (m.participant == participant) return &m;
+  return nullptr;
+}
+
+MPI_Comm Job::connect(const std::string& participant) const {
+  const Member* other = find(participant);
+  if (other == nullptr)
+    throw Error("'{}' is to be connected with '{}', which is not part of the job.", name, participant);
+  MPI_Comm peers;
+  constexpr int tag = 100;
+  MPI_Intercomm_create(comm, 0, MPI_COMM_WORLD, other->first_rank, tag, &peers);
+  return peers;
+}
+
+int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<int(const Job&)>& run) {
+  const ParsedCommandLine parsed =
+      parse_command_line(argc, argv, {kind.name, kind.description, section_of(kind)});
+  if (parsed.exit_code) {
+    fmt::print(*parsed.exit_code == 0 ? stdout : stderr, "{}", parsed.output);
+    return *parsed.exit_code;
+  }
+  const CommandLine& command_line = parsed.command_line;
+  if (command_line.task != CommandLine::Task::run) return answer(command_line, kind);
+
+  MPI_Init(&argc, &argv);
+  // Short sleeps while waiting for other programs shall be short (Linux adds 50 us to each by default).
+  prctl(PR_SET_TIMERSLACK, 2000UL);
+  const int code = attend(command_line, kind, run);
+  std::fflush(nullptr);
+  MPI_Finalize();
+  Watch::finished();
+  return code;
+}
+
+}  // namespace couplet

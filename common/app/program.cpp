@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/program.hpp"
+
+#include <fstream>
+
+#include "common/app/job.hpp"
+#include "common/app/run_participant.hpp"
+#include "common/base/error.hpp"
+#include "common/config/load.hpp"
+#include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+#include "common/parallel/environment.hpp"
+
+namespace couplet {
+namespace {
+
+Scheme scheme_of(const Job& job) {
+  if (job.alone) return Scheme::standalone;
+  const std::string word = config::text_of(*job.document, "coupling.scheme").value_or("semi-implicit");
+  if (word == "explicit") return Scheme::explicit_;
+  return word == "implicit" ? Scheme::implicit : Scheme::semi_implicit;
+}
+
+/// The rank-to-rank link between fluid and mesh mover, if this participant is one of them.
+MPI_Comm connect_mesh_peer(const Job& job) {
+  const auto fluid = config::text_of(*job.document, "coupling.fluid.participant");
+  const auto mover = config::text_of(*job.document, "coupling.mesh.participant");
+  if (!fluid || !mover) return MPI_COMM_NULL;
+  if (job.name == *fluid) return job.connect(*mover);
+  if (job.name == *mover) return job.connect(*fluid);
+  return MPI_COMM_NULL;
+}
+
+/// What is in force, defaults included, beside the results.
+void write_effective(const Job& job, const Program& program) {
+  if (job.rank != 0) return;
+  std::ofstream file(job.output_folder / "effective.yaml");
+  file << config::effective(program.declare);
+}
+
+int run(const Job& job, const Program& program) {
+  const PetscEnvironment petsc(job.comm);
+  ParticipantContext context;
+  context.comm = job.comm;
+  context.name = job.name;
+  context.case_folder = job.case_folder;
+  context.output_folder = job.output_folder;
+  context.simulation = job.simulation;
+  context.coupled = !job.alone;
+  context.scheme = scheme_of(job);
+  context.restart_time = job.restart_time;
+  MPI_Comm coupler = MPI_COMM_NULL;
+  if (!job.alone) {
+    coupler = job.connect(coupler_name);
+    context.mesh_peer = connect_mesh_peer(job);
+  }
+  write_effective(job, program);
+  log::info("{} runs '{}' with {} rank{}", program.name, job.name, comm_size(job.comm),
+            comm_size(job.comm) == 1 ? "" : "s");
+  const std::unique_ptr<Participant> participant = program.make(context);
+  return job.alone ? run_alone(job, *participant) : run_coupled(job, coupler, *participant);
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, const Program& program) {
+  const ProgramKind kind{program.name, program.description, false, program.declare};
+  return run_job(argc, argv, kind, [&](const Job& job) { return run(job, program); });
+}
+
+}  // namespace couplet

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/questions.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <sstream>
+
+namespace couplet {
+namespace {
+
+int check(const CommandLine& command_line, const ProgramKind& kind, bool print) {
+  CaseFile file = read_case(command_line, kind);
+  if (!file.errors.empty()) {
+    for (const std::string& error : file.errors) fmt::print(stderr, "{}\n", error);
+    return 2;
+  }
+  if (!print) {
+    fmt::print("{}: valid\n", command_line.case_file.string());
+    return 0;
+  }
+  const auto section = [](const std::string& title, const std::string& text, int depth) {
+    fmt::print("{:{}}{}:\n", "", 2 * (depth - 1), title);
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) fmt::print("{:{}}{}\n", "", 2 * depth, line);
+  };
+  section("simulation", config::effective([&](config::Section& s) { declare(s, file.simulation); }), 1);
+  const std::string own = config::effective(section_of(kind));
+  if (kind.is_coupler) {
+    section("coupling", own, 1);
+  } else {
+    fmt::print("participants:\n");
+    section(file.participant, own, 2);
+  }
+  return 0;
+}
+
+}  // namespace
+
+int answer(const CommandLine& command_line, const ProgramKind& kind) {
+  using Task = CommandLine::Task;
+  SimulationParameters simulation;
+  switch (command_line.task) {
+    case Task::check:
+    case Task::print_config:
+      return check(command_line, kind, command_line.task == Task::print_config);
+    case Task::docs:
+      fmt::print("{}", config::markdown(kind.name, section_of(kind)));
+      if (kind.is_coupler)
+        fmt::print("\n{}",
+                   config::markdown("simulation", [&](config::Section& s) { declare(s, simulation); }));
+      return 0;
+    case Task::schema:
+      fmt::print("{}\n", config::json_schema(kind.name, section_of(kind)));
+      return 0;
+    case Task::run:
+      break;
+  }
+  return 0;
+}
+
+}  // namespace couplet

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/roll_call.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// One text a process: fields parted by unit separators, which no name, path or message holds.
+constexpr char field_end = '\x1f', text_end = '\x1e';
+
+std::string encode(const Attendant& a) {
+  std::string text;
+  for (const std::string& field :
+       {a.program, a.participant, a.case_file, std::to_string(a.case_hash), a.restart,
+        std::string(a.named ? "1" : "0"), std::to_string(a.application), std::to_string(a.world_rank)})
+    text += field + field_end;
+  for (const std::string& error : a.errors) text += error + field_end;
+  return text + text_end;
+}
+
+Attendant decode(const std::string& text) {
+  std::vector<std::string> fields;
+  std::istringstream in(text);
+  for (std::string field; std::getline(in, field, field_end);) fields.push_back(field);
+  Attendant a;
+  a.program = fields.at(0);
+  a.participant = fields.at(1);
+  a.case_file = fields.at(2);
+  a.case_hash = std::stoull(fields.at(3));
+  a.restart = fields.at(4);
+  a.named = fields.at(5) == "1";
+  a.application = std::stoi(fields.at(6));
+  a.world_rank = std::stoi(fields.at(7));
+  a.errors.assign(fields.begin() + 8, fields.end());
+  return a;
+}
+
+std::string label(const Attendant& a) { return a.participant.empty() ? a.program : a.participant; }
+
+/// "mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml ..."
+std::string launch_line(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected) {
+  std::map<std::string, int> ranks, users;
+  for (const Attendant& a : attendants) ++ranks[a.participant];
+  for (const Expected& e : expected) ++users[e.program];
+  std::string line = "mpirun";
+  for (const Expected& e : expected) {
+    const int n = e.participant == coupler_name ? 1 : std::max(1, ranks[e.participant]);
+    line += fmt::format("{} -n {} {} {}", &e == &expected.front() ? "" : " :", n, e.program,
+                        attendants.front().case_file);
+    if (users[e.program] > 1) line += " --participant " + e.participant;
+  }
+  return line;
+}
+
+/// Each message once; with the names of those that sent it unless all did.
+std::string configuration_errors(const std::vector<Attendant>& attendants) {
+  std::vector<std::string> order;
+  std::map<std::string, std::set<std::string>> senders;
+  std::set<std::string> everyone;
+  for (const Attendant& a : attendants) {
+    everyone.insert(label(a));
+    for (const std::string& error : a.errors) {
+      if (!senders.count(error)) order.push_back(error);
+      senders[error].insert(label(a));
+    }
+  }
+  std::string text;
+  for (const std::string& error : order) {
+    const auto& who = senders[error];
+    text += who.size() == everyone.size() && who.size() > 1
+                ? fmt::format("\n  {}", error)
+                : fmt::format("\n  [{}] {}", join({who.begin(), who.end()}), error);
+  }
+  return text;
+}
+
+/// The first way in which two processes read different things.
+std::string disagreement(const std::vector<Attendant>& attendants) {
+  const Attendant& first = attendants.front();
+  for (const Attendant& a : attendants) {
+    if (a.case_hash != first.case_hash)
+      return fmt::format(
+          "\n  '{}' reads {} and '{}' reads {}, and what they read differs. All programs of a job need the "
+          "same "
+          "YAML file and the same --set overrides.",
+          label(first), first.case_file, label(a), a.case_file);
+    if (a.restart != first.restart)
+      return fmt::format(
+          "\n  '{}' {} and '{}' {}. All programs of a job restart from the same folder, or none does.",
+          label(first), first.restart.empty() ? "starts afresh" : "was given --restart " + first.restart,
+          label(a), a.restart.empty() ? "starts afresh" : "was given --restart " + a.restart);
+  }
+  return "";
+}
+
+std::string attendance(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected) {
+  std::string text;
+  std::map<std::string, std::set<int>> parts;
+  std::map<std::string, std::set<std::string>> programs;
+  std::map<std::string, int> ranks;
+  for (const Attendant& a : attendants) {
+    parts[a.participant].insert(a.application);
+    programs[a.participant].insert(a.program);
+    ++ranks[a.participant];
+  }
+  for (const Expected& e : expected)
+    if (!parts.count(e.participant))
+      text +=
+          fmt::format("\n  participant '{}' ({}) is missing: it was not started.", e.participant, e.program);
+  for (const auto& [participant, numbers] : parts) {
+    const auto& run_by = programs[participant];
+    if (numbers.size() > 1 || run_by.size() > 1)
+      text += fmt::format(
+          "\n  {} programs were started as participant '{}' ({}): each participant runs once; give each "
+          "program its "
+          "own --participant.",
+          std::max(numbers.size(), run_by.size()), participant, join({run_by.begin(), run_by.end()}));
+    const bool known =
+        std::any_of(expected.begin(), expected.end(),
+                    [&name = participant](const Expected& e) { return e.participant == name; });
+    if (!known)
+      text += fmt::format("\n  '{}' was started, but the YAML file does not ask for it.", participant);
+  }
+  if (ranks[coupler_name] > 1)
+    text += fmt::format("\n  the coupler was started with {} ranks: it runs with one.", ranks[coupler_name]);
+  return text;
+}
+
+}  // namespace
+
+std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self) {
+  const std::string text = encode(self);
+  const std::vector<char> all = all_gather(world, std::vector<char>(text.begin(), text.end()));
+  std::vector<Attendant> attendants;
+  std::istringstream in(std::string(all.begin(), all.end()));
+  for (std::string one; std::getline(in, one, text_end);) attendants.push_back(decode(one));
+  return attendants;
+}
+
+Verdict judge(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected, bool coupled) {
+  const Attendant& first = attendants.front();
+  const auto cannot_start = [&](const std::string& why, bool with_launch_line) {
+    Verdict verdict;
+    verdict.problem = "The job cannot start:" + why;
+    if (with_launch_line && !expected.empty())
+      verdict.problem += fmt::format("\n  Start it as: {}", launch_line(attendants, expected));
+    return verdict;
+  };
+  const std::string errors = configuration_errors(attendants);
+  const bool all_placed = std::none_of(attendants.begin(), attendants.end(),
+                                       [](const Attendant& a) { return a.participant.empty(); });
+  if (!errors.empty()) return cannot_start(errors, !all_placed && attendants.size() > 1);
+  if (const std::string text = disagreement(attendants); !text.empty()) return cannot_start(text, false);
+
+  const bool one_program = std::all_of(attendants.begin(), attendants.end(), [&](const Attendant& a) {
+    return a.participant == first.participant && a.application == first.application;
+  });
+  const bool is_coupler = first.participant == coupler_name;
+  if (one_program && !is_coupler && (first.named || !coupled)) return {"", true};
+  if (!coupled)
+    return cannot_start(
+        fmt::format("\n  {} has no `coupling` section, so its participants cannot run as one job: add "
+                    "the section or run each program alone.",
+                    first.case_file),
+        false);
+  std::string text = attendance(attendants, expected);
+  if (text.empty()) return {};
+  if (one_program && !is_coupler)
+    text += fmt::format("\n  To run '{}' alone: {} {} --participant {}", first.participant, first.program,
+                        first.case_file, first.participant);
+  return cannot_start(text, true);
+}
+
+std::vector<Member> members(const std::vector<Attendant>& attendants) {
+  std::vector<Member> list;
+  for (const Attendant& a : attendants) {
+    auto it = std::find_if(list.begin(), list.end(),
+                           [&](const Member& m) { return m.participant == a.participant; });
+    if (it == list.end()) it = list.insert(list.end(), {a.participant, a.program, a.world_rank, 0});
+    ++it->ranks;
+  }
+  return list;
+}
+
+}  // namespace couplet

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace couplet {
+
+/// What one process says of itself at the roll call.
+struct Attendant {
+  std::string program;        ///< "solid_solver"
+  std::string participant;    ///< its name in the YAML; empty if it could not be found
+  std::string case_file;      ///< as given on the command line
+  std::size_t case_hash = 0;  ///< of the YAML's text after overrides
+  std::string restart;        ///< --restart, empty without
+  bool named = false;         ///< --participant was given
+  int application = 0;        ///< number of its part of the mpirun line (MPI_APPNUM)
+  int world_rank = 0;
+  std::vector<std::string> errors;  ///< in its own part of the configuration
+};
+
+/// One participant as the YAML has it.
+struct Expected {
+  std::string participant, program;
+};
+
+/// One participant as it has come.
+struct Member {
+  std::string participant, program;
+  int first_rank = 0, ranks = 0;  ///< in MPI_COMM_WORLD
+};
+
+struct Verdict {
+  std::string problem;  ///< empty: the job can start
+  bool alone = false;   ///< only one participant has come and shall run without the others
+};
+
+inline constexpr const char* coupler_name = "coupler";
+
+/// Every process's answer, by world rank, on every process. Collective.
+std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self);
+
+/// Compares who has come with who is expected. `coupled`: the YAML has a `coupling` section (the coupler is
+/// then expected too, and is part of `expected`). The same on every process.
+Verdict judge(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected, bool coupled);
+
+/// In order of first world rank.
+std::vector<Member> members(const std::vector<Attendant>& attendants);
+
+}  // namespace couplet

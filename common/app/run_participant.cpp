@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/run_participant.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "common/app/step_loop.hpp"
+#include "common/base/error.hpp"
+#include "common/coupling/serve.hpp"
+#include "common/log/log.hpp"
+#include "common/log/progress.hpp"
+#include "common/log/timer.hpp"
+
+namespace couplet {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Phase phase_of(Op op) {
+  switch (op) {
+    case Op::initialise:
+      return Phase::initialise;
+    case Op::begin_step:
+      return Phase::begin_step;
+    case Op::solve:
+      return Phase::solve;
+    case Op::accept_step:
+      return Phase::accept;
+    case Op::write_output:
+      return Phase::output;
+    case Op::save:
+      return Phase::save;
+    case Op::load:
+      return Phase::load;
+    case Op::finalise:
+      return Phase::finalise;
+  }
+  return Phase::waiting;
+}
+
+/// What each command does to the watch over the job and to the timers.
+class Bookkeeping {
+ public:
+  explicit Bookkeeping(const Job& job) : job_(job) {}
+  void waiting() {
+    since_ = Clock::now();
+    job_.enter(Phase::waiting);
+  }
+  void waited() { log::timers().add("waiting for the coupler", seconds_since(since_)); }
+  void received(const Command& command) {
+    since_ = Clock::now();
+    if (command.op == Op::begin_step) job_.watch->set_time(command.step.time);
+    job_.enter(phase_of(command.op));
+  }
+  void done(const Command& command) {
+    log::timers().add(couplet::name(command.op), seconds_since(since_));
+    if (command.op == Op::accept_step) job_.watch->set_time(command.time);
+  }
+
+ private:
+  const Job& job_;
+  Clock::time_point since_ = Clock::now();
+};
+
+void closing_words(const Job& job, Participant& participant, double seconds) {
+  const std::vector<std::string> sentences = participant.judge_left_out_effects();
+  if (job.rank != 0) return;
+  for (const std::string& sentence : sentences) log::info("{}", sentence);
+  log::info("{}", log::timers().table("time of '" + job.name + "'", seconds));
+}
+
+/// Commands to the participant from its own loop, with the same bookkeeping as in a coupled run.
+class OwnCommands {
+ public:
+  OwnCommands(const Job& job, Participant& participant) : job_(job), participant_(participant), books_(job) {}
+  Reply operator()(const Command& command) {
+    books_.received(command);
+    const Reply reply = carry_out(command, participant_, job_.name, job_.comm);
+    books_.done(command);
+    if (reply.status == Reply::Status::ok) advised_dt_ = std::min(reply.suggested_dt, advised_dt_);
+    return reply;
+  }
+  std::optional<std::string> attempt(const Step& step) {
+    Command command{Op::begin_step, step, {}, 0, -1, ""};
+    for (const Op op : {Op::begin_step, Op::solve}) {
+      command.op = op;
+      if (const Reply reply = (*this)(command); reply.status == Reply::Status::failure) return reply.text;
+    }
+    return {};
+  }
+  void accept(double time, int output) {
+    advised_dt_ = std::numeric_limits<double>::infinity();
+    must({Op::accept_step, {}, {}, time, output, ""});
+  }
+  /// A command that is no step: its failure is the end.
+  void must(const Command& command) {
+    const Reply reply = (*this)(command);
+    if (reply.status == Reply::Status::failure) throw SolveFailure(reply.text);
+  }
+  double advised_dt() const { return advised_dt_; }
+
+ private:
+  const Job& job_;
+  Participant& participant_;
+  Bookkeeping books_;
+  double advised_dt_ = std::numeric_limits<double>::infinity();
+};
+
+/// A line twice a second at most, and at the end.
+class Console {
+ public:
+  explicit Console(const SimulationParameters& simulation) : end_(simulation.end_time) {}
+  void step(const Step& step, double time, double start_time) {
+    if (seconds_since(last_) < 0.5 && time < end_) return;
+    last_ = Clock::now();
+    log::info("t={:g}/{:g} s  step {}  dt={:g} s  {}", time, end_, step.number + 1, step.dt,
+              log::eta(time - start_time, end_ - start_time, seconds_since(start_)));
+  }
+  double seconds() const { return seconds_since(start_); }
+
+ private:
+  double end_;
+  Clock::time_point start_ = Clock::now(), last_{};
+};
+
+}  // namespace
+
+int run_alone(const Job& job, Participant& participant) {
+  OwnCommands command(job, participant);
+  StepLoop loop(job.comm, job.simulation, Scheme::standalone, job.checkpoints);
+  Console console(job.simulation);
+  command.must({Op::initialise, {}, {}, 0, -1, ""});
+  double start_time = 0;
+  if (!job.restart_folder.empty()) {
+    command.must({Op::load, {}, {}, 0, -1, job.restart_folder.string()});
+    loop.restart(read_run_state(job.restart_folder));
+    start_time = job.restart_time;
+    log::info("continues from {} at t = {:g} s", job.restart_folder.string(), start_time);
+  }
+  StepActions actions;
+  actions.attempt = [&](const Step& step) { return command.attempt(step); };
+  actions.accept = [&](double time, int output) { command.accept(time, output); };
+  actions.write_start = [&](int output) { command.must({Op::write_output, {}, {}, 0, output, ""}); };
+  actions.save = [&](const std::filesystem::path& folder) {
+    command.must({Op::save, {}, {}, 0, -1, folder.string()});
+  };
+  actions.report = [&](const Step& step, double time) { console.step(step, time, start_time); };
+  actions.advised_dt = [&] { return command.advised_dt(); };
+  const std::string problem = loop.run(actions);
+  job.enter(Phase::finalise);
+  closing_words(job, participant, console.seconds());
+  if (problem.empty()) return 0;
+  if (job.rank == 0) log::error("{}", problem);
+  return 1;
+}
+
+int run_coupled(const Job& job, MPI_Comm coupler, Participant& participant) {
+  const auto start = Clock::now();
+  Bookkeeping books(job);
+  ServeObserver observer;
+  observer.waiting = [&] { books.waiting(); };
+  observer.received = [&](const Command& command) {
+    books.waited();
+    books.received(command);
+    if (command.op == Op::finalise) closing_words(job, participant, seconds_since(start));
+  };
+  observer.done = [&](const Command& command) { books.done(command); };
+  serve(coupler, job.comm, job.name, participant, observer);
+  return 0;
+}
+
+}  // namespace couplet

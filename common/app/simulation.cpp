@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/simulation.hpp"
+
+namespace couplet {
+
+void declare(config::Section& section, SimulationParameters& p) {
+  section.value("name", p.name).doc("name of the case, shown at the start of a run");
+  section.value("end-time", p.end_time).unit("s").positive().required().doc("the run ends at this time");
+  section.value("time-step", p.time_step)
+      .unit("s")
+      .positive()
+      .required()
+      .doc("step of the run; in a coupled run the coupling step, which a participant may divide for itself");
+  section.value("max-step-halvings", p.max_step_halvings)
+      .range(0, 20)
+      .doc("a step that could not be solved is halved at most this often before the run stops");
+  section.section(
+      "output",
+      [&](config::Section& s) {
+        s.value("folder", p.output_folder)
+            .doc("where each participant makes its folder; relative to the folder of the YAML file");
+        s.value("interval", p.output_interval)
+            .unit("s")
+            .not_negative()
+            .doc("time between outputs of fields; 0: only the start and the end");
+      },
+      "fields for pictures");
+  section.section(
+      "checkpoint",
+      [&](config::Section& s) {
+        s.value("interval", p.checkpoint_interval)
+            .unit("s")
+            .not_negative()
+            .doc("time between checkpoints; 0: only at the end of the run");
+        s.value("keep", p.checkpoints_kept)
+            .range(1, 1000000)
+            .doc("so many of the latest checkpoints are kept");
+      },
+      "files to continue from with --restart");
+  section.check(
+      [&]() -> std::string {
+        return p.time_step <= p.end_time ? "" : "the time step must not be longer than the run ('end-time')";
+      },
+      "time-step");
+}
+
+}  // namespace couplet

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/config/section.hpp"
+
+namespace couplet {
+
+/// What `simulation:` in the YAML says to every program.
+struct SimulationParameters {
+  std::string name = "case";
+  double end_time = 0, time_step = 0;  // [s]
+  int max_step_halvings = 6;           // of a step that fails
+  std::string output_folder = "out";   // relative to the YAML's folder unless absolute
+  double output_interval = 0;          // [s]; 0: only the start and the end
+  double checkpoint_interval = 0;      // [s]; 0: only at the end
+  int checkpoints_kept = 2;
+};
+void declare(config::Section& section, SimulationParameters& parameters);
+
+}  // namespace couplet

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/watch.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <string_view>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+struct Slot {
+  char participant[64];
+  std::atomic<int> pid, rank, phase, ending, finished, reported;
+  std::atomic<double> time;
+};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
+
+// A signal handler can only reach what has static storage. Written once, before the handler is installed.
+struct Board {
+  Slot* slots = nullptr;  // one a process of this machine, by world rank
+  int count = 0;
+  int mine = 0;
+  bool whole_job = false;  // all processes of the job are on this machine
+};
+Board board;  // NOLINT: see above
+
+/// Text built without allocation, for the signal handler.
+class Line {
+ public:
+  Line& operator<<(std::string_view text) {
+    for (const char c : text)
+      if (size_ < sizeof text_) text_[size_++] = c;
+    return *this;
+  }
+  Line& operator<<(long value) {
+    char digits[24];
+    int n = 0;
+    if (value < 0) *this << "-";
+    for (unsigned long v = value < 0 ? -value : value; n == 0 || v > 0; v /= 10)
+      digits[n++] = char('0' + v % 10);
+    while (n > 0) *this << std::string_view(&digits[--n], 1);
+    return *this;
+  }
+  /// Six decimals.
+  Line& operator<<(double value) {
+    const auto micro = static_cast<long>(value * 1e6 + 0.5);
+    *this << micro / 1000000 << ".";
+    for (long digit = 100000; digit > 0; digit /= 10) *this << micro / digit % 10;
+    return *this;
+  }
+  const char* text() const { return text_; }
+  void write_to(int file) const {
+    for (std::size_t done = 0; done < size_;) {
+      const ssize_t n = ::write(file, text_ + done, size_ - done);
+      if (n <= 0) return;
+      done += std::size_t(n);
+    }
+  }
+
+ private:
+  char text_[1000];
+  std::size_t size_ = 0;
+};
+
+/// No such process, or one that only waits to be buried.
+bool gone(int pid) {
+  if (::kill(pid, 0) != 0) return errno == ESRCH;
+  Line path;
+  path << "/proc/" << long(pid) << "/stat" << std::string_view("\0", 1);
+  const int file = ::open(path.text(), O_RDONLY);
+  if (file < 0) return true;
+  char text[512];
+  const ssize_t size = ::read(file, text, sizeof text);
+  ::close(file);
+  // "pid (program) state ...", where the program's name may hold anything but ends at the last bracket.
+  for (ssize_t i = size - 1; i >= 0; --i)
+    if (text[i] == ')') return i + 2 < size && (text[i + 2] == 'Z' || text[i + 2] == 'X');
+  return false;
+}
+
+void describe(Line& line, const Slot& slot) {
+  line << "participant '" << slot.participant << "'";
+  if (slot.rank >= 0)
+    line << " (rank " << long(slot.rank) << ", pid " << long(slot.pid) << ")";
+  else
+    line << " (pid " << long(slot.pid) << ")";
+  line << " was killed or has ended unexpectedly; last heard of in " << name(Phase(slot.phase.load()));
+  if (slot.time >= 0) line << " at t = " << slot.time.load() << " s";
+}
+
+void report_the_dead() {
+  const char* separator = "couplet: ";
+  Line line;
+  bool any = false, first_survivor = true;
+  for (int i = 0; i < board.count; ++i) {
+    Slot& slot = board.slots[i];
+    if (slot.ending) return;
+    if (i == board.mine || slot.finished || !gone(slot.pid)) {
+      if (i < board.mine && !slot.finished) first_survivor = false;
+      continue;
+    }
+    any = true;
+    line << separator;
+    describe(line, slot);
+    separator = "; ";
+  }
+  if (!first_survivor) return;
+  if (!any && !board.whole_job) return;
+  if (!any) line << "couplet: the job was stopped from outside (signal SIGTERM)";
+  line << ". All programs of the job end.\n";
+  line.write_to(STDERR_FILENO);
+}
+
+extern "C" void on_terminate(int) {
+  report_the_dead();
+  // The others look at this process too: it must not be gone before they have done so.
+  timespec pause{0, 300'000'000};
+  ::nanosleep(&pause, nullptr);
+  ::_exit(128 + SIGTERM);
+}
+
+Slot* share_page(MPI_Comm machine, int rank, int size) {
+  const std::size_t bytes = sizeof(Slot) * std::size_t(size);
+  std::string path = fmt::format("/couplet-{}", ::getpid());
+  broadcast(machine, path);
+  int file = -1;
+  if (rank == 0) {
+    file = ::shm_open(path.c_str(), O_CREAT | O_EXCL | O_RDWR, 0600);
+    if (file >= 0 && ::ftruncate(file, off_t(bytes)) != 0) file = -1;
+  }
+  MPI_Barrier(machine);
+  if (rank != 0) file = ::shm_open(path.c_str(), O_RDWR, 0600);
+  void* page = file < 0 ? MAP_FAILED : ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  if (file >= 0) ::close(file);
+  MPI_Barrier(machine);
+  if (rank == 0) ::shm_unlink(path.c_str());
+  // Without shared memory the job runs all the same; only the line about the dead is lost.
+  if (any(machine, page == MAP_FAILED)) return nullptr;
+  return static_cast<Slot*>(page);
+}
+
+}  // namespace
+
+const char* name(Phase phase) {
+  switch (phase) {
+    case Phase::roll_call:
+      return "roll-call";
+    case Phase::initialise:
+      return "initialise";
+    case Phase::waiting:
+      return "waiting";
+    case Phase::begin_step:
+      return "begin_step";
+    case Phase::solve:
+      return "solve";
+    case Phase::accept:
+      return "accept";
+    case Phase::output:
+      return "output";
+    case Phase::save:
+      return "save";
+    case Phase::load:
+      return "load";
+    case Phase::finalise:
+      return "finalise";
+  }
+  return "an unknown phase";
+}
+
+Watch::Watch(MPI_Comm world, const std::string& participant) {
+  MPI_Comm machine;
+  MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, comm_rank(world), MPI_INFO_NULL, &machine);
+  board.count = comm_size(machine);
+  board.mine = comm_rank(machine);
+  board.whole_job = board.count == comm_size(world);
+  Slot* slots = share_page(machine, board.mine, board.count);
+  if (slots != nullptr) {
+    Slot& slot = slots[board.mine];
+    std::strncpy(slot.participant, participant.c_str(), sizeof slot.participant - 1);
+    slot.rank = -1;
+    slot.time = -1;
+    slot.phase = int(Phase::roll_call);
+    slot.pid = ::getpid();
+  }
+  MPI_Barrier(machine);
+  MPI_Comm_free(&machine);
+  board.slots = slots;
+  if (slots == nullptr) return;
+  struct sigaction action {};
+  action.sa_handler = on_terminate;
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+void Watch::set_rank(int rank) {
+  if (board.slots) board.slots[board.mine].rank = rank;
+}
+
+void Watch::enter(Phase phase) {
+  phase_ = phase;
+  if (board.slots) board.slots[board.mine].phase = int(phase);
+}
+
+void Watch::set_time(double time) {
+  if (board.slots) board.slots[board.mine].time = time;
+}
+
+bool Watch::claim_report() {
+  if (!board.slots) return true;
+  for (int i = 0; i < board.count; ++i)
+    if (std::strcmp(board.slots[i].participant, board.slots[board.mine].participant) == 0)
+      return board.slots[i].reported.exchange(1) == 0;
+  return true;
+}
+
+void Watch::ending() {
+  if (board.slots) board.slots[board.mine].ending = 1;
+}
+
+void Watch::finished() {
+  if (board.slots) board.slots[board.mine].finished = 1;
+  // A launcher that clears up after another process's exit code must not spoil this one's.
+  std::signal(SIGTERM, SIG_IGN);
+}
+
+}  // namespace couplet

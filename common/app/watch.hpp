@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <string>
+
+namespace couplet {
+
+/// What a process is doing, for the others to see when it is gone.
+enum class Phase : int {
+  roll_call,
+  initialise,
+  waiting,
+  begin_step,
+  solve,
+  accept,
+  output,
+  save,
+  load,
+  finalise,
+};
+const char* name(Phase phase);
+
+/// The processes of a job on one machine watch over each other through a small page of shared memory: each
+/// writes there who it is and what it does. MPI's launcher ends a job with SIGTERM when one of its processes
+/// dies; the handler then finds which processes are gone, and the first survivor writes the one line that
+/// names them and what they did last. One Watch a process. It stays in force until the process ends.
+class Watch {
+ public:
+  /// Collective over `world`, right after MPI_Init.
+  Watch(MPI_Comm world, const std::string& participant);
+  Watch(const Watch&) = delete;
+  /// Rank within the participant, once it is known.
+  void set_rank(int rank);
+  void enter(Phase phase);
+  Phase phase() const { return phase_; }
+  void set_time(double time);
+  /// True for the first process of this participant on this machine that asks: it is the one that prints the
+  /// error.
+  bool claim_report();
+  /// This process ends the job on purpose: the others need not look for a culprit.
+  void ending();
+  /// This process is through with MPI: it may be gone from now on.
+  static void finished();
+
+ private:
+  Phase phase_ = Phase::roll_call;
+};
+
+}  // namespace couplet

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/coupling/step_plan.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+
+StepPlan::StepPlan(double end_time, double nominal_dt, int max_halvings)
+    : end_time_(end_time),
+      nominal_dt_(nominal_dt),
+      max_halvings_(max_halvings),
+      n_nominal_(static_cast<int>(std::ceil(end_time / nominal_dt * (1 - 1e-12) - 1e-9))),
+      largest_dt_(std::numeric_limits<double>::infinity()) {
+  assert(nominal_dt > 0 && max_halvings >= 0 && max_halvings <= 30);
+}
+
+double StepPlan::nominal_time(int i) const {
+  const double t = i * nominal_dt_;
+  return i == n_nominal_ && std::abs(t - end_time_) > 1e-9 * nominal_dt_ ? end_time_ : t;
+}
+
+double StepPlan::nominal_length() const {
+  const double rest = end_time_ - nominal_ * nominal_dt_;
+  return rest < nominal_dt_ * (1 - 1e-9) ? rest : nominal_dt_;
+}
+
+double StepPlan::time() const {
+  return nominal_time(nominal_) +
+         (tick_ == 0 ? 0. : std::ldexp(nominal_length() * double(tick_), -max_halvings_));
+}
+
+int StepPlan::level() const {
+  int level = wanted_level_;
+  while (level < max_halvings_ && std::ldexp(nominal_length(), -level) > largest_dt_ * (1 + 1e-12)) ++level;
+  // A longer step may only start where its own grid has a node.
+  while (level < max_halvings_ && tick_ % (1L << (max_halvings_ - level)) != 0) ++level;
+  return level;
+}
+
+double StepPlan::dt() const { return std::ldexp(nominal_length(), -level()); }
+
+void StepPlan::accepted() {
+  const int used = level();
+  tick_ += 1L << (max_halvings_ - used);
+  ++accepted_;
+  if (tick_ == 1L << max_halvings_) {
+    tick_ = 0;
+    ++nominal_;
+  }
+  if (wanted_level_ > 0 && ++calm_ >= 2) {
+    --wanted_level_;
+    calm_ = 0;
+  }
+}
+
+bool StepPlan::halve() {
+  const int used = level();
+  if (used >= max_halvings_) return false;
+  wanted_level_ = used + 1;
+  calm_ = 0;
+  return true;
+}
+
+std::array<double, 5> StepPlan::state() const {
+  return {double(nominal_), double(tick_), double(wanted_level_), double(calm_), double(accepted_)};
+}
+
+void StepPlan::restore(const std::array<double, 5>& state, double time) {
+  nominal_ = int(state[0]);
+  tick_ = long(state[1]);
+  wanted_level_ = std::min(int(state[2]), max_halvings_);
+  calm_ = int(state[3]);
+  accepted_ = int(state[4]);
+  if (std::abs(this->time() - time) <= 1e-9 * nominal_dt_) return;
+  nominal_ = int(std::lround(time / nominal_dt_));
+  tick_ = 0;
+  if (std::abs(this->time() - time) > 1e-9 * nominal_dt_)
+    throw Error(
+        "The checkpoint is at t = {:g} s, which is not a multiple of the time step {:g} s: restart with the "
+        "time step "
+        "of the run that wrote it, or with one that divides this time.",
+        time, nominal_dt_);
+}
+
+}  // namespace couplet

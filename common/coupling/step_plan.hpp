@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+namespace couplet {
+
+/// Which step comes next. Nominal steps end at multiples of the nominal dt (the last one at the end time); a
+/// step that fails is halved and the halves grow back, so the nominal times are always met. All sizes are the
+/// nominal one divided by a power of two, exactly: a solver that keeps a factorised matrix for each dt meets
+/// few different ones.
+class StepPlan {
+ public:
+  /// max_halvings: a step is halved at most this often (0 to 30).
+  StepPlan(double end_time, double nominal_dt, int max_halvings);
+
+  bool finished() const { return nominal_ >= n_nominal_; }
+  double time() const;  ///< t^n [s]
+  double dt() const;    ///< of the step to try next; never beyond the next nominal time
+  /// Advice of the participants: the next steps are not longer than this if max_halvings allows.
+  void limit(double largest_dt) { largest_dt_ = largest_dt; }
+  void accepted();
+  /// False if the step may not be halved any more.
+  bool halve();
+  /// True right after a nominal step was completed (outputs and checkpoints are made then).
+  bool at_nominal_time() const { return tick_ == 0; }
+  int steps_accepted() const { return accepted_; }
+  int nominal_step() const { return nominal_; }
+  int halvings() const { return level(); }
+
+  /// For checkpoints.
+  std::array<double, 5> state() const;
+  /// `time`: the checkpoint's. The nominal dt may differ from that of the run that was saved if `time` is one
+  /// of the new nominal times; throws Error otherwise.
+  void restore(const std::array<double, 5>& state, double time);
+
+ private:
+  int level() const;  // halvings in force, made to fit the grid of ticks and the advice
+  double nominal_time(int i) const;
+  double nominal_length() const;  // of the nominal step under way [s]
+
+  double end_time_, nominal_dt_;
+  int max_halvings_, n_nominal_;
+  double largest_dt_;
+  int nominal_ = 0;  // nominal steps completed
+  long tick_ = 0;    // within the nominal step, in units of length / 2^max_halvings
+  int wanted_level_ = 0;
+  int calm_ = 0;  // steps accepted since the last failure or growth
+  int accepted_ = 0;
+};
+
+}  // namespace couplet

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <chrono>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace couplet {
+
+/// Waiting that leaves the core to others: the programs of a coupled job take turns, and MPI's own blocking
+/// calls spin. Spins for the first 80 us (messages between programs are short), then sleeps for an eighth of
+/// the time already waited, 0.5 ms at most. Says for whom and since when after 30 s, and again each time the
+/// wait has doubled.
+class PoliteWait {
+ public:
+  /// `what` completes "waiting for ..."; empty: never says anything.
+  explicit PoliteWait(std::string what) : what_(std::move(what)) {}
+  /// Between two looks at whatever is awaited.
+  void pause();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string what_;
+  Clock::time_point start_ = Clock::now();
+  std::chrono::duration<double> notice_{30};
+};
+
+void wait_politely(MPI_Request& request, const std::string& what);
+
+/// One message of any length. `peers` may be an intercommunicator.
+void send_bytes(MPI_Comm peers, int to, int tag, std::span<const char> bytes, const std::string& what);
+std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::string& what);
+
+/// Rank 0's bytes to all ranks; the others wait politely. Collective.
+void broadcast_bytes(MPI_Comm comm, std::vector<char>& bytes, const std::string& what);
+
+}  // namespace couplet

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/job.hpp"
+#include "common/log/log.hpp"
+#include "coupler/coupler.hpp"
+
+namespace {
+
+int run(const couplet::Job& job, const couplet::CouplingParameters& parameters) {
+  using namespace couplet;
+  std::map<std::string, MPI_Comm> peers;
+  for (const Member& m : job.members)
+    if (m.participant != coupler_name) peers[m.participant] = job.connect(m.participant);
+  const auto channel = [&](const std::string& name) -> std::unique_ptr<Channel> {
+    return std::make_unique<MpiChannel>(name, peers.at(name));
+  };
+  CouplerChannels channels{channel(parameters.fluid), channel(parameters.structure), nullptr};
+  if (parameters.mesh) channels.mesh = channel(parameters.mesh->participant);
+  Coupler coupler(parameters, job.simulation, std::move(channels),
+                  {job.output_folder, job.checkpoints, job.restart_folder});
+  coupler.on_phase([&](Phase phase, std::optional<double> time) {
+    if (time) job.watch->set_time(*time);
+    job.enter(phase);
+  });
+  const std::string problem = coupler.run();
+  if (problem.empty()) return 0;
+  log::error("{}", problem);
+  return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  couplet::CouplingParameters parameters;
+  const couplet::ProgramKind kind{
+      "coupler", "couples a fluid, a structure and a mesh mover, each a program of its own", true,
+      [&](couplet::config::Section& section) { declare(section, parameters); }};
+  return couplet::run_job(argc, argv, kind, [&](const couplet::Job& job) { return run(job, parameters); });
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/base/types.hpp"
+#include "coupler/parameters.hpp"
+
+namespace couplet {
+
+/// Points of one side of the interface; `what` names them in messages: "vertices of 'fluid'".
+struct PointSet {
+  std::string what;
+  std::vector<Vec3> points;
+};
+
+/// How values go from one set of points to another. Built once, on the reference configuration.
+class Mapping {
+ public:
+  enum class Kind {
+    consistent,    ///< every target takes the value of its nearest source: displacements, velocities
+    conservative,  ///< every source gives all it has to its nearest target: forces; the sum is kept
+  };
+  /// matched: throws Error naming points without a twin, with place and distance; nearest: any distance is
+  /// good.
+  Mapping(Kind kind, const PointSet& from, const PointSet& to, const MappingParameters& parameters);
+
+  std::vector<double> apply(const std::vector<double>& values, int components) const;
+
+  std::size_t n_from() const { return n_from_; }
+  std::size_t n_to() const { return n_to_; }
+  double max_distance() const { return max_distance_; }
+  double mean_distance() const { return mean_distance_; }
+  /// "168 vertices of 'solid' to 168 vertices of 'fluid', distance at most 0 m, mean 0 m"
+  std::string summary() const { return summary_; }
+
+ private:
+  Kind kind_;
+  std::size_t n_from_, n_to_;
+  std::vector<Index> partner_;  // consistent: source of each target; conservative: target of each source
+  double max_distance_ = 0, mean_distance_ = 0;
+  std::string summary_;
+};
+
+}  // namespace couplet

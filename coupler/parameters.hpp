@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/config/section.hpp"
+#include "common/coupling/participant.hpp"
+
+namespace couplet {
+
+struct AccelerationParameters {
+  enum class Type { constant, aitken } type = Type::aitken;
+  double initial_relaxation = 0.5;
+  double maximum_relaxation = 1.0;
+};
+
+struct ConvergenceParameters {
+  double relative = 1e-5;  // |r|_2 / |H(x)|_2
+  double absolute = 0;     // rms of |r| over the vertices [m]
+  int max_iterations = 50;
+};
+
+struct MappingParameters {
+  enum class Type { matched, nearest } type = Type::matched;
+  std::optional<double> tolerance;  // [m]
+};
+
+struct CouplingParameters {
+  Scheme scheme = Scheme::semi_implicit;
+  std::string fluid, structure;
+  struct Mesh {
+    std::string participant;
+  };
+  std::optional<Mesh> mesh;
+  AccelerationParameters acceleration;
+  ConvergenceParameters convergence;
+  int predictor_order = 2;
+  MappingParameters mapping;
+};
+void declare(config::Section& section, CouplingParameters& parameters);
+
+}  // namespace couplet
