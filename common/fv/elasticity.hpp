@@ -45,6 +45,9 @@ class ElasticOperator {
   const std::vector<Index>& prescribed_points() const { return prescribed_points_; }
   /// Prescribed faces of owned cells (face indices).
   const std::vector<Index>& prescribed_faces() const { return prescribed_faces_; }
+  /// Known column of a point or of a boundary face (face index); -1: none.
+  Index known_of_point(Index point) const { return known_of_point_[point]; }
+  Index known_of_face(Index face) const { return known_of_face_[face - mesh_->n_interior]; }
   /// Unknowns of this rank.
   std::size_t n_unknowns() const { return (mesh_->cells.n_owned() + traction_faces_.size()) * mesh_->dim; }
   ElasticCondition condition(Index face) const { return condition_of_face_[face - mesh_->n_interior]; }

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// What can be derived from the accepted state: point values, stresses, forces, and the state itself on file.
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/output.hpp"
+#include "solid_solver/solid.hpp"
+
+namespace couplet {
+namespace {
+
+template <int D>
+void interpolate(const ElasticOperator& elastic, std::span<const Index> points, std::span<const double> cells,
+                 std::span<const double> faces, std::span<const double> known, std::span<double> values) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Index column = elastic.known_of_point(points[i]);
+    Vec<D> value;
+    if (column >= 0)
+      value = Eigen::Map<const Vec<D>>(known.data() + std::size_t(column) * D);
+    else
+      value = elastic.vertices().template vector_at<D>(points[i], cells, faces);
+    for (int a = 0; a < D; ++a) values[i * D + a] = value[a];
+  }
+}
+
+std::vector<double> at_points(const Mesh& mesh, const ElasticOperator& elastic, std::span<const Index> points,
+                              std::span<const double> cells, std::span<const double> faces,
+                              std::span<const double> known) {
+  std::vector<double> values(points.size() * mesh.dim);
+  if (mesh.dim == 2)
+    interpolate<2>(elastic, points, cells, faces, known, values);
+  else
+    interpolate<3>(elastic, points, cells, faces, known, values);
+  return values;
+}
+
+}  // namespace
+
+Exchange Solid::interface_values() const {
+  if (!interface_) return {};
+  const auto& points = interface_->points();
+  Exchange out;
+  out["displacement"] = interface_->gather_vertices(
+      at_points(mesh_, elastic_, points, trial_.cell_u, trial_.face_u, known_), mesh_.dim);
+  out["velocity"] = interface_->gather_vertices(
+      at_points(mesh_, elastic_, points, trial_.cell_v, trial_.face_v, known_rate_), mesh_.dim);
+  return out;
+}
+
+std::vector<double> Solid::to_points(std::span<const double> cells, std::span<const double> faces,
+                                     std::span<const double> known) const {
+  std::vector<Index> all(mesh_.points.n_local());
+  for (Index v = 0; v < mesh_.points.n_local(); ++v) all[v] = v;
+  std::vector<double> values = at_points(mesh_, elastic_, all, cells, faces, known);
+  mesh_.points.update_ghosts(values, mesh_.dim);
+  return values;
+}
+
+std::vector<double> Solid::point_displacement() const {
+  return to_points(state_.cell_u, state_.face_u, known_accepted_);
+}
+
+std::vector<double> Solid::point_velocity() const {
+  return to_points(state_.cell_v, state_.face_v, known_rate_accepted_);
+}
+
+std::vector<Tensor3> Solid::cell_stress(std::span<const double> points) const {
+  const Index n_owned = mesh_.cells.n_owned();
+  std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
+  std::vector<double> weight(n_owned, 0);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const Tensor3 here = elastic_.gradient(f, state_.cell_u, state_.face_u, points);
+    const auto add = [&](Index c) {
+      if (c >= n_owned) return;
+      const Vec3 arm = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[c];
+      const double pyramid = std::abs(arm.dot(mesh_.reference.face_area[f]));
+      gradient[c] += pyramid * here;
+      weight[c] += pyramid;
+    };
+    add(mesh_.owner[f]);
+    if (f < mesh_.n_interior) add(mesh_.neighbour[f]);
+  }
+  const bool plane_strain = mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::strain;
+  for (Index c = 0; c < n_owned; ++c) {
+    gradient[c] = elastic_.stress(gradient[c] / weight[c]);
+    // Across a 2-D scene: lambda tr(epsilon) in plane strain (it stands there already), nothing in plane
+    // stress.
+    if (mesh_.dim == 2 && !plane_strain) gradient[c](2, 2) = 0;
+  }
+  return gradient;
+}
+
+std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
+  std::vector<PatchForce> forces;
+  for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+    const ElasticCondition condition = boundaries_.conditions()[p];
+    if (condition == ElasticCondition::traction) continue;
+    const Patch& patch = mesh_.patches[p];
+    Vec3 force = Vec3::Zero();
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Vec3& area = mesh_.reference.face_area[f];
+      Vec3 here = elastic_.stress(elastic_.gradient(f, state_.cell_u, state_.face_u, points)) * area;
+      if (condition == ElasticCondition::symmetry) here = area * area.dot(here) / area.squaredNorm();
+      force += here;
+    }
+    for (int a = 0; a < 3; ++a) force[a] = sum(mesh_.comm, force[a]);
+    forces.push_back({patch.name, force});
+  }
+  return forces;
+}
+
+Vec3 Solid::total_load() const {
+  Vec3 load = body_load_ + face_load_;
+  for (int a = 0; a < 3; ++a) load[a] = sum(mesh_.comm, load[a]);
+  return load;
+}
+
+double Solid::largest_gradient(std::span<const double> points) const {
+  double largest = 0;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
+    largest = std::max(largest, elastic_.gradient(f, state_.cell_u, state_.face_u, points).squaredNorm());
+  return max(mesh_.comm, std::sqrt(largest));
+}
+
+void Solid::judge_inertia() {
+  if (state_.steps < 1) return;
+  const int dim = mesh_.dim;
+  Vec3 inertia = Vec3::Zero();
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t i = std::size_t(c) * dim + a;
+      inertia[a] += parameters_.material.density * mesh_.reference.volume[c] *
+                    (trial_.cell_v[i] - state_.cell_v[i]) / (0.5 * (trial_.dt + state_.dt));
+    }
+  for (int a = 0; a < dim; ++a) inertia[a] = sum(mesh_.comm, inertia[a]);
+  const double load = total_load().norm();
+  if (load > 0) inertia_over_load_ = std::max(inertia_over_load_, inertia.norm() / load);
+}
+
+std::vector<std::string> Solid::judge_left_out_effects() {
+  largest_gradient_ = std::max(largest_gradient_, largest_gradient(point_displacement()));
+  std::vector<std::string> sentences;
+  const double g = largest_gradient_;
+  sentences.push_back(
+      fmt::format("geometric non-linearity left out: the largest displacement gradient seen is "
+                  "{:.2g}; {}.",
+                  g,
+                  g < 0.02  ? "that is small, leaving it out was sound"
+                  : g < 0.1 ? "errors of some per cent are to be expected"
+                            : "it would matter"));
+  if (!is_dynamic() && state_.steps > 1)
+    sentences.push_back(fmt::format(
+        "inertia left out (static): it would have reached {:.2g} of the load; {}.", inertia_over_load_,
+        inertia_over_load_ < 0.01 ? "leaving it out was sound" : "use 'analysis: dynamic'"));
+  if (is_dynamic() && !parameters_.damping)
+    sentences.push_back("structural damping left out: free vibration does not decay.");
+  return sentences;
+}
+
+void Solid::write_output(double time, int) {
+  const std::vector<double> points = point_displacement();
+  largest_gradient_ = std::max(largest_gradient_, largest_gradient(points));
+  output_->write_fields(time, points);
+}
+
+void Solid::write_monitors(double time) { output_->write_series(time, point_displacement()); }
+
+void Solid::save(CheckpointWriter& file) const {
+  file.write("cell-displacement", state_.cell_u);
+  file.write("cell-velocity", state_.cell_v);
+  file.write("face-displacement", state_.face_u);
+  file.write("face-velocity", state_.face_v);
+  file.write("face-offset", state_.offset);
+  file.write("known-displacement", known_accepted_);
+  file.write("known-rate", known_rate_accepted_);
+  file.write_scalar("time", state_.time);
+  file.write_scalar("dt", state_.dt);
+  file.write_scalar("steps", state_.steps);
+  file.write_scalar("largest-gradient", largest_gradient_);
+  file.write_scalar("inertia-over-load", inertia_over_load_);
+}
+
+void Solid::load(CheckpointReader& file) {
+  file.read("cell-displacement", state_.cell_u);
+  file.read("cell-velocity", state_.cell_v);
+  file.read("face-displacement", state_.face_u);
+  file.read("face-velocity", state_.face_v);
+  file.read("face-offset", state_.offset);
+  file.read("known-displacement", known_accepted_);
+  file.read("known-rate", known_rate_accepted_);
+  state_.time = file.read_scalar("time");
+  state_.dt = file.read_scalar("dt");
+  state_.steps = static_cast<int>(file.read_scalar("steps"));
+  largest_gradient_ = file.read_scalar("largest-gradient");
+  inertia_over_load_ = file.read_scalar("inertia-over-load");
+}
+
+}  // namespace couplet

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/mesh/load.hpp"
+#include "solid_solver/solid.hpp"
+
+namespace couplet::testing {
+
+using Type = SolidBoundary::Type;
+
+inline SolidBoundary boundary(Type type, const std::vector<std::string>& value = {}) {
+  SolidBoundary b;
+  b.type = type;
+  for (const std::string& text : value) b.value.push_back({text});
+  return b;
+}
+
+/// All patches of make_box() free; E = 200 GPa, nu = 0.3, static.
+inline SolidParameters box_parameters(int dim) {
+  SolidParameters p;
+  p.mesh = "box";
+  p.dimension = dim;
+  p.analysis = SolidParameters::Analysis::static_;
+  p.material = {7800, 200e9, 0.3};
+  for (const char* name : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[name] = boundary(Type::free);
+  if (dim == 3)
+    for (const char* name : {"zmin", "zmax"}) p.boundaries[name] = boundary(Type::free);
+  return p;
+}
+
+inline std::unique_ptr<Solid> make_solid(const RawMesh& raw, const SolidParameters& p) {
+  return std::make_unique<Solid>(distribute(MPI_COMM_WORLD, raw), p, SolidContext{});
+}
+
+/// One accepted step from the present state.
+inline void step(Solid& solid, double dt) {
+  solid.begin_step({solid.state().time, dt, Scheme::standalone, solid.state().steps});
+  solid.solve({});
+  solid.accept_step();
+}
+
+inline int dimension_of(BoxCells cells) {
+  return cells == BoxCells::quadrilaterals || cells == BoxCells::triangles ? 2 : 3;
+}
+
+}  // namespace couplet::testing
