@@ -96,7 +96,10 @@ class UnitParser {
   }
 
  private:
-  [[noreturn]] void fail() const { throw Error("cannot understand the unit '{}' at '{}'.", all_, rest_); }
+  [[noreturn]] void fail() const {
+    if (rest_.empty()) throw Error("the unit '{}' is incomplete.", all_);
+    throw Error("cannot understand the unit '{}' at '{}'.", all_, rest_);
+  }
   void skip_blanks() { rest_ = rest_.substr(std::min(rest_.find_first_not_of(" \t"), rest_.size())); }
   bool take(std::string_view token) {
     skip_blanks();

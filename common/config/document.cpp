@@ -36,16 +36,50 @@ void find_duplicates(const YAML::Node& node, const std::string& path, std::vecto
   }
 }
 
-YAML::Node parse_yaml(const std::string& text, const std::string& name) {
-  try {
-    return YAML::Load(text);
-  } catch (const YAML::Exception& error) {
-    throw Error("{}:{}:{}: this is not valid YAML: {}.", name, error.mark.line + 1, error.mark.column + 1,
-                error.msg);
-  }
+/// yaml-cpp's words for the usual mistakes, in words that say what to do.
+std::string explain(const std::string& message, std::string_view line) {
+  static const std::pair<const char*, const char*> known[] = {
+      {"illegal map value",
+       "a ':' stands where no key can be; check the indentation above, and quote a text that has ': '"},
+      {"end of sequence flow not found",
+       "a list that was opened with '[' before this place is not closed by ']'"},
+      {"end of map flow not found",
+       "a mapping that was opened with '{' before this place is not closed by '}'"},
+      {"end of map not found", "this line does not fit the mapping above; check its indentation and its ':'"},
+      {"end of sequence not found",
+       "this line does not fit the list above; check its indentation and its '- '"},
+      {"the referenced anchor is not defined",
+       "this '*name' refers to an anchor '&name' that does not exist"},
+  };
+  if (line.substr(0, line.find_first_not_of(" \t")).find('\t') != std::string_view::npos)
+    return "a tab cannot indent a line; use spaces";
+  for (const auto& [theirs, ours] : known)
+    if (message == theirs) return ours;
+  return message;
 }
 
-std::string describe(const std::string& path) { return path.empty() ? "the top level" : "'" + path + "'"; }
+YAML::Node parse_yaml(const std::string& text, const std::string& name) {
+  std::vector<YAML::Node> documents;
+  try {
+    documents = YAML::LoadAll(text);
+  } catch (const YAML::Exception& error) {
+    const std::vector<std::string> lines = split(text, '\n');
+    const auto line = static_cast<std::size_t>(std::max(error.mark.line, 0));
+    throw Error("{}:{}:{}: this is not valid YAML: {}.", name, line + 1, error.mark.column + 1,
+                explain(error.msg, line < lines.size() ? lines[line] : ""));
+  }
+  // A line that is indented less than the first key starts a second document without a word in yaml-cpp.
+  if (documents.size() > 1)
+    throw Error(
+        "{}:{}:{}: this line does not belong to the mapping above; check its indentation (and no '---' "
+        "here).",
+        name, documents[1].Mark().line + 1, documents[1].Mark().column + 1);
+  return documents.empty() ? YAML::Node(YAML::NodeType::Null) : documents.front();
+}
+
+std::string describe(const std::string& path) {
+  return path.empty() ? "the file" : fmt::format("'{}'", path);
+}
 
 /// The entry `part` of the node at `path`; throws if a step of a --set path does not exist.
 YAML::Node step_into(const YAML::Node& node, const std::string& path, const std::string& part,
@@ -62,9 +96,10 @@ YAML::Node step_into(const YAML::Node& node, const std::string& path, const std:
   const Entry entry = find(node, part);
   if (!entry.found)
     throw Error(
-        "{}: there is no '{}' in {}. {} (A missing mapping can be given as a whole: --set '{}={{key: "
+        "{}: there is no '{}' {}. {} (A mapping that is not there can be given as a whole: --set '{}={{key: "
         "value}}'.)",
-        option, part, describe(path), did_you_mean(part, key_names(node), "keys"), join_path(path, part));
+        option, part, path.empty() ? std::string("at the top level") : fmt::format("in '{}'", path),
+        did_you_mean(part, key_names(node), "keys"), join_path(path, part));
   return entry.node;
 }
 
@@ -113,10 +148,11 @@ void Document::set(const std::string& assignment) {
   } catch (const YAML::Exception& error) {
     throw Error("{}: the value is not valid YAML: {}.", option, error.msg);
   }
+  if (std::find(parts.begin(), parts.end(), "") != parts.end())
+    throw Error("{}: the path '{}' has an empty part.", option, path);
   std::string walked;
   YAML::Node node = content_->root;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (parts[i].empty()) throw Error("{}: the path '{}' has an empty part.", option, path);
     const bool last = i + 1 == parts.size();
     if (last && node.IsMap()) {
       // operator[] would not find a key whose text YAML reads as a number or a truth value.

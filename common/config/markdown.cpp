@@ -24,7 +24,7 @@ std::string row(const Item& item) {
     case Item::Kind::variant:
       if (!item.words.empty()) range = fmt::format("`{}`", join(item.words, "`, `"));
       if (facts.size) type += fmt::format(" ({})", *facts.size);
-      fallback = facts.required ? "**required**" : code(item.value);
+      fallback = facts.required ? "**required**" : item.value.empty() ? "not set" : code(item.value);
       break;
     case Item::Kind::section:
       type = "mapping";
@@ -57,7 +57,8 @@ void write_below(std::string& out, const std::string& path, const std::vector<It
       for (const auto& [word, keys] : item.cases)
         if (!keys.empty())
           write_section(out,
-                        fmt::format("{} with {}: {}", path.empty() ? "case" : path, item.facts.name, word),
+                        fmt::format("{}` with `{}: {}", path.empty() ? std::string("this") : path,
+                                    item.facts.name, word),
                         keys, level);
   }
 }

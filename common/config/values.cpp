@@ -23,8 +23,8 @@ void check_range(double value, const Facts& facts) {
   const bool good =
       (facts.open_lowest ? value > facts.lowest : value >= facts.lowest) && value <= facts.highest;
   if (!good)
-    throw Error("{} is out of range; expected a value {}.", format_quantity(value, facts.unit),
-                describe_range(facts));
+    throw Error("{:.10g}{} is out of range; expected a value {}.", value,
+                facts.unit.empty() ? "" : " " + facts.unit, describe_range(facts));
 }
 
 const std::string& scalar(const YAML::Node& node, const std::string& expected) {
@@ -43,8 +43,9 @@ double read_number(const YAML::Node& node, const Facts& facts) {
 int read_integer(const YAML::Node& node, const Facts& facts) {
   const std::string& text = scalar(node, "a whole number");
   const double value = parse_quantity(text, facts.unit);
-  if (value != std::nearbyint(value) || std::abs(value) > std::numeric_limits<int>::max())
-    throw Error("'{}' is not a whole number.", text);
+  if (value != std::nearbyint(value)) throw Error("'{}' is not a whole number.", text);
+  if (std::abs(value) > std::numeric_limits<int>::max())
+    throw Error("'{}' is not a whole number that this key can hold.", text);
   check_range(value, facts);
   return static_cast<int>(value);
 }

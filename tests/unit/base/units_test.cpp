@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/base/units.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+namespace {
+
+struct Case {
+  const char* text;
+  const char* unit;
+  double value;
+};
+
+TEST(Units, quantities_convert_to_the_unit_of_the_key) {
+  const Case cases[] = {
+      {"5.6 MPa", "Pa", 5.6e6},
+      {"5.6MPa", "Pa", 5.6e6},
+      {"2.1e11", "Pa", 2.1e11},
+      {"1 N/mm^2", "Pa", 1e6},
+      {"1 bar", "Pa", 1e5},
+      {"100 mbar", "Pa", 1e4},
+      {"0.1 s", "s", 0.1},
+      {"10 ms", "s", 0.01},
+      {"2 min", "s", 120},
+      {"1.5 h", "s", 5400},
+      {"1 day", "s", 86400},
+      {"1e-3 m^2/s", "m^2/s", 1e-3},
+      {"1 cm2/s", "m^2/s", 1e-4},
+      {"1 mm²", "m^2", 1e-6},
+      {"3 g/cm^3", "kg/m^3", 3000},
+      {"1 t/m³", "kg/m^3", 1000},
+      {"1 kPa s", "Pa s", 1000},
+      {"1 kPa*s", "Pa s", 1000},
+      {"1 kPa·s", "Pa s", 1000},
+      {"0.5 W/(m K)", "W/(m K)", 0.5},
+      {"0.5 W/m/degC", "W/(m K)", 0.5},
+      {"20 degC", "K", 293.15},
+      {"-10 degC", "K", 263.15},
+      {"293.15 K", "degC", 20},
+      {"20", "degC", 20},
+      {"1 1/K", "1/K", 1},
+      {"1 /K", "1/K", 1},
+      {"1e-5 degC^-1", "1/K", 1e-5},
+      {"3 Hz", "1/s", 3},
+      {"2 kHz", "Hz", 2000},
+      {"180 deg", "rad", std::numbers::pi},
+      {"50 %", "", 0.5},
+      {"+4", "", 4},
+      {".5 m", "m", 0.5},
+      {"3 um", "m", 3e-6},
+      {"3 µm", "m", 3e-6},
+      {"1 kWh", "J", 3.6e6},
+      {"1 l", "m^3", 1e-3},
+      {"1 kN/m", "kg/s^2", 1000},
+      {"36 km/h", "m/s", 10},
+      {"  7   s ", "s", 7},
+  };
+  for (const Case& c : cases)
+    EXPECT_NEAR(parse_quantity(c.text, c.unit), c.value, 1e-12 * std::abs(c.value))
+        << c.text << " in " << c.unit;
+}
+
+std::string error_of(const char* text, const char* unit) {
+  try {
+    parse_quantity(text, unit);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Units, what_does_not_convert_is_refused_with_what_was_expected) {
+  EXPECT_EQ(error_of("5 kg", "Pa"),
+            "'5 kg': the unit 'kg' does not convert to Pa; expected Pa or a unit that converts to it.");
+  EXPECT_EQ(error_of("5 MPaa", "Pa"),
+            "'5 MPaa': unknown unit 'MPaa'. Did you mean 'MPa'? Expected Pa or a unit that converts to it.");
+  EXPECT_EQ(error_of("5 furlong", "m"),
+            "'5 furlong': unknown unit 'furlong'. Expected m or a unit that converts to it.");
+  EXPECT_EQ(error_of("soft", "Pa"), "'soft' is not a number; expected a number in Pa or with its unit.");
+  EXPECT_EQ(error_of("5 s", ""), "'5 s' has more than a number in it ('s'); expected a plain number.");
+  EXPECT_EQ(
+      error_of("1,5 m", "m"),
+      "'1,5 m': cannot understand the unit ',5 m' at ',5 m'. Expected m or a unit that converts to it.");
+  EXPECT_EQ(error_of("5 m/", "m"),
+            "'5 m/': the unit 'm/' is incomplete. Expected m or a unit that converts to it.");
+  EXPECT_EQ(error_of("5 W/(m K", "W/(m K)"),
+            "'5 W/(m K': the unit 'W/(m K' is incomplete. Expected W/(m K) or a unit that converts "
+            "to it.");
+  for (const char* text : {"nan", "inf", "-inf", "", "0x10", "--5", "1e999"})
+    EXPECT_NE(error_of(text, ""), "no error") << text;
+}
+
+TEST(Units, a_formatted_quantity_reads_back_as_the_same_number) {
+  for (const double value : {0.1, 1.0 / 3, 5.6e6, -1e-30, 0.0})
+    EXPECT_EQ(parse_quantity(format_quantity(value, "Pa"), "Pa"), value);
+  EXPECT_EQ(format_quantity(0.25, ""), "0.25");
+  EXPECT_EQ(format_quantity(5.6e6, "Pa"), "5600000 Pa");
+}
+
+}  // namespace
+}  // namespace couplet
