@@ -10,8 +10,8 @@
 
 namespace couplet {
 
-/// Between the values a rank holds on some patches and the interface vectors on rank 0 (each vertex by ascending
-/// point_id, each face by ascending boundary_id, once). All calls collective over mesh.comm.
+/// Between the values a rank holds on some patches and the interface vectors on rank 0 (each vertex by
+/// ascending point_id, each face by ascending boundary_id, once). All calls collective over mesh.comm.
 class InterfaceMap {
  public:
   /// Throws Error naming the patches that exist if one is unknown.
@@ -22,22 +22,35 @@ class InterfaceMap {
   /// Boundary faces (face indices) of owned cells on these patches, ascending.
   const std::vector<Index>& faces() const { return faces_; }
 
-  /// dim, vertices, face_centres, face_areas of the reference configuration on rank 0; takes and gives stay empty.
+  /// dim, vertices, face_centres, face_areas of the reference configuration on rank 0; takes and gives stay
+  /// empty.
   Interface describe() const;
   /// Rank 0's vector (vertices x components) to values at points(), in that order, on every rank.
   std::vector<double> scatter_vertices(const std::vector<double>& on_root, int components) const;
   std::vector<double> scatter_faces(const std::vector<double>& on_root, int components) const;
-  /// Values at points() / faces() to the vector on rank 0 (empty elsewhere). Vertices: the owner's value counts.
+  /// Values at points() / faces() to the vector on rank 0 (empty elsewhere). Vertices: the owner's value
+  /// counts.
   std::vector<double> gather_vertices(std::span<const double> local, int components) const;
   std::vector<double> gather_faces(std::span<const double> local, int components) const;
 
  private:
+  /// Where the entries of every rank stand in rank 0's vector, rank by rank (known on rank 0 only).
+  struct Layout {
+    std::vector<int> counts;
+    std::vector<Index> positions;
+    Layout() = default;
+    Layout(MPI_Comm comm, const std::vector<Index>& local);
+  };
+  std::vector<double> scatter(const Layout& layout, std::size_t n_here, const std::vector<double>& on_root,
+                              int components) const;
+  std::vector<double> gather(const Layout& layout, std::size_t n_all, std::span<const double> local,
+                             int components) const;
+
   const Mesh* mesh_;
   std::vector<Index> points_, faces_;
-  // Positions in the root's vectors of what this rank sends (owned) and of what it wants, and on rank 0 the same of all.
-  std::vector<Index> point_position_, face_position_;
-  std::vector<Index> owned_points_;  // entries of points_ that this rank owns
-  Index n_vertices_ = 0, n_faces_ = 0;
+  std::vector<Index> owned_points_;  // positions in points_ of those that this rank owns
+  Layout point_layout_, owned_point_layout_, face_layout_;
+  std::size_t n_vertices_ = 0, n_faces_ = 0;  // over all ranks
 };
 
 }  // namespace couplet

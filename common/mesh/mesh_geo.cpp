@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "common/base/error.hpp"
+#include "common/base/text.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
 
@@ -37,13 +38,6 @@ std::string full_text(const std::filesystem::path& geo, int depth = 0) {
     if (depth < 16 && std::filesystem::is_regular_file(file)) more += full_text(file, depth + 1);
   }
   return text + more;
-}
-
-/// FNV-1a, 64 bits: the same on every machine, unlike std::hash.
-std::uint64_t hash_of(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return hash;
 }
 
 /// The environment without the variables by which an MPI program finds its job: a gmsh that was built with
@@ -106,7 +100,7 @@ std::string complaints(const std::string& output) {
 }  // namespace
 
 std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim) {
-  const std::string hash = fmt::format("{:016x}", hash_of(fmt::format("{}\n{}", dim, full_text(geo))));
+  const std::string hash = fmt::format("{:016x}", stable_hash(fmt::format("{}\n{}", dim, full_text(geo))));
   const std::string stem = geo.stem().string() + "." + hash;
   const std::filesystem::path result = geo.parent_path() / (stem + ".cache.msh");
   if (std::filesystem::is_regular_file(result)) return result;

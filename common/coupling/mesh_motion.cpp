@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/coupling/mesh_motion.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/coupling/wait.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr int motion_tag = 7101;
+const char* const mover_name = "the mesh mover";
+const char* const fluid_name = "the fluid";
+
+/// A message is the status, then dim values a point in the order that both sides agreed on.
+enum class Status : int { moved, failed };
+
+/// The points that one rank of the other program gives or takes.
+struct Peer {
+  int rank;
+  std::vector<Index> points;
+};
+
+int remote_size(MPI_Comm peers) {
+  int size = 0;
+  MPI_Comm_remote_size(peers, &size);
+  return size;
+}
+
+/// Neither side may hold up the other's processor while that one still reads its mesh.
+void meet(MPI_Comm peers, const char* whom) {
+  MPI_Request request;
+  MPI_Ibarrier(peers, &request);
+  wait_politely(request, whom);
+}
+
+/// Owned point ids of every rank on the other side. Both sides throw if the numbers of points differ.
+std::vector<std::vector<GlobalIndex>> exchange_owned_ids(MPI_Comm peers, const Mesh& mesh) {
+  const int n_remote = remote_size(peers);
+  const GlobalIndex mine[3] = {mesh.points.n_global(), mesh.dim, mesh.points.n_owned()};
+  std::vector<GlobalIndex> theirs(3 * std::size_t(n_remote));
+  MPI_Allgather(mine, 3, MPI_INT64_T, theirs.data(), 3, MPI_INT64_T, peers);
+  if (theirs[0] != mine[0] || theirs[1] != mine[1])
+    throw Error(
+        "The meshes of the fluid and of the mesh mover differ: {} points in {}-D on this side, {} points in "
+        "{}-D "
+        "on the other. Both participants must read the same mesh file.",
+        mine[0], mine[1], theirs[0], theirs[1]);
+  std::vector<int> counts, first;
+  GlobalIndex total = 0;
+  for (int r = 0; r < n_remote; ++r) {
+    first.push_back(static_cast<int>(total));
+    counts.push_back(static_cast<int>(theirs[3 * r + 2]));
+    total += counts.back();
+  }
+  std::vector<GlobalIndex> ids(total);
+  MPI_Allgatherv(mesh.point_id.data(), mesh.points.n_owned(), MPI_INT64_T, ids.data(), counts.data(),
+                 first.data(), MPI_INT64_T, peers);
+  std::vector<std::vector<GlobalIndex>> by_rank;
+  for (int r = 0; r < n_remote; ++r)
+    by_rank.emplace_back(ids.begin() + first[r], ids.begin() + first[r] + counts[r]);
+  return by_rank;
+}
+
+/// send[r] goes to rank r of the other side.
+std::vector<std::vector<GlobalIndex>> exchange(MPI_Comm peers,
+                                               const std::vector<std::vector<GlobalIndex>>& send) {
+  const int n = remote_size(peers);
+  std::vector<int> send_counts(n), send_first(n), counts(n), first(n);
+  std::vector<GlobalIndex> out;
+  for (int r = 0; r < n; ++r) {
+    send_first[r] = static_cast<int>(out.size());
+    send_counts[r] = static_cast<int>(send[r].size());
+    out.insert(out.end(), send[r].begin(), send[r].end());
+  }
+  MPI_Alltoall(send_counts.data(), 1, MPI_INT, counts.data(), 1, MPI_INT, peers);
+  for (int r = 1; r < n; ++r) first[r] = first[r - 1] + counts[r - 1];
+  std::vector<GlobalIndex> in(first[n - 1] + counts[n - 1]);
+  MPI_Alltoallv(out.data(), send_counts.data(), send_first.data(), MPI_INT64_T, in.data(), counts.data(),
+                first.data(), MPI_INT64_T, peers);
+  std::vector<std::vector<GlobalIndex>> received;
+  for (int r = 0; r < n; ++r) received.emplace_back(in.begin() + first[r], in.begin() + first[r] + counts[r]);
+  return received;
+}
+
+/// On both sides: true if it is true on any rank of the source.
+bool any_of_source(MPI_Comm peers, MPI_Comm own, bool is_source, bool value) {
+  const int mine = is_source && value ? 1 : 0;
+  int theirs = 0;
+  MPI_Allreduce(&mine, &theirs, 1, MPI_INT, MPI_MAX, peers);
+  return is_source ? any(own, value) : theirs != 0;
+}
+
+[[noreturn]] void throw_other_points(const std::string& detail) {
+  throw Error(
+      "The meshes of the fluid and of the mesh mover differ{}. Both participants must read the same mesh "
+      "file.",
+      detail);
+}
+
+class Source final : public MeshMotionSource {
+ public:
+  Source(MPI_Comm peers, const Mesh& mesh) : peers_(peers), dim_(mesh.dim), n_points_(mesh.points.n_local()) {
+    meet(peers, mover_name);
+    const auto owned = exchange_owned_ids(peers, mesh);
+    std::vector<std::pair<GlobalIndex, int>> owner_of;
+    for (std::size_t r = 0; r < owned.size(); ++r)
+      for (const GlobalIndex id : owned[r]) owner_of.emplace_back(id, static_cast<int>(r));
+    std::sort(owner_of.begin(), owner_of.end());
+
+    std::vector<std::vector<GlobalIndex>> wanted(owned.size());
+    std::vector<std::vector<Index>> points(owned.size());
+    bool missing = false;
+    for (Index p = 0; p < n_points_; ++p) {
+      const auto found = std::lower_bound(owner_of.begin(), owner_of.end(), std::pair(mesh.point_id[p], 0));
+      if (found == owner_of.end() || found->first != mesh.point_id[p]) {
+        missing = true;
+        continue;
+      }
+      wanted[found->second].push_back(mesh.point_id[p]);
+      points[found->second].push_back(p);
+    }
+    exchange(peers, wanted);
+    if (any_of_source(peers, mesh.comm, true, missing))
+      throw_other_points(": their points carry other numbers");
+    for (std::size_t r = 0; r < points.size(); ++r)
+      if (!points[r].empty()) from_.push_back({static_cast<int>(r), std::move(points[r])});
+    compare_points(mesh);
+  }
+
+  std::vector<double> receive() override {
+    std::vector<double> values(std::size_t(n_points_) * dim_);
+    bool failed = false;
+    for (const Peer& peer : from_) {
+      const std::vector<char> bytes = receive_bytes(peers_, peer.rank, motion_tag, mover_name);
+      const auto message = detail::from_bytes<double>(bytes);
+      if (message.at(0) != double(Status::moved)) {
+        failed = true;
+        continue;
+      }
+      assert(message.size() == 1 + peer.points.size() * dim_);
+      for (std::size_t i = 0; i < peer.points.size(); ++i)
+        for (int c = 0; c < dim_; ++c)
+          values[std::size_t(peer.points[i]) * dim_ + c] = message[1 + i * dim_ + c];
+    }
+    if (failed) throw SolveFailure("The mesh mover could not move the mesh.");
+    return values;
+  }
+
+ private:
+  /// Equal numbers with other places would pass unseen and move the wrong points.
+  void compare_points(const Mesh& mesh) {
+    const std::vector<double> theirs = receive();
+    Vec3 low = Vec3::Constant(INFINITY), high = -low;
+    for (const Vec3& x : mesh.reference_points) {
+      low = low.cwiseMin(x);
+      high = high.cwiseMax(x);
+    }
+    const double tolerance = n_points_ > 0 ? 1e-9 * (high - low).norm() : 0;
+    bool other = false;
+    for (Index p = 0; p < n_points_; ++p)
+      for (int c = 0; c < dim_; ++c)
+        other =
+            other || std::abs(theirs[std::size_t(p) * dim_ + c] - mesh.reference_points[p][c]) > tolerance;
+    if (any_of_source(peers_, mesh.comm, true, other)) throw_other_points(": their points lie elsewhere");
+  }
+
+  MPI_Comm peers_;
+  int dim_;
+  Index n_points_;
+  std::vector<Peer> from_;
+};
+
+class Sink final : public MeshMotionSink {
+ public:
+  Sink(MPI_Comm peers, const Mesh& mesh) : peers_(peers), dim_(mesh.dim) {
+    meet(peers, fluid_name);
+    exchange_owned_ids(peers, mesh);
+    const auto wanted = exchange(peers, std::vector<std::vector<GlobalIndex>>(remote_size(peers)));
+    if (any_of_source(peers, mesh.comm, false, false))
+      throw_other_points(": their points carry other numbers");
+
+    std::vector<std::pair<GlobalIndex, Index>> owned;
+    for (Index p = 0; p < mesh.points.n_owned(); ++p) owned.emplace_back(mesh.point_id[p], p);
+    std::sort(owned.begin(), owned.end());
+    for (std::size_t r = 0; r < wanted.size(); ++r) {
+      if (wanted[r].empty()) continue;
+      Outgoing& to = to_.emplace_back();
+      to.peer.rank = static_cast<int>(r);
+      for (const GlobalIndex id : wanted[r])
+        to.peer.points.push_back(
+            std::lower_bound(owned.begin(), owned.end(), std::pair(id, Index(0)))->second);
+    }
+    std::vector<double> points;
+    for (const Vec3& x : mesh.reference_points) points.insert(points.end(), x.begin(), x.begin() + dim_);
+    send(points);
+    if (any_of_source(peers, mesh.comm, false, false)) throw_other_points(": their points lie elsewhere");
+  }
+
+  ~Sink() override {
+    // A message the fluid never took (the job ends early): MPI may still read it, so it outlives us.
+    for (Outgoing& to : to_) {
+      int done = 1;
+      if (to.request != MPI_REQUEST_NULL) MPI_Test(&to.request, &done, MPI_STATUS_IGNORE);
+      if (done) continue;
+      new std::vector<double>(std::move(to.message));
+      MPI_Request_free(&to.request);
+    }
+  }
+
+  void send(std::span<const double> displacement) override {
+    for (Outgoing& to : to_) {
+      start(to, Status::moved);
+      for (const Index p : to.peer.points)
+        for (int c = 0; c < dim_; ++c) to.message.push_back(displacement[std::size_t(p) * dim_ + c]);
+      post(to);
+    }
+  }
+
+  void send_failure() override {
+    for (Outgoing& to : to_) {
+      start(to, Status::failed);
+      post(to);
+    }
+  }
+
+ private:
+  struct Outgoing {
+    Peer peer;
+    std::vector<double> message;
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+  /// Sends do not wait: the fluid takes the message when the coupler lets it solve. The last one must be gone
+  /// before.
+  void start(Outgoing& to, Status status) {
+    wait_politely(to.request, fluid_name);
+    to.message.assign(1, double(status));
+  }
+  void post(Outgoing& to) {
+    MPI_Isend(to.message.data(), static_cast<int>(to.message.size() * sizeof(double)), MPI_BYTE, to.peer.rank,
+              motion_tag, peers_, &to.request);
+  }
+
+  MPI_Comm peers_;
+  int dim_;
+  std::vector<Outgoing> to_;
+};
+
+}  // namespace
+
+std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const Mesh& mesh) {
+  return std::make_unique<Source>(peers, mesh);
+}
+
+std::unique_ptr<MeshMotionSink> make_mesh_motion_sink(MPI_Comm peers, const Mesh& mesh) {
+  return std::make_unique<Sink>(peers, mesh);
+}
+
+}  // namespace couplet

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/coupling/interface_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/mesh/load.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+class InterfaceMapOf : public ::testing::TestWithParam<BoxCells> {
+ protected:
+  InterfaceMapOf() {
+    raw = make_box(GetParam(), {4, 5, 3}, Vec3::Zero(), Vec3(2, 1, 1));
+    perturb_interior(raw, 0.2, 3);
+    mesh = distribute(MPI_COMM_WORLD, raw);
+  }
+  const bool root = comm_rank(MPI_COMM_WORLD) == 0;
+  RawMesh raw;
+  Mesh mesh;
+};
+
+const char* name_of_box(const ::testing::TestParamInfo<BoxCells>& info) {
+  constexpr const char* names[] = {"quadrilaterals", "triangles", "hexahedra",
+                                   "tetrahedra",     "prisms",    "mixed"};
+  return names[static_cast<int>(info.param)];
+}
+
+INSTANTIATE_TEST_SUITE_P(Boxes, InterfaceMapOf,
+                         ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                                           BoxCells::mixed),
+                         name_of_box);
+
+double f(const Vec3& x, int component) { return std::sin(3 * x[0] + component) + x[1] * x[1] - 2 * x[2]; }
+
+TEST_P(InterfaceMapOf, description_holds_every_vertex_and_face_once_in_the_order_of_the_file) {
+  const InterfaceMap map(mesh, {"xmax", "ymin"});
+  const Interface interface = map.describe();
+  if (!root) {
+    EXPECT_TRUE(interface.empty());
+    return;
+  }
+  std::vector<GlobalIndex> vertices;
+  std::vector<Index> elements;
+  for (Index e = 0; e < raw.boundary_points.size(); ++e) {
+    const std::string& name = raw.patches[raw.boundary_patch[e]];
+    if (name != "xmax" && name != "ymin") continue;
+    elements.push_back(e);
+    for (const Index p : raw.boundary_points[e]) vertices.push_back(p);
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  EXPECT_EQ(interface.dim, raw.dim);
+  ASSERT_EQ(interface.vertices.size(), vertices.size());
+  for (std::size_t v = 0; v < vertices.size(); ++v) EXPECT_EQ(interface.vertices[v], raw.points[vertices[v]]);
+  ASSERT_EQ(interface.face_centres.size(), elements.size());
+  Vec3 area = Vec3::Zero();
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    Vec3 centre = Vec3::Zero();
+    const auto points = raw.boundary_points[elements[i]];
+    for (const Index p : points) centre += raw.points[p] / double(points.size());
+    EXPECT_LT((interface.face_centres[i] - centre).norm(), 1e-14);
+    area += interface.face_areas[i];
+  }
+  EXPECT_LT((area - Vec3(1, -2, 0)).norm(), 1e-13) << "out of the participant, on both sides";
+}
+
+TEST_P(InterfaceMapOf, values_come_back_from_the_root_as_they_were_sent) {
+  const InterfaceMap map(mesh, {"xmax", "ymin"});
+  std::vector<double> at_points, at_faces;
+  for (const Index p : map.points())
+    for (int c = 0; c < 2; ++c) at_points.push_back(f(mesh.reference_points[p], c));
+  for (const Index face : map.faces()) at_faces.push_back(f(mesh.reference.face_centre[face], 0));
+
+  const std::vector<double> vertices = map.gather_vertices(at_points, 2),
+                            faces = map.gather_faces(at_faces, 1);
+  const Interface interface = map.describe();
+  EXPECT_EQ(vertices.size(), 2 * interface.vertices.size());
+  for (std::size_t v = 0; v < interface.vertices.size(); ++v)
+    for (int c = 0; c < 2; ++c) EXPECT_EQ(vertices[2 * v + c], f(interface.vertices[v], c));
+  for (std::size_t i = 0; i < interface.face_centres.size(); ++i)
+    EXPECT_EQ(faces[i], f(interface.face_centres[i], 0));
+
+  EXPECT_EQ(map.scatter_vertices(vertices, 2), at_points);
+  EXPECT_EQ(map.scatter_faces(faces, 1), at_faces);
+}
+
+TEST_P(InterfaceMapOf, points_are_all_local_points_that_lie_on_the_patches) {
+  const InterfaceMap map(mesh, {"xmax"});
+  std::vector<Index> expected;
+  for (Index p = 0; p < mesh.points.n_local(); ++p)
+    if (mesh.reference_points[p][0] == 2) expected.push_back(p);
+  EXPECT_EQ(map.points(), expected);
+}
+
+TEST_P(InterfaceMapOf, patch_named_twice_counts_once) {
+  const InterfaceMap once(mesh, {"ymax"}), twice(mesh, {"ymax", "ymax"});
+  EXPECT_EQ(once.faces(), twice.faces());
+  EXPECT_EQ(once.describe().vertices, twice.describe().vertices);
+}
+
+TEST(InterfaceMapErrors, unknown_patch_is_named_with_those_that_exist) {
+  const Mesh mesh =
+      distribute(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {3, 3, 0}, Vec3::Zero(), Vec3::Ones()));
+  try {
+    InterfaceMap(mesh, {"xmax", "wet"});
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(), "The mesh has no patch 'wet'. Its patches are 'xmin', 'xmax', 'ymin', 'ymax'.");
+  }
+}
+
+}  // namespace
+}  // namespace couplet
