@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "common/base/text.hpp"
 #include "common/config/description.hpp"
 
 namespace couplet {
@@ -40,6 +41,15 @@ std::string footer(const ProgramText& program) {
       "          Every program gets the same YAML file and the same --set options.\n"
       "Exit code: 0 done, 1 the run failed, 2 the configuration or the command line is wrong.\n",
       program.name, list_keys(program.declare));
+}
+
+std::string explain_extra(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  const auto meant = word.starts_with('-') ? closest(word, names) : std::nullopt;
+  return fmt::format("There is no option or argument '{}'.{}", word,
+                     meant ? fmt::format(" Did you mean '{}'?", *meant) : "");
 }
 
 }  // namespace
@@ -78,8 +88,12 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
   CLI::Option* verbose_option = app.add_flag("-v,--verbose", verbose, "every rank tells more");
   app.add_flag("-q,--quiet", quiet, "warnings and errors only")->excludes(verbose_option);
 
+  // What is left over is told in our words, with the option that was meant.
+  app.allow_extras();
   try {
     app.parse(argc, argv);
+    if (const std::vector<std::string> rest = app.remaining(); !rest.empty())
+      throw CLI::ExtrasError(explain_extra(app, rest.front()), CLI::ExitCodes::ExtrasError);
     if (line.case_file.empty() && !docs && !schema)
       throw CLI::ValidationError("Give the YAML file of the case, for example: " + program.name +
                                  " case.yaml");
