@@ -1,0 +1,61 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Velocity on the two centre lines against Ghia et al. Usage: plot.py [PICTURE.png], by default out/cavity.png."""
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.tri import LinearTriInterpolator, Triangulation
+
+here = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(here.parents[1] / "scripts"))
+import couplet_series as couplet  # noqa: E402
+
+
+def reference(file):
+    rows = [line.split(",") for line in (here / "reference" / file).read_text().splitlines() if line[0] != "#"]
+    return np.array([[float(r[0]), float(r[1])] for r in rows[1:]]).T
+
+
+def centre_lines(series):
+    """u(y) at x = 0.5 and v(x) at y = 0.5 of the last time, linear between cell centres and walls."""
+    i = len(series.times) - 1
+    points, velocity = series.coordinates(i), series.field(i, "velocity")
+    centres = np.array([points[c].mean(axis=0)[:2] for c in series.cells])
+    edges = points[series.edges_on_boundary()].mean(axis=1)[:, :2]
+    lid = np.where(edges[:, 1] > 1 - 1e-9, 1.0, 0.0)
+    places = np.vstack([centres, edges])
+    mesh = Triangulation(*places.T)
+    u = LinearTriInterpolator(mesh, np.concatenate([velocity[:, 0], lid]))
+    v = LinearTriInterpolator(mesh, np.concatenate([velocity[:, 1], 0 * lid]))
+    s = np.linspace(0.001, 0.999, 400)
+    return s, np.asarray(u(0 * s + 0.5, s)), np.asarray(v(s, 0 * s + 0.5))
+
+
+def main():
+    out = here / "out"
+    if not (out / "fluid").exists():
+        sys.exit(f"There is no result in {out}. Run the case first; the README says how.")
+    picture = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else out / "cavity.png"
+    s, u, v = centre_lines(couplet.find_series(out / "fluid"))
+    figure, axes = plt.subplots(1, 2, figsize=(9, 4), dpi=130, constrained_layout=True)
+    for ax, line, file, names in ((axes[0], u, "ghia_u_x0.5.csv", ("y [m]", "u at x = 0.5 [m/s]")),
+                                  (axes[1], v, "ghia_v_y0.5.csv", ("x [m]", "v at y = 0.5 [m/s]"))):
+        place, wanted = reference(file)
+        ax.plot(s, line, label="Couplet")
+        ax.plot(place, wanted, "ok", fillstyle="none", label="Ghia, Ghia, Shin 1982, Re = 100")
+        ax.set(xlabel=names[0], ylabel=names[1])
+        ax.grid(alpha=0.3)
+        inside = (place > 0.001) & (place < 0.999)
+        gap = np.abs(np.interp(place[inside], s, line) - wanted[inside]).max()
+        print(f"{names[1].split()[0]}: largest difference to Ghia {gap:.4f} of the lid's speed")
+    axes[0].legend(fontsize=8)
+    figure.savefig(picture)
+    print(f"picture: {picture}")
+
+
+main()

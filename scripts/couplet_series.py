@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads what a participant wrote: field series (HDF5) and monitors (CSV)."""
+import csv
+import pathlib
+
+import h5py
+import numpy as np
+
+WIDTH = {4: 3, 5: 4, 6: 4, 7: 5, 8: 6, 9: 8}  # points of a cell, by XDMF code
+
+
+class FieldSeries:
+    """One <name>.h5 series. Times, cells (lists of point numbers), coordinates and fields by name."""
+
+    def __init__(self, file):
+        self.file = h5py.File(file, "r")
+        self.steps = sorted(self.file["steps"])
+        self.times = np.array([float(self.file["steps"][s].attrs["time"]) for s in self.steps])
+        kind = int(self.file.attrs["kind"])
+        flat = self.file["mesh/cells"][...]
+        if kind:
+            self.cells = list(flat)
+        else:
+            self.cells, at = [], 0
+            while at < len(flat):
+                width = WIDTH[int(flat[at])]
+                self.cells.append(flat[at + 1 : at + 1 + width])
+                at += 1 + width
+
+    def nearest(self, time):
+        return int(np.abs(self.times - time).argmin())
+
+    def coordinates(self, i):
+        step = self.file["steps"][self.steps[i]]
+        return step["coordinates"][...] if "coordinates" in step else self.file["mesh/coordinates"][...]
+
+    def field(self, i, name):
+        step = self.file["steps"][self.steps[i]]
+        for place in ("cells", "points"):
+            if place in step and name in step[place]:
+                return step[place][name][...]
+        raise KeyError(f"no field '{name}' in {self.file.filename}")
+
+    def names(self, i):
+        step = self.file["steps"][self.steps[i]]
+        return [name for place in ("cells", "points") if place in step for name in step[place]]
+
+    def edges_on_boundary(self):
+        """Edges (2-D) that belong to one cell only, as pairs of point numbers."""
+        count = {}
+        for cell in self.cells:
+            for a, b in zip(cell, np.roll(cell, -1)):
+                count.setdefault(frozenset((int(a), int(b))), []).append((int(a), int(b)))
+        return np.array([pair[0] for pair in count.values() if len(pair) == 1])
+
+
+def find_series(folder):
+    """The one .h5 field series in a participant's output folder."""
+    for file in sorted(pathlib.Path(folder).glob("*.h5")):
+        with h5py.File(file, "r") as f:
+            if f.attrs.get("format") in (b"couplet fields", "couplet fields"):
+                return FieldSeries(file)
+    raise FileNotFoundError(f"no field series in {folder}")
+
+
+def read_csv(file):
+    """Columns of a monitor by head, e.g. 'tip displacement x [m]'."""
+    with open(file, newline="") as f:
+        rows = list(csv.reader(f))
+    data = np.array([[float(v) for v in row] for row in rows[1:]])
+    data = data.reshape(len(rows) - 1, len(rows[0]))
+    return {name.strip(): data[:, i] for i, name in enumerate(rows[0])}
+
+
+def extrema(t, y, window=0.15):
+    """Local maxima and minima as (time, value, kind), each the top of a parabola through its three nearest samples and
+    the largest (smallest) within `window` seconds either side; the end points do not count."""
+    found = []
+    for sign, kind in ((1, "max"), (-1, "min")):
+        z = sign * y
+        for i in range(1, len(z) - 1):
+            near = np.abs(t - t[i]) <= window
+            if z[i] == z[near].max() and t[i] - t[0] > window and t[-1] - t[i] > window / 2:
+                a, b, c = np.polyfit(t[i - 1 : i + 2] - t[i], z[i - 1 : i + 2], 2)
+                shift = -b / (2 * a) if a < 0 else 0.0
+                if not found or kind != found[-1][2] or t[i] - found[-1][0] > window:
+                    found.append((t[i] + shift, sign * (c + b * shift + a * shift * shift), kind))
+    return sorted(found)

@@ -1,0 +1,122 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Holds the table of docs/architecture.md: who may include whom, which folder sees which third-party headers, an SPDX
+line in every source file, file lengths, and clang-format where it is installed. Usage: check_sources.py PROJECT_ROOT"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+LONGEST = 500
+PROGRAMS = ["solid_solver", "fluid_solver", "mesh_mover", "coupler"]
+# Below which folders of common each folder of common stands.
+ALLOWED = {
+    "base": [],
+    "log": ["base"],
+    "config": ["base"],
+    "parallel": ["base"],
+    "linalg": ["parallel", "log", "base"],
+    "mesh": ["linalg", "parallel", "config", "log", "base"],
+    "fv": ["mesh", "linalg", "parallel", "config", "log", "base"],
+    "io": ["fv", "mesh", "linalg", "parallel", "config", "log", "base"],
+    "coupling": ["io", "mesh", "parallel", "config", "log", "base"],
+    "app": ["coupling", "io", "fv", "mesh", "linalg", "parallel", "config", "log", "base"],
+}
+NOT_FOR = {"coupler": ["mesh", "fv"]}
+# Third-party headers by pattern, and the folders that may include them.
+THIRD_PARTY = {
+    r"petsc|slepc": ["common/linalg", "common/parallel", "common/mesh"],
+    r"hdf5|H5": ["common/io"],
+    r"yaml-cpp/": ["common/config"],
+    r"CLI/": ["common/app"],
+    r"muParser": ["common/fv"],
+    r"nanoflann": ["coupler", "common/io", "common/fv"],
+    r"spdlog/": ["common/log"],
+}
+SOURCES = ("*.cpp", "*.hpp")
+SCRIPTS = ("*.py", "*.geo", "CMakeLists.txt", "case.yaml")
+
+
+def folder_of(path):
+    """"common/mesh" or "coupler"."""
+    return "/".join(path.parts[:2]) if path.parts[0] == "common" else path.parts[0]
+
+
+def wrong_include(path, included):
+    """What is wrong with one #include of a file, or nothing."""
+    here = folder_of(path)
+    if here == "tests":
+        return None
+    target = pathlib.PurePosixPath(included)
+    top = target.parts[0]
+    if top == "tests":
+        return "production code includes test code"
+    if top in PROGRAMS and top != here:
+        return f"{here} may not include {top}"
+    if top == "common" and len(target.parts) > 2:
+        layer = target.parts[1]
+        if here.startswith("common/"):
+            own = here.split("/")[1]
+            if layer != own and layer not in ALLOWED.get(own, []):
+                return f"common/{own} stands below common/{layer} or beside it"
+        elif layer in NOT_FOR.get(here, []):
+            return f"{here} may not know common/{layer}"
+    for pattern, allowed in THIRD_PARTY.items():
+        if re.match(pattern, included) and here not in allowed:
+            return f"only {', '.join(allowed)} may include it"
+    return None
+
+
+def check_text(path, text):
+    """All that is wrong in one file; `path` is relative to the project."""
+    trouble = []
+    lines = text.splitlines()
+    if not any("SPDX-License-Identifier: Apache-2.0" in line for line in lines[:3]):
+        trouble.append(f"{path}: no SPDX line at the top")
+    if len(lines) > LONGEST:
+        trouble.append(f"{path}: {len(lines)} lines, at most {LONGEST} are allowed")
+    if path.suffix in (".cpp", ".hpp"):
+        for number, line in enumerate(lines, 1):
+            match = re.match(r'\s*#\s*include\s*[<"]([^>"]+)[>"]', line)
+            reason = match and wrong_include(path, match.group(1))
+            if reason:
+                trouble.append(f"{path}:{number}: #include {match.group(1)}: {reason}")
+    return trouble
+
+
+def project_files(root):
+    tops = ["common", "tests", "scripts", "configs", "benchmarks", *PROGRAMS]
+    files = [root / "CMakeLists.txt"]
+    for top in tops:
+        for pattern in SOURCES + SCRIPTS:
+            files += (root / top).rglob(pattern)
+    files += [f for f in (root / "scripts").iterdir() if f.is_file()]
+    return sorted({f for f in files if "__pycache__" not in f.parts and "/out/" not in str(f)})
+
+
+def check_format(root, files):
+    """Files that clang-format would change; the style is that of version 14."""
+    program = shutil.which("clang-format-14") or shutil.which("clang-format")
+    if not program or " 14." not in subprocess.run([program, "--version"], capture_output=True, text=True).stdout:
+        print("clang-format 14 is not installed: the format was not checked")
+        return []
+    sources = [f for f in files if f.suffix in (".cpp", ".hpp")]
+    result = subprocess.run([program, "--dry-run", "--style=file", *map(str, sources)], cwd=root, capture_output=True,
+                            text=True)
+    places = re.findall(r"^(\S+?):\d+:\d+: warning", result.stderr, flags=re.M)
+    return [f"{pathlib.Path(place).relative_to(root)}: not formatted, run clang-format -i" for place in
+            dict.fromkeys(places)]
+
+
+def main(root):
+    files = project_files(root)
+    trouble = check_format(root, files)
+    for file in files:
+        trouble += check_text(file.relative_to(root), file.read_text())
+    print("\n".join(trouble) or f"{len(files)} files: in order")
+    return 1 if trouble else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(pathlib.Path(sys.argv[1]).resolve()))

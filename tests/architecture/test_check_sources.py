@@ -1,0 +1,40 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The source check must notice each kind of violation, else it proves nothing."""
+import pathlib
+import sys
+
+from check_sources import check_text
+
+HEAD = "// SPDX-License-Identifier: Apache-2.0\n"
+WRONG = {
+    ("common/mesh/a.cpp", HEAD + '#include "common/io/series.hpp"\n'): "common/mesh stands below common/io",
+    ("common/log/a.cpp", HEAD + '#include "common/config/section.hpp"\n'): "common/log stands below common/config",
+    ("coupler/a.cpp", HEAD + '#include "common/mesh/mesh.hpp"\n'): "coupler may not know common/mesh",
+    ("solid_solver/a.cpp", HEAD + '#include "fluid_solver/fluid.hpp"\n'): "solid_solver may not include fluid_solver",
+    ("fluid_solver/a.cpp", HEAD + "#include <petscksp.h>\n"): "only common/linalg",
+    ("common/mesh/a.cpp", HEAD + "#include <hdf5.h>\n"): "only common/io",
+    ("common/app/a.cpp", HEAD + "#include <yaml-cpp/yaml.h>\n"): "only common/config",
+    ("coupler/a.cpp", HEAD + '#include "tests/support/a.hpp"\n'): "production code includes test code",
+    ("common/base/a.cpp", "int a;\n"): "no SPDX line",
+    ("common/base/a.cpp", HEAD + "\n" * 600): "601 lines",
+}
+RIGHT = [
+    ("common/io/a.cpp", HEAD + '#include <hdf5.h>\n#include "common/mesh/mesh.hpp"\n'),
+    ("fluid_solver/a.cpp", HEAD + '#include "fluid_solver/fluid.hpp"\n#include "common/fv/expression.hpp"\n'),
+    ("coupler/a.cpp", HEAD + "#include <nanoflann.hpp>\n"),
+]
+
+failed = 0
+for (path, text), reason in WRONG.items():
+    found = check_text(pathlib.PurePosixPath(path), text)
+    if len(found) != 1 or reason not in found[0]:
+        print(f"{path}: wanted '{reason}', found {found}")
+        failed += 1
+for path, text in RIGHT:
+    found = check_text(pathlib.PurePosixPath(path), text)
+    if found:
+        print(f"{path}: nothing is wrong, found {found}")
+        failed += 1
+print(f"{len(WRONG) + len(RIGHT)} samples, {failed} judged wrongly")
+sys.exit(1 if failed else 0)
