@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_mover/laplacian.hpp"
+
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::mesh_mover {
+namespace {
+
+constexpr double axis_tolerance = 1e-6;
+
+/// The axis a patch is normal to. Collective.
+int normal_axis(const Mesh& mesh, const Patch& patch) {
+  std::array<double, 3> off{};
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+    const Vec3 n = mesh.reference.face_area[f].normalized();
+    for (int c = 0; c < 3; ++c) off[c] = std::max(off[c], 1 - std::abs(n[c]));
+  }
+  for (int c = 0; c < mesh.dim; ++c)
+    if (max(mesh.comm, off[c]) < axis_tolerance) return c;
+  throw Error(
+      "Patch '{}' slides (type: slip) but is not a plane normal to a coordinate axis. Use type: fixed, or "
+      "turn the mesh "
+      "so that the plane is.",
+      patch.name);
+}
+
+}  // namespace
+
+/// Laplacian::Equation: components that hold the same patches share it.
+struct Laplacian::Equation {
+  std::unique_ptr<SparseMatrix> matrix;
+  std::unique_ptr<LinearSolver> solver;
+  std::vector<double> diagonal;
+};
+
+Laplacian::Laplacian(const Mesh& mesh, const Parameters& parameters)
+    : mesh_(mesh),
+      dim_(mesh.dim),
+      relative_tolerance_(parameters.linear.relative_tolerance),
+      cell_displacement_(std::size_t(mesh.cells.n_local()) * mesh.dim, 0.0) {
+  set_kinds(parameters);
+  set_weights();
+  set_coefficients(parameters.stiffening);
+
+  for (int c = 0; c < dim_; ++c) {
+    for (int same = 0; same < c && !equation_[c]; ++same) {
+      bool equal = true;
+      for (const auto& held : held_) equal = equal && held[same] == held[c];
+      if (equal) equation_[c] = equation_[same];
+    }
+    if (equation_[c]) continue;
+    auto equation = std::make_shared<Equation>();
+    equation->diagonal.assign(mesh_.cells.n_owned(), 0.0);
+    std::vector<GlobalIndex> row, column;
+    std::vector<double> value;
+    const auto add = [&](Index i, Index j, double a) {
+      if (i >= mesh_.cells.n_owned()) return;
+      row.push_back(mesh_.cells.global(i));
+      column.push_back(mesh_.cells.global(j));
+      value.push_back(a);
+      if (i == j) equation->diagonal[i] += a;
+    };
+    for (Index f = 0; f < mesh_.n_interior; ++f) {
+      const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+      add(p, p, coefficient_[f]);
+      add(p, n, -coefficient_[f]);
+      add(n, n, coefficient_[f]);
+      add(n, p, -coefficient_[f]);
+    }
+    for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+      if (held_[patch_of_[f - mesh_.n_interior]][c]) add(mesh_.owner[f], mesh_.owner[f], coefficient_[f]);
+    equation->matrix = std::make_unique<SparseMatrix>(mesh_.comm, mesh_.cells.n_owned(), row, column);
+    equation->matrix->fill(value);
+    equation->solver =
+        std::make_unique<LinearSolver>("the mesh displacement", *equation->matrix, parameters.linear);
+    equation_[c] = equation;
+  }
+}
+
+void Laplacian::set_kinds(const Parameters& parameters) {
+  std::array<bool, 3> anything_held{};
+  patch_of_.assign(mesh_.boundary.n_local(), 0);
+  kind_.assign(mesh_.points.n_local(), {PointKind::interior, PointKind::interior, PointKind::interior});
+  for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+    const Patch& patch = mesh_.patches[p];
+    const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
+    const int axis = motion == BoundaryMotion::slip ? normal_axis(mesh_, patch) : -1;
+    std::array<bool, 3> held{};
+    for (int c = 0; c < dim_; ++c) held[c] = motion != BoundaryMotion::slip || c == axis;
+    held_.push_back(held);
+    for (int c = 0; c < dim_; ++c) anything_held[c] = anything_held[c] || held[c];
+    for (const auto& [first, count] :
+         {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
+      for (Index f = first; f < first + count; ++f) {
+        patch_of_[f - mesh_.n_interior] = static_cast<int>(p);
+        // A point on several patches: what holds it wins over what moves it, so that corners stay closed.
+        for (const Index v : mesh_.face_points[f])
+          for (int c = 0; c < dim_; ++c) {
+            PointKind& kind = kind_[v][c];
+            if (motion == BoundaryMotion::interface && kind == PointKind::interior)
+              kind = PointKind::interface;
+            if (motion != BoundaryMotion::interface && held[c]) kind = PointKind::fixed;
+          }
+      }
+  }
+  for (int c = 0; c < dim_; ++c)
+    if (!anything_held[c])
+      throw Error("No patch holds the mesh in direction {}: at least one needs type: fixed or interface.",
+                  "xyz"[c]);
+  for (Index v = 0; v < mesh_.points.n_local(); ++v)
+    for (int c = 0; c < dim_; ++c)
+      if (kind_[v][c] == PointKind::interface) {
+        interface_points_.push_back(v);
+        break;
+      }
+}
+
+// Thesis (2.49): inverse distance, so every weight is positive.
+void Laplacian::set_weights() {
+  std::vector<std::vector<Index>> cells(mesh_.points.n_local());
+  for (Index c = 0; c < mesh_.cells.n_local(); ++c)
+    for (const Index v : mesh_.cell_points[c]) cells[v].push_back(c);
+  for (Index v = 0; v < mesh_.points.n_local(); ++v) {
+    double total = 0;
+    const std::size_t first = weight_.size();
+    for (const Index c : cells[v]) {
+      weight_.push_back(1 / (mesh_.reference_points[v] - mesh_.reference.cell_centre[c]).norm());
+      total += weight_.back();
+    }
+    for (std::size_t i = first; i < weight_.size(); ++i) weight_[i] /= total;
+    around_.push_row(cells[v]);
+  }
+}
+
+void Laplacian::set_coefficients(double stiffening) {
+  const Geometry& g = mesh_.reference;
+  double volume = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) volume += g.volume[c];
+  const double mean = sum(mesh_.comm, volume) / static_cast<double>(mesh_.cells.n_global());
+  const auto stiffness = [&](Index c) { return std::pow(g.volume[c] / mean, -stiffening); };  // (4.12)
+  coefficient_.resize(mesh_.n_flux_faces());
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const bool interior = f < mesh_.n_interior;
+    const Index p = mesh_.owner[f];
+    const Vec3 d = (interior ? g.cell_centre[mesh_.neighbour[f]] : g.face_centre[f]) - g.cell_centre[p];
+    const double e = interior ? (stiffness(p) + stiffness(mesh_.neighbour[f])) / 2 : stiffness(p);
+    coefficient_[f] = e * g.face_area[f].squaredNorm() / g.face_area[f].dot(d);
+  }
+}
+
+double Laplacian::boundary_value(Index face, int component, std::span<const double> prescribed) const {
+  double total = 0;
+  const auto points = mesh_.face_points[face];
+  for (const Index v : points)
+    if (kind_[v][component] == PointKind::interface) total += prescribed[std::size_t(v) * dim_ + component];
+  return total / static_cast<double>(points.size());
+}
+
+std::vector<double> Laplacian::solve(std::span<const double> prescribed) {
+  const Index n = mesh_.cells.n_owned();
+  std::vector<double> b(n), x(n);
+  last_ = {};
+  for (int c = 0; c < dim_; ++c) {
+    std::fill(b.begin(), b.end(), 0.0);
+    for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+      if (held_[patch_of_[f - mesh_.n_interior]][c])
+        b[mesh_.owner[f]] += coefficient_[f] * boundary_value(f, c, prescribed);
+    for (Index i = 0; i < n; ++i) x[i] = cell_displacement_[std::size_t(i) * dim_ + c];
+    // A wall that passes through rest leaves b at round-off: the residual cannot fall below that of A x0.
+    double scale = 0;
+    for (Index i = 0; i < n; ++i) scale += std::pow(equation_[c]->diagonal[i] * x[i], 2);
+    const double floor = 1e-15 * std::sqrt(sum(mesh_.comm, scale)) + 1e-300;
+    const SolveStatistics s = equation_[c]->solver->solve(b, x, relative_tolerance_, floor);
+    last_.iterations += s.iterations;
+    last_.seconds += s.seconds;
+    for (Index i = 0; i < n; ++i) cell_displacement_[std::size_t(i) * dim_ + c] = x[i];
+  }
+  mesh_.cells.update_ghosts(cell_displacement_, dim_);
+
+  std::vector<double> displacement(std::size_t(mesh_.points.n_local()) * dim_, 0.0);
+  for (Index v = 0; v < mesh_.points.n_local(); ++v)
+    for (int c = 0; c < dim_; ++c) {
+      double& d = displacement[std::size_t(v) * dim_ + c];
+      if (kind_[v][c] == PointKind::interface) d = prescribed[std::size_t(v) * dim_ + c];
+      if (kind_[v][c] != PointKind::interior) continue;
+      for (Index i = around_.offset[v]; i < around_.offset[v + 1]; ++i)
+        d += weight_[i] * cell_displacement_[std::size_t(around_.index[i]) * dim_ + c];
+    }
+  mesh_.points.update_ghosts(displacement, dim_);
+  return displacement;
+}
+
+}  // namespace couplet::mesh_mover

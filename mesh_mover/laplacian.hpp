@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/linalg/linear_solver.hpp"
+#include "common/mesh/mesh.hpp"
+#include "mesh_mover/parameters.hpp"
+
+namespace couplet::mesh_mover {
+
+/// Laplacian mesh motion, thesis (4.11)-(4.12): div(E grad d) = 0 for the displacement d relative to the
+/// reference mesh, E = V^-chi of the reference volumes, one equation a component, on cells; points by
+/// inverse-distance interpolation.
+///
+/// Solving for the total displacement on the reference mesh, where the thesis adds increments on the last
+/// one, makes the motion independent of the path (no drift over cycles) and the matrix constant: it is
+/// factorised once a run. The flux is the two-point part of (2.57) alone: an M-matrix, so that no point
+/// overshoots its surroundings, which serves a mesh better than second order would.
+class Laplacian {
+ public:
+  /// Throws Error if no patch holds the mesh or a slip patch is not normal to an axis.
+  Laplacian(const Mesh& mesh, const Parameters& parameters);
+
+  /// `prescribed`: dim values per local point, read on interface patches. Result: dim values per local point
+  /// [m], ghosts up to date. Collective.
+  std::vector<double> solve(std::span<const double> prescribed);
+  /// Local points on interface patches.
+  const std::vector<Index>& interface_points() const { return interface_points_; }
+  const SolveStatistics& last() const { return last_; }
+
+ private:
+  enum class PointKind : char { interior, fixed, interface };
+  struct Equation;  // matrix and solver of one set of held patches
+  void set_kinds(const Parameters& parameters);
+  void set_weights();
+  void set_coefficients(double stiffening);
+  double boundary_value(Index face, int component, std::span<const double> prescribed) const;
+
+  const Mesh& mesh_;
+  int dim_;
+  double relative_tolerance_;
+  std::vector<std::array<bool, 3>> held_;       // per patch and component: Dirichlet
+  std::vector<int> patch_of_;                   // per boundary face
+  std::vector<std::array<PointKind, 3>> kind_;  // per local point and component
+  std::vector<Index> interface_points_;
+  std::vector<double> coefficient_;  // per flux face: E |S| / (d.n)
+  Csr around_;                       // per local point: local cells around it
+  std::vector<double> weight_;       // with around_.index
+  std::array<std::shared_ptr<Equation>, 3> equation_;
+  std::vector<double> cell_displacement_;  // dim per local cell; also the next initial guess
+  SolveStatistics last_;
+};
+
+}  // namespace couplet::mesh_mover

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/program.hpp"
+#include "mesh_mover/mover.hpp"
+
+int main(int argc, char** argv) {
+  couplet::mesh_mover::Parameters parameters;
+  couplet::Program program{
+      .name = "mesh_mover",
+      .description = "moves the points of a fluid mesh with the interface (Laplacian with volume stiffening)",
+      .declare = [&](couplet::config::Section& s) { couplet::mesh_mover::declare(s, parameters); },
+      .make =
+          [&](const couplet::ParticipantContext& context) {
+            return std::make_unique<couplet::mesh_mover::Mover>(parameters, context);
+          }};
+  return couplet::run_program(argc, argv, program);
+}

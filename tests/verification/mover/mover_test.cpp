@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "common/base/error.hpp"
+#include "common/mesh/load.hpp"
+#include "common/parallel/collective.hpp"
+#include "mesh_mover/laplacian.hpp"
+#include "mesh_mover/mover.hpp"
+
+namespace couplet::mesh_mover {
+namespace {
+
+Parameters all_patches(const Mesh& mesh, BoundaryMotion motion) {
+  Parameters p;
+  p.dimension = mesh.dim;
+  for (const Patch& patch : mesh.patches) p.boundaries[patch.name].motion = motion;
+  return p;
+}
+
+template <class F>
+std::vector<double> at_points(const Mesh& mesh, F&& f) {
+  std::vector<double> values;
+  for (const Vec3& x : mesh.reference_points) {
+    const Vec3 d = f(x);
+    values.insert(values.end(), d.data(), d.data() + mesh.dim);
+  }
+  return values;
+}
+
+double largest_difference(const Mesh& mesh, const std::vector<double>& a, const std::vector<double>& b) {
+  double worst = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) worst = std::max(worst, std::abs(a[i] - b[i]));
+  return max(mesh.comm, worst);
+}
+
+Mesh perturbed_box(BoxCells cells, int n) {
+  RawMesh raw = make_box(cells, {n, n, n}, Vec3::Zero(), Vec3::Ones());
+  perturb_interior(raw, 0.2, 7);
+  return distribute(MPI_COMM_WORLD, raw);
+}
+
+TEST(Laplacian, a_rigid_translation_of_the_boundary_translates_every_point) {
+  for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                               BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed}) {
+    const Mesh mesh = perturbed_box(cells, 5);
+    Laplacian laplacian(mesh, all_patches(mesh, BoundaryMotion::interface));
+    const auto shift =
+        at_points(mesh, [&](const Vec3&) { return Vec3(0.3, -0.2, mesh.dim == 3 ? 0.1 : 0.0); });
+    EXPECT_LT(largest_difference(mesh, laplacian.solve(shift), shift), 1e-12);
+  }
+}
+
+TEST(Laplacian, a_slipping_wall_lets_points_slide_and_keeps_them_on_its_plane) {
+  const Mesh mesh =
+      distribute(MPI_COMM_WORLD, make_box(BoxCells::hexahedra, {6, 5, 4}, Vec3::Zero(), Vec3::Ones()));
+  Parameters p = all_patches(mesh, BoundaryMotion::slip);
+  p.boundaries["xmin"].motion = BoundaryMotion::fixed;
+  p.boundaries["xmax"].motion = BoundaryMotion::interface;
+  p.stiffening = 0;
+  Laplacian laplacian(mesh, p);
+  const auto pushed = at_points(mesh, [](const Vec3& x) { return Vec3(x.x() > 0.999 ? 0.2 : 0.0, 0, 0); });
+  const auto d = laplacian.solve(pushed);
+  // On a uniform box the Laplacian stretches linearly; next to the slip walls points come from cell centres
+  // in the plane.
+  const auto linear = at_points(mesh, [](const Vec3& x) { return Vec3(0.2 * x.x(), 0, 0); });
+  EXPECT_LT(largest_difference(mesh, d, linear), 1e-12);
+}
+
+TEST(Laplacian, no_point_overshoots_the_boundary_values) {
+  const Mesh mesh = perturbed_box(BoxCells::tetrahedra, 6);
+  Laplacian laplacian(mesh, all_patches(mesh, BoundaryMotion::interface));
+  const auto given = at_points(mesh, [](const Vec3& x) { return Vec3(x.y() > 0.999 ? 0.1 : 0.0, 0, 0); });
+  const auto d = laplacian.solve(given);
+  for (std::size_t i = 0; i < d.size(); i += 3) {
+    EXPECT_GE(d[i], -1e-14);
+    EXPECT_LE(d[i], 0.1 + 1e-14);
+  }
+}
+
+TEST(Laplacian, cg_and_the_direct_method_move_the_mesh_alike_and_back_to_the_start) {
+  const Mesh mesh = perturbed_box(BoxCells::triangles, 12);
+  Parameters p = all_patches(mesh, BoundaryMotion::interface);
+  Laplacian direct(mesh, p);
+  p.linear.method = LinearMethod::cg_multigrid;
+  p.linear.relative_tolerance = 1e-12;
+  Laplacian iterative(mesh, p);
+  const auto bend =
+      at_points(mesh, [](const Vec3& x) { return Vec3(0.1 * x.y() * x.y(), 0.05 * std::sin(x.x()), 0); });
+  const auto rest = at_points(mesh, [](const Vec3&) { return Vec3(0, 0, 0); });
+  EXPECT_LT(largest_difference(mesh, direct.solve(bend), iterative.solve(bend)), 1e-11);
+  EXPECT_LT(largest_difference(mesh, direct.solve(rest), rest), 1e-15);
+  EXPECT_LT(largest_difference(mesh, iterative.solve(rest), rest), 1e-12);
+}
+
+TEST(Laplacian, stiffening_protects_the_small_cells) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {20, 4, 1}, Vec3::Zero(), Vec3::Ones());
+  for (Vec3& x : raw.points) x.x() = std::pow(x.x(), 2.5);  // small cells at x = 0
+  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  const auto pushed = at_points(mesh, [](const Vec3& x) { return Vec3(x.x() < 1e-9 ? 0.3 : 0.0, 0, 0); });
+  double least[2];
+  for (const int chi : {0, 1}) {
+    Parameters p = all_patches(mesh, BoundaryMotion::slip);
+    p.boundaries["xmin"].motion = BoundaryMotion::interface;
+    p.boundaries["xmax"].motion = BoundaryMotion::fixed;
+    p.stiffening = chi;
+    Laplacian laplacian(mesh, p);
+    const auto d = laplacian.solve(pushed);
+    std::vector<Vec3> moved = mesh.reference_points;
+    for (std::size_t v = 0; v < moved.size(); ++v) moved[v].x() += d[2 * v];
+    const Geometry g = compute_geometry(mesh, moved);
+    least[chi] = 1e300;
+    Index smallest = 0;
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+      if (mesh.reference.volume[c] < mesh.reference.volume[smallest]) smallest = c;
+    const double v0 = min(mesh.comm, mesh.reference.volume[smallest]);
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+      if (mesh.reference.volume[c] < 1.001 * v0) least[chi] = g.volume[c] / mesh.reference.volume[c];
+    least[chi] = min(mesh.comm, least[chi]);
+  }
+  EXPECT_LT(least[0], 0.72);
+  EXPECT_GT(least[1], 0.95);
+}
+
+TEST(Laplacian, a_slip_patch_off_the_axes_is_refused_by_name) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {4, 4, 1}, Vec3::Zero(), Vec3::Ones());
+  for (Vec3& x : raw.points) x.x() += 0.3 * x.y();
+  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  Parameters p = all_patches(mesh, BoundaryMotion::fixed);
+  p.boundaries["xmax"].motion = BoundaryMotion::slip;
+  try {
+    Laplacian laplacian(mesh, p);
+    FAIL() << "accepted";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("'xmax'"));
+  }
+}
+
+TEST(Mover, refuses_an_inverted_cell_by_name_and_place) {
+  Parameters p;
+  p.mesh = "square.geo";
+  p.dimension = 2;
+  p.boundaries["walls"].motion = BoundaryMotion::fixed;
+  p.boundaries["moving"].motion = BoundaryMotion::interface;
+  ParticipantContext context;
+  context.comm = MPI_COMM_WORLD;
+  context.name = "mover";
+  context.case_folder = COUPLET_TEST_DATA;
+  context.output_folder = std::filesystem::temp_directory_path();
+  Mover mover(p, context);
+  const Interface interface = mover.initialise();
+  mover.begin_step({.time = 1.5, .dt = 0.1, .scheme = Scheme::implicit, .number = 3});
+  Exchange push;
+  for (std::size_t v = 0; v < interface.vertices.size(); ++v) {
+    const bool middle = std::abs(interface.vertices[v].y() - 0.5) < 0.01;
+    push["displacement"].insert(push["displacement"].end(), {middle ? -0.9 : 0.0, 0.0});
+  }
+  try {
+    mover.solve(push);
+    FAIL() << "accepted";
+  } catch (const SolveFailure& e) {
+    EXPECT_THAT(e.what(),
+                testing::AllOf(testing::HasSubstr("participant 'mover'"), testing::HasSubstr("t = 1.5 s"),
+                               testing::ContainsRegex("inverts cell [0-9]+ at \\(")));
+  }
+}
+
+}  // namespace
+}  // namespace couplet::mesh_mover
