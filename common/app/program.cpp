@@ -40,6 +40,7 @@ void write_effective(const Job& job, const Program& program) {
 
 int run(const Job& job, const Program& program) {
   const PetscEnvironment petsc(job.comm);
+  Watch::install();
   ParticipantContext context;
   context.comm = job.comm;
   context.name = job.name;

@@ -20,7 +20,7 @@ namespace {
 
 struct Slot {
   char participant[64];
-  std::atomic<int> pid, rank, phase, ending, finished, reported;
+  std::atomic<int> pid, rank, phase, ending, finished, terminating, reported, spoke_for_all;
   std::atomic<double> time;
 };
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
@@ -99,32 +99,32 @@ void describe(Line& line, const Slot& slot) {
 }
 
 void report_the_dead() {
+  // The launcher may end the survivors one by one: those that have come here are no culprits, even if they
+  // are gone.
+  board.slots[board.mine].terminating = 1;
   const char* separator = "couplet: ";
   Line line;
-  bool any = false, first_survivor = true;
+  bool any = false;
   for (int i = 0; i < board.count; ++i) {
-    Slot& slot = board.slots[i];
+    const Slot& slot = board.slots[i];
     if (slot.ending) return;
-    if (i == board.mine || slot.finished || !gone(slot.pid)) {
-      if (i < board.mine && !slot.finished) first_survivor = false;
-      continue;
-    }
+    if (i == board.mine || slot.finished || slot.terminating || !gone(slot.pid)) continue;
     any = true;
     line << separator;
     describe(line, slot);
     separator = "; ";
   }
-  if (!first_survivor) return;
   if (!any && !board.whole_job) return;
   if (!any) line << "couplet: the job was stopped from outside (signal SIGTERM)";
   line << ". All programs of the job end.\n";
-  line.write_to(STDERR_FILENO);
+  // One line for all: that of the first survivor to come here.
+  if (board.slots[0].spoke_for_all.exchange(1) == 0) line.write_to(STDERR_FILENO);
 }
 
 extern "C" void on_terminate(int) {
   report_the_dead();
-  // The others look at this process too: it must not be gone before they have done so.
-  timespec pause{0, 300'000'000};
+  // Standard error is a pipe to the launcher: the line shall be through before the process is gone.
+  timespec pause{0, 100'000'000};
   ::nanosleep(&pause, nullptr);
   ::_exit(128 + SIGTERM);
 }
@@ -195,7 +195,11 @@ Watch::Watch(MPI_Comm world, const std::string& participant) {
   MPI_Barrier(machine);
   MPI_Comm_free(&machine);
   board.slots = slots;
-  if (slots == nullptr) return;
+  install();
+}
+
+void Watch::install() {
+  if (board.slots == nullptr) return;
   struct sigaction action {};
   action.sa_handler = on_terminate;
   sigaction(SIGTERM, &action, nullptr);

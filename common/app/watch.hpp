@@ -24,13 +24,16 @@ const char* name(Phase phase);
 
 /// The processes of a job on one machine watch over each other through a small page of shared memory: each
 /// writes there who it is and what it does. MPI's launcher ends a job with SIGTERM when one of its processes
-/// dies; the handler then finds which processes are gone, and the first survivor writes the one line that
-/// names them and what they did last. One Watch a process. It stays in force until the process ends.
+/// dies; the handler then finds which processes are gone, and the first survivor to look writes the one line
+/// that names them and what they did last. One Watch a process. It stays in force until the process ends.
 class Watch {
  public:
   /// Collective over `world`, right after MPI_Init.
   Watch(MPI_Comm world, const std::string& participant);
   Watch(const Watch&) = delete;
+  /// Installs the handler (again): to be called after libraries that set handlers of their own, such as
+  /// PETSc.
+  static void install();
   /// Rank within the participant, once it is known.
   void set_rank(int rank);
   void enter(Phase phase);

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/coupling/toy/piston.hpp"
+
+int main(int argc, char** argv) {
+  using namespace couplet;
+  toy::PistonParameters parameters;
+  return run_program(
+      argc, argv,
+      {"toy_piston", "a fluid that is an added mass", [&](config::Section& s) { declare(s, parameters); },
+       [&](const ParticipantContext& context) -> std::unique_ptr<Participant> {
+         return std::make_unique<toy::Piston>(context, parameters);
+       }});
+}
