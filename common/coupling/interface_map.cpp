@@ -86,12 +86,18 @@ InterfaceMap::InterfaceMap(const Mesh& mesh, const std::vector<std::string>& pat
   face_layout_ = Layout(mesh.comm, positions_of(face_ids, all_faces));
 }
 
-std::vector<double> InterfaceMap::scatter(const Layout& layout, std::size_t n_here,
+std::vector<double> InterfaceMap::scatter(const Layout& layout, std::size_t n_here, std::size_t n_all,
                                           const std::vector<double>& on_root, int components) const {
-  std::vector<double> packed;
-  packed.reserve(layout.positions.size() * components);
-  for (const Index position : layout.positions)
-    for (int c = 0; c < components; ++c) packed.push_back(on_root[std::size_t(position) * components + c]);
+  if (comm_rank(mesh_->comm) == 0 && !on_root.empty() && on_root.size() != n_all * components)
+    throw Error(
+        "The interface data that arrived has {} values; {} entries of {} components were expected. Check "
+        "that both participants describe the interface that they use.",
+        on_root.size(), n_all, components);
+  std::vector<double> packed(layout.positions.size() * components, 0.0);
+  if (!on_root.empty())
+    for (std::size_t i = 0; i < layout.positions.size(); ++i)
+      for (int c = 0; c < components; ++c)
+        packed[i * components + c] = on_root[std::size_t(layout.positions[i]) * components + c];
   std::vector<int> counts(layout.counts);
   for (int& n : counts) n *= components;
   const std::vector<int> first = first_of(counts);
@@ -118,13 +124,11 @@ std::vector<double> InterfaceMap::gather(const Layout& layout, std::size_t n_all
 }
 
 std::vector<double> InterfaceMap::scatter_vertices(const std::vector<double>& on_root, int components) const {
-  assert(comm_rank(mesh_->comm) != 0 || on_root.size() == n_vertices_ * components);
-  return scatter(point_layout_, points_.size(), on_root, components);
+  return scatter(point_layout_, points_.size(), n_vertices_, on_root, components);
 }
 
 std::vector<double> InterfaceMap::scatter_faces(const std::vector<double>& on_root, int components) const {
-  assert(comm_rank(mesh_->comm) != 0 || on_root.size() == n_faces_ * components);
-  return scatter(face_layout_, faces_.size(), on_root, components);
+  return scatter(face_layout_, faces_.size(), n_faces_, on_root, components);
 }
 
 std::vector<double> InterfaceMap::gather_vertices(std::span<const double> local, int components) const {

@@ -26,6 +26,7 @@ class InterfaceMap {
   /// empty.
   Interface describe() const;
   /// Rank 0's vector (vertices x components) to values at points(), in that order, on every rank.
+  /// An empty vector on rank 0 (nothing was given) stands for zeros; any other wrong size is an Error.
   std::vector<double> scatter_vertices(const std::vector<double>& on_root, int components) const;
   std::vector<double> scatter_faces(const std::vector<double>& on_root, int components) const;
   /// Values at points() / faces() to the vector on rank 0 (empty elsewhere). Vertices: the owner's value
@@ -41,8 +42,8 @@ class InterfaceMap {
     Layout() = default;
     Layout(MPI_Comm comm, const std::vector<Index>& local);
   };
-  std::vector<double> scatter(const Layout& layout, std::size_t n_here, const std::vector<double>& on_root,
-                              int components) const;
+  std::vector<double> scatter(const Layout& layout, std::size_t n_here, std::size_t n_all,
+                              const std::vector<double>& on_root, int components) const;
   std::vector<double> gather(const Layout& layout, std::size_t n_all, std::span<const double> local,
                              int components) const;
 

@@ -47,8 +47,7 @@ std::vector<std::vector<GlobalIndex>> exchange_owned_ids(MPI_Comm peers, const M
   if (theirs[0] != mine[0] || theirs[1] != mine[1])
     throw Error(
         "The meshes of the fluid and of the mesh mover differ: {} points in {}-D on this side, {} points in "
-        "{}-D "
-        "on the other. Both participants must read the same mesh file.",
+        "{}-D on the other. Both participants must read the same mesh file.",
         mine[0], mine[1], theirs[0], theirs[1]);
   std::vector<int> counts, first;
   GlobalIndex total = 0;

@@ -17,8 +17,9 @@ namespace couplet {
 class MeshMotionSource {
  public:
   virtual ~MeshMotionSource() = default;
-  /// Displacement of every local point of the fluid mesh (dim values a point, relative to the reference points) [m] at
-  /// t^{n+1} of the step that was begun. Throws SolveFailure if the mover could not move the mesh.
+  /// Displacement of every local point of the fluid mesh (dim values a point, relative to the reference
+  /// points) [m] at t^{n+1} of the step that was begun. Throws SolveFailure if the mover could not move the
+  /// mesh.
   virtual std::vector<double> receive() = 0;
 };
 
@@ -28,13 +29,14 @@ class MeshMotionSink {
   virtual ~MeshMotionSink() = default;
   /// `displacement`: dim values for every local point of the mover's mesh, ghosts up to date.
   virtual void send(std::span<const double> displacement) = 0;
-  /// Tells the fluid that there is no motion to wait for (the mover failed; it reports the reason to the coupler).
+  /// Tells the fluid that there is no motion to wait for (the mover failed; it reports the reason to the
+  /// coupler).
   virtual void send_failure() = 0;
 };
 
 /// Rank-to-rank link between a fluid and a mover that read the same mesh, on equal or different partitions.
-/// `peers` is the intercommunicator to the other program. Both constructors are collective over both programs and throw
-/// Error if the meshes differ (number of points or their ids).
+/// `peers` is the intercommunicator to the other program. Both constructors are collective over both programs
+/// and throw Error if the meshes differ (number of points or their ids).
 std::unique_ptr<MeshMotionSource> make_mesh_motion_source(MPI_Comm peers, const Mesh& mesh);
 std::unique_ptr<MeshMotionSink> make_mesh_motion_sink(MPI_Comm peers, const Mesh& mesh);
 

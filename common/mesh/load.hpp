@@ -29,22 +29,25 @@ struct RawMesh {
 /// Reads .msh 2.2 or 4.1 (ASCII or binary) with physical names. Throws Error with file and line.
 RawMesh read_msh(const std::filesystem::path& file);
 
-/// Runs the gmsh program on a .geo unless a cached result (beside the file, named <stem>.<hash>.cache.msh, where the
-/// hash covers the .geo text and `dim`) is there; gives the path of the .msh.
+/// Runs the gmsh program on a .geo unless a cached result (beside the file, named <stem>.<hash>.cache.msh,
+/// where the hash covers the text of the .geo, of the files it includes, and `dim`) is there; gives the path
+/// of the .msh. Several programs may ask for the same file at the same time.
 std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim);
 
-/// Distributes: cells by PT-Scotch (PETSc MatPartitioning), one ring of vertex-neighbour ghosts, owned cells renumbered
-/// by reverse Cuthill-McKee. `raw` is read on rank 0 only. Every boundary face must belong to exactly one patch; errors
-/// name the place. Collective.
+/// Distributes: cells by PT-Scotch (PETSc MatPartitioning), one ring of vertex-neighbour ghosts, owned cells
+/// renumbered by reverse Cuthill-McKee. `raw` is read on rank 0 only. Every boundary face must belong to
+/// exactly one patch; errors name the place. Collective.
 Mesh distribute(MPI_Comm comm, const RawMesh& raw);
 
 /// File (.msh or .geo) to distributed mesh. Collective; an error on rank 0 is thrown on every rank.
 Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim);
 
-/// Boxes for tests: n cells a side on [lower, upper], patches "xmin" "xmax" "ymin" "ymax" (and "zmin" "zmax" in 3-D).
+/// Boxes for tests: n cells a side on [lower, upper], patches "xmin" "xmax" "ymin" "ymax" (and "zmin" "zmax"
+/// in 3-D).
 enum class BoxCells { quadrilaterals, triangles, hexahedra, tetrahedra, prisms, mixed };
 RawMesh make_box(BoxCells cells, const std::array<int, 3>& n, const Vec3& lower, const Vec3& upper);
-/// Moves the interior points (boundary points stay) by up to `amount` of the local spacing, the same for the same seed.
+/// Moves the interior points (boundary points stay) by up to `amount` of the local spacing, the same for the
+/// same seed.
 void perturb_interior(RawMesh& raw, double amount, unsigned seed);
 
 }  // namespace couplet

@@ -29,8 +29,8 @@ struct Csr {
   }
 };
 
-/// A named part of the boundary: faces [first, first + count) of owned cells and, for stencils that reach over the
-/// partition, the faces [ghost_first, ghost_first + ghost_count) of ghost cells.
+/// A named part of the boundary: faces [first, first + count) of owned cells and, for stencils that reach
+/// over the partition, the faces [ghost_first, ghost_first + ghost_count) of ghost cells.
 struct Patch {
   std::string name;
   Index first = 0, count = 0;
@@ -38,8 +38,9 @@ struct Patch {
 };
 
 /// Volumes, centres and face vectors of one placement of the points.
-/// volume [m^3] and cell_centre [m] per local cell (ghosts included); face_area [m^2] (vector, out of the owner) and
-/// face_centre [m] per local face. A 2-D mesh has unit depth: volume = area x 1 m, face_area = length x 1 m.
+/// volume [m^3] and cell_centre [m] per local cell (ghosts included); face_area [m^2] (vector, out of the
+/// owner) and face_centre [m] per local face. A 2-D mesh has unit depth: volume = area x 1 m, face_area =
+/// length x 1 m.
 struct Geometry {
   std::vector<double> volume;
   std::vector<Vec3> cell_centre, face_centre, face_area;
@@ -47,19 +48,21 @@ struct Geometry {
 
 /// The part of a mesh that lives on one rank, with one ring of ghost cells (neighbours by vertex).
 ///
-/// Faces: [0, n_interior) lie between two local cells at least one of which is owned; then the boundary faces of owned
-/// cells, patch by patch; then the boundary faces of ghost cells, patch by patch. The face vector points out of
-/// `owner`; for interior faces the owner is the cell with the smaller cell_id on every rank.
+/// Faces: [0, n_interior) lie between two local cells at least one of which is owned; then the boundary faces
+/// of owned cells, patch by patch; then the boundary faces of ghost cells, patch by patch. The face vector
+/// points out of `owner`; for interior faces the owner is the cell with the smaller cell_id on every rank.
 /// Boundary face f is entry f - n_interior of the index map `boundary`.
 ///
-/// 2-D (dim == 2): cells are triangles and quadrilaterals in the plane z = 0, extruded in thought to one cell of unit
-/// depth; faces are edges with two points; front and back carry no unknown, no face and no duplicate point.
+/// 2-D (dim == 2): cells are triangles and quadrilaterals in the plane z = 0, extruded in thought to one cell
+/// of unit depth; faces are edges with two points; front and back carry no unknown, no face and no duplicate
+/// point.
 struct Mesh {
   MPI_Comm comm = MPI_COMM_SELF;
   int dim = 3;
 
   IndexMap cells, points, boundary;  ///< owned first, then ghosts
-  /// Numbers in the order of the mesh file: the same whatever the number of ranks. Per local cell, point, boundary face.
+  /// Numbers in the order of the mesh file: the same whatever the number of ranks. Per local cell, point,
+  /// boundary face.
   std::vector<GlobalIndex> cell_id, point_id, boundary_id;
 
   std::vector<CellType> cell_type;  ///< per local cell
@@ -67,11 +70,11 @@ struct Mesh {
   std::vector<int> cell_zone;       ///< per local cell, index into `zones`
   std::vector<std::string> zones;   ///< the same on all ranks
 
-  Index n_interior = 0;             ///< interior faces
-  Csr face_points;                  ///< per local face; turning right-handed about the face vector
-  std::vector<Index> owner;         ///< per local face
-  std::vector<Index> neighbour;     ///< per interior face
-  std::vector<Patch> patches;       ///< the same names in the same order on all ranks
+  Index n_interior = 0;          ///< interior faces
+  Csr face_points;               ///< per local face; turning right-handed about the face vector
+  std::vector<Index> owner;      ///< per local face
+  std::vector<Index> neighbour;  ///< per interior face
+  std::vector<Patch> patches;    ///< the same names in the same order on all ranks
 
   std::vector<Vec3> reference_points;  ///< per local point, as read [m]
   Geometry reference;                  ///< geometry of the reference points
@@ -86,13 +89,14 @@ struct Mesh {
   }
 };
 
-/// Geometry for these points (per local point). Quadrilateral faces are cut into two triangles by the diagonal
-/// through their point with the smallest point_id, so both sides agree. Collective (ghost cells come by halo update).
+/// Geometry for these points (per local point). Quadrilateral faces are cut into two triangles by the
+/// diagonal through their point with the smallest point_id, so both sides agree. Collective (ghost cells come
+/// by halo update).
 Geometry compute_geometry(const Mesh& mesh, std::span<const Vec3> points);
 
-/// Volume swept by each face when its points go linearly from `from` to `to` [m^3], positive along the face vector
-/// (out of the owner); thesis (4.16)-(4.17), exact, with the same diagonals as compute_geometry. Per local face.
-/// The signed sum over a cell's faces is its change of volume to round-off.
+/// Volume swept by each face when its points go linearly from `from` to `to` [m^3], positive along the face
+/// vector (out of the owner); thesis (4.16)-(4.17), exact, with the same diagonals as compute_geometry. Per
+/// local face. The signed sum over a cell's faces is its change of volume to round-off.
 std::vector<double> swept_volumes(const Mesh& mesh, std::span<const Vec3> from, std::span<const Vec3> to);
 
 }  // namespace couplet

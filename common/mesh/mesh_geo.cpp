@@ -74,8 +74,7 @@ int run(const std::vector<std::string>& command, const std::filesystem::path& ou
   if (error == ENOENT)
     throw Error(
         "A .geo is meshed by the program '{}', which is not on the PATH. Install it (Debian: apt install "
-        "gmsh) or "
-        "give a .msh file instead.",
+        "gmsh) or give a .msh file instead.",
         command[0]);
   if (error != 0) throw Error("The program '{}' cannot be started: {}.", command[0], std::strerror(error));
   int status = 0;
@@ -115,8 +114,7 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim) {
   if (!std::ofstream(log))
     throw Error(
         "The mesh of '{}' is to be written beside it, but the folder cannot be written to. Change the "
-        "permissions, "
-        "or mesh it elsewhere and give the .msh.",
+        "permissions, or mesh it elsewhere and give the .msh.",
         geo.string());
   log::info("meshing {} with gmsh", geo.string());
   int code = 0;

@@ -54,8 +54,8 @@ void MshCursor::end_section() {
   while (!at_end() && text.empty()) text = line();
   if (text != "$End" + section_)
     fail(fmt::format(
-        "Expected $End{} here, found '{:.40}'. The counts in the section do not fit its content, or the "
-        "file was not written fully.",
+        "Expected $End{} here, found '{:.40}'. The counts in the section do not fit its content, or the file "
+        "was not written fully.",
         section_, text));
 }
 
@@ -118,8 +118,7 @@ const MshElementType& msh_type_or_fail(const MshCursor& cursor, int gmsh) {
   if (const MshElementType* type = find_msh_type(gmsh)) return *type;
   cursor.fail(fmt::format(
       "Element type {} is not one of line, triangle, quadrilateral, tetrahedron, hexahedron, prism or "
-      "pyramid of first order. If the mesh has curved elements, mesh again with Mesh.ElementOrder "
-      "= 1.",
+      "pyramid of first order. If the mesh has curved elements, mesh again with Mesh.ElementOrder = 1.",
       gmsh));
 }
 

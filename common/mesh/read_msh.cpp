@@ -27,8 +27,8 @@ bool read_format(MshCursor& in) {
   const long mode = in.text_integer(), data_size = in.text_integer();
   if (version != 2.2 && version != 4.1)
     in.fail(fmt::format(
-        "Version {} of the .msh format is not read. Save the mesh as version 4.1 (gmsh -format msh41) or "
-        "2.2 (gmsh -format msh22).",
+        "Version {} of the .msh format is not read. Save the mesh as version 4.1 (gmsh -format msh41) or 2.2 "
+        "(gmsh -format msh22).",
         version));
   if (data_size != 8) in.fail(fmt::format("Numbers of {} bytes are not read; 8 are expected.", data_size));
   in.end_of_line();

@@ -118,8 +118,7 @@ void check_elements(const RawMesh& raw, std::span<const HalfFace> cells, std::sp
   if (cells.empty())
     throw Error(
         "Patch '{}' has a face at {} that is no face of any cell. Mesh the boundary and the interior "
-        "together "
-        "so that their points agree.",
+        "together so that their points agree.",
         name, where());
   if (cells.size() == 2)
     throw Error(
@@ -166,8 +165,7 @@ Faces build_faces(const RawMesh& raw) {
     if (cells.size() > 2)
       throw Error(
           "{} cells share the face at {}. A face has two cells at most; the mesh has cells twice or cells "
-          "that "
-          "overlap.",
+          "that overlap.",
           cells.size(), place(mean_point(raw, halves.points(cells[0])), raw.dim));
     check_elements(raw, cells, elements);
     if (cells.size() == 2)

@@ -104,6 +104,25 @@ TEST_P(InterfaceMapOf, patch_named_twice_counts_once) {
   EXPECT_EQ(once.describe().vertices, twice.describe().vertices);
 }
 
+TEST_P(InterfaceMapOf, nothing_given_stands_for_zeros) {
+  const InterfaceMap map(mesh, {"xmax"});
+  EXPECT_EQ(map.scatter_vertices({}, 2), std::vector<double>(2 * map.points().size(), 0.0));
+  EXPECT_EQ(map.scatter_faces({}, 1), std::vector<double>(map.faces().size(), 0.0));
+}
+
+TEST(InterfaceMapErrors, data_of_another_size_is_refused) {
+  const Mesh mesh =
+      distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {3, 3, 0}, Vec3::Zero(), Vec3::Ones()));
+  try {
+    InterfaceMap(mesh, {"xmax"}).scatter_faces(std::vector<double>(5), 2);
+    FAIL() << "no error";
+  } catch (const Error& e) {
+    EXPECT_STREQ(e.what(),
+                 "The interface data that arrived has 5 values; 3 entries of 2 components were expected. "
+                 "Check that both participants describe the interface that they use.");
+  }
+}
+
 TEST(InterfaceMapErrors, unknown_patch_is_named_with_those_that_exist) {
   const Mesh mesh =
       distribute(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {3, 3, 0}, Vec3::Zero(), Vec3::Ones()));

@@ -105,8 +105,7 @@ TEST_F(LoadMesh, tells_how_to_install_gmsh_when_it_is_missing) {
   setenv("PATH", path.c_str(), 1);
   EXPECT_EQ(text,
             "A .geo is meshed by the program 'gmsh', which is not on the PATH. Install it (Debian: apt "
-            "install gmsh) "
-            "or give a .msh file instead.");
+            "install gmsh) or give a .msh file instead.");
 }
 
 TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two unit squares side by side: quadrilaterals on the left ("stiff"), triangles on the right ("soft").
 Point(1) = {0, 0, 0, 0.5}; Point(2) = {1, 0, 0, 0.5}; Point(3) = {2, 0, 0, 0.5};
 Point(4) = {2, 1, 0, 0.5}; Point(5) = {1, 1, 0, 0.5}; Point(6) = {0, 1, 0, 0.5};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cube of hexahedra, on it a cube of tetrahedra (pyramids on the quadrilaterals between), beside that half a cube of prisms.
 Point(1) = {0, 0, 0, 0.6}; Point(2) = {1, 0, 0, 0.6}; Point(3) = {1, 1, 0, 0.6}; Point(4) = {0, 1, 0, 0.6};
 Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
