@@ -16,9 +16,10 @@ namespace {
 // Equal to the project's version in CMakeLists.txt; a test compares them.
 constexpr const char* version = "0.1.0";
 
+using Items = std::vector<config::Item>;
+
 /// The first level of the program's parameters, a line each.
-std::string list_keys(const config::Section::Declare& declare) {
-  const std::vector<config::Item> items = config::describe(declare, config::Describe::everything);
+std::string list_keys(const Items& items) {
   std::size_t width = 0;
   for (const config::Item& item : items) width = std::max(width, item.facts.name.size());
   std::string out;
@@ -32,15 +33,20 @@ std::string list_keys(const config::Section::Declare& declare) {
 }
 
 std::string footer(const ProgramText& program) {
+  const Items items = config::describe(program.declare, config::Describe::everything);
+  const bool is_participant = std::any_of(
+      items.begin(), items.end(), [](const config::Item& item) { return item.facts.name == "program"; });
+  const std::string alone =
+      fmt::format("Alone:      mpirun -n 4 {} case.yaml --participant NAME\n", program.name);
   return fmt::format(
-      "Keys of this program's section under 'participants' in the YAML file ({0} --docs tells "
-      "everything):\n{1}\n"
-      "Alone:    mpirun -n 4 {0} case.yaml --participant NAME\n"
-      "Coupled:  mpirun -n 1 coupler case.yaml : -n 2 fluid_solver case.yaml : -n 1 solid_solver case.yaml"
-      " : -n 1 mesh_mover case.yaml\n"
-      "          Every program gets the same YAML file and the same --set options.\n"
-      "Exit code: 0 done, 1 the run failed, 2 the configuration or the command line is wrong.\n",
-      program.name, list_keys(program.declare));
+      "Keys of {} in the YAML file ({} --docs tells everything):\n{}\n{}"
+      "Coupled:    mpirun -n 1 coupler case.yaml : -n 2 fluid_solver case.yaml : -n 1 solid_solver case.yaml "
+      ": "
+      "-n 1 mesh_mover case.yaml\n"
+      "            Every program gets the same YAML file and the same --set options.\n"
+      "Exit codes: 0 done, 1 the run failed, 2 the configuration or the command line is wrong.",
+      is_participant ? "this program's section under 'participants'" : "the section 'coupling'", program.name,
+      list_keys(items), is_participant ? alone : "");
 }
 
 std::string explain_extra(const CLI::App& app, const std::string& word) {
@@ -74,26 +80,23 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
       ->allow_extra_args(false);
   app.add_option("--restart", line.restart_folder, "go on from the checkpoints in this folder")
       ->type_name("FOLDER");
-  CLI::Option* check_option =
-      app.add_flag("--check", check, "only check the configuration: exit code 0 or 2");
-  CLI::Option* docs_option = app.add_flag("--docs", docs, "print the reference of all keys as Markdown");
-  CLI::Option* schema_option =
-      app.add_flag("--schema", schema, "print the JSON schema of all keys, for editors");
-  CLI::Option* print_option =
-      app.add_flag("--print-config", print_config, "print all values in force as YAML");
-  const std::vector<CLI::Option*> tasks{check_option, docs_option, schema_option, print_option};
-  for (CLI::Option* a : tasks)
-    for (CLI::Option* b : tasks)
-      if (a != b) a->excludes(b);
-  CLI::Option* verbose_option = app.add_flag("-v,--verbose", verbose, "every rank tells more");
-  app.add_flag("-q,--quiet", quiet, "warnings and errors only")->excludes(verbose_option);
-
+  app.add_flag("--check", check, "only check the configuration: exit code 0 or 2");
+  app.add_flag("--docs", docs, "print the reference of all keys as Markdown");
+  app.add_flag("--schema", schema, "print the JSON schema of all keys, for editors");
+  app.add_flag("--print-config", print_config, "print all values in force as YAML");
+  app.add_flag("-v,--verbose", verbose, "every rank tells more");
+  app.add_flag("-q,--quiet", quiet, "warnings and errors only");
   // What is left over is told in our words, with the option that was meant.
   app.allow_extras();
   try {
     app.parse(argc, argv);
     if (const std::vector<std::string> rest = app.remaining(); !rest.empty())
       throw CLI::ExtrasError(explain_extra(app, rest.front()), CLI::ExitCodes::ExtrasError);
+    if (check + docs + schema + print_config > 1)
+      throw CLI::ExcludesError("Give one of --check, --docs, --schema and --print-config, not several.",
+                               CLI::ExitCodes::ExcludesError);
+    if (verbose && quiet)
+      throw CLI::ExcludesError("Give --verbose or --quiet, not both.", CLI::ExitCodes::ExcludesError);
     if (line.case_file.empty() && !docs && !schema)
       throw CLI::ValidationError("Give the YAML file of the case, for example: " + program.name +
                                  " case.yaml");

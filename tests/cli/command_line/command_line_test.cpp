@@ -12,9 +12,11 @@ using Task = CommandLine::Task;
 
 ParsedCommandLine parse(std::vector<const char*> arguments) {
   static double density = 1000;
+  static std::string name;
   arguments.insert(arguments.begin(), "solid_solver");
   return parse_command_line(static_cast<int>(arguments.size()), arguments.data(),
                             {"solid_solver", "Elastic solids.", [](config::Section& s) {
+                               s.value("program", name);
                                s.value("density", density).unit("kg/m^3").required().doc("mass per volume");
                              }});
 }
@@ -51,9 +53,9 @@ TEST(CommandLine, help_tells_options_keys_and_how_to_launch) {
   EXPECT_EQ(parsed.exit_code, 0);
   for (const char* text :
        {"Elastic solids.", "--participant NAME", "--set a.b=v", "--restart FOLDER", "--check",
-        "density  mass per volume [kg/m^3] (required)", "mpirun -n 4 solid_solver case.yaml",
+        "  density  mass per volume [kg/m^3] (required)", "mpirun -n 4 solid_solver case.yaml",
         "mpirun -n 1 coupler case.yaml : -n 2 fluid_solver case.yaml : -n 1 solid_solver case.yaml",
-        "Exit code: 0"})
+        "Exit codes: 0", "Keys of this program's section under 'participants'"})
     EXPECT_THAT(parsed.output, HasSubstr(text));
 }
 
@@ -74,8 +76,9 @@ TEST(CommandLine, a_wrong_command_line_leaves_with_code_2_and_says_why) {
   EXPECT_EQ(message({"a.yaml", "--chekc"}),
             "There is no option or argument '--chekc'. Did you mean '--check'?");
   EXPECT_EQ(message({"a.yaml", "--set"}), "--set: 1 required a.b=v missing");
-  EXPECT_EQ(message({"a.yaml", "-v", "-q"}), "--verbose excludes --quiet");
-  EXPECT_EQ(message({"a.yaml", "--check", "--docs"}), "--check excludes --docs");
+  EXPECT_EQ(message({"a.yaml", "-v", "-q"}), "Give --verbose or --quiet, not both.");
+  EXPECT_EQ(message({"a.yaml", "--check", "--docs"}),
+            "Give one of --check, --docs, --schema and --print-config, not several.");
 }
 
 }  // namespace
