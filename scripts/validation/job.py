@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How a bar gets its numbers: from the project's programs, test executables and scripts, never from a model beside them."""
+import dataclasses
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+from typing import Callable
+
+
+@dataclasses.dataclass
+class Bar:
+    quantity: str
+    wanted: str
+    measure: Callable  # (job) -> (got, met)
+
+
+class Job:
+    """Paths, a scratch folder, and results that several bars share (each made once)."""
+
+    def __init__(self, root, build, quick):
+        self.root, self.build, self.quick, self._kept = root, build, quick, {}
+        self.environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1",
+                                OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+
+    def __enter__(self):
+        self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="couplet-validate-"))
+        return self
+
+    def __exit__(self, *_):
+        shutil.rmtree(self.scratch, ignore_errors=True)
+
+    def once(self, key, make):
+        if key not in self._kept:
+            self._kept[key] = make()
+        return self._kept[key]
+
+    def run(self, command, timeout=1800, **options):
+        return subprocess.run([str(c) for c in command], capture_output=True, text=True, timeout=timeout,
+                              env=self.environment, **options)
+
+    # -- test executables ---------------------------------------------------------------------------------------------
+    def gtest(self, name, filter_="*", timeout=1200):
+        """Runs a test executable; gives {"Suite.test": {"passed": bool, **recorded properties}} and its output."""
+        def make():
+            program = next((p for p in (self.build / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK)), None)
+            if program is None:
+                raise FileNotFoundError(f"test executable {name} is not built")
+            file = self.scratch / f"{name}.json"
+            result = self.run([program, f"--gtest_filter={filter_}", f"--gtest_output=json:{file}"], timeout,
+                              cwd=self.scratch)
+            tests = {}
+            for suite in json.loads(file.read_text())["testsuites"]:
+                for test in suite["testsuite"]:
+                    known = {"name", "value_param", "type_param", "status", "result", "timestamp", "time", "classname",
+                             "failures", "file", "line"}
+                    tests[f"{suite['name']}.{test['name']}"] = {
+                        "passed": not test.get("failures") and test.get("result") == "COMPLETED",
+                        **{k: v for k, v in test.items() if k not in known}}
+            if not tests:
+                raise LookupError(f"{name} has no test {filter_}")
+            return tests, result.stdout
+        return self.once(("gtest", name, filter_), make)
+
+    def recorded(self, name, pattern, key):
+        """All values of a recorded property in the tests whose name matches, and whether all those tests passed."""
+        tests, _ = self.gtest(name)
+        chosen = {t: v for t, v in tests.items() if re.search(pattern, t)}
+        values = [float(v[key]) for v in chosen.values() if key in v]
+        if not values:
+            raise LookupError(f"no test of {name} matching '{pattern}' recorded '{key}'")
+        return values, all(v["passed"] for v in chosen.values())
+
+    def ctest(self, pattern, timeout=1800):
+        """Runs registered tests by name; gives (passed, total, skipped, output)."""
+        def make():
+            result = self.run(["ctest", "--test-dir", self.build, "-R", pattern, "-V"], timeout)
+            passed = len(re.findall(r"^\s*\d+/\d+ Test.*\bPassed\b", result.stdout, flags=re.M))
+            skipped = len(re.findall(r"\*\*\*Skipped", result.stdout))
+            total = len(re.findall(r"^\s*\d+/\d+ Test ", result.stdout, flags=re.M))
+            return passed, total, skipped, result.stdout
+        return self.once(("ctest", pattern), make)
+
+    # -- programs -----------------------------------------------------------------------------------------------------
+    def coupled(self, case, folder, overrides=(), ranks=(1, 1, 1, 1), timeout=3600):
+        """Runs a coupled case into scratch/folder and gives that folder. Ranks: coupler, fluid, solid, mover."""
+        def make():
+            out = self.scratch / folder
+            sets = [f"--set=simulation.output.folder={out}", *(f"--set={o}" for o in overrides)]
+            command = ["mpirun", "--oversubscribe"]
+            for i, (program, n) in enumerate(zip(("coupler", "fluid_solver", "solid_solver", "mesh_mover"), ranks)):
+                command += [":"] * (i > 0) + ["-n", str(n), self.build / "bin" / program, case, *sets]
+            result = self.run(command, timeout)
+            if result.returncode != 0:
+                last = (result.stderr.strip() or result.stdout.strip()).splitlines()[-3:]
+                raise RuntimeError(f"the coupled run ended with code {result.returncode}: {' / '.join(last)}")
+            return out
+        return self.once(("coupled", folder), make)
