@@ -174,6 +174,7 @@ void Solid::save(CheckpointWriter& file) const {
   file.write("face-displacement", state_.face_u);
   file.write("face-velocity", state_.face_v);
   file.write("face-offset", state_.offset);
+  file.write("face-offset-rate", state_.offset_rate);
   file.write("known-displacement", known_accepted_);
   file.write("known-rate", known_rate_accepted_);
   file.write_scalar("time", state_.time);
@@ -189,6 +190,7 @@ void Solid::load(CheckpointReader& file) {
   file.read("face-displacement", state_.face_u);
   file.read("face-velocity", state_.face_v);
   file.read("face-offset", state_.offset);
+  file.read("face-offset-rate", state_.offset_rate);
   file.read("known-displacement", known_accepted_);
   file.read("known-rate", known_rate_accepted_);
   state_.time = file.read_scalar("time");

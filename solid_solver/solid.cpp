@@ -54,7 +54,7 @@ void Solid::start_from_rest() {
   state_.cell_u.assign(std::size_t(mesh_.cells.n_local()) * dim, 0);
   state_.cell_v = state_.cell_u;
   state_.face_u.assign(std::size_t(mesh_.boundary.n_local()) * dim, 0);
-  state_.face_v = state_.offset = state_.face_u;
+  state_.face_v = state_.offset = state_.offset_rate = state_.face_u;
   known_.assign(prescribed_.size() * dim, 0);
   known_rate_ = known_accepted_ = known_rate_accepted_ = known_in_stress_ = known_;
   face_force_ = std::vector<double>(std::size_t(mesh_.boundary.n_owned()) * dim, 0);
@@ -202,7 +202,8 @@ void Solid::finish_dynamic(const System& system) {
     trial_.cell_u[i] = state_.cell_u[i] + 2 * half;
     trial_.cell_v[i] = 4 * half / dt - state_.cell_v[i];
   }
-  // delta^{n+1} from delta^{n+1/2} and delta^{n-1/2}; equal steps: 3/2 and -1/2.
+  // delta = u_B - u_P at n+1 from the middles n+1/2 and n-1/2 (equal steps: 3/2 and -1/2), then its rate
+  // likewise from (delta^{n+1} - delta^n) / dt, which lives at n+1/2.
   const double slope = state_.steps > 0 ? dt / (dt + state_.dt) : 0;
   const auto& faces = elastic_.traction_faces();
   for (std::size_t i = 0; i < faces.size(); ++i)
@@ -213,7 +214,9 @@ void Solid::finish_dynamic(const System& system) {
       const double end = middle + slope * (middle - state_.offset[b]);
       trial_.offset[b] = middle;
       trial_.face_u[b] = trial_.cell_u[c] + end;
-      trial_.face_v[b] = trial_.cell_v[c] + (end - (state_.face_u[b] - state_.cell_u[c])) / dt;
+      const double rate = (end - (state_.face_u[b] - state_.cell_u[c])) / dt;
+      trial_.offset_rate[b] = rate;
+      trial_.face_v[b] = trial_.cell_v[c] + rate + slope * (rate - state_.offset_rate[b]);
     }
   set_prescribed_faces();
   update_trial_ghosts();

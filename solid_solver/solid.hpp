@@ -32,7 +32,8 @@ struct SolidState {
   double time = 0, dt = 0;  ///< dt: of the step that ended here
   int steps = 0;            ///< accepted so far
   std::vector<double> cell_u, cell_v, face_u, face_v;
-  std::vector<double> offset;  ///< u_B - u_P of the traction faces at the middle of the last step
+  std::vector<double> offset;       ///< u_B - u_P of the traction faces at the middle of the last step
+  std::vector<double> offset_rate;  ///< v_B - v_P there
 };
 
 /// Force on the solid at a constrained patch [N].

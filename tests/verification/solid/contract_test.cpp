@@ -1,1 +1,211 @@
 // SPDX-License-Identifier: Apache-2.0
+// What the participant contract asks of the solid, on 1, 2 and 3 ranks.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+RawMesh flap_mesh(BoxCells cells) {
+  RawMesh raw = make_box(cells, {3, 8, 2}, Vec3::Zero(), Vec3(0.1, 1, dimension_of(cells) == 3 ? 0.05 : 0));
+  perturb_interior(raw, 0.2, 3);
+  return raw;
+}
+
+/// Clamped at ymin, wetted on three sides.
+SolidParameters flap_parameters(int dim) {
+  SolidParameters p = box_parameters(dim);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.material = {3000, 4e6, 0.3};
+  p.boundaries["ymin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+  for (const char* name : {"xmin", "xmax", "ymax"}) p.boundaries[name] = boundary(Type::interface_);
+  return p;
+}
+
+std::unique_ptr<Solid> make_flap(BoxCells cells, MPI_Comm comm = MPI_COMM_WORLD) {
+  return std::make_unique<Solid>(distribute(comm, flap_mesh(cells)), flap_parameters(dimension_of(cells)),
+                                 SolidContext{});
+}
+
+/// A load that is 5 Pa from the left, split between the two data.
+Exchange load_on(const Interface& interface, double factor) {
+  Exchange in;
+  for (std::size_t f = 0; f < interface.face_areas.size(); ++f)
+    for (int a = 0; a < interface.dim; ++a) {
+      const double force = interface.face_centres[f][0] < 1e-9 && a == 0 ? interface.face_areas[f].norm() : 0;
+      in["pressure-force"].push_back(4 * factor * force);
+      in["viscous-force"].push_back(1 * factor * force);
+    }
+  return in;
+}
+
+double difference(const std::vector<double>& a, const std::vector<double>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double largest = 0, size = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    largest = std::max(largest, std::abs(a[i] - b[i]));
+    size = std::max(size, std::abs(a[i]));
+  }
+  return size > 0 ? largest / size : largest;
+}
+
+class SolidContract : public ::testing::TestWithParam<BoxCells> {};
+INSTANTIATE_TEST_SUITE_P(Solid, SolidContract,
+                         ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                                           BoxCells::mixed));
+
+TEST_P(SolidContract, solve_starts_from_the_accepted_state_each_time) {
+  const auto solid = make_flap(GetParam());
+  const Interface interface = solid->initialise();
+  const Exchange one = load_on(interface, 1), other = load_on(interface, -3);
+  solid->begin_step({0, 0.01, Scheme::implicit, 0});
+  solid->solve(one);
+  solid->accept_step();
+  const std::vector<double> before = solid->state().cell_u;
+  solid->begin_step({0.01, 0.01, Scheme::implicit, 1});
+  const Exchange first = solid->solve(one);
+  solid->solve(other);
+  EXPECT_LT(difference(first.at("displacement"), solid->solve(one).at("displacement")), 1e-13);
+  solid->begin_step({0.01, 0.005, Scheme::implicit, 1});
+  solid->solve(other);
+  solid->begin_step({0.01, 0.01, Scheme::implicit, 1});
+  const Exchange again = solid->solve(one);
+  EXPECT_LT(difference(first.at("displacement"), again.at("displacement")), 1e-13);
+  EXPECT_LT(difference(first.at("velocity"), again.at("velocity")), 1e-13);
+  EXPECT_EQ(before, solid->state().cell_u);
+}
+
+TEST_P(SolidContract, interface_load_acts_as_the_same_traction) {
+  const auto coupled = make_flap(GetParam());
+  const Interface interface = coupled->initialise();
+  SolidParameters p = flap_parameters(dimension_of(GetParam()));
+  std::vector<std::string> traction(p.dimension, "0");
+  traction[0] = "5";
+  p.boundaries["xmin"] = boundary(Type::traction, traction);
+  Solid alone(distribute(MPI_COMM_WORLD, flap_mesh(GetParam())), p, SolidContext{});
+  alone.initialise();
+  for (int i = 0; i < 3; ++i) {
+    coupled->begin_step({0.01 * i, 0.01, Scheme::implicit, i});
+    coupled->solve(load_on(interface, 1));
+    coupled->accept_step();
+    step(alone, 0.01);
+  }
+  EXPECT_LT(difference(coupled->state().cell_u, alone.state().cell_u), 1e-12);
+  EXPECT_NEAR(coupled->total_load()[0], 5 * (p.dimension == 3 ? 0.05 : 1), 1e-12);
+}
+
+TEST_P(SolidContract, interface_values_are_those_of_the_vertices) {
+  const auto solid = make_flap(GetParam());
+  const Interface interface = solid->initialise();
+  solid->begin_step({0, 0.01, Scheme::implicit, 0});
+  const Exchange out = solid->solve(load_on(interface, 1));
+  solid->accept_step();
+  if (comm_rank(MPI_COMM_WORLD) == 0) {
+    ASSERT_EQ(out.at("displacement").size(), interface.vertices.size() * interface.dim);
+    ASSERT_EQ(out.at("velocity").size(), interface.vertices.size() * interface.dim);
+    for (std::size_t i = 0; i < interface.vertices.size(); ++i)
+      if (interface.vertices[i][1] < 1e-9) {
+        EXPECT_EQ(out.at("displacement")[i * interface.dim], 0);
+      }
+  }
+  // The vertices at the top move with the load; all ranks look at their own points.
+  const std::vector<double> points = solid->point_displacement();
+  double top = 0;
+  for (Index v = 0; v < solid->mesh().points.n_local(); ++v)
+    if (solid->mesh().reference_points[v][1] > 1 - 1e-9)
+      top = std::max(top, points[std::size_t(v) * interface.dim]);
+  double sent = 0;
+  if (comm_rank(MPI_COMM_WORLD) == 0)
+    for (std::size_t i = 0; i < interface.vertices.size(); ++i)
+      if (interface.vertices[i][1] > 1 - 1e-9)
+        sent = std::max(sent, out.at("displacement")[i * interface.dim]);
+  EXPECT_NEAR(max(MPI_COMM_WORLD, sent), max(MPI_COMM_WORLD, top), 1e-15);
+  EXPECT_GT(max(MPI_COMM_WORLD, top), 0);
+}
+
+TEST_P(SolidContract, all_ranks_together_give_what_one_rank_gives) {
+  const auto together = make_flap(GetParam());
+  const auto alone = make_flap(GetParam(), MPI_COMM_SELF);
+  const Interface there = together->initialise(), here = alone->initialise();
+  Exchange out, expected;
+  for (int i = 0; i < 5; ++i) {
+    together->begin_step({0.01 * i, 0.01, Scheme::implicit, i});
+    alone->begin_step({0.01 * i, 0.01, Scheme::implicit, i});
+    out = together->solve(load_on(there, 1 + i));
+    expected = alone->solve(load_on(here, 1 + i));
+    together->accept_step();
+    alone->accept_step();
+  }
+  std::map<GlobalIndex, Index> cell_of;
+  for (Index c = 0; c < alone->mesh().cells.n_owned(); ++c) cell_of[alone->mesh().cell_id[c]] = c;
+  const int dim = alone->mesh().dim;
+  std::vector<double> mine, theirs;
+  for (Index c = 0; c < together->mesh().cells.n_local(); ++c)
+    for (int a = 0; a < dim; ++a) {
+      mine.push_back(together->state().cell_u[std::size_t(c) * dim + a]);
+      theirs.push_back(alone->state().cell_u[std::size_t(cell_of.at(together->mesh().cell_id[c])) * dim + a]);
+    }
+  EXPECT_LT(difference(mine, theirs), 1e-10);
+  if (comm_rank(MPI_COMM_WORLD) == 0) {
+    EXPECT_LT(difference(out.at("displacement"), expected.at("displacement")), 1e-10);
+    EXPECT_LT(difference(out.at("velocity"), expected.at("velocity")), 1e-10);
+  }
+}
+
+TEST_P(SolidContract, a_loaded_checkpoint_continues_bit_for_bit) {
+  const int process = static_cast<int>(max(MPI_COMM_WORLD, comm_rank(MPI_COMM_WORLD) == 0 ? getpid() : 0));
+  const auto file =
+      std::filesystem::temp_directory_path() / fmt::format("couplet-solid-contract-{}.h5", process);
+  const auto solid = make_flap(GetParam());
+  const Interface interface = solid->initialise();
+  const auto advance = [&](Solid& s, int i) {
+    s.begin_step({0.01 * i, 0.01, Scheme::implicit, i});
+    const Exchange out = s.solve(load_on(interface, 1 + i));
+    s.accept_step();
+    return out;
+  };
+  for (int i = 0; i < 3; ++i) advance(*solid, i);
+  {
+    CheckpointWriter writer(MPI_COMM_WORLD, file);
+    solid->save(writer);
+    writer.close();
+  }
+  Exchange uninterrupted;
+  for (int i = 3; i < 6; ++i) uninterrupted = advance(*solid, i);
+  const auto restarted = make_flap(GetParam());
+  restarted->initialise();
+  {
+    CheckpointReader reader(MPI_COMM_WORLD, file);
+    restarted->load(reader);
+  }
+  Exchange continued;
+  for (int i = 3; i < 6; ++i) continued = advance(*restarted, i);
+  EXPECT_EQ(uninterrupted, continued);
+  EXPECT_EQ(solid->state().cell_v, restarted->state().cell_v);
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
+}
+
+TEST(SolidInterface, data_it_does_not_know_are_refused_by_name) {
+  const auto solid = make_flap(BoxCells::quadrilaterals);
+  solid->initialise();
+  solid->begin_step({0, 0.01, Scheme::implicit, 0});
+  EXPECT_THAT(
+      [&] {
+        solid->solve({{"temperature", {}}});
+      },
+      ::testing::ThrowsMessage<Error>(::testing::HasSubstr("The solid was given 'temperature'")));
+}
+
+}  // namespace
+}  // namespace couplet::testing
