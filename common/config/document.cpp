@@ -12,10 +12,15 @@
 namespace couplet::config {
 namespace {
 
-void find_duplicates(const YAML::Node& node, const std::string& path, std::vector<Message>& messages) {
+void find_duplicates(const YAML::Node& node, const std::string& path, std::vector<Message>& messages,
+                     int depth = 0) {
+  constexpr int deepest = 50;
+  if (depth > deepest)
+    throw Error("{}: this is nested deeper than {} levels. Does an anchor contain itself?",
+                path.substr(0, 60), deepest);
   if (node.IsSequence()) {
     for (std::size_t i = 0; i < node.size(); ++i)
-      find_duplicates(node[i], fmt::format("{}[{}]", path, i), messages);
+      find_duplicates(node[i], fmt::format("{}[{}]", path, i), messages, depth + 1);
   }
   if (!node.IsMap()) return;
   std::map<std::string, Place> seen;
@@ -32,7 +37,7 @@ void find_duplicates(const YAML::Node& node, const std::string& path, std::vecto
       messages.push_back({place, here,
                           fmt::format("this key stands here twice (first at {}:{}); remove one of the two.",
                                       first->second.line, first->second.column)});
-    find_duplicates(item.second, here, messages);
+    find_duplicates(item.second, here, messages, depth + 1);
   }
 }
 
@@ -130,7 +135,11 @@ Document Document::parse(const std::string& text, const std::string& name) {
   content.text = text;
   content.root = parse_yaml(text, name);
   std::vector<Message> messages;
-  find_duplicates(content.root, "", messages);
+  try {
+    find_duplicates(content.root, "", messages);
+  } catch (const Error& error) {
+    throw Error("{}: {}", name, error.what());
+  }
   if (!messages.empty()) throw Error(join(format_all(name, messages), "\n"));
   return document;
 }
@@ -148,6 +157,9 @@ void Document::set(const std::string& assignment) {
   } catch (const YAML::Exception& error) {
     throw Error("{}: the value is not valid YAML: {}.", option, error.msg);
   }
+  std::vector<Message> messages;
+  find_duplicates(value, path, messages);
+  if (!messages.empty()) throw Error("{}: {}: {}", option, messages[0].path, messages[0].text);
   if (std::find(parts.begin(), parts.end(), "") != parts.end())
     throw Error("{}: the path '{}' has an empty part.", option, path);
   std::string walked;

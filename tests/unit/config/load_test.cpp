@@ -75,6 +75,11 @@ TEST(Load, expressions_stay_text_and_numbers_in_them_are_si) {
   EXPECT_EQ(read(good + "load: -3").load.text, "-3");
 }
 
+TEST(Load, anchors_repeat_what_they_name) {
+  const Parameters p = read(good + "boundaries: {left: &in {type: inlet, velocity: [1, 2]}, right: *in}");
+  EXPECT_EQ(p.boundaries.at("right").velocity, Vec3(1, 2, 0));
+}
+
 TEST(Load, all_mistakes_of_a_file_come_at_once_and_in_file_order) {
   EXPECT_THAT(
       errors_of(

@@ -75,6 +75,10 @@ TEST(Override, a_path_that_leads_nowhere_is_refused) {
             "--set probes.2.name=x: 'probes' is a list of 2 entries, so an entry number from 0 is expected "
             "in place of "
             "'2'.");
+  EXPECT_EQ(error_of("damping={mass: 1, mass: 2}"),
+            "--set damping={mass: 1, mass: 2}: damping.mass: this key stands here twice (first at 1:2); "
+            "remove one of the "
+            "two.");
   EXPECT_EQ(error_of("mesh=[1"),
             "--set mesh=[1: the value is not valid YAML: end of sequence flow not found.");
 }
