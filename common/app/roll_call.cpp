@@ -47,8 +47,10 @@ std::string label(const Attendant& a) { return a.participant.empty() ? a.program
 
 /// "mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml ..."
 std::string launch_line(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected) {
-  std::map<std::string, int> ranks, users;
-  for (const Attendant& a : attendants) ++ranks[a.participant];
+  std::map<std::string, int> ranks, users, application;
+  for (const Attendant& a : attendants)
+    if (application.try_emplace(a.participant, a.application).first->second == a.application)
+      ++ranks[a.participant];
   for (const Expected& e : expected) ++users[e.program];
   std::string line = "mpirun";
   for (const Expected& e : expected) {

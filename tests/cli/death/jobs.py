@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs small MPMD jobs of the coupler and the two toy participants, and checks how they end."""
+import os
+import subprocess
+import sys
+import tempfile
+import time
+
+MPIRUN = ["mpirun", "--oversubscribe"]
+
+CASE = """\
+simulation:
+  end-time: {end}
+  time-step: 0.1 s
+  output: {{folder: out}}
+participants:
+  fluid: {{program: toy_piston, added-mass: 2 kg, driving-force: 1 N{fluid}}}
+  solid: {{program: toy_spring, mass: 0.5 kg, stiffness: 3 N/m{solid}}}
+coupling:
+  scheme: implicit
+  fluid: {{participant: fluid}}
+  structure: {{participant: solid}}
+  convergence: {{relative: 1e-10}}
+"""
+
+
+def case_text(end="1 s", fluid="", solid=""):
+    return CASE.format(end=end, fluid=fluid, solid=solid)
+
+
+class Suite:
+    """Scenarios that report themselves; each runs in an empty folder."""
+
+    def __init__(self):
+        programs = sys.argv[1:3]
+        os.environ["PATH"] = os.pathsep.join(programs + [os.environ["PATH"]])
+        self.failed = []
+
+    def scenario(self, name, command, cases, code, lines, fault=None, within=5.0, not_lines=()):
+        """`lines`: each must be part of one line of the output; `code`: exit code, or None for any but 0."""
+        with tempfile.TemporaryDirectory() as folder:
+            for file, text in cases.items():
+                with open(os.path.join(folder, file), "w", encoding="utf-8") as out:
+                    out.write(text)
+            environment = dict(os.environ)
+            environment.pop("COUPLET_FAULT", None)
+            if fault:
+                environment["COUPLET_FAULT"] = fault
+            start = time.monotonic()
+            # A group of its own: nothing may be left of it afterwards.
+            process = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                       start_new_session=True)
+            try:
+                output, _ = process.communicate(timeout=30)
+            except subprocess.TimeoutExpired:
+                os.killpg(process.pid, 9)
+                output, _ = process.communicate()
+                output += "\n(still running after 30 s)"
+            seconds = time.monotonic() - start
+            problems = []
+            if seconds > within:
+                problems.append(f"took {seconds:.1f} s, allowed are {within:g} s")
+            wrong_code = process.returncode == 0 if code is None else process.returncode != code
+            if wrong_code:
+                problems.append(f"exit code {process.returncode}")
+            left = living_in_session(process.pid)
+            if left:
+                problems.append(f"processes left: {left}")
+            for line in lines:
+                if not any(line in printed for printed in output.splitlines()):
+                    problems.append(f"no line holds: {line}")
+            for line in not_lines:
+                if line in output:
+                    problems.append(f"a line holds: {line}")
+        print(f"{'not ok' if problems else 'ok'}  {name}  ({seconds:.1f} s)", flush=True)
+        if problems:
+            self.failed.append(name)
+            print("  " + "\n  ".join(problems))
+            print("  output:\n    " + "\n    ".join(output.splitlines()[-40:]), flush=True)
+
+    def finish(self):
+        print(f"{len(self.failed)} scenarios failed" if self.failed else "all scenarios passed")
+        sys.exit(1 if self.failed else 0)
+
+
+def living_in_session(session):
+    """Processes of the job's session that are neither gone nor about to be."""
+    left = []
+    for entry in os.listdir("/proc"):
+        if not entry.isdigit():
+            continue
+        try:
+            with open(f"/proc/{entry}/stat", encoding="utf-8", errors="replace") as file:
+                fields = file.read().rpartition(")")[2].split()
+        except OSError:
+            continue
+        if int(fields[3]) == session and fields[0] not in "ZX":
+            left.append(int(entry))
+    return left
+
+
+def mpmd(*parts):
+    """("1 coupler case.yaml", ...) to the words of an mpirun command."""
+    words = list(MPIRUN)
+    for i, part in enumerate(parts):
+        words += ([":"] if i else []) + ["-n"] + part.split()
+    return words
