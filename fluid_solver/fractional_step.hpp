@@ -63,6 +63,7 @@ class FractionalStep {
   void solve_viscous(const State<D>& from, const Vectors<D>& w, double a);
   void add_back_old_pressure(const State<D>& from);
   void predict_flux(const State<D>& from);
+
   void extrapolate_pressure(const State<D>& from);
   void set_boundary_flux(const Vectors<D>& w);
   void balance_closed_domain();

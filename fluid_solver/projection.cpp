@@ -98,16 +98,15 @@ void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w) {
   set_forces(from);
 }
 
-/// Wall: grad p . S = -(rho/dt) [(w^{n+1} - w^n) - (u^p - u^n)_P].S, the momentum balance along the normal;
-/// its first part is the added-mass pressure, exact for a rigidly moving box. p_b = p_P + (grad p . S - grad
-/// p~ . k)/g.
+/// Wall: grad p . S = -(rho/dt) (w^{n+1} - w^n).S, the added-mass pressure, exact for a rigidly moving box;
+/// p_b = p_P + (grad p . S - grad p~ . k)/g.
 template <int D>
 void FractionalStep<D>::set_boundary_pressure(const State<D>& from, const Vectors<D>& w) {
   const Placement<D>& now = *step_.to;
   for (std::size_t b = 0; b < w.size(); ++b) {
     if (boundary_.kind()[b] == FaceKind::pressure) continue;
     const Index f = mesh_.n_interior + static_cast<Index>(b), p = mesh_.owner[f];
-    const Vec<D> acceleration = (w_[b] - from.w[b]) - (u_p_[p] - from.u[p]);
+    const Vec<D> acceleration = w_[b] - from.w[b];
     double normal = -rho_ / step_.dt * acceleration.dot(now.area[f]);
     if (!gradient_guess_.empty()) normal -= gradient_guess_[p].dot(now.oblique[f]);
     p_boundary_[b] = p_[p] + normal / now.conductance[f];
