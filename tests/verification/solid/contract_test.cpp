@@ -32,9 +32,12 @@ SolidParameters flap_parameters(int dim) {
   return p;
 }
 
+std::unique_ptr<Solid> make_flap(const Mesh& mesh) {
+  return std::make_unique<Solid>(mesh, flap_parameters(mesh.dim), SolidContext{});
+}
+
 std::unique_ptr<Solid> make_flap(BoxCells cells, MPI_Comm comm = MPI_COMM_WORLD) {
-  return std::make_unique<Solid>(distribute(comm, flap_mesh(cells)), flap_parameters(dimension_of(cells)),
-                                 SolidContext{});
+  return make_flap(distribute(comm, flap_mesh(cells)));
 }
 
 /// A load that is 5 Pa from the left, split between the two data.
@@ -86,13 +89,14 @@ TEST_P(SolidContract, solve_starts_from_the_accepted_state_each_time) {
 }
 
 TEST_P(SolidContract, interface_load_acts_as_the_same_traction) {
-  const auto coupled = make_flap(GetParam());
+  const Mesh mesh = distribute(MPI_COMM_WORLD, flap_mesh(GetParam()));
+  const auto coupled = make_flap(mesh);
   const Interface interface = coupled->initialise();
   SolidParameters p = flap_parameters(dimension_of(GetParam()));
   std::vector<std::string> traction(p.dimension, "0");
   traction[0] = "5";
   p.boundaries["xmin"] = boundary(Type::traction, traction);
-  Solid alone(distribute(MPI_COMM_WORLD, flap_mesh(GetParam())), p, SolidContext{});
+  Solid alone(mesh, p, SolidContext{});
   alone.initialise();
   for (int i = 0; i < 3; ++i) {
     coupled->begin_step({0.01 * i, 0.01, Scheme::implicit, i});
@@ -166,7 +170,8 @@ TEST_P(SolidContract, a_loaded_checkpoint_continues_bit_for_bit) {
   const int process = static_cast<int>(max(MPI_COMM_WORLD, comm_rank(MPI_COMM_WORLD) == 0 ? getpid() : 0));
   const auto file =
       std::filesystem::temp_directory_path() / fmt::format("couplet-solid-contract-{}.h5", process);
-  const auto solid = make_flap(GetParam());
+  const Mesh mesh = distribute(MPI_COMM_WORLD, flap_mesh(GetParam()));
+  const auto solid = make_flap(mesh);
   const Interface interface = solid->initialise();
   const auto advance = [&](Solid& s, int i) {
     s.begin_step({0.01 * i, 0.01, Scheme::implicit, i});
@@ -182,7 +187,7 @@ TEST_P(SolidContract, a_loaded_checkpoint_continues_bit_for_bit) {
   }
   Exchange uninterrupted;
   for (int i = 3; i < 6; ++i) uninterrupted = advance(*solid, i);
-  const auto restarted = make_flap(GetParam());
+  const auto restarted = make_flap(mesh);
   restarted->initialise();
   {
     CheckpointReader reader(MPI_COMM_WORLD, file);
