@@ -156,7 +156,10 @@ std::vector<std::string> Solid::judge_left_out_effects() {
         "inertia left out (static): it would have reached {:.2g} of the load; {}.", inertia_over_load_,
         inertia_over_load_ < 0.01 ? "leaving it out was sound" : "use 'analysis: dynamic'"));
   if (is_dynamic() && !parameters_.damping)
-    sentences.push_back("structural damping left out: free vibration does not decay.");
+    sentences.push_back(
+        "structural damping left out: free vibration does not decay, and on distorted meshes the highest "
+        "modes may grow "
+        "at small time steps; 'damping: {stiffness: 2e-5 s}' would stop that.");
   return sentences;
 }
 

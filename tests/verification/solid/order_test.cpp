@@ -110,6 +110,8 @@ Errors measured_slope(BoxCells cells, const char* name, const std::vector<int>& 
     }
     fmt::print("\n");
   }
+  ::testing::Test::RecordProperty("displacement_slope", fmt::format("{:.4f}", last.displacement));
+  ::testing::Test::RecordProperty("stress_slope", fmt::format("{:.4f}", last.stress));
   return last;
 }
 
