@@ -4,6 +4,7 @@
 #include <petscmat.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
 
 #include "common/linalg/petsc_check.hpp"
@@ -32,6 +33,8 @@ Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> sec
 std::vector<int> partition(const Csr& graph, int parts) {
   const Index n = graph.size();
   if (parts == 1) return std::vector<int>(n, 0);
+  // With several threads Scotch 7 gives another partition each time, and a restart would not be bit for bit.
+  setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);
   // PETSc frees both arrays with the matrix.
   PetscInt *rows = nullptr, *columns = nullptr;
   petsc_check(PetscMalloc1(n + 1, &rows));

@@ -128,5 +128,16 @@ TEST_P(Distribute, every_boundary_face_of_a_ghost_is_there) {
   EXPECT_EQ(std::size_t(mesh.boundary.n_ghost()), expected);
 }
 
+TEST(DistributeTiny, mesh_of_one_cell_a_rank_is_whole) {
+  const int size = comm_size(MPI_COMM_WORLD);
+  const Mesh mesh = distribute(
+      MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {size, 1, 0}, Vec3::Zero(), Vec3(size, 1, 0)));
+  double volume = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
+  EXPECT_NEAR(sum(MPI_COMM_WORLD, volume), size, 1e-14);
+  EXPECT_EQ(mesh.cells.n_global(), size);
+  EXPECT_EQ(mesh.points.n_global(), 2 * (size + 1));
+}
+
 }  // namespace
 }  // namespace couplet
