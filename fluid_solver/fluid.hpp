@@ -40,6 +40,8 @@ class Fluid {
   const State<D>& state() const { return accepted_; }
   /// For checkpoints: replaces the accepted state.
   void restore(State<D> state);
+  /// The preconditioner is made anew at the next solve: a run that goes on and one that restarts do the same.
+  void refresh_solvers() { step_.refresh_solvers(); }
   /// Time means over the coupling step of the forces on what is outside, per boundary face [N].
   const Vectors<D>& pressure_force() const { return pressure_force_; }
   const Vectors<D>& viscous_force() const { return viscous_force_; }

@@ -54,6 +54,7 @@ class FractionalStep {
   /// Of the last project(), acting on what is outside the fluid [N]: +p_b S^{n+1/2} and the wall shear.
   const Vectors<D>& pressure_force() const { return pressure_force_; }
   const Vectors<D>& viscous_force() const { return viscous_force_; }
+  void refresh_solvers() { pressure_.refresh(); }
   const StepStatistics& statistics() const { return statistics_; }
   double size() const { return step_.dt; }
 

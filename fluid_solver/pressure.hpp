@@ -19,6 +19,8 @@ class PressureEquation {
   PressureEquation(const Mesh& mesh, const Boundary<D>& boundary);
   /// Collective.
   void set(const Placement<D>& at);
+  /// A new preconditioner at the next solve.
+  void refresh() { solver_->refresh(); }
   /// `b`: per owned cell, made compatible here when the domain is closed; `p`: per local cell, guess on
   /// entry, mean zero in a closed domain, ghosts current on exit. Stops at max(relative |b|, absolute).
   /// Collective.

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/program.hpp"
+#include "common/mesh/load.hpp"
+#include "fluid_solver/participant.hpp"
+
+int main(int argc, char** argv) {
+  couplet::fluid::FluidParameters parameters;
+  const couplet::Program program{
+      .name = "fluid_solver",
+      .description = "incompressible flow on a moving mesh, second order in space and time",
+      .declare = [&](couplet::config::Section& section) { couplet::fluid::declare(section, parameters); },
+      .make =
+          [&](const couplet::ParticipantContext& context) {
+            couplet::Mesh mesh =
+                couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension);
+            couplet::fluid::MotionLink link;
+            if (context.mesh_peer != MPI_COMM_NULL)
+              link = [peer = context.mesh_peer](const couplet::Mesh& m) {
+                return couplet::make_mesh_motion_source(peer, m);
+              };
+            return couplet::fluid::make_participant(
+                std::move(mesh), parameters, {context.name, context.output_folder, context.restart_time},
+                link);
+          }};
+  return couplet::run_program(argc, argv, program);
+}

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/fv/vertex_interpolation.hpp"
+#include "common/io/field_writer.hpp"
+#include "common/io/probe.hpp"
+#include "common/io/series.hpp"
+#include "fluid_solver/fluid.hpp"
+
+namespace couplet::fluid {
+
+/// Where a fluid writes to.
+struct FluidContext {
+  std::string name = "fluid";
+  std::filesystem::path output_folder;  ///< empty: nothing is written
+  double restart_time = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The files of a fluid: fields, forces.csv, balance.csv, probes.csv. They are opened when first written to.
+template <int D>
+class FluidOutput {
+ public:
+  FluidOutput(const Fluid<D>& fluid, FluidContext context);
+  void write_fields(double time);
+  void write_series(double time);
+
+ private:
+  void write_forces(double time);
+  void write_balance(double time);
+  void write_probes(double time);
+  Series open(const std::string& file, const std::vector<std::string>& columns) const;
+
+  const Fluid<D>& fluid_;
+  const Mesh& mesh_;
+  FluidContext context_;
+  bool root_;
+  std::vector<Probe> probes_;
+  std::optional<VertexInterpolation> interpolation_;  // only with probes
+  std::vector<const Patch*> walls_;
+  std::optional<FieldWriter> fields_;
+  std::optional<Series> forces_, balance_, probe_series_;  // on rank 0
+};
+
+}  // namespace couplet::fluid

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/participant.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "common/io/checkpoint.hpp"
+#include "fluid_solver/state_io.hpp"
+
+namespace couplet::fluid {
+
+template <int D>
+FluidParticipant<D>::FluidParticipant(Mesh mesh, const FluidParameters& parameters, FluidContext context,
+                                      const MotionLink& link)
+    : mesh_(std::move(mesh)),
+      fluid_(std::make_unique<Fluid<D>>(mesh_, parameters, bool(link))),
+      output_(*fluid_, std::move(context)) {
+  if (link) motion_ = link(mesh_);
+  if (fluid_->boundary().interface_patches().empty()) return;
+  interface_ = std::make_unique<InterfaceMap>(mesh_, fluid_->boundary().interface_patches());
+  const std::vector<Index>& points = interface_->points();
+  std::vector<Index> row;
+  for (const Index face : interface_->faces()) {
+    row.clear();
+    for (const Index point : mesh_.face_points[face])
+      row.push_back(
+          static_cast<Index>(std::lower_bound(points.begin(), points.end(), point) - points.begin()));
+    interface_vertices_.push_row(row);
+  }
+}
+
+template <int D>
+Interface FluidParticipant<D>::initialise() {
+  if (!interface_) return {};
+  Interface description = interface_->describe();
+  if (description.empty()) return description;
+  using Place = Interface::Place;
+  description.takes = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
+  description.gives = {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}};
+  return description;
+}
+
+template <int D>
+void FluidParticipant<D>::begin_step(const Step& step) {
+  step_ = step;
+  prepared_ = false;
+  fluid_->begin_step(step.time, step.dt);
+}
+
+/// w at a face is the mean of the velocities of its vertices.
+template <int D>
+Vectors<D> FluidParticipant<D>::wall_velocity(const Exchange& in) const {
+  if (!interface_ || step_.scheme == Scheme::standalone) return {};
+  const auto given = in.find("velocity");
+  const std::vector<double> at_points =
+      interface_->scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, D);
+  Vectors<D> w(mesh_.boundary.n_owned(), Vec<D>::Zero());
+  const std::vector<Index>& faces = interface_->faces();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto vertices = interface_vertices_[static_cast<Index>(i)];
+    Vec<D>& value = w[faces[i] - mesh_.n_interior];
+    for (const Index v : vertices) value += Eigen::Map<const Vec<D>>(at_points.data() + std::size_t(v) * D);
+    value /= static_cast<double>(vertices.size());
+  }
+  return w;
+}
+
+template <int D>
+std::vector<Vec3> FluidParticipant<D>::receive_points() {
+  if (!motion_) return {};
+  const std::vector<double> displacement = motion_->receive();
+  std::vector<Vec3> points = mesh_.reference_points;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i].template head<D>() += Eigen::Map<const Vec<D>>(displacement.data() + i * D);
+  return points;
+}
+
+template <int D>
+Exchange FluidParticipant<D>::forces() const {
+  if (!interface_) return {};
+  const std::vector<Index>& faces = interface_->faces();
+  std::vector<double> pressure(faces.size() * D), viscous(faces.size() * D);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const Index b = faces[i] - mesh_.n_interior;
+    Eigen::Map<Vec<D>>(pressure.data() + i * D) = fluid_->pressure_force()[b];
+    Eigen::Map<Vec<D>>(viscous.data() + i * D) = fluid_->viscous_force()[b];
+  }
+  Exchange out;
+  out["pressure-force"] = interface_->gather_faces(pressure, D);
+  out["viscous-force"] = interface_->gather_faces(viscous, D);
+  return out;
+}
+
+template <int D>
+Exchange FluidParticipant<D>::solve(const Exchange& in) {
+  const Vectors<D> w = wall_velocity(in);
+  if (!prepared_ || step_.scheme != Scheme::semi_implicit) {
+    const std::vector<Vec3> points = receive_points();
+    fluid_->prepare(points, w);
+    prepared_ = true;
+  }
+  fluid_->solve_pressure(w);
+  return forces();
+}
+
+template <int D>
+void FluidParticipant<D>::accept_step() {
+  fluid_->accept();
+}
+
+template <int D>
+void FluidParticipant<D>::save(CheckpointWriter& file) const {
+  fluid_->refresh_solvers();
+  write_state(file, fluid_->state());
+}
+
+template <int D>
+void FluidParticipant<D>::load(CheckpointReader& file) {
+  fluid_->restore(read_state<D>(file, mesh_, fluid_->moving()));
+}
+
+template <int D>
+void FluidParticipant<D>::write_output(double time, int) {
+  output_.write_fields(time);
+}
+
+template <int D>
+void FluidParticipant<D>::write_monitors(double time) {
+  output_.write_series(time);
+}
+
+template <int D>
+std::vector<std::string> FluidParticipant<D>::judge_left_out_effects() {
+  const double peclet = fluid_->largest_peclet();
+  const bool sound = peclet < 50;
+  return {fmt::format(
+      "No turbulence model: the largest cell Reynolds number is {:.3g}{}", peclet,
+      sound ? "; the mesh resolves the flow, leaving it out was sound."
+            : ". Steep layers may be finer than the mesh: refine it or read the result with care.")};
+}
+
+template class FluidParticipant<2>;
+template class FluidParticipant<3>;
+
+std::unique_ptr<Participant> make_participant(Mesh mesh, const FluidParameters& parameters,
+                                              FluidContext context, const MotionLink& link) {
+  if (parameters.dimension == 2)
+    return std::make_unique<FluidParticipant<2>>(std::move(mesh), parameters, std::move(context), link);
+  return std::make_unique<FluidParticipant<3>>(std::move(mesh), parameters, std::move(context), link);
+}
+
+}  // namespace couplet::fluid

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/coupling/interface_map.hpp"
+#include "common/coupling/mesh_motion.hpp"
+#include "common/coupling/participant.hpp"
+#include "fluid_solver/fluid.hpp"
+#include "fluid_solver/output.hpp"
+
+namespace couplet::fluid {
+
+/// Makes the link to a mesh mover once the mesh has its final place; empty for a mesh at rest.
+using MotionLink = std::function<std::unique_ptr<MeshMotionSource>(const Mesh&)>;
+
+/// The fluid seen from outside. Takes "velocity" (and "displacement", which the mesh mover uses) at the
+/// interface vertices, gives "pressure-force" and "viscous-force" on the interface faces, acting on the
+/// structure.
+///
+///   semi-implicit      the first solve() of a step moves the mesh and does all but the last pressure
+///   equation;
+///                      every solve() costs one pressure equation
+///   implicit, explicit every solve() moves the mesh and starts from level n
+///   standalone         interfaces are walls at rest
+template <int D>
+class FluidParticipant final : public Participant {
+ public:
+  FluidParticipant(Mesh mesh, const FluidParameters& parameters, FluidContext context,
+                   const MotionLink& link);
+
+  Interface initialise() override;
+  void begin_step(const Step& step) override;
+  Exchange solve(const Exchange& in) override;
+  void accept_step() override;
+  void save(CheckpointWriter& file) const override;
+  void load(CheckpointReader& file) override;
+  void write_output(double time, int number) override;
+  void write_monitors(double time) override;
+  std::vector<std::string> judge_left_out_effects() override;
+
+  const Fluid<D>& fluid() const { return *fluid_; }
+
+ private:
+  Vectors<D> wall_velocity(const Exchange& in) const;
+  std::vector<Vec3> receive_points();
+  Exchange forces() const;
+
+  Mesh mesh_;
+  std::unique_ptr<Fluid<D>> fluid_;
+  std::unique_ptr<InterfaceMap> interface_;  // null: no interface patch
+  Csr interface_vertices_;                   // per interface face: entries of interface_->points()
+  std::unique_ptr<MeshMotionSource> motion_;
+  FluidOutput<D> output_;
+  Step step_;
+  bool prepared_ = false;
+};
+
+/// The participant of the dimension that the parameters name.
+std::unique_ptr<Participant> make_participant(Mesh mesh, const FluidParameters& parameters,
+                                              FluidContext context, const MotionLink& link);
+
+}  // namespace couplet::fluid
