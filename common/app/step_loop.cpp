@@ -118,7 +118,8 @@ std::string StepLoop::run(const StepActions& actions) {
     plan_.limit(actions.advised_dt());
     const Step step{plan_.time(), plan_.dt(), scheme_, plan_.steps_accepted()};
     if (const auto reason = actions.attempt(step)) {
-      log::warn("t = {:g} s: step {} with dt = {:g} s failed: {}", step.time, step.number, step.dt, *reason);
+      log::warn("t = {:g} s: step {} with dt = {:g} s failed: {}", step.time, step.number + 1, step.dt,
+                *reason);
       ++halvings_;
       if (!plan_.halve()) return give_up(actions, step, *reason);
       continue;

@@ -21,7 +21,7 @@ namespace couplet {
 struct RunState {
   double time = 0;
   int outputs = 0;  ///< written so far
-  std::array<double, 5> plan{};
+  std::array<double, 6> plan{};
 };
 /// Written by rank 0, collective; read by each rank for itself.
 void write_run_state(MPI_Comm comm, const std::filesystem::path& folder, const RunState& state);

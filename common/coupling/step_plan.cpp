@@ -9,6 +9,11 @@
 #include "common/base/error.hpp"
 
 namespace couplet {
+namespace {
+
+constexpr int least_patience = 2, most_patience = 64;
+
+}  // namespace
 
 StepPlan::StepPlan(double end_time, double nominal_dt, int max_halvings)
     : end_time_(end_time),
@@ -52,10 +57,12 @@ void StepPlan::accepted() {
     tick_ = 0;
     ++nominal_;
   }
-  if (wanted_level_ > 0 && ++calm_ >= 2) {
+  if (++calm_ < patience_) return;
+  calm_ = 0;
+  if (wanted_level_ > 0)
     --wanted_level_;
-    calm_ = 0;
-  }
+  else
+    patience_ = least_patience;
 }
 
 bool StepPlan::halve() {
@@ -63,19 +70,22 @@ bool StepPlan::halve() {
   if (used >= max_halvings_) return false;
   wanted_level_ = used + 1;
   calm_ = 0;
+  patience_ = std::min(2 * patience_, most_patience);
   return true;
 }
 
-std::array<double, 5> StepPlan::state() const {
-  return {double(nominal_), double(tick_), double(wanted_level_), double(calm_), double(accepted_)};
+std::array<double, 6> StepPlan::state() const {
+  return {double(nominal_), double(tick_),     double(wanted_level_),
+          double(calm_),    double(accepted_), double(patience_)};
 }
 
-void StepPlan::restore(const std::array<double, 5>& state, double time) {
+void StepPlan::restore(const std::array<double, 6>& state, double time) {
   nominal_ = int(state[0]);
   tick_ = long(state[1]);
   wanted_level_ = std::min(int(state[2]), max_halvings_);
   calm_ = int(state[3]);
   accepted_ = int(state[4]);
+  patience_ = int(state[5]);
   if (std::abs(this->time() - time) <= 1e-9 * nominal_dt_) return;
   nominal_ = int(std::lround(time / nominal_dt_));
   tick_ = 0;

@@ -6,9 +6,9 @@
 namespace couplet {
 
 /// Which step comes next. Nominal steps end at multiples of the nominal dt (the last one at the end time); a
-/// step that fails is halved and the halves grow back, so the nominal times are always met. All sizes are the
-/// nominal one divided by a power of two, exactly: a solver that keeps a factorised matrix for each dt meets
-/// few different ones.
+/// step that fails is halved; after a while the halves grow back, later each time that was too early; nominal
+/// times are always met. All sizes are the nominal one divided by a power of two, exactly: a solver that
+/// keeps a factorised matrix for each dt meets few different ones.
 class StepPlan {
  public:
   /// max_halvings: a step is halved at most this often (0 to 30).
@@ -29,10 +29,10 @@ class StepPlan {
   int halvings() const { return level(); }
 
   /// For checkpoints.
-  std::array<double, 5> state() const;
+  std::array<double, 6> state() const;
   /// `time`: the checkpoint's. The nominal dt may differ from that of the run that was saved if `time` is one
   /// of the new nominal times; throws Error otherwise.
-  void restore(const std::array<double, 5>& state, double time);
+  void restore(const std::array<double, 6>& state, double time);
 
  private:
   int level() const;  // halvings in force, made to fit the grid of ticks and the advice
@@ -45,7 +45,8 @@ class StepPlan {
   int nominal_ = 0;  // nominal steps completed
   long tick_ = 0;    // within the nominal step, in units of length / 2^max_halvings
   int wanted_level_ = 0;
-  int calm_ = 0;  // steps accepted since the last failure or growth
+  int calm_ = 0;      // steps accepted since the last failure or growth
+  int patience_ = 2;  // so many calm steps before the next growth
   int accepted_ = 0;
 };
 

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole coupler in one process, over local channels: an added-mass fluid against masses on springs.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+#include "coupler/coupler.hpp"
+#include "tests/coupling/toy/piston.hpp"
+#include "tests/coupling/toy/spring.hpp"
+
+namespace couplet {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Moves nothing, but remembers what it was asked.
+class RecordingMover final : public Participant {
+ public:
+  RecordingMover(const toy::PistonParameters& p, std::vector<std::string>& log) : piston_({}, p), log_(log) {}
+  Interface initialise() override {
+    Interface interface = piston_.initialise();
+    interface.takes.pop_back();
+    interface.gives.clear();
+    return interface;
+  }
+  void begin_step(const Step&) override { log_.push_back("begin_step"); }
+  Exchange solve(const Exchange& in) override {
+    EXPECT_EQ(in.size(), 1u);
+    EXPECT_TRUE(in.contains("displacement"));
+    if (fails) throw SolveFailure("cell 7 is inverted.");
+    log_.push_back("solve");
+    return {};
+  }
+  void accept_step() override { log_.push_back("accept_step"); }
+  void save(CheckpointWriter& file) const override { file.write_scalar("nothing", 0); }
+  void load(CheckpointReader&) override {}
+  void write_output(double, int) override {}
+  void write_monitors(double) override {}
+  bool fails = false;
+
+ private:
+  toy::Piston piston_;
+  std::vector<std::string>& log_;
+};
+
+/// One coupled run and its results.
+struct ToyRun {
+  CouplingParameters coupling;
+  SimulationParameters simulation;
+  toy::PistonParameters fluid;
+  toy::SpringParameters solid;
+  bool with_mover = false, mover_fails = false;
+  fs::path restart;
+
+  std::vector<std::string> mover_log;
+  std::string problem;
+  int steps = 0, halvings = 0;
+  double iterations_a_step = 0, position = 0, velocity = 0;
+  fs::path folder = fs::temp_directory_path() / ("couplet-toy-" + std::to_string(::getpid()));
+
+  ToyRun() {
+    spdlog::set_level(spdlog::level::off);
+    coupling.scheme = Scheme::implicit;
+    coupling.convergence.relative = 1e-10;
+    simulation.end_time = 2;
+    simulation.time_step = 0.05;
+    fluid.driving_force = 1;
+    solid.mass = 0.5;
+    solid.stiffness = 2;
+  }
+  ~ToyRun() { fs::remove_all(folder); }
+  ToyRun(const ToyRun&) = delete;
+
+  /// One face between two masses: added mass over the mass of the structure.
+  void mass_ratio(double ratio) { fluid.added_mass = ratio * 2 * solid.mass; }
+
+  void operator()() {
+    fs::create_directories(folder);
+    ParticipantContext context;
+    context.comm = MPI_COMM_SELF;
+    toy::Piston piston(context, fluid);
+    toy::Spring spring(MPI_COMM_SELF, solid);
+    RecordingMover mover(fluid, mover_log);
+    mover.fails = mover_fails;
+    CouplerChannels channels{std::make_unique<LocalChannel>("fluid", piston),
+                             std::make_unique<LocalChannel>("solid", spring), nullptr};
+    if (with_mover) channels.mesh = std::make_unique<LocalChannel>("mover", mover);
+    Coupler coupler(coupling, simulation, std::move(channels), {folder, folder / "checkpoints", restart});
+    problem = coupler.run();
+    steps = coupler.steps();
+    halvings = coupler.halvings();
+    iterations_a_step = double(coupler.iterations()) / std::max(1, steps);
+    position = coupler.interface_state().displacement[1];
+    velocity = coupler.interface_state().velocity[1];
+  }
+
+  /// M y'' + K y = F from rest, both masses together, solved at once by the trapezoidal rule.
+  double monolithic_position() const {
+    const double m = 2 * solid.mass + fluid.added_mass, k = 2 * solid.stiffness, dt = simulation.time_step;
+    double y = 0, v = 0;
+    for (int n = 0; n < std::lround(simulation.end_time / dt); ++n) {
+      const double v_new = (m / dt * v - k * (y + dt / 4 * v) + fluid.driving_force) / (m / dt + k * dt / 4);
+      y += dt / 2 * (v + v_new);
+      v = v_new;
+    }
+    return y;
+  }
+};
+
+TEST(CoupledToy, implicit_scheme_gives_the_monolithic_solution_for_any_mass_ratio) {
+  for (const double ratio : {0.5, 1., 2., 5., 20.}) {
+    ToyRun run;
+    run.mass_ratio(ratio);
+    run();
+    EXPECT_EQ(run.problem, "") << ratio;
+    EXPECT_EQ(run.steps, 40) << ratio;
+    EXPECT_NEAR(run.position, run.monolithic_position(), 1e-9) << ratio;
+    // A scalar linear map: Aitken is exact from its second factor on.
+    EXPECT_LE(run.iterations_a_step, 3) << ratio;
+  }
+}
+
+// A free mass, m_s dv/dt = -m_a dw/dt with w^{n+1} predicted, has the factor z of the velocity increments:
+// w = v^n: z = -mu, stable for mu = m_a / m_s < 1; w = 2 v^n - v^{n-1}: z^2 + 2 mu z - mu = 0, stable for mu
+// < 1/3.
+TEST(CoupledToy, explicit_scheme_blows_up_above_the_mass_ratio_of_theory) {
+  for (const auto& [order, limit] : {std::pair{1, 1.}, std::pair{2, 1. / 3}})
+    for (const double factor : {0.9, 1.1}) {
+      ToyRun run;
+      run.coupling.scheme = Scheme::explicit_;
+      run.coupling.predictor_order = order;
+      run.simulation.end_time = 50;
+      run.mass_ratio(factor * limit);
+      run();
+      EXPECT_EQ(run.problem, "");
+      EXPECT_EQ(run.iterations_a_step, 1);
+      const double still = run.fluid.driving_force / (2 * run.solid.stiffness);
+      if (factor < 1)
+        EXPECT_LT(std::abs(run.position), 3 * still) << order;
+      else
+        EXPECT_GT(std::abs(run.position), 1e3 * still) << order;
+    }
+}
+
+TEST(CoupledToy, many_modes_converge_for_heavy_fluids) {
+  for (const double ratio : {1., 20.}) {
+    ToyRun run;
+    run.fluid.vertices = run.solid.vertices = 21;
+    run.fluid.added_mass = ratio * run.solid.mass;
+    run.coupling.convergence.relative = 1e-6;
+    run();
+    EXPECT_EQ(run.problem, "") << ratio;
+    EXPECT_EQ(run.halvings, 0) << ratio;
+    EXPECT_LT(run.iterations_a_step, 30) << ratio;
+    RecordProperty(fmt::format("iterations_at_ratio_{:g}", ratio),
+                   fmt::format("{:.2f}", run.iterations_a_step));
+  }
+}
+
+TEST(CoupledToy, semi_implicit_moves_the_mesh_once_a_step_and_implicit_each_iteration) {
+  for (const Scheme scheme : {Scheme::semi_implicit, Scheme::implicit}) {
+    ToyRun run;
+    run.coupling.scheme = scheme;
+    run.with_mover = true;
+    run();
+    EXPECT_EQ(run.problem, "");
+    const auto moves = std::count(run.mover_log.begin(), run.mover_log.end(), "solve");
+    const auto passes = std::lround(run.iterations_a_step * run.steps);
+    EXPECT_EQ(moves, scheme == Scheme::semi_implicit ? run.steps : passes);
+    EXPECT_EQ(std::count(run.mover_log.begin(), run.mover_log.end(), "accept_step"), run.steps);
+  }
+}
+
+TEST(CoupledToy, a_step_that_fails_is_halved_until_it_can_be_solved) {
+  ToyRun run;
+  run.fluid.fails_above = 0.03;
+  run();
+  EXPECT_EQ(run.problem, "");
+  EXPECT_GT(run.halvings, 0);
+  EXPECT_EQ(run.steps, 80) << "two halves for each nominal step";
+  ToyRun fine;
+  fine.simulation.time_step = 0.025;
+  fine();
+  EXPECT_NEAR(run.position, fine.position, 1e-9) << "the same steps, found by halving";
+}
+
+TEST(CoupledToy, a_run_that_cannot_go_on_says_when_who_and_why) {
+  ToyRun run;
+  run.fluid.fails_above = 1e-6;
+  run.simulation.max_step_halvings = 2;
+  run();
+  EXPECT_EQ(run.problem,
+            "The step from t = 0 s could not be solved, also not with dt = 0.0125 s after 2 halvings: "
+            "'fluid' says: dt = "
+            "0.0125 s is above 1e-06 s, the largest this piston can do. The state at t = 0 s was saved in " +
+                (run.folder / "checkpoints").string() + ".");
+}
+
+TEST(CoupledToy, a_failed_mesh_motion_is_reported_with_the_movers_reason) {
+  ToyRun run;
+  run.with_mover = run.mover_fails = true;
+  run.simulation.max_step_halvings = 0;
+  run();
+  EXPECT_THAT(run.problem, testing::HasSubstr("'mover' says: cell 7 is inverted."));
+}
+
+TEST(CoupledToy, no_convergence_within_the_allowed_iterations_halves_the_step) {
+  ToyRun run;
+  run.fluid.vertices = run.solid.vertices = 21;
+  run.fluid.added_mass = 20 * run.solid.mass;
+  run.coupling.convergence.max_iterations = 2;
+  run.simulation.max_step_halvings = 1;
+  run();
+  EXPECT_THAT(run.problem, testing::HasSubstr("the coupling did not converge in 2 iterations"));
+}
+
+TEST(CoupledToy, interrupted_run_equals_uninterrupted_run_bit_for_bit) {
+  const auto setup = [](ToyRun& run) {
+    run.fluid.vertices = run.solid.vertices = 11;
+    run.fluid.added_mass = 3 * run.solid.mass;
+  };
+  ToyRun whole;
+  setup(whole);
+  whole();
+  ToyRun first;
+  setup(first);
+  first.simulation.end_time = 1;
+  first();
+  ToyRun second;
+  setup(second);
+  second.folder += "-second";
+  second.restart = find_checkpoint(first.folder / "checkpoints");
+  second();
+  EXPECT_EQ(second.problem, "");
+  EXPECT_EQ(second.position, whole.position);
+  EXPECT_EQ(second.velocity, whole.velocity);
+}
+
+}  // namespace
+}  // namespace couplet

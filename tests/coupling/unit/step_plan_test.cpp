@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/coupling/step_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+namespace {
+
+TEST(StepPlan, nominal_steps_end_at_the_end) {
+  StepPlan plan(1, 0.1, 6);
+  int n = 0;
+  for (; !plan.finished(); ++n) {
+    EXPECT_EQ(plan.dt(), 0.1) << "exactly, so that factorised matrices are found again";
+    EXPECT_NEAR(plan.time(), 0.1 * n, 1e-15);
+    plan.accepted();
+    EXPECT_TRUE(plan.at_nominal_time());
+  }
+  EXPECT_EQ(n, 10);
+  EXPECT_EQ(plan.time(), 1);
+}
+
+TEST(StepPlan, last_step_is_shortened_to_the_end_time) {
+  StepPlan plan(0.25, 0.1, 6);
+  std::vector<double> dt;
+  for (; !plan.finished(); plan.accepted()) dt.push_back(plan.dt());
+  ASSERT_EQ(dt.size(), 3u);
+  EXPECT_NEAR(dt[2], 0.05, 1e-15);
+  EXPECT_EQ(plan.time(), 0.25);
+}
+
+TEST(StepPlan, halves_grow_back_and_meet_the_nominal_times) {
+  StepPlan plan(1, 0.1, 6);
+  plan.accepted();
+  ASSERT_TRUE(plan.halve());
+  ASSERT_TRUE(plan.halve());
+  EXPECT_EQ(plan.dt(), 0.025);
+  std::vector<double> dt;
+  std::set<int> nominal;
+  double t = plan.time();
+  for (; !plan.finished(); plan.accepted()) {
+    EXPECT_NEAR(plan.time(), t, 1e-15);
+    if (plan.at_nominal_time()) nominal.insert(int(std::lround(t / 0.1)));
+    dt.push_back(plan.dt());
+    t += plan.dt();
+  }
+  EXPECT_EQ(nominal.size(), 9u) << "all nominal times from 0.1 to 0.9 were met";
+  EXPECT_EQ(dt.front(), 0.025);
+  EXPECT_EQ(dt.back(), 0.1);
+  EXPECT_NEAR(t, 1, 1e-14);
+}
+
+TEST(StepPlan, grows_back_later_each_time_that_was_too_early) {
+  StepPlan plan(10, 0.1, 6);
+  int attempts = 0;
+  for (; !plan.finished(); ++attempts) {
+    if (plan.dt() > 0.06)
+      plan.halve();
+    else
+      plan.accepted();
+  }
+  EXPECT_EQ(plan.steps_accepted(), 200);
+  EXPECT_LT(attempts - plan.steps_accepted(), 10) << "failed attempts at a step that is always too long";
+}
+
+TEST(StepPlan, halving_stops_at_the_limit) {
+  StepPlan plan(1, 0.1, 2);
+  EXPECT_TRUE(plan.halve());
+  EXPECT_TRUE(plan.halve());
+  EXPECT_FALSE(plan.halve());
+  EXPECT_EQ(plan.dt(), 0.025);
+}
+
+TEST(StepPlan, obeys_advice) {
+  StepPlan plan(1, 0.1, 6);
+  plan.limit(0.03);
+  EXPECT_EQ(plan.dt(), 0.025);
+  plan.accepted();
+  plan.limit(1);
+  EXPECT_EQ(plan.dt(), 0.025) << "a longer step would not end at a nominal time";
+}
+
+TEST(StepPlan, continues_from_its_state) {
+  StepPlan plan(1, 0.1, 6);
+  plan.accepted();
+  plan.halve();
+  plan.accepted();
+  StepPlan other(1, 0.1, 6);
+  other.restore(plan.state(), plan.time());
+  for (; !plan.finished(); plan.accepted(), other.accepted()) {
+    EXPECT_EQ(plan.time(), other.time());
+    EXPECT_EQ(plan.dt(), other.dt());
+  }
+  EXPECT_TRUE(other.finished());
+}
+
+TEST(StepPlan, continues_with_another_nominal_step_that_divides_the_time) {
+  StepPlan plan(1, 0.1, 6);
+  for (int i = 0; i < 4; ++i) plan.accepted();
+  StepPlan other(1, 0.05, 6);
+  other.restore(plan.state(), plan.time());
+  EXPECT_NEAR(other.time(), 0.4, 1e-15);
+  StepPlan wrong(1, 0.3, 6);
+  EXPECT_THROW(wrong.restore(plan.state(), plan.time()), Error);
+}
+
+}  // namespace
+}  // namespace couplet
