@@ -161,7 +161,9 @@ void Fluid<D>::start_pressure(const SubStep<D>& step, const Vectors<D>& w) {
   State<D> probe = trial_;
   step_.predict(probe, step, w);
   step_.project(probe, w);
-  trial_.pressure[0] = step_.pressure_level(trial_);
+  auto level = std::make_shared<PressureLevel<D>>(*step_.pressure_level(trial_));
+  level->time = trial_.time;  // the step itself adds a level in its middle
+  trial_.pressure[0] = std::move(level);
 }
 
 template <int D>
