@@ -17,15 +17,18 @@ namespace fs = std::filesystem;
 
 const char* const run_file = "run.h5";
 
-/// Complete checkpoints in a folder, oldest first (their names carry the number of the step).
+/// Complete checkpoints in a folder, oldest first. By age, not by step: those of an earlier run that went
+/// further are older than what this run writes.
 std::vector<fs::path> complete_checkpoints(const fs::path& folder) {
-  std::vector<fs::path> found;
+  std::vector<std::pair<fs::file_time_type, fs::path>> found;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored))
     if (entry.path().filename().string().starts_with("step-") && fs::exists(entry.path() / run_file))
-      found.push_back(entry.path());
+      found.emplace_back(fs::last_write_time(entry.path() / run_file), entry.path());
   std::sort(found.begin(), found.end());
-  return found;
+  std::vector<fs::path> paths;
+  for (const auto& [time, path] : found) paths.push_back(path);
+  return paths;
 }
 
 }  // namespace
@@ -97,9 +100,7 @@ void StepLoop::checkpoint(const StepActions& actions) {
   write_run_state(comm_, folder, {plan_.time(), outputs_, plan_.state()});
   log::debug("checkpoint {} at t = {:g} s", folder.string(), plan_.time());
   if (comm_rank(comm_) != 0) return;
-  std::vector<fs::path> all = complete_checkpoints(checkpoints_);
-  // Checkpoints beyond this step belong to an earlier run that went further: they are left alone.
-  std::erase_if(all, [&](const fs::path& p) { return p > folder; });
+  const std::vector<fs::path> all = complete_checkpoints(checkpoints_);
   for (std::size_t i = 0; i + simulation_.checkpoints_kept < all.size(); ++i) fs::remove_all(all[i], failed);
 }
 

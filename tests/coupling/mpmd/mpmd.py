@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The coupler and the toy participants as one MPMD job: ranks, restart and step halving do not change the answer."""
+import os
+import subprocess
+import sys
+import tempfile
+
+os.environ["PATH"] = os.pathsep.join(sys.argv[1:3] + [os.environ["PATH"]])
+for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
+    os.environ.setdefault(name, "1")
+
+CASE = """\
+simulation:
+  end-time: 2 s
+  time-step: 0.1 s
+  output: {folder: out}
+  checkpoint: {interval: 0.5 s}
+participants:
+  fluid: {program: toy_piston, vertices: 9, added-mass: 2 kg, driving-force: 1 N}
+  solid: {program: toy_spring, vertices: 9, mass: 0.5 kg, stiffness: 3 N/m}
+coupling:
+  scheme: semi-implicit
+  fluid: {participant: fluid}
+  structure: {participant: solid}
+  convergence: {relative: 1e-9, max-iterations: 100}
+"""
+failed = []
+
+
+def run(folder, ranks=(1, 1), sets=(), restart=None):
+    with open(os.path.join(folder, "case.yaml"), "w", encoding="utf-8") as out:
+        out.write(CASE)
+    words = ["mpirun", "--oversubscribe"]
+    for i, (n, program) in enumerate(((1, "coupler"), (ranks[0], "toy_piston"), (ranks[1], "toy_spring"))):
+        words += ([":"] if i else []) + ["-n", str(n), program, "case.yaml"]
+        for assignment in sets:
+            words += ["--set", assignment]
+        if restart:
+            words += ["--restart", restart]
+    done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=60)
+    if done.returncode != 0:
+        print(done.stdout)
+        raise SystemExit(f"exit code {done.returncode}")
+    return done.stdout
+
+
+def text(folder, file):
+    with open(os.path.join(folder, "out", file), encoding="utf-8") as lines:
+        return lines.read()
+
+
+def rows(folder, file):
+    return [[float(word) for word in line.split(",")] for line in text(folder, file).splitlines()[1:]]
+
+
+def check(claim, holds, detail=""):
+    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
+    if not holds:
+        failed.append(claim)
+
+
+def difference(a, b):
+    if len(a) != len(b):
+        return float("inf")
+    return max(abs(x - y) for row_a, row_b in zip(a, b) for x, y in zip(row_a, row_b))
+
+
+with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as other:
+    output = run(one)
+    whole = rows(one, "fluid/motion.csv")
+    check("one console line a step", sum(" its  |r|=" in line for line in output.splitlines()) == 20)
+    check("balance holds: what the fluid gives the structure takes",
+          max(abs(r[2] - r[5]) for r in rows(one, "coupler/balance.csv")) < 1e-12)
+    check("two checkpoints are kept", len(os.listdir(os.path.join(one, "out/checkpoints"))) == 2)
+
+    for ranks in ((2, 1), (1, 3), (3, 2)):
+        run(other, ranks)
+        off = difference(whole, rows(other, "fluid/motion.csv"))
+        check(f"the same on {ranks[0]} and {ranks[1]} ranks", off < 1e-13, f"difference {off:.1e}")
+
+    files = ("fluid/motion.csv", "coupler/residuals.csv", "coupler/balance.csv")
+    wanted = [text(one, f) for f in files]
+    run(other, sets=["simulation.end-time=1"])
+    run(other, restart="out/checkpoints")
+    for file, want in zip(files, wanted):
+        check(f"restart from the latest checkpoint: {file} bit for bit", text(other, file) == want)
+    run(other)
+    run(other, restart="out/checkpoints/step-00000015")
+    for file, want in zip(files, wanted):
+        check(f"restart in the middle, later rows dropped: {file} bit for bit", text(other, file) == want)
+
+    run(other, sets=["participants.fluid.fails-above=0.06"])
+    halved = rows(other, "fluid/motion.csv")
+    run(other, sets=["simulation.time-step=0.05"])
+    fine = rows(other, "fluid/motion.csv")
+    off = difference(halved, fine)
+    check("a participant that fails above a step is followed by halving", off < 1e-7, f"difference {off:.1e}")
+
+print(f"{len(failed)} checks failed" if failed else "all checks passed")
+sys.exit(1 if failed else 0)
