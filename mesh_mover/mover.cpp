@@ -48,7 +48,7 @@ Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
   if (comm_rank(mesh_.comm) == 0)
     quality_ =
         std::make_unique<Series>(context.output_folder / "quality.csv",
-                                 std::vector<std::string>{"least volume ratio [1]"}, context.restart_time);
+                                 std::vector<std::string>{"time [s]", "least volume ratio [1]"}, context.restart_time);
 }
 
 Interface Mover::initialise() {
