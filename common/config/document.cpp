@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/document.hpp"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
 #include <fstream>
 #include <set>
@@ -63,23 +65,50 @@ std::string explain(const std::string& message, std::string_view line) {
   return message;
 }
 
+/// Where the second document of a stream starts.
+class SecondDocument final : public YAML::EventHandler {
+ public:
+  static std::optional<YAML::Mark> find(const std::string& text) {
+    std::istringstream stream(text);
+    YAML::Parser parser(stream);
+    SecondDocument handler;
+    // Not YAML::LoadAll: on some broken files it never ends.
+    if (!parser.HandleNextDocument(handler) || !parser.HandleNextDocument(handler)) return std::nullopt;
+    return handler.start_;
+  }
+
+ private:
+  void OnDocumentStart(const YAML::Mark& mark) override { start_ = mark; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+  }
+  void OnMapEnd() override {}
+
+  YAML::Mark start_;
+};
+
 YAML::Node parse_yaml(const std::string& text, const std::string& name) {
-  std::vector<YAML::Node> documents;
   try {
-    documents = YAML::LoadAll(text);
+    const YAML::Node root = YAML::Load(text);
+    // A line that is indented less than the first key starts a second document without a word in yaml-cpp.
+    if (const auto second = SecondDocument::find(text))
+      throw Error(
+          "{}:{}:{}: this line does not belong to the mapping above; check its indentation (and no '---' "
+          "here).",
+          name, second->line + 1, second->column + 1);
+    return root;
   } catch (const YAML::Exception& error) {
     const std::vector<std::string> lines = split(text, '\n');
     const auto line = static_cast<std::size_t>(std::max(error.mark.line, 0));
     throw Error("{}:{}:{}: this is not valid YAML: {}.", name, line + 1, error.mark.column + 1,
                 explain(error.msg, line < lines.size() ? lines[line] : ""));
   }
-  // A line that is indented less than the first key starts a second document without a word in yaml-cpp.
-  if (documents.size() > 1)
-    throw Error(
-        "{}:{}:{}: this line does not belong to the mapping above; check its indentation (and no '---' "
-        "here).",
-        name, documents[1].Mark().line + 1, documents[1].Mark().column + 1);
-  return documents.empty() ? YAML::Node(YAML::NodeType::Null) : documents.front();
 }
 
 std::string describe(const std::string& path) {

@@ -133,10 +133,11 @@ TEST(WrongFile, broken_yaml_is_refused_with_its_place) {
       "case.yaml:2:1: this line does not belong to the mapping above; check its indentation (and no '---' "
       "here).";
   EXPECT_EQ(parse_error(" a: 1\nb: 2\n"), second);
-  EXPECT_EQ(parse_error("a: 1\n---\nb: 2\n"), "case.yaml:3" + second.substr(11));
+  EXPECT_EQ(parse_error("a: 1\n---\nb: 2\n"), second);
   EXPECT_EQ(
       parse_error("a: *nowhere\n"),
       "case.yaml:1:4: this is not valid YAML: this '*name' refers to an anchor '&name' that does not exist.");
+  EXPECT_EQ(parse_error(",a: 1\n"), "case.yaml:1:1" + second.substr(13));
   EXPECT_EQ(parse_error("a: &x {b: *x}\n").substr(0, 20), "case.yaml: a.b.b.b.b");
   EXPECT_EQ(parse_error("? [1, 2]\n: 3\n"), "case.yaml:1:3: a key must be a single word.");
 }
