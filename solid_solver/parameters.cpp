@@ -1,19 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/parameters.hpp"
 
+#include <fmt/format.h>
+
+#include "common/fv/expression.hpp"
+
 namespace couplet {
 namespace {
 
-void declare_boundary(config::Section& s, SolidBoundary& b) {
+// `p.dimension` was read before the boundaries.
+void declare_boundary(config::Section& s, SolidBoundary& b, const SolidParameters& p) {
   using Type = SolidBoundary::Type;
-  const auto displacement = [&b](config::Section& v) {
+  const auto displacement = [&b, &p](config::Section& v) {
     v.value("value", b.value).required().doc("displacement, one expression of x, y, z, t a component [m]");
+    v.check([&] { return problem_of(b.value, p.dimension); }, "value");
   };
-  const auto traction = [&b](config::Section& v) {
+  const auto traction = [&b, &p](config::Section& v) {
     v.value("value", b.value).required().doc("force per area, one expression of x, y, z, t a component [Pa]");
+    v.check([&] { return problem_of(b.value, p.dimension); }, "value");
   };
   const auto pressure = [&b](config::Section& v) {
     v.value("value", b.pressure).required().doc("pressure that pushes into the solid, of x, y, z, t [Pa]");
+    v.check([&] { return problem_of(b.pressure); }, "value");
   };
   const auto nothing = [](config::Section&) {};
   s.variant<Type>("type", b.type,
@@ -42,7 +50,7 @@ void declare_linear_solver(config::Section& s, SolidLinearSolver& l) {
             {"direct", Method::direct},
             {"bicgstab-ilu", Method::bicgstab_ilu},
             {"gmres-multigrid", Method::gmres_multigrid}})
-      .doc("auto: direct up to 60 000 unknowns, above that bicgstab-ilu");
+      .doc("auto: direct up to 60 000 unknowns (static: 200 000), above that bicgstab-ilu");
   s.value("relative-tolerance", l.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc("residual over right-hand side at which the iteration stops");
@@ -62,8 +70,9 @@ void declare(config::Section& s, SolidParameters& p) {
       .doc("static leaves out inertia");
   s.section(
       "material", [&](config::Section& m) { declare_material(m, p.material); }, "linear elastic material");
-  s.map<SolidBoundary>("boundaries", p.boundaries, declare_boundary, "patch",
-                       "one entry for each patch of the mesh");
+  s.map<SolidBoundary>(
+      "boundaries", p.boundaries, [&p](config::Section& b, SolidBoundary& v) { declare_boundary(b, v, p); },
+      "patch", "one entry for each patch of the mesh");
   s.value("body-force", p.body_force)
       .doc("force per volume, one expression of x, y, z, t a component [N/m^3]");
   s.value("gravity", p.gravity).unit("m/s^2").doc("acceleration of gravity, one number a component");
@@ -95,6 +104,19 @@ void declare(config::Section& s, SolidParameters& p) {
         o.value("stress", p.output_stress).doc("write stress components and the equivalent stress");
       },
       "fields written at the output interval");
+  const auto check_components = [&](const char* key, const std::vector<config::ExpressionText>& texts) {
+    s.check([&] { return texts.empty() ? std::string() : problem_of(texts, p.dimension); }, key);
+  };
+  check_components("body-force", p.body_force);
+  check_components("initial-velocity", p.initial_velocity);
+  s.check(
+      [&] {
+        return p.gravity.empty() || std::ssize(p.gravity) == p.dimension
+                   ? std::string()
+                   : fmt::format("{} components are given where the {}-dimensional scene needs {}",
+                                 p.gravity.size(), p.dimension, p.dimension);
+      },
+      "gravity");
   s.check(
       [&] {
         return p.damping && p.analysis == Analysis::static_

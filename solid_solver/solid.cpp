@@ -182,15 +182,25 @@ Exchange Solid::solve(const Exchange& in) {
   for (std::size_t i = 0; i < faces.size(); ++i)
     for (int a = 0; a < dim; ++a)
       unknowns_[n_cells + i * dim + a] = state_.face_u[std::size_t(faces[i] - mesh_.n_interior) * dim + a];
-  {
-    const log::ScopedTimer timer(log::timers(), "solid: linear solver");
-    system.solver.solve(rhs_, unknowns_);
-  }
+  solve_system(system);
   trial_.time = step_.time + step_.dt;
   trial_.dt = step_.dt;
   trial_.steps = state_.steps + 1;
   is_dynamic() ? finish_dynamic(system) : finish_static();
   return interface_values();
+}
+
+void Solid::solve_system(System& system) {
+  const log::ScopedTimer timer(log::timers(), "solid: linear solver");
+  try {
+    system.solver.solve(rhs_, unknowns_);
+  } catch (const SolveFailure& e) {
+    throw SolveFailure(
+        "{} If the loads are sound, another 'linear-solver: {{method: ...}}' may help; 'direct' needs most "
+        "memory and "
+        "bears most.",
+        e.what());
+  }
 }
 
 void Solid::finish_dynamic(const System& system) {

@@ -92,6 +92,7 @@ class Solid final : public Participant {
   void prepare_prescribed();
   void add_body_forces(double t);
   void add_interface_load(const Exchange& in);
+  void solve_system(System& system);
   void finish_dynamic(const System& system);
   void finish_static();
   void set_prescribed_faces();

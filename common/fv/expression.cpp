@@ -118,4 +118,21 @@ std::vector<Expression> make_expressions(const std::vector<config::ExpressionTex
   return expressions;
 }
 
+std::string problem_of(const config::ExpressionText& text) {
+  try {
+    const Expression expression(text);
+    return "";
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
+
+std::string problem_of(const std::vector<config::ExpressionText>& texts, int n) {
+  if (std::ssize(texts) != n)
+    return fmt::format("{} components are given where the {}-dimensional scene needs {}", texts.size(), n, n);
+  for (const config::ExpressionText& text : texts)
+    if (std::string problem = problem_of(text); !problem.empty()) return problem;
+  return "";
+}
+
 }  // namespace couplet

@@ -46,4 +46,9 @@ class Expression {
 std::vector<Expression> make_expressions(const std::vector<config::ExpressionText>& texts, int dim,
                                          const std::string& where);
 
+/// What is wrong with the texts, as a configuration check wants it; empty if there are `n` and they can be
+/// read.
+std::string problem_of(const std::vector<config::ExpressionText>& texts, int n);
+std::string problem_of(const config::ExpressionText& text);
+
 }  // namespace couplet

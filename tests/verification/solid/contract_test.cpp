@@ -201,6 +201,17 @@ TEST_P(SolidContract, a_loaded_checkpoint_continues_bit_for_bit) {
   if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
 }
 
+TEST_P(SolidContract, a_step_that_cannot_be_solved_fails_on_all_ranks_and_leaves_the_state) {
+  const auto solid = make_flap(GetParam());
+  const Interface interface = solid->initialise();
+  solid->begin_step({0, 0.01, Scheme::implicit, 0});
+  const Exchange first = solid->solve(load_on(interface, 1));
+  EXPECT_THROW(solid->solve(load_on(interface, std::nan(""))), SolveFailure);
+  EXPECT_EQ(solid->state().steps, 0);
+  const Exchange again = solid->solve(load_on(interface, 1));
+  EXPECT_LT(difference(first.at("displacement"), again.at("displacement")), 1e-13);
+}
+
 TEST(SolidInterface, data_it_does_not_know_are_refused_by_name) {
   const auto solid = make_flap(BoxCells::quadrilaterals);
   solid->initialise();

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/parameters.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/config/load.hpp"
+
+namespace couplet {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+std::vector<std::string> read(const std::string& text, SolidParameters& p) {
+  return config::load(config::Document::parse(text, "case.yaml"), "",
+                      [&](config::Section& s) { declare(s, p); });
+}
+
+const std::string material = "material: {density: 7800, youngs-modulus: 200 GPa, poissons-ratio: 0.3}\n";
+
+TEST(SolidParameters, are_read_with_units_and_expressions) {
+  SolidParameters p;
+  const auto errors = read("mesh: a.msh\ndimension: 2\nplane: stress\nanalysis: static\n" + material +
+                               "boundaries:\n"
+                               "  root: {type: fixed-displacement, value: [0, 0.1*sin(t)]}\n"
+                               "  top: {type: pressure, value: 3e5}\n"
+                               "  side: {type: symmetry}\n"
+                               "probes:\n  tip: {point: [1, 2]}\n",
+                           p);
+  EXPECT_THAT(errors, ::testing::IsEmpty());
+  EXPECT_EQ(p.analysis, SolidParameters::Analysis::static_);
+  EXPECT_EQ(p.material.youngs_modulus, 200e9);
+  EXPECT_EQ(p.boundaries.at("root").value.at(1).text, "0.1*sin(t)");
+  EXPECT_EQ(p.boundaries.at("top").type, SolidBoundary::Type::pressure);
+  EXPECT_EQ(p.boundaries.at("top").pressure.text, "300000");
+  EXPECT_EQ(p.probes.at("tip").point, Vec3(1, 2, 0));
+  EXPECT_FALSE(p.damping.has_value());
+}
+
+TEST(SolidParameters, mistakes_are_reported_with_their_place) {
+  SolidParameters p;
+  const auto errors = read("mesh: a.msh\ndimension: 2\n" + material +
+                               "boundaries:\n"
+                               "  root: {type: fixed-displacement, value: [0, 0, 0]}\n"
+                               "  tip: {type: traction, value: [0, 5*q]}\n"
+                               "  side: {type: symetry}\n",
+                           p);
+  EXPECT_THAT(errors,
+              Contains(AllOf(HasSubstr("case.yaml:5:"), HasSubstr("boundaries.root.value"),
+                             HasSubstr("3 components are given where the 2-dimensional scene needs 2"))));
+  EXPECT_THAT(errors, Contains(AllOf(HasSubstr("case.yaml:6:"), HasSubstr("unknown name 'q'"))));
+  EXPECT_THAT(errors, Contains(AllOf(HasSubstr("case.yaml:7:"), HasSubstr("Did you mean 'symmetry'?"))));
+}
+
+TEST(SolidParameters, rules_between_keys_are_checked) {
+  const std::string start =
+      "mesh: a.msh\nanalysis: static\n" + material + "boundaries:\n  all: {type: free}\n";
+  SolidParameters flat, damped;
+  EXPECT_THAT(read(start + "gravity: [0, -9.81]\n", flat),
+              Contains(AllOf(HasSubstr("case.yaml:6:"),
+                             HasSubstr("2 components are given where the 3-dimensional scene needs 3"))));
+  EXPECT_THAT(read(start + "damping: {stiffness: 1e-5 s}\n", damped),
+              Contains(AllOf(HasSubstr("case.yaml:6:"), HasSubstr("no effect in a static analysis"))));
+}
+
+TEST(SolidParameters, plane_stress_has_the_stiffness_of_a_thin_sheet) {
+  SolidParameters p;
+  p.material = {1, 1, 0.3};
+  p.dimension = 2;
+  p.plane = SolidParameters::Plane::stress;
+  const LameConstants sheet = lame_constants(p);
+  // Uniaxial stress in the plane: E' = 4 mu (mu + lambda) / (2 mu + lambda) must be E.
+  EXPECT_NEAR(4 * sheet.mu * (sheet.mu + sheet.lambda) / (2 * sheet.mu + sheet.lambda), 1, 1e-14);
+  p.plane = SolidParameters::Plane::strain;
+  const LameConstants cut = lame_constants(p);
+  EXPECT_NEAR(4 * cut.mu * (cut.mu + cut.lambda) / (2 * cut.mu + cut.lambda), 1 / (1 - 0.09), 1e-14);
+}
+
+}  // namespace
+}  // namespace couplet
