@@ -64,6 +64,7 @@ class FractionalStep {
   void solve_viscous(const State<D>& from, const Vectors<D>& w, double a);
   void add_back_old_pressure(const State<D>& from);
   void predict_flux(const State<D>& from);
+  void add_memory(const State<D>& from);
 
   void extrapolate_pressure(const State<D>& from);
   void set_boundary_flux(const Vectors<D>& w);
@@ -73,6 +74,7 @@ class FractionalStep {
   void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
                          const std::vector<double>& boundary, Vectors<D>& sum) const;
   void correct(State<D>& state);
+  void remember_flux(State<D>& state) const;
   void check(const State<D>& state);
 
   const Mesh& mesh_;
@@ -88,6 +90,7 @@ class FractionalStep {
   SubStep<D> step_;
   Rates<D> rates_;
   Vectors<D> right_side_, u_p_, w_, u_boundary_, gradient_guess_, shear_;
+  std::vector<double> relaxation_;  // [1/s]
   std::vector<double> phi_p_, b_, p_, p_boundary_;
   Vectors<D> pressure_force_, viscous_force_;
   StepStatistics statistics_;

@@ -11,6 +11,8 @@ namespace {
 // Modified Crank-Nicolson a L u^{n+1} + b L u^n + c L u^{n-1}: second order for any step ratio, and it damps
 // stiff modes.
 constexpr double c_modified = 1.0 / 16;
+// Decay of the flux memory in one step for which its AB2 is stable and does not overshoot.
+constexpr double largest_decay = 2.0 / 3;
 
 }  // namespace
 
@@ -144,8 +146,7 @@ void FractionalStep<D>::predict_flux(const State<D>& from) {
   phi_p_.resize(mesh_.n_flux_faces());
   for (Index f = 0; f < mesh_.n_interior; ++f)
     phi_p_[f] = 0.5 * (u_p_[mesh_.owner[f]] + u_p_[mesh_.neighbour[f]]).dot(now.area[f]);
-  if (parameters_.flux_memory && !from.memory.empty())
-    for (Index f = 0; f < mesh_.n_interior; ++f) phi_p_[f] += from.memory[f];
+  if (parameters_.flux_memory && !from.memory.empty()) add_memory(from);
   for (std::size_t b = 0; b < w_.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
     if (boundary_.kind()[b] == FaceKind::pressure) phi_p_[f] = u_p_[mesh_.owner[f]].dot(now.area[f]);
@@ -162,6 +163,30 @@ void FractionalStep<D>::predict_flux(const State<D>& from) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
     if (boundary_.kind()[b] == FaceKind::pressure)
       phi_p_[f] -= factor * gradient_guess_[mesh_.owner[f]].dot(now.oblique[f]);
+  }
+}
+
+/// d delta/dt = e - a delta: e is what the pressure does to the flux and not to the mean velocity, O(h^2); a
+/// is the rate at which friction and convection would even it out, as in an implicit momentum interpolation.
+/// Without a the memory would grow for ever in a steady flow, without the memory the steady flow would depend
+/// on dt. The decay is AB2.
+template <int D>
+void FractionalStep<D>::add_memory(const State<D>& from) {
+  relaxation_.assign(mesh_.cells.n_local(), 0.0);
+  const Placement<D>& at = *from.placement;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const double rate = nu_ * at.conductance[f] + 0.5 * std::abs(from.phi[f]);
+    relaxation_[mesh_.owner[f]] += rate / at.volume[mesh_.owner[f]];
+    if (f < mesh_.n_interior) relaxation_[mesh_.neighbour[f]] += rate / at.volume[mesh_.neighbour[f]];
+  }
+  mesh_.cells.update_ghosts(relaxation_);
+  const double ratio = from.dt_old > 0 ? step_.dt / from.dt_old : 0;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const double rate = 0.5 * (relaxation_[mesh_.owner[f]] + relaxation_[mesh_.neighbour[f]]);
+    const double decay = std::min(rate * step_.dt, largest_decay);
+    double mid = (1 + ratio / 2) * from.memory[f];
+    if (ratio > 0) mid -= ratio / 2 * from.memory_old[f];
+    phi_p_[f] += from.memory[f] - decay * mid;
   }
 }
 

@@ -177,16 +177,21 @@ void FractionalStep<D>::correct(State<D>& s) {
 }
 
 template <int D>
+void FractionalStep<D>::remember_flux(State<D>& s) const {
+  if (!parameters_.flux_memory) return;
+  s.memory_old.swap(s.memory);
+  s.memory.resize(mesh_.n_interior);
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    s.memory[f] = s.phi[f] - 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(step_.to->area[f]);
+}
+
+template <int D>
 void FractionalStep<D>::finish(State<D>& s) {
   correct(s);
   s.u_boundary_old.swap(s.u_boundary);
   s.w = w_;
   boundary_.close(mesh_, *step_.to, s.u, s.w, s.u_boundary);
-  if (parameters_.flux_memory) {
-    s.memory.resize(mesh_.n_interior);
-    for (Index f = 0; f < mesh_.n_interior; ++f)
-      s.memory[f] = s.phi[f] - 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(step_.to->area[f]);
-  }
+  remember_flux(s);
   s.rates_old.rate.swap(rates_.rate);
   s.rates_old.viscous.swap(rates_.viscous);
   s.shear_old.swap(shear_);
@@ -274,11 +279,7 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   s.u_old.clear();
   s.pressure = {};
   boundary_.close(mesh_, at, s.u, s.w, s.u_boundary);
-  if (parameters_.flux_memory) {
-    s.memory.resize(mesh_.n_interior);
-    for (Index f = 0; f < mesh_.n_interior; ++f)
-      s.memory[f] = s.phi[f] - 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(at.area[f]);
-  }
+  remember_flux(s);
 }
 
 template class FractionalStep<2>;

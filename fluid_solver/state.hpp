@@ -33,11 +33,11 @@ struct State {
   double dt_old = 0;      ///< size of the last step [s]; 0: no history, the next step is an Euler step
   bool implicit = false;  ///< viscous term of the history (Rates::viscous is there)
 
-  Vectors<D> u;                ///< u^n per local cell, ghosts current [m/s]
-  Vectors<D> w;                ///< given velocity per boundary face at t^n [m/s]
-  Vectors<D> u_boundary;       ///< closed boundary velocity at t^n [m/s]
-  std::vector<double> phi;     ///< absolute volume flux per flux face at t^n [m^3/s]
-  std::vector<double> memory;  ///< delta^n per interior face [m^3/s]
+  Vectors<D> u;                            ///< u^n per local cell, ghosts current [m/s]
+  Vectors<D> w;                            ///< given velocity per boundary face at t^n [m/s]
+  Vectors<D> u_boundary;                   ///< closed boundary velocity at t^n [m/s]
+  std::vector<double> phi;                 ///< absolute volume flux per flux face at t^n [m^3/s]
+  std::vector<double> memory, memory_old;  ///< delta^n per interior face [m^3/s]
   std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;  ///< latest first; null: not there yet
 
   Vectors<D> u_old, u_boundary_old;  ///< at t^{n-1}

@@ -42,6 +42,7 @@ void write_state(CheckpointWriter& file, const State<D>& s) {
     file.write("old-rate", flat<D>(s.rates_old.rate));
     if (s.implicit) file.write("old-viscous-rate", flat<D>(s.rates_old.viscous));
     file.write("old-shear", flat<D>(s.shear_old));
+    file.write("old-flux-memory", s.memory_old);
   }
   if (!s.points.empty() || !s.mesh_flux.empty()) {
     file.write("points", {s.points.empty() ? nullptr : s.points.front().data(), 3 * s.points.size()});
@@ -83,6 +84,8 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, bool moving) {
     read_vectors<D>(file, "old-rate", s.rates_old.rate, cells);
     if (s.implicit) read_vectors<D>(file, "old-viscous-rate", s.rates_old.viscous, cells);
     read_vectors<D>(file, "old-shear", s.shear_old, faces);
+    s.memory_old.resize(has_memory ? mesh.n_interior : 0);
+    file.read("old-flux-memory", s.memory_old);
   }
   if (moving) {
     s.points.resize(mesh.points.n_local());
