@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/job.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/prctl.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -41,6 +44,14 @@ Attendant introduce(const CommandLine& command_line, const ProgramKind& kind, co
   return self;
 }
 
+/// Two jobs in one folder would spoil each other's files. The lock ends with the process, whatever becomes of
+/// it.
+bool lock_folder(const std::filesystem::path& folder) {
+  const int file = ::open((folder / ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  // File systems without locks: no protection, but no refusal either.
+  return file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
 /// Folders, log and the checkpoint to continue from. Collective over job.comm.
 void prepare(Job& job, const CommandLine& command_line) {
   job.case_folder = command_line.case_file.parent_path();
@@ -52,6 +63,12 @@ void prepare(Job& job, const CommandLine& command_line) {
   if (any(job.comm, bool(failed)))
     throw Error("The output folder {} could not be made ({}). Its place is `simulation.output.folder` of {}.",
                 job.output_folder.string(), failed.message(), command_line.case_file.string());
+  if (any(job.comm, job.rank == 0 && !lock_folder(job.output_folder)))
+    throw Error(
+        "The output folder {} is in use by another job that is still running. Wait for it, or give this one "
+        "another "
+        "folder with --set simulation.output.folder=....",
+        job.output_folder.string());
   log::setup(job.name, job.rank, command_line.verbosity, (job.output_folder / (job.name + ".log")).string());
   job.restart_time = std::numeric_limits<double>::quiet_NaN();
   if (command_line.restart_folder.empty()) return;

@@ -33,11 +33,14 @@ class Suite:
 
     def __init__(self):
         programs = sys.argv[1:3]
+        for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
+            os.environ.setdefault(name, "1")
         os.environ["PATH"] = os.pathsep.join(programs + [os.environ["PATH"]])
         self.failed = []
 
-    def scenario(self, name, command, cases, code, lines, fault=None, within=5.0, not_lines=()):
-        """`lines`: each must be part of one line of the output; `code`: exit code, or None for any but 0."""
+    def scenario(self, name, command, cases, code, lines, fault=None, within=5.0, not_lines=(),
+                 once=None):
+        """`lines`: each must be part of a line of the output, `once` of exactly one; `code`: None is any but 0."""
         with tempfile.TemporaryDirectory() as folder:
             for file, text in cases.items():
                 with open(os.path.join(folder, file), "w", encoding="utf-8") as out:
@@ -70,6 +73,8 @@ class Suite:
             for line in lines:
                 if not any(line in printed for printed in output.splitlines()):
                     problems.append(f"no line holds: {line}")
+            if once and output.count(once) != 1:
+                problems.append(f"printed {output.count(once)} times: {once}")
             for line in not_lines:
                 if line in output:
                     problems.append(f"a line holds: {line}")

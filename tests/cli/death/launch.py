@@ -55,9 +55,15 @@ suite.scenario("points that do not match", mpmd(coupler, piston, spring),
                {"case.yaml": case_text(fluid=", shift: 0.01 m")}, 2,
                ["2 of 2 vertices of 'fluid' have no twin among the 2 vertices of 'solid'",
                 "(1, 0.01, 0): the nearest is 0.01 m away"])
+suite.scenario("folder of a running job",
+               ["sh", "-c", "toy_spring long.yaml --participant solid > /dev/null & sleep 1; "
+                "toy_spring case.yaml --participant solid; code=$?; kill $!; exit $code"],
+               {"case.yaml": text, "long.yaml": case_text(end="1e7 s")}, 2,
+               ["The output folder out/solid is in use by another job that is still running."])
 suite.scenario("error in the set-up", mpmd(coupler, "3 toy_piston case.yaml", spring),
                {"case.yaml": case_text(fluid=", throws-at-start: true")}, 2,
-               ["[fluid 0] error: The piston was told not to start."], not_lines=["was killed"])
+               ["error: The piston was told not to start."], not_lines=["was killed"],
+               once="The piston was told not to start.")
 suite.scenario("exception in a step", mpmd(coupler, "2 toy_piston case.yaml", spring),
                {"case.yaml": case_text(fluid=", throws-in-step: 3")}, 1,
                ["error: The piston broke, as it was told to."], not_lines=["was killed"])
