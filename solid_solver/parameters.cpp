@@ -57,6 +57,30 @@ void declare_linear_solver(config::Section& s, SolidLinearSolver& l) {
   s.value("max-iterations", l.max_iterations).range(1, 1e6).doc("iterations after which a step has failed");
 }
 
+void check_together(config::Section& s, SolidParameters& p) {
+  const auto check_components = [&](const char* key, const std::vector<config::ExpressionText>& texts) {
+    s.check([&] { return texts.empty() ? std::string() : problem_of(texts, p.dimension); }, key);
+  };
+  check_components("body-force", p.body_force);
+  check_components("initial-velocity", p.initial_velocity);
+  s.check(
+      [&] {
+        return p.gravity.empty() || std::ssize(p.gravity) == p.dimension
+                   ? std::string()
+                   : fmt::format("{} components are given where the {}-dimensional scene needs {}",
+                                 p.gravity.size(), p.dimension, p.dimension);
+      },
+      "gravity");
+  s.check(
+      [&] {
+        return p.damping && p.analysis == SolidParameters::Analysis::static_
+                   ? "damping has no effect in a static analysis; remove it"
+                   : "";
+      },
+      "damping");
+  s.check([&] { return p.boundaries.empty() ? "each patch of the mesh needs an entry" : ""; }, "boundaries");
+}
+
 }  // namespace
 
 void declare(config::Section& s, SolidParameters& p) {
@@ -104,27 +128,7 @@ void declare(config::Section& s, SolidParameters& p) {
         o.value("stress", p.output_stress).doc("write stress components and the equivalent stress");
       },
       "fields written at the output interval");
-  const auto check_components = [&](const char* key, const std::vector<config::ExpressionText>& texts) {
-    s.check([&] { return texts.empty() ? std::string() : problem_of(texts, p.dimension); }, key);
-  };
-  check_components("body-force", p.body_force);
-  check_components("initial-velocity", p.initial_velocity);
-  s.check(
-      [&] {
-        return p.gravity.empty() || std::ssize(p.gravity) == p.dimension
-                   ? std::string()
-                   : fmt::format("{} components are given where the {}-dimensional scene needs {}",
-                                 p.gravity.size(), p.dimension, p.dimension);
-      },
-      "gravity");
-  s.check(
-      [&] {
-        return p.damping && p.analysis == Analysis::static_
-                   ? "damping has no effect in a static analysis; remove it"
-                   : "";
-      },
-      "damping");
-  s.check([&] { return p.boundaries.empty() ? "each patch of the mesh needs an entry" : ""; }, "boundaries");
+  check_together(s, p);
 }
 
 LameConstants lame_constants(const SolidParameters& p) {
