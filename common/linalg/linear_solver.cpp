@@ -21,8 +21,10 @@ bool is_direct(LinearMethod method) {
 // ones.
 constexpr GlobalIndex largest_for_petsc = 12000;
 
-void choose_direct(KSP ksp, PC pc, const SparseMatrix& matrix, bool symmetric) {
-  petsc_check(KSPSetType(ksp, KSPPREONLY));
+// Fresh factors cost about as much as this many iterations save over a few dozen solves.
+constexpr int most_with_old_factors = 8;
+
+void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
   petsc_check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
   const bool mumps = comm_size(matrix.comm()) > 1 || matrix.n_owned_rows() > largest_for_petsc;
   petsc_check(PCFactorSetMatSolverType(pc, mumps ? MATSOLVERMUMPS : MATSOLVERPETSC));
@@ -46,9 +48,13 @@ void choose_ml(PC pc) {
 void choose_method(KSP ksp, PC pc, const SparseMatrix& matrix, LinearMethod method) {
   switch (method) {
     case LinearMethod::direct:
-      return choose_direct(ksp, pc, matrix, false);
     case LinearMethod::direct_symmetric:
-      return choose_direct(ksp, pc, matrix, true);
+      petsc_check(KSPSetType(ksp, KSPPREONLY));
+      return choose_factors(pc, matrix, method == LinearMethod::direct_symmetric);
+    case LinearMethod::cg_direct:
+      petsc_check(KSPSetType(ksp, KSPCG));
+      petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
+      return choose_factors(pc, matrix, true);
     case LinearMethod::cg_multigrid:
       petsc_check(KSPSetType(ksp, KSPCG));
       petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
@@ -122,8 +128,9 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
   if (rebuild_) {
     rebuild_ = false;
     ++built_;
-    fresh_iterations_ = statistics.iterations;
-  } else if (!is_direct(options_.method) && statistics.iterations > 2 * fresh_iterations_ + 2) {
+    most_iterations_ =
+        options_.method == LinearMethod::cg_direct ? most_with_old_factors : 2 * statistics.iterations + 2;
+  } else if (!is_direct(options_.method) && statistics.iterations > most_iterations_) {
     rebuild_ = true;
   }
   statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -13,6 +13,7 @@ namespace couplet {
 enum class LinearMethod {
   direct,            ///< LU: PETSc's own for small matrices on one rank, else MUMPS
   direct_symmetric,  ///< Cholesky: the same
+  cg_direct,         ///< CG with kept Cholesky factors: moving 2-D meshes, symmetric positive definite
   cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
   gmres_multigrid,   ///< GMRES with BoomerAMG
   bicgstab_ilu,      ///< BiCGStab with ILU(0), block Jacobi over the ranks
@@ -64,7 +65,7 @@ class LinearSolver {
   KSP ksp_ = nullptr;
   ::Vec b_ = nullptr, x_ = nullptr;
   bool rebuild_ = true;
-  int fresh_iterations_ = -1;
+  int most_iterations_ = 0;  // above: the preconditioner has aged
   int built_ = 0, total_iterations_ = 0;
 };
 
