@@ -210,6 +210,7 @@ double parse_quantity(std::string_view text, std::string_view unit) {
     throw Error("'{}' is not a number; expected {}.", text,
                 wanted.is_number() ? "a plain number" : fmt::format("a number in {} or with its unit", unit));
   if (quantity->unit.empty()) return quantity->number;
+  if (quantity->unit.front() == ',') throw Error("'{}' has a decimal comma; write a point.", text);
   if (unit.empty() && quantity->unit != "%")
     throw Error("'{}' has more than a number in it ('{}'); expected a plain number.", text, quantity->unit);
   const Unit given = [&] {

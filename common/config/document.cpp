@@ -52,6 +52,7 @@ std::string explain(const std::string& message, std::string_view line) {
        "a list that was opened with '[' before this place is not closed by ']'"},
       {"end of map flow not found",
        "a mapping that was opened with '{' before this place is not closed by '}'"},
+      {"illegal flow end", "this bracket closes something that is not open; check '[', ']', '{' and '}'"},
       {"end of map not found", "this line does not fit the mapping above; check its indentation and its ':'"},
       {"end of sequence not found",
        "this line does not fit the list above; check its indentation and its '- '"},
@@ -184,7 +185,7 @@ void Document::set(const std::string& assignment) {
   try {
     value = YAML::Load(assignment.substr(equals + 1));
   } catch (const YAML::Exception& error) {
-    throw Error("{}: the value is not valid YAML: {}.", option, error.msg);
+    throw Error("{}: the value is not valid YAML: {}.", option, explain(error.msg, ""));
   }
   std::vector<Message> messages;
   find_duplicates(value, path, messages);

@@ -44,7 +44,11 @@ Located locate(const Document::Content& content, const std::string& path) {
 std::vector<std::string> load(const Document& document, const std::string& path,
                               const Section::Declare& declare) {
   const Document::Content& content = document.content();
-  Located located = locate(content, path);
+  if (content.root.IsNull()) return {fmt::format("{}:1:1: this file is empty.", content.name)};
+  if (!content.root.IsMap())
+    return {fmt::format("{}:1:1: expected a mapping (keys with values), found {}.", content.name,
+                        content.root.IsSequence() ? "a list" : fmt::format("'{}'", content.root.Scalar()))};
+  const Located located = locate(content, path);
   if (!located.entry.found) {
     const auto meant = closest(located.missing, located.present);
     const std::string text = meant ? fmt::format("this section is missing. Did you write '{}'?", *meant)
@@ -52,8 +56,6 @@ std::vector<std::string> load(const Document& document, const std::string& path,
     return format_all(content.name,
                       {{located.entry.place, join_path(located.reached, located.missing), text}});
   }
-  if (path.empty() && content.root.IsNull())
-    return {fmt::format("{}:1:1: this file is empty.", content.name)};
   Reader reader(content);
   reader.read_mapping(located.entry.node, located.entry.place, path, declare);
   return format_all(content.name, reader.messages());

@@ -12,6 +12,8 @@
 namespace couplet::config {
 namespace {
 
+constexpr const char* missing_key = "this required key is missing";
+
 /// The keys a declaration makes at its own level; touches no member.
 class NameCollector final : public Visitor {
  public:
@@ -61,6 +63,16 @@ void Reader::report(const Place& place, const std::string& path, const std::stri
   messages_.push_back({where, path, text});
 }
 
+void Reader::report_key(const Place& place, const std::string& path, const std::string& text) {
+  frames_.back().wrong_key = true;
+  report(place, path, text);
+}
+
+void Reader::forget_missing(const std::string& path) {
+  std::erase_if(messages_,
+                [&](const Message& m) { return m.path == path && m.text.starts_with(missing_key); });
+}
+
 Entry Reader::take(std::string_view name) {
   Frame& frame = frames_.back();
   frame.known.emplace_back(name);
@@ -75,7 +87,7 @@ void Reader::read_mapping(const YAML::Node& node, const Place& place, const std:
     return;
   }
   frames_.push_back(
-      {is_empty ? YAML::Node(YAML::NodeType::Map) : node, place, path, {}, {}, messages_.size()});
+      {is_empty ? YAML::Node(YAML::NodeType::Map) : node, place, path, {}, {}, messages_.size(), false});
   Section section(*this);
   declare(section);
   report_unknown_keys();
@@ -99,9 +111,11 @@ void Reader::report_unknown_keys() {
     std::vector<std::string> free;
     for (const std::string& known : frame.known)
       if (!find(frame.node, known).found) free.push_back(known);
+    const auto meant = closest(name, free);
+    if (meant) forget_missing(join_path(frame.path, *meant));
     // A key that is there already cannot be meant, but shows what could stand here.
     report(place_of(item.first), path,
-           "unknown key. " + did_you_mean(name, closest(name, free) ? free : frame.known, "keys"));
+           "unknown key. " + did_you_mean(name, meant ? free : frame.known, "keys"));
   }
 }
 
@@ -112,15 +126,15 @@ void Reader::key(const Facts& facts, const Slot& slot) {
   if (!entry.found) {
     if (!facts.required) return;
     const std::string type = describe_type(slot);
-    report(frame.place, path,
-           fmt::format("this required key is missing ({}{}{}).", facts.doc.empty() ? "" : facts.doc + ": ",
-                       type, facts.unit.empty() ? "" : " in " + facts.unit));
+    report_key(frame.place, path,
+               fmt::format("{} ({}{}{}).", missing_key, facts.doc.empty() ? "" : facts.doc + ": ", type,
+                           facts.unit.empty() ? "" : " in " + facts.unit));
     return;
   }
   try {
     read_value(entry.node, facts, slot);
   } catch (const Error& error) {
-    report(entry.place, path, error.what());
+    report_key(entry.place, path, error.what());
   }
 }
 
@@ -181,7 +195,7 @@ void Reader::variant(const Facts& facts, const Cases& cases, const std::string& 
   if (entry.found || facts.required) {
     try {
       if (!entry.found)
-        throw Error("this required key is missing ({}one of: {}).", facts.doc.empty() ? "" : facts.doc + ": ",
+        throw Error("{} ({}one of: {}).", missing_key, facts.doc.empty() ? "" : facts.doc + ": ",
                     join(word.words));
       word.set = [&](const std::string& text) {
         chosen = text;
@@ -189,7 +203,7 @@ void Reader::variant(const Facts& facts, const Cases& cases, const std::string& 
       };
       read_value(entry.node, {}, word);
     } catch (const Error& error) {
-      report(entry.found ? entry.place : frames_.back().place, path, error.what());
+      report_key(entry.found ? entry.place : frames_.back().place, path, error.what());
       // Nobody knows which keys are valid now: take all of them as known, so that only the real mistake is
       // reported.
       for (const auto& [text, declare] : cases)
@@ -210,9 +224,13 @@ void Reader::variant(const Facts& facts, const Cases& cases, const std::string& 
 
 void Reader::check(const std::function<std::string()>& rule, std::string_view key) {
   const Frame& frame = frames_.back();
-  if (messages_.size() != frame.messages_before) return;
-  const std::string text = rule();
+  // The rule may look at any key of the mappings around this one.
+  const bool wrong_key =
+      std::any_of(frames_.begin(), frames_.end(), [](const Frame& f) { return f.wrong_key; });
+  if (wrong_key || messages_.size() != frame.messages_before) return;
+  std::string text = rule();
   if (text.empty()) return;
+  if (text.back() != '.') text += '.';
   const Entry entry = find(frame.node, key);
   report(entry.found ? entry.place : frame.place, key.empty() ? frame.path : join_path(frame.path, key),
          text);

@@ -39,10 +39,14 @@ class Reader final : public Visitor {
     std::vector<std::string> known;
     std::vector<std::pair<std::string, std::string>> elsewhere;  ///< key, the variant case it belongs to
     std::size_t messages_before = 0;
+    bool wrong_key = false;  ///< one of the keys in this very mapping could not be read
   };
   Entry take(std::string_view name);
   void report(const Place& place, const std::string& path, const std::string& text);
+  void report_key(const Place& place, const std::string& path, const std::string& text);
   void report_unknown_keys();
+  /// A misspelt required key is one mistake, not two.
+  void forget_missing(const std::string& path);
 
   const Document::Content& content_;
   std::vector<Frame> frames_;

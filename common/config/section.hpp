@@ -155,8 +155,9 @@ class Section {
         if (w == word) target = value;
     });
   }
-  /// Cross-rule: declare it after the keys it looks at. It runs at once if this section was read without
-  /// error so far; an empty text is a pass; `key` is where the message points.
+  /// Cross-rule: declare it after the keys it looks at. It runs at once, if this section was read without
+  /// error so far and no key of the sections around it was wrong; an empty text is a pass; `key` is where the
+  /// message points.
   void check(const std::function<std::string()>& rule, std::string_view key);
 
  private:

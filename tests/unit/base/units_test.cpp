@@ -83,9 +83,9 @@ TEST(Units, what_does_not_convert_is_refused_with_what_was_expected) {
             "'5 furlong': unknown unit 'furlong'. Expected m or a unit that converts to it.");
   EXPECT_EQ(error_of("soft", "Pa"), "'soft' is not a number; expected a number in Pa or with its unit.");
   EXPECT_EQ(error_of("5 s", ""), "'5 s' has more than a number in it ('s'); expected a plain number.");
-  EXPECT_EQ(
-      error_of("1,5 m", "m"),
-      "'1,5 m': cannot understand the unit ',5 m' at ',5 m'. Expected m or a unit that converts to it.");
+  EXPECT_EQ(error_of("1,5 m", "m"), "'1,5 m' has a decimal comma; write a point.");
+  EXPECT_EQ(error_of("5 m?", "m"),
+            "'5 m?': cannot understand the unit 'm?' at '?'. Expected m or a unit that converts to it.");
   EXPECT_EQ(error_of("5 m/", "m"),
             "'5 m/': the unit 'm/' is incomplete. Expected m or a unit that converts to it.");
   EXPECT_EQ(error_of("5 W/(m K", "W/(m K)"),

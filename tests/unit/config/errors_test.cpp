@@ -119,6 +119,10 @@ TEST(WrongFile, broken_yaml_is_refused_with_its_place) {
             "case.yaml:2:1: this is not valid YAML: a mapping that was opened with '{' before this place is "
             "not closed by "
             "'}'.");
+  EXPECT_EQ(parse_error("a: [1, 2}\n"),
+            "case.yaml:1:9: this is not valid YAML: this bracket closes something that is not open; check "
+            "'[', ']', '{' "
+            "and '}'.");
   EXPECT_EQ(parse_error("a:\n\tb: 3\n"),
             "case.yaml:2:3: this is not valid YAML: a tab cannot indent a line; use spaces.");
   EXPECT_EQ(parse_error("a: b: 3\n"),

@@ -104,6 +104,8 @@ TEST(Load, a_section_can_be_read_by_its_path) {
       ElementsAre("case.yaml:1:1: participants.solit: this section is missing. Did you write 'solid'?"));
   EXPECT_THAT(config::load(document, "simulation", declaration(p)),
               ElementsAre("case.yaml:1:1: simulation: this section is missing."));
+  EXPECT_THAT(config::load(config::Document::parse("", "case.yaml"), "simulation", declaration(p)),
+              ElementsAre("case.yaml:1:1: this file is empty."));
   EXPECT_THAT(config::keys_of(document, "participants"), ElementsAre("solid"));
   EXPECT_TRUE(config::keys_of(document, "coupling").empty());
   EXPECT_EQ(config::text_of(document, "participants.solid.mesh"), "a");
@@ -114,6 +116,14 @@ TEST(Load, cross_rules_run_only_when_their_section_is_right) {
   EXPECT_THAT(errors_of("mesh: a\nmaterial: {youngs-modulus: 1, poisson-ratio: 0.5}"),
               ElementsAre("case.yaml:2:31: material.poisson-ratio: 0.5 needs a mixed formulation."));
   EXPECT_THAT(errors_of("mesh: a\nmaterial: {youngs-modulus: -1, poisson-ratio: 0.5}"), testing::SizeIs(1));
+  // Here the rule would look at a value that is not the one in the file.
+  EXPECT_THAT(errors_of("mesh: []\nmaterial: {youngs-modulus: 1, poisson-ratio: 0.5}"),
+              ElementsAre("case.yaml:1:1: mesh: expected a text, found a list."));
+}
+
+TEST(Load, a_misspelt_required_key_is_one_mistake_not_two) {
+  EXPECT_THAT(errors_of("mash: a\nmaterial: {youngs-modulus: 1}"),
+              ElementsAre("case.yaml:1:1: mash: unknown key. Did you mean 'mesh'?"));
 }
 
 }  // namespace

@@ -80,7 +80,9 @@ TEST(Override, a_path_that_leads_nowhere_is_refused) {
             "remove one of the "
             "two.");
   EXPECT_EQ(error_of("mesh=[1"),
-            "--set mesh=[1: the value is not valid YAML: end of sequence flow not found.");
+            "--set mesh=[1: the value is not valid YAML: a list that was opened with '[' before this place "
+            "is not closed by "
+            "']'.");
 }
 
 TEST(Override, the_hash_covers_the_text_and_the_overrides) {
