@@ -1,0 +1,370 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The wrong configurations: how each differs from a right one, and what the program must say about it."""
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Case:
+    name: str
+    program: str
+    message: str = ""
+    base: str = ""  # NAME.yaml beside this file ...
+    edits: list = field(default_factory=list)  # ... with these (old, new) replacements
+    text: str = None  # or the whole YAML file
+    arguments: list = field(default_factory=lambda: ["case.yaml", "--check"])
+    files: dict = field(default_factory=dict)  # further files in the folder of the case
+    exit_code: int = 2
+
+
+def solid(name, message, *edits, **more):
+    return Case(name, "solid_solver", message, "solid", list(edits), **more)
+
+
+def fluid(name, message, *edits, **more):
+    return Case(name, "fluid_solver", message, "fluid", list(edits), **more)
+
+
+def coupler(name, message, *edits, **more):
+    return Case(name, "coupler", message, "coupled", list(edits), **more)
+
+
+def mover(name, message, *edits, **more):
+    return Case(name, "mesh_mover", message, "coupled", list(edits), **more)
+
+
+RUN = {"arguments": ["case.yaml"]}
+
+
+def with_set(*assignments):
+    arguments = ["case.yaml", "--check"]
+    for assignment in assignments:
+        arguments += ["--set", assignment]
+    return {"arguments": arguments}
+
+
+# The right ones: without them every message below could come from somewhere else.
+RIGHT = [
+    solid("right solid", "", exit_code=0),
+    fluid("right fluid", "", exit_code=0),
+    coupler("right coupling", "", exit_code=0),
+    mover("right mover", "", exit_code=0),
+]
+
+FILE = [
+    solid("no such file", "cases.yaml: this file does not exist. Give the path of the case's YAML file.", arguments=["cases.yaml", "--check"]),
+    solid("a folder instead of a file", """
+.: this is a folder; give the YAML file in it, for example ./case.yaml.
+""", arguments=[".", "--check"]),
+    solid("empty file", """
+case.yaml:1:1: this file is empty.
+case.yaml has no `participants` section, which says what solid_solver is to run.
+""", text=""),
+    solid("a list instead of a mapping", """
+case.yaml:1:1: expected a mapping (keys with values), found a list.
+case.yaml has no `participants` section, which says what solid_solver is to run.
+""", text="- a\n- b\n"),
+    solid("tab", "case.yaml:5:2: this is not valid YAML: a tab cannot indent a line; use spaces.", ("    program", "\tprogram")),
+    solid("list that is not closed", """
+case.yaml:14:52: this is not valid YAML: this bracket closes something that is not open; check '[', ']', '{' and '}'.
+""", ("value: [0, 0]}", "value: [0, 0}")),
+    solid("mapping that is not closed", """
+case.yaml:3:13: this is not valid YAML: a mapping that was opened with '{' before this place is not closed by '}'.
+""", ("time-step: 0.5 s}", "time-step: 0.5 s")),
+    solid("indented too little", """
+case.yaml:9:4: this is not valid YAML: this line does not fit the mapping above; check its indentation and its ':'.
+""", ("    material", "   material")),
+    solid("two colons in a line", """
+case.yaml:5:26: this is not valid YAML: a ':' stands where no key can be; check the indentation above, and quote a text that has ': '.
+""", ("program: solid_solver", "program: solid_solver: 2")),
+    solid("duplicate key", """
+case.yaml:8:5: participants.solid.mesh: this key stands here twice (first at 6:5); remove one of the two.
+""", ("    analysis", "    mesh: other.msh\n    analysis")),
+    coupler("duplicate participant", """
+case.yaml:16:3: participants.fluid: this key stands here twice (first at 5:3); remove one of the two.
+""", ("  solid:", "  fluid:")),
+    solid("unknown section", """
+case.yaml: unknown section 'simulations'. Did you mean 'simulation'?
+case.yaml:1:1: simulation: this section is missing. Did you write 'simulations'?
+""", ("simulation:", "simulations:")),
+    solid("anchor that does not exist", """
+case.yaml:11:23: this is not valid YAML: this '*name' refers to an anchor '&name' that does not exist.
+""", ("1 MPa", "*modulus")),
+]
+
+SIMULATION = [
+    solid("no simulation", "case.yaml:1:1: simulation: this section is missing.", ("simulation: {end-time: 1 s, time-step: 0.5 s}\n", "")),
+    solid("no end time", """
+case.yaml:2:1: simulation.end-time: this required key is missing (the run ends at this time: number in s).
+""", ("end-time: 1 s, ", "")),
+    solid("unit of another quantity", """
+case.yaml:2:14: simulation.end-time: '1 m': the unit 'm' does not convert to s; expected s or a unit that converts to it.
+""", ("end-time: 1 s", "end-time: 1 m")),
+    solid("unknown unit", """
+case.yaml:2:14: simulation.end-time: '1 sec': unknown unit 'sec'. Expected s or a unit that converts to it.
+""", ("end-time: 1 s", "end-time: 1 sec")),
+    solid("decimal comma", """
+case.yaml:2:14: simulation.end-time: '1,5 s' has a decimal comma; write a point.
+""", ("end-time: 1 s", 'end-time: "1,5 s"')),
+    solid("not a number", """
+case.yaml:2:14: simulation.end-time: 'long' is not a number; expected a number in s or with its unit.
+""", ("end-time: 1 s", "end-time: long")),
+    solid("no value", """
+case.yaml:2:14: simulation.end-time: this key has no value; expected a number in s or with its unit.
+""", ("end-time: 1 s", "end-time: ")),
+    solid("negative step", """
+case.yaml:2:29: simulation.time-step: -0.5 s is out of range; expected a value above 0 s.
+""", ("time-step: 0.5 s", "time-step: -0.5 s")),
+    solid("step longer than the run", """
+case.yaml:2:29: simulation.time-step: the time step must not be longer than the run ('end-time').
+""", ("time-step: 0.5 s", "time-step: 2 s")),
+    solid("unknown key with a neighbour", """
+case.yaml:2:14: simulation.endtime: unknown key. Did you mean 'end-time'?
+""", ("end-time", "endtime")),
+    solid("unknown key below", """
+case.yaml:2:56: simulation.output.every: unknown key. Valid keys: folder, interval.
+""", ("time-step: 0.5 s", "time-step: 0.5 s, output: {every: 1 s}")),
+    solid("value instead of a section", """
+case.yaml:2:47: simulation.output: expected a mapping (keys with values), found 'all'.
+""", ("time-step: 0.5 s", "time-step: 0.5 s, output: all")),
+]
+
+PARTICIPANTS = [
+    solid("no participants", """
+case.yaml has no `participants` section, which says what solid_solver is to run.
+""", text="simulation: {end-time: 1 s, time-step: 0.5 s}\n"),
+    solid("no program", """
+case.yaml: participants.solid: the key 'program' is missing: the name of the program that runs this participant, for instance solid_solver.
+No participant of case.yaml is run by the program 'solid_solver'. Its participants are: 'solid' (?).
+""", ("    program: solid_solver\n", "")),
+    solid("misspelt program", """
+No participant of case.yaml is run by the program 'solid_solver'. Its participants are: 'solid' (solid_slover).
+""", ("program: solid_solver", "program: solid_slover")),
+    solid("no such participant", """
+--participant sold: case.yaml has no participant of this name. Did you mean 'solid'?
+""", arguments=["case.yaml", "--check", "--participant", "sold"]),
+    fluid("program of another participant", """
+No participant of case.yaml is run by the program 'fluid_solver'. Its participants are: 'solid' (solid_solver).
+""", arguments=["case.yaml", "--check"], text="""\
+simulation: {end-time: 1 s, time-step: 0.5 s}
+participants:
+  solid: {program: solid_solver}
+"""),
+    solid("two participants with this program", """
+2 participants of case.yaml are run by the program 'solid_solver' (other, solid): say which one with --participant.
+""", ("  solid:", "  other: {program: solid_solver}\n  solid:")),
+    coupler("no coupling", "case.yaml has no `coupling` section: there is nothing for the coupler to do.", text="simulation: {end-time: 1 s, time-step: 0.5 s}\nparticipants:\n  a: {program: b}\n"),
+]
+
+SOLID = [
+    solid("missing section", """
+case.yaml:4:3: participants.solid.material.density: this required key is missing (density: number in kg/m^3).
+case.yaml:4:3: participants.solid.material.youngs-modulus: this required key is missing (Young's modulus: number in Pa).
+case.yaml:4:3: participants.solid.material.poissons-ratio: this required key is missing (Poisson's ratio; accuracy fades above 0.45: number).
+""", ("    material:\n      density: 1000 kg/m^3\n      youngs-modulus: 1 MPa\n"
+                                      "      poissons-ratio: 0.3\n", "")),
+    solid("modulus in kilograms", """
+case.yaml:11:7: participants.solid.material.youngs-modulus: '1 kg': the unit 'kg' does not convert to Pa; expected Pa or a unit that converts to it.
+""", ("1 MPa", "1 kg")),
+    solid("misspelt unit", """
+case.yaml:11:7: participants.solid.material.youngs-modulus: '1 Mpa': unknown unit 'Mpa'. Did you mean 'MPa'? Expected Pa or a unit that converts to it.
+""", ("1 MPa", "1 Mpa")),
+    solid("incompressible", """
+case.yaml:12:7: participants.solid.material.poissons-ratio: 0.5 is out of range; expected a value from -0.99 to 0.499.
+""", ("poissons-ratio: 0.3", "poissons-ratio: 0.5")),
+    solid("misspelt key", """
+case.yaml:12:7: participants.solid.material.poisson-ratio: unknown key. Did you mean 'poissons-ratio'?
+""", ("poissons-ratio", "poisson-ratio")),
+    solid("unit where there is none", """
+case.yaml:12:7: participants.solid.material.poissons-ratio: '0.3 m' has more than a number in it ('m'); expected a plain number.
+""", ("poissons-ratio: 0.3", "poissons-ratio: 0.3 m")),
+    solid("unknown word", """
+case.yaml:8:5: participants.solid.analysis: 'dynamics' is not one of: dynamic, static. Did you mean 'dynamic'?
+""", ("analysis: dynamic", "analysis: dynamics")),
+    solid("four dimensions", """
+case.yaml:7:5: participants.solid.dimension: 4 is out of range; expected a value from 2 to 3.
+""", ("dimension: 2", "dimension: 4")),
+    solid("half a dimension", "case.yaml:7:5: participants.solid.dimension: '2.5' is not a whole number.", ("dimension: 2", "dimension: 2.5")),
+    solid("unknown boundary type", """
+case.yaml:15:15: participants.solid.boundaries.right.type: 'tractions' is not one of: fixed-displacement, traction, pressure, symmetry, free, interface. Did you mean 'traction'?
+""", ("type: traction", "type: tractions")),
+    solid("boundary without type", """
+case.yaml:16:7: participants.solid.boundaries.bottom.type: this required key is missing (what is known on the patch; 'interface' takes its load from the coupler: one of: fixed-displacement, traction, pressure, symmetry, free, interface).
+""", ("{type: free}\n      top", "{}\n      top")),
+    solid("boundary without value", """
+case.yaml:14:7: participants.solid.boundaries.left.value: this required key is missing (displacement, one expression of x, y, z, t a component [m]: list of numbers or expressions).
+""", ("value: [0, 0]", "")),
+    solid("key of another boundary type", """
+case.yaml:16:28: participants.solid.boundaries.bottom.value: this key does not belong here; it goes with type: fixed-displacement or type: traction or type: pressure.
+""", ("bottom: {type: free}", "bottom: {type: free, value: [0, 0]}")),
+    solid("boundaries as a list", """
+case.yaml:13:5: participants.solid.boundaries: expected a mapping with one entry for each patch, found a list.
+""", ("""\
+      left: {type: fixed-displacement, value: [0, 0]}
+      right: {type: traction, value: [1000, 0]}
+      bottom: {type: free}
+      top: {type: free}
+""", "      [left, right]\n")),
+    solid("number instead of a list", """
+case.yaml:13:5: participants.solid.gravity: expected a list of numbers in m/s^2 or with their units, found '9.81'.
+""", ("    boundaries", "    gravity: 9.81\n    boundaries")),
+    solid("probe without a second coordinate", """
+case.yaml:13:20: participants.solid.probes.tip.point: expected a list of 2 or 3 numbers, found 1 of them.
+""", ("    boundaries", "    probes: {tip: {point: [1]}}\n    boundaries")),
+    solid("damping of a static analysis", """
+case.yaml:9:5: participants.solid.damping: damping has no effect in a static analysis; remove it.
+""", ("analysis: dynamic", "analysis: static\n    damping: {mass: 1}")),
+    solid("several mistakes at once", """
+case.yaml:2:14: simulation.end-time: 0 s is out of range; expected a value above 0 s.
+case.yaml:6:5: participants.solid.mash: unknown key. Did you mean 'mesh'?
+case.yaml:11:7: participants.solid.material.youngs-modulus: 'soft' is not a number; expected a number in Pa or with its unit.
+""", ("1 MPa", "soft"), ("end-time: 1 s", "end-time: 0"), ("    mesh", "    mash")),
+]
+
+FLUID = [
+    fluid("viscosity of the other kind", """
+case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' does not convert to Pa s; expected Pa s or a unit that converts to it.
+""", ("1e-3 Pa s", "1e-6 m^2/s")),
+    fluid("inlet without velocity", """
+case.yaml:11:7: participants.fluid.boundaries.left.velocity: this required key is missing (one expression of x, y, z [m] and t [s] a component: list of numbers or expressions in m/s).
+""", (", velocity: [1 m/s, 0 m/s]", "")),
+    fluid("component with a wrong unit", """
+case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 2 of the list: '0 Pa': the unit 'Pa' does not convert to m/s; expected m/s or a unit that converts to it.
+""", ("0 m/s]", "0 Pa]")),
+    fluid("outlet with a velocity", """
+case.yaml:12:29: participants.fluid.boundaries.right.velocity: this key does not belong here; it goes with type: inlet or type: moving-wall.
+""", ("pressure: 0", "velocity: [1, 0]")),
+    fluid("unknown treatment", """
+case.yaml:10:5: participants.fluid.viscous: 'implizit' is not one of: auto, explicit, implicit. Did you mean 'implicit'?
+""", ("    boundaries", "    viscous: implizit\n    boundaries")),
+    fluid("true or false", """
+case.yaml:10:5: participants.fluid.flux-memory: '2' is not one of: true, false.
+""", ("    boundaries", "    flux-memory: 2\n    boundaries")),
+]
+
+COUPLING = [
+    coupler("role of nobody", """
+case.yaml: coupling.structure.participant: there is no participant 'solids'. Did you mean 'solid'?
+case.yaml: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+""", ("structure: {participant: solid}", "structure: {participant: solids}")),
+    coupler("role missing", """
+case.yaml: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+case.yaml:35:1: coupling.structure.participant: this required key is missing (its name under `participants`: text).
+""", ("  structure: {participant: solid}\n", "")),
+    coupler("participant without a role", """
+case.yaml: participants.mover: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+""", ("  mesh: {participant: mover}\n", "")),
+    coupler("one participant in two roles", """
+case.yaml: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+case.yaml:38:3: coupling.structure: fluid and structure must be two different participants.
+""", ("structure: {participant: solid}", "structure: {participant: fluid}")),
+    coupler("unknown scheme", """
+case.yaml:36:3: coupling.scheme: 'semiimplicit' is not one of: explicit, semi-implicit, implicit. Did you mean 'semi-implicit'?
+""", ("scheme: implicit", "scheme: semiimplicit")),
+    coupler("unknown acceleration", """
+case.yaml:40:18: coupling.acceleration.type: 'anderson' is not one of: constant, aitken.
+""", ("type: aitken", "type: anderson")),
+    coupler("relaxation out of range", """
+case.yaml:40:32: coupling.acceleration.initial-relaxation: 0 is out of range; expected a value from 1e-06 to 2.
+""", ("initial-relaxation: 0.5", "initial-relaxation: 0")),
+    coupler("tolerance in percent too large", """
+case.yaml:41:17: coupling.convergence.relative: 2 is out of range; expected a value from 1e-14 to 1.
+""", ("relative: 1e-5", "relative: 200 %")),
+    coupler("unknown key of convergence", """
+case.yaml:41:17: coupling.convergence.relativ: unknown key. Did you mean 'relative'?
+""", ("relative: 1e-5", "relativ: 1e-5")),
+    coupler("order of the predictor", """
+case.yaml:41:15: coupling.predictor.order: 3 is out of range; expected a value from 0 to 2.
+""", ("  convergence", "  predictor: {order: 3}\n  convergence")),
+    coupler("participant for the coupler", """
+The coupler takes no --participant: it couples those that case.yaml names.
+""", arguments=["case.yaml", "--check", "--participant", "fluid"]),
+    mover("unknown motion", """
+case.yaml:32:15: participants.mover.boundaries.right.type: 'free' is not one of: interface, fixed, slip.
+""", ("right: {type: fixed}", "right: {type: free}")),
+    mover("stiffening out of range", """
+case.yaml:27:5: participants.mover.stiffening: 5 is out of range; expected a value from 0 to 3.
+""", ("  mover:\n", "  mover:\n    stiffening: 5\n")),
+]
+
+COMMAND_LINE = [
+    solid("set without a value", """
+--set simulation.end-time: expected key=value, for example --set simulation.end-time='2 s'.
+""", **with_set("simulation.end-time")),
+    solid("set below a section that is not there", """
+--set participants.sold.dimension=3: there is no 'sold' in 'participants'. Did you mean 'solid'? (A mapping that is not there can be given as a whole: --set 'participants.sold={key: value}'.)
+""", **with_set("participants.sold.dimension=3")),
+    solid("set below a value", """
+--set simulation.end-time.s=3: 'simulation.end-time' is a single value, so 's' cannot be set below it.
+""", **with_set("simulation.end-time.s=3")),
+    solid("set to a wrong value", """
+--set simulation.end-time=2 kg: simulation.end-time: '2 kg': the unit 'kg' does not convert to s; expected s or a unit that converts to it.
+""", **with_set("simulation.end-time=2 kg")),
+    solid("set of a misspelt key", """
+--set simulation.endtime=2 s: simulation.endtime: unknown key. Did you mean 'end-time'?
+""", **with_set("simulation.endtime=2 s")),
+    solid("set to broken YAML", """
+--set simulation={end-time: 1 s: the value is not valid YAML: a mapping that was opened with '{' before this place is not closed by '}'.
+""", **with_set("simulation={end-time: 1 s")),
+    solid("no case", """
+Give the YAML file of the case, for example: solid_solver case.yaml
+Run with --help for more information.
+""", arguments=["--check"]),
+    solid("unknown option", """
+There is no option or argument '--chekc'. Did you mean '--check'?
+Run with --help for more information.
+""", arguments=["case.yaml", "--chekc"]),
+]
+
+MESH = [
+    solid("mesh file that is not there", """
+[solid 0] error: The mesh file 'squares.msh' does not exist. The path is relative to the folder of the YAML file.
+""", ("square.msh", "squares.msh"), **RUN),
+    solid("mesh of an unknown kind", """
+[solid 0] error: The mesh file 'case.yaml' is neither .msh nor .geo. Convert it with gmsh or meshio to .msh 4.1 with physical names.
+""", ("square.msh", "case.yaml"), **RUN),
+    solid("mesh that is not one", """
+[solid 0] error: text.msh:1: Expected a section such as $Nodes here, found 'hello'.
+""", ("square.msh", "text.msh"), files={"text.msh": "hello\n"}, **RUN),
+    solid("unknown patch", """
+[solid 0] error: boundaries.rigth: mesh 'square.msh' has no patch of this name. Did you mean 'right'? The patches are left, right, bottom, top.
+""", ("right: {type", "rigth: {type"), **RUN),
+    solid("patch without a boundary", """
+[solid 0] error: boundaries: patch 'top' of mesh 'square.msh' has no entry; each patch needs one (a stress-free patch: 'type: free'). The patches are left, right, bottom, top.
+""", ("      top: {type: free}\n", ""), **RUN),
+    solid("plane mesh in three dimensions", """
+couplet: The job cannot start:
+  [solid] case.yaml:14:40: participants.solid.boundaries.left.value: 2 components are given where the 3-dimensional scene needs 3.
+  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: 2 components are given where the 3-dimensional scene needs 3.
+""", ("dimension: 2", "dimension: 3"), **RUN),
+    solid("components of a vector", """
+couplet: The job cannot start:
+  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: 3 components are given where the 2-dimensional scene needs 2.
+""", ("value: [1000, 0]", "value: [1000, 0, 0]"), **RUN),
+    solid("expression that cannot be read", """
+couplet: The job cannot start:
+  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: the expression '1000*sin(t' cannot be read at column 11: a ')' is missing. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
+""", ("value: [1000, 0]", "value: [1000*sin(t, 0]"), **RUN),
+    solid("expression with an unknown name", """
+couplet: The job cannot start:
+  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: the expression '1000*time' cannot be read at column 6: unknown name 'time'. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
+""", ("value: [1000, 0]", "value: [1000*time, 0]"), **RUN),
+    fluid("unknown patch of a fluid", """
+[fluid 0] error: boundaries.rigth: the mesh 'square.msh' has no patch 'rigth'. Did you mean 'right'?
+""", ("right: {type", "rigth: {type"), **RUN),
+    fluid("patch of a fluid without a boundary", """
+[fluid 0] error: boundaries: the mesh 'square.msh' has patches without a boundary: top. Give each of them a type (inlet, outlet, no-slip, moving-wall, slip or interface).
+""", ("      top: {type: slip}\n", ""), **RUN),
+    mover("mover without its coupled job", """
+couplet: The job cannot start:
+  participant 'coupler' (coupler) is missing: it was not started.
+  participant 'fluid' (fluid_solver) is missing: it was not started.
+  participant 'solid' (solid_solver) is missing: it was not started.
+  To run 'mover' alone: mesh_mover case.yaml --participant mover
+  Start it as: mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml : -n 1 solid_solver case.yaml : -n 1 mesh_mover case.yaml
+""", **RUN),
+    solid("checkpoint that is not there", """
+[solid 0] error: --restart old: there is no complete checkpoint. Give a folder made by an earlier run, such as out/checkpoints/step-00000100, or the folder above it for the latest one.
+""", arguments=["case.yaml", "--restart", "old"]),
+]
+
+CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + FLUID + COUPLING + COMMAND_LINE + MESH
