@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every participant owes its coupler (common/coupling/participant.hpp), as one typed suite. A
+// participant joins by a factory:
+//   struct MyFactory {
+//     static std::unique_ptr<Participant> make(MPI_Comm comm);
+//     static Exchange input(const Interface& interface, double factor);  // on rank 0; linear in factor
+//     static constexpr Scheme scheme = Scheme::implicit;
+//     static constexpr double dt = 0.01;
+//     static constexpr double repeat_tolerance = 1e-12;  // relative, solve() called again
+//     static constexpr double rank_tolerance = 1e-10;    // relative, other numbers of ranks
+//   };
+//   INSTANTIATE_TYPED_TEST_SUITE_P(Mine, ParticipantContract, MyFactory);
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "common/coupling/participant.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/mesh/load.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::contract {
+
+/// One mesh for all participants of a factory on one communicator: a second partitioning within a process may
+/// differ from the first, and a checkpoint belongs to its partition.
+template <class Factory>
+const Mesh& mesh_of(MPI_Comm comm) {
+  static std::map<bool, Mesh> meshes;
+  const auto [place, is_new] = meshes.try_emplace(comm == MPI_COMM_SELF);
+  if (is_new) place->second = distribute(comm, comm_rank(comm) == 0 ? Factory::raw_mesh() : RawMesh{});
+  return place->second;
+}
+
+/// Largest difference over the largest value; empty vectors (other ranks than 0) do not differ.
+inline double difference(const Exchange& a, const Exchange& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double worst = 0;
+  for (const auto& [name, values] : a) {
+    const auto found = b.find(name);
+    if (found == b.end() || found->second.size() != values.size()) {
+      ADD_FAILURE() << name << " is missing or of another size";
+      return 1;
+    }
+    double apart = 0, largest = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      apart = std::max(apart, std::abs(values[i] - found->second[i]));
+      largest = std::max(largest, std::abs(values[i]));
+    }
+    worst = std::max(worst, largest > 0 ? apart / largest : apart);
+  }
+  return worst;
+}
+
+template <class Factory>
+class ParticipantContract : public ::testing::Test {
+ protected:
+  struct Subject {
+    std::unique_ptr<Participant> participant;
+    Interface interface;
+    int steps = 0;
+
+    explicit Subject(MPI_Comm comm)
+        : participant(Factory::make(comm)), interface(participant->initialise()) {}
+    void begin(double dt = Factory::dt) {
+      participant->begin_step({steps * Factory::dt, dt, Factory::scheme, steps});
+    }
+    Exchange solve(double factor) { return participant->solve(Factory::input(interface, factor)); }
+    Exchange step(double factor) {
+      begin();
+      const Exchange out = solve(factor);
+      participant->accept_step();
+      ++steps;
+      return out;
+    }
+  };
+};
+
+TYPED_TEST_SUITE_P(ParticipantContract);
+
+TYPED_TEST_P(ParticipantContract, output_is_what_the_interface_announced) {
+  typename TestFixture::Subject subject(MPI_COMM_WORLD);
+  const Exchange out = subject.step(1);
+  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  ASSERT_FALSE(subject.interface.empty());
+  EXPECT_EQ(subject.interface.face_areas.size(), subject.interface.face_centres.size());
+  for (const auto& datum : subject.interface.gives) {
+    const auto entries = datum.place == Interface::Place::vertices ? subject.interface.vertices.size()
+                                                                   : subject.interface.face_centres.size();
+    ASSERT_TRUE(out.contains(datum.name)) << datum.name;
+    EXPECT_EQ(out.at(datum.name).size(), entries * subject.interface.dim) << datum.name;
+    double largest = 0;
+    for (const double v : out.at(datum.name)) largest = std::max(largest, std::abs(v));
+    EXPECT_TRUE(std::isfinite(largest));
+  }
+}
+
+TYPED_TEST_P(ParticipantContract, input_matters) {
+  typename TestFixture::Subject subject(MPI_COMM_WORLD);
+  subject.begin();
+  const Exchange one = subject.solve(1), other = subject.solve(-2);
+  if (comm_rank(MPI_COMM_WORLD) == 0) {
+    EXPECT_GT(difference(one, other), 1e-3);
+  }
+}
+
+TYPED_TEST_P(ParticipantContract, equal_input_gives_equal_output_within_a_step) {
+  typename TestFixture::Subject subject(MPI_COMM_WORLD);
+  subject.step(1);
+  subject.begin();
+  const Exchange first = subject.solve(1);
+  subject.solve(-2);
+  EXPECT_LE(difference(first, subject.solve(1)), TypeParam::repeat_tolerance);
+}
+
+TYPED_TEST_P(ParticipantContract, a_step_begun_again_forgets_what_was_tried) {
+  typename TestFixture::Subject subject(MPI_COMM_WORLD), other(MPI_COMM_WORLD);
+  for (auto* s : {&subject, &other}) s->step(1), s->step(0.5);
+  subject.begin(TypeParam::dt / 2);
+  subject.solve(-3);
+  subject.begin();
+  subject.solve(2);
+  subject.begin();
+  other.begin();
+  EXPECT_LE(difference(subject.solve(1), other.solve(1)), TypeParam::repeat_tolerance);
+}
+
+TYPED_TEST_P(ParticipantContract, only_accepted_steps_change_the_state) {
+  typename TestFixture::Subject subject(MPI_COMM_WORLD), other(MPI_COMM_WORLD);
+  for (int i = 0; i < 3; ++i) {
+    subject.begin();
+    subject.solve(-5);
+    subject.solve(7);
+    EXPECT_LE(difference(subject.step(1 + i), other.step(1 + i)), TypeParam::repeat_tolerance)
+        << "step " << i;
+  }
+}
+
+TYPED_TEST_P(ParticipantContract, a_checkpoint_continues_bit_for_bit) {
+  int id = ::getpid();
+  MPI_Bcast(&id, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  const auto file =
+      std::filesystem::temp_directory_path() / ("couplet-contract-" + std::to_string(id) + ".h5");
+  typename TestFixture::Subject subject(MPI_COMM_WORLD), other(MPI_COMM_WORLD);
+  for (int i = 0; i < 3; ++i) subject.step(1 + i);
+  {
+    CheckpointWriter writer(MPI_COMM_WORLD, file);
+    subject.participant->save(writer);
+    writer.close();
+    CheckpointReader reader(MPI_COMM_WORLD, file);
+    other.participant->load(reader);
+    other.steps = subject.steps;
+  }
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(difference(subject.step(2 - i), other.step(2 - i)), 0) << "step " << i;
+  if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
+}
+
+TYPED_TEST_P(ParticipantContract, all_ranks_together_give_what_one_rank_gives) {
+  typename TestFixture::Subject together(MPI_COMM_WORLD), alone(MPI_COMM_SELF);
+  for (int i = 0; i < 3; ++i) {
+    const Exchange out = together.step(1 + i), expected = alone.step(1 + i);
+    if (comm_rank(MPI_COMM_WORLD) == 0) {
+      EXPECT_LE(difference(expected, out), TypeParam::rank_tolerance) << "step " << i;
+    } else {
+      for (const auto& [name, values] : out) EXPECT_TRUE(values.empty()) << name << " is for rank 0 alone";
+    }
+  }
+}
+
+REGISTER_TYPED_TEST_SUITE_P(ParticipantContract, output_is_what_the_interface_announced, input_matters,
+                            equal_input_gives_equal_output_within_a_step,
+                            a_step_begun_again_forgets_what_was_tried, only_accepted_steps_change_the_state,
+                            a_checkpoint_continues_bit_for_bit, all_ranks_together_give_what_one_rank_gives);
+
+}  // namespace couplet::contract

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/solid.hpp"
+#include "tests/contract/contract_suite.hpp"
+
+namespace couplet::contract {
+namespace {
+
+/// A clamped column, wetted on three sides.
+struct SolidFactory {
+  static RawMesh raw_mesh() {
+    return make_box(BoxCells::quadrilaterals, {3, 12, 1}, Vec3::Zero(), Vec3(0.1, 1, 0));
+  }
+  static std::unique_ptr<Participant> make(MPI_Comm comm) {
+    SolidParameters p;
+    p.mesh = "box";
+    p.dimension = 2;
+    p.analysis = SolidParameters::Analysis::dynamic;
+    p.material = {3000, 4e6, 0.3};
+    p.boundaries["ymin"].type = SolidBoundary::Type::fixed_displacement;
+    p.boundaries["ymin"].value = {{"0"}, {"0"}};
+    for (const char* side : {"xmin", "xmax", "ymax"})
+      p.boundaries[side].type = SolidBoundary::Type::interface_;
+    return std::make_unique<Solid>(mesh_of<SolidFactory>(comm), p, SolidContext{});
+  }
+  static Exchange input(const Interface& interface, double factor) {
+    Exchange in;
+    for (const Vec3& area : interface.face_areas)
+      for (int c = 0; c < 2; ++c) {
+        in["pressure-force"].push_back(c == 0 && area.x() < 0 ? 10 * factor * area.norm() : 0);
+        in["viscous-force"].push_back(c == 1 ? factor * area.norm() : 0);
+      }
+    return in;
+  }
+  static constexpr Scheme scheme = Scheme::implicit;
+  static constexpr double dt = 0.01, repeat_tolerance = 1e-11, rank_tolerance = 1e-9;
+};
+
+INSTANTIATE_TYPED_TEST_SUITE_P(Solid, ParticipantContract, SolidFactory);
+
+}  // namespace
+}  // namespace couplet::contract
