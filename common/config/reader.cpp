@@ -14,6 +14,8 @@ namespace {
 
 constexpr const char* missing_key = "this required key is missing";
 
+std::string one_of(const std::vector<std::string>& words) { return fmt::format("one of: {}", join(words)); }
+
 /// The keys a declaration makes at its own level; touches no member.
 class NameCollector final : public Visitor {
  public:
@@ -125,10 +127,12 @@ void Reader::key(const Facts& facts, const Slot& slot) {
   const Entry entry = take(facts.name);
   if (!entry.found) {
     if (!facts.required) return;
-    const std::string type = describe_type(slot);
-    report_key(frame.place, path,
-               fmt::format("{} ({}{}{}).", missing_key, facts.doc.empty() ? "" : facts.doc + ": ", type,
-                           facts.unit.empty() ? "" : " in " + facts.unit));
+    const Word* word = std::get_if<Word>(&slot);
+    const std::string expected =
+        word != nullptr ? one_of(word->words)
+                        : fmt::format("{}{}{}", facts.doc.empty() ? "" : facts.doc + ": ",
+                                      describe_type(slot), facts.unit.empty() ? "" : " in " + facts.unit);
+    report_key(frame.place, path, fmt::format("{} ({}).", missing_key, expected));
     return;
   }
   try {
@@ -194,9 +198,7 @@ void Reader::variant(const Facts& facts, const Cases& cases, const std::string& 
   std::string chosen = current;
   if (entry.found || facts.required) {
     try {
-      if (!entry.found)
-        throw Error("{} ({}one of: {}).", missing_key, facts.doc.empty() ? "" : facts.doc + ": ",
-                    join(word.words));
+      if (!entry.found) throw Error("{} ({}).", missing_key, one_of(word.words));
       word.set = [&](const std::string& text) {
         chosen = text;
         set(text);

@@ -188,7 +188,7 @@ case.yaml:7:5: participants.solid.dimension: 4 is out of range; expected a value
 case.yaml:15:15: participants.solid.boundaries.right.type: 'tractions' is not one of: fixed-displacement, traction, pressure, symmetry, free, interface. Did you mean 'traction'?
 """, ("type: traction", "type: tractions")),
     solid("boundary without type", """
-case.yaml:16:7: participants.solid.boundaries.bottom.type: this required key is missing (what is known on the patch; 'interface' takes its load from the coupler: one of: fixed-displacement, traction, pressure, symmetry, free, interface).
+case.yaml:16:7: participants.solid.boundaries.bottom.type: this required key is missing (one of: fixed-displacement, traction, pressure, symmetry, free, interface).
 """, ("{type: free}\n      top", "{}\n      top")),
     solid("boundary without value", """
 case.yaml:14:7: participants.solid.boundaries.left.value: this required key is missing (displacement, one expression of x, y, z, t a component [m]: list of numbers or expressions).
@@ -281,6 +281,8 @@ The coupler takes no --participant: it couples those that case.yaml names.
     mover("unknown motion", """
 case.yaml:32:15: participants.mover.boundaries.right.type: 'free' is not one of: interface, fixed, slip.
 """, ("right: {type: fixed}", "right: {type: free}")),
+    mover("motion missing", "case.yaml:32:7: participants.mover.boundaries.right.type: this required key is missing (one of: "
+          "interface, fixed, slip).", ("right: {type: fixed}", "right: {}")),
     mover("stiffening out of range", """
 case.yaml:27:5: participants.mover.stiffening: 5 is out of range; expected a value from 0 to 3.
 """, ("  mover:\n", "  mover:\n    stiffening: 5\n")),

@@ -71,7 +71,7 @@ const Case cases[] = {
     {"boundaries: [left]",
      "3:1: boundaries: expected a mapping with one entry for each patch, found a list."},
     {"boundaries: {left: {velocity: [1, 2]}}",
-     "3:14: boundaries.left.type: this required key is missing (what the patch is: one of: wall, inlet, "
+     "3:14: boundaries.left.type: this required key is missing (one of: wall, inlet, "
      "outlet)."},
     {"boundaries: {left: {type: inlt, velocity: [1, 2]}}",
      "3:21: boundaries.left.type: 'inlt' is not one of: wall, inlet, outlet. Did you mean 'inlet'?"},
