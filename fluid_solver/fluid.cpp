@@ -28,6 +28,16 @@ Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving
       boundary_(mesh, parameters_),
       step_(mesh, boundary_, parameters_),
       step_size_(mesh, boundary_, parameters.viscosity / parameters.density) {
+  if (!has_regular_cells(mesh)) {
+    // The explicit non-orthogonal part beside an implicit orthogonal one is not stable on such cells.
+    if (parameters_.viscous == ViscousTreatment::implicit)
+      throw Error(
+          "viscous: 'implicit' needs a mesh of quadrilaterals or hexahedra; '{}' has other cells. Use "
+          "'explicit' or "
+          "'auto'.",
+          parameters_.mesh);
+    parameters_.viscous = ViscousTreatment::explicit_;
+  }
   start(start_time);
 }
 

@@ -61,7 +61,7 @@ void declare(config::Section& s, FluidParameters& p) {
       .doc(
           "time scheme of the viscous term; auto: implicit where its explicit stability limit would cost "
           "clearly "
-          "more steps");
+          "more steps; implicit needs a mesh of quadrilaterals or hexahedra");
   s.value("pressure-tolerance", p.pressure_tolerance)
       .range(1e-14, 1e-1)
       .doc(

@@ -119,6 +119,7 @@ void FluidParticipant<D>::save(CheckpointWriter& file) const {
 template <int D>
 void FluidParticipant<D>::load(CheckpointReader& file) {
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving()));
+  fluid_->refresh_solvers();
 }
 
 template <int D>

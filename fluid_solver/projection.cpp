@@ -26,6 +26,7 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       parameters_(parameters),
       rho_(parameters.density),
       nu_(parameters.viscosity / parameters.density),
+      extrapolate_oblique_(has_regular_cells(mesh)),
       rate_operator_(mesh, boundary, nu_),
       viscous_solver_(mesh, boundary),
       pressure_(mesh, boundary) {}

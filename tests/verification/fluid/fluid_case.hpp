@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// A fluid in a box for the tests: mesh, parameters, prescribed motion of points and walls, errors against
+// fields.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "common/mesh/load.hpp"
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/fluid.hpp"
+
+namespace couplet::fluid::test {
+
+using PointMotion = std::function<Vec3(const Vec3& reference, GlobalIndex id, double t)>;
+using WallVelocity = std::function<Vec3(const Vec3& face_centre, double t)>;
+
+inline BoundaryParameters boundary(BoundaryType type, std::vector<std::string> velocity = {},
+                                   const std::string& pressure = "0") {
+  BoundaryParameters b;
+  b.type = type;
+  for (const std::string& text : velocity) b.velocity.push_back({text});
+  b.pressure.text = pressure;
+  return b;
+}
+
+inline void all_sides(FluidParameters& p, int dim, const BoundaryParameters& b) {
+  for (const char* side : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[side] = b;
+  if (dim == 3)
+    for (const char* side : {"zmin", "zmax"}) p.boundaries[side] = b;
+}
+
+template <int D>
+class FluidCase {
+ public:
+  FluidCase(MPI_Comm comm, const RawMesh& raw, FluidParameters parameters, PointMotion motion = {})
+      : mesh_(std::make_unique<Mesh>(distribute(comm, raw))), motion_(std::move(motion)) {
+    parameters.dimension = D;
+    fluid_ = std::make_unique<Fluid<D>>(*mesh_, parameters, bool(motion_));
+  }
+
+  std::vector<Vec3> points(double t) const {
+    std::vector<Vec3> moved;
+    if (!motion_) return moved;
+    for (std::size_t i = 0; i < mesh_->reference_points.size(); ++i)
+      moved.push_back(motion_(mesh_->reference_points[i], mesh_->point_id[i], t));
+    return moved;
+  }
+  Vectors<D> wall(const WallVelocity& w, double t) const {
+    Vectors<D> values(mesh_->boundary.n_owned(), Vec<D>::Zero());
+    if (!w) return values;
+    for (std::size_t b = 0; b < values.size(); ++b)
+      values[b] = w(fluid_->state().placement->boundary_centre[b], t).template head<D>();
+    return values;
+  }
+  void step(double dt, const WallVelocity& w = {}) {
+    const double t = fluid_->state().time;
+    fluid_->begin_step(t, dt);
+    fluid_->solve(points(t + dt), wall(w, t + dt));
+    fluid_->accept();
+  }
+  void run(double end, int steps, const WallVelocity& w = {}) {
+    const double begin = fluid_->state().time;
+    for (int i = 0; i < steps; ++i) step((end - begin) / steps, w);
+  }
+
+  /// Volume-weighted root mean square of u - exact, and the largest.
+  double velocity_error(const std::function<Vec3(const Vec3&)>& exact) const {
+    const State<D>& s = fluid_->state();
+    double square = 0, volume = 0;
+    for (Index c = 0; c < mesh_->cells.n_owned(); ++c) {
+      Vec3 x = Vec3::Zero();
+      x.head<D>() = s.placement->centre[c];
+      square += s.placement->volume[c] * (s.u[c] - exact(x).template head<D>()).squaredNorm();
+      volume += s.placement->volume[c];
+    }
+    return std::sqrt(sum(mesh_->comm, square) / sum(mesh_->comm, volume));
+  }
+  double largest_velocity_error(const std::function<Vec3(const Vec3&)>& exact) const {
+    const State<D>& s = fluid_->state();
+    double largest = 0;
+    for (Index c = 0; c < mesh_->cells.n_owned(); ++c) {
+      Vec3 x = Vec3::Zero();
+      x.head<D>() = s.placement->centre[c];
+      largest = std::max(largest, (s.u[c] - exact(x).template head<D>()).norm());
+    }
+    return max(mesh_->comm, largest);
+  }
+  /// Root mean square of p - exact after both lost their means.
+  double pressure_error(const std::function<double(const Vec3&)>& exact) const {
+    const State<D>& s = fluid_->state();
+    double mean = 0, square = 0, volume = 0;
+    std::vector<double> difference(mesh_->cells.n_owned());
+    for (Index c = 0; c < mesh_->cells.n_owned(); ++c) {
+      Vec3 x = Vec3::Zero();
+      x.head<D>() = s.placement->centre[c];
+      difference[c] = s.pressure[0]->p[c] - exact(x);
+      mean += s.placement->volume[c] * difference[c];
+      volume += s.placement->volume[c];
+    }
+    volume = sum(mesh_->comm, volume);
+    mean = sum(mesh_->comm, mean) / volume;
+    for (Index c = 0; c < mesh_->cells.n_owned(); ++c)
+      square += s.placement->volume[c] * std::pow(difference[c] - mean, 2);
+    return std::sqrt(sum(mesh_->comm, square) / volume);
+  }
+
+  Fluid<D>& fluid() { return *fluid_; }
+  const State<D>& state() const { return fluid_->state(); }
+  const Mesh& mesh() const { return *mesh_; }
+
+ private:
+  std::unique_ptr<Mesh> mesh_;
+  PointMotion motion_;
+  std::unique_ptr<Fluid<D>> fluid_;
+};
+
+/// Root mean square of the difference of two states on the same mesh.
+template <int D>
+double difference(const FluidCase<D>& a, const FluidCase<D>& b) {
+  double square = 0, volume = 0;
+  for (Index c = 0; c < a.mesh().cells.n_owned(); ++c) {
+    const double v = a.state().placement->volume[c];
+    square += v * (a.state().u[c] - b.state().u[c]).squaredNorm();
+    volume += v;
+  }
+  return std::sqrt(sum(a.mesh().comm, square) / sum(a.mesh().comm, volume));
+}
+
+}  // namespace couplet::fluid::test

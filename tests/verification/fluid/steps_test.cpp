@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ranks, repetition, coupling schemes and step sizes.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "fluid_case.hpp"
+
+namespace couplet::fluid::test {
+namespace {
+
+/// A channel whose floor moves: inlet left, outlet right, slip lid.
+FluidParameters channel(ViscousTreatment viscous = ViscousTreatment::automatic) {
+  FluidParameters p;
+  p.density = 1.3;
+  p.viscosity = 0.05;
+  p.viscous = viscous;
+  p.pressure_tolerance = 1e-12;
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"4*y*(1-y)*(1+0.3*sin(5*t))", "0"});
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+  p.boundaries["ymax"] = boundary(BoundaryType::slip);
+  p.boundaries["ymin"] = boundary(BoundaryType::interface);
+  return p;
+}
+
+RawMesh channel_mesh() {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {24, 12, 1}, Vec3::Zero(), Vec3(2, 1, 1));
+  perturb_interior(raw, 0.15, 7);
+  return raw;
+}
+
+double bump(double x) { return 0.1 * std::pow(std::sin(std::numbers::pi * x / 2), 2); }
+Vec3 floor_place(const Vec3& x, GlobalIndex, double t) {
+  return x + Vec3(0, (1 - x.y()) * bump(x.x()) * (1 - std::cos(4 * t)), 0);
+}
+Vec3 floor_speed(const Vec3& x, double t) { return Vec3(0, 4 * bump(x.x()) * std::sin(4 * t), 0); }
+
+/// Sums over all ranks that tell two runs apart: momentum, kinetic energy, pressure load on the floor.
+std::vector<double> fingerprint(FluidCase<2>& c) {
+  std::vector<double> sums(6, 0.0);
+  const State<2>& s = c.state();
+  for (Index i = 0; i < c.mesh().cells.n_owned(); ++i) {
+    const double v = s.placement->volume[i];
+    const double weight = 1 + std::sin(double(c.mesh().cell_id[i]));
+    sums[0] += weight * v * s.u[i].x();
+    sums[1] += weight * v * s.u[i].y();
+    sums[2] += weight * v * s.pressure[0]->p[i];
+  }
+  for (std::size_t b = 0; b < s.w.size(); ++b)
+    if (c.fluid().boundary().is_interface(b)) {
+      const double weight = 1 + s.placement->boundary_centre[b].x();
+      sums[3] += weight * c.fluid().pressure_force()[b].y();
+      sums[4] += weight * c.fluid().pressure_force()[b].x();
+      sums[5] += weight * c.fluid().viscous_force()[b].x();
+    }
+  for (double& value : sums) value = sum(c.mesh().comm, value);
+  return sums;
+}
+
+TEST(Ranks, give_the_same_flow_as_one_rank) {
+  FluidCase<2> all(MPI_COMM_WORLD, channel_mesh(), channel(), floor_place);
+  FluidCase<2> one(MPI_COMM_SELF, channel_mesh(), channel(), floor_place);
+  all.run(0.3, 6, floor_speed);
+  one.run(0.3, 6, floor_speed);
+  const auto a = fingerprint(all), b = fingerprint(one);
+  EXPECT_EQ(all.fluid().statistics().all_sub_steps, one.fluid().statistics().all_sub_steps);
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_NEAR(a[i], b[i], 1e-8 * std::abs(b[i])) << "sum " << i;
+}
+
+TEST(Repetition, of_a_step_gives_the_same_result_and_leaves_the_accepted_state_alone) {
+  FluidCase<2> c(MPI_COMM_WORLD, channel_mesh(), channel(), floor_place);
+  c.run(0.1, 2, floor_speed);
+  Fluid<2>& fluid = c.fluid();
+  const Vectors<2> u = c.state().u;
+  const double t = 0.1, dt = 0.05;
+  fluid.begin_step(t, dt);
+  fluid.solve(c.points(t + dt), c.wall(floor_speed, t + dt));
+  const Vectors<2> first = fluid.pressure_force();
+  fluid.solve(c.points(t + dt / 2), c.wall(floor_speed, t));  // another input in between
+  fluid.solve(c.points(t + dt), c.wall(floor_speed, t + dt));
+  const Vectors<2> again = fluid.pressure_force();
+  fluid.begin_step(t, dt / 2);  // and another step size
+  fluid.solve(c.points(t + dt / 2), c.wall(floor_speed, t + dt / 2));
+  fluid.begin_step(t, dt);
+  fluid.solve(c.points(t + dt), c.wall(floor_speed, t + dt));
+  double scale = 0;
+  for (const Vec<2>& f : first) scale = std::max(scale, f.norm());
+  for (std::size_t b = 0; b < first.size(); ++b) {
+    EXPECT_LT((again[b] - first[b]).norm(), 1e-8 * scale);
+    EXPECT_LT((fluid.pressure_force()[b] - first[b]).norm(), 1e-8 * scale);
+  }
+  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_EQ(c.state().u[i], u[i]);
+}
+
+// A small motion of an orthogonal mesh: the non-orthogonal parts of the pressure equation are extrapolated,
+// so that a pressure that jumps in the last sub-step (prediction error) leaves a first-order rest on strongly
+// distorted meshes.
+constexpr double small = 0.04;
+Vec3 small_place(const Vec3& x, GlobalIndex id, double t) { return x + small * (floor_place(x, id, t) - x); }
+Vec3 small_speed(const Vec3& x, double t) { return small * floor_speed(x, t); }
+RawMesh straight_mesh() {
+  return make_box(BoxCells::quadrilaterals, {24, 12, 1}, Vec3::Zero(), Vec3(2, 1, 1));
+}
+
+/// Load of the last step with the semi-implicit sequence: mesh, sub-steps and predictor with an extrapolated
+/// wall velocity (wrong by O(dt^2)), the last pressure equation with the true one.
+std::vector<double> semi_implicit_run(int steps, double end) {
+  const double dt = end / steps;
+  FluidParameters p = channel();
+  p.time_step = dt / 4;
+  FluidCase<2> c(MPI_COMM_WORLD, straight_mesh(), p, small_place);
+  for (int i = 0; i < steps; ++i) {
+    const double t = i * dt;
+    c.fluid().begin_step(t, dt);
+    const WallVelocity predicted = [&](const Vec3& x, double) {
+      return Vec3(i == 0 ? small_speed(x, t) : Vec3(2 * small_speed(x, t) - small_speed(x, t - dt)));
+    };
+    c.fluid().prepare(c.points(t + dt), c.wall(predicted, t + dt));
+    c.fluid().solve_pressure(c.wall(predicted, t + dt));
+    c.fluid().solve_pressure(c.wall(small_speed, t + dt));
+    c.fluid().accept();
+  }
+  return fingerprint(c);
+}
+
+TEST(SemiImplicitStep, gives_the_load_of_the_implicit_one_to_second_order) {
+  const double end = 0.4;
+  double gap[2];
+  for (int i = 0; i < 2; ++i) {
+    const int steps = 10 << i;
+    const auto semi = semi_implicit_run(steps, end);
+    FluidParameters p = channel();
+    p.time_step = end / steps / 4;
+    FluidCase<2> c(MPI_COMM_WORLD, straight_mesh(), p, small_place);
+    c.run(end, steps, small_speed);
+    gap[i] = std::abs(semi[3] / fingerprint(c)[3] - 1);
+  }
+  printf("semi-implicit against implicit load: %.2e, half the step %.2e\n", gap[0], gap[1]);
+  EXPECT_LT(gap[0], 1e-2);
+  EXPECT_LT(gap[1], gap[0] / 3);
+}
+
+TEST(AddedMass, impulse_does_not_depend_on_the_number_of_sub_steps) {
+  // A closed box that is set in motion within one step: the force is the mass of the fluid times the change
+  // of velocity.
+  for (const double own_step : {1.0, 0.3, 0.07}) {
+    FluidParameters p;
+    p.density = 2;
+    p.viscosity = 0;
+    p.viscous = ViscousTreatment::explicit_;
+    p.time_step = own_step;
+    p.pressure_tolerance = 1e-12;
+    all_sides(p, 2, boundary(BoundaryType::interface));
+    FluidCase<2> c(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {8, 8, 1}, Vec3::Zero(), Vec3::Ones()),
+                   p,
+                   [](const Vec3& x, GlobalIndex, double t) { return Vec3(x + Vec3(0.05 * t * t, 0, 0)); });
+    c.fluid().begin_step(0, 1);
+    // Prepared with a wall velocity that is quite wrong, as a prediction may be.
+    c.fluid().prepare(c.points(1), c.wall([](const Vec3&, double) { return Vec3(0.06, 0, 0); }, 1));
+    c.fluid().solve_pressure(c.wall([](const Vec3&, double) { return Vec3(0.1, 0, 0); }, 1));
+    double force = 0;
+    for (const Vec<2>& f : c.fluid().pressure_force()) force += f.x();
+    EXPECT_NEAR(sum(MPI_COMM_WORLD, force), -2 * 0.1, 1e-9) << "own step " << own_step;
+  }
+}
+
+TEST(Poiseuille, profile_and_pressure_drop_are_kept_in_a_channel) {
+  FluidParameters p;
+  p.density = 1.3;
+  p.viscosity = 0.4;
+  p.pressure_tolerance = 1e-8;
+  p.initial_velocity = {{"4*y*(1-y)"}, {"0"}};
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"4*y*(1-y)", "0"});
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+  p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::no_slip);
+  FluidCase<2> c(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {40, 20, 1}, Vec3::Zero(), Vec3(2, 1, 1)),
+                 p);
+  c.run(3, 10);
+  EXPECT_LT(c.velocity_error([](const Vec3& x) { return Vec3(4 * x.y() * (1 - x.y()), 0, 0); }), 3e-3);
+  EXPECT_LT(c.pressure_error([](const Vec3& x) { return 8 * 0.4 * (2 - x.x()); }), 0.02 * 8 * 0.4);
+}
+
+}  // namespace
+}  // namespace couplet::fluid::test
