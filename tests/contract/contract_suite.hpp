@@ -8,6 +8,10 @@
 //     static constexpr double dt = 0.01;
 //     static constexpr double repeat_tolerance = 1e-12;  // relative, solve() called again
 //     static constexpr double rank_tolerance = 1e-10;    // relative, other numbers of ranks
+//     // Of a restart on several ranks; on one it is bit for bit. Not 0 for parallel factorisations (MUMPS),
+//     which add
+//     // in the order in which messages arrive: two runs of one program differ too.
+//     static constexpr double restart_tolerance = 0;
 //   };
 //   INSTANTIATE_TYPED_TEST_SUITE_P(Mine, ParticipantContract, MyFactory);
 #pragma once
@@ -157,8 +161,9 @@ TYPED_TEST_P(ParticipantContract, a_checkpoint_continues_bit_for_bit) {
     other.participant->load(reader);
     other.steps = subject.steps;
   }
+  const double allowed = comm_size(MPI_COMM_WORLD) == 1 ? 0 : TypeParam::restart_tolerance;
   for (int i = 0; i < 3; ++i)
-    EXPECT_EQ(difference(subject.step(2 - i), other.step(2 - i)), 0) << "step " << i;
+    EXPECT_LE(difference(subject.step(2 - i), other.step(2 - i)), allowed) << "step " << i;
   if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
 }
 

@@ -5,8 +5,24 @@
 namespace couplet::contract {
 namespace {
 
-/// A channel whose lower wall moves; the mesh stays.
-template <Scheme S>
+/// Moves the mesh up by an amount that falls from the lower wall to the top, as the last input asked for.
+double moved_by = 0;  // NOLINT: the link between an input and the motion that goes with it
+class Motion final : public MeshMotionSource {
+ public:
+  explicit Motion(const Mesh& mesh) : mesh_(mesh) {}
+  std::vector<double> receive() override {
+    std::vector<double> displacement;
+    for (const Vec3& x : mesh_.reference_points)
+      for (const double d : {0., moved_by * x.x() * (2 - x.x()) * (1 - x.y())}) displacement.push_back(d);
+    return displacement;
+  }
+
+ private:
+  const Mesh& mesh_;
+};
+
+/// A channel whose lower wall moves, with or without its mesh.
+template <Scheme S, bool Moving>
 struct FluidFactory {
   static RawMesh raw_mesh() {
     return make_box(BoxCells::quadrilaterals, {12, 8, 1}, Vec3::Zero(), Vec3(2, 1, 0));
@@ -25,9 +41,12 @@ struct FluidFactory {
     p.boundaries["ymax"].type = BoundaryType::slip;
     p.boundaries["ymin"].type = BoundaryType::interface;
     p.initial_velocity = {{"1"}, {"0"}};
-    return make_participant(mesh_of<FluidFactory>(comm), p, FluidContext{}, {});
+    MotionLink link;
+    if (Moving) link = [](const Mesh& mesh) { return std::make_unique<Motion>(mesh); };
+    return make_participant(mesh_of<FluidFactory>(comm), p, FluidContext{}, link);
   }
   static Exchange input(const Interface& interface, double factor) {
+    moved_by = 0.01 * factor;
     Exchange in;
     for (const Vec3& x : interface.vertices)
       for (const double v : {0., 0.1 * factor * x.x() * (2 - x.x())}) {
@@ -37,13 +56,17 @@ struct FluidFactory {
     return in;
   }
   static constexpr Scheme scheme = S;
-  static constexpr double dt = 0.01, repeat_tolerance = 1e-8, rank_tolerance = 1e-7;
+  static constexpr double dt = 0.01, repeat_tolerance = 1e-8, rank_tolerance = 1e-7, restart_tolerance = 1e-8;
 };
 
-using SemiImplicit = FluidFactory<Scheme::semi_implicit>;
-using Implicit = FluidFactory<Scheme::implicit>;
+using SemiImplicit = FluidFactory<Scheme::semi_implicit, false>;
+using Implicit = FluidFactory<Scheme::implicit, false>;
+using MovingSemiImplicit = FluidFactory<Scheme::semi_implicit, true>;
+using MovingImplicit = FluidFactory<Scheme::implicit, true>;
 INSTANTIATE_TYPED_TEST_SUITE_P(FluidSemiImplicit, ParticipantContract, SemiImplicit);
 INSTANTIATE_TYPED_TEST_SUITE_P(FluidImplicit, ParticipantContract, Implicit);
+INSTANTIATE_TYPED_TEST_SUITE_P(FluidMovingSemiImplicit, ParticipantContract, MovingSemiImplicit);
+INSTANTIATE_TYPED_TEST_SUITE_P(FluidMovingImplicit, ParticipantContract, MovingImplicit);
 
 }  // namespace
 }  // namespace couplet::contract

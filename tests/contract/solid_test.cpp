@@ -32,7 +32,8 @@ struct SolidFactory {
     return in;
   }
   static constexpr Scheme scheme = Scheme::implicit;
-  static constexpr double dt = 0.01, repeat_tolerance = 1e-11, rank_tolerance = 1e-9;
+  static constexpr double dt = 0.01, repeat_tolerance = 1e-11, rank_tolerance = 1e-9,
+                          restart_tolerance = 1e-11;
 };
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Solid, ParticipantContract, SolidFactory);

@@ -19,7 +19,7 @@ struct SpringFactory {
     return in;
   }
   static constexpr Scheme scheme = Scheme::implicit;
-  static constexpr double dt = 0.1, repeat_tolerance = 0, rank_tolerance = 0;
+  static constexpr double dt = 0.1, repeat_tolerance = 0, rank_tolerance = 0, restart_tolerance = 0;
 };
 
 struct PistonFactory {
@@ -40,7 +40,7 @@ struct PistonFactory {
     return in;
   }
   static constexpr Scheme scheme = Scheme::implicit;
-  static constexpr double dt = 0.1, repeat_tolerance = 0, rank_tolerance = 0;
+  static constexpr double dt = 0.1, repeat_tolerance = 0, rank_tolerance = 0, restart_tolerance = 0;
 };
 
 INSTANTIATE_TYPED_TEST_SUITE_P(Spring, ParticipantContract, SpringFactory);

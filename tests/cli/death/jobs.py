@@ -60,6 +60,9 @@ class Suite:
                 os.killpg(process.pid, 9)
                 output, _ = process.communicate()
                 output += "\n(still running after 30 s)"
+            # The last of them may still be on their way out when mpirun returns.
+            while living_in_session(process.pid) and time.monotonic() - start < within:
+                time.sleep(0.05)
             seconds = time.monotonic() - start
             problems = []
             if seconds > within:
