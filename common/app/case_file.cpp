@@ -14,7 +14,7 @@ void check_top_level(const config::Document& document, CaseFile& result) {
   static const std::vector<std::string> known{"simulation", "participants", "coupling"};
   for (const std::string& key : config::keys_of(document, ""))
     if (std::find(known.begin(), known.end(), key) == known.end())
-      result.errors.push_back(fmt::format("{}: unknown section '{}'. {}", document.name(), key,
+      result.errors.push_back(fmt::format("{}: unknown section. {}", config::where(document, key),
                                           did_you_mean(key, known, "sections")));
 }
 
@@ -24,14 +24,13 @@ void list_expected(const config::Document& document, CaseFile& result) {
   for (const std::string& name : config::keys_of(document, "participants")) {
     const auto program = config::text_of(document, "participants." + name + ".program");
     if (name == coupler_name)
-      result.errors.push_back(fmt::format(
-          "{}: participants.coupler: the coupler is not a participant; its keys are in `coupling`.",
-          document.name()));
+      result.errors.push_back(fmt::format("{}: the coupler is not a participant; its keys are in `coupling`.",
+                                          config::where(document, "participants.coupler")));
     if (!program)
-      result.errors.push_back(fmt::format(
-          "{}: participants.{}: the key 'program' is missing: the name of the program that runs this "
-          "participant, for instance solid_solver.",
-          document.name(), name));
+      result.errors.push_back(
+          fmt::format("{}: the key 'program' is missing: the name of the program that runs this "
+                      "participant, for instance solid_solver.",
+                      config::where(document, "participants." + name)));
     result.expected.push_back({name, program.value_or("?")});
   }
 }
@@ -47,16 +46,16 @@ void check_roles(const config::Document& document, CaseFile& result) {
     if (!name) continue;
     cast.push_back(*name);
     if (std::find(names.begin(), names.end(), *name) == names.end())
-      result.errors.push_back(fmt::format("{}: coupling.{}.participant: there is no participant '{}'. {}",
-                                          document.name(), role, *name,
+      result.errors.push_back(fmt::format("{}: there is no participant '{}'. {}",
+                                          config::where(document, "coupling." + role + ".participant"), *name,
                                           did_you_mean(*name, names, "participants")));
   }
   for (const std::string& name : names)
     if (std::find(cast.begin(), cast.end(), name) == cast.end())
-      result.errors.push_back(fmt::format(
-          "{}: participants.{}: this participant has no role in `coupling` (fluid, structure or mesh): give "
-          "it one or take it out.",
-          document.name(), name));
+      result.errors.push_back(
+          fmt::format("{}: this participant has no role in `coupling` (fluid, structure or mesh): give "
+                      "it one or take it out.",
+                      config::where(document, "participants." + name)));
 }
 
 /// The participant that this program is to run; throws Error.

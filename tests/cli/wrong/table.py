@@ -83,7 +83,7 @@ case.yaml:8:5: participants.solid.mesh: this key stands here twice (first at 6:5
 case.yaml:16:3: participants.fluid: this key stands here twice (first at 5:3); remove one of the two.
 """, ("  solid:", "  fluid:")),
     solid("unknown section", """
-case.yaml: unknown section 'simulations'. Did you mean 'simulation'?
+case.yaml:2:1: simulations: unknown section. Did you mean 'simulation'?
 case.yaml:1:1: simulation: this section is missing. Did you write 'simulations'?
 """, ("simulation:", "simulations:")),
     solid("anchor that does not exist", """
@@ -133,7 +133,7 @@ PARTICIPANTS = [
 case.yaml has no `participants` section, which says what solid_solver is to run.
 """, text="simulation: {end-time: 1 s, time-step: 0.5 s}\n"),
     solid("no program", """
-case.yaml: participants.solid: the key 'program' is missing: the name of the program that runs this participant, for instance solid_solver.
+case.yaml:4:3: participants.solid: the key 'program' is missing: the name of the program that runs this participant, for instance solid_solver.
 No participant of case.yaml is run by the program 'solid_solver'. Its participants are: 'solid' (?).
 """, ("    program: solid_solver\n", "")),
     solid("misspelt program", """
@@ -224,6 +224,9 @@ FLUID = [
     fluid("viscosity of the other kind", """
 case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' does not convert to Pa s; expected Pa s or a unit that converts to it.
 """, ("1e-3 Pa s", "1e-6 m^2/s")),
+    fluid("boundary of a fluid without type", """
+case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, no-slip, moving-wall, slip, interface).
+""", ("{type: no-slip}", "{}")),
     fluid("inlet without velocity", """
 case.yaml:11:7: participants.fluid.boundaries.left.velocity: this required key is missing (one expression of x, y, z [m] and t [s] a component: list of numbers or expressions in m/s).
 """, (", velocity: [1 m/s, 0 m/s]", "")),
@@ -243,18 +246,18 @@ case.yaml:10:5: participants.fluid.flux-memory: '2' is not one of: true, false.
 
 COUPLING = [
     coupler("role of nobody", """
-case.yaml: coupling.structure.participant: there is no participant 'solids'. Did you mean 'solid'?
-case.yaml: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+case.yaml:38:15: coupling.structure.participant: there is no participant 'solids'. Did you mean 'solid'?
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
 """, ("structure: {participant: solid}", "structure: {participant: solids}")),
     coupler("role missing", """
-case.yaml: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
 case.yaml:35:1: coupling.structure.participant: this required key is missing (its name under `participants`: text).
 """, ("  structure: {participant: solid}\n", "")),
     coupler("participant without a role", """
-case.yaml: participants.mover: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+case.yaml:26:3: participants.mover: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
 """, ("  mesh: {participant: mover}\n", "")),
     coupler("one participant in two roles", """
-case.yaml: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
 case.yaml:38:3: coupling.structure: fluid and structure must be two different participants.
 """, ("structure: {participant: solid}", "structure: {participant: fluid}")),
     coupler("unknown scheme", """
