@@ -95,32 +95,44 @@ void require_twins(const PointSet& from, const PointSet& to, const MappingParame
 }  // namespace
 
 Mapping::Mapping(Kind kind, const PointSet& from, const PointSet& to, const MappingParameters& parameters)
-    : kind_(kind), n_from_(from.points.size()), n_to_(to.points.size()) {
+    : n_from_(from.points.size()), n_to_(to.points.size()) {
   if (n_from_ == 0 || n_to_ == 0)
     throw Error(
         "There are {} {} and {} {}: an interface needs some on both sides. Check which patches are of type "
         "interface.",
         n_from_, from.what, n_to_, to.what);
   if (parameters.type == MappingParameters::Type::matched) require_twins(from, to, parameters);
-  const Neighbours found =
-      kind == Kind::consistent ? nearest(to.points, from.points) : nearest(from.points, to.points);
-  partner_ = found.index;
-  for (const double d : found.distance) {
+  const Neighbours found = nearest(to.points, from.points);
+  for (std::size_t i = 0; i < n_to_; ++i) links_.push_back({found.index[i], Index(i), 1});
+  if (kind == Kind::conservative) share_out(from, to);
+  for (const Link& link : links_) {
+    const double d = (from.points[link.source] - to.points[link.target]).norm();
     max_distance_ = std::max(max_distance_, d);
-    mean_distance_ += d / double(found.distance.size());
+    mean_distance_ += d / double(links_.size());
   }
   summary_ = fmt::format("{} {} to {} {}, distance at most {:.3g} m, mean {:.3g} m", n_from_, from.what,
                          n_to_, to.what, max_distance_, mean_distance_);
 }
 
+/// Shares of the targets that a source is nearest to, by their size; a source that is nearest to no target
+/// gives all to its own nearest one. So a finer target takes smooth loads and a coarser one takes all of
+/// them.
+void Mapping::share_out(const PointSet& from, const PointSet& to) {
+  const auto size = [&](Index target) { return to.sizes.empty() ? 1.0 : to.sizes[target]; };
+  std::vector<double> total(n_from_, 0.);
+  for (const Link& link : links_) total[link.source] += size(link.target);
+  for (Link& link : links_) link.share = size(link.target) / total[link.source];
+  const Neighbours back = nearest(from.points, to.points);
+  for (std::size_t i = 0; i < n_from_; ++i)
+    if (total[i] == 0) links_.push_back({Index(i), back.index[i], 1});
+}
+
 std::vector<double> Mapping::apply(const std::vector<double>& values, int components) const {
   assert(values.size() == n_from_ * std::size_t(components));
   std::vector<double> result(n_to_ * components, 0.);
-  for (std::size_t i = 0; i < partner_.size(); ++i) {
-    const std::size_t source = kind_ == Kind::consistent ? std::size_t(partner_[i]) : i;
-    const std::size_t target = kind_ == Kind::consistent ? i : std::size_t(partner_[i]);
-    for (int c = 0; c < components; ++c) result[target * components + c] += values[source * components + c];
-  }
+  for (const auto& [source, target, share] : links_)
+    for (int c = 0; c < components; ++c)
+      result[std::size_t(target) * components + c] += share * values[std::size_t(source) * components + c];
   return result;
 }
 

@@ -13,6 +13,7 @@ namespace couplet {
 struct PointSet {
   std::string what;
   std::vector<Vec3> points;
+  std::vector<double> sizes;  ///< areas of faces [m^2], for shares; empty: all alike
 };
 
 /// How values go from one set of points to another. Built once, on the reference configuration.
@@ -20,7 +21,8 @@ class Mapping {
  public:
   enum class Kind {
     consistent,    ///< every target takes the value of its nearest source: displacements, velocities
-    conservative,  ///< every source gives all it has to its nearest target: forces; the sum is kept
+    conservative,  ///< every source is shared out, by size, among the targets nearest to it (or goes to its
+                   ///< own nearest target if it is nearest to none): forces; the sum is kept
   };
   /// matched: throws Error naming points without a twin, with place and distance; nearest: any distance is
   /// good.
@@ -36,9 +38,14 @@ class Mapping {
   std::string summary() const { return summary_; }
 
  private:
-  Kind kind_;
+  void share_out(const PointSet& from, const PointSet& to);
+
   std::size_t n_from_, n_to_;
-  std::vector<Index> partner_;  // consistent: source of each target; conservative: target of each source
+  struct Link {
+    Index source, target;
+    double share;
+  };
+  std::vector<Link> links_;
   double max_distance_ = 0, mean_distance_ = 0;
   std::string summary_;
 };

@@ -28,16 +28,6 @@ Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving
       boundary_(mesh, parameters_),
       step_(mesh, boundary_, parameters_),
       step_size_(mesh, boundary_, parameters.viscosity / parameters.density) {
-  if (!has_regular_cells(mesh)) {
-    // The explicit non-orthogonal part beside an implicit orthogonal one is not stable on such cells.
-    if (parameters_.viscous == ViscousTreatment::implicit)
-      throw Error(
-          "viscous: 'implicit' needs a mesh of quadrilaterals or hexahedra; '{}' has other cells. Use "
-          "'explicit' or "
-          "'auto'.",
-          parameters_.mesh);
-    parameters_.viscous = ViscousTreatment::explicit_;
-  }
   start(start_time);
 }
 
@@ -58,7 +48,11 @@ void Fluid<D>::start(double time) {
       expressions[c].evaluate(at.boundary_centre, time, flat<D>(s.u_boundary), D, c);
     }
   }
-  boundary_.velocity_at(time, at.boundary_centre, s.w);
+  // Without an initial velocity the fluid is at rest, its boundaries too: what they do from then on is an
+  // impulse in the first step, which an elastic wall must feel. A given field is made to fit its boundaries
+  // instead.
+  s.at_rest = parameters_.initial_velocity.empty();
+  if (!s.at_rest) boundary_.velocity_at(time, at.boundary_centre, s.w);
   for (std::size_t b = 0; b < s.w.size(); ++b)
     if (boundary_.kind()[b] == FaceKind::pressure) s.u_boundary[b] = s.u[mesh_.owner[mesh_.n_interior + b]];
   step_.project_initial(s);
@@ -164,8 +158,8 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
   return w;
 }
 
-// The implicit predictor needs the pressure of the step before: at the very first step it comes from a trial
-// of the step.
+// The implicit predictor and the non-orthogonal part need the pressure of the step before: at the very first
+// step it comes from a trial of the step.
 template <int D>
 void Fluid<D>::start_pressure(const SubStep<D>& step, const Vectors<D>& w) {
   State<D> probe = trial_;
@@ -205,7 +199,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     const double end = last ? dt_ : done + dt;
     SubStep<D> sub_step = make_sub_step(dt, end, points);
     last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
-    if (trial_.implicit && !trial_.pressure[0]) start_pressure(sub_step, last_w_);
+    if ((trial_.implicit || step_.oblique()) && !trial_.pressure[0]) start_pressure(sub_step, last_w_);
     step_.predict(trial_, std::move(sub_step), last_w_);
     ++statistics_.sub_steps;
     ++statistics_.all_sub_steps;

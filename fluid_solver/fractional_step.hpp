@@ -57,19 +57,25 @@ class FractionalStep {
   void refresh_solvers() { pressure_.refresh(); }
   const StepStatistics& statistics() const { return statistics_; }
   double size() const { return step_.dt; }
+  /// The mesh is not orthogonal, or may become so.
+  bool oblique() const { return oblique_; }
 
  private:
   void add_swept(const State<D>& from, double e0, double e1);
   void add_old_pressure(const State<D>& from, bool implicit);
   void solve_viscous(const State<D>& from, const Vectors<D>& w, double a);
+  void solve_oblique_viscous(const Vectors<D>& w, double a);
   void add_back_old_pressure(const State<D>& from);
   void predict_flux(const State<D>& from);
   void add_memory(const State<D>& from);
 
   void extrapolate_pressure(const State<D>& from);
+  void add_oblique_pressure();
+  void solve_pressure(const State<D>& from, const Vectors<D>& w);
   void set_boundary_flux(const Vectors<D>& w);
   void balance_closed_domain();
   void set_boundary_pressure(const State<D>& from, const Vectors<D>& w);
+  void extrapolate_to_walls();
   void set_forces(const State<D>& from);
   void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
                          const std::vector<double>& boundary, Vectors<D>& sum) const;
@@ -82,7 +88,6 @@ class FractionalStep {
   const FluidParameters& parameters_;
   double rho_, nu_;
   bool oblique_ = false;  // the non-orthogonal parts are needed
-  bool extrapolate_oblique_;
   RateOperator<D> rate_operator_;
   ViscousSolver<D> viscous_solver_;
   PressureEquation<D> pressure_;
@@ -90,9 +95,18 @@ class FractionalStep {
 
   SubStep<D> step_;
   Rates<D> rates_;
-  Vectors<D> right_side_, u_p_, w_, u_boundary_, gradient_guess_, shear_;
+  Vectors<D> right_side_, u_p_, w_, u_boundary_, gradient_start_, gradient_guess_, shear_;
+  Vectors<D> oblique_rate_, viscous_side_, u_before_;
   std::vector<double> relaxation_;  // [1/s]
-  std::vector<double> phi_p_, b_, p_, p_boundary_;
+  struct Fit {
+    Tensor<D> matrix = Tensor<D>::Zero();
+    Vec<D> side = Vec<D>::Zero();
+    bool usable = false;
+  };
+  std::vector<Fit> fits_;       // of the cells at walls
+  std::vector<Index> slot_;     // per local cell: which of the fits; -1: none
+  std::vector<double> p_wall_;  // per boundary face, for the load [Pa]
+  std::vector<double> phi_orthogonal_, phi_p_, b_, p_, p_boundary_;
   Vectors<D> pressure_force_, viscous_force_;
   StepStatistics statistics_;
   double speed_scale_ = 0;

@@ -32,7 +32,8 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
        {"interface", BoundaryType::interface, nothing}},
       "inlet: given velocity; outlet: given pressure; no-slip: wall at rest; moving-wall: wall with a given "
       "velocity; slip: no flow through, no friction (also a symmetry plane); interface: wall that moves with "
-      "the structure");
+      "the structure",
+      true);
 }
 
 }  // namespace
@@ -61,7 +62,7 @@ void declare(config::Section& s, FluidParameters& p) {
       .doc(
           "time scheme of the viscous term; auto: implicit where its explicit stability limit would cost "
           "clearly "
-          "more steps; implicit needs a mesh of quadrilaterals or hexahedra");
+          "more steps;");
   s.value("pressure-tolerance", p.pressure_tolerance)
       .range(1e-14, 1e-1)
       .doc(

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/parallel/collective.hpp"
-
 namespace couplet::fluid {
 namespace {
 
@@ -51,13 +49,6 @@ std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geome
   for (Index f = mesh.n_interior; f < n_faces; ++f)
     set_face<D>(p, f, geometry.face_centre[f].template head<D>() - p.centre[mesh.owner[f]]);
   return placement;
-}
-
-bool has_regular_cells(const Mesh& mesh) {
-  const bool other = std::any_of(mesh.cell_type.begin(), mesh.cell_type.end(), [](CellType type) {
-    return type != CellType::quadrilateral && type != CellType::hexahedron;
-  });
-  return !any(mesh.comm, other);
 }
 
 template std::shared_ptr<const Placement<2>> make_placement<2>(const Mesh&, const Geometry&);

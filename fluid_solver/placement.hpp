@@ -44,8 +44,4 @@ std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<c
   return make_placement<D>(mesh, compute_geometry(mesh, points));
 }
 
-/// All cells of all ranks are quadrilaterals or hexahedra: the Gauss gradient is accurate enough on them for
-/// terms that extrapolate it in time. Collective.
-bool has_regular_cells(const Mesh& mesh);
-
 }  // namespace couplet::fluid

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The second and third part of FractionalStep: pressure equation and correction.
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +15,8 @@ namespace {
 // Absolute goal of the pressure equation relative to the size of the fluxes: below it there is only
 // round-off, on which a relative tolerance would spin (uniform flow, fluid at rest).
 constexpr double flux_floor = 3e-15;
+constexpr double least_span = 1e-3;
+constexpr int oblique_passes = 2;
 constexpr double explosion = 1e3;  // growth of the largest speed in one step that is called divergence
 
 }  // namespace
@@ -26,7 +29,6 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       parameters_(parameters),
       rho_(parameters.density),
       nu_(parameters.viscosity / parameters.density),
-      extrapolate_oblique_(has_regular_cells(mesh)),
       rate_operator_(mesh, boundary, nu_),
       viscous_solver_(mesh, boundary),
       pressure_(mesh, boundary) {}
@@ -70,8 +72,47 @@ void FractionalStep<D>::balance_closed_domain() {
   }
 }
 
+/// phi^p without and with -(dt/rho) grad p~ . k.
+template <int D>
+void FractionalStep<D>::add_oblique_pressure() {
+  const Placement<D>& now = *step_.to;
+  const double factor = step_.dt / rho_;
+  phi_p_ = phi_orthogonal_;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const double w = now.weight[f];
+    phi_p_[f] -=
+        factor * (w * gradient_guess_[mesh_.owner[f]] + (1 - w) * gradient_guess_[mesh_.neighbour[f]])
+                     .dot(now.oblique[f]);
+  }
+  for (std::size_t b = 0; b < w_.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b);
+    if (boundary_.kind()[b] == FaceKind::pressure)
+      phi_p_[f] -= factor * gradient_guess_[mesh_.owner[f]].dot(now.oblique[f]);
+  }
+}
+
+/// On an oblique mesh in passes: the gradient in the non-orthogonal part is that of the steps before in the
+/// first, then that of the pass before.
 template <int D>
 void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w) {
+  gradient_guess_ = gradient_start_;
+  const int passes = oblique_ ? oblique_passes : 1;
+  for (int pass = 1; pass <= passes; ++pass) {
+    if (gradient_guess_.empty())
+      phi_p_ = phi_orthogonal_;
+    else
+      add_oblique_pressure();
+    solve_pressure(from, w);
+    if (pass == passes) break;
+    pressure_gradient(*step_.to, p_, p_boundary_, gradient_guess_);
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) gradient_guess_[c] /= step_.to->volume[c];
+    mesh_.cells.update_ghosts(flat<D>(gradient_guess_), D);
+  }
+  set_forces(from);
+}
+
+template <int D>
+void FractionalStep<D>::solve_pressure(const State<D>& from, const Vectors<D>& w) {
   const Placement<D>& now = *step_.to;
   const double factor = rho_ / step_.dt;
   set_boundary_flux(w);
@@ -96,7 +137,6 @@ void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w) {
                                                  std::max(floor, std::numeric_limits<double>::min()));
   statistics_.pressure_iterations += solved.iterations;
   set_boundary_pressure(from, w);
-  set_forces(from);
 }
 
 /// Wall: grad p . S = -(rho/dt) (w^{n+1} - w^n).S, the added-mass pressure, exact for a rigidly moving box;
@@ -114,12 +154,52 @@ void FractionalStep<D>::set_boundary_pressure(const State<D>& from, const Vector
   }
 }
 
+/// Pressure on the walls for the load: linear from the cell, p_P + G.(x_b - x_P), with G by least squares
+/// over the neighbours, so that it does not know the wall value. The wall value of the scheme itself is first
+/// order in the part of the normal gradient that the acceleration does not explain. Cells whose neighbours do
+/// not span the space keep that one.
+template <int D>
+void FractionalStep<D>::extrapolate_to_walls() {
+  const Placement<D>& now = *step_.to;
+  slot_.assign(mesh_.cells.n_local(), -1);
+  fits_.clear();
+  for (std::size_t b = 0; b < w_.size(); ++b) {
+    const Index p = mesh_.owner[mesh_.n_interior + static_cast<Index>(b)];
+    if (boundary_.kind()[b] != FaceKind::velocity || slot_[p] >= 0) continue;
+    slot_[p] = static_cast<Index>(fits_.size());
+    fits_.push_back({});
+  }
+  const auto add = [&](Index cell, Index neighbour) {
+    if (slot_[cell] < 0) return;
+    Fit& fit = fits_[slot_[cell]];
+    const Vec<D> d = now.centre[neighbour] - now.centre[cell];
+    const double weight = 1 / d.squaredNorm();
+    fit.matrix += weight * d * d.transpose();
+    fit.side += weight * (p_[neighbour] - p_[cell]) * d;
+  };
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    add(mesh_.owner[f], mesh_.neighbour[f]);
+    add(mesh_.neighbour[f], mesh_.owner[f]);
+  }
+  for (Fit& fit : fits_) {
+    fit.usable = fit.matrix.determinant() > least_span;  // weights make the entries of order one
+    if (fit.usable) fit.side = (fit.matrix.inverse() * fit.side).eval();
+  }
+  p_wall_ = p_boundary_;
+  for (std::size_t b = 0; b < w_.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b), p = mesh_.owner[f];
+    if (boundary_.kind()[b] != FaceKind::velocity || !fits_[slot_[p]].usable) continue;
+    p_wall_[b] = p_[p] + fits_[slot_[p]].side.dot(now.boundary_centre[b].template head<D>() - now.centre[p]);
+  }
+}
+
 template <int D>
 void FractionalStep<D>::set_forces(const State<D>& from) {
+  extrapolate_to_walls();
   pressure_force_.resize(w_.size());
   for (std::size_t b = 0; b < w_.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
-    pressure_force_[b] = 0.5 * p_boundary_[b] * (from.placement->area[f] + step_.to->area[f]);
+    pressure_force_[b] = 0.5 * p_wall_[b] * (from.placement->area[f] + step_.to->area[f]);
   }
 }
 
@@ -202,6 +282,12 @@ void FractionalStep<D>::finish(State<D>& s) {
   for (double& flux : s.mesh_flux) flux /= step_.dt;
   s.dt_old = step_.dt;
   s.time += step_.dt;
+  if (s.at_rest) {  // neither the pressure of the impulse nor the rates of the rest before it say anything of
+                    // what comes
+    s.at_rest = false;
+    s.pressure = {};
+    s.dt_old = 0;
+  }
   check(s);
 }
 

@@ -51,19 +51,19 @@ void RateOperator<D>::face_loop(const State<D>& s, Rates<D>& rates) const {
 }
 
 template <int D>
-void RateOperator<D>::add_oblique(const State<D>& s, Rates<D>& rates) {
-  const Placement<D>& at = *s.placement;
-  velocity_gradient<D>(mesh_, at, s.u, s.u_boundary, gradient_);
+void RateOperator<D>::add_oblique(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
+                                  Vectors<D>& rate) {
+  velocity_gradient<D>(mesh_, at, u, u_boundary, gradient_);
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
     const double w = at.weight[f];
     const Vec<D> part = nu_ * (w * (gradient_[p] * at.oblique[f]) + (1 - w) * (gradient_[n] * at.oblique[f]));
-    rates.rate[p] += part;
-    rates.rate[n] -= part;
+    rate[p] += part;
+    rate[n] -= part;
   }
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
     if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity)
-      rates.rate[mesh_.owner[f]] += nu_ * (gradient_[mesh_.owner[f]] * at.oblique[f]);
+      rate[mesh_.owner[f]] += nu_ * (gradient_[mesh_.owner[f]] * at.oblique[f]);
 }
 
 template <int D>
@@ -71,7 +71,8 @@ void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_obli
   rates.rate.assign(mesh_.cells.n_local(), Vec<D>::Zero());
   rates.viscous.assign(split ? mesh_.cells.n_local() : 0, Vec<D>::Zero());
   split ? face_loop<true>(state, rates) : face_loop<false>(state, rates);
-  if (correct_oblique) add_oblique(state, rates);
+  if (correct_oblique)
+    add_oblique(*state.placement, state.u, state.u_boundary, split ? rates.viscous : rates.rate);
 }
 
 template <int D>

@@ -13,7 +13,7 @@ void velocity_gradient(const Mesh& mesh, const Placement<D>& at, const Vectors<D
                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient);
 
 /// R = -sum phi u_f + nu sum [g du + (grad u)_f . k], see reference [trias2014] for the skew-symmetric
-/// mid-point u_f. All at level n, on mesh n. `split`: the orthogonal viscous part goes to Rates::viscous.
+/// mid-point u_f. All at level n, on mesh n. `split`: the viscous part goes to Rates::viscous.
 /// `correct_oblique`: the mesh is not orthogonal. Collective.
 template <int D>
 class RateOperator {
@@ -21,11 +21,14 @@ class RateOperator {
   RateOperator(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity)
       : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity) {}
   void apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates);
+  /// Adds the non-orthogonal viscous part nu sum (grad u)_f . k of any velocity field (ghosts current).
+  /// Collective.
+  void add_oblique(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
+                   Vectors<D>& rate);
 
  private:
   template <bool Split>
   void face_loop(const State<D>& state, Rates<D>& rates) const;
-  void add_oblique(const State<D>& state, Rates<D>& rates);
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
   double nu_;

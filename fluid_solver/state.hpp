@@ -13,8 +13,8 @@ namespace couplet::fluid {
 /// meaningful).
 template <int D>
 struct Rates {
-  Vectors<D> rate;     ///< convection, and the viscous parts that are treated explicitly
-  Vectors<D> viscous;  ///< orthogonal viscous part when it is treated implicitly; else empty
+  Vectors<D> rate;     ///< convection, and the viscous part when it is treated explicitly
+  Vectors<D> viscous;  ///< the viscous part when it is treated implicitly; else empty
 };
 
 /// One projection pressure. It lives at the middle of its step.
@@ -32,6 +32,7 @@ struct State {
   double time = 0;        ///< t^n [s]
   double dt_old = 0;      ///< size of the last step [s]; 0: no history, the next step is an Euler step
   bool implicit = false;  ///< viscous term of the history (Rates::viscous is there)
+  bool at_rest = false;   ///< nothing moved yet: the first step is the impulse that sets the fluid going
 
   Vectors<D> u;                            ///< u^n per local cell, ghosts current [m/s]
   Vectors<D> w;                            ///< given velocity per boundary face at t^n [m/s]

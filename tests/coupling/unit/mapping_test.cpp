@@ -106,5 +106,14 @@ TEST(NearestMapping, keeps_a_constant_motion_and_the_sum_of_forces) {
   EXPECT_DOUBLE_EQ(std::accumulate(given.begin(), given.end(), 0.), 40 * 41 / 2);
 }
 
+TEST(NearestMapping, shares_a_force_among_the_finer_faces_under_it_by_their_size) {
+  MappingParameters parameters;
+  parameters.type = Type::nearest;
+  const PointSet coarse{"a", {Vec3(0.5, 0, 0), Vec3(1.5, 0, 0)}, {1, 1}};
+  const PointSet fine{"b", {Vec3(0.3, 0, 0), Vec3(0.8, 0, 0), Vec3(1.5, 0, 0)}, {0.6, 0.4, 1}};
+  const std::vector<double> given = Mapping(Kind::conservative, coarse, fine, parameters).apply({10, 7}, 1);
+  EXPECT_THAT(given, testing::ElementsAre(testing::DoubleEq(6), testing::DoubleEq(4), testing::DoubleEq(7)));
+}
+
 }  // namespace
 }  // namespace couplet
