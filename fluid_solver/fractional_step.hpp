@@ -82,7 +82,7 @@ class FractionalStep {
   const FluidParameters& parameters_;
   double rho_, nu_;
   bool oblique_ = false;  // the non-orthogonal parts are needed
-  bool extrapolate_oblique_;
+  bool regular_;          // quadrilaterals or hexahedra only
   RateOperator<D> rate_operator_;
   ViscousSolver<D> viscous_solver_;
   PressureEquation<D> pressure_;

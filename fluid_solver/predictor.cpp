@@ -191,10 +191,9 @@ void FractionalStep<D>::add_memory(const State<D>& from) {
 }
 
 /// p~ at t^{n+1/2}, the guess of the pressure equation, through the levels at hand (three only where the
-/// solver's noise is small), and its gradient for the non-orthogonal part: linear in time on quadrilaterals
-/// and hexahedra. On triangles and the like the Gauss gradient is too rough for that (the explicit
-/// non-orthogonal part then grows if its share of the operator exceeds 1/3); the latest gradient is stable
-/// there whatever the angle.
+/// solver's noise is small). The non-orthogonal part takes the latest gradient: a linear extrapolation would
+/// grow from step to step where that part exceeds a third of the operator, as in cells that a bent structure
+/// shears.
 template <int D>
 void FractionalStep<D>::extrapolate_pressure(const State<D>& from) {
   const std::size_t order = parameters_.pressure_tolerance >= 1e-3 ? 2 : 3;
@@ -211,10 +210,6 @@ void FractionalStep<D>::extrapolate_pressure(const State<D>& from) {
   gradient_guess_.clear();
   if (!oblique_ || levels.empty()) return;
   gradient_guess_ = levels[0]->gradient;
-  if (levels.size() < 2 || !extrapolate_oblique_) return;
-  const double slope = (t - levels[0]->time) / (levels[0]->time - levels[1]->time);
-  for (std::size_t c = 0; c < gradient_guess_.size(); ++c)
-    gradient_guess_[c] += slope * (levels[0]->gradient[c] - levels[1]->gradient[c]);
 }
 
 template void FractionalStep<2>::predict(const State<2>&, SubStep<2>, const Vectors<2>&);

@@ -26,7 +26,7 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       parameters_(parameters),
       rho_(parameters.density),
       nu_(parameters.viscosity / parameters.density),
-      extrapolate_oblique_(has_regular_cells(mesh)),
+      regular_(has_regular_cells(mesh)),
       rate_operator_(mesh, boundary, nu_),
       viscous_solver_(mesh, boundary),
       pressure_(mesh, boundary) {}
@@ -184,6 +184,17 @@ void FractionalStep<D>::remember_flux(State<D>& s) const {
   s.memory.resize(mesh_.n_interior);
   for (Index f = 0; f < mesh_.n_interior; ++f)
     s.memory[f] = s.phi[f] - 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(step_.to->area[f]);
+  // The flux took the non-orthogonal part of an older pressure: remembered, that lag would add up to first
+  // order. On triangles and the like the Gauss gradient is too rough to be remembered.
+  if (gradient_guess_.empty() || !regular_) return;
+  const Placement<D>& now = *step_.to;
+  const Vectors<D>& gradient = s.pressure[0]->gradient;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const Vec<D> lag = now.weight[f] * (gradient_guess_[p] - gradient[p]) +
+                       (1 - now.weight[f]) * (gradient_guess_[n] - gradient[n]);
+    s.memory[f] += step_.dt / rho_ * lag.dot(now.oblique[f]);
+  }
 }
 
 template <int D>
