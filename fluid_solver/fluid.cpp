@@ -41,6 +41,8 @@ Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving
   start(start_time);
 }
 
+// A flow that starts at once (an inlet, an initial velocity across a wall) becomes the potential flow in no
+// time; the impulse of that, rho psi S, belongs to the load of the first step.
 template <int D>
 void Fluid<D>::start(double time) {
   State<D>& s = accepted_;
@@ -62,6 +64,9 @@ void Fluid<D>::start(double time) {
   for (std::size_t b = 0; b < s.w.size(); ++b)
     if (boundary_.kind()[b] == FaceKind::pressure) s.u_boundary[b] = s.u[mesh_.owner[mesh_.n_interior + b]];
   step_.project_initial(s);
+  start_impulse_.resize(s.w.size());
+  for (std::size_t b = 0; b < s.w.size(); ++b)
+    start_impulse_[b] = parameters_.density * step_.initial_potential()[b] * at.area[mesh_.n_interior + b];
   const Expression initial_pressure(parameters_.initial_pressure, "initial-pressure");
   if (!initial_pressure.is_zero()) {
     auto level = std::make_shared<PressureLevel<D>>();
@@ -79,6 +84,7 @@ void Fluid<D>::start(double time) {
 template <int D>
 void Fluid<D>::restore(State<D> state) {
   accepted_ = std::move(state);
+  start_impulse_.clear();
 }
 
 template <int D>
@@ -199,6 +205,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
   }
   pressure_done_.assign(accepted_.w.size(), Vec<D>::Zero());
   viscous_done_ = pressure_done_;
+  for (std::size_t b = 0; b < start_impulse_.size(); ++b) pressure_done_[b] = start_impulse_[b] / dt_;
   double done = 0;
   for (bool last = false; !last;) {
     const double dt = next_size(dt_ - done, last);
@@ -240,6 +247,7 @@ void Fluid<D>::accept() {
   step_.finish(trial_);
   trial_.time = time_ + dt_;
   std::swap(accepted_, trial_);
+  start_impulse_.clear();
   statistics_.pressure_iterations = step_.statistics().pressure_iterations;
   statistics_.viscous_iterations = step_.statistics().viscous_iterations;
 }

@@ -72,6 +72,7 @@ class Fluid {
   State<D> accepted_, trial_;
   double time_ = 0, dt_ = 0;
   Vectors<D> last_w_;                        // given velocities at the end of the last sub-step
+  Vectors<D> start_impulse_;                 // of an impulsive start [N s]; empty after the first step
   Vectors<D> pressure_done_, viscous_done_;  // time integrals over the finished sub-steps / dt_
   Vectors<D> pressure_force_, viscous_force_;
   FluidStatistics statistics_;

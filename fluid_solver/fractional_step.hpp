@@ -47,6 +47,9 @@ class FractionalStep {
   /// filled.
   void project_initial(State<D>& state);
 
+  /// The potential psi of project_initial() at the boundary: rho psi S is the impulse of an impulsive start
+  /// [N s].
+  const std::vector<double>& initial_potential() const { return p_boundary_; }
   /// The result of the last project() as a level of history of `from`. Collective.
   std::shared_ptr<const PressureLevel<D>> pressure_level(const State<D>& from) const;
   /// Fills level.gradient from p and boundary. Collective.
