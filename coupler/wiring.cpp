@@ -38,52 +38,54 @@ void check_link(const Side& from, const Side& to, Place place) {
 
 PointSet vertices(const Side& side) {
   return {"vertices of '" + side.name + "'", side.interface.vertices, {}};
-  PointSet faces(const Side& side) {
-    PointSet set{"faces of '" + side.name + "'", side.interface.face_centres, {}};
-    for (const Vec3& area : side.interface.face_areas) set.sizes.push_back(area.norm());
-    return set;
-  }
+}
 
-  /// The vertices around each face, which an Interface does not list: the `dim` nearest to its centre and all
-  /// that are hardly further (a quadrilateral's four). Exact for edges, rectangles and regular triangles;
-  /// used for the balance only.
-  std::vector<std::vector<Index>> corners(const Interface& interface) {
-    std::vector<std::vector<Index>> result;
-    std::vector<std::pair<double, Index>> by_distance(interface.vertices.size());
-    const auto least = std::min(std::size_t(interface.dim), by_distance.size());
-    const auto kept = std::min<std::size_t>(8, by_distance.size());
-    for (const Vec3& centre : interface.face_centres) {
-      for (std::size_t v = 0; v < by_distance.size(); ++v)
-        by_distance[v] = {(interface.vertices[v] - centre).norm(), Index(v)};
-      std::partial_sort(by_distance.begin(), by_distance.begin() + kept, by_distance.end());
-      std::vector<Index>& face = result.emplace_back();
-      for (std::size_t i = 0; i < kept; ++i)
-        if (i < least || by_distance[i].first < 1.01 * by_distance[least - 1].first)
-          face.push_back(by_distance[i].second);
-    }
-    return result;
-  }
+PointSet faces(const Side& side) {
+  PointSet set{"faces of '" + side.name + "'", side.interface.face_centres, {}};
+  for (const Vec3& area : side.interface.face_areas) set.sizes.push_back(area.norm());
+  return set;
+}
 
-  Balance balance(const Interface& interface, const std::vector<Interface::Datum>& data,
-                  const std::vector<std::vector<Index>>& corners, const Exchange& values,
-                  const std::vector<double>& increment) {
-    Balance result;
-    const int dim = interface.dim;
-    for (const auto& datum : data) {
-      const auto found = values.find(datum.name);
-      if (found == values.end() || datum.place != Place::faces || datum.unit != "N") continue;
-      for (std::size_t f = 0; f < corners.size(); ++f)
-        for (int c = 0; c < dim; ++c) {
-          double moved = 0;
-          for (const Index v : corners[f])
-            moved += increment[std::size_t(v) * dim + c] / double(corners[f].size());
-          const double force = found->second[f * dim + c];
-          result.force[c] += force;
-          result.work += force * moved;
-        }
-    }
-    return result;
+/// The vertices around each face, which an Interface does not list: the `dim` nearest to its centre and all
+/// that are hardly further (a quadrilateral's four). Exact for edges, rectangles and regular triangles; used
+/// for the balance only.
+std::vector<std::vector<Index>> corners(const Interface& interface) {
+  std::vector<std::vector<Index>> result;
+  std::vector<std::pair<double, Index>> by_distance(interface.vertices.size());
+  const auto least = std::min(std::size_t(interface.dim), by_distance.size());
+  const auto kept = std::min<std::size_t>(8, by_distance.size());
+  for (const Vec3& centre : interface.face_centres) {
+    for (std::size_t v = 0; v < by_distance.size(); ++v)
+      by_distance[v] = {(interface.vertices[v] - centre).norm(), Index(v)};
+    std::partial_sort(by_distance.begin(), by_distance.begin() + kept, by_distance.end());
+    std::vector<Index>& face = result.emplace_back();
+    for (std::size_t i = 0; i < kept; ++i)
+      if (i < least || by_distance[i].first < 1.01 * by_distance[least - 1].first)
+        face.push_back(by_distance[i].second);
   }
+  return result;
+}
+
+Balance balance(const Interface& interface, const std::vector<Interface::Datum>& data,
+                const std::vector<std::vector<Index>>& corners, const Exchange& values,
+                const std::vector<double>& increment) {
+  Balance result;
+  const int dim = interface.dim;
+  for (const auto& datum : data) {
+    const auto found = values.find(datum.name);
+    if (found == values.end() || datum.place != Place::faces || datum.unit != "N") continue;
+    for (std::size_t f = 0; f < corners.size(); ++f)
+      for (int c = 0; c < dim; ++c) {
+        double moved = 0;
+        for (const Index v : corners[f])
+          moved += increment[std::size_t(v) * dim + c] / double(corners[f].size());
+        const double force = found->second[f * dim + c];
+        result.force[c] += force;
+        result.work += force * moved;
+      }
+  }
+  return result;
+}
 
 }  // namespace
 

@@ -164,6 +164,36 @@ TEST(AddedMass, impulse_does_not_depend_on_the_number_of_sub_steps) {
   }
 }
 
+TEST(ImpulsiveStart, loads_the_first_step_with_the_impulse_of_the_fluid_set_in_motion) {
+  // A plug of fluid, 2 m long, set in motion by an inlet that is switched on at t = 0; the floor feels its
+  // pressure.
+  FluidParameters p;
+  p.density = 3;
+  p.viscosity = 0;
+  p.viscous = ViscousTreatment::explicit_;
+  p.pressure_tolerance = 1e-12;
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.5", "0"});
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+  p.boundaries["ymin"] = boundary(BoundaryType::interface);
+  p.boundaries["ymax"] = boundary(BoundaryType::slip);
+  FluidCase<2> c(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {20, 4, 1}, Vec3::Zero(), Vec3(2, 1, 1)),
+                 p);
+  for (const double dt : {1e-3, 1e-4}) {  // the impulse does not depend on the step it is spread over
+    c.fluid().begin_step(0, dt);
+    c.fluid().solve({}, c.wall({}, dt));
+    double impulse = 0;
+    for (std::size_t b = 0; b < c.state().w.size(); ++b)
+      if (c.fluid().boundary().is_interface(b)) impulse += dt * c.fluid().pressure_force()[b].y();
+    // psi falls linearly from rho U L at the inlet to 0: on the floor, length L, downwards.
+    EXPECT_NEAR(sum(MPI_COMM_WORLD, impulse), -3 * 0.5 * 2 * 2 / 2, 1e-6);
+  }
+  c.fluid().accept();
+  c.step(1e-4);  // from then on the flow is steady
+  double force = 0;
+  for (const Vec<2>& f : c.fluid().pressure_force()) force = std::max(force, f.norm());
+  EXPECT_LT(max(MPI_COMM_WORLD, force), 1e-6);
+}
+
 TEST(Poiseuille, profile_and_pressure_drop_are_kept_in_a_channel) {
   FluidParameters p;
   p.density = 1.3;
