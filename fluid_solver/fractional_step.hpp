@@ -68,6 +68,7 @@ class FractionalStep {
   void add_back_old_pressure(const State<D>& from);
   void predict_flux(const State<D>& from);
   void add_memory(const State<D>& from);
+  double pressure_excess(const State<D>& from, Index f) const;
 
   void extrapolate_pressure(const State<D>& from);
   void add_oblique_pressure();

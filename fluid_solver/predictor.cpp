@@ -193,7 +193,9 @@ void FractionalStep<D>::predict_flux(const State<D>& from) {
 /// d delta/dt = e - a delta: e is what the pressure does to the flux and not to the mean velocity, O(h^2); a
 /// is the rate at which friction and convection would even it out, as in an implicit momentum interpolation.
 /// Without a the memory would grow for ever in a steady flow, without the memory the steady flow would depend
-/// on dt. The decay is AB2.
+/// on dt. The decay is AB2 while a dt is small. Where it is large the projection's own dt e is too much: with
+/// the e of the step before delta goes to (delta + dt e)/(1 + a dt), so that a steady flow keeps e/a whatever
+/// the step.
 template <int D>
 void FractionalStep<D>::add_memory(const State<D>& from) {
   relaxation_.assign(mesh_.cells.n_local(), 0.0);
@@ -207,11 +209,28 @@ void FractionalStep<D>::add_memory(const State<D>& from) {
   const double ratio = from.dt_old > 0 ? step_.dt / from.dt_old : 0;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const double rate = 0.5 * (relaxation_[mesh_.owner[f]] + relaxation_[mesh_.neighbour[f]]);
-    const double decay = std::min(rate * step_.dt, largest_decay);
+    const double decay = rate * step_.dt;
+    if (decay > largest_decay && from.pressure[0]) {
+      const double share = decay / (1 + decay);
+      phi_orthogonal_[f] += from.memory[f] - share * (from.memory[f] + step_.dt * pressure_excess(from, f));
+      continue;
+    }
     double mid = (1 + ratio / 2) * from.memory[f];
     if (ratio > 0) mid -= ratio / 2 * from.memory_old[f];
-    phi_orthogonal_[f] += from.memory[f] - decay * mid;
+    phi_orthogonal_[f] += from.memory[f] - std::min(decay, largest_decay) * mid;
   }
+}
+
+/// e of the last step: what its pressure does to the flux and not to the mean velocity [m^3/s^2].
+template <int D>
+double FractionalStep<D>::pressure_excess(const State<D>& from, Index f) const {
+  const Placement<D>& at = *from.placement;
+  const PressureLevel<D>& level = *from.pressure[0];
+  const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+  const double w = at.weight[f];
+  const double flux = at.conductance[f] * (level.p[n] - level.p[p]) +
+                      (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique[f]);
+  return (0.5 * (level.gradient[p] + level.gradient[n]).dot(at.area[f]) - flux) / rho_;
 }
 
 /// p~ at t^{n+1/2}, the guess of the pressure equation, through the levels at hand (three only where the

@@ -224,7 +224,7 @@ template <int D>
 void FractionalStep<D>::set_gradient(const Placement<D>& at, PressureLevel<D>& level) const {
   pressure_gradient(at, level.p, level.boundary, level.gradient);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) level.gradient[c] /= at.volume[c];
-  if (oblique_) mesh_.cells.update_ghosts(flat<D>(level.gradient), D);
+  mesh_.cells.update_ghosts(flat<D>(level.gradient), D);
 }
 
 template <int D>
