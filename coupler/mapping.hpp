@@ -13,7 +13,7 @@ namespace couplet {
 struct PointSet {
   std::string what;
   std::vector<Vec3> points;
-  std::vector<double> sizes;  ///< areas of faces [m^2], for shares; empty: all alike
+  std::vector<double> sizes{};  ///< areas of faces [m^2], for shares; empty: all alike
 };
 
 /// How values go from one set of points to another. Built once, on the reference configuration.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channel around the flap, quadrilaterals only. Those of solid.geo along the flap halve these.
-n_side = 100;       // cells along each side of the flap
-n_tip = 10;         // cells across its tip
+n_side = 80;        // cells along each side of the flap
+n_tip = 8;          // cells across its tip
 growth = 1.12;      // of neighbouring cells, away from the flap
 wall_growth = 1.12; // towards the upper wall
 wall_cells = 10;    // in the part that narrows towards the upper wall
