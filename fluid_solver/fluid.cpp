@@ -51,8 +51,8 @@ void Fluid<D>::start(double time) {
   // Without an initial velocity the fluid is at rest, its boundaries too: what they do from then on is an
   // impulse in the first step, which an elastic wall must feel. A given field is made to fit its boundaries
   // instead.
-  s.at_rest = parameters_.initial_velocity.empty();
-  if (!s.at_rest) boundary_.velocity_at(time, at.boundary_centre, s.w);
+  s.start = parameters_.initial_velocity.empty() ? Start::at_rest : Start::flowing;
+  if (s.start == Start::flowing) boundary_.velocity_at(time, at.boundary_centre, s.w);
   for (std::size_t b = 0; b < s.w.size(); ++b)
     if (boundary_.kind()[b] == FaceKind::pressure) s.u_boundary[b] = s.u[mesh_.owner[mesh_.n_interior + b]];
   step_.project_initial(s);
@@ -199,6 +199,10 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     const double end = last ? dt_ : done + dt;
     SubStep<D> sub_step = make_sub_step(dt, end, points);
     last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
+    if (trial_.start == Start::after_impulse) {
+      trial_.pressure = {};
+      trial_.start = Start::flowing;
+    }
     if ((trial_.implicit || step_.oblique()) && !trial_.pressure[0]) start_pressure(sub_step, last_w_);
     step_.predict(trial_, std::move(sub_step), last_w_);
     ++statistics_.sub_steps;

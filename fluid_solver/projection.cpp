@@ -282,10 +282,8 @@ void FractionalStep<D>::finish(State<D>& s) {
   for (double& flux : s.mesh_flux) flux /= step_.dt;
   s.dt_old = step_.dt;
   s.time += step_.dt;
-  if (s.at_rest) {  // neither the pressure of the impulse nor the rates of the rest before it say anything of
-                    // what comes
-    s.at_rest = false;
-    s.pressure = {};
+  if (s.start == Start::at_rest) {  // the multi-step schemes begin after the impulse
+    s.start = Start::after_impulse;
     s.dt_old = 0;
   }
   check(s);

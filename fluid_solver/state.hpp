@@ -26,13 +26,16 @@ struct PressureLevel {
   Vectors<D> gradient;           ///< (1/V) sum p_f S per local cell [Pa/m]
 };
 
+/// A fluid at rest is set going by the impulse of its first step, whose pressure says nothing of what comes.
+enum class Start : int { at_rest, after_impulse, flowing };
+
 /// Everything that the next step needs: level n and the history of the multi-step schemes.
 template <int D>
 struct State {
   double time = 0;        ///< t^n [s]
   double dt_old = 0;      ///< size of the last step [s]; 0: no history, the next step is an Euler step
   bool implicit = false;  ///< viscous term of the history (Rates::viscous is there)
-  bool at_rest = false;   ///< nothing moved yet: the first step is the impulse that sets the fluid going
+  Start start = Start::flowing;
 
   Vectors<D> u;                            ///< u^n per local cell, ghosts current [m/s]
   Vectors<D> w;                            ///< given velocity per boundary face at t^n [m/s]

@@ -21,7 +21,7 @@ void write_state(CheckpointWriter& file, const State<D>& s) {
   file.write_scalar("time", s.time);
   file.write_scalar("dt-old", s.dt_old);
   file.write_scalar("implicit", s.implicit ? 1 : 0);
-  file.write_scalar("at-rest", s.at_rest ? 1 : 0);
+  file.write_scalar("start", static_cast<int>(s.start));
   file.write_scalar("pressure-levels", levels);
   file.write_scalar("has-mesh-flux", s.mesh_flux.empty() ? 0 : 1);
   file.write_scalar("has-flux-memory", s.memory.empty() ? 0 : 1);
@@ -58,7 +58,7 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, bool moving) {
   s.time = file.read_scalar("time");
   s.dt_old = file.read_scalar("dt-old");
   s.implicit = file.read_scalar("implicit") != 0;
-  s.at_rest = file.read_scalar("at-rest") != 0;
+  s.start = static_cast<Start>(static_cast<int>(file.read_scalar("start")));
   const int levels = static_cast<int>(file.read_scalar("pressure-levels"));
   const bool has_mesh_flux = file.read_scalar("has-mesh-flux") != 0;
   const bool has_memory = file.read_scalar("has-flux-memory") != 0;
