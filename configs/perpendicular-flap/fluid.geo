@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channel around the flap, quadrilaterals only. The cells along the flap must be those of solid.geo.
-n_side = 80;        // cells along each side of the flap
+n_side = 120;       // cells along each side of the flap
 n_tip = 8;          // cells across its tip
-growth = 1.12;      // of neighbouring cells, away from the flap
+growth = 1.15;      // of neighbouring cells, away from the flap
 wall_growth = 1.12; // towards the upper wall
 wall_cells = 10;    // in the part that narrows towards the upper wall
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The flap. Its cells along the sides and the tip must be those of fluid.geo.
-n_side = 80; // cells along each side
-n_tip = 8;   // cells across the tip
+n_side = 120; // cells along each side
+n_tip = 8;    // cells across the tip
 
 half = 0.05; height = 1; // m
 
