@@ -32,7 +32,8 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
        {"interface", BoundaryType::interface, nothing}},
       "inlet: given velocity; outlet: given pressure; no-slip: wall at rest; moving-wall: wall with a given "
       "velocity; slip: no flow through, no friction (also a symmetry plane); interface: wall that moves with "
-      "the structure");
+      "the structure",
+      true);
 }
 
 }  // namespace
