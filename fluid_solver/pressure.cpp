@@ -17,7 +17,7 @@ PressureEquation<D>::PressureEquation(const Mesh& mesh, const Boundary<D>& bound
     : mesh_(mesh),
       boundary_(boundary),
       direct_(D == 2 && mesh.cells.n_global() <= largest_direct),
-      pinned_(direct_ && boundary.closed()) {
+      pinned_(boundary.closed()) {
   const Index owned = mesh.cells.n_owned();
   std::vector<GlobalIndex> row(owned), column;
   std::iota(row.begin(), row.end(), mesh.cells.first());
@@ -57,7 +57,6 @@ void PressureEquation<D>::set(const Placement<D>& at) {
   } else {
     LinearOptions options;
     options.method = direct_ ? LinearMethod::cg_direct : LinearMethod::cg_multigrid;
-    options.constant_null_space = boundary_.closed() && !pinned_;
     solver_ = std::make_unique<LinearSolver>("pressure", *matrix_, options);
   }
 }

@@ -46,9 +46,9 @@ Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
       displacement_(std::size_t(mesh_.points.n_local()) * mesh_.dim, 0.0) {
   if (context.mesh_peer != MPI_COMM_NULL) sink_ = make_mesh_motion_sink(context.mesh_peer, mesh_);
   if (comm_rank(mesh_.comm) == 0)
-    quality_ =
-        std::make_unique<Series>(context.output_folder / "quality.csv",
-                                 std::vector<std::string>{"time [s]", "least volume ratio [1]"}, context.restart_time);
+    quality_ = std::make_unique<Series>(context.output_folder / "quality.csv",
+                                        std::vector<std::string>{"time [s]", "least volume ratio [1]"},
+                                        context.restart_time);
 }
 
 Interface Mover::initialise() {

@@ -64,7 +64,8 @@ std::vector<std::vector<T>> all_to_all(MPI_Comm comm, const std::vector<std::vec
     bytes[r].assign(first, first + send[r].size() * sizeof(T));
   }
   std::vector<std::vector<T>> received;
-  for (const auto& part : detail::all_to_all_bytes(comm, bytes)) received.push_back(detail::from_bytes<T>(part));
+  for (const auto& part : detail::all_to_all_bytes(comm, bytes))
+    received.push_back(detail::from_bytes<T>(part));
   return received;
 }
 

@@ -15,13 +15,13 @@ struct IndexMap::Exchange {
     std::vector<Index> entries;
   };
   MPI_Comm comm = MPI_COMM_NULL;
-  std::vector<Peer> owned_for;   // entries of mine that others hold as ghosts
-  std::vector<Peer> ghosts_of;   // ghosts here that others own
+  std::vector<Peer> owned_for;  // entries of mine that others hold as ghosts
+  std::vector<Peer> ghosts_of;  // ghosts here that others own
   static constexpr int tag = 7001;
 
   template <class T, class Unpack>
-  void run(const std::vector<Peer>& from, const std::vector<Peer>& to, std::span<const T> values, int components,
-           MPI_Datatype type, Unpack&& unpack) const {
+  void run(const std::vector<Peer>& from, const std::vector<Peer>& to, std::span<const T> values,
+           int components, MPI_Datatype type, Unpack&& unpack) const {
     std::vector<std::vector<T>> in(to.size()), out(from.size());
     std::vector<MPI_Request> requests;
     requests.reserve(to.size() + from.size());

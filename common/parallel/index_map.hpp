@@ -11,13 +11,14 @@
 
 namespace couplet {
 
-/// Which entries of a distributed array live here: the owned ones first, then the ghosts (copies of entries that
-/// another rank owns), and how to refresh the ghosts. Owned entries carry contiguous global numbers, rank by rank,
-/// as PETSc wants them.
+/// Which entries of a distributed array live here: the owned ones first, then the ghosts (copies of entries
+/// that another rank owns), and how to refresh the ghosts. Owned entries carry contiguous global numbers,
+/// rank by rank, as PETSc wants them.
 class IndexMap {
  public:
   IndexMap() = default;
-  /// Collective. `ghost_owner[g]`: the rank that owns ghost g; `ghost_remote[g]`: its local (owned) index there.
+  /// Collective. `ghost_owner[g]`: the rank that owns ghost g; `ghost_remote[g]`: its local (owned) index
+  /// there.
   IndexMap(MPI_Comm comm, Index n_owned, const std::vector<int>& ghost_owner,
            const std::vector<Index>& ghost_remote);
 
@@ -31,7 +32,8 @@ class IndexMap {
   GlobalIndex global(Index local) const { return global_[local]; }
   const std::vector<GlobalIndex>& global() const { return global_; }
 
-  /// Overwrites the ghosts with their owners' values. `values`: n_local x components, entry by entry. Collective.
+  /// Overwrites the ghosts with their owners' values. `values`: n_local x components, entry by entry.
+  /// Collective.
   void update_ghosts(std::span<double> values, int components = 1) const;
   void update_ghosts(std::span<GlobalIndex> values) const;
   /// Adds the ghosts' values into their owners (and leaves the ghosts as they are). Collective.

@@ -34,11 +34,11 @@ def draw_tip(axes, time, tip):
         axes.plot(t, x, marker, color="black", fillstyle="none", label=f"preCICE: {name} (digitised extrema)")
     for t, x, kind in couplet.extrema(time, tip):
         if kind == "max":
-            axes.annotate(f"{x:.3f} m\n{t:.2f} s", (t, x), textcoords="offset points", xytext=(0, 8), ha="center",
+            axes.annotate(f"{x:.3f} m\n{t:.2f} s", (t, x), textcoords="offset points", xytext=(0, 16), ha="center",
                           fontsize=7)
-    axes.set(xlabel="time [s]", ylabel="tip displacement x [m]", ylim=(-0.03, 0.26), xlim=(0, max(5, time[-1])))
+    axes.set(xlabel="time [s]", ylabel="tip displacement x [m]", ylim=(-0.03, 0.29), xlim=(0, max(5, time[-1])))
     axes.grid(alpha=0.3)
-    axes.legend(fontsize=7, loc="upper right", ncol=2)
+    axes.legend(fontsize=7, loc="upper right", ncol=1)
 
 
 def draw_flow(figure, axes, fluid, solid, when):

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// main() of every test executable: MPI and PETSc are up, only rank 0 prints passing tests, and a failure on any
-// rank fails the run.
+// main() of every test executable: MPI and PETSc are up, only rank 0 prints passing tests, and a failure on
+// any rank fails the run.
 #include <gtest/gtest.h>
 #include <mpi.h>
 
@@ -17,7 +17,8 @@ int main(int argc, char** argv) {
     auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
     if (rank != 0) delete listeners.Release(listeners.default_result_printer());
     result = RUN_ALL_TESTS();
-    if (rank != 0 && result != 0) fprintf(stderr, "rank %d failed (see its assertions with one rank)\n", rank);
+    if (rank != 0 && result != 0)
+      fprintf(stderr, "rank %d failed (see its assertions with one rank)\n", rank);
     MPI_Allreduce(MPI_IN_PLACE, &result, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
   }
   MPI_Finalize();

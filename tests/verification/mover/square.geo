@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Unit square, 6 x 6 quadrilaterals; the right side is the interface.
 Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {1, 1, 0}; Point(4) = {0, 1, 0};
 Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
