@@ -4,7 +4,29 @@
 #include <gtest/gtest.h>
 #include <mpi.h>
 
+#include <string>
+
 #include "common/parallel/environment.hpp"
+
+namespace {
+
+/// The other ranks speak only when they fail.
+class FailurePrinter final : public ::testing::EmptyTestEventListener {
+ public:
+  explicit FailurePrinter(int rank) : rank_(rank) {}
+  void OnTestStart(const ::testing::TestInfo& test) override { test_ = test.name(); }
+  void OnTestPartResult(const ::testing::TestPartResult& result) override {
+    if (!result.failed()) return;
+    fprintf(stderr, "rank %d: %s: %s:%d: %s\n", rank_, test_.c_str(),
+            result.file_name() ? result.file_name() : "", result.line_number(), result.message());
+  }
+
+ private:
+  int rank_;
+  std::string test_;
+};
+
+}  // namespace
 
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
@@ -15,7 +37,10 @@ int main(int argc, char** argv) {
     int rank = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
-    if (rank != 0) delete listeners.Release(listeners.default_result_printer());
+    if (rank != 0) {
+      delete listeners.Release(listeners.default_result_printer());
+      listeners.Append(new FailurePrinter(rank));
+    }
     result = RUN_ALL_TESTS();
     if (rank != 0 && result != 0)
       fprintf(stderr, "rank %d failed (see its assertions with one rank)\n", rank);

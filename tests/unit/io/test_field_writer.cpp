@@ -37,6 +37,7 @@ void write(FieldWriter& writer, const Mesh& mesh, double time) {
   writer.write(time, points,
                {{"pressure", "Pa", OutputField::Place::cells, 1, pressure},
                 {"velocity", "m/s", OutputField::Place::cells, mesh.dim, velocity}});
+  MPI_Barrier(world);  // rank 0 writes the index last; all may read it from here on
 }
 
 std::string index_of(const Scratch& scratch) {
