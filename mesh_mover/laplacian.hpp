@@ -31,6 +31,9 @@ class Laplacian {
   std::vector<double> solve(std::span<const double> prescribed);
   /// Local points on interface patches.
   const std::vector<Index>& interface_points() const { return interface_points_; }
+  /// dim per local cell: the initial guess of the next solve, for checkpoints.
+  std::vector<double>& cell_displacement() { return cell_displacement_; }
+  const std::vector<double>& cell_displacement() const { return cell_displacement_; }
   const SolveStatistics& last() const { return last_; }
 
  private:

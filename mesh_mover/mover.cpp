@@ -102,9 +102,15 @@ void Mover::refuse_bad_cells(const Geometry& moved) {
         name_, step_.time, least_volume_ratio_, smallest_volume_ratio_);
 }
 
-void Mover::save(CheckpointWriter& file) const { file.write("displacement", displacement_); }
+void Mover::save(CheckpointWriter& file) const {
+  file.write("displacement", displacement_);
+  file.write("cell-displacement", laplacian_.cell_displacement());
+}
 
-void Mover::load(CheckpointReader& file) { file.read("displacement", displacement_); }
+void Mover::load(CheckpointReader& file) {
+  file.read("displacement", displacement_);
+  file.read("cell-displacement", laplacian_.cell_displacement());
+}
 
 void Mover::write_monitors(double time) {
   if (quality_) quality_->row(std::vector<double>{time, least_volume_ratio_});

@@ -16,6 +16,7 @@ class Bar:
     quantity: str
     wanted: str
     measure: Callable  # (job) -> (got, met)
+    long: bool = False  # takes more than a minute: left out by --quick
 
 
 class Job:

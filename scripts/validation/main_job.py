@@ -12,8 +12,6 @@ FLAP = "configs/perpendicular-flap/case.yaml"
 
 # -- set-up -----------------------------------------------------------------------------------------------------------
 def fresh_clone(job, script, sign):
-    if job.quick:
-        return "left out (--quick)", False
     clone = job.once("clone", lambda: job.scratch / "clone")
     if not clone.exists():
         job.run(["git", "clone", "-q", job.root, clone]).check_returncode()
@@ -43,8 +41,6 @@ def tip_maxima(folder):
 
 
 def maximum(job, number, wanted, tolerance, when=None):
-    if job.quick and number > 0:
-        return "left out (--quick runs 1 s)", False
     t, x = tip_maxima(flap_run(job))[number]
     met = abs(x - wanted) <= tolerance and (when is None or abs(t - when[0]) <= when[1])
     return f"{x:.4f} m at {t:.3f} s", met
@@ -70,8 +66,6 @@ def mean_iterations(job):
 
 
 def implicit_agrees(job):
-    if job.quick:
-        return "left out (--quick)", False
     folder = job.coupled(job.root / FLAP, "flap-implicit", ["simulation.end-time=1", "coupling.scheme=implicit"])
     (_, semi), (_, implicit) = tip_maxima(flap_run(job))[0], tip_maxima(folder)[0]
     gap = abs(semi - implicit) / implicit
@@ -152,14 +146,14 @@ def registered(pattern, at_least=1, count=None):
 
 
 BARS = [
-    Bar("scripts/test on a fresh clone", "succeeds", lambda job: fresh_clone(job, "test", r"All tests passed\.")),
-    Bar("scripts/demo on a fresh clone", "succeeds, run below 180 s, picture there", demo_time),
+    Bar("scripts/test on a fresh clone", "succeeds", lambda job: fresh_clone(job, "test", r"All tests passed\."), long=True),
+    Bar("scripts/demo on a fresh clone", "succeeds, run below 180 s, picture there", demo_time, long=True),
     Bar("flap: first tip maximum", "0.198 +- 0.006 m at 0.74 +- 0.03 s",
         lambda job: maximum(job, 0, 0.198, 0.006, (0.74, 0.03))),
-    Bar("flap: second tip maximum", "0.184 +- 0.008 m", lambda job: maximum(job, 1, 0.184, 0.008)),
+    Bar("flap: second tip maximum", "0.184 +- 0.008 m", lambda job: maximum(job, 1, 0.184, 0.008), long=True),
     Bar("flap: interface residual in every step", "<= 1e-5", interface_tolerance),
     Bar("flap: coupling iterations", "reported", mean_iterations),
-    Bar("flap: first maximum, semi-implicit and implicit", "within 1 %", implicit_agrees),
+    Bar("flap: first maximum, semi-implicit and implicit", "within 1 %", implicit_agrees, long=True),
     Bar("solid: patch test, relative error", "<= 1e-10 on hex, tet, prism, mixed",
         largest("verification_solid_patch", "linear_field_is_exact", "relative_error", 1e-10)),
     Bar("solid: order of the displacement, hexahedra and quadrilaterals", ">= 1.9",
@@ -182,7 +176,7 @@ BARS = [
         largest("verification_fluid_exactness", r"OscillatingBox\.", "pressure_error", 1e-10)),
     Bar("ranks: 20 steps of the flap on (1,1,1,1) and (1,3,2,2)", "agree to 1e-7", ranks_agree),
     Bar("start and death: every case ends within 5 s and names the culprit", "all",
-        registered("^(launch|kill_in_)", 20, r"^\d+: ok  .*\(\d")),
+        registered("^(launch|kill_in_)", 20, r"^\d+: ok  .*\(\d"), long=True),
     Bar("wrong configurations with their exact message", ">= 30", registered("^cli_wrong_configurations$", 30, r"(\d+) (?:of \d+ )?wrong configurations")),
     Bar("configs/*/case.yaml pass --check", "all", registered("^configs_every_case_is_valid$")),
     Bar("generated reference and schema", "as committed", registered("^docs_are_what_the_programs_say$")),

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 #include "mesh_mover/laplacian.hpp"
@@ -139,27 +141,72 @@ TEST(Laplacian, a_slip_patch_off_the_axes_is_refused_by_name) {
   }
 }
 
-TEST(Mover, refuses_an_inverted_cell_by_name_and_place) {
+Parameters square() {
   Parameters p;
   p.mesh = "square.geo";
   p.dimension = 2;
   p.boundaries["walls"].motion = BoundaryMotion::fixed;
   p.boundaries["moving"].motion = BoundaryMotion::interface;
+  return p;
+}
+
+ParticipantContext context_of_the_test() {
   ParticipantContext context;
   context.comm = MPI_COMM_WORLD;
   context.name = "mover";
   context.case_folder = COUPLET_TEST_DATA;
   context.output_folder = std::filesystem::temp_directory_path();
-  Mover mover(p, context);
+  return context;
+}
+
+/// The middle of the moving side pushed by `x` [m].
+Exchange push_middle(const Interface& interface, double x) {
+  Exchange push;
+  for (const Vec3& vertex : interface.vertices) {
+    const bool middle = std::abs(vertex.y() - 0.5) < 0.01;
+    push["displacement"].insert(push["displacement"].end(), {middle ? x : 0.0, 0.0});
+  }
+  return push;
+}
+
+TEST(Mover, gives_the_same_mesh_for_the_same_interface_whatever_came_between) {
+  Mover mover(square(), context_of_the_test());
+  const Interface interface = mover.initialise();
+  mover.begin_step({.time = 0, .dt = 0.1, .scheme = Scheme::implicit, .number = 1});
+  mover.solve(push_middle(interface, 0.1));
+  const std::vector<double> first = mover.displacement();
+  EXPECT_GT(max(MPI_COMM_WORLD, *std::max_element(first.begin(), first.end())), 0.05);
+  mover.solve(push_middle(interface, -0.2));
+  EXPECT_THROW(mover.solve(push_middle(interface, -0.9)), SolveFailure);
+  mover.begin_step({.time = 0, .dt = 0.05, .scheme = Scheme::implicit, .number = 1});
+  mover.solve(push_middle(interface, 0.1));
+  EXPECT_LT(largest_difference(mover.mesh(), mover.displacement(), first), 1e-14);
+}
+
+TEST(Mover, is_restored_from_a_checkpoint_bit_for_bit) {
+  Mover mover(square(), context_of_the_test()), other(square(), context_of_the_test());
+  const Interface interface = mover.initialise();
+  mover.begin_step({.time = 0, .dt = 0.1, .scheme = Scheme::implicit, .number = 1});
+  mover.solve(push_middle(interface, 0.1));
+  mover.accept_step();
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("couplet-mover-" + std::to_string(comm_size(MPI_COMM_WORLD)) + ".h5");
+  {
+    CheckpointWriter writer(MPI_COMM_WORLD, file);
+    mover.save(writer);
+    writer.close();
+  }
+  CheckpointReader reader(MPI_COMM_WORLD, file);
+  other.load(reader);
+  EXPECT_EQ(other.displacement(), mover.displacement());
+}
+
+TEST(Mover, refuses_an_inverted_cell_by_name_and_place) {
+  Mover mover(square(), context_of_the_test());
   const Interface interface = mover.initialise();
   mover.begin_step({.time = 1.5, .dt = 0.1, .scheme = Scheme::implicit, .number = 3});
-  Exchange push;
-  for (std::size_t v = 0; v < interface.vertices.size(); ++v) {
-    const bool middle = std::abs(interface.vertices[v].y() - 0.5) < 0.01;
-    push["displacement"].insert(push["displacement"].end(), {middle ? -0.9 : 0.0, 0.0});
-  }
   try {
-    mover.solve(push);
+    mover.solve(push_middle(interface, -0.9));
     FAIL() << "accepted";
   } catch (const SolveFailure& e) {
     EXPECT_THAT(e.what(),
