@@ -24,7 +24,7 @@ struct Item {
 };
 
 enum class Describe {
-  everything,  ///< also what is not there: fills placeholder entries into maps, lists and effects
+  everything,  ///< also what is not there: fills sample entries into maps, lists and effects
   present,     ///< only what the members hold; touches nothing
 };
 std::vector<Item> describe(const Section::Declare& declare, Describe extent);

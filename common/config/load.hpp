@@ -49,7 +49,7 @@ std::optional<std::string> text_of(const Document& document, const std::string& 
 std::string where(const Document& document, const std::string& path);
 
 /// Markdown reference: a table a section (key, type, unit, default, range, meaning). It and the schema put
-/// placeholder entries into the maps, lists and optional members: give them a fresh object.
+/// sample entries into the maps, lists and optional members: give them a fresh object.
 std::string markdown(const std::string& title, const Section::Declare& declare);
 /// JSON schema (draft 2020-12) of the section, for editors.
 std::string json_schema(const std::string& title, const Section::Declare& declare);

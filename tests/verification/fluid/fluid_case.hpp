@@ -129,4 +129,25 @@ double difference(const FluidCase<D>& a, const FluidCase<D>& b) {
   return std::sqrt(sum(a.mesh().comm, square) / sum(a.mesh().comm, volume));
 }
 
+/// A channel whose floor moves: inlet left, outlet right, slip lid.
+inline FluidParameters channel(ViscousTreatment viscous = ViscousTreatment::automatic,
+                               double pressure_tolerance = 1e-12) {
+  FluidParameters p;
+  p.density = 1.3;
+  p.viscosity = 0.05;
+  p.viscous = viscous;
+  p.pressure_tolerance = pressure_tolerance;
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"4*y*(1-y)*(1+0.3*sin(5*t))", "0"});
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+  p.boundaries["ymax"] = boundary(BoundaryType::slip);
+  p.boundaries["ymin"] = boundary(BoundaryType::interface);
+  return p;
+}
+
+inline RawMesh channel_mesh() {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {24, 12, 1}, Vec3::Zero(), Vec3(2, 1, 1));
+  perturb_interior(raw, 0.15, 7);
+  return raw;
+}
+
 }  // namespace couplet::fluid::test

@@ -9,26 +9,6 @@
 namespace couplet::fluid::test {
 namespace {
 
-/// A channel whose floor moves: inlet left, outlet right, slip lid.
-FluidParameters channel(ViscousTreatment viscous = ViscousTreatment::automatic) {
-  FluidParameters p;
-  p.density = 1.3;
-  p.viscosity = 0.05;
-  p.viscous = viscous;
-  p.pressure_tolerance = 1e-12;
-  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"4*y*(1-y)*(1+0.3*sin(5*t))", "0"});
-  p.boundaries["xmax"] = boundary(BoundaryType::outlet);
-  p.boundaries["ymax"] = boundary(BoundaryType::slip);
-  p.boundaries["ymin"] = boundary(BoundaryType::interface);
-  return p;
-}
-
-RawMesh channel_mesh() {
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {24, 12, 1}, Vec3::Zero(), Vec3(2, 1, 1));
-  perturb_interior(raw, 0.15, 7);
-  return raw;
-}
-
 double bump(double x) { return 0.1 * std::pow(std::sin(std::numbers::pi * x / 2), 2); }
 Vec3 floor_place(const Vec3& x, GlobalIndex, double t) {
   return x + Vec3(0, (1 - x.y()) * bump(x.x()) * (1 - std::cos(4 * t)), 0);
