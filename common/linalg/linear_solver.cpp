@@ -24,11 +24,30 @@ constexpr GlobalIndex largest_for_petsc = 12000;
 // Fresh factors cost about as much as this many iterations save over a few dozen solves.
 constexpr int most_with_old_factors = 8;
 
-void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
+void choose_petsc_factors(PC pc, bool symmetric) {
   petsc_check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
-  const bool mumps = comm_size(matrix.comm()) > 1 || matrix.n_owned_rows() > largest_for_petsc;
-  petsc_check(PCFactorSetMatSolverType(pc, mumps ? MATSOLVERMUMPS : MATSOLVERPETSC));
-  if (!mumps) petsc_check(PCFactorSetMatOrderingType(pc, MATORDERINGND));
+  petsc_check(PCFactorSetMatSolverType(pc, MATSOLVERPETSC));
+  petsc_check(PCFactorSetMatOrderingType(pc, MATORDERINGND));
+}
+
+// Small systems on several ranks are factorised whole on each: less latency than a distributed solve, and the
+// same bits in every run, where MUMPS adds in the order in which messages happen to arrive.
+void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
+  PetscInt rows = 0;
+  petsc_check(MatGetSize(matrix.petsc(), &rows, nullptr));
+  if (rows > largest_for_petsc) {
+    petsc_check(PCSetType(pc, symmetric ? PCCHOLESKY : PCLU));
+    petsc_check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    return;
+  }
+  if (comm_size(matrix.comm()) == 1) return choose_petsc_factors(pc, symmetric);
+  petsc_check(PCSetType(pc, PCREDUNDANT));
+  KSP whole = nullptr;
+  PC factors = nullptr;
+  petsc_check(PCRedundantSetNumber(pc, comm_size(matrix.comm())));
+  petsc_check(PCRedundantGetKSP(pc, &whole));
+  petsc_check(KSPGetPC(whole, &factors));
+  choose_petsc_factors(factors, symmetric);
 }
 
 // ML's smoothed aggregation with one symmetric SOR sweep: the best packaged preconditioner on FV Laplacians.

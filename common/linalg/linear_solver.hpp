@@ -11,7 +11,7 @@
 namespace couplet {
 
 enum class LinearMethod {
-  direct,            ///< LU: PETSc's own for small matrices on one rank, else MUMPS
+  direct,            ///< LU: PETSc's own for small matrices (whole on every rank), else MUMPS
   direct_symmetric,  ///< Cholesky: the same
   cg_direct,         ///< CG with kept Cholesky factors: moving 2-D meshes, symmetric positive definite
   cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
