@@ -21,7 +21,8 @@ def said(text):
     for line in text.splitlines():
         if line.startswith("-----"):
             break
-        if not re.match(r"\[\S+:\d+\] ", line):  # "[host:1234] ..." is mpirun's, "[solid 0] ..." is ours
+        # "[host:1234] ..." is mpirun's, "[hwloc/linux] ..." comes in containers without /sys, "[solid 0] ..." is ours.
+        if not re.match(r"\[\S+:\d+\] |\[hwloc/", line):
             lines.append(line.rstrip())
     return "\n".join(lines).strip()
 
