@@ -14,10 +14,7 @@ constexpr GlobalIndex largest_direct = 60000;
 // Triplets: the diagonal of each owned cell first, then the neighbours face by face.
 template <int D>
 PressureEquation<D>::PressureEquation(const Mesh& mesh, const Boundary<D>& boundary)
-    : mesh_(mesh),
-      boundary_(boundary),
-      direct_(D == 2 && mesh.cells.n_global() <= largest_direct),
-      pinned_(boundary.closed()) {
+    : mesh_(mesh), boundary_(boundary), direct_(D == 2 && mesh.cells.n_global() <= largest_direct) {
   const Index owned = mesh.cells.n_owned();
   std::vector<GlobalIndex> row(owned), column;
   std::iota(row.begin(), row.end(), mesh.cells.first());
@@ -50,7 +47,7 @@ void PressureEquation<D>::set(const Placement<D>& at) {
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
     if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::pressure)
       values_[mesh_.owner[f]] += at.conductance[f];
-  if (pinned_ && owned > 0 && mesh_.cells.first() == 0) values_[0] *= 2;
+  if (boundary_.closed() && owned > 0 && mesh_.cells.first() == 0) values_[0] *= 2;
   matrix_->fill(values_);
   if (solver_) {
     solver_->matrix_changed();
@@ -73,8 +70,8 @@ template <int D>
 SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<double>& b,
                                            std::vector<double>& p, double relative, double absolute) {
   const Index owned = mesh_.cells.n_owned();
-  if (boundary_.closed()) remove_mean(b);
-  if (pinned_) {
+  if (boundary_.closed()) {
+    remove_mean(b);
     // Twice the first diagonal entry makes the matrix regular and p = 0 there, the same solution but for a
     // constant.
     double pin = owned > 0 ? p[0] : 0;

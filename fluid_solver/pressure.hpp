@@ -31,7 +31,7 @@ class PressureEquation {
   void remove_mean(std::vector<double>& b) const;
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
-  bool direct_, pinned_;  // small 2-D meshes; closed domains: p = 0 in the first cell
+  bool direct_;  // small 2-D meshes: kept Cholesky factors
   std::unique_ptr<SparseMatrix> matrix_;
   std::unique_ptr<LinearSolver> solver_;
   std::vector<double> values_;

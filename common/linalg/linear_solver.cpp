@@ -56,10 +56,6 @@ void choose_ml(PC pc) {
   petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_levels_ksp_type", "richardson"));
   petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_levels_ksp_max_it", "1"));
   petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_levels_pc_type", "sor"));
-  // A singular (pure Neumann) coarse matrix has no LU: SVD takes its pseudo-inverse; it is a few dozen rows.
-  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_coarse_ksp_type", "preonly"));
-  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_coarse_pc_type", "redundant"));
-  petsc_check(PetscOptionsSetValue(nullptr, "-couplet_ml_mg_coarse_redundant_pc_type", "svd"));
   petsc_check(PCSetOptionsPrefix(pc, "couplet_ml_"));
   petsc_check(PCSetFromOptions(pc));
 }
@@ -102,12 +98,6 @@ LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const L
   petsc_check(KSPGetPC(ksp_, &pc));
   choose_method(ksp_, pc, matrix, options.method);
   if (!is_direct(options.method)) petsc_check(KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE));
-  if (options.constant_null_space) {
-    MatNullSpace constants = nullptr;
-    petsc_check(MatNullSpaceCreate(matrix.comm(), PETSC_TRUE, 0, nullptr, &constants));
-    petsc_check(MatSetNullSpace(matrix.petsc(), constants));
-    petsc_check(MatNullSpaceDestroy(&constants));
-  }
   petsc_check(MatCreateVecs(matrix.petsc(), &x_, &b_));
 }
 

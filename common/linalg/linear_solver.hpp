@@ -24,7 +24,6 @@ struct LinearOptions {
   double relative_tolerance = 1e-8;   ///< of |r| / |b|
   double absolute_tolerance = 1e-50;  ///< of |r|; may also be given with each solve
   int max_iterations = 500;
-  bool constant_null_space = false;  ///< pure Neumann: the constant is removed from b and x
 };
 
 struct SolveStatistics {
