@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 LONGEST = 500
-PROGRAMS = ["solid_solver", "fluid_solver", "mesh_mover", "coupler"]
+PROGRAMS = ["solid_solver", "fluid_solver", "mesh_mover", "thermocline", "coupler"]
 # Below which folders of common each folder of common stands.
 ALLOWED = {
     "base": [],
