@@ -67,6 +67,14 @@ std::vector<double> Solid::point_velocity() const {
   return to_points(state_.cell_v, state_.face_v, known_rate_accepted_);
 }
 
+std::vector<Tensor3> Solid::face_stress(Index first, Index count, std::span<const double> points) const {
+  std::vector<Tensor3> stress(count);
+  for (Index i = 0; i < count; ++i)
+    stress[i] = elastic_.stress(elastic_.gradient(first + i, state_.cell_u, state_.face_u, points));
+  for (const auto& effect : effects_) effect->add_face_stress(first, stress);
+  return stress;
+}
+
 std::vector<Tensor3> Solid::cell_stress(std::span<const double> points) const {
   const Index n_owned = mesh_.cells.n_owned();
   std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
@@ -83,13 +91,12 @@ std::vector<Tensor3> Solid::cell_stress(std::span<const double> points) const {
     add(mesh_.owner[f]);
     if (f < mesh_.n_interior) add(mesh_.neighbour[f]);
   }
-  const bool plane_strain = mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::strain;
-  for (Index c = 0; c < n_owned; ++c) {
-    gradient[c] = elastic_.stress(gradient[c] / weight[c]);
-    // Across a 2-D scene: lambda tr(epsilon) in plane strain (it stands there already), nothing in plane
-    // stress.
-    if (mesh_.dim == 2 && !plane_strain) gradient[c](2, 2) = 0;
-  }
+  for (Index c = 0; c < n_owned; ++c) gradient[c] = elastic_.stress(gradient[c] / weight[c]);
+  for (const auto& effect : effects_) effect->add_cell_stress(gradient);
+  // Across a 2-D scene: lambda tr(epsilon) in plane strain (it stands there already), nothing in plane
+  // stress.
+  if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
+    for (Tensor3& stress : gradient) stress(2, 2) = 0;
   return gradient;
 }
 
@@ -99,10 +106,11 @@ std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
     const ElasticCondition condition = boundaries_.conditions()[p];
     if (condition == ElasticCondition::traction) continue;
     const Patch& patch = mesh_.patches[p];
+    const std::vector<Tensor3> stress = face_stress(patch.first, patch.count, points);
     Vec3 force = Vec3::Zero();
-    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      const Vec3& area = mesh_.reference.face_area[f];
-      Vec3 here = elastic_.stress(elastic_.gradient(f, state_.cell_u, state_.face_u, points)) * area;
+    for (Index i = 0; i < patch.count; ++i) {
+      const Vec3& area = mesh_.reference.face_area[patch.first + i];
+      Vec3 here = stress[i] * area;
       if (condition == ElasticCondition::symmetry) here = area * area.dot(here) / area.squaredNorm();
       force += here;
     }
@@ -160,6 +168,7 @@ std::vector<std::string> Solid::judge_left_out_effects() {
         "structural damping left out: free vibration does not decay, and on distorted meshes the highest "
         "modes may grow "
         "at small time steps; 'damping: {stiffness: 2e-5 s}' would stop that.");
+  for (const auto& effect : effects_) effect->judge(sentences);
   return sentences;
 }
 
@@ -185,6 +194,7 @@ void Solid::save(CheckpointWriter& file) const {
   file.write_scalar("steps", state_.steps);
   file.write_scalar("largest-gradient", largest_gradient_);
   file.write_scalar("inertia-over-load", inertia_over_load_);
+  for (const auto& effect : effects_) effect->save(file);
 }
 
 void Solid::load(CheckpointReader& file) {
@@ -201,6 +211,7 @@ void Solid::load(CheckpointReader& file) {
   state_.steps = static_cast<int>(file.read_scalar("steps"));
   largest_gradient_ = file.read_scalar("largest-gradient");
   inertia_over_load_ = file.read_scalar("inertia-over-load");
+  for (const auto& effect : effects_) effect->load(file);
 }
 
 }  // namespace couplet

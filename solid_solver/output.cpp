@@ -41,7 +41,7 @@ void SolidOutput::write_fields(double time, std::span<const double> points) {
   const Mesh& mesh = solid_.mesh();
   const int dim = mesh.dim;
   if (!fields_)
-    fields_.emplace(mesh, context_.output_folder, context_.name, solid_.parameters().output_deformed,
+    fields_.emplace(mesh, context_.output_folder, context_.name, solid_.parameters().output.deformed,
                     context_.restart_time);
   const std::vector<double> velocity = solid_.point_velocity();
   std::vector<Vec3> places = mesh.reference_points;
@@ -52,7 +52,7 @@ void SolidOutput::write_fields(double time, std::span<const double> points) {
       {"velocity", "m/s", OutputField::Place::points, dim, velocity},
       {"cell-displacement", "m", OutputField::Place::cells, dim, solid_.state().cell_u}};
   std::vector<std::vector<double>> columns;
-  if (solid_.parameters().output_stress) {
+  if (solid_.parameters().output.stress) {
     const std::vector<Tensor3> stress = solid_.cell_stress(points);
     const std::size_t n_components = dim == 2 ? 4 : 6;
     columns.assign(n_components + 1, std::vector<double>(mesh.cells.n_local(), 0));
@@ -65,6 +65,7 @@ void SolidOutput::write_fields(double time, std::span<const double> points) {
       fields.push_back({stress_fields[i].name, "Pa", OutputField::Place::cells, 1, columns[i]});
     fields.push_back({"equivalent-stress", "Pa", OutputField::Place::cells, 1, columns.back()});
   }
+  for (const auto& effect : solid_.effects()) effect->add_fields(fields);
   fields_->write(time, places, fields);
 }
 

@@ -32,6 +32,7 @@ Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
                         {"velocity", "m/s", Interface::Place::vertices}};
   if (!parameters_.body_force.empty())
     body_force_ = make_expressions(parameters_.body_force, mesh_.dim, "body-force");
+  effects_ = make_effects(mesh_, elastic_, parameters_);
   start_from_rest();
   output_ = std::make_unique<SolidOutput>(*this, context_);
 }
@@ -103,6 +104,10 @@ void Solid::begin_step(const Step& step) {
       }
   }
   add_body_forces(load_time);
+  for (const auto& effect : effects_) {
+    effect->begin_step(step);
+    effect->add_loads(load_time, base_rhs_);
+  }
   std::ranges::fill(face_force_, 0.0);
   boundaries_.add_forces(load_time, face_force_);
   prepare_prescribed();
@@ -182,25 +187,15 @@ Exchange Solid::solve(const Exchange& in) {
   for (std::size_t i = 0; i < faces.size(); ++i)
     for (int a = 0; a < dim; ++a)
       unknowns_[n_cells + i * dim + a] = state_.face_u[std::size_t(faces[i] - mesh_.n_interior) * dim + a];
-  solve_system(system);
+  {
+    const log::ScopedTimer timer(log::timers(), "solid: linear solver");
+    system.method->solve(rhs_, unknowns_);
+  }
   trial_.time = step_.time + step_.dt;
   trial_.dt = step_.dt;
   trial_.steps = state_.steps + 1;
   is_dynamic() ? finish_dynamic(system) : finish_static();
   return interface_values();
-}
-
-void Solid::solve_system(System& system) {
-  const log::ScopedTimer timer(log::timers(), "solid: linear solver");
-  try {
-    system.solver.solve(rhs_, unknowns_);
-  } catch (const SolveFailure& e) {
-    throw SolveFailure(
-        "{} If the loads are sound, another 'linear-solver: {{method: ...}}' may help; 'direct' needs most "
-        "memory and "
-        "bears most.",
-        e.what());
-  }
 }
 
 void Solid::finish_dynamic(const System& system) {
@@ -272,6 +267,7 @@ void Solid::update_trial_ghosts() {
 
 void Solid::accept_step() {
   if (!is_dynamic()) judge_inertia();
+  for (const auto& effect : effects_) effect->accept_step();
   std::swap(state_, trial_);
   std::swap(known_accepted_, known_);
   std::swap(known_rate_accepted_, known_rate_);

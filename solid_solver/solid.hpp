@@ -11,9 +11,9 @@
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/fv/elasticity.hpp"
-#include "common/linalg/linear_solver.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/boundaries.hpp"
+#include "solid_solver/effect.hpp"
 #include "solid_solver/parameters.hpp"
 
 namespace couplet {
@@ -70,11 +70,15 @@ class Solid final : public Participant {
   const SolidParameters& parameters() const { return parameters_; }
   const ElasticOperator& elastic() const { return elastic_; }
   const SolidState& state() const { return state_; }
+  const std::vector<std::unique_ptr<SolidEffect>>& effects() const { return effects_; }
   /// Packed values of all local points at the accepted time. Collective.
   std::vector<double> point_displacement() const;
   std::vector<double> point_velocity() const;
+  /// Stress of the local faces first, first + 1, ... (`count` of them) [Pa]. `points`: as
+  /// point_displacement() gives them.
+  std::vector<Tensor3> face_stress(Index first, Index count, std::span<const double> points) const;
   /// Stress of the local owned cells [Pa], mean of the face values by the pyramids over the faces; exact for
-  /// linear displacements. `points`: as point_displacement() gives them.
+  /// linear displacements.
   std::vector<Tensor3> cell_stress(std::span<const double> points) const;
   /// Forces the solid gets at fixed and symmetry patches from the stress at the accepted time. Collective.
   std::vector<PatchForce> reactions(std::span<const double> points) const;
@@ -92,7 +96,6 @@ class Solid final : public Participant {
   void prepare_prescribed();
   void add_body_forces(double t);
   void add_interface_load(const Exchange& in);
-  void solve_system(System& system);
   void finish_dynamic(const System& system);
   void finish_static();
   void set_prescribed_faces();
@@ -111,7 +114,8 @@ class Solid final : public Participant {
   std::unique_ptr<InterfaceMap> interface_;  // none: no interface patch
   Interface description_;
   std::vector<Expression> body_force_;
-  std::vector<std::unique_ptr<System>> systems_;  // the two time steps used last, latest first
+  std::vector<std::unique_ptr<SolidEffect>> effects_;  // those that the scene has
+  std::vector<std::unique_ptr<System>> systems_;       // the two time steps used last, latest first
 
   SolidState state_, trial_;
   Step step_;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/coupling/participant.hpp"
+#include "common/fv/elasticity.hpp"
+#include "common/io/field_writer.hpp"
+#include "common/mesh/mesh.hpp"
+#include "solid_solver/parameters.hpp"
+
+namespace couplet {
+
+/// Something beside linear elasticity that loads the solid (thermal strain, ...). A scene has those that its
+/// YAML asks for; Solid keeps them in a list and calls them in its order. As for a Participant, only
+/// accept_step() changes the accepted state.
+class SolidEffect {
+ public:
+  virtual ~SolidEffect() = default;
+  /// A step from t^n is tried: an effect with equations of its own solves them here. Throws SolveFailure.
+  virtual void begin_step(const Step& /*step*/) {}
+  /// Adds its forces [N] at time t within the step to the rows of the operator (see ElasticOperator).
+  virtual void add_loads(double t, std::span<double> rhs) = 0;
+  virtual void accept_step() {}
+  virtual void save(CheckpointWriter& /*file*/) const {}
+  virtual void load(CheckpointReader& /*file*/) {}
+  /// Adds its part of the stress of owned cells at the accepted time [Pa].
+  virtual void add_cell_stress(std::span<Tensor3> /*stress*/) const {}
+  /// Adds its part of the stress of the local faces first, first + 1, ... at the accepted time [Pa].
+  virtual void add_face_stress(Index /*first*/, std::span<Tensor3> /*stress*/) const {}
+  /// Appends fields at the accepted time; their values must live until the next call.
+  virtual void add_fields(std::vector<OutputField>& /*fields*/) {}
+  /// For Participant::judge_left_out_effects().
+  virtual void judge(std::vector<std::string>& /*sentences*/) const {}
+};
+
+/// The effects the parameters ask for; none: an empty list.
+std::vector<std::unique_ptr<SolidEffect>> make_effects(const Mesh& mesh, const ElasticOperator& elastic,
+                                                       const SolidParameters& parameters);
+
+}  // namespace couplet

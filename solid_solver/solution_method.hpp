@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "common/fv/elasticity.hpp"
+#include "common/linalg/linear_solver.hpp"
+#include "common/mesh/mesh.hpp"
+#include "solid_solver/method_parameters.hpp"
+
+namespace couplet {
+
+/// What a method solves: (diag(inertia) + A) u = b with the rows and unknowns of ElasticOperator. All that is
+/// referred to must outlive the method.
+struct SolidProblem {
+  const Mesh& mesh;
+  const ElasticOperator& elastic;
+  std::span<const double> inertia;  ///< per owned cell [N/m]; empty: static
+  bool is_static() const { return inertia.empty(); }
+};
+
+/// Solves one problem again and again: what does not change with b is made once. Collective.
+class SolutionMethod {
+ public:
+  virtual ~SolutionMethod() = default;
+  /// `b`, `u`: packed rows of this rank (owned cells, then unknown faces); `u` holds the guess. Throws
+  /// SolveFailure if the tolerance was not reached.
+  virtual SolveStatistics solve(std::span<const double> b, std::span<double> u) = 0;
+  /// "block-coupled (direct)": for the log.
+  virtual std::string name() const = 0;
+};
+
+/// The method that the parameters ask for; `automatic` picks by size and scene and logs what and why.
+std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
+                                                     const MethodParameters& parameters);
+
+}  // namespace couplet

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/config/section.hpp"
+
+namespace couplet {
+
+/// Rayleigh damping C = mass M + stiffness K, thesis (2.79).
+struct SolidDamping {
+  double mass = 0;       // [1/s]
+  double stiffness = 0;  // [s]
+};
+
+void declare(config::Section& section, SolidDamping& damping);
+
+}  // namespace couplet
