@@ -81,7 +81,8 @@ void Fluid<D>::begin_step(double time, double dt) {
   dt_ = dt;
   accepted_.time = time;
   trial_ = accepted_;
-  statistics_.limits = step_size_.limits(trial_);
+  if (!parameters_.time_step || parameters_.viscous == ViscousTreatment::automatic)
+    statistics_.limits = step_size_.limits(trial_);
   if (parameters_.viscous == ViscousTreatment::automatic) choose_viscous_treatment();
   statistics_.sub_steps = 0;
 }

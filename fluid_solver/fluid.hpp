@@ -12,7 +12,7 @@ namespace couplet::fluid {
 struct FluidStatistics {
   int sub_steps = 0;  ///< of the last step
   long all_sub_steps = 0, pressure_iterations = 0, viscous_iterations = 0, pressure_solves = 0;
-  StepLimits limits;  ///< at the begin of the last step
+  StepLimits limits;  ///< at the begin of the last step; left out where nothing depends on them
 };
 
 /// The fluid through whole coupling steps: cuts them into stable sub-steps, moves the mesh and the walls
@@ -50,7 +50,11 @@ class Fluid {
   const Mesh& mesh() const { return mesh_; }
   const FluidParameters& parameters() const { return parameters_; }
   const FluidStatistics& statistics() const { return statistics_; }
-  double largest_peclet() const { return step_size_.largest_peclet(); }
+  /// Largest cell Reynolds number |phi| / (nu g) of the accepted state. Collective.
+  double largest_peclet() {
+    step_size_.limits(accepted_);
+    return step_size_.largest_peclet();
+  }
   bool moving() const { return moving_; }
 
  private:

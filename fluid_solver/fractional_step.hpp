@@ -104,9 +104,10 @@ class FractionalStep {
     Vec<D> side = Vec<D>::Zero();
     bool usable = false;
   };
-  std::vector<Fit> fits_;       // of the cells at walls
-  std::vector<Index> slot_;     // per local cell: which of the fits; -1: none
-  std::vector<double> p_wall_;  // per boundary face, for the load [Pa]
+  std::vector<Fit> fits_;          // of the cells at walls
+  std::vector<Index> slot_;        // per local cell: which of the fits; -1: none
+  std::vector<Index> near_walls_;  // interior faces of those cells
+  std::vector<double> p_wall_;     // per boundary face, for the load [Pa]
   std::vector<double> phi_orthogonal_, phi_p_, b_, p_, p_boundary_;
   Vectors<D> pressure_force_, viscous_force_;
   StepStatistics statistics_;

@@ -88,17 +88,17 @@ void FluidOutput<D>::write_balance(double time) {
   const Placement<D>& at = *s.placement;
   enum { inflow, outflow, volume, energy };
   double sums[4] = {};
-  std::vector<double> divergence(mesh_.cells.n_local(), 0.0);
+  divergence_.assign(mesh_.cells.n_local(), 0.0);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    divergence[mesh_.owner[f]] += s.phi[f];
+    divergence_[mesh_.owner[f]] += s.phi[f];
     if (f < mesh_.n_interior)
-      divergence[mesh_.neighbour[f]] -= s.phi[f];
+      divergence_[mesh_.neighbour[f]] -= s.phi[f];
     else
       (s.phi[f] < 0 ? sums[inflow] : sums[outflow]) += std::abs(s.phi[f]);
   }
   double worst = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    worst = std::max(worst, std::abs(divergence[c]) / at.volume[c]);
+    worst = std::max(worst, std::abs(divergence_[c]) / at.volume[c]);
     sums[volume] += at.volume[c];
     sums[energy] += 0.5 * fluid_.parameters().density * at.volume[c] * s.u[c].squaredNorm();
   }

@@ -44,6 +44,7 @@ class FluidOutput {
   std::optional<VertexInterpolation> interpolation_;  // only with probes
   std::vector<const Patch*> walls_;
   std::optional<FieldWriter> fields_;
+  std::vector<double> divergence_;
   std::optional<Series> forces_, balance_, probe_series_;  // on rank 0
 };
 

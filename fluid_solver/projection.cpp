@@ -31,7 +31,17 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       nu_(parameters.viscosity / parameters.density),
       rate_operator_(mesh, boundary, nu_),
       viscous_solver_(mesh, boundary),
-      pressure_(mesh, boundary) {}
+      pressure_(mesh, boundary) {
+  slot_.assign(mesh.cells.n_local(), -1);
+  for (std::size_t b = 0; b < boundary.kind().size(); ++b) {
+    const Index p = mesh.owner[mesh.n_interior + static_cast<Index>(b)];
+    if (boundary.kind()[b] != FaceKind::velocity || slot_[p] >= 0) continue;
+    slot_[p] = static_cast<Index>(fits_.size());
+    fits_.push_back({});
+  }
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    if (slot_[mesh.owner[f]] >= 0 || slot_[mesh.neighbour[f]] >= 0) near_walls_.push_back(f);
+}
 
 template <int D>
 void FractionalStep<D>::set_boundary_flux(const Vectors<D>& w) {
@@ -161,14 +171,7 @@ void FractionalStep<D>::set_boundary_pressure(const State<D>& from, const Vector
 template <int D>
 void FractionalStep<D>::extrapolate_to_walls() {
   const Placement<D>& now = *step_.to;
-  slot_.assign(mesh_.cells.n_local(), -1);
-  fits_.clear();
-  for (std::size_t b = 0; b < w_.size(); ++b) {
-    const Index p = mesh_.owner[mesh_.n_interior + static_cast<Index>(b)];
-    if (boundary_.kind()[b] != FaceKind::velocity || slot_[p] >= 0) continue;
-    slot_[p] = static_cast<Index>(fits_.size());
-    fits_.push_back({});
-  }
+  for (Fit& fit : fits_) fit = {};
   const auto add = [&](Index cell, Index neighbour) {
     if (slot_[cell] < 0) return;
     Fit& fit = fits_[slot_[cell]];
@@ -177,7 +180,7 @@ void FractionalStep<D>::extrapolate_to_walls() {
     fit.matrix += weight * d * d.transpose();
     fit.side += weight * (p_[neighbour] - p_[cell]) * d;
   };
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
+  for (const Index f : near_walls_) {
     add(mesh_.owner[f], mesh_.neighbour[f]);
     add(mesh_.neighbour[f], mesh_.owner[f]);
   }
@@ -298,13 +301,12 @@ void FractionalStep<D>::check(const State<D>& s) {
   } fastest{-1, comm_rank(mesh_.comm)};
   Index where = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const double speed = s.u[c].norm();
-    const double value = std::isfinite(speed) ? speed : std::numeric_limits<double>::infinity();
-    if (value > fastest.value) {
-      fastest.value = value;
-      where = c;
-    }
+    const double square = s.u[c].squaredNorm();
+    if (square <= fastest.value) continue;
+    fastest.value = std::isfinite(square) ? square : std::numeric_limits<double>::infinity();
+    where = c;
   }
+  fastest.value = std::sqrt(std::max(fastest.value, 0.0));
   MPI_Allreduce(MPI_IN_PLACE, &fastest, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh_.comm);
   const bool too_fast = speed_scale_ > 0 && fastest.value > explosion * speed_scale_;
   if (!std::isfinite(fastest.value) || too_fast) {

@@ -49,6 +49,7 @@ class LimitTable {
   LimitTable() {
     for (int i = 0; i < n; ++i) values_[i] = compute_implicit_limit(std::pow(10.0, -2 + 4.0 * i / (n - 1)));
   }
+  double least() const { return *std::min_element(values_.begin(), values_.end()); }
   double operator()(double q) const {
     if (!(q > 1e-2)) return values_.front();
     if (q >= 1e2) return values_.back();
@@ -70,13 +71,19 @@ double round_down(double value) {
 
 }  // namespace
 
-double implicit_convective_limit(double q) {
+namespace {
+
+const LimitTable& implicit_table() {
   static const LimitTable table;
-  return table(q);
+  return table;
 }
+constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90}, limit{1, 0.96, 0.91, 0.81, 0.63, 0.25};
+
+}  // namespace
+
+double implicit_convective_limit(double q) { return implicit_table()(q); }
 
 double explicit_limit(double angle) {
-  constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90}, limit{1, 0.96, 0.91, 0.81, 0.63, 0.25};
   const double a = angle * 180 / std::numbers::pi;
   for (std::size_t i = 1; i < degrees.size(); ++i)
     if (a <= degrees[i])
@@ -111,12 +118,15 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
     add(mesh_.owner[f], flux, g, ratio);
     if (inside) add(mesh_.neighbour[f], flux, g, ratio);
   }
+  // Few cells can be the one that decides: most are passed over with the lowest value the limits can take.
+  const double lowest_explicit = limit.back(), lowest_implicit = implicit_table().least();
   double least[3] = {infinity, infinity, -peclet};
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     const double convection = convection_[c] /= at.volume[c], diffusion = diffusion_[c] /= at.volume[c];
-    const double size = std::hypot(convection, diffusion);
-    if (size > 0) least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion)) / size);
-    if (convection > 0)
+    const double size = std::sqrt(convection * convection + diffusion * diffusion);
+    if (lowest_explicit < least[0] * size)
+      least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion)) / size);
+    if (lowest_implicit < least[1] * convection)
       least[1] = std::min(least[1], implicit_convective_limit(least_ratio_[c]) / convection);
   }
   MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, mesh_.comm);

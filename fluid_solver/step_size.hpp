@@ -23,9 +23,6 @@ class StepSize {
  public:
   StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity);
   StepLimits limits(const State<D>& state);
-  /// c per local cell of the last limits() [1/s] and d.
-  const std::vector<double>& convective_rate() const { return convection_; }
-  const std::vector<double>& viscous_rate() const { return diffusion_; }
   /// Largest cell Peclet number |phi| / (nu g) of the last limits(), all ranks.
   double largest_peclet() const { return peclet_; }
 
