@@ -40,6 +40,8 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
 
 void declare(config::Section& s, FluidParameters& p) {
   s.value("mesh", p.mesh).required().doc("mesh file, .msh or .geo, relative to the case's folder");
+  s.value("mesh-parameters", p.mesh_parameters)
+      .doc("numbers for names that the .geo defines by DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D scene is 1 m deep");
   s.value("density", p.density).unit("kg/m^3").positive().required().doc("density");
   s.value("viscosity", p.viscosity).unit("Pa s").not_negative().required().doc("dynamic viscosity");

@@ -13,7 +13,8 @@ namespace couplet::mesh_mover {
 namespace {
 
 Mesh load_checked(const Parameters& parameters, const ParticipantContext& context) {
-  Mesh mesh = load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension);
+  Mesh mesh = load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
+                        parameters.mesh_parameters);
   std::string patches;
   for (const Patch& p : mesh.patches) patches += (patches.empty() ? "'" : ", '") + p.name + "'";
   for (const auto& [name, boundary] : parameters.boundaries)

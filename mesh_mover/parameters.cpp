@@ -5,6 +5,8 @@ namespace couplet::mesh_mover {
 
 void declare(config::Section& section, Parameters& p) {
   section.value("mesh", p.mesh).required().doc("mesh file of the fluid (.msh, or .geo to be meshed by gmsh)");
+  section.value("mesh-parameters", p.mesh_parameters)
+      .doc("numbers for names that the .geo defines by DefineConstant; the same as the fluid's");
   section.value("dimension", p.dimension).range(2, 3).required().doc("2 or 3");
   section.value("stiffening", p.stiffening)
       .range(0, 3)

@@ -22,6 +22,7 @@ struct Boundary {
 
 struct Parameters {
   std::string mesh;
+  std::map<std::string, double> mesh_parameters;
   int dimension = 3;
   /// chi of thesis (4.12): stiffness V^-chi of the cells of the reference mesh.
   double stiffening = 1.0;

@@ -11,8 +11,8 @@ int main(int argc, char** argv) {
       .declare = [&](couplet::config::Section& section) { couplet::declare(section, parameters); },
       .make =
           [&](const couplet::ParticipantContext& context) {
-            couplet::Mesh mesh =
-                couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension);
+            couplet::Mesh mesh = couplet::load_mesh(context.comm, context.case_folder / parameters.mesh,
+                                                    parameters.dimension, parameters.mesh_parameters);
             return std::make_unique<couplet::Solid>(
                 std::move(mesh), parameters,
                 couplet::SolidContext{context.name, context.output_folder, context.restart_time});

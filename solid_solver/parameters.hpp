@@ -20,6 +20,7 @@ struct SolidParameters {
   enum class Analysis { static_, dynamic };
   enum class Plane { strain, stress };
   std::string mesh;
+  std::map<std::string, double> mesh_parameters;
   int dimension = 3;
   Plane plane = Plane::strain;
   Analysis analysis = Analysis::dynamic;

@@ -90,6 +90,9 @@ std::string value_schema(const Item& item) {
           [&](std::optional<double>*) { return number; },
           [&](std::optional<std::string>*) { return text; },
           [&](std::optional<ExpressionText>*) { return expression; },
+          [&](std::map<std::string, double>*) {
+            return object({member("type", "\"object\""), member("additionalProperties", number)});
+          },
           [&](const Word& word) { return object({member("enum", array(quoted(word.words)))}); },
       },
       item.slot);

@@ -92,6 +92,10 @@ Key Section::value(std::string_view name, std::optional<ExpressionText>& target)
   return slot_key(visitor_, name, &target);
 }
 
+Key Section::value(std::string_view name, std::map<std::string, double>& target) {
+  return slot_key(visitor_, name, &target);
+}
+
 Key Section::choice_by_name(std::string_view name, const std::vector<std::string>& words,
                             const std::string& current, std::function<void(const std::string&)> set) {
   return slot_key(visitor_, name, Word{words, current, std::move(set)});

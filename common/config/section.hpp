@@ -91,6 +91,9 @@ class Section {
   Key value(std::string_view name, std::optional<std::string>& target);
   Key value(std::string_view name, std::optional<ExpressionText>& target);
 
+  /// Numbers under names of the user's choice: {nr: 16, nz: 8}.
+  Key value(std::string_view name, std::map<std::string, double>& target);
+
   /// A word out of a fixed list.
   template <class E>
   Key choice(std::string_view name, E& target, const std::vector<std::pair<std::string, E>>& words) {

@@ -119,6 +119,24 @@ Vec3 read_vector(const YAML::Node& node, const Facts& facts) {
   return {values[0], values[1], values.size() == 3 ? values[2] : 0.0};
 }
 
+std::map<std::string, double> read_named_numbers(const YAML::Node& node, const Facts& facts) {
+  if (!node.IsMap())
+    throw Error("expected a mapping of names to numbers, such as {{n: 8}}, found {}.",
+                node.IsSequence() ? "a list"
+                : node.IsScalar() ? fmt::format("'{}'", node.Scalar())
+                                  : "nothing");
+  std::map<std::string, double> result;
+  for (const auto& entry : node) {
+    const std::string& name = entry.first.Scalar();
+    try {
+      result[name] = read_number(entry.second, facts);
+    } catch (const Error& error) {
+      throw Error("'{}': {}", name, error.what());
+    }
+  }
+  return result;
+}
+
 std::string read_word(const YAML::Node& node, const Word& word) {
   const std::string& text = scalar(node, fmt::format("one of: {}", join(word.words)));
   for (const std::string& w : word.words)
@@ -158,6 +176,7 @@ void read_value(const YAML::Node& node, const Facts& facts, const Slot& slot) {
           [&](std::optional<double>* v) { *v = read_number(node, facts); },
           [&](std::optional<std::string>* v) { *v = text(node); },
           [&](std::optional<ExpressionText>* v) { *v = read_expression(node, facts); },
+          [&](std::map<std::string, double>* v) { *v = read_named_numbers(node, facts); },
           [&](const Word& v) { v.set(read_word(node, v)); },
       },
       slot);
@@ -189,6 +208,7 @@ std::string describe_type(const Slot& slot) {
                         [](const std::optional<double>*) { return "number"; },
                         [](const std::optional<std::string>*) { return "text"; },
                         [](const std::optional<ExpressionText>*) { return "number or expression"; },
+                        [](const std::map<std::string, double>*) { return "mapping of numbers"; },
                         [](const Word&) { return "word"; },
                     },
                     slot);
@@ -216,6 +236,11 @@ std::string format_value(const Slot& slot) {
           [&](const std::optional<double>* v) { return *v ? number(**v) : std::string(); },
           [&](const std::optional<std::string>* v) { return *v ? quoted(**v) : std::string(); },
           [&](const std::optional<ExpressionText>* v) { return *v ? expression(**v) : std::string(); },
+          [&](const std::map<std::string, double>* v) {
+            std::vector<std::string> texts;
+            for (const auto& [name, value] : *v) texts.push_back(fmt::format("{}: {}", quoted(name), value));
+            return texts.empty() ? std::string() : fmt::format("{{{}}}", join(texts));
+          },
           [&](const Word& v) { return v.current; },
       },
       slot);

@@ -20,7 +20,8 @@ struct Word {
 };
 using Slot = std::variant<double*, int*, bool*, std::string*, ExpressionText*, Vec3*, std::vector<double>*,
                           std::vector<std::string>*, std::vector<ExpressionText>*, std::optional<double>*,
-                          std::optional<std::string>*, std::optional<ExpressionText>*, Word>;
+                          std::optional<std::string>*, std::optional<ExpressionText>*,
+                          std::map<std::string, double>*, Word>;
 
 /// What is done with declarations; Section forwards everything it is told.
 class Visitor {

@@ -26,13 +26,18 @@ struct RawMesh {
   std::vector<std::string> patches;
 };
 
+/// Numbers for the names that a .geo defines by DefineConstant.
+using MeshParameters = std::map<std::string, double>;
+
 /// Reads .msh 2.2 or 4.1 (ASCII or binary) with physical names. Throws Error with file and line.
 RawMesh read_msh(const std::filesystem::path& file);
 
 /// Runs the gmsh program on a .geo unless a cached result (beside the file, named <stem>.<hash>.cache.msh,
-/// where the hash covers the text of the .geo, of the files it includes, and `dim`) is there; gives the path
-/// of the .msh. Several programs may ask for the same file at the same time.
-std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim);
+/// where the hash covers the text of the .geo, of the files it includes, `dim` and the parameters) is there;
+/// gives the path of the .msh. Several programs may ask for the same file at the same time. `parameters` take
+/// the place of the values in the DefineConstant of the .geo; throws Error for a name it does not define.
+std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,
+                               const MeshParameters& parameters = {});
 
 /// Distributes: cells by PT-Scotch (PETSc MatPartitioning), one ring of vertex-neighbour ghosts, owned cells
 /// renumbered by reverse Cuthill-McKee. `raw` is read on rank 0 only. Every boundary face must belong to
@@ -40,7 +45,8 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim);
 Mesh distribute(MPI_Comm comm, const RawMesh& raw);
 
 /// File (.msh or .geo) to distributed mesh. Collective; an error on rank 0 is thrown on every rank.
-Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim);
+Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
+               const MeshParameters& parameters = {});
 
 /// Boxes for tests: n cells a side on [lower, upper], patches "xmin" "xmax" "ymin" "ymax" (and "zmin" "zmax"
 /// in 3-D).

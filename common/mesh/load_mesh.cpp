@@ -5,7 +5,7 @@
 
 namespace couplet {
 
-Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim) {
+Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const MeshParameters& parameters) {
   RawMesh raw;
   on_root(comm, [&] {
     if (!std::filesystem::is_regular_file(file))
@@ -17,7 +17,13 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim) {
           "The mesh file '{}' is neither .msh nor .geo. Convert it with gmsh or meshio to .msh 4.1 with "
           "physical names.",
           file.string());
-    raw = read_msh(kind == ".geo" ? mesh_geo(file, dim) : file);
+    if (kind == ".msh" && !parameters.empty())
+      throw Error(
+          "The mesh '{}' is finished, so 'mesh-parameters' cannot change it. Leave them out, or give the "
+          ".geo "
+          "it was made from.",
+          file.string());
+    raw = read_msh(kind == ".geo" ? mesh_geo(file, dim, parameters) : file);
     if (raw.cell_type.empty())
       throw Error("The mesh '{}' has no cells. Put the {} into a physical group, else gmsh does not save {}.",
                   file.string(), dim == 2 ? "surface" : "volume", dim == 2 ? "its triangles" : "its cells");

@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -96,10 +97,63 @@ std::string complaints(const std::string& output) {
   return found;
 }
 
+std::string without_comments(const std::string& text) {
+  std::string kept;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::string_view rest = std::string_view(text).substr(at);
+    const bool line = rest.starts_with("//"), block = rest.starts_with("/*");
+    if (line || block) {
+      const std::size_t end = line ? rest.find('\n') : rest.find("*/", 2);
+      at = end == std::string_view::npos ? text.size() : at + end + (line ? 0 : 2);
+    } else {
+      kept += text[at++];
+    }
+  }
+  return kept;
+}
+
+/// The names in all DefineConstant [...] of a .geo: `n = 8` or `n = {8, Name "..."}`.
+std::vector<std::string> constants(const std::string& geo) {
+  static const std::regex block(R"re(\bDefineConstant\s*\[([^\]]*)\])re"), name(R"re((\w+)\s*(=|,|$))re"),
+      braces(R"re(\{[^}]*\})re");
+  const std::string text = without_comments(geo);
+  std::vector<std::string> names;
+  for (std::sregex_iterator i(text.begin(), text.end(), block), end; i != end; ++i) {
+    const std::string inside = std::regex_replace((*i)[1].str(), braces, "0");
+    for (const std::string& entry : split(inside, ','))
+      if (std::smatch found; std::regex_search(entry, found, name)) names.push_back(found[1].str());
+  }
+  return names;
+}
+
+/// gmsh itself passes over a number for a name that the .geo does not define.
+void check_names(const std::filesystem::path& geo, const std::string& text,
+                 const MeshParameters& parameters) {
+  if (parameters.empty()) return;
+  const std::vector<std::string> known = constants(text);
+  for (const auto& [name, value] : parameters) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    if (known.empty())
+      throw Error(
+          "The geometry file '{}' defines no parameter, so 'mesh-parameters' cannot set '{}'. Write the "
+          "names "
+          "that are to be set from outside as 'DefineConstant [ {} = {} ];'.",
+          geo.string(), name, name, value);
+    throw Error("The geometry file '{}' defines no parameter '{}' by DefineConstant. {}", geo.string(), name,
+                did_you_mean(name, known, "names"));
+  }
+}
+
 }  // namespace
 
-std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim) {
-  const std::string hash = fmt::format("{:016x}", stable_hash(fmt::format("{}\n{}", dim, full_text(geo))));
+std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const MeshParameters& parameters) {
+  const std::string text = full_text(geo);
+  check_names(geo, text, parameters);
+  std::vector<std::string> numbers;
+  for (const auto& [name, value] : parameters)
+    numbers.insert(numbers.end(), {"-setnumber", name, fmt::format("{}", value)});
+  const std::string hash =
+      fmt::format("{:016x}", stable_hash(fmt::format("{}\n{}\n{}", dim, join(numbers, " "), text)));
   const std::string stem = geo.stem().string() + "." + hash;
   const std::filesystem::path result = geo.parent_path() / (stem + ".cache.msh");
   if (std::filesystem::is_regular_file(result)) return result;
@@ -119,9 +173,10 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim) {
   log::info("meshing {} with gmsh", geo.string());
   int code = 0;
   try {
-    code = run(
-        {"gmsh", fmt::format("-{}", dim), "-format", "msh41", "-v", "2", "-o", mesh.string(), geo.string()},
-        log);
+    std::vector<std::string> command{"gmsh", fmt::format("-{}", dim), "-format", "msh41", "-v", "2"};
+    command.insert(command.end(), numbers.begin(), numbers.end());
+    command.insert(command.end(), {"-o", mesh.string(), geo.string()});
+    code = run(command, log);
   } catch (...) {
     std::filesystem::remove(log);
     throw;

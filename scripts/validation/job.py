@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How a bar gets its numbers: from the project's programs, test executables and scripts, never from a model beside them."""
 import dataclasses
+import importlib.util
 import json
 import os
 import pathlib
@@ -100,3 +101,27 @@ class Job:
                 raise RuntimeError(f"the coupled run ended with code {result.returncode}: {' / '.join(last)}")
             return out
         return self.once(("coupled", folder), make)
+
+    def solve(self, program, case, overrides=(), ranks=1, timeout=3600):
+        """Runs one program alone on configs/<case>/case.yaml, on one rank without mpirun. Gives its output folder and its
+        log; runs with the same overrides are made once."""
+        def make():
+            out = self.scratch / f"solve-{len(self._kept)}"
+            command = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+            command += [self.build / "bin" / program, self.root / "configs" / case / "case.yaml",
+                        f"--set=simulation.output.folder={out}", *(f"--set={o}" for o in overrides)]
+            result = self.run(command, timeout)
+            if result.returncode != 0:
+                last = (result.stderr.strip() or result.stdout.strip()).splitlines()[-3:]
+                raise RuntimeError(f"{program} ended with code {result.returncode}: {' / '.join(last)}")
+            return out, result.stdout
+        return self.once(("solve", program, case, tuple(overrides), ranks), make)
+
+    def beside(self, file):
+        """A Python file of a case, such as configs/<case>/errors.py, as a module."""
+        def make():
+            spec = importlib.util.spec_from_file_location(pathlib.Path(file).stem, self.root / file)
+            module = importlib.util.module_from_spec(spec)
+            spec.loader.exec_module(module)
+            return module
+        return self.once(("module", str(file)), make)

@@ -28,7 +28,7 @@ const Case cases[] = {
     {"density: 5",
      "3:1: density: unknown key. Valid keys: mesh, analysis, material, interval, temperature, relaxation, "
      "iterations, "
-     "large, load, gravity, times, patches, limit, damping, boundaries, probes."},
+     "large, load, gravity, times, patches, divisions, limit, damping, boundaries, probes."},
     {"interval: -1 ms", "3:1: interval: -0.001 s is out of range; expected a value at least 0 s."},
     {"interval: 5 m",
      "3:1: interval: '5 m': the unit 'm' does not convert to s; expected s or a unit that converts to it."},

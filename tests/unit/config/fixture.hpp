@@ -33,6 +33,7 @@ struct Parameters {
   Vec3 gravity = Vec3::Zero();
   std::vector<double> times;
   std::vector<std::string> patches;
+  std::map<std::string, double> divisions;
   std::optional<double> limit;
   std::optional<Damping> damping;
   std::map<std::string, Boundary> boundaries;
@@ -75,6 +76,7 @@ inline void declare(config::Section& s, Parameters& p) {
   s.value("gravity", p.gravity).unit("m/s^2");
   s.value("times", p.times).unit("s").not_negative();
   s.value("patches", p.patches);
+  s.value("divisions", p.divisions);
   s.value("limit", p.limit).unit("m").positive();
   s.optional_section<Damping>(
       "damping", p.damping,

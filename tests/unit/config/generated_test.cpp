@@ -15,6 +15,7 @@ TEST(Effective, what_is_printed_reads_back_to_the_same_values) {
 load: '2*sin(t) # not a comment'
 gravity: [0, -9.81]
 patches: ['a: b', left]
+divisions: {nx: 8, 'y-size': 2.5}
 limit: 3 mm
 damping: {mass: 0.1}
 boundaries: {top: {type: inlet, velocity: [1, 2]}, '5': {type: wall}}
@@ -25,6 +26,7 @@ probes: [{name: 'yes', at: [1, 2, 3]}, {name: b}]
   EXPECT_EQ(config::effective(declaration(again)), text);
   EXPECT_EQ(again.load.text, "2*sin(t) # not a comment");
   EXPECT_THAT(again.patches, testing::ElementsAre("a: b", "left"));
+  EXPECT_THAT(again.divisions, testing::ElementsAre(testing::Pair("nx", 8), testing::Pair("y-size", 2.5)));
   EXPECT_EQ(again.boundaries.at("top").velocity, Vec3(1, 2, 0));
   EXPECT_EQ(again.probes.at(0).name, "yes");
   EXPECT_THAT(text, HasSubstr("youngs-modulus: 5600000  # Pa\n"));

@@ -29,6 +29,8 @@ TEST(Override, replaces_adds_and_reaches_into_lists) {
   EXPECT_DOUBLE_EQ(read_with({"damping={mass: 3}", "damping.mass=4"}).damping.value().mass, 4);
   EXPECT_EQ(read_with({"boundaries.top={type: outlet}"}).boundaries.at("top").type, Boundary::Type::outlet);
   EXPECT_EQ(read_with({"load=a=b"}).load.text, "a=b");
+  EXPECT_EQ(read_with({"divisions={nx: 8, ny: 3}", "divisions.nx=16"}).divisions,
+            (std::map<std::string, double>{{"nx", 16}, {"ny", 3}}));
   EXPECT_EQ(read_with({"mesh=one.msh", "mesh=two.msh"}).mesh, "two.msh");
 }
 

@@ -78,6 +78,38 @@ TEST_F(LoadMesh, meshes_again_when_the_geo_or_a_file_it_includes_changed) {
   EXPECT_GT(load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global(), 2 * coarse);
 }
 
+TEST_F(LoadMesh, a_parameter_replaces_the_constant_of_the_geo) {
+  const auto geo =
+      write("square.geo",
+            "/* DefineConstant [ no = 1 ]; */ DefineConstant [ h = {0.5, Name \"size\"}, k = 1 ]; "
+            "// DefineConstant [ nor = 1 ]\n" +
+                square);
+  const GlobalIndex coarse = load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global();
+  EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2, {{"h", 0.5}}).cells.n_global(), coarse);
+  EXPECT_GT(load_mesh(MPI_COMM_WORLD, geo, 2, {{"h", 0.2}}).cells.n_global(), 2 * coarse);
+  EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global(), coarse) << "the cache keeps them apart";
+}
+
+TEST_F(LoadMesh, a_parameter_that_nobody_takes_is_an_error) {
+  const auto error = [](const std::filesystem::path& file, const MeshParameters& parameters) {
+    return test::error_of([&] { load_mesh(MPI_COMM_WORLD, file, 2, parameters); });
+  };
+  const auto geo = write("square.geo",
+                         "/* DefineConstant [ no = 1 ]; */ DefineConstant [ size = 0.5, k = 1 ];\n"
+                         "h = size;\n" +
+                             square);
+  EXPECT_EQ(error(geo, {{"sise", 1}}),
+            "The geometry file '" + geo.string() +
+                "' defines no parameter 'sise' by DefineConstant. Did you mean 'size'?");
+  EXPECT_THAT(error(geo, {{"no", 1}}), HasSubstr("Valid names: size, k."));
+  EXPECT_THAT(
+      error(write("fixed.geo", "h = 0.5;\n" + square), {{"h", 1}}),
+      HasSubstr("defines no parameter, so 'mesh-parameters' cannot set 'h'. Write the names that are to be "
+                "set from outside as 'DefineConstant [ h = 1 ];'."));
+  EXPECT_THAT(error(test::data / "plane_41_ascii.msh", {{"h", 1}}),
+              HasSubstr("is finished, so 'mesh-parameters' cannot change it."));
+}
+
 TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
   EXPECT_EQ(error(folder / "none.msh", 3),
             "The mesh file '" + (folder / "none.msh").string() +

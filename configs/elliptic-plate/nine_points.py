@@ -1,0 +1,108 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Error of a run on hexahedra at the nine points of reference/nine_points.csv: relative L2 norm over the points of the
+displacement vector and of the von Mises stress. Vertex displacements and cell stresses are interpolated by cubic splines
+in (s, phi) and by four points over the thickness, so that the error is the discretisation's, not the interpolation's.
+Usage: nine_points.py [FOLDER]     FOLDER: output of the solid, by default out/solid beside this file"""
+import pathlib
+import sys
+
+import numpy as np
+from scipy.interpolate import RectBivariateSpline
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+import couplet_series as couplet  # noqa: E402
+
+THICKNESS = 0.6
+STRESS = [f"stress-{c}" for c in ("xx", "yy", "zz", "xy", "yz", "xz")]
+
+
+def map_back(x, y):
+    """(s, phi) with x = (2 + 1.25 s) cos(phi), y = (1 + 1.75 s) sin(phi); the left side falls as s grows."""
+    low, high = np.zeros_like(x), np.ones_like(x)
+    for _ in range(60):
+        s = (low + high) / 2
+        outside = (x / (2 + 1.25 * s)) ** 2 + (y / (1 + 1.75 * s)) ** 2 > 1
+        low, high = np.where(outside, s, low), np.where(outside, high, s)
+    return s, np.arctan2(y * (2 + 1.25 * s), x * (1 + 1.75 * s))
+
+
+def von_mises(s):
+    """Of an array with last axis xx, yy, zz, xy, yz, xz."""
+    xx, yy, zz, xy, yz, xz = np.moveaxis(s, -1, 0)
+    return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
+
+
+def order(places, shape):
+    """Indices that bring structured places into (s, phi, z) order."""
+    s, phi = map_back(places[:, 0], places[:, 1])
+    ranks = [np.rint((v - v.min()) / (v.max() - v.min()) * (n - 1)).astype(int)
+             for v, n in zip((s, phi, places[:, 2]), shape)]
+    key = np.ravel_multi_index(ranks, shape)
+    if len(np.unique(key)) != len(key) or len(key) != np.prod(shape):
+        raise ValueError(f"the mesh is no {shape} grid of hexahedra in (s, phi, z)")
+    return np.argsort(key)
+
+
+def at_middle(values, z):
+    """Values of four (fewer: all) places over the thickness around its middle, as one: Lagrange's polynomial."""
+    n = min(4 - len(z) % 2, len(z))
+    first = (len(z) - n) // 2
+    z, weights = z[first : first + n], []
+    for i in range(n):
+        others = np.delete(z, i)
+        weights.append(np.prod((THICKNESS / 2 - others) / (z[i] - others)))
+    return np.tensordot(values[:, :, first : first + n], weights, axes=(2, 0))
+
+
+class Plate:
+    """The last result of a run, callable anywhere in the plane z = 0.3."""
+
+    def __init__(self, folder):
+        series = couplet.find_series(folder)
+        last = len(series.times) - 1
+        points = series.file["mesh/coordinates"][...]
+        cells = np.array(series.cells)
+        nodes = [len(np.unique(np.round(v, 9))) for v in (*map_back(points[:, 0], points[:, 1]), points[:, 2])]
+        cell_shape = [n - 1 for n in nodes]
+        self.cells = len(cells)
+        by_point = order(points, nodes)
+        by_cell = order(points[cells].mean(axis=1), cell_shape)
+        axes = [np.linspace(0, end, n) for end, n in zip((1, np.pi / 2, THICKNESS), nodes)]
+        centres = [(a[1:] + a[:-1]) / 2 for a in axes]
+        u = series.field(last, "displacement")[by_point].reshape(*nodes, 3)
+        stress = np.stack([series.field(last, name)[by_cell] for name in STRESS], axis=-1).reshape(*cell_shape, 6)
+        self.first_centre = centres[0][0]
+        self.u = self.splines(axes, at_middle(u, axes[2]))
+        self.stress_ = self.splines(centres, at_middle(stress, centres[2]))
+
+    @staticmethod
+    def splines(axes, values):
+        degree = [min(3, len(a) - 1) for a in axes[:2]]
+        return [RectBivariateSpline(*axes[:2], values[..., k], kx=degree[0], ky=degree[1])
+                for k in range(values.shape[-1])]
+
+    def displacement(self, x, y):
+        return np.stack([f.ev(*map_back(x, y)) for f in self.u], axis=-1)
+
+    def stress(self, x, y):
+        return np.stack([f.ev(*map_back(x, y)) for f in self.stress_], axis=-1)
+
+
+def reference():
+    return np.loadtxt(HERE / "reference/nine_points.csv", delimiter=",").T
+
+
+def errors(folder):
+    """(relative L2 error of the displacement, of the von Mises stress, number of cells)"""
+    _, x, ux, uy, uz, wanted = reference()
+    plate = Plate(folder)
+    u = np.stack([ux, uy, uz], axis=-1)
+    gap = np.linalg.norm(plate.displacement(x, x) - u) / np.linalg.norm(u)
+    return gap, np.linalg.norm(von_mises(plate.stress(x, x)) - wanted) / np.linalg.norm(wanted), plate.cells
+
+
+if __name__ == "__main__":
+    u, stress, cells = errors(sys.argv[1] if len(sys.argv) > 1 else HERE / "out/solid")
+    print(f"{cells} cells: displacement {100 * u:.3f} %, von Mises stress {100 * stress:.3f} %")
