@@ -50,8 +50,8 @@ void choose_factors(PC pc, const SparseMatrix& matrix, bool symmetric) {
   choose_petsc_factors(factors, symmetric);
 }
 
-// CHOLMOD's simplicial LDL^T: its two triangular solves cost a seventh of MUMPS's on a 2-D mesh. The supernodal
-// form factorises faster, but with supernodes this thin solves more slowly.
+// CHOLMOD's simplicial LDL^T: its two triangular solves cost a seventh of MUMPS's on a 2-D mesh. The
+// supernodal form factorises faster, but with supernodes this thin solves more slowly.
 void choose_cholmod(PC pc) {
   petsc_check(PetscOptionsSetValue(nullptr, "-mat_cholmod_supernodal_switch", "1e10"));
   petsc_check(PCSetType(pc, PCCHOLESKY));
