@@ -22,43 +22,19 @@ Coupler::Coupler(const CouplingParameters& parameters, const SimulationParameter
   mesh_.channel = std::move(channels.mesh);
 }
 
-std::vector<Coupler::Partner*> Coupler::everyone() {
+std::vector<Partner*> Coupler::everyone() {
   // The mesh mover first: the fluid waits for its motion.
   if (mesh_.channel) return {&mesh_, &fluid_, &structure_};
   return {&fluid_, &structure_};
 }
 
-Reply Coupler::receive(Partner& partner) {
-  Reply reply = partner.channel->receive();
-  partner.seconds += reply.seconds;
-  if (reply.status == Reply::Status::failure)
-    throw SolveFailure(fmt::format("'{}' says: {}", partner.channel->name(), reply.text));
-  return reply;
-}
-
-void Coupler::ask_all(const Command& command) {
-  for (Partner* p : everyone()) send(*p, command);
-  std::string failures;
-  for (Partner* p : everyone()) {
-    try {
-      const Reply reply = receive(*p);
-      if (command.op == Op::accept_step || command.op == Op::load) p->advised_dt = reply.suggested_dt;
-    } catch (const SolveFailure& failure) {
-      failures += (failures.empty() ? "" : " ") + std::string(failure.what());
-    }
-  }
-  if (!failures.empty()) throw SolveFailure(failures);
-}
-
 void Coupler::initialise() {
   enter_(Phase::initialise, {});
+  const std::vector<Partner*> partners = everyone();
+  std::vector<Interface> interfaces = initialise_all(partners);
   std::vector<Side> sides;
-  for (Partner* p : everyone()) send(*p, {Op::initialise, {}, {}, 0, -1, ""});
-  for (Partner* p : everyone()) {
-    Reply reply = receive(*p);
-    p->advised_dt = reply.suggested_dt;
-    sides.push_back({p->channel->name(), std::move(reply.interface)});
-  }
+  for (std::size_t i = 0; i < partners.size(); ++i)
+    sides.push_back({partners[i]->name(), std::move(interfaces[i])});
   std::optional<Side> mesh;
   if (mesh_.channel) mesh = sides.front();
   wiring_.emplace(sides[sides.size() - 2], sides.back(), mesh, parameters_.mapping);
@@ -69,33 +45,33 @@ void Coupler::initialise() {
 
 InterfaceState Coupler::pass(const InterfaceState& x, bool move_mesh) {
   // The fluid blocks until the mesh has been moved: its command goes out before any reply is awaited.
-  if (move_mesh) send(mesh_, {Op::solve, {}, wiring_->to_mesh(x), 0, -1, ""});
-  send(fluid_, {Op::solve, {}, wiring_->to_fluid(x), 0, -1, ""});
+  if (move_mesh) mesh_.send({Op::solve, {}, wiring_->to_mesh(x), 0, -1, ""});
+  fluid_.send({Op::solve, {}, wiring_->to_fluid(x), 0, -1, ""});
   // A failed motion makes the fluid fail too; the mover knows the reason. Both replies are always taken.
   std::optional<SolveFailure> mover_failed;
   if (move_mesh) {
     try {
-      receive(mesh_);
+      mesh_.receive();
     } catch (const SolveFailure& failure) {
       mover_failed = failure;
     }
   }
   try {
-    last_given_ = receive(fluid_).data;
+    last_given_ = fluid_.receive().data;
   } catch (const SolveFailure&) {
     if (!mover_failed) throw;
   }
   if (mover_failed) throw SolveFailure(*mover_failed);
   last_load_ = wiring_->to_structure(last_given_);
-  send(structure_, {Op::solve, {}, last_load_, 0, -1, ""});
-  return wiring_->from_structure(receive(structure_).data);
+  structure_.send({Op::solve, {}, last_load_, 0, -1, ""});
+  return wiring_->from_structure(structure_.receive().data);
 }
 
 std::optional<std::string> Coupler::attempt(const Step& step) {
   enter_(Phase::begin_step, step.time);
   for (Partner* p : everyone()) p->seconds = 0;
   try {
-    ask_all({Op::begin_step, step, {}, 0, -1, ""});
+    ask_all(everyone(), {Op::begin_step, step, {}, 0, -1, ""});
     enter_(Phase::solve, step.time);
     InterfaceState guess = predict(history_, step.dt, parameters_.predictor_order);
     const bool move_always = parameters_.scheme != Scheme::semi_implicit;
@@ -126,7 +102,7 @@ std::optional<std::string> Coupler::attempt(const Step& step) {
 void Coupler::accept(double time, int output) {
   enter_(Phase::accept, {});
   const std::vector<double> before = history_.now.displacement;
-  ask_all({Op::accept_step, {}, {}, time, output, ""});
+  ask_all(everyone(), {Op::accept_step, {}, {}, time, output, ""});
   enter_(Phase::accept, time);
   const auto increment = [&](const std::vector<double>& displacement) {
     std::vector<double> result(displacement.size());
@@ -143,7 +119,7 @@ void Coupler::accept(double time, int output) {
 
 void Coupler::save(const std::filesystem::path& folder) {
   enter_(Phase::save, {});
-  ask_all({Op::save, {}, {}, 0, -1, folder.string()});
+  ask_all(everyone(), {Op::save, {}, {}, 0, -1, folder.string()});
   CheckpointWriter file(MPI_COMM_SELF, folder / "coupler.h5");
   file.write("displacement", history_.now.displacement);
   file.write("velocity", history_.now.velocity);
@@ -163,18 +139,14 @@ void Coupler::load() {
   acceleration_.restore(file.read_scalar("omega"));
   const RunState state = read_run_state(folders_.restart);
   loop_.restart(state);
-  ask_all({Op::load, {}, {}, state.time, -1, folders_.restart.string()});
+  ask_all(everyone(), {Op::load, {}, {}, state.time, -1, folders_.restart.string()});
   log::info("continues from {} at t = {:g} s", folders_.restart.string(), state.time);
 }
 
 void Coupler::finalise() {
   enter_(Phase::finalise, {});
   log::info("{}", monitor_->summary(loop_.halvings()));
-  // One after the other, so that their closing words do not mix.
-  for (Partner* p : everyone()) {
-    send(*p, {Op::finalise, {}, {}, 0, -1, ""});
-    receive(*p);
-  }
+  finalise_all(everyone());
 }
 
 std::string Coupler::run() {
@@ -188,19 +160,14 @@ std::string Coupler::run() {
   StepActions actions;
   actions.attempt = [&](const Step& step) { return attempt(step); };
   actions.accept = [&](double time, int output) { accept(time, output); };
-  actions.write_start = [&](int output) { ask_all({Op::write_output, {}, {}, 0, output, ""}); };
+  actions.write_start = [&](int output) { ask_all(everyone(), {Op::write_output, {}, {}, 0, output, ""}); };
   actions.save = [&](const std::filesystem::path& folder) { save(folder); };
   actions.report = [&](const Step& step, double time) {
-    std::vector<std::pair<std::string, double>> seconds{{fluid_.channel->name(), fluid_.seconds},
-                                                        {structure_.channel->name(), structure_.seconds}};
-    if (mesh_.channel) seconds.emplace_back(mesh_.channel->name(), mesh_.seconds);
-    monitor_->step(step, time, last_, seconds);
+    std::vector<Partner*> partners{&fluid_, &structure_};
+    if (mesh_.channel) partners.push_back(&mesh_);
+    monitor_->step(step, time, last_, seconds_of(partners));
   };
-  actions.advised_dt = [&] {
-    double dt = std::numeric_limits<double>::infinity();
-    for (const Partner* p : everyone()) dt = std::min(dt, p->advised_dt);
-    return dt;
-  };
+  actions.advised_dt = [&] { return advised_dt(everyone()); };
   std::string problem = loop_.run(actions);
   finalise();
   return problem;

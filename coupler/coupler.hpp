@@ -11,11 +11,11 @@
 
 #include "common/app/step_loop.hpp"
 #include "common/app/watch.hpp"
-#include "common/coupling/channel.hpp"
 #include "coupler/acceleration.hpp"
 #include "coupler/fixed_point.hpp"
 #include "coupler/monitor.hpp"
 #include "coupler/parameters.hpp"
+#include "coupler/partners.hpp"
 #include "coupler/wiring.hpp"
 
 namespace couplet {
@@ -48,12 +48,6 @@ class Coupler {
   const InterfaceState& interface_state() const { return history_.now; }
 
  private:
-  struct Partner {
-    std::unique_ptr<Channel> channel;
-    double seconds = 0;  // in the step under way
-    double advised_dt = 0;
-  };
-
   void initialise();
   void load();
   void save(const std::filesystem::path& folder);
@@ -62,12 +56,6 @@ class Coupler {
   InterfaceState pass(const InterfaceState& x, bool move_mesh);
   void accept(double time, int output);
   void finalise();
-
-  void send(Partner& partner, const Command& command) { partner.channel->send(command); }
-  /// Throws SolveFailure naming the participant if the reply is a failure.
-  Reply receive(Partner& partner);
-  /// To everyone at once, then all replies; failures are collected and thrown together.
-  void ask_all(const Command& command);
   std::vector<Partner*> everyone();
 
   CouplingParameters parameters_;

@@ -2,6 +2,7 @@
 #include "common/app/job.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "coupler/exchange_run.hpp"
 
 namespace {
 
@@ -13,15 +14,26 @@ int run(const couplet::Job& job, const couplet::CouplingParameters& parameters) 
   const auto channel = [&](const std::string& name) -> std::unique_ptr<Channel> {
     return std::make_unique<MpiChannel>(name, peers.at(name));
   };
-  CouplerChannels channels{channel(parameters.fluid), channel(parameters.structure), nullptr};
-  if (parameters.mesh) channels.mesh = channel(parameters.mesh->participant);
-  Coupler coupler(parameters, job.simulation, std::move(channels),
-                  {job.output_folder, job.checkpoints, job.restart_folder});
-  coupler.on_phase([&](Phase phase, std::optional<double> time) {
+  const auto on_phase = [&](Phase phase, std::optional<double> time) {
     if (time) job.watch->set_time(*time);
     job.enter(phase);
-  });
-  const std::string problem = coupler.run();
+  };
+  const CouplerFolders folders{job.output_folder, job.checkpoints, job.restart_folder};
+  std::string problem;
+  if (parameters.exchange) {
+    std::vector<std::unique_ptr<Channel>> channels;
+    for (const std::string& name : parameters.exchange->participants) channels.push_back(channel(name));
+    ExchangeRun exchange(parameters, job.simulation, std::move(channels), folders);
+    exchange.on_phase(on_phase);
+    problem = exchange.run();
+  } else {
+    CouplerChannels channels{channel(parameters.fluid->participant),
+                             channel(parameters.structure->participant), nullptr};
+    if (parameters.mesh) channels.mesh = channel(parameters.mesh->participant);
+    Coupler coupler(parameters, job.simulation, std::move(channels), folders);
+    coupler.on_phase(on_phase);
+    problem = coupler.run();
+  }
   if (problem.empty()) return 0;
   log::error("{}", problem);
   return 1;
@@ -32,7 +44,8 @@ int run(const couplet::Job& job, const couplet::CouplingParameters& parameters) 
 int main(int argc, char** argv) {
   couplet::CouplingParameters parameters;
   const couplet::ProgramKind kind{
-      "coupler", "couples a fluid, a structure and a mesh mover, each a program of its own", true,
-      [&](couplet::config::Section& section) { declare(section, parameters); }};
+      "coupler",
+      "couples a fluid, a structure and a mesh mover, or participants of any kind, each a program of its own",
+      true, [&](couplet::config::Section& section) { declare(section, parameters); }};
   return couplet::run_job(argc, argv, kind, [&](const couplet::Job& job) { return run(job, parameters); });
 }

@@ -1,16 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/parameters.hpp"
 
+#include <fmt/format.h>
+
 namespace couplet {
 namespace {
 
-void declare_partner(config::Section& section, const char* role, std::string& name, const char* doc) {
-  section.section(
-      role,
-      [&](config::Section& s) {
-        s.value("participant", name).required().doc("its name under `participants`");
+void declare_role(config::Section& section, const char* role, std::optional<CouplingParameters::Role>& target,
+                  const char* doc) {
+  section.optional_section<CouplingParameters::Role>(
+      role, target,
+      [](config::Section& s, CouplingParameters::Role& r) {
+        s.value("participant", r.participant).required().doc("its name under `participants`");
       },
       doc);
+}
+
+void declare(config::Section& section, CouplingParameters::Exchange& p) {
+  using Order = CouplingParameters::Exchange::Order;
+  section.value("participants", p.participants)
+      .required()
+      .doc("their names under `participants`, in the order of a step");
+  section.choice("order", p.order, {{"serial", Order::serial}, {"parallel", Order::parallel}})
+      .doc(
+          "serial: one after the other, each with what those before it gave in this step; parallel: all at "
+          "the "
+          "same time with what was given in the last step");
+}
+
+/// Either fluid and structure, or an exchange.
+std::string problem_of_roles(const CouplingParameters& p) {
+  if (p.exchange) {
+    if (p.fluid || p.structure || p.mesh)
+      return "an exchange has no fluid, structure or mesh beside it; take one or the other";
+    if (p.exchange->participants.size() < 2) return "an exchange needs two participants or more";
+    return p.scheme == Scheme::explicit_ ? "" : "an exchange is made with 'scheme: explicit' only";
+  }
+  if (!p.fluid || !p.structure)
+    return fmt::format(
+        "'{}' is missing; a coupling has 'fluid' and 'structure' (each with its participant), or "
+        "'exchange'",
+        p.fluid ? "structure" : "fluid");
+  return p.fluid->participant != p.structure->participant
+             ? ""
+             : "fluid and structure must be two different participants";
 }
 
 void declare(config::Section& section, AccelerationParameters& p) {
@@ -67,14 +100,13 @@ void declare(config::Section& section, CouplingParameters& p) {
           "explicit: one pass a step; semi-implicit: mesh motion and momentum predictor once a step, "
           "pressure and "
           "structure iterated; implicit: everything iterated");
-  declare_partner(section, "fluid", p.fluid, "who receives the interface motion and gives the load");
-  declare_partner(section, "structure", p.structure, "who receives the load and gives the interface motion");
-  section.optional_section<CouplingParameters::Mesh>(
-      "mesh", p.mesh,
-      [](config::Section& s, CouplingParameters::Mesh& m) {
-        s.value("participant", m.participant).required().doc("its name under `participants`");
-      },
-      "who moves the mesh of the fluid; without it the mesh is fixed");
+  declare_role(section, "fluid", p.fluid, "who receives the interface motion and gives the load");
+  declare_role(section, "structure", p.structure, "who receives the load and gives the interface motion");
+  declare_role(section, "mesh", p.mesh, "who moves the mesh of the fluid; without it the mesh is fixed");
+  section.optional_section<CouplingParameters::Exchange>(
+      "exchange", p.exchange, [](config::Section& s, CouplingParameters::Exchange& e) { declare(s, e); },
+      "in place of fluid, structure and mesh: participants of any kind that exchange data once a step; each "
+      "datum that one takes comes from the one that gives it");
   section.section(
       "acceleration", [&](config::Section& s) { declare(s, p.acceleration); },
       "how the next guess follows from the residual");
@@ -94,11 +126,7 @@ void declare(config::Section& section, CouplingParameters& p) {
   section.section(
       "mapping", [&](config::Section& s) { declare(s, p.mapping); },
       "between the two sides of the interface");
-  section.check(
-      [&]() -> std::string {
-        return p.fluid != p.structure ? "" : "fluid and structure must be two different participants";
-      },
-      "structure");
+  section.check([&] { return problem_of_roles(p); }, p.exchange ? "exchange" : "structure");
 }
 
 }  // namespace couplet

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/config/section.hpp"
 #include "common/coupling/participant.hpp"
@@ -28,11 +29,17 @@ struct MappingParameters {
 
 struct CouplingParameters {
   Scheme scheme = Scheme::semi_implicit;
-  std::string fluid, structure;
-  struct Mesh {
+  struct Role {
     std::string participant;
   };
-  std::optional<Mesh> mesh;
+  std::optional<Role> fluid, structure, mesh;
+  /// Participants of any kind that exchange data once a step, in place of fluid, structure and mesh.
+  struct Exchange {
+    enum class Order { serial, parallel };
+    std::vector<std::string> participants;
+    Order order = Order::serial;
+  };
+  std::optional<Exchange> exchange;
   AccelerationParameters acceleration;
   ConvergenceParameters convergence;
   int predictor_order = 2;

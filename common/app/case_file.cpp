@@ -50,12 +50,24 @@ void check_roles(const config::Document& document, CaseFile& result) {
                                           config::where(document, "coupling." + role + ".participant"), *name,
                                           did_you_mean(*name, names, "participants")));
   }
+  const auto exchanging = config::texts_of(document, "coupling.exchange.participants");
+  for (auto here = exchanging.begin(); here != exchanging.end(); ++here) {
+    const std::string& name = *here;
+    cast.push_back(name);
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      result.errors.push_back(fmt::format("{}: there is no participant '{}'. {}",
+                                          config::where(document, "coupling.exchange.participants"), name,
+                                          did_you_mean(name, names, "participants")));
+    if (std::find(exchanging.begin(), here, name) != here)
+      result.errors.push_back(fmt::format("{}: '{}' is there twice.",
+                                          config::where(document, "coupling.exchange.participants"), name));
+  }
   for (const std::string& name : names)
     if (std::find(cast.begin(), cast.end(), name) == cast.end())
-      result.errors.push_back(
-          fmt::format("{}: this participant has no role in `coupling` (fluid, structure or mesh): give "
-                      "it one or take it out.",
-                      config::where(document, "participants." + name)));
+      result.errors.push_back(fmt::format(
+          "{}: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give "
+          "it one or take it out.",
+          config::where(document, "participants." + name)));
 }
 
 /// The participant that this program is to run; throws Error.

@@ -77,6 +77,16 @@ std::optional<std::string> text_of(const Document& document, const std::string& 
   return located.entry.node.Scalar();
 }
 
+std::vector<std::string> texts_of(const Document& document, const std::string& path) {
+  std::vector<std::string> texts;
+  if (!document.content().root.IsMap()) return texts;
+  const Located located = locate(document.content(), path);
+  if (located.entry.found && located.entry.node.IsSequence())
+    for (const YAML::Node& node : located.entry.node)
+      if (node.IsScalar()) texts.push_back(node.Scalar());
+  return texts;
+}
+
 std::string where(const Document& document, const std::string& path) {
   const Document::Content& content = document.content();
   Place place = locate(content, path).entry.place;

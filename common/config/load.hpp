@@ -43,6 +43,8 @@ void load_or_throw(const Document& document, const std::string& path, const Sect
 std::vector<std::string> keys_of(const Document& document, const std::string& path);
 /// The scalar at `path` as text, if it is there.
 std::optional<std::string> text_of(const Document& document, const std::string& path);
+/// The scalars of the list at `path` as texts; empty if there is no such list.
+std::vector<std::string> texts_of(const Document& document, const std::string& path);
 
 /// "case.yaml:12:5: participants.solid.program", the start of a message of one's own; with the place of the
 /// nearest mapping above if there is no such key.

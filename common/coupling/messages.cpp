@@ -41,6 +41,7 @@ class Packer {
       put(datum.name);
       put(datum.unit);
       put(std::int64_t(datum.place));
+      put(std::int64_t(datum.components));
     }
   }
   std::vector<char> take() { return std::move(bytes_); }
@@ -94,6 +95,7 @@ class Unpacker {
       Interface::Datum datum{text(), "", Interface::Place::vertices};
       datum.unit = text();
       datum.place = integer() == 0 ? Interface::Place::vertices : Interface::Place::faces;
+      datum.components = static_cast<int>(integer());
       list.push_back(datum);
     }
     return list;

@@ -54,7 +54,7 @@ std::vector<char> pack(const Reply& reply);
 Command unpack_command(std::span<const char> bytes);
 Reply unpack_reply(std::span<const char> bytes);
 
-inline constexpr std::int64_t protocol_version = 1;
+inline constexpr std::int64_t protocol_version = 2;
 inline constexpr int command_tag = 101, reply_tag = 102;
 
 }  // namespace couplet

@@ -247,19 +247,29 @@ case.yaml:10:5: participants.fluid.flux-memory: '2' is not one of: true, false.
 COUPLING = [
     coupler("role of nobody", """
 case.yaml:38:15: coupling.structure.participant: there is no participant 'solids'. Did you mean 'solid'?
-case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
 """, ("structure: {participant: solid}", "structure: {participant: solids}")),
     coupler("role missing", """
-case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
-case.yaml:35:1: coupling.structure.participant: this required key is missing (its name under `participants`: text).
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
+case.yaml:35:1: coupling.structure: 'structure' is missing; a coupling has 'fluid' and 'structure' (each with its participant), or 'exchange'.
 """, ("  structure: {participant: solid}\n", "")),
     coupler("participant without a role", """
-case.yaml:26:3: participants.mover: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+case.yaml:26:3: participants.mover: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
 """, ("  mesh: {participant: mover}\n", "")),
     coupler("one participant in two roles", """
-case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure or mesh): give it one or take it out.
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
 case.yaml:38:3: coupling.structure: fluid and structure must be two different participants.
 """, ("structure: {participant: solid}", "structure: {participant: fluid}")),
+    coupler("exchange beside a fluid", """
+case.yaml:40:3: coupling.exchange: an exchange has no fluid, structure or mesh beside it; take one or the other.
+""", ("  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  exchange: {participants: [fluid, solid]}\n")),
+    coupler("exchange with a stranger", """
+case.yaml:37:14: coupling.exchange.participants: there is no participant 'slid'. Did you mean 'solid'?
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
+""", ("  scheme: implicit\n  fluid: {participant: fluid}\n  structure: {participant: solid}\n  mesh: {participant: mover}\n", "  scheme: explicit\n  exchange: {participants: [fluid, slid, mover]}\n")),
+    coupler("exchange that is implicit", """
+case.yaml:37:3: coupling.exchange: an exchange is made with 'scheme: explicit' only.
+""", ("  fluid: {participant: fluid}\n  structure: {participant: solid}\n  mesh: {participant: mover}\n", "  exchange: {participants: [fluid, solid, mover]}\n")),
     coupler("unknown scheme", """
 case.yaml:36:3: coupling.scheme: 'semiimplicit' is not one of: explicit, semi-implicit, implicit. Did you mean 'semi-implicit'?
 """, ("scheme: implicit", "scheme: semiimplicit")),

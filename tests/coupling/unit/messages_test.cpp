@@ -87,7 +87,7 @@ TEST(Messages, another_kind_or_version_is_refused) {
   } catch (const Error& error) {
     EXPECT_STREQ(
         error.what(),
-        "A reply has protocol version 99, this program speaks version 1: use programs of one version.");
+        "A reply has protocol version 99, this program speaks version 2: use programs of one version.");
   }
 }
 

@@ -110,6 +110,9 @@ TEST(Load, a_section_can_be_read_by_its_path) {
   EXPECT_TRUE(config::keys_of(document, "coupling").empty());
   EXPECT_EQ(config::text_of(document, "participants.solid.mesh"), "a");
   EXPECT_FALSE(config::text_of(document, "participants.solid").has_value());
+  const auto list = config::Document::parse("exchange: {participants: [tank, wall]}\n", "case.yaml");
+  EXPECT_THAT(config::texts_of(list, "exchange.participants"), ElementsAre("tank", "wall"));
+  EXPECT_TRUE(config::texts_of(list, "exchange").empty());
 }
 
 TEST(Load, cross_rules_run_only_when_their_section_is_right) {

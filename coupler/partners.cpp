@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/partners.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+
+Reply Partner::receive() {
+  Reply reply = channel->receive();
+  seconds += reply.seconds;
+  if (reply.status == Reply::Status::failure)
+    throw SolveFailure(fmt::format("'{}' says: {}", name(), reply.text));
+  return reply;
+}
+
+void ask_all(const std::vector<Partner*>& partners, const Command& command) {
+  for (Partner* p : partners) p->send(command);
+  std::string failures;
+  for (Partner* p : partners) {
+    try {
+      const Reply reply = p->receive();
+      if (command.op == Op::accept_step || command.op == Op::load) p->advised_dt = reply.suggested_dt;
+    } catch (const SolveFailure& failure) {
+      failures += (failures.empty() ? "" : " ") + std::string(failure.what());
+    }
+  }
+  if (!failures.empty()) throw SolveFailure(failures);
+}
+
+std::vector<Interface> initialise_all(const std::vector<Partner*>& partners) {
+  std::vector<Interface> interfaces;
+  for (Partner* p : partners) p->send({Op::initialise, {}, {}, 0, -1, ""});
+  for (Partner* p : partners) {
+    Reply reply = p->receive();
+    p->advised_dt = reply.suggested_dt;
+    interfaces.push_back(std::move(reply.interface));
+  }
+  return interfaces;
+}
+
+void finalise_all(const std::vector<Partner*>& partners) {
+  for (Partner* p : partners) {
+    p->send({Op::finalise, {}, {}, 0, -1, ""});
+    p->receive();
+  }
+}
+
+double advised_dt(const std::vector<Partner*>& partners) {
+  double dt = std::numeric_limits<double>::infinity();
+  for (const Partner* p : partners) dt = std::min(dt, p->advised_dt);
+  return dt;
+}
+
+std::vector<std::pair<std::string, double>> seconds_of(const std::vector<Partner*>& partners) {
+  std::vector<std::pair<std::string, double>> seconds;
+  for (const Partner* p : partners) seconds.emplace_back(p->name(), p->seconds);
+  return seconds;
+}
+
+}  // namespace couplet

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/coupling/channel.hpp"
+
+namespace couplet {
+
+/// A participant as the coupler talks to it.
+struct Partner {
+  std::unique_ptr<Channel> channel;
+  double seconds = 0;  ///< it has spent in the step under way
+  double advised_dt = 0;
+
+  const std::string& name() const { return channel->name(); }
+  void send(const Command& command) { channel->send(command); }
+  /// Throws SolveFailure naming the participant if the reply is a failure.
+  Reply receive();
+};
+
+/// The command to everyone at once, then all replies; failures are collected and thrown together as one
+/// SolveFailure.
+void ask_all(const std::vector<Partner*>& partners, const Command& command);
+/// The interface of each, in their order.
+std::vector<Interface> initialise_all(const std::vector<Partner*>& partners);
+/// Last words, one after the other, so that they do not mix.
+void finalise_all(const std::vector<Partner*>& partners);
+/// The smallest step that somebody advises [s].
+double advised_dt(const std::vector<Partner*>& partners);
+std::vector<std::pair<std::string, double>> seconds_of(const std::vector<Partner*>& partners);
+
+}  // namespace couplet
