@@ -35,8 +35,8 @@ struct Interface {
   bool empty() const { return vertices.empty() && face_centres.empty(); }
 };
 
-/// Interface values by name: entries x dim (or the datum's own number of components), entry by entry. On rank 0
-/// of the participant; empty on its other ranks.
+/// Interface values by name: entries x dim (or the datum's own number of components), entry by entry. On rank
+/// 0 of the participant; empty on its other ranks.
 ///   displacement  vertices  t^{n+1}, relative to the reference configuration [m]
 ///   velocity      vertices  t^{n+1}, the structure's own [m/s]
 ///   pressure-force, viscous-force  faces  mean over the step (t^{n+1/2}), acting on the receiver [N] (per
