@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
@@ -136,7 +137,7 @@ void Reader::key(const Facts& facts, const Slot& slot) {
     return;
   }
   try {
-    read_value(entry.node, facts, slot);
+    read_value(entry.node, facts, slot, std::filesystem::absolute(content_.name).parent_path());
   } catch (const Error& error) {
     report_key(entry.place, path, error.what());
   }

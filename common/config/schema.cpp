@@ -58,7 +58,10 @@ std::string number_schema(const Key::Facts& facts, bool integer) {
   return object({member("anyOf", array({object(number), text}))});
 }
 
-std::string expression_schema() { return object({member("type", array({"\"number\"", "\"string\""}))}); }
+/// A number, an expression, or a table as a mapping.
+std::string expression_schema() {
+  return object({member("type", array({"\"number\"", "\"string\"", "\"object\""}))});
+}
 
 std::string list_schema(const std::string& items, std::optional<std::size_t> least,
                         std::optional<std::size_t> most) {

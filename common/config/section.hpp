@@ -53,8 +53,8 @@ class Key {
   Target target_;
 };
 
-/// A number or an expression in x, y, z, t (muParser syntax), kept as text; see fv/expression.hpp for
-/// evaluation.
+/// A number, an expression in x, y, z, t (muParser syntax) or a table, kept as text; see fv/expression.hpp
+/// for evaluation, fv/table.hpp for tables.
 struct ExpressionText {
   std::string text = "0";
 };

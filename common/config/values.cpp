@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/base/units.hpp"
+#include "common/config/table_text.hpp"
 
 namespace couplet::config {
 namespace {
@@ -69,7 +70,9 @@ bool is_unit(const std::string& text) {
 }
 
 /// A number with a unit becomes a number in the key's unit; anything else is an expression in that unit.
-ExpressionText read_expression(const YAML::Node& node, const Facts& facts) {
+ExpressionText read_expression(const YAML::Node& node, const Facts& facts,
+                               const std::filesystem::path& folder) {
+  if (node.IsMap()) return {table_text(node, facts, folder)};
   const std::string& text = scalar(
       node, facts.unit.empty() ? "a number or an expression in x, y, z, t"
                                : fmt::format("a number in {0}, with its unit, or an expression in x, y, z, t "
@@ -79,7 +82,7 @@ ExpressionText read_expression(const YAML::Node& node, const Facts& facts) {
   const bool is_expression =
       !quantity || (!quantity->unit.empty() && !is_unit(quantity->unit) &&
                     quantity->unit.find_first_of("+-*/^()<>=?:,&|!") != std::string::npos);
-  if (is_expression) return {text};
+  if (is_expression) return {with_absolute_files(text, folder)};
   const double value = parse_quantity(text, facts.unit);
   check_range(value, facts);
   return {fmt::format("{}", value)};
@@ -154,7 +157,8 @@ std::string quoted(const std::string& text) {
 
 }  // namespace
 
-void read_value(const YAML::Node& node, const Facts& facts, const Slot& slot) {
+void read_value(const YAML::Node& node, const Facts& facts, const Slot& slot,
+                const std::filesystem::path& folder) {
   const auto text = [](const YAML::Node& n) { return scalar(n, "a text"); };
   std::visit(
       Overloaded{
@@ -162,7 +166,7 @@ void read_value(const YAML::Node& node, const Facts& facts, const Slot& slot) {
           [&](int* v) { *v = read_integer(node, facts); },
           [&](bool* v) { *v = read_bool(node); },
           [&](std::string* v) { *v = text(node); },
-          [&](ExpressionText* v) { *v = read_expression(node, facts); },
+          [&](ExpressionText* v) { *v = read_expression(node, facts, folder); },
           [&](Vec3* v) { *v = read_vector(node, facts); },
           [&](std::vector<double>* v) {
             *v = read_list(node, facts, list_of(facts, "numbers"),
@@ -171,11 +175,11 @@ void read_value(const YAML::Node& node, const Facts& facts, const Slot& slot) {
           [&](std::vector<std::string>* v) { *v = read_list(node, facts, list_of(facts, "texts"), text); },
           [&](std::vector<ExpressionText>* v) {
             *v = read_list(node, facts, list_of(facts, "numbers or expressions"),
-                           [&](const YAML::Node& n) { return read_expression(n, facts); });
+                           [&](const YAML::Node& n) { return read_expression(n, facts, folder); });
           },
           [&](std::optional<double>* v) { *v = read_number(node, facts); },
           [&](std::optional<std::string>* v) { *v = text(node); },
-          [&](std::optional<ExpressionText>* v) { *v = read_expression(node, facts); },
+          [&](std::optional<ExpressionText>* v) { *v = read_expression(node, facts, folder); },
           [&](std::map<std::string, double>* v) { *v = read_named_numbers(node, facts); },
           [&](const Word& v) { v.set(read_word(node, v)); },
       },

@@ -3,6 +3,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <filesystem>
 #include <string>
 
 #include "common/config/visitor.hpp"
@@ -10,8 +11,9 @@
 namespace couplet::config {
 
 /// Writes the node's value to the member, in the key's unit and range. Throws Error with a sentence without
-/// place.
-void read_value(const YAML::Node& node, const Key::Facts& facts, const Slot& slot);
+/// place. Files of tables are relative to `folder`.
+void read_value(const YAML::Node& node, const Key::Facts& facts, const Slot& slot,
+                const std::filesystem::path& folder = {});
 
 /// "above 0 Pa", "from 0 to 0.5", "at most 3"; empty without limits.
 std::string describe_range(const Key::Facts& facts);

@@ -9,12 +9,19 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/fv/table.hpp"
 
 namespace couplet {
+namespace {
+
+double value_in_table(void* table, double at) { return (*static_cast<const Table*>(table))(at); }
+
+}  // namespace
 
 // muParser binds variables by address, so they live beside the parser in one block that never moves.
 struct Expression::State {
   std::string text = "0", where;
+  std::deque<Table> tables;
   mu::Parser parser;
   std::array<double, 4> xyzt{};
   bool uses_time = false, uses_space = false;
@@ -26,7 +33,9 @@ struct Expression::State {
     try {
       for (std::size_t i = 0; i < names.size(); ++i) parser.DefineVar(names[i], &xyzt[i]);
       parser.DefineConst("pi", std::numbers::pi);
-      parser.SetExpr(text);
+      parser.SetExpr(take_tables(text, tables));
+      for (std::size_t i = 0; i < tables.size(); ++i)
+        parser.DefineFunUserData(fmt::format("tab{:02}", i), value_in_table, &tables[i]);
       const auto used = parser.GetUsedVar();
       uses_time = used.contains("t");
       uses_space = used.contains("x") || used.contains("y") || used.contains("z");
@@ -35,6 +44,8 @@ struct Expression::State {
       constant = parser.Eval();
     } catch (const mu::Parser::exception_type& e) {
       fail(column_of(e), reason_of(e));
+    } catch (const TextProblem& problem) {
+      fail(problem.at + 1, problem.what);
     }
     if (!uses_time && !uses_space) require_finite(constant);
   }

@@ -13,6 +13,7 @@
 namespace couplet {
 
 /// A compiled function of x, y, z [m] and t [s] in muParser syntax: "2*sin(pi*x)", "t < 7 ? -125*t/7 : 0".
+/// Tables are functions in it (see table.hpp): "1e5*table(t, 0, 0, 2, 1, 5, 0.5)", 'table(z, "p.csv")'.
 class Expression {
  public:
   Expression();  ///< zero

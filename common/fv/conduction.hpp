@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/base/types.hpp"
+#include "common/fv/face_gradient.hpp"
+#include "common/fv/vertex_interpolation.hpp"
+#include "common/linalg/matrix.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// What is known of the temperature on a patch.
+enum class HeatCondition {
+  temperature,  ///< known at faces and vertices
+  flux,         ///< heat flux known, or convection: the temperature of each face is an unknown
+  symmetry,     ///< nothing flows, cells count as mirrored; no unknown
+};
+
+/// Conduction of heat, div(k grad T), thesis (2.35) with the face gradient (2.53)-(2.58), of a scalar.
+///
+/// Unknown nodes of a rank: its owned cells, then its flux faces patch by patch. Known columns: the points,
+/// then the faces, of patches with known temperature. With the conductance q_f(T) = k_f |S| n . grad T into
+/// the owner, from the rows' own stencils,
+///   cell row       - sum_f q_f over its faces that are not flux faces      + h |S| T_B over those that are
+///   flux face row    q_f + h |S| T_B
+/// so that a flux face's known heat, |S| (q + h T_inf), stands on the right of both (h = 0 without
+/// convection).
+class ConductionOperator {
+ public:
+  /// `conditions`: one a patch. Collective.
+  ConductionOperator(const Mesh& mesh, std::span<const HeatCondition> conditions);
+
+  const Mesh& mesh() const { return *mesh_; }
+  const FaceGradient& faces() const { return faces_; }
+  const VertexInterpolation& vertices() const { return vertices_; }
+  /// Flux faces of owned cells: unknown n_owned cells + i is entry i.
+  const std::vector<Index>& flux_faces() const { return flux_faces_; }
+  const std::vector<Index>& known_points() const { return known_points_; }
+  const std::vector<Index>& known_faces() const { return known_faces_; }  ///< of owned cells
+  HeatCondition condition(Index face) const { return condition_of_face_[face - mesh_->n_interior]; }
+  std::size_t n_unknowns() const { return mesh_->cells.n_owned() + flux_faces_.size(); }
+  std::size_t n_known() const { return known_points_.size() + known_faces_.size(); }
+
+  /// A matrix with the places of all rows, not filled yet. Collective.
+  SparseMatrix make_matrix() const;
+
+  /// Numbers that turn the stencils into rows.
+  struct Weights {
+    std::span<const double> conductivity;  ///< k_f per flux face of the mesh (mesh.n_flux_faces()) [W/(m K)]
+    std::span<const double> transfer;      ///< h per entry of flux_faces() [W/(m^2 K)]; empty: none
+    std::span<const double> capacity;      ///< on the diagonal of owned cells [W/K]; empty: none
+    double share = 1;                      ///< of the conduction in the cell rows (trapezoidal rule: 1/2)
+  };
+  void fill(const Weights& weights, SparseMatrix& matrix) const;
+  /// rhs -= (known columns) known, with the values of known points, then of known faces.
+  void subtract_known(const Weights& weights, std::span<const double> known, std::span<double> rhs) const;
+
+  /// Values of all local points: interpolated, the known ones set. Collective.
+  void point_values(std::span<const double> cells, std::span<const double> boundary,
+                    std::span<const double> known, std::span<double> points) const;
+  /// Tangential gradient at a face, with the values at points.
+  Vec3 tangential_gradient(Index face, std::span<const double> points) const;
+  /// Whole gradient at a face.
+  Vec3 gradient(Index face, std::span<const double> cells, std::span<const double> boundary,
+                std::span<const double> points) const;
+  /// Value at the centre of a face from the nodes beside it, exact for linear fields.
+  double face_value(Index face, std::span<const double> cells, std::span<const double> boundary,
+                    std::span<const double> points) const;
+  /// Heat that flows through each flux face of the mesh into its owner, k_f |S| n . grad T [W].
+  void face_heat(std::span<const double> conductivity, std::span<const double> cells,
+                 std::span<const double> boundary, std::span<const double> points,
+                 std::span<double> heat) const;
+
+ private:
+  enum class Kind : std::uint8_t { conduction, transfer, capacity };
+  /// One term of a row; a conduction term is the stencil of a face.
+  struct Term {
+    Kind kind;
+    bool in_cell_row;  // scaled by Weights::share
+    double sign;
+    Index index;  // face, entry of flux_faces_ or cell
+  };
+  void sort_boundary(std::span<const HeatCondition> conditions);
+  void number_unknowns();
+  void build_stencils();
+  void build_rows();
+  void add_term(const Term& term, GlobalIndex row);
+
+  const Mesh* mesh_;
+  std::vector<HeatCondition> condition_of_face_;  // per entry of mesh.boundary
+  VertexInterpolation vertices_;
+  FaceGradient faces_;
+  std::vector<Index> flux_faces_, known_points_, known_faces_;
+  std::vector<Index> known_of_point_, known_of_face_, flux_of_face_;  // -1: none; the latter two of boundary
+  std::vector<GlobalIndex> number_;                                   // of each local node as unknown, -1
+
+  // Stencil of each flux face: |S| n . grad T = sum coefficient x value, over nodes and over known columns.
+  std::vector<std::int64_t> offset_, known_offset_;
+  std::vector<Index> node_, known_column_;
+  std::vector<double> coefficient_, known_coefficient_;
+  std::vector<Term> terms_;  // of all rows, in the order of the triplets
+  std::vector<GlobalIndex> row_, column_;
+};
+
+}  // namespace couplet

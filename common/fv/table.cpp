@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/fv/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+
+namespace couplet {
+namespace {
+
+std::optional<double> number_of(std::string_view text) {
+  const std::string trimmed(trim(text));
+  if (trimmed.empty()) return {};
+  std::size_t used = 0;
+  try {
+    const double value = std::stod(trimmed, &used);
+    if (used == trimmed.size() && std::isfinite(value)) return value;
+  } catch (const std::exception&) {
+  }
+  return {};
+}
+
+std::vector<std::string> cells_of(std::string line) {
+  line = line.substr(0, line.find('#'));
+  const bool blanks_separate = line.find_first_of(",;") == std::string::npos;
+  for (char& c : line)
+    if (c == ';' || (blanks_separate && (c == ' ' || c == '\t'))) c = ',';
+  std::vector<std::string> cells;
+  for (const std::string& cell : split(line, ',')) {
+    const std::string text(trim(cell));
+    if (!blanks_separate || !text.empty()) cells.push_back(text);
+  }
+  if (cells.size() == 1 && cells[0].empty()) cells.clear();
+  return cells;
+}
+
+/// Number (from 0) of the column that is wanted.
+std::size_t find_column(const std::filesystem::path& file, const std::vector<std::string>& names,
+                        const std::string& column) {
+  if (const auto number = number_of(column); number && *number == std::floor(*number) && *number >= 2)
+    return static_cast<std::size_t>(*number) - 1;
+  const auto found = std::ranges::find(names, column);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  throw Error("{}: there is no column '{}' for a table. {}", file.string(), column,
+              names.empty() ? "Its first line holds no names; give the number of a column, from 2."
+                            : did_you_mean(column, names, "columns"));
+}
+
+}  // namespace
+
+Table::Table(std::vector<double> at, std::vector<double> values, Outside outside, std::string where)
+    : at_(std::move(at)),
+      values_(std::move(values)),
+      integral_(at_.size(), 0),
+      outside_(outside),
+      where_(std::move(where)) {
+  const std::string place = where_.empty() ? "a table" : where_;
+  if (at_.empty() || at_.size() != values_.size())
+    throw Error("{}: a table needs one value for each place, {} values for {} places were given.", place,
+                values_.size(), at_.size());
+  for (std::size_t i = 1; i < at_.size(); ++i) {
+    if (!(at_[i] > at_[i - 1]))
+      throw Error("{}: the places of a table must grow, but {:g} stands before {:g}.", place, at_[i - 1],
+                  at_[i]);
+    integral_[i] = integral_[i - 1] + 0.5 * (values_[i] + values_[i - 1]) * (at_[i] - at_[i - 1]);
+  }
+}
+
+void Table::check_inside(double at) const {
+  if (outside_ == Outside::clamp || (at >= at_.front() && at <= at_.back())) return;
+  throw Error(
+      "{}: the table goes from {:g} to {:g}, but its value at {:g} is needed. Extend it, or let its ends "
+      "hold with 'outside: clamp'.",
+      where_.empty() ? "a table" : where_, at_.front(), at_.back(), at);
+}
+
+double Table::operator()(double at) const {
+  check_inside(at);
+  if (at <= at_.front()) return values_.front();
+  if (at >= at_.back()) return values_.back();
+  const auto i = static_cast<std::size_t>(std::upper_bound(at_.begin(), at_.end(), at) - at_.begin());
+  const double part = (at - at_[i - 1]) / (at_[i] - at_[i - 1]);
+  return values_[i - 1] + part * (values_[i] - values_[i - 1]);
+}
+
+double Table::antiderivative(double at) const {
+  if (at <= at_.front()) return (at - at_.front()) * values_.front();
+  if (at >= at_.back()) return integral_.back() + (at - at_.back()) * values_.back();
+  const auto i = static_cast<std::size_t>(std::upper_bound(at_.begin(), at_.end(), at) - at_.begin());
+  return integral_[i - 1] + 0.5 * (at - at_[i - 1]) * (values_[i - 1] + (*this)(at));
+}
+
+double Table::integral(double from, double to) const {
+  check_inside(from);
+  check_inside(to);
+  return antiderivative(to) - antiderivative(from);
+}
+
+Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside) {
+  std::ifstream stream(file);
+  if (!stream) throw Error("{}: this file of a table cannot be read.", file.string());
+  std::vector<double> at, values;
+  std::vector<std::string> names;
+  std::optional<std::size_t> wanted;
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    const std::vector<std::string> cells = cells_of(line);
+    if (cells.empty()) continue;
+    if (at.empty() && names.empty() && !number_of(cells[0])) {
+      names = cells;
+      continue;
+    }
+    if (!wanted) wanted = find_column(file, names, column);
+    const auto x = number_of(cells[0]);
+    const auto y = *wanted < cells.size() ? number_of(cells[*wanted]) : std::nullopt;
+    if (!x || !y)
+      throw Error("{}:{}: a number is needed in columns 1 and {}.", file.string(), number, *wanted + 1);
+    at.push_back(*x);
+    values.push_back(*y);
+  }
+  return Table(std::move(at), std::move(values), outside, file.string());
+}
+
+Property::Property(const config::ExpressionText& text, const std::string& where) {
+  const std::string place = where.empty() ? "" : where + ": ";
+  if (const auto number = number_of(text.text)) {
+    constant_ = *number;
+    return;
+  }
+  std::deque<Table> tables;
+  std::string rest;
+  try {
+    rest = take_tables(text.text, tables);
+  } catch (const TextProblem& problem) {
+    throw Error("{}'{}' cannot be read at column {}: {}.", place, text.text, problem.at + 1, problem.what);
+  }
+  const bool is_table = tables.size() == 1 && rest.starts_with("tab00(") && rest.ends_with(")") &&
+                        trim(std::string_view(rest).substr(6, rest.size() - 7)) == "T";
+  if (!is_table)
+    throw Error(
+        "{}'{}' is neither a number nor a table of the temperature, such as {{of: T, at: [300 K, 600 K], "
+        "values: [210 GPa, 180 GPa]}}.",
+        place, text.text);
+  table_.push_back(std::move(tables.front()));
+}
+
+double Property::lowest() const {
+  return is_constant() ? constant_ : *std::ranges::min_element(table_[0].values());
+}
+
+double Property::highest() const {
+  return is_constant() ? constant_ : *std::ranges::max_element(table_[0].values());
+}
+
+std::string problem_of_property(const config::ExpressionText& text, double above) {
+  try {
+    const Property property(text, "");
+    return property.lowest() > above ? std::string() : fmt::format("values must be above {:g}", above);
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
+
+}  // namespace couplet

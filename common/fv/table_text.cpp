@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables inside the text of expressions.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/fv/table.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr std::string_view name = "table";
+constexpr std::size_t most_tables = 100;  // two digits in tabNN
+
+bool in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+
+/// Start of the last call of table(, behind which no other can hide; npos: none.
+std::size_t last_call(const std::string& text) {
+  for (std::size_t at = text.rfind(name); at != std::string::npos;) {
+    const std::size_t after = text.find_first_not_of(' ', at + name.size());
+    const bool whole_word = at == 0 || !in_word(text[at - 1]);
+    if (whole_word && after == at + name.size() && text[after] == '(') return at;
+    if (at == 0) break;
+    at = text.rfind(name, at - 1);
+  }
+  return std::string::npos;
+}
+
+struct Argument {
+  std::size_t at;
+  std::string text;
+};
+
+/// The arguments of the call whose '(' is at `open`; `close` becomes the place of its ')'.
+std::vector<Argument> arguments_of(const std::string& text, std::size_t open, std::size_t& close) {
+  std::vector<Argument> arguments;
+  std::size_t first = open + 1;
+  int depth = 0;
+  bool quoted = false;
+  for (std::size_t i = open + 1; i < text.size(); ++i) {
+    if (text[i] == '"') quoted = !quoted;
+    if (quoted) continue;
+    if (text[i] == '(') ++depth;
+    if (depth == 0 && (text[i] == ',' || text[i] == ')')) {
+      first = std::min(text.find_first_not_of(' ', first), i);
+      arguments.push_back({first, std::string(trim(std::string_view(text).substr(first, i - first)))});
+      first = i + 1;
+      if (text[i] == ')') {
+        close = i;
+        return arguments;
+      }
+    }
+    if (text[i] == ')') --depth;
+  }
+  throw TextProblem{text.size(), "a ')' or '\"' of a table is missing"};
+}
+
+double number(const Argument& argument) {
+  std::size_t used = 0;
+  try {
+    const double value = std::stod(argument.text, &used);
+    if (used == argument.text.size() && std::isfinite(value)) return value;
+  } catch (const std::exception&) {
+  }
+  throw TextProblem{argument.at, fmt::format("a table holds numbers, not '{}'", argument.text)};
+}
+
+std::string unquoted(const std::string& text) {
+  return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2)
+                                                                       : text;
+}
+
+Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
+  std::size_t i = 1;
+  Table::Outside outside = Table::Outside::clamp;
+  if (i < arguments.size() && (arguments[i].text == "clamp" || arguments[i].text == "error"))
+    outside = arguments[i++].text == "error" ? Table::Outside::error : Table::Outside::clamp;
+  if (i >= arguments.size() || arguments[0].text.empty())
+    throw TextProblem{begin, "a table is written table(t, 0, 10, 5, 20), variable first, then pairs"};
+  try {
+    if (arguments[i].text.starts_with('"')) {
+      if (arguments.size() > i + 2)
+        throw TextProblem{arguments[i + 2].at, "after the file of a table comes one column at most"};
+      return read_table(unquoted(arguments[i].text),
+                        i + 1 < arguments.size() ? unquoted(arguments[i + 1].text) : "2", outside);
+    }
+    if ((arguments.size() - i) % 2 != 0)
+      throw TextProblem{arguments.back().at, "a table needs pairs: a value for each place"};
+    std::vector<double> at, values;
+    for (; i < arguments.size(); i += 2) {
+      at.push_back(number(arguments[i]));
+      values.push_back(number(arguments[i + 1]));
+    }
+    return Table(std::move(at), std::move(values), outside, "");
+  } catch (const Error& e) {
+    throw TextProblem{begin, e.what()};
+  }
+}
+
+}  // namespace
+
+std::string take_tables(const std::string& text, std::deque<Table>& tables) {
+  std::string rest = text;
+  for (std::size_t begin = last_call(rest); begin != std::string::npos; begin = last_call(rest)) {
+    if (tables.size() == most_tables) throw TextProblem{begin, "there are more than 100 tables"};
+    std::size_t close = 0;
+    const std::vector<Argument> arguments = arguments_of(rest, begin + name.size(), close);
+    tables.push_back(table_from(arguments, begin));
+    std::string call = fmt::format("tab{:02}({}", tables.size() - 1, arguments[0].text);
+    call.resize(close - begin, ' ');
+    rest.replace(begin, close - begin, call);
+  }
+  return rest;
+}
+
+}  // namespace couplet

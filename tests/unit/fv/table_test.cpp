@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/fv/table.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "common/base/error.hpp"
+#include "common/config/load.hpp"
+#include "common/fv/expression.hpp"
+
+namespace couplet {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+using Outside = Table::Outside;
+
+double value_of(const std::string& text, const Vec3& x, double t) {
+  return Expression(config::ExpressionText{text}, "value")(x, t);
+}
+
+/// A CSV file of the test's own.
+class CsvFile {
+ public:
+  explicit CsvFile(const std::string& text)
+      : path_(std::filesystem::temp_directory_path() / fmt::format("couplet-table-{}.csv", getpid())) {
+    std::ofstream(path_) << text;
+  }
+  ~CsvFile() { std::filesystem::remove(path_); }
+  std::string path() const { return path_.string(); }
+  std::string name() const { return path_.filename().string(); }
+  std::filesystem::path folder() const { return path_.parent_path(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST(Table, is_linear_between_its_places_and_holds_its_ends) {
+  const Table table({1, 2, 4}, {10, 20, -20}, Outside::clamp, "");
+  EXPECT_EQ(table(1.5), 15);
+  EXPECT_EQ(table(2), 20);
+  EXPECT_EQ(table(3), 0);
+  EXPECT_EQ(table(-5), 10);
+  EXPECT_EQ(table(9), -20);
+}
+
+TEST(Table, integral_is_exact_inside_and_beyond_the_ends) {
+  const Table table({0, 2, 4}, {0, 4, 0}, Outside::clamp, "");
+  EXPECT_DOUBLE_EQ(table.integral(0, 4), 8);
+  EXPECT_DOUBLE_EQ(table.integral(1, 3), 6);
+  EXPECT_DOUBLE_EQ(table.integral(3, 1), -6);
+  const Table ends({1, 2}, {3, 5}, Outside::clamp, "");
+  EXPECT_DOUBLE_EQ(ends.integral(-1, 4), 6 + 4 + 10);
+}
+
+TEST(Table, refuses_values_outside_when_told_so_and_places_that_do_not_grow) {
+  const Table table({0, 1}, {0, 1}, Outside::error, "inlet");
+  EXPECT_THAT([&] { table(1.5); }, ThrowsMessage<Error>(HasSubstr("inlet: the table goes from 0 to 1")));
+  EXPECT_THAT(
+      [] {
+        Table({0, 1, 1}, {0, 0, 0}, Outside::clamp, "");
+      },
+      ThrowsMessage<Error>(HasSubstr("must grow, but 1 stands before 1")));
+}
+
+TEST(Table, is_a_function_in_expressions) {
+  EXPECT_DOUBLE_EQ(value_of("2*table(t, 0, 1, 10, 2) + x", Vec3(3, 0, 0), 5), 6);
+  EXPECT_DOUBLE_EQ(value_of("table(sqrt(x^2 + y^2), 0, 0, 10, 100)", Vec3(3, 4, 0), 0), 50);
+  EXPECT_DOUBLE_EQ(value_of("table(table(t, 0, 0, 1, 10), 0, 1, 10, 2)", Vec3::Zero(), 0.5), 1.5);
+  const Expression f(config::ExpressionText{"table(z, clamp, 0, 1, 2, 3)"});
+  EXPECT_TRUE(f.uses_space());
+  EXPECT_FALSE(f.uses_time());
+  EXPECT_FALSE(f.is_zero());
+}
+
+TEST(Table, mistakes_in_expressions_are_reported_with_their_column) {
+  EXPECT_THAT([] { value_of("3 + table(t, 0, 1, 2)", Vec3::Zero(), 0); },
+              ThrowsMessage<Error>(HasSubstr("a table needs pairs")));
+  EXPECT_THAT([] { value_of("table(t, 0, q)", Vec3::Zero(), 0); },
+              ThrowsMessage<Error>(HasSubstr("at column 13: a table holds numbers, not 'q'")));
+  EXPECT_THAT([] { value_of("table(t, 0, 1, 5, 2) + u", Vec3::Zero(), 0); },
+              ThrowsMessage<Error>(HasSubstr("column 24: unknown name 'u'")));
+  EXPECT_THAT([] { value_of("table(t, error, 0, 1, 5, 2)", Vec3::Zero(), 6); },
+              ThrowsMessage<Error>(HasSubstr("its value at 6 is needed")));
+}
+
+TEST(Table, is_read_from_a_file_by_name_or_number_of_its_column) {
+  const CsvFile file("# weather\nhour, dni, temperature\n0, 0, 10\n12, 800, 30 # noon\n24, 0, 10\n");
+  const std::string path = file.path();
+  EXPECT_DOUBLE_EQ(value_of("table(t/3600, \"" + path + "\", \"temperature\")", Vec3::Zero(), 6 * 3600), 20);
+  EXPECT_DOUBLE_EQ(value_of("table(t, \"" + path + "\")", Vec3::Zero(), 18), 400);
+  EXPECT_DOUBLE_EQ(value_of("table(t, \"" + path + "\", 3)", Vec3::Zero(), 18), 20);
+  EXPECT_THAT([&] { read_table(path, "temprature", Outside::clamp); },
+              ThrowsMessage<Error>(HasSubstr("Did you mean 'temperature'?")));
+  EXPECT_THAT([] { read_table("nowhere.csv", "2", Outside::clamp); },
+              ThrowsMessage<Error>(HasSubstr("nowhere.csv: this file of a table cannot be read")));
+}
+
+struct Loads {
+  config::ExpressionText pressure;
+};
+
+Loads read_loads(const std::string& text, const std::string& name = "case.yaml") {
+  Loads loads;
+  config::load_or_throw(config::Document::parse(text, name), "",
+                        [&](config::Section& s) { s.value("pressure", loads.pressure).unit("Pa"); });
+  return loads;
+}
+
+TEST(Table, may_be_a_mapping_in_the_yaml_with_units) {
+  const Expression ramp(
+      read_loads("pressure: {of: t, at: [0, 2 s, 1 min], values: [0, 3 bar, 100 kPa]}").pressure);
+  EXPECT_DOUBLE_EQ(ramp(Vec3::Zero(), 1), 150e3);
+  EXPECT_DOUBLE_EQ(ramp(Vec3::Zero(), 100), 100e3);
+  const Expression radial(read_loads("pressure: {of: r, at: [0, 10], values: [0, 10]}").pressure);
+  EXPECT_DOUBLE_EQ(radial(Vec3(3, 4, 7), 0), 5);
+  EXPECT_THAT([] { read_loads("pressure: {of: t, at: [0, 1], values: [0]}"); },
+              ThrowsMessage<Error>(HasSubstr("2 places and 1 values are given")));
+  EXPECT_THAT([] { read_loads("pressure: {of: s, at: [0, 1], values: [0, 1]}"); },
+              ThrowsMessage<Error>(HasSubstr("'of' one of: x, y, z, r, t, T")));
+  EXPECT_THAT([] { read_loads("pressure: {of: t, at: [0, 1], valus: [0, 1]}"); },
+              ThrowsMessage<Error>(HasSubstr("Did you mean 'values'?")));
+}
+
+TEST(Table, files_are_sought_beside_the_yaml) {
+  const CsvFile file("0 1\n10 2\n");
+  const std::string yaml = (file.folder() / "case.yaml").string();
+  EXPECT_DOUBLE_EQ(
+      Expression(read_loads("pressure: {of: t, file: " + file.name() + "}", yaml).pressure)(Vec3::Zero(), 5),
+      1.5);
+  EXPECT_DOUBLE_EQ(Expression(read_loads("pressure: '2*table(t, \"" + file.name() + "\")'", yaml).pressure)(
+                       Vec3::Zero(), 5),
+                   3);
+}
+
+TEST(Property, is_a_number_or_a_table_of_the_temperature) {
+  EXPECT_EQ(Property({"5"}, "k")(300), 5);
+  const Property alpha({"table(T, clamp, 300, 1e-5, 400, 2e-5)"}, "alpha");
+  EXPECT_DOUBLE_EQ(alpha(350), 1.5e-5);
+  EXPECT_DOUBLE_EQ(alpha.integral(300, 400), 1.5e-3);
+  EXPECT_DOUBLE_EQ(alpha.lowest(), 1e-5);
+  for (const char* wrong : {"2*T", "table(t, 0, 1, 1, 2)", "table(T, 0, 1, 1, 2) + 1", "x"})
+    EXPECT_THAT([&] { Property({wrong}, "material.conductivity"); },
+                ThrowsMessage<Error>(HasSubstr("neither a number nor a table of the temperature")))
+        << wrong;
+}
+
+}  // namespace
+}  // namespace couplet
