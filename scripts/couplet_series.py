@@ -41,6 +41,11 @@ class FieldSeries:
                 return step[place][name][...]
         raise KeyError(f"no field '{name}' in {self.file.filename}")
 
+    def centres(self):
+        """Means of the points of each cell in the undeformed mesh."""
+        points = self.file["mesh/coordinates"][...]
+        return np.array([points[cell].mean(axis=0) for cell in self.cells])
+
     def names(self, i):
         step = self.file["steps"][self.steps[i]]
         return [name for place in ("cells", "points") if place in step for name in step[place]]
