@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Beam 20 m x 2 m x 2 m along x, hexahedra.
-n_length = 80; // cells along the beam
-n_side = 8;    // cells along each side of the section
+DefineConstant [
+  n_length = 80, // cells along the beam
+  n_side = 8     // cells along each side of the section
+];
 
 length = 20; side = 2; // m
 
