@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/run_participant.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <limits>
@@ -11,6 +13,7 @@
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "common/log/timer.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet {
 namespace {
@@ -67,11 +70,21 @@ class Bookkeeping {
   Clock::time_point since_ = Clock::now();
 };
 
+/// Most memory this process has had in use [MB].
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
 void closing_words(const Job& job, Participant& participant, double seconds) {
   const std::vector<std::string> sentences = participant.judge_left_out_effects();
+  const double most = max(job.comm, peak_memory()), all = sum(job.comm, peak_memory());
   if (job.rank != 0) return;
   for (const std::string& sentence : sentences) log::info("{}", sentence);
   log::info("{}", log::timers().table("time of '" + job.name + "'", seconds));
+  log::info("peak memory of '{}': {:.0f} MB on the rank that needed most, {:.0f} MB on all", job.name, most,
+            all);
 }
 
 /// Commands to the participant from its own loop, with the same bookkeeping as in a coupled run.
