@@ -183,6 +183,11 @@ void Solid::write_monitors(double time) { output_->write_series(time, point_disp
 void Solid::save(CheckpointWriter& file) const {
   file.write("cell-displacement", state_.cell_u);
   file.write("cell-velocity", state_.cell_v);
+  if (!state_.cell_a.empty()) file.write("cell-acceleration", state_.cell_a);
+  if (!state_.cell_u_old.empty()) {
+    file.write("old-cell-displacement", state_.cell_u_old);
+    file.write("old-cell-velocity", state_.cell_v_old);
+  }
   file.write("face-displacement", state_.face_u);
   file.write("face-velocity", state_.face_v);
   file.write("face-offset", state_.offset);
@@ -191,6 +196,8 @@ void Solid::save(CheckpointWriter& file) const {
   file.write("known-rate", known_rate_accepted_);
   file.write_scalar("time", state_.time);
   file.write_scalar("dt", state_.dt);
+  file.write_scalar("stage-dt", state_.stage_dt);
+  file.write_scalar("offset-lag", state_.offset_lag);
   file.write_scalar("steps", state_.steps);
   file.write_scalar("largest-gradient", largest_gradient_);
   file.write_scalar("inertia-over-load", inertia_over_load_);
@@ -200,6 +207,11 @@ void Solid::save(CheckpointWriter& file) const {
 void Solid::load(CheckpointReader& file) {
   file.read("cell-displacement", state_.cell_u);
   file.read("cell-velocity", state_.cell_v);
+  if (!state_.cell_a.empty()) file.read("cell-acceleration", state_.cell_a);
+  if (!state_.cell_u_old.empty()) {
+    file.read("old-cell-displacement", state_.cell_u_old);
+    file.read("old-cell-velocity", state_.cell_v_old);
+  }
   file.read("face-displacement", state_.face_u);
   file.read("face-velocity", state_.face_v);
   file.read("face-offset", state_.offset);
@@ -208,6 +220,8 @@ void Solid::load(CheckpointReader& file) {
   file.read("known-rate", known_rate_accepted_);
   state_.time = file.read_scalar("time");
   state_.dt = file.read_scalar("dt");
+  state_.stage_dt = file.read_scalar("stage-dt");
+  state_.offset_lag = file.read_scalar("offset-lag");
   state_.steps = static_cast<int>(file.read_scalar("steps"));
   largest_gradient_ = file.read_scalar("largest-gradient");
   inertia_over_load_ = file.read_scalar("inertia-over-load");

@@ -55,6 +55,9 @@ void declare(config::Section& s, SolidParameters& p) {
   s.value("gravity", p.gravity).unit("m/s^2").doc("acceleration of gravity, one number a component");
   s.value("initial-velocity", p.initial_velocity)
       .doc("velocity at the start, one expression of x, y, z a component [m/s]");
+  s.section(
+      "time-scheme", [&](config::Section& t) { declare(t, p.time_scheme); },
+      "integration in time of a dynamic analysis");
   s.optional_section<SolidDamping>(
       "damping", p.damping, [](config::Section& d, SolidDamping& v) { declare(d, v); },
       "structural damping; dynamic analysis only");

@@ -29,6 +29,7 @@ struct SolidParameters {
   std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty: none
   std::vector<double> gravity;                           // [m/s^2]; empty: none
   std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
+  TimeSchemeParameters time_scheme;
   std::optional<SolidDamping> damping;
   MethodParameters method;
   std::map<std::string, SolidProbe> probes;

@@ -12,6 +12,7 @@
 #include "common/coupling/participant.hpp"
 #include "common/fv/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
+#include "common/time/time_scheme.hpp"
 #include "solid_solver/boundaries.hpp"
 #include "solid_solver/effect.hpp"
 #include "solid_solver/parameters.hpp"
@@ -32,8 +33,12 @@ struct SolidState {
   double time = 0, dt = 0;  ///< dt: of the step that ended here
   int steps = 0;            ///< accepted so far
   std::vector<double> cell_u, cell_v, face_u, face_v;
-  std::vector<double> offset;       ///< u_B - u_P of the traction faces at the middle of the last step
-  std::vector<double> offset_rate;  ///< v_B - v_P there
+  std::vector<double> cell_a;                  ///< generalised-alpha alone
+  std::vector<double> cell_u_old, cell_v_old;  ///< a step earlier; three-point alone
+  double stage_dt = 0;                         ///< of the last stage
+  double offset_lag = 0;                       ///< `offset` lives so long before `time`
+  std::vector<double> offset;       ///< u_B - u_P of the traction faces where the last stage was solved
+  std::vector<double> offset_rate;  ///< v_B - v_P at the middle of the last stage
 };
 
 /// Force on the solid at a constrained patch [N].
@@ -42,14 +47,16 @@ struct PatchForce {
   Vec3 force = Vec3::Zero();
 };
 
-/// Linear elasticity in the reference configuration. A dynamic step is the trapezoidal rule, thesis (2.45)
-/// with its erratum, in mid-point form: with ubar at t^{n+1/2}, s = 1 + 2 beta / dt (stiffness-proportional
-/// damping beta), and w = ubar + beta v(t^{n+1/2}), hence ubar = u^n + (w - u^n) / s,
-///   rho V / s (4 / dt^2 + 2 alpha / dt) (w - u^n) - 2 rho V v^n / dt = sum_f sigma(w) . S_f +
-///   loads(t^{n+1/2}) u^{n+1} = 2 ubar - u^n,   v^{n+1} = 4 (ubar - u^n) / dt - v^n
-/// Loads enter at t^{n+1/2} only, where the interface load lives, which keeps the coupled step second order.
-/// Traction faces have no inertia: at n+1 their offset from the cell is extrapolated from the middles of this
-/// step and the last one, never fed back into the solution, so that they do not ring.
+/// Linear elasticity in the reference configuration. A dynamic step runs through the stages of its time
+/// scheme (common/time). At the place of a stage x is the displacement, v = c x + v_h the velocity and
+/// a = d x + a_h the acceleration, v_h and a_h being known. With Rayleigh damping (2.79), w = x + beta v and
+/// s = 1 + beta c, hence x = (w - beta v_h) / s, what is solved is
+///   rho V (d + alpha c) / s w - sum_f sigma(w) . S_f =
+///       loads - rho V (a_h + alpha v_h - (d + alpha c) / s beta v_h).
+/// The trapezoidal rule solves in the middle of the step, where the interface load lives, which keeps the
+/// coupled step second order. The other schemes take the interface load of the step in all their stages.
+/// Traction faces have no inertia: at n+1 their offset from the cell is extrapolated from the places of this
+/// stage and the last one, never fed back into the solution, so that they do not ring.
 class Solid final : public Participant {
  public:
   /// Collective over mesh.comm.
@@ -89,15 +96,22 @@ class Solid final : public Participant {
 
  private:
   struct System;
+  struct StageWork;
   bool is_dynamic() const { return parameters_.analysis == SolidParameters::Analysis::dynamic; }
   void check_supports() const;
   void start_from_rest();
-  System& system_for(double dt);
-  void prepare_prescribed();
-  void add_body_forces(double t);
-  void add_interface_load(const Exchange& in);
-  void finish_dynamic(const System& system);
-  void finish_static();
+  std::vector<Stage> stages_of(double dt) const;
+  System& system_for(double mass_factor);
+  void prepare_stage(StageWork& work);
+  void subtract_prescribed(StageWork& work);
+  void add_body_forces(double t, std::span<double> rhs);
+  std::vector<double> interface_load(const Exchange& in) const;
+  void solve_stage(const StageWork& work, std::span<const double> interface_load, bool first);
+  void add_inertia(const StageWork& work, const SolidState& now);
+  void add_face_forces(const StageWork& work, std::span<const double> interface_load);
+  void guess(const StageWork& work, const SolidState& now);
+  void finish_offsets(const Stage& stage, const SolidState& now);
+  void finish_cells(const StageWork& work, const SolidState& now);
   void set_prescribed_faces();
   void update_trial_ghosts();
   Exchange interface_values() const;
@@ -115,17 +129,16 @@ class Solid final : public Participant {
   Interface description_;
   std::vector<Expression> body_force_;
   std::vector<std::unique_ptr<SolidEffect>> effects_;  // those that the scene has
-  std::vector<std::unique_ptr<System>> systems_;       // the two time steps used last, latest first
+  std::vector<std::unique_ptr<System>> systems_;       // those used last, latest first
+  std::vector<StageWork> stages_;                      // of the step under way
 
   SolidState state_, trial_;
   Step step_;
-  // Known displacements at the end of the accepted and of the trial step, in the stress of the step, and
-  // rates.
-  std::vector<double> known_accepted_, known_rate_accepted_, known_, known_rate_, known_in_stress_;
-  std::vector<double> face_force_;  // loads but the interface's, per boundary face of owned cells
-  Vec3 body_load_ = Vec3::Zero();   // this rank's sum of body forces
-  Vec3 face_load_ = Vec3::Zero();   // this rank's sum of face forces of the last solve
-  std::vector<double> base_rhs_, rhs_, unknowns_;
+  // Known displacements and rates at the end of the accepted and of the trial step.
+  std::vector<double> known_accepted_, known_rate_accepted_, known_, known_rate_;
+  Vec3 body_load_ = Vec3::Zero();  // this rank's sum of body forces
+  Vec3 face_load_ = Vec3::Zero();  // this rank's sum of face forces of the last solve
+  std::vector<double> rhs_, unknowns_;
   double largest_gradient_ = 0, inertia_over_load_ = 0;
   std::unique_ptr<SolidOutput> output_;
 };

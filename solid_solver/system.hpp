@@ -4,22 +4,27 @@
 #include <memory>
 #include <vector>
 
+#include "common/time/time_scheme.hpp"
 #include "solid_solver/solid.hpp"
 #include "solid_solver/solution_method.hpp"
 
 namespace couplet {
 
-/// What belongs to one step size: factors and preconditioners are made once for it.
+/// What belongs to one size of the inertia term: factors and preconditioners are made once for it.
 struct Solid::System {
-  double dt;                    ///< 0: static
-  double damping_scale = 1;     ///< s = 1 + 2 beta / dt
-  std::vector<double> inertia;  ///< per owned cell: rho V / s (4 / dt^2 + 2 alpha / dt) [N/m]; empty: static
+  double mass_factor;           ///< (d + alpha c) / s, see Solid [1/s^2]; 0: static
+  std::vector<double> inertia;  ///< per owned cell: mass factor times mass [N/m]; empty: static
   std::unique_ptr<SolutionMethod> method;
+};
 
-  System(const Mesh& mesh, const SolidParameters& parameters, const ElasticOperator& elastic, double step);
-
- private:
-  std::vector<double> make_inertia(const Mesh& mesh, const SolidParameters& parameters);
+/// A stage of the step under way, with all that does not depend on the interface load.
+struct Solid::StageWork {
+  Stage stage;
+  double damping_scale = 1;  ///< s = 1 + beta c
+  System* system = nullptr;
+  double start_time = 0, place_time = 0, end_time = 0;
+  std::vector<double> rhs;         ///< loads and prescribed displacements, without face forces and inertia
+  std::vector<double> face_force;  ///< loads but the interface's, per boundary face of owned cells
 };
 
 }  // namespace couplet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/config/section.hpp"
+#include "common/time/time_scheme.hpp"
 
 namespace couplet {
 

@@ -19,6 +19,7 @@ ALLOWED = {
     "linalg": ["parallel", "log", "base"],
     "mesh": ["linalg", "parallel", "config", "log", "base"],
     "fv": ["mesh", "linalg", "parallel", "config", "log", "base"],
+    "time": ["config", "base"],
     "io": ["fv", "mesh", "linalg", "parallel", "config", "log", "base"],
     "coupling": ["io", "mesh", "parallel", "config", "log", "base"],
     "app": ["coupling", "io", "fv", "mesh", "linalg", "parallel", "config", "log", "base"],

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/time/time_scheme.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+namespace couplet {
+namespace {
+
+constexpr Levels x{1, 0, 0, 0, 0, 0}, u{0, 1, 0, 0, 0, 0}, v{0, 0, 1, 0, 0, 0}, a{0, 0, 0, 1, 0, 0},
+    u_old{0, 0, 0, 0, 1, 0}, v_old{0, 0, 0, 0, 0, 1};
+
+// The first part of a Bathe step: both parts then have the same matrix.
+constexpr double bathe_part = 2 - std::numbers::sqrt2;
+
+const std::vector<std::pair<std::string, TimeScheme>> first_order_words{
+    {"euler", TimeScheme::euler},
+    {"three-point", TimeScheme::three_point},
+    {"trapezoidal", TimeScheme::trapezoidal},
+    {"bathe", TimeScheme::bathe}};
+
+Stage euler(double dt) {
+  Stage s{.dt = dt};
+  s.rate = s.end_rate = 1 / dt * (x - u);
+  s.acceleration = s.end_acceleration = 1 / dt * (s.rate - v);
+  s.end_value = x;
+  return s;
+}
+
+// The derivative at the end of the parabola through three levels, applied twice.
+Stage three_point(double start, double dt, double dt_old) {
+  Stage s{.start = start, .dt = dt};
+  const double c1 = dt / (dt_old * (dt + dt_old)), c2 = -(dt + dt_old) / (dt * dt_old),
+               c3 = 1 / dt + 1 / (dt + dt_old);
+  s.rate = s.end_rate = c3 * x + c2 * u + c1 * u_old;
+  s.acceleration = s.end_acceleration = c3 * s.rate + c2 * v + c1 * v_old;
+  s.end_value = x;
+  return s;
+}
+
+Stage trapezoidal(double dt) {
+  Stage s{.dt = dt, .place = 0.5};
+  s.rate = 2 / dt * (x - u);
+  s.acceleration = s.end_acceleration = 2 / dt * (s.rate - v);
+  s.acceleration_at_end = false;
+  s.end_value = 2 * x - u;
+  s.end_rate = 2 * s.rate - v;
+  return s;
+}
+
+struct Alpha {
+  double m, f, gamma, beta;
+  explicit Alpha(double rho)
+      : m((2 * rho - 1) / (rho + 1)),
+        f(rho / (rho + 1)),
+        gamma(0.5 - m + f),
+        beta(0.25 * (1 - m + f) * (1 - m + f)) {}
+};
+
+// Inertia at t^{n+1} - m dt, everything else at t^{n+1} - f dt; Newmark's relations between the levels.
+Stage generalised_alpha(double dt, double spectral_radius) {
+  const Alpha alpha(spectral_radius);
+  Stage s{.dt = dt, .place = 1 - alpha.f};
+  s.end_value = 1 / s.place * (x - alpha.f * u);
+  s.end_acceleration = 1 / (alpha.beta * dt * dt) * (s.end_value - u - dt * v) - (0.5 / alpha.beta - 1) * a;
+  s.end_rate = v + dt * (1 - alpha.gamma) * a + dt * alpha.gamma * s.end_acceleration;
+  s.rate = (1 - alpha.f) * s.end_rate + alpha.f * v;
+  s.acceleration = (1 - alpha.m) * s.end_acceleration + alpha.m * a;
+  return s;
+}
+
+std::vector<Stage> bathe(double dt) {
+  const double first = bathe_part * dt;
+  return {trapezoidal(first), three_point(first, dt - first, first)};
+}
+
+}  // namespace
+
+void declare(config::Section& s, TimeSchemeParameters& p) {
+  auto words = first_order_words;
+  words.emplace_back("generalised-alpha", TimeScheme::generalised_alpha);
+  s.choice("type", p.type, words)
+      .doc(
+          "how time derivatives are approximated; all but euler are second order, all but trapezoidal damp "
+          "the highest modes");
+  s.value("spectral-radius", p.spectral_radius)
+      .range(0, 1)
+      .doc("of generalised-alpha: what is left of the highest modes after a step; 1 damps nothing");
+}
+
+void declare_first_order(config::Section& s, TimeSchemeParameters& p) {
+  s.choice("type", p.type, first_order_words)
+      .doc("how time derivatives are approximated; all but euler are second order");
+}
+
+std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, double dt,
+                                       const StepHistory& history) {
+  const bool first = history.steps == 0;
+  switch (scheme.type) {
+    case TimeScheme::euler:
+      return {euler(dt)};
+    case TimeScheme::three_point:
+      return {first ? trapezoidal(dt) : three_point(0, dt, history.dt_old)};
+    case TimeScheme::trapezoidal:
+      return {trapezoidal(dt)};
+    case TimeScheme::bathe:
+      return bathe(dt);
+    case TimeScheme::generalised_alpha:
+      return {first ? trapezoidal(dt) : generalised_alpha(dt, scheme.spectral_radius)};
+  }
+  throw std::logic_error("unknown time scheme");
+}
+
+std::vector<Stage> first_order_stages(const TimeSchemeParameters& scheme, double dt,
+                                      const StepHistory& history) {
+  if (scheme.type == TimeScheme::generalised_alpha)
+    throw std::logic_error("generalised-alpha is for second derivatives");
+  return second_order_stages(scheme, dt, history);
+}
+
+bool uses_old_level(TimeScheme scheme) { return scheme == TimeScheme::three_point; }
+bool uses_acceleration(TimeScheme scheme) { return scheme == TimeScheme::generalised_alpha; }
+
+LocalError local_error(const TimeSchemeParameters& scheme) {
+  switch (scheme.type) {
+    case TimeScheme::euler:
+      return {1, 0.5};
+    case TimeScheme::three_point:
+      return {2, 1. / 3};
+    case TimeScheme::trapezoidal:
+      return {2, 1. / 12};
+    case TimeScheme::bathe:  // [bank1985]
+      return {2, (3 * bathe_part * bathe_part - 4 * bathe_part + 2) / (12 * (2 - bathe_part))};
+    case TimeScheme::generalised_alpha:
+      return {2, Alpha(scheme.spectral_radius).beta - 1. / 6};
+  }
+  throw std::logic_error("unknown time scheme");
+}
+
+std::string name(TimeScheme scheme) {
+  for (const auto& [word, value] : first_order_words)
+    if (value == scheme) return word;
+  return "generalised-alpha";
+}
+
+}  // namespace couplet

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/config/section.hpp"
+
+namespace couplet {
+
+enum class TimeScheme { euler, three_point, trapezoidal, bathe, generalised_alpha };
+
+struct TimeSchemeParameters {
+  TimeScheme type = TimeScheme::trapezoidal;
+  double spectral_radius = 0.9;  // of generalised-alpha: what is left of the highest modes after a step
+};
+
+/// The keys of `time-scheme` of an equation with second time derivatives.
+void declare(config::Section& section, TimeSchemeParameters& parameters);
+/// The same for first derivatives: all schemes but generalised-alpha.
+void declare_first_order(config::Section& section, TimeSchemeParameters& parameters);
+
+/// A linear combination of what a stage knows: its unknown x (a value within the stage), value, rate and
+/// acceleration at the start of the stage, value and rate one level further back.
+struct Levels {
+  double x = 0, u = 0, v = 0, a = 0, u_old = 0, v_old = 0;
+
+  friend Levels operator+(const Levels& p, const Levels& q) {
+    return {p.x + q.x, p.u + q.u, p.v + q.v, p.a + q.a, p.u_old + q.u_old, p.v_old + q.v_old};
+  }
+  friend Levels operator*(double s, const Levels& p) {
+    return {s * p.x, s * p.u, s * p.v, s * p.a, s * p.u_old, s * p.v_old};
+  }
+  friend Levels operator-(const Levels& p, const Levels& q) { return p + -1.0 * q; }
+};
+
+/// One implicit solve: equilibrium is asked for at t + place * dt, where the value is the unknown x and rate
+/// and acceleration are these combinations; the end values follow from it.
+struct Stage {
+  double start = 0;  ///< after the start of the step [s]
+  double dt = 0;     ///< length of the stage [s]
+  double place = 1;  ///< of the unknown and of the loads: 1/2 the middle of the stage, 1 its end
+  Levels rate{}, acceleration{};
+  Levels end_value{}, end_rate{}, end_acceleration{};
+  /// Acceleration lives at the end of the stage; if not, it is the mean over the stage (trapezoidal rule).
+  bool acceleration_at_end = true;
+};
+
+/// What lies behind a step.
+struct StepHistory {
+  int steps = 0;      ///< accepted so far; 0: there is no level further back
+  double dt_old = 0;  ///< of the last step [s]
+};
+
+/// The stages of a step for M u'' + C u' + K u = F:
+///   euler             backward, thesis (2.44)
+///   three-point       backward with variable steps, thesis (2.46)-(2.47)
+///   trapezoidal       thesis (2.45) with its erratum, as the mid-point rule: x at t + dt/2, u^{n+1} = 2x -
+///   u^n bathe             trapezoidal over (2 - sqrt 2) dt, then three-point over the rest: both have the
+///   same
+///                     matrix
+///   generalised-alpha [chung1993], the acceleration is part of the state
+/// The first step of three-point and generalised-alpha, which need more than the initial values, is a
+/// trapezoidal one. Uses of u_old, v_old (three-point) and a (generalised-alpha) are told by the functions
+/// below.
+std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, double dt,
+                                       const StepHistory& history);
+/// The stages of a step for C u' + K u = F; `rate` and `end_value` are to be used, which need u and u_old
+/// alone. Throws std::logic_error for generalised-alpha.
+std::vector<Stage> first_order_stages(const TimeSchemeParameters& scheme, double dt,
+                                      const StepHistory& history);
+
+/// The scheme needs the level before the last one at the start of a step.
+bool uses_old_level(TimeScheme scheme);
+/// The scheme needs the acceleration at the start of a step.
+bool uses_acceleration(TimeScheme scheme);
+
+/// Local error of a step: constant * dt^(order + 1) * the (order + 1)-th derivative of the value.
+struct LocalError {
+  int order = 2;
+  double constant = 0;
+};
+LocalError local_error(const TimeSchemeParameters& scheme);
+
+std::string name(TimeScheme scheme);
+
+}  // namespace couplet

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+// One stage of a step: the system, its right-hand side, and what follows from its solution (equations:
+// Solid).
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/log/timer.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/solid.hpp"
+#include "solid_solver/system.hpp"
+
+namespace couplet {
+namespace {
+
+// Systems of other step sizes that are kept: a step that was halved soon comes back to its length.
+constexpr std::size_t systems_kept = 2;
+
+/// Combinations of levels for one component after another.
+class History {
+ public:
+  History(const SolidState& now, std::span<const double> u_old, std::span<const double> v_old)
+      : u_(now.cell_u), v_(now.cell_v), a_(now.cell_a), u_old_(u_old), v_old_(v_old) {}
+  double operator()(const Levels& l, std::size_t i, double x = 0) const {
+    double value = l.x * x + l.u * u_[i] + l.v * v_[i];
+    if (!a_.empty()) value += l.a * a_[i];
+    if (!u_old_.empty()) value += l.u_old * u_old_[i] + l.v_old * v_old_[i];
+    return value;
+  }
+
+ private:
+  std::span<const double> u_, v_, a_, u_old_, v_old_;
+};
+
+/// `start`: the state at the start of the step, which is the old level of a second stage.
+History history(const SolidState& now, const SolidState& start) {
+  return &now == &start ? History(now, now.cell_u_old, now.cell_v_old)
+                        : History(now, start.cell_u, start.cell_v);
+}
+
+}  // namespace
+
+std::vector<Stage> Solid::stages_of(double dt) const {
+  if (is_dynamic()) return second_order_stages(parameters_.time_scheme, dt, {state_.steps, state_.dt});
+  // No inertia, no damping; velocities are differences.
+  Stage still{.dt = dt};
+  still.end_value.x = 1;
+  still.end_rate.x = 1 / dt;
+  still.end_rate.u = -1 / dt;
+  return {still};
+}
+
+Solid::System& Solid::system_for(double mass_factor) {
+  const auto same = [&](const std::unique_ptr<System>& s) {
+    return std::abs(s->mass_factor - mass_factor) <= 1e-10 * mass_factor;
+  };
+  const auto found = std::ranges::find_if(systems_, same);
+  if (found != systems_.end()) {
+    std::rotate(systems_.begin(), found, found + 1);
+    return *systems_.front();
+  }
+  if (systems_.size() == systems_kept) systems_.pop_back();
+  auto system = std::make_unique<System>();
+  system->mass_factor = mass_factor;
+  if (mass_factor > 0)
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+      system->inertia.push_back(mass_factor * parameters_.material.density * mesh_.reference.volume[c]);
+  system->method = make_solution_method({mesh_, elastic_, system->inertia}, parameters_.method);
+  systems_.insert(systems_.begin(), std::move(system));
+  return *systems_.front();
+}
+
+void Solid::prepare_stage(StageWork& work) {
+  const Stage& stage = work.stage;
+  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
+  work.start_time = step_.time + stage.start;
+  work.place_time = work.start_time + stage.place * stage.dt;
+  work.end_time = work.start_time + stage.dt;
+  work.damping_scale = 1 + damping.stiffness * stage.rate.x;
+  work.system = &system_for((stage.acceleration.x + damping.mass * stage.rate.x) / work.damping_scale);
+  work.rhs.assign(elastic_.n_unknowns(), 0);
+  work.face_force.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
+  add_body_forces(work.place_time, work.rhs);
+  for (const auto& effect : effects_) effect->add_loads(work.place_time, work.rhs);
+  boundaries_.add_forces(work.place_time, work.face_force);
+  if (!prescribed_.is_zero()) subtract_prescribed(work);
+}
+
+// Known w = x + beta v: the value between the ends is the same mean of them as in the cells.
+void Solid::subtract_prescribed(StageWork& work) {
+  const double place = work.stage.place, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
+  std::vector<double> value(known_.size()), start(known_.size());
+  prescribed_.evaluate(work.end_time, value);
+  if (place != 1 || beta > 0) prescribed_.evaluate(work.start_time, start);
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    const double mean_rate = (value[i] - start[i]) / work.stage.dt;
+    value[i] = (1 - place) * start[i] + place * value[i] + (beta > 0 ? beta * mean_rate : 0);
+  }
+  elastic_.subtract_known(value, work.rhs);
+}
+
+void Solid::add_body_forces(double t, std::span<double> rhs) {
+  body_load_.setZero();
+  if (body_force_.empty() && parameters_.gravity.empty()) return;
+  const int dim = mesh_.dim;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    for (int a = 0; a < dim; ++a) {
+      double force = body_force_.empty() ? 0 : body_force_[a](mesh_.reference.cell_centre[c], t);
+      if (!parameters_.gravity.empty()) force += parameters_.material.density * parameters_.gravity[a];
+      force *= mesh_.reference.volume[c];  // (2.59)
+      rhs[std::size_t(c) * dim + a] += force;
+      body_load_[a] += force;
+    }
+}
+
+/// Sum of the given forces, `dim` values a boundary face of owned cells; empty without interface.
+std::vector<double> Solid::interface_load(const Exchange& in) const {
+  if (!interface_) return {};
+  const int dim = mesh_.dim;
+  std::vector<double> on_root(comm_rank(mesh_.comm) == 0 ? description_.face_centres.size() * dim : 0, 0.0);
+  for (const auto& [name, values] : in) {
+    if (name != "pressure-force" && name != "viscous-force")
+      throw Error("The solid was given '{}'; it takes 'pressure-force' and 'viscous-force'.", name);
+    if (comm_rank(mesh_.comm) != 0) continue;
+    if (values.size() != on_root.size())
+      throw Error("The solid was given {} values of '{}'; its interface has {} faces of {} components.",
+                  values.size(), name, description_.face_centres.size(), dim);
+    for (std::size_t i = 0; i < values.size(); ++i) on_root[i] += values[i];
+  }
+  std::vector<double> force(std::size_t(mesh_.boundary.n_owned()) * dim, 0);
+  const std::vector<double> local = interface_->scatter_faces(on_root, dim);
+  for (std::size_t i = 0; i < interface_->faces().size(); ++i)
+    for (int a = 0; a < dim; ++a)
+      force[std::size_t(interface_->faces()[i] - mesh_.n_interior) * dim + a] += local[i * dim + a];
+  return force;
+}
+
+void Solid::solve_stage(const StageWork& work, std::span<const double> interface_load, bool first) {
+  const SolidState& now = first ? state_ : trial_;
+  rhs_ = work.rhs;
+  if (work.system->mass_factor > 0) add_inertia(work, now);
+  add_face_forces(work, interface_load);
+  guess(work, now);
+  {
+    const log::ScopedTimer timer(log::timers(), "solid: linear solver");
+    work.system->method->solve(rhs_, unknowns_);
+  }
+  finish_offsets(work.stage, now);
+  finish_cells(work, now);
+}
+
+void Solid::add_inertia(const StageWork& work, const SolidState& now) {
+  const Stage& stage = work.stage;
+  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
+  Levels known =
+      stage.acceleration + (damping.mass - work.system->mass_factor * damping.stiffness) * stage.rate;
+  const History levels = history(now, state_);
+  const int dim = mesh_.dim;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const double mass = parameters_.material.density * mesh_.reference.volume[c];
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t i = std::size_t(c) * dim + a;
+      rhs_[i] -= mass * levels(known, i);
+    }
+  }
+}
+
+// The known force of a traction face stands in its own row and in its cell's.
+void Solid::add_face_forces(const StageWork& work, std::span<const double> interface_load) {
+  face_load_.setZero();
+  const int dim = mesh_.dim;
+  const auto& faces = elastic_.traction_faces();
+  const std::size_t first = std::size_t(mesh_.cells.n_owned()) * dim;
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t b = std::size_t(faces[i] - mesh_.n_interior) * dim + a;
+      const double value = work.face_force[b] + (interface_load.empty() ? 0 : interface_load[b]);
+      rhs_[std::size_t(mesh_.owner[faces[i]]) * dim + a] += value;
+      rhs_[first + i * dim + a] += value;
+      face_load_[a] += value;
+    }
+}
+
+// For iterative methods: where the accepted motion leads, so that equal loads give equal answers.
+void Solid::guess(const StageWork& work, const SolidState& now) {
+  const int dim = mesh_.dim;
+  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
+  const double ahead = is_dynamic() ? work.stage.place * work.stage.dt : 0;
+  for (std::size_t i = 0; i < n_cells; ++i) unknowns_[i] = now.cell_u[i] + ahead * now.cell_v[i];
+  const auto& faces = elastic_.traction_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t b = std::size_t(faces[i] - mesh_.n_interior) * dim + a;
+      unknowns_[n_cells + i * dim + a] = now.face_u[b] + ahead * now.face_v[b];
+    }
+}
+
+void Solid::finish_cells(const StageWork& work, const SolidState& now) {
+  const Stage& stage = work.stage;
+  const double s = work.damping_scale, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
+  const History levels = history(now, state_);
+  const std::size_t n = std::size_t(mesh_.cells.n_owned()) * mesh_.dim;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double x = beta > 0 ? (unknowns_[i] - beta * levels(stage.rate, i)) / s : unknowns_[i];
+    const double u = levels(stage.end_value, i, x), v = levels(stage.end_rate, i, x);
+    if (!trial_.cell_a.empty()) trial_.cell_a[i] = levels(stage.end_acceleration, i, x);
+    trial_.cell_u[i] = u;
+    trial_.cell_v[i] = v;
+  }
+  trial_.stage_dt = stage.dt;
+  const int dim = mesh_.dim;
+  for (const Index f : elastic_.traction_faces())
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
+      const std::size_t c = std::size_t(mesh_.owner[f]) * dim + a;
+      trial_.face_u[b] += trial_.cell_u[c];
+      trial_.face_v[b] += trial_.cell_v[c];
+    }
+}
+
+// Leaves in the faces what finish_cells() adds to their cells' values:
+// delta = u_B - u_P at the end of the stage from the places of this solve and the last one (the trapezoidal
+// rule with equal steps: 3/2 and -1/2), its rate likewise from the difference of the ends, which lives in the
+// middle. Stiffness damping makes w of the solve lead: w_B - w_P = delta + beta d(delta)/dt.
+void Solid::finish_offsets(const Stage& stage, const SolidState& now) {
+  const int dim = mesh_.dim;
+  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
+  const bool is_first = now.stage_dt == 0;
+  const double lag = (1 - stage.place) * stage.dt, gap = now.offset_lag + stage.place * stage.dt;
+  const double slope = is_first ? 0 : lag / gap;
+  const double rate_slope = is_first || !is_dynamic() ? 0 : stage.dt / (stage.dt + now.stage_dt);
+  const double relax = (parameters_.damping ? parameters_.damping->stiffness : 0) / gap;
+  const auto& faces = elastic_.traction_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t b = std::size_t(faces[i] - mesh_.n_interior) * dim + a;
+      const std::size_t c = std::size_t(mesh_.owner[faces[i]]) * dim + a;
+      const double here =
+          (unknowns_[n_cells + i * dim + a] - unknowns_[c] + relax * now.offset[b]) / (1 + relax);
+      const double end = here + slope * (here - now.offset[b]);
+      const double rate = (end - (now.face_u[b] - now.cell_u[c])) / stage.dt;
+      const double end_rate = rate + rate_slope * (rate - now.offset_rate[b]);
+      trial_.offset[b] = here;
+      trial_.offset_rate[b] = rate;
+      trial_.face_u[b] = end;
+      trial_.face_v[b] = end_rate;
+    }
+  trial_.offset_lag = lag;
+}
+
+}  // namespace couplet
