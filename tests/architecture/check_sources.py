@@ -34,6 +34,7 @@ THIRD_PARTY = {
     r"muParser": ["common/fv"],
     r"nanoflann": ["coupler", "common/io", "common/fv"],
     r"spdlog/": ["common/log"],
+    r"zlib": ["thermocline"],
 }
 SOURCES = ("*.cpp", "*.hpp")
 SCRIPTS = ("*.py", "*.geo", "CMakeLists.txt", "case.yaml")

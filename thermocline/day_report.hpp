@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "common/config/section.hpp"
+#include "common/io/series.hpp"
+#include "thermocline/interfaces.hpp"
+#include "thermocline/plant.hpp"
+#include "thermocline/stress_history.hpp"
+#include "thermocline/weather.hpp"
+
+namespace couplet::thermocline {
+
+struct ReportParameters {
+  double run_in = 0;  ///< days before the first that counts
+  /// Margins of the critical temperatures of the thermocline's thickness (5.30) [K].
+  double thickness_margin = 15;
+  double outlet_margin = 5;    ///< "near the design temperature" of the outlets [K]
+  double dead_state = 318.15;  ///< T_ref of the exergy (5.29) [K]
+};
+void declare(config::Section& section, ReportParameters& parameters);
+
+/// Sums of a day or of many: energies [J], times [s].
+struct ReportSums {
+  enum Item : std::size_t {
+    field,
+    excess,
+    stored,
+    delivered,
+    exergy,
+    lacking,
+    losses,
+    charging,
+    discharging,
+    charged_rest,
+    discharged_rest,
+    cold_outlet,
+    hot_outlet,
+    thickness,  ///< integral of h_th over the time for which it is defined [m s]
+    thickness_time,
+    duration,
+    n_items
+  };
+  std::array<double, n_items> sum{};
+  double operator[](Item item) const { return sum[item]; }
+  double& operator[](Item item) { return sum[item]; }
+  void add(const ReportSums& other);
+};
+
+/// One line of tables 5.5 and 5.6 of [thesis].
+struct ReportLine {
+  std::string quantity, unit;
+  double value;
+};
+
+/// Keeps the books of tank and plant day by day, and writes
+///   days.csv      one line a day, all rows of tables 5.5 and 5.6 for that day alone;
+///   summary.csv   their means over the days after the run-in, and both factors of safety with place and
+///   time; plant.csv     time series at each step of the simulation; stress.csv    by ring: means of the
+///   daily extremes and the largest share of the yield strength.
+class DayReport final : public TankObserver {
+ public:
+  /// `folder`: empty for none of the files. On restart the files go on from `restart_time`.
+  DayReport(const ReportParameters& parameters, const Plant& plant, const Weather& weather,
+            const std::filesystem::path& folder,
+            double restart_time = std::numeric_limits<double>::quiet_NaN());
+
+  void record(const TankRecord& record) override;
+  void finish() override;
+  std::vector<double> state() const override;
+  void restore(std::span<const double> state) override;
+
+  const ReportSums& results() const { return results_; }
+  int days_counted() const { return days_counted_; }
+  const StressHistory& stress() const { return stress_; }
+  std::vector<ReportLine> lines() const;
+
+ private:
+  double add_step(const BedStep& step);
+  void add_thickness(const TankRecord& record);
+  void end_day(double time);
+  std::vector<ReportLine> lines_of(const ReportSums& sums, double days) const;
+  void write_day(double time);
+
+  ReportParameters p_;
+  Plant plant_;
+  const Weather& weather_;
+  std::filesystem::path folder_;
+  ReportSums day_, results_;
+  StressHistory stress_;
+  int days_seen_ = 0, days_counted_ = 0;
+  double storable_ = 0, bed_height_ = 0, last_thickness_ = 0;
+  std::unique_ptr<Series> days_, series_;
+};
+
+}  // namespace couplet::thermocline

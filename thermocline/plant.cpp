@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/plant.hpp"
+
+#include <algorithm>
+
+namespace couplet::thermocline {
+
+void declare(config::Section& s, PlantParameters& p) {
+  s.value("electric-power", p.electric_power)
+      .unit("W")
+      .positive()
+      .required()
+      .doc("firm output of the power block");
+  s.value("block-efficiency", p.block_efficiency)
+      .range(0.01, 1)
+      .required()
+      .doc("electric power per heat taken");
+  s.value("field-area", p.field_area)
+      .unit("m^2")
+      .positive()
+      .required()
+      .doc("collecting area of the solar field");
+  s.value("field-efficiency", p.field_efficiency)
+      .range(0.01, 1)
+      .required()
+      .doc("heat collected per direct radiation");
+  s.value("hot", p.hot).unit("K").required().doc("leaves the solar field and, by design, the charged tank");
+  s.value("cold", p.cold)
+      .unit("K")
+      .required()
+      .doc("leaves the power block and, by design, the discharged tank");
+  s.value("cut-off", p.cut_off)
+      .unit("K")
+      .positive()
+      .doc(
+          "charging stops when what enters the solar field is this much too warm, discharging when what "
+          "enters the power "
+          "block is this much too cold");
+  s.value("restart", p.restart)
+      .unit("K")
+      .positive()
+      .doc(
+          "charging starts only if the bottom of the tank is at most this much too warm, discharging only if "
+          "its top is at "
+          "most this much too cold");
+  s.check([&] { return p.hot > p.cold ? "" : "'hot' must be above 'cold'."; }, "hot");
+  s.check(
+      [&] { return p.cut_off < p.hot - p.cold ? "" : "must be smaller than the step from 'cold' to 'hot'."; },
+      "cut-off");
+}
+
+Plant::Plant(const PlantParameters& parameters, double specific_heat) : p_(parameters), c_(specific_heat) {}
+
+double Plant::field_heat(double irradiance) const { return irradiance * p_.field_area * p_.field_efficiency; }
+
+double Plant::block_heat() const { return p_.electric_power / p_.block_efficiency; }
+
+/// The store rests: the field feeds the block with what it has, at most what the block asks for.
+PlantFlows Plant::idle(double field_heat) const {
+  PlantFlows f;
+  f.field_heat = field_heat;
+  f.block_heat = block_heat();
+  f.field_flow = std::min(field_heat, f.block_heat) / (c_ * (p_.hot - p_.cold));
+  f.block_flow = f.block_heat / (c_ * (p_.hot - p_.cold));
+  f.field_inlet = p_.cold;
+  f.block_inlet = p_.hot;
+  return f;
+}
+
+PlantFlows Plant::charge(double field_heat, double bottom) const {
+  PlantFlows f = idle(field_heat);
+  f.mode = PlantMode::charge;
+  const double m = (field_heat - f.block_heat) / (c_ * (p_.hot - bottom));
+  f.tank_flow = -m;
+  f.field_flow = f.block_flow + m;
+  f.field_inlet = (f.block_flow * p_.cold + m * bottom) / f.field_flow;  // (5.5)
+  return f;
+}
+
+PlantFlows Plant::discharge(double field_heat, double top) const {
+  PlantFlows f = idle(field_heat);
+  f.mode = PlantMode::discharge;
+  const double m = (f.block_heat - field_heat) / (c_ * (top - p_.cold));
+  f.tank_flow = m;
+  f.block_flow = f.field_flow + m;
+  f.block_inlet = (f.field_flow * p_.hot + m * top) / f.block_flow;  // (5.6)
+  return f;
+}
+
+PlantFlows Plant::flows(double field_heat, double top, double bottom, PlantMode before) const {
+  if (field_heat > block_heat()) {
+    const double start = before == PlantMode::charge ? p_.hot : p_.cold + p_.restart;
+    // At the hot temperature no flow could take the heat up.
+    if (bottom > start || bottom >= p_.hot) return idle(field_heat);
+    const PlantFlows f = charge(field_heat, bottom);
+    return f.field_inlet < p_.cold + p_.cut_off ? f : idle(field_heat);
+  }
+  if (field_heat < block_heat()) {
+    const double start = before == PlantMode::discharge ? p_.cold : p_.hot - p_.restart;
+    if (top < start || top <= p_.cold) return idle(field_heat);
+    const PlantFlows f = discharge(field_heat, top);
+    return f.block_inlet > p_.hot - p_.cut_off ? f : idle(field_heat);
+  }
+  return idle(field_heat);
+}
+
+}  // namespace couplet::thermocline

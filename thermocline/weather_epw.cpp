@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "thermocline/weather_date.hpp"
+#include "thermocline/weather_text.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+// The format of EnergyPlus [epw], columns counted from 0.
+constexpr std::size_t header_lines = 8, month = 1, day = 2, hour = 3, fewest_columns = 22;
+constexpr double end_of_hour = 3600;  // [s]
+struct Column {
+  std::size_t number;
+  double missing_from;  ///< this value and above stand for "missing"
+};
+/// In the order of weather_quantities: irradiance, temperature, wind, humidity, pressure.
+constexpr std::array<Column, 5> columns{{{14, 9999}, {6, 99.9}, {21, 999}, {8, 999}, {9, 999999}}};
+
+int whole(const std::vector<std::string>& fields, std::size_t column, const char* name,
+          const std::string& place) {
+  const double value = number_in(fields[column], name, place);
+  if (!(std::abs(value) < 1e4) || value != std::floor(value))
+    throw Error("{}: {} must be a whole number, not '{}'.", place, name, fields[column]);
+  return static_cast<int>(value);
+}
+
+/// LOCATION,city,region,country,source,number,latitude,longitude,time zone,altitude
+WeatherHours::Site read_site(const std::string& line, const std::string& place) {
+  const std::vector<std::string> fields = split(line, ',');
+  if (fields.size() < 9)
+    throw Error("{}: the line LOCATION must hold latitude, longitude and time zone.", place);
+  const double latitude = number_in(fields[6], "the latitude", place);
+  const double longitude = number_in(fields[7], "the longitude", place);
+  const double zone = number_in(fields[8], "the time zone", place);
+  if (!(std::abs(latitude) <= 90 && std::abs(longitude) <= 180 && std::abs(zone) <= 14))
+    throw Error("{}: latitude {:g}, longitude {:g} and time zone {:g} are no place on earth.", place,
+                latitude, longitude, zone);
+  constexpr double seconds_a_degree = 240;  // the earth turns by 15 degrees an hour
+  return {latitude, longitude * seconds_a_degree - 3600 * zone};
+}
+
+}  // namespace
+
+WeatherHours read_weather_epw(const std::filesystem::path& file) {
+  const std::vector<std::string> lines = read_lines(file);
+  HourCollector hours(file.string());
+  if (lines.size() <= header_lines || !lines[0].starts_with("LOCATION,"))
+    throw Error(
+        "{}: this is not an EPW file: it must start with a line LOCATION,... and have {} header lines.",
+        hours.place(1), header_lines);
+  for (std::size_t i = header_lines; i < lines.size(); ++i) {
+    const int line = static_cast<int>(i) + 1;
+    const std::string place = hours.place(line);
+    const std::vector<std::string> fields = split(lines[i], ',');
+    if (fields.size() < fewest_columns)
+      throw Error("{}: {} columns; an EPW record has 35.", place, fields.size());
+    const int m = whole(fields, month, "the month", place), d = whole(fields, day, "the day", place);
+    if (m == 2 && d == 29) continue;  // a reference year has 365 days
+    const int h = whole(fields, hour, "the hour", place);
+    if (h < 1 || h > hours_a_day)
+      throw Error("{}: the hour is {}; it must be from 1 to {}.", place, h, hours_a_day);
+    int number = 0;
+    try {
+      number = day_of_year(fmt::format("{:02d}-{:02d}", m, d)) * hours_a_day + h - 1;
+    } catch (const Error& error) {
+      throw Error("{}: {}", place, error.what());
+    }
+    std::array<double, 5> values;
+    for (std::size_t q = 0; q < values.size(); ++q) {
+      values[q] = number_in(fields[columns[q].number], weather_quantities[q].name, place);
+      if (values[q] >= columns[q].missing_from) values[q] = missing;
+    }
+    hours.add(number, values, line);
+  }
+  WeatherHours result = hours.finish(end_of_hour);
+  result.site = read_site(lines[0], hours.place(1));
+  return result;
+}
+
+WeatherHours read_weather(const std::filesystem::path& file) {
+  const std::filesystem::path plain = file.extension() == ".gz" ? file.stem() : file;
+  return plain.extension() == ".epw" ? read_weather_epw(file) : read_weather_csv(file);
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace couplet::thermocline {
+
+/// Hourly records of a site, whole days. `dni` is the mean over the hour; the states belong to the moment
+/// `state_offset` after its start.
+struct WeatherHours {
+  std::string source;       ///< for messages: file or generator
+  int first_day = 0;        ///< day of the year of the first record, 0 for 01-01
+  double state_offset = 0;  ///< [s]
+  /// Where the sun stands follows from these; not in every file.
+  struct Site {
+    double latitude = 0;     ///< [deg], north positive
+    double solar_ahead = 0;  ///< of the file's clock [s]
+  };
+  std::optional<Site> site;
+  std::vector<double> dni;          ///< direct normal irradiance [W/m^2]
+  std::vector<double> temperature;  ///< of the air [degC]
+  std::vector<double> wind;         ///< [m/s]
+  std::vector<double> humidity;     ///< relative, 0 to 1
+  std::vector<double> pressure;     ///< [Pa]
+  std::vector<std::string> warnings;
+  int days() const { return static_cast<int>(dni.size()) / 24; }
+};
+
+/// One column of a weather file: what it is called, what is believable.
+struct WeatherQuantity {
+  std::string_view name;  ///< in messages: "temperature [degC]"
+  std::string_view head;  ///< in the CSV: "T_degC"
+  double lowest, highest;
+  std::vector<double> WeatherHours::*target;
+  double factor;  ///< from the file's unit
+};
+extern const std::array<WeatherQuantity, 5> weather_quantities;
+
+/// CSV: lines with '#' are comments; then a head with the columns hour (of the year, from 0), dni_W_m2 (mean
+/// over that hour), T_degC, wind_m_s, rh_pct, p_Pa in any order (states at mid-hour); then a line an hour.
+/// May be compressed (.gz). Values may be empty or nan. Gaps of at most longest_gap hours are closed by
+/// straight lines with a warning; longer ones, unknown or missing columns, hours that do not follow one
+/// another and values that cannot be true throw Error with file:line.
+WeatherHours read_weather_csv(const std::filesystem::path& file);
+
+/// EnergyPlus weather (EPW; eight header lines, 35 columns, hours 1 to 24, the irradiance of the hour that
+/// ends then, states at that moment) [epw]. Its codes for missing values are treated as gaps.
+WeatherHours read_weather_epw(const std::filesystem::path& file);
+
+/// By the file name: .epw, else CSV; ".gz" behind either is taken off first.
+WeatherHours read_weather(const std::filesystem::path& file);
+
+/// The same record with each hour's irradiance replaced by the mean over that hour of all days of its month
+/// (of the record): the sun as tables of average days give it. The energy of every month stays.
+WeatherHours with_mean_days(WeatherHours record);
+
+inline constexpr int longest_gap = 6;  // [h]
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "common/config/section.hpp"
+#include "thermocline/clear_sky.hpp"
+#include "thermocline/weather.hpp"
+
+namespace couplet::thermocline {
+
+enum class WeatherKind { constant, file, clear_sky };
+
+/// What the section `weather` of the YAML says.
+struct WeatherParameters {
+  WeatherKind kind = WeatherKind::constant;
+  std::string file;
+  ClearSky sky;
+  int shift_hours = 0;
+  bool mean_days = false;
+  std::string from = "01-01", to;  ///< dates MM-DD; empty: the whole year
+  // of constant weather
+  double irradiance = 0, temperature = 293.15, wind = 0, humidity = 0.5, pressure = 101325;
+};
+void declare(config::Section& section, WeatherParameters& parameters);
+
+/// Reads or makes it. `warnings` gets what was mended in the file, with file:line. Throws Error.
+std::unique_ptr<Weather> make_weather(const WeatherParameters& parameters,
+                                      const std::filesystem::path& case_folder,
+                                      std::vector<std::string>& warnings);
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/weather_text.hpp"
+
+#include <zlib.h>
+
+#include <charconv>
+#include <cmath>
+#include <memory>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "thermocline/weather_date.hpp"
+
+namespace couplet::thermocline {
+
+const std::array<WeatherQuantity, 5> weather_quantities{{
+    // The solar constant with the eccentricity of the orbit bounds what reaches the ground.
+    {"direct normal irradiance [W/m^2]", "dni_W_m2", 0, 1412, &WeatherHours::dni, 1},
+    {"air temperature [degC]", "T_degC", -70, 65, &WeatherHours::temperature, 1},
+    {"wind speed [m/s]", "wind_m_s", 0, 80, &WeatherHours::wind, 1},
+    {"relative humidity [%]", "rh_pct", 0, 110, &WeatherHours::humidity, 0.01},
+    {"pressure [Pa]", "p_Pa", 40000, 110000, &WeatherHours::pressure, 1},
+}};
+
+std::vector<std::string> read_lines(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw Error("{}: there is no such weather file. Relative paths start at the folder of the YAML file.",
+                file.string());
+  // gzread gives the content of uncompressed files as it is.
+  const std::unique_ptr<gzFile_s, int (*)(gzFile)> stream(gzopen(file.c_str(), "rb"), gzclose);
+  if (!stream) throw Error("{}: this weather file cannot be read.", file.string());
+  std::string text;
+  std::array<char, 1 << 16> buffer;
+  int got = 0;
+  while ((got = gzread(stream.get(), buffer.data(), buffer.size())) > 0)
+    text.append(buffer.data(), static_cast<std::size_t>(got));
+  int status = Z_OK;
+  gzerror(stream.get(), &status);
+  if (got < 0 || status != Z_OK)
+    throw Error("{}: this weather file is damaged or was cut short: it cannot be decompressed to its end.",
+                file.string());
+  std::vector<std::string> lines = split(text, '\n');
+  for (std::string& line : lines)
+    if (line.ends_with('\r')) line.pop_back();
+  while (!lines.empty() && trim(lines.back()).empty()) lines.pop_back();
+  return lines;
+}
+
+double number_in(const std::string& field, std::string_view name, const std::string& place) {
+  const std::string_view text = trim(field);
+  if (text.empty() || text == "nan" || text == "NaN" || text == "NA") return missing;
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
+    throw Error("{}: '{}' is not a number; {} was expected here.", place, text, name);
+  return value;
+}
+
+std::string HourCollector::place(int line) const { return fmt::format("{}:{}", file_, line); }
+
+void HourCollector::add(int hour, std::array<double, 5> values, int line) {
+  if (first_hour_ < 0) first_hour_ = hour;
+  const int expected = first_hour_ + static_cast<int>(lines_.size());
+  if (hour < expected)
+    throw Error("{}: hour {} of the year comes after hour {}: each hour must be there once, in order.",
+                place(line), hour, expected - 1);
+  if (hour - expected > longest_gap)
+    throw Error(
+        "{}: hours {} to {} of the year are missing. Gaps of more than {} hours are not filled; complete the "
+        "file or choose a period without the gap.",
+        place(line), expected, hour - 1, longest_gap);
+  for (int h = expected; h < hour; ++h) {
+    for (auto& column : columns_) column.push_back(missing);
+    lines_.push_back(line);
+  }
+  for (std::size_t q = 0; q < values.size(); ++q) {
+    const WeatherQuantity& quantity = weather_quantities[q];
+    if (values[q] < quantity.lowest || values[q] > quantity.highest)
+      throw Error("{}: the {} is {:g}; it must be from {:g} to {:g}.", place(line), quantity.name, values[q],
+                  quantity.lowest, quantity.highest);
+    columns_[q].push_back(values[q]);
+  }
+  lines_.push_back(line);
+}
+
+void HourCollector::close_gaps(std::size_t quantity, std::vector<std::string>& warnings) {
+  std::vector<double>& v = columns_[quantity];
+  const std::size_t n = v.size();
+  for (std::size_t begin = 0; begin < n; ++begin) {
+    if (!std::isnan(v[begin])) continue;
+    std::size_t end = begin;
+    while (end < n && std::isnan(v[end])) ++end;
+    const std::string what(weather_quantities[quantity].name);
+    if (end - begin > longest_gap)
+      throw Error("{}: the {} is missing for {} hours from here. Gaps of more than {} hours are not filled.",
+                  place(lines_[begin]), what, end - begin, longest_gap);
+    // At the start or the end of the file there is one neighbour only.
+    const double before = begin > 0 ? v[begin - 1] : v[end];
+    const double after = end < n ? v[end] : before;
+    for (std::size_t i = begin; i < end; ++i)
+      v[i] = before + (after - before) * double(i - begin + 1) / double(end - begin + 1);
+    warnings.push_back(
+        fmt::format("{}: the {} is missing for {} hour{} from here; a straight line fills the gap.",
+                    place(lines_[begin]), what, end - begin, end - begin == 1 ? "" : "s"));
+    begin = end;
+  }
+}
+
+WeatherHours HourCollector::finish(double state_offset) {
+  if (lines_.empty()) throw Error("{}: this weather file holds no hours.", file_);
+  if (first_hour_ % hours_a_day != 0)
+    throw Error(
+        "{}: the first record is hour {} of the year, but whole days are needed: it must be the first "
+        "hour of a day, a multiple of {}.",
+        place(lines_.front()), first_hour_, hours_a_day);
+  if (lines_.size() % hours_a_day != 0)
+    throw Error("{}: the file ends after {} of the 24 hours of its last day. Whole days are needed.",
+                place(lines_.back()), lines_.size() % hours_a_day);
+  if (first_hour_ + lines_.size() > hours_a_day * days_a_year)
+    throw Error(
+        "{}: the file goes beyond hour {} of the year; a reference year has {} days (leave 29 February "
+        "out).",
+        place(lines_.back()), hours_a_day * days_a_year - 1, days_a_year);
+  WeatherHours result;
+  result.source = file_;
+  result.first_day = first_hour_ / hours_a_day;
+  result.state_offset = state_offset;
+  for (std::size_t q = 0; q < columns_.size(); ++q) {
+    close_gaps(q, result.warnings);
+    for (double& value : columns_[q]) value *= weather_quantities[q].factor;
+    result.*weather_quantities[q].target = std::move(columns_[q]);
+  }
+  return result;
+}
+
+}  // namespace couplet::thermocline
