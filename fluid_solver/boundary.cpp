@@ -25,14 +25,13 @@ void check_names(const Mesh& mesh, const FluidParameters& parameters) {
   if (!missing.empty())
     throw Error(
         "boundaries: the mesh '{}' has patches without a boundary: {}. Give each of them a type (inlet, "
-        "outlet, "
-        "no-slip, moving-wall, slip or interface).",
+        "outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic or interface).",
         parameters.mesh, join(missing));
 }
 
 FaceKind kind_of(BoundaryType type) {
   if (type == BoundaryType::outlet) return FaceKind::pressure;
-  return type == BoundaryType::slip ? FaceKind::slip : FaceKind::velocity;
+  return type == BoundaryType::slip || type == BoundaryType::symmetry ? FaceKind::slip : FaceKind::velocity;
 }
 
 double ramp_factor(const BoundaryParameters& b, double t) {
@@ -47,23 +46,49 @@ Boundary<D>::Boundary(const Mesh& mesh, const FluidParameters& parameters) : com
   check_names(mesh, parameters);
   kind_.assign(mesh.boundary.n_owned(), FaceKind::velocity);
   interface_.assign(kind_.size(), 0);
-  for (const Patch& patch : mesh.patches) {
-    const BoundaryParameters& b = parameters.boundaries.at(patch.name);
-    const Index first = patch.first - mesh.n_interior;
-    std::fill_n(kind_.begin() + first, patch.count, kind_of(b.type));
-    Given given{first, patch.count, b, {}, {}};
-    if (b.type == BoundaryType::interface) {
+  convective_ = free_backflow_ = interface_;
+  for (const Patch& patch : mesh.patches) add_patch(mesh, patch, parameters.boundaries.at(patch.name));
+}
+
+template <int D>
+void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const BoundaryParameters& b) {
+  const Index first = patch.first - mesh.n_interior;
+  const std::string where = "boundaries." + patch.name;
+  std::fill_n(kind_.begin() + first, patch.count, kind_of(b.type));
+  Given given{first, patch.count, b, {}, {}, {}, {}};
+  switch (b.type) {
+    case BoundaryType::interface:
       std::fill_n(interface_.begin() + first, patch.count, 1);
       interface_patches_.push_back(patch.name);
-    } else if (b.type == BoundaryType::outlet) {
+      return;
+    case BoundaryType::convective_outlet:
+      std::fill_n(convective_.begin() + first, patch.count, 1);
+      convective_patches_.emplace_back(first, patch.count);
+      return;
+    case BoundaryType::outlet:
       closed_ = false;
-      given.pressure = Expression(b.pressure, "boundaries." + patch.name + ".pressure");
+      std::fill_n(free_backflow_.begin() + first, patch.count, b.backflow_stabilisation ? 0 : 1);
+      given.pressure = Expression(b.pressure, where + ".pressure");
       pressure_patches_.push_back(std::move(given));
-    } else if (b.type != BoundaryType::slip) {
-      if (b.type != BoundaryType::no_slip)
-        given.velocity = make_expressions(b.velocity, D, "boundaries." + patch.name + ".velocity");
+      return;
+    case BoundaryType::slip:
+    case BoundaryType::symmetry:
+      return;
+    case BoundaryType::periodic:
+      if (sum(comm_, GlobalIndex(patch.count)) > 0)
+        throw Error("{}: the mesh was not joined at this periodic patch.", where);
+      return;
+    case BoundaryType::inlet:
+    case BoundaryType::moving_wall:
+      if (b.mean_speed) {
+        given.mean_speed = Expression(*b.mean_speed, where + ".mean-speed");
+        given.shape = inlet_shape<D>(mesh, patch, b.profile);
+      } else {
+        given.velocity = make_expressions(b.velocity, D, where + ".velocity");
+      }
+      [[fallthrough]];
+    case BoundaryType::no_slip:
       velocity_patches_.push_back(std::move(given));
-    }
   }
 }
 
@@ -72,14 +97,39 @@ void Boundary<D>::velocity_at(double t, const std::vector<Vec3>& centres, Vector
   for (const Given& g : velocity_patches_) {
     const std::span<const Vec3> places(centres.data() + g.first, g.count);
     const std::span<double> values = flat<D>(w).subspan(std::size_t(g.first) * D, std::size_t(g.count) * D);
+    const double factor = ramp_factor(g.parameters, t);
+    if (!g.shape.speed.empty()) {
+      const double mean = factor * g.mean_speed(Vec3::Zero(), t);
+      for (Index i = 0; i < g.count; ++i) w[g.first + i] = mean * g.shape.speed[i] * g.shape.direction;
+      continue;
+    }
     if (g.velocity.empty() || g.count == 0) {
       std::fill(values.begin(), values.end(), 0.0);
       continue;
     }
     for (int c = 0; c < D; ++c) g.velocity[c].evaluate(places, t, values, D, c);
-    const double factor = ramp_factor(g.parameters, t);
     if (factor != 1)
       for (double& v : values) v *= factor;
+  }
+}
+
+template <int D>
+void Boundary<D>::convect(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+                          const Vectors<D>& w_begin, double dt, Vectors<D>& w) const {
+  for (const auto& [first, count] : convective_patches_) {
+    double sums[2] = {0, 0};
+    for (Index b = first; b < first + count; ++b) {
+      const Vec<D>& area = at.area[mesh.n_interior + b];
+      sums[0] += w_begin[b].dot(area);
+      sums[1] += area.norm();
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
+    const double speed = std::max(0.0, sums[0] / sums[1]);
+    for (Index b = first; b < first + count; ++b) {
+      const Index f = mesh.n_interior + b;
+      const double courant = dt * speed * at.conductance[f] / at.area[f].norm();
+      w[b] = (w_begin[b] + courant * u[mesh.owner[f]]) / (1 + courant);
+    }
   }
 }
 
@@ -111,15 +161,6 @@ void Boundary<D>::close(const Mesh& mesh, const Placement<D>& at, const Vectors<
       }
     }
   }
-}
-
-template <int D>
-double Boundary<D>::largest_speed(double t, const std::vector<Vec3>& centres) const {
-  Vectors<D> w(kind_.size(), Vec<D>::Zero());
-  velocity_at(t, centres, w);
-  double speed = 0;
-  for (const Vec<D>& v : w) speed = std::max(speed, v.norm());
-  return max(comm_, speed);
 }
 
 template class Boundary<2>;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/fv/expression.hpp"
+#include "fluid_solver/inlet_profile.hpp"
 #include "fluid_solver/parameters.hpp"
 #include "fluid_solver/placement.hpp"
 
@@ -38,21 +39,35 @@ class Boundary {
   /// Velocity at all boundary faces from that in the cells: u_b = w, u_P with the normal part of w, or u_P.
   void close(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w,
              Vectors<D>& u_boundary) const;
-  /// Largest prescribed speed at time t [m/s] on all ranks.
-  double largest_speed(double t, const std::vector<Vec3>& centres) const;
+  /// w one sub-step further at convective outlets, from w and u at its begin: dw/dt + U dw/dn = 0, implicit,
+  /// U the mean outflow speed of the patch. Collective.
+  void convect(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w_begin,
+               double dt, Vectors<D>& w) const;
+  /// Faces that take up what a closed domain would let out or in: convective outlets, else interfaces.
+  bool is_adjustable(Index boundary_face) const {
+    return convective_patches_.empty() ? is_interface(boundary_face) : convective_[boundary_face] != 0;
+  }
+  bool has_convective_outlet() const { return !convective_patches_.empty(); }
+  bool is_convective(Index boundary_face) const { return convective_[boundary_face] != 0; }
+  /// Part of the cell's velocity that convection sees at a face of given pressure where fluid comes in: 1/2
+  /// makes the face's share of the kinetic energy vanish, phi (u_b - u_P/2).u_P = 0.
+  double backflow(Index boundary_face) const { return free_backflow_[boundary_face] ? 1.0 : 0.5; }
 
  private:
+  void add_patch(const Mesh& mesh, const Patch& patch, const BoundaryParameters& b);
   struct Given {
     Index first = 0, count = 0;  // boundary faces
     BoundaryParameters parameters;
     std::vector<Expression> velocity;
-    Expression pressure;
+    Expression pressure, mean_speed;
+    InletShape<D> shape;  // with mean_speed
   };
   MPI_Comm comm_;
   std::vector<FaceKind> kind_;
-  std::vector<char> interface_;
+  std::vector<char> interface_, convective_, free_backflow_;
   std::vector<std::string> interface_patches_;
   std::vector<Given> velocity_patches_, pressure_patches_;
+  std::vector<std::pair<Index, Index>> convective_patches_;  // first boundary face, count; also empty ones
   bool closed_ = true;
 };
 

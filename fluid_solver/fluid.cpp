@@ -54,6 +54,8 @@ void Fluid<D>::start(double time) {
   s.start = parameters_.initial_velocity.empty() ? Start::at_rest : Start::flowing;
   if (s.start == Start::flowing) boundary_.velocity_at(time, at.boundary_centre, s.w);
   for (std::size_t b = 0; b < s.w.size(); ++b)
+    if (boundary_.is_convective(b)) s.w[b] = s.u_boundary[b];
+  for (std::size_t b = 0; b < s.w.size(); ++b)
     if (boundary_.kind()[b] == FaceKind::pressure) s.u_boundary[b] = s.u[mesh_.owner[mesh_.n_interior + b]];
   step_.project_initial(s);
   const Expression initial_pressure(parameters_.initial_pressure, "initial-pressure");
@@ -156,6 +158,7 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
     for (std::size_t b = 0; b < w.size(); ++b)
       if (boundary_.is_interface(b)) w[b] = accepted_.w[b] + s * (interface_velocity[b] - accepted_.w[b]);
   boundary_.velocity_at(time_ + done, step.to->boundary_centre, w);
+  boundary_.convect(mesh_, *trial_.placement, trial_.u, trial_.w, step.dt, w);
   return w;
 }
 
@@ -164,6 +167,7 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
 template <int D>
 void Fluid<D>::start_pressure(const SubStep<D>& step, const Vectors<D>& w) {
   State<D> probe = trial_;
+  probe.implicit = false;  // an implicit predictor without a pressure would smear what the pressure balances
   step_.predict(probe, step, w);
   step_.project(probe, w);
   auto level = std::make_shared<PressureLevel<D>>(*step_.pressure_level(trial_));

@@ -61,6 +61,7 @@ class FractionalStep {
   bool oblique() const { return oblique_; }
 
  private:
+  void add_body_force(const State<D>& from);
   void add_swept(const State<D>& from, double e0, double e1);
   void add_old_pressure(const State<D>& from, bool implicit);
   void solve_viscous(const State<D>& from, const Vectors<D>& w, double a);
@@ -93,6 +94,9 @@ class FractionalStep {
   ViscousSolver<D> viscous_solver_;
   PressureEquation<D> pressure_;
   std::shared_ptr<const Placement<D>> assembled_;  // placement of the pressure matrix
+
+  std::vector<Expression> body_force_;
+  Vectors<D> force_;  // f at t^{n+1/2} per local cell [m/s^2]; empty: none
 
   SubStep<D> step_;
   Rates<D> rates_;

@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
       .make =
           [&](const couplet::ParticipantContext& context) {
             couplet::Mesh mesh = couplet::load_mesh(context.comm, context.case_folder / parameters.mesh,
-                                                    parameters.dimension, parameters.mesh_parameters);
+                                                    parameters.dimension, parameters.mesh_parameters,
+                                                    couplet::fluid::periodic_patches(parameters));
             couplet::fluid::MotionLink link;
             if (context.mesh_peer != MPI_COMM_NULL)
               link = [peer = context.mesh_peer](const couplet::Mesh& m) {

@@ -1,42 +1,88 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/parameters.hpp"
 
+#include "common/base/error.hpp"
+
 namespace couplet::fluid {
 namespace {
 
+void declare_ramp(config::Section& s, BoundaryParameters& b) {
+  s.value("ramp", b.ramp)
+      .unit("s")
+      .positive()
+      .doc("the velocity grows from 0 as (1 - cos(pi t/ramp))/2 until t = ramp; absent: no ramp");
+}
+
+void declare_inlet(config::Section& s, BoundaryParameters& b) {
+  s.value("velocity", b.velocity).unit("m/s").doc("one expression of x, y, z [m] and t [s] a component");
+  s.value("mean-speed", b.mean_speed)
+      .unit("m/s")
+      .doc("instead of a velocity: mean speed straight into the domain, an expression of t [s]");
+  s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
+      .doc("of mean-speed; parabolic: zero at the rim of the patch, a straight line in 2-D, a disc in 3-D");
+  declare_ramp(s, b);
+  s.check(
+      [&b] {
+        if (b.velocity.empty() == !b.mean_speed) return std::string("give either 'velocity' or 'mean-speed'");
+        return std::string();
+      },
+      "type");
+}
+
+void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
+  s.value("velocity", b.velocity)
+      .unit("m/s")
+      .required()
+      .doc("one expression of x, y, z [m] and t [s] a component");
+  declare_ramp(s, b);
+}
+
+void declare_outlet(config::Section& s, BoundaryParameters& b) {
+  s.value("pressure", b.pressure).unit("Pa").doc("expression of x, y, z [m] and t [s]");
+  s.value("backflow-stabilisation", b.backflow_stabilisation)
+      .doc("fluid that comes in here brings no kinetic energy along; without it strong backflow may grow");
+}
+
 void declare_boundary(config::Section& s, BoundaryParameters& b) {
-  const auto velocity = [&b](config::Section& v) {
-    v.value("velocity", b.velocity)
-        .unit("m/s")
-        .required()
-        .doc("one expression of x, y, z [m] and t [s] a component");
-  };
-  const auto nothing = [](config::Section&) {};
+  using config::Section;
+  const auto nothing = [](Section&) {};
   s.variant(
       "type", b.type,
-      {{"inlet", BoundaryType::inlet,
-        [&b, velocity](config::Section& v) {
-          velocity(v);
-          v.value("ramp", b.ramp)
-              .unit("s")
-              .positive()
-              .doc("the velocity grows from 0 as (1 - cos(pi t/ramp))/2 until t = ramp; absent: no ramp");
-        }},
-       {"outlet", BoundaryType::outlet,
-        [&b](config::Section& v) {
-          v.value("pressure", b.pressure).unit("Pa").doc("expression of x, y, z [m] and t [s]");
-        }},
+      {{"inlet", BoundaryType::inlet, [&b](Section& v) { declare_inlet(v, b); }},
+       {"outlet", BoundaryType::outlet, [&b](Section& v) { declare_outlet(v, b); }},
+       {"convective-outlet", BoundaryType::convective_outlet, nothing},
        {"no-slip", BoundaryType::no_slip, nothing},
-       {"moving-wall", BoundaryType::moving_wall, velocity},
+       {"moving-wall", BoundaryType::moving_wall, [&b](Section& v) { declare_moving_wall(v, b); }},
        {"slip", BoundaryType::slip, nothing},
+       {"symmetry", BoundaryType::symmetry, nothing},
+       {"periodic", BoundaryType::periodic,
+        [&b](Section& v) {
+          v.value("partner", b.partner).required().doc("the patch that is the translated copy of this one");
+        }},
        {"interface", BoundaryType::interface, nothing}},
-      "inlet: given velocity; outlet: given pressure; no-slip: wall at rest; moving-wall: wall with a given "
-      "velocity; slip: no flow through, no friction (also a symmetry plane); interface: wall that moves with "
-      "the structure",
+      "inlet: given velocity; outlet: given pressure; convective-outlet: what is there moves out with the "
+      "mean outflow speed, its mean pressure is 0; no-slip: wall at rest; moving-wall: wall with a given "
+      "velocity; slip, symmetry: no flow through, no friction; periodic: what leaves here enters at the "
+      "partner; interface: wall that moves with the structure",
       true);
 }
 
 }  // namespace
+
+std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters) {
+  std::vector<std::array<std::string, 2>> pairs;
+  for (const auto& [name, b] : parameters.boundaries) {
+    if (b.type != BoundaryType::periodic) continue;
+    const auto partner = parameters.boundaries.find(b.partner);
+    if (partner == parameters.boundaries.end() || partner->second.type != BoundaryType::periodic ||
+        partner->second.partner != name || b.partner == name)
+      throw Error(
+          "boundaries.{}: its partner '{}' must be another patch of type periodic whose partner is '{}'.",
+          name, b.partner, name);
+    if (name < b.partner) pairs.push_back({name, b.partner});
+  }
+  return pairs;
+}
 
 void declare(config::Section& s, FluidParameters& p) {
   s.value("mesh", p.mesh).required().doc("mesh file, .msh or .geo, relative to the case's folder");
@@ -77,6 +123,9 @@ void declare(config::Section& s, FluidParameters& p) {
   s.value("initial-pressure", p.initial_pressure)
       .unit("Pa")
       .doc("expression of x, y, z [m]; a first guess only");
+  s.value("body-force", p.body_force)
+      .unit("m/s^2")
+      .doc("force per mass, one expression of x, y, z [m] and t [s] a component; absent: none");
   s.value("flux-memory", p.flux_memory)
       .doc(
           "keep the difference between face fluxes and averaged cell velocities from step to step, so that "

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,14 +11,29 @@
 
 namespace couplet::fluid {
 
-enum class BoundaryType { inlet, outlet, no_slip, moving_wall, slip, interface };
+enum class BoundaryType {
+  inlet,
+  outlet,
+  convective_outlet,
+  no_slip,
+  moving_wall,
+  slip,
+  symmetry,
+  periodic,
+  interface
+};
+enum class InletProfile { uniform, parabolic };
 enum class ViscousTreatment { automatic, explicit_, implicit };
 
 struct BoundaryParameters {
   BoundaryType type = BoundaryType::no_slip;
-  std::vector<config::ExpressionText> velocity;  // [m/s], inlet and moving wall
-  std::optional<double> ramp;                    // [s], inlet
-  config::ExpressionText pressure;               // [Pa], outlet
+  std::vector<config::ExpressionText> velocity;      // [m/s], inlet and moving wall
+  std::optional<config::ExpressionText> mean_speed;  // [m/s] into the domain, of t; inlet
+  InletProfile profile = InletProfile::uniform;      // of mean_speed
+  std::optional<double> ramp;                        // [s], inlet and moving wall
+  config::ExpressionText pressure;                   // [Pa], outlet
+  bool backflow_stabilisation = true;                // outlet
+  std::string partner;                               // periodic
 };
 
 struct ProbeParameters {
@@ -37,9 +53,13 @@ struct FluidParameters {
   double pressure_tolerance = 1e-6;
   std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
   config::ExpressionText initial_pressure;               // [Pa]
+  std::vector<config::ExpressionText> body_force;        // [m/s^2]; empty: none
   bool flux_memory = true;
   std::map<std::string, ProbeParameters> probes;
 };
+
+/// Pairs of periodic patches. Throws Error if two patches do not name each other.
+std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters);
 
 void declare(config::Section& section, FluidParameters& parameters);
 

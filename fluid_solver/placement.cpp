@@ -39,7 +39,7 @@ std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geome
                            geometry.face_centre.begin() + n_faces);
   for (Index f = 0; f < mesh.n_interior; ++f) {
     const Vec<D>& from = p.centre[mesh.owner[f]];
-    const Vec<D>& to = p.centre[mesh.neighbour[f]];
+    const Vec<D> to = p.centre[mesh.neighbour[f]] + mesh.shift(f).template head<D>();
     set_face<D>(p, f, to - from);
     const Vec<D> centre = geometry.face_centre[f].template head<D>();
     const double before = std::abs(p.area[f].dot(centre - from)),

@@ -41,6 +41,7 @@ void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vec
     right_side_[c] = volume[c] * from.u[c] + dt * e0 * rates_.rate[c];
   if (ratio > 0)
     for (Index c = 0; c < mesh_.cells.n_local(); ++c) right_side_[c] += dt * e1 * from.rates_old.rate[c];
+  if (!body_force_.empty()) add_body_force(from);
   if (moving) add_swept(from, e0, e1);
   if (moving || implicit) add_old_pressure(from, implicit);
   u_p_.resize(from.u.size());
@@ -63,6 +64,18 @@ void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vec
     pressure_.set(*step_.to);
     assembled_ = step_.to;
   }
+}
+
+// Volume-integrated at t^{n+1/2}, where the pressure lives that may balance it.
+template <int D>
+void FractionalStep<D>::add_body_force(const State<D>& from) {
+  std::vector<Vec3> places(mesh_.cells.n_local(), Vec3::Zero());
+  for (std::size_t c = 0; c < places.size(); ++c) places[c].template head<D>() = step_.to->centre[c];
+  force_.resize(places.size());
+  for (int c = 0; c < D; ++c)
+    body_force_[c].evaluate(places, from.time + step_.dt / 2, flat<D>(force_), D, c);
+  for (std::size_t c = 0; c < places.size(); ++c)
+    right_side_[c] += step_.dt * step_.to->volume[c] * force_[c];
 }
 
 // sum dV_f u~_f with u~ extrapolated to n+1/2: with the rates of a mesh held still this is the "split" ALE

@@ -81,9 +81,15 @@ SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<d
   const SolveStatistics statistics = solver_->solve(b, std::span<double>(p).first(owned), relative, absolute);
   if (boundary_.closed()) {
     double sums[2] = {0, 0};
-    for (Index c = 0; c < owned; ++c) {
-      sums[0] += at.volume[c] * p[c];
-      sums[1] += at.volume[c];
+    const auto add = [&](double weight, Index c) {
+      sums[0] += weight * p[c];
+      sums[1] += weight;
+    };
+    if (boundary_.has_convective_outlet()) {
+      for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+        if (boundary_.is_convective(f - mesh_.n_interior)) add(at.area[f].norm(), mesh_.owner[f]);
+    } else {
+      for (Index c = 0; c < owned; ++c) add(at.volume[c], c);
     }
     MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
     for (Index c = 0; c < owned; ++c) p[c] -= sums[0] / sums[1];

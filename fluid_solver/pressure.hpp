@@ -22,8 +22,8 @@ class PressureEquation {
   /// A new preconditioner at the next solve.
   void refresh() { solver_->refresh(); }
   /// `b`: per owned cell, made compatible here when the domain is closed; `p`: per local cell, guess on
-  /// entry, mean zero in a closed domain, ghosts current on exit. Stops at max(relative |b|, absolute).
-  /// Collective.
+  /// entry, mean zero in a closed domain (at its convective outlets, if there are any), ghosts current on
+  /// exit. Stops at max(relative |b|, absolute). Collective.
   SolveStatistics solve(const Placement<D>& at, std::vector<double>& b, std::vector<double>& p,
                         double relative, double absolute);
 

@@ -32,6 +32,7 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       rate_operator_(mesh, boundary, nu_),
       viscous_solver_(mesh, boundary),
       pressure_(mesh, boundary) {
+  if (!parameters.body_force.empty()) body_force_ = make_expressions(parameters.body_force, D, "body-force");
   slot_.assign(mesh.cells.n_local(), -1);
   for (std::size_t b = 0; b < boundary.kind().size(); ++b) {
     const Index p = mesh.owner[mesh.n_interior + static_cast<Index>(b)];
@@ -55,30 +56,33 @@ void FractionalStep<D>::set_boundary_flux(const Vectors<D>& w) {
 }
 
 // An incompressible fluid without an outlet needs boundary fluxes that add up to nothing. What a moving wall
-// leaves over (discretisation error) is spread over the interface, or over all moving faces, by their area.
+// leaves over (discretisation error) is spread over the interface, or over all moving faces, by their area;
+// at a convective outlet what flows in elsewhere has to leave.
 template <int D>
 void FractionalStep<D>::balance_closed_domain() {
-  enum { total, size, interface_area, other_area };
+  enum { total, size, adjustable_area, other_area };
   double sums[4] = {};
   for (std::size_t b = 0; b < w_.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
     const double area = step_.to->area[f].norm();
     sums[total] += phi_p_[f];
     sums[size] += std::abs(phi_p_[f]);
-    sums[boundary_.is_interface(b) ? interface_area : other_area] += area;
+    sums[boundary_.is_adjustable(b) ? adjustable_area : other_area] += area;
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  const bool has_interface = sums[interface_area] > 0;
-  if (!has_interface && std::abs(sums[total]) > 1e-6 * sums[size])
+  const bool adjustable = sums[adjustable_area] > 0;
+  if (!adjustable && std::abs(sums[total]) > 1e-6 * sums[size])
     throw Error(
         "The fluid domain is closed, but the given velocities let {:.6g} m^3/s more out than in. Add an "
         "outlet or "
         "correct the velocities.",
         sums[total]);
-  const double correction = sums[total] / (has_interface ? sums[interface_area] : sums[other_area]);
+  const double correction = sums[total] / (adjustable ? sums[adjustable_area] : sums[other_area]);
   for (std::size_t b = 0; b < w_.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
-    if (!has_interface || boundary_.is_interface(b)) phi_p_[f] -= correction * step_.to->area[f].norm();
+    if (adjustable && !boundary_.is_adjustable(b)) continue;
+    phi_p_[f] -= correction * step_.to->area[f].norm();
+    if (boundary_.is_convective(b)) w_[b] -= correction * step_.to->area[f].normalized();
   }
 }
 
@@ -157,8 +161,9 @@ void FractionalStep<D>::set_boundary_pressure(const State<D>& from, const Vector
   for (std::size_t b = 0; b < w.size(); ++b) {
     if (boundary_.kind()[b] == FaceKind::pressure) continue;
     const Index f = mesh_.n_interior + static_cast<Index>(b), p = mesh_.owner[f];
-    const Vec<D> acceleration = w_[b] - from.w[b];
-    double normal = -rho_ / step_.dt * acceleration.dot(now.area[f]);
+    const Vec<D> acceleration = (w_[b] - from.w[b]) / step_.dt;
+    double normal = -rho_ * acceleration.dot(now.area[f]);
+    if (!force_.empty()) normal += rho_ * force_[p].dot(now.area[f]);
     if (!gradient_guess_.empty()) normal -= gradient_guess_[p].dot(now.oblique[f]);
     p_boundary_[b] = p_[p] + normal / now.conductance[f];
   }
@@ -172,17 +177,18 @@ template <int D>
 void FractionalStep<D>::extrapolate_to_walls() {
   const Placement<D>& now = *step_.to;
   for (Fit& fit : fits_) fit = {};
-  const auto add = [&](Index cell, Index neighbour) {
+  const auto add = [&](Index cell, Index neighbour, const Vec<D>& shift) {
     if (slot_[cell] < 0) return;
     Fit& fit = fits_[slot_[cell]];
-    const Vec<D> d = now.centre[neighbour] - now.centre[cell];
+    const Vec<D> d = now.centre[neighbour] - now.centre[cell] + shift;
     const double weight = 1 / d.squaredNorm();
     fit.matrix += weight * d * d.transpose();
     fit.side += weight * (p_[neighbour] - p_[cell]) * d;
   };
   for (const Index f : near_walls_) {
-    add(mesh_.owner[f], mesh_.neighbour[f]);
-    add(mesh_.neighbour[f], mesh_.owner[f]);
+    const Vec<D> shift = mesh_.shift(f).template head<D>();
+    add(mesh_.owner[f], mesh_.neighbour[f], shift);
+    add(mesh_.neighbour[f], mesh_.owner[f], -shift);
   }
   for (Fit& fit : fits_) {
     fit.usable = fit.matrix.determinant() > least_span;  // weights make the entries of order one
@@ -363,6 +369,7 @@ void FractionalStep<D>::project_initial(State<D>& s) {
     p_boundary_[b] = p_[mesh_.owner[f]] - (s.w[b] - jump_from[b]).dot(at.area[f]) / at.conductance[f];
   }
   correct(s);
+  s.w = w_;
   s.u_old.clear();
   s.pressure = {};
   boundary_.close(mesh_, at, s.u, s.w, s.u_boundary);

@@ -44,8 +44,10 @@ void RateOperator<D>::face_loop(const State<D>& s, Rates<D>& rates) const {
   }
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const Index p = mesh_.owner[f];
-    const Vec<D>& on_face = s.u_boundary[f - mesh_.n_interior];
-    rates.rate[p] -= s.phi[f] * on_face;
+    const Index b = f - mesh_.n_interior;
+    const Vec<D>& on_face = s.u_boundary[b];
+    const bool backflow = s.phi[f] < 0 && boundary_.kind()[b] == FaceKind::pressure;
+    rates.rate[p] -= (backflow ? boundary_.backflow(b) : 1.0) * s.phi[f] * on_face;
     (Split ? rates.viscous : rates.rate)[p] += nu_ * at.conductance[f] * (on_face - s.u[p]);
   }
 }

@@ -19,8 +19,8 @@ void FaceGradient::update(const Mesh& mesh, const Geometry& geometry, std::span<
   for (Index f = 0; f < mesh.n_faces(); ++f) {
     const double area = geometry.face_area[f].norm();
     const Vec3 n = geometry.face_area[f] / area;
-    const Vec3& across =
-        f < mesh.n_interior ? geometry.cell_centre[mesh.neighbour[f]] : geometry.face_centre[f];
+    const Vec3 across = f < mesh.n_interior ? Vec3(geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f))
+                                            : geometry.face_centre[f];
     const Vec3 d = across - geometry.cell_centre[mesh.owner[f]];
     normal[f] = n;
     inverse_dn[f] = 1 / d.dot(n);

@@ -24,6 +24,7 @@ WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
     drop_unused_points(whole.raw);
     orient_cells(whole.raw);
     whole.faces = build_faces(whole.raw);
+    join_periodic(whole.raw, whole.faces);
     const Index n = whole.raw.cell_points.size();
     if (n < comm_size(comm))
       throw Error(
@@ -47,6 +48,7 @@ WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
   broadcast(comm, whole.faces.owner);
   broadcast(comm, whole.faces.neighbour);
   broadcast(comm, whole.faces.patch);
+  broadcast(comm, whole.faces.shift);
   broadcast(comm, whole.part);
   return whole;
 }
@@ -113,8 +115,18 @@ class LocalPart {
       mesh_.cell_id.push_back(mine[i]);
     const auto n_owned = static_cast<Index>(mesh_.cell_id.size());
 
+    std::vector<char> across(faces_.shift.empty() ? 0 : n, 0);  // beyond a periodic face
+    for (std::size_t f = 0; f < faces_.shift.size(); ++f) {
+      if (faces_.shift[f].isZero()) continue;
+      if (part_[faces_.owner[f]] == rank_) across[faces_.neighbour[f]] = 1;
+      if (part_[faces_.neighbour[f]] == rank_) across[faces_.owner[f]] = 1;
+    }
     for (Index c = 0; c < n; ++c) {
       const auto points = raw_.cell_points[c];
+      if (part_[c] != rank_ && !across.empty() && across[c]) {
+        mesh_.cell_id.push_back(c);
+        continue;
+      }
       if (part_[c] != rank_ &&
           std::any_of(points.begin(), points.end(), [&](Index p) { return touched[p] != 0; }))
         mesh_.cell_id.push_back(c);
@@ -178,11 +190,12 @@ class LocalPart {
     const auto key = [&](Index f) {
       return std::pair(cell_local_[faces_.owner[f]], cell_local_[faces_.neighbour[f]]);
     };
-    std::sort(chosen.begin(), chosen.end(), [&](Index a, Index b) { return key(a) < key(b); });
+    std::stable_sort(chosen.begin(), chosen.end(), [&](Index a, Index b) { return key(a) < key(b); });
     for (const Index f : chosen) {
       mesh_.owner.push_back(key(f).first);
       mesh_.neighbour.push_back(key(f).second);
       push_points(mesh_.face_points, faces_.points[f]);
+      if (!faces_.shift.empty()) mesh_.neighbour_shift.push_back(faces_.shift[f]);
     }
     mesh_.n_interior = static_cast<Index>(chosen.size());
   }

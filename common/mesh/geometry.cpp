@@ -41,6 +41,7 @@ void faces_3d(const Mesh& mesh, std::span<const Vec3> x, const std::vector<Vec3>
     Vec3 area = Vec3::Zero(), moment = Vec3::Zero(), mean = Vec3::Zero();
     double total = 0;
     const Index o = mesh.owner[f];
+    const Vec3 shift = f < mesh.n_interior ? mesh.shift(f) : Vec3(Vec3::Zero());
     for (int i = 0; i < t.count; ++i) {
       const Vec3 &a = x[t.corner[i][0]], &b = x[t.corner[i][1]], &c = x[t.corner[i][2]];
       const Vec3 s = 0.5 * (b - a).cross(c - a);
@@ -53,7 +54,7 @@ void faces_3d(const Mesh& mesh, std::span<const Vec3> x, const std::vector<Vec3>
       add_cone(1, apex[o], a, b, c, g.volume[o], g.cell_centre[o]);
       if (f < mesh.n_interior) {
         const Index n = mesh.neighbour[f];
-        add_cone(-1, apex[n], a, b, c, g.volume[n], g.cell_centre[n]);
+        add_cone(-1, apex[n] + shift, a, b, c, g.volume[n], g.cell_centre[n]);
       }
     }
     g.face_area[f] = area;
@@ -62,8 +63,8 @@ void faces_3d(const Mesh& mesh, std::span<const Vec3> x, const std::vector<Vec3>
 }
 
 void faces_2d(const Mesh& mesh, std::span<const Vec3> x, const std::vector<Vec3>& apex, Geometry& g) {
-  const auto add_triangle = [&](double sign, Index cell, const Vec3& a, const Vec3& b) {
-    const Vec3 u = a - apex[cell], v = b - apex[cell];
+  const auto add_triangle = [&](double sign, Index cell, const Vec3& centre, const Vec3& a, const Vec3& b) {
+    const Vec3 u = a - centre, v = b - centre;
     const double triangle = sign * 0.5 * (u[0] * v[1] - u[1] * v[0]);
     g.volume[cell] += triangle;
     g.cell_centre[cell] += triangle / 3 * (u + v);
@@ -72,8 +73,11 @@ void faces_2d(const Mesh& mesh, std::span<const Vec3> x, const std::vector<Vec3>
     const Vec3 &a = x[mesh.face_points[f][0]], &b = x[mesh.face_points[f][1]];
     g.face_area[f] = Vec3(b[1] - a[1], a[0] - b[0], 0);
     g.face_centre[f] = 0.5 * (a + b);
-    add_triangle(1, mesh.owner[f], a, b);
-    if (f < mesh.n_interior) add_triangle(-1, mesh.neighbour[f], a, b);
+    const Index o = mesh.owner[f];
+    add_triangle(1, o, apex[o], a, b);
+    if (f >= mesh.n_interior) continue;
+    const Index n = mesh.neighbour[f];
+    add_triangle(-1, n, apex[n] + mesh.shift(f), a, b);
   }
 }
 

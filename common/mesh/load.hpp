@@ -24,6 +24,8 @@ struct RawMesh {
   Csr boundary_points;              ///< boundary elements: 2 points (2-D), 3 or 4 points (3-D)
   std::vector<int> boundary_patch;  ///< index into `patches`
   std::vector<std::string> patches;
+  std::vector<std::array<std::string, 2>>
+      periodic;  ///< pairs of patches, each a translated copy of the other
 };
 
 /// Numbers for the names that a .geo defines by DefineConstant.
@@ -44,9 +46,11 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,
 /// exactly one patch; errors name the place. Collective.
 Mesh distribute(MPI_Comm comm, const RawMesh& raw);
 
-/// File (.msh or .geo) to distributed mesh. Collective; an error on rank 0 is thrown on every rank.
+/// File (.msh or .geo) to distributed mesh, `periodic` as in RawMesh. Collective; an error on rank 0 is
+/// thrown on every rank.
 Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
-               const MeshParameters& parameters = {});
+               const MeshParameters& parameters = {},
+               const std::vector<std::array<std::string, 2>>& periodic = {});
 
 /// Boxes for tests: n cells a side on [lower, upper], patches "xmin" "xmax" "ymin" "ymax" (and "zmin" "zmax"
 /// in 3-D).

@@ -5,7 +5,8 @@
 
 namespace couplet {
 
-Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const MeshParameters& parameters) {
+Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const MeshParameters& parameters,
+               const std::vector<std::array<std::string, 2>>& periodic) {
   RawMesh raw;
   on_root(comm, [&] {
     if (!std::filesystem::is_regular_file(file))
@@ -31,6 +32,7 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
       throw Error(
           "The mesh '{}' is {}-dimensional, but 'dimension: {}' is asked for.{}", file.string(), raw.dim, dim,
           dim == 3 ? " Put the volume into a physical group, else gmsh does not save its cells." : "");
+    raw.periodic = periodic;
   });
   try {
     return distribute(comm, raw);

@@ -74,11 +74,17 @@ struct Mesh {
   Csr face_points;               ///< per local face; turning right-handed about the face vector
   std::vector<Index> owner;      ///< per local face
   std::vector<Index> neighbour;  ///< per interior face
-  std::vector<Patch> patches;    ///< the same names in the same order on all ranks
+  /// Per interior face: what to add to places of the neighbour to see them from the owner [m]; zero but on
+  /// faces that were two periodic patches, whose points are those of the owner's side. Empty without such.
+  std::vector<Vec3> neighbour_shift;
+  std::vector<Patch> patches;  ///< the same names in the same order on all ranks
 
   std::vector<Vec3> reference_points;  ///< per local point, as read [m]
   Geometry reference;                  ///< geometry of the reference points
 
+  Vec3 shift(Index interior_face) const {
+    return neighbour_shift.empty() ? Vec3(Vec3::Zero()) : neighbour_shift[interior_face];
+  }
   Index n_faces() const { return static_cast<Index>(owner.size()); }
   /// Interior faces and boundary faces of owned cells: those that carry fluxes here.
   Index n_flux_faces() const { return n_interior + boundary.n_owned(); }

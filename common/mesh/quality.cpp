@@ -34,7 +34,7 @@ MeshQuality measure_quality(const Mesh& mesh, const Geometry& geometry) {
   }
   for (Index f = 0; f < mesh.n_interior; ++f) {
     const Vec3& from = geometry.cell_centre[mesh.owner[f]];
-    const Vec3 line = geometry.cell_centre[mesh.neighbour[f]] - from;
+    const Vec3 line = geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f) - from;
     const Vec3& area = geometry.face_area[f];
     const double along = line.dot(area), length = line.norm(), size = area.norm();
     if (length == 0 || size == 0) continue;

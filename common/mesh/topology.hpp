@@ -17,12 +17,17 @@ struct Faces {
   std::vector<Index> owner;
   std::vector<Index> neighbour;  ///< interior faces only
   std::vector<int> patch;        ///< boundary faces only
+  std::vector<Vec3> shift;       ///< interior faces; empty without periodic patches; see Mesh
   Index n_boundary() const { return static_cast<Index>(owner.size()) - n_interior; }
 };
 
 /// Throws Error naming the place if a boundary face is in no patch or in two, if a boundary element is no
 /// boundary face, or if more than two cells share a face.
 Faces build_faces(const RawMesh& raw);
+
+/// Makes interior faces of the faces of periodic patches (RawMesh::periodic). Throws Error naming the place
+/// of a face without a partner.
+void join_periodic(const RawMesh& raw, Faces& faces);
 
 /// Faces of cells that no other cell shares, as boundary elements (for generators, which then name the
 /// patches).

@@ -225,7 +225,7 @@ FLUID = [
 case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' does not convert to Pa s; expected Pa s or a unit that converts to it.
 """, ("1e-3 Pa s", "1e-6 m^2/s")),
     fluid("boundary of a fluid without type", """
-case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, no-slip, moving-wall, slip, interface).
+case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface).
 """, ("{type: no-slip}", "{}")),
     fluid("inlet without velocity", """
 case.yaml:11:7: participants.fluid.boundaries.left.velocity: this required key is missing (one expression of x, y, z [m] and t [s] a component: list of numbers or expressions in m/s).
@@ -367,7 +367,7 @@ couplet: The job cannot start:
 [fluid 0] error: boundaries.rigth: the mesh 'square.msh' has no patch 'rigth'. Did you mean 'right'?
 """, ("right: {type", "rigth: {type"), **RUN),
     fluid("patch of a fluid without a boundary", """
-[fluid 0] error: boundaries: the mesh 'square.msh' has patches without a boundary: top. Give each of them a type (inlet, outlet, no-slip, moving-wall, slip or interface).
+[fluid 0] error: boundaries: the mesh 'square.msh' has patches without a boundary: top. Give each of them a type (inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic or interface).
 """, ("      top: {type: slip}\n", ""), **RUN),
     mover("mover without its coupled job", """
 couplet: The job cannot start:
