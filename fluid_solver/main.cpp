@@ -11,9 +11,9 @@ int main(int argc, char** argv) {
       .declare = [&](couplet::config::Section& section) { couplet::fluid::declare(section, parameters); },
       .make =
           [&](const couplet::ParticipantContext& context) {
-            couplet::Mesh mesh = couplet::load_mesh(context.comm, context.case_folder / parameters.mesh,
-                                                    parameters.dimension, parameters.mesh_parameters,
-                                                    couplet::fluid::periodic_patches(parameters));
+            couplet::Mesh mesh =
+                couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
+                                   parameters.mesh_parameters, couplet::fluid::periodic_patches(parameters));
             couplet::fluid::MotionLink link;
             if (context.mesh_peer != MPI_COMM_NULL)
               link = [peer = context.mesh_peer](const couplet::Mesh& m) {

@@ -228,8 +228,14 @@ case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' does
 case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface).
 """, ("{type: no-slip}", "{}")),
     fluid("inlet without velocity", """
-case.yaml:11:7: participants.fluid.boundaries.left.velocity: this required key is missing (one expression of x, y, z [m] and t [s] a component: list of numbers or expressions in m/s).
+case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity' or 'mean-speed'.
 """, (", velocity: [1 m/s, 0 m/s]", "")),
+    fluid("inlet with two velocities", """
+case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity' or 'mean-speed'.
+""", (", velocity: [1 m/s", ", mean-speed: 1, velocity: [1 m/s")),
+    fluid("periodic without partner", """
+case.yaml:12:7: participants.fluid.boundaries.right.partner: this required key is missing (the patch that is the translated copy of this one: text).
+""", ("{type: outlet, pressure: 0}", "{type: periodic}")),
     fluid("component with a wrong unit", """
 case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 2 of the list: '0 Pa': the unit 'Pa' does not convert to m/s; expected m/s or a unit that converts to it.
 """, ("0 m/s]", "0 Pa]")),
