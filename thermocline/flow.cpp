@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/flow.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace couplet::thermocline {
+
+void declare(config::Section& section, FlowParameters& p) {
+  using Type = FlowParameters::Type;
+  const auto row = [](config::Section& s, ScheduleRow& r) {
+    s.value("at", r.at).unit("s").not_negative().required().doc("from this time on");
+    s.value("mass-flow", r.mass_flow)
+        .unit("kg/s")
+        .required()
+        .doc("upward (discharge) above 0, downward (charge) below 0");
+    s.value("inlet-temperature", r.inlet_temperature).unit("K").positive().doc("of what enters");
+    s.value("stop-above", r.stop_above).unit("K").doc("the flow stops when the outlet is hotter");
+    s.value("stop-below", r.stop_below).unit("K").doc("the flow stops when the outlet is colder");
+    s.check([&r] { return r.mass_flow == 0 || r.inlet_temperature > 0 ? "" : "a flow needs it"; },
+            "inlet-temperature");
+  };
+  const auto schedule = [&p, row](config::Section& s) {
+    s.list<ScheduleRow>("rows", p.rows, row, "each in force until the next one; at rest before the first");
+    s.optional_section<ScheduleRepeat>(
+        "repeat", p.repeat,
+        [](config::Section& q, ScheduleRepeat& r) {
+          q.value("from", r.from).unit("s").not_negative().required().doc("rows at or after this time ...");
+          q.value("every", r.every).unit("s").positive().required().doc("... come again with this period");
+        },
+        "the schedule goes on for ever");
+    s.check(
+        [&p]() -> std::string {
+          if (p.rows.empty()) return "needs one row at least";
+          for (std::size_t i = 1; i < p.rows.size(); ++i)
+            if (p.rows[i].at <= p.rows[i - 1].at) return "each row must come after the one before it";
+          if (p.repeat && p.rows.back().at < p.repeat->from) return "no row is left to be repeated";
+          if (p.repeat && p.rows.back().at >= p.repeat->from + p.repeat->every)
+            return "the last row lies beyond the period that is repeated";
+          return "";
+        },
+        "rows");
+  };
+  section.variant<Type>(
+      "type", p.type, {{"rest", Type::rest, [](config::Section&) {}}, {"schedule", Type::schedule, schedule}},
+      "what is pumped through the tank");
+}
+
+std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& p) {
+  return std::make_unique<Schedule>(p);
+}
+
+Flow Schedule::decide(double t, double t_top, double t_bottom, const Ambient&) {
+  // Rows by their times of this period; `shift` moves the repeated ones there.
+  const double tiny = 1e-6;
+  double shift = 0;
+  const bool repeating = repeat_ && t >= repeat_->from + repeat_->every - tiny;
+  if (repeating) shift = std::floor((t + tiny - repeat_->from) / repeat_->every) * repeat_->every;
+  const ScheduleRow* row = nullptr;
+  double began = -1, next = std::numeric_limits<double>::infinity();
+  const auto consider = [&](double at, const ScheduleRow* r) {
+    if (at <= t + tiny) {
+      if (at > began) row = r, began = at;
+    } else {
+      next = std::min(next, at);
+    }
+  };
+  for (const ScheduleRow& r : rows_) {
+    if (!repeat_ || r.at < repeat_->from) {
+      consider(r.at, &r);
+      continue;
+    }
+    for (const double period : {shift - repeat_->every, shift, shift + repeat_->every})
+      if (period >= 0) consider(r.at + period, &r);
+  }
+  Flow flow;
+  flow.until = next;
+  if (began != current_) current_ = began, stopped_ = false;
+  if (!row || row->mass_flow == 0) return flow;
+  const double outlet = row->mass_flow > 0 ? t_top : t_bottom;
+  if ((row->stop_above && outlet > *row->stop_above) || (row->stop_below && outlet < *row->stop_below))
+    stopped_ = true;
+  if (stopped_) return flow;
+  flow.mass_flow = row->mass_flow;
+  flow.inlet_temperature = row->inlet_temperature;
+  flow.mode = int(row - rows_.data()) + 1;
+  return flow;
+}
+
+}  // namespace couplet::thermocline

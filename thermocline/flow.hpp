@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/config/section.hpp"
+#include "thermocline/interfaces.hpp"
+
+namespace couplet::thermocline {
+
+/// A flow from a given time on, until the next row.
+struct ScheduleRow {
+  double at = 0;                                 ///< [s]
+  double mass_flow = 0;                          ///< [kg/s], > 0 upward
+  double inlet_temperature = 0;                  ///< [K]
+  std::optional<double> stop_above, stop_below;  ///< the flow stops when the outlet passes this [K]
+};
+struct ScheduleRepeat {
+  double from = 0, every = 0;  ///< rows at or after `from` come again every so many seconds [s]
+};
+
+struct FlowParameters {
+  enum class Type { rest, schedule } type = Type::rest;
+  std::vector<ScheduleRow> rows;
+  std::optional<ScheduleRepeat> repeat;
+};
+void declare(config::Section& section, FlowParameters& parameters);
+std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& parameters);
+
+/// Flow by the clock. Labels: the number of the row (from 1) while it flows, 0 at rest.
+class Schedule final : public FlowControl {
+ public:
+  explicit Schedule(const FlowParameters& parameters) : rows_(parameters.rows), repeat_(parameters.repeat) {}
+  Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
+  std::vector<double> state() const override { return {current_, double(stopped_)}; }
+  void restore(std::span<const double> state) override { current_ = state[0], stopped_ = state[1] != 0; }
+
+ private:
+  std::vector<ScheduleRow> rows_;
+  std::optional<ScheduleRepeat> repeat_;
+  double current_ = -1;  // when the row in force began
+  bool stopped_ = false;
+};
+
+}  // namespace couplet::thermocline

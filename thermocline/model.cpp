@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/model.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+
+#include "common/base/error.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Adds the time until the end of the scope to an element.
+class Stopwatch final {
+ public:
+  Stopwatch(Speed& speed, Element element) : seconds_(speed.seconds[std::size_t(element)]) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
+std::vector<ColumnLayer> ground_layers(const GroundParameters& p) {
+  std::vector<ColumnLayer> layers;
+  double depth = 0;
+  for (const GroundLayer& l : p.layers) {
+    // Cells grow with the depth: what is deep changes slowly.
+    const double cell = std::max(p.cell, 0.1 * depth);
+    layers.push_back(
+        {foundation_material(l.material), l.thickness, std::max(1, int(std::ceil(l.thickness / cell)))});
+    depth += l.thickness;
+  }
+  return layers;
+}
+
+}  // namespace
+
+TankSetup::TankSetup(const TankParameters& p)
+    : parameters(p), fluid(make_fluid(p.fluid)), filler(p.filler), grid(p.bed.layers, p.bed.cells) {
+  if (!p.shell) return;
+  steel = make_steel(p.shell->material);
+  rings.emplace(*p.shell, grid, p.diameter, p.ullage ? p.ullage->height : 0);
+  pressure = inner_pressure(*rings, grid, fluid, filler, p.ullage ? p.ullage->gas.gauge_pressure : 0);
+}
+
+TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource& ambient)
+    : setup_(std::move(setup)),
+      bed_(setup_->parameters.bed, setup_->fluid, setup_->filler, setup_->parameters.diameter) {
+  const TankParameters& p = setup_->parameters;
+  const Ambient air = ambient.at(0);
+  const int n = bed_.grid().size();
+  bed_.prepare(1, 0);
+  reference_ = bed_.bottom();
+  from_bed_.assign(n, 0.0), source_.assign(n, 0.0);
+  if (p.shell) {
+    const int rings = setup_->rings->size();
+    std::vector<double> wall(rings, bed_.top());
+    std::copy(bed_.fluid().begin(), bed_.fluid().end(), wall.begin());
+    shell_.emplace(*setup_->rings, *setup_->steel);
+    shell_->set_temperature(wall);
+    into_blanket_.assign(rings, 0.0), from_wall_.assign(rings, 0.0);
+    if (p.insulation) {
+      const double radius = p.diameter / 2 + setup_->rings->thickness.front();
+      insulation_.emplace(*p.insulation, setup_->rings->dz, radius);
+      insulation_->set_steady(wall, air.temperature);
+    }
+    hoop_ = active_hoop(*setup_->rings, setup_->filler, setup_->pressure);
+    bed_.filler_temperature(filler_);
+    if (p.mechanics)
+      mechanics_.emplace(*setup_->rings, *setup_->steel, setup_->filler, setup_->pressure, wall, filler_);
+    update_stress();
+  }
+  if (p.ullage) {
+    ullage_.emplace(p.ullage->gas, p.diameter, p.ullage->height);
+    ullage_->set_gas(bed_.top());
+    if (p.insulation) {
+      roof_.emplace(std::vector<ColumnLayer>{{make_insulator(p.insulation->material), p.insulation->thickness,
+                                              p.insulation->cells}},
+                    bed_.area());
+      roof_->set_steady(bed_.top(), air.temperature);
+    }
+  }
+  if (p.ground) {
+    deep_temperature_ = p.ground->deep_temperature.value_or(ambient.mean_temperature());
+    ground_.emplace(ground_layers(*p.ground), bed_.area());
+    ground_->set_steady(bed_.bottom(), deep_temperature_);
+  }
+  start_energy_ = energy(0);
+  start_bed_ = bed_.energy(reference_);
+}
+
+double TankModel::energy(double t) const {
+  double sum = bed_.energy(reference_);
+  // What is held is already in the insulation's or the ground's own temperatures until its step ends.
+  const auto ahead = [&](const Held& h) { return h.until > t ? (h.in - h.out) * (h.until - t) : 0; };
+  if (shell_) sum += shell_->energy(reference_);
+  if (insulation_) sum += insulation_->energy(reference_) - ahead(side_);
+  if (roof_) sum += roof_->energy(reference_);
+  if (ullage_) sum += ullage_->energy(reference_);
+  if (ground_) sum += ground_->energy(reference_) - ahead(soil_);
+  return sum;
+}
+
+void TankModel::advance(double t, double dt, FlowControl& control, const AmbientSource& ambient,
+                        std::vector<BedStep>& steps, Speed& speed) {
+  const double own = setup_->parameters.exchange_step, end = t + dt;
+  const double longest = own > 0 ? std::min(own, dt) : dt;
+  const double tiny = 1e-9 * dt;
+  while (end - t > tiny) {
+    const double rest = end - t, wanted = std::min(longest, stable_exchange());
+    const double h =
+        exchange(t, rest / std::ceil(rest / wanted * (1 - 1e-9)), control, ambient, steps, speed);
+    t = end - (t + h) <= tiny ? end : t + h;
+  }
+}
+
+double TankModel::stable_exchange() const {
+  // The bed's end cells against the fluxes that ullage and ground compute from them: half their capacity over
+  // the coefficient. Elsewhere the flux is computed by the lighter side.
+  if (!ground_ && !ullage_) return std::numeric_limits<double>::infinity();
+  const auto& grid = bed_.grid();
+  const auto capacity = [&](int i) {
+    const double eps = grid.runs[grid.layer[i]].layer.porosity;
+    return (eps * setup_->fluid.volumetric() + (1 - eps) * setup_->filler.volumetric()) * grid.dz[i];
+  };
+  double step = std::numeric_limits<double>::infinity();
+  if (ground_) step = std::min(step, 0.5 * capacity(0) / std::max(1e-30, bed_.wall_coefficient().front()));
+  // Gas and radiation: below 100 W/(m^2 K) at any temperature of interest.
+  if (ullage_) step = std::min(step, 0.5 * capacity(grid.size() - 1) / 100);
+  return step;
+}
+
+double TankModel::exchange(double t, double h, FlowControl& control, const AmbientSource& ambient,
+                           std::vector<BedStep>& steps, Speed& speed) {
+  const double tiny = 1e-9 * h;
+  const Ambient air = ambient.at(t + h / 2);
+  if (insulation_) {
+    const Stopwatch watch(speed, Element::insulation);
+    if (side_.until <= t + tiny) step_insulation(t, h, air);
+    if (side_.until > t + tiny) h = std::min(h, side_.until - t);
+  }
+  if (ground_) {
+    const Stopwatch watch(speed, Element::ground);
+    if (soil_.until <= t + tiny) step_ground(t, h);
+    if (soil_.until > t + tiny) h = std::min(h, soil_.until - t);
+  }
+  if (ullage_) {
+    const Stopwatch watch(speed, Element::ullage);
+    step_ullage(h, air);
+  }
+  if (shell_) {
+    const Stopwatch watch(speed, Element::shell);
+    const Rings& rings = *setup_->rings;
+    from_wall_ = into_blanket_;
+    double upper = 0;
+    for (int i = rings.in_bed; i < rings.size(); ++i) upper += rings.dz[i];
+    for (int i = rings.in_bed; i < rings.size(); ++i) from_wall_[i] += wall_to_ullage_ * rings.dz[i] / upper;
+    shell_->step(h, bed_.fluid(), bed_.wall_coefficient(), from_wall_, from_bed_);
+  }
+  for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -from_bed_[i];
+  source_.back() -= from_liquid_;
+  source_.front() -= soil_.in;
+  bed_.set_source(source_);
+  step_bed(t, t + h, control, ambient, steps, speed);
+  ledger_.side += side_.out * h;
+  ledger_.ground += soil_.out * h;
+  ledger_.turnover += (std::abs(side_.out) + std::abs(soil_.out)) * h;
+  if (mechanics_) {
+    const Stopwatch watch(speed, Element::mechanics);
+    bed_.filler_temperature(filler_);
+    mechanics_->update(shell_->temperature(), filler_);
+  }
+  watch(t + h);
+  return h;
+}
+
+void TankModel::step_insulation(double t, double h, const Ambient& air) {
+  const TankParameters& p = setup_->parameters;
+  const double step = std::max(h, p.insulation->step);
+  const Rings& rings = *setup_->rings;
+  const double height = rings.z.back() + rings.dz.back() / 2;
+  const double outer = p.diameter + 2 * (rings.thickness.front() + p.insulation->thickness);
+  // The film belongs to the surface temperature; one correction is enough for so weak a dependence.
+  Film film = side_film(p.insulation->outside, air.temperature + 5, outer, height, air);
+  film = side_film(p.insulation->outside, insulation_->outer_surface(film), outer, height, air);
+  const double lost = insulation_->step(step, shell_->temperature(), film, into_blanket_);
+  side_ = {t + step, 0, lost / step};
+  for (const double q : into_blanket_) side_.in += q;
+}
+
+void TankModel::step_ground(double t, double h) {
+  const double step = std::max(h, setup_->parameters.ground->step);
+  const Film plate{bed_.wall_coefficient().front(), bed_.bottom()};
+  const Film deep{std::numeric_limits<double>::infinity(), deep_temperature_};
+  const Column::Heat heat = ground_->step(step, plate, deep);
+  soil_ = {t + step, heat.inner / step, heat.outer / step};
+}
+
+double TankModel::upper_wall() const {
+  if (!shell_) return bed_.top();
+  const Rings& rings = *setup_->rings;
+  double sum = 0, height = 0;
+  for (int i = rings.in_bed; i < rings.size(); ++i)
+    sum += rings.dz[i] * shell_->temperature()[i], height += rings.dz[i];
+  return sum / height;
+}
+
+void TankModel::step_ullage(double h, const Ambient& air) {
+  const TankParameters& p = setup_->parameters;
+  // The roof's inner cell takes the heat explicitly: steps of half its time constant.
+  const double limit = roof_ ? 0.5 * roof_->inner_capacity() / roof_->inner_conductance() : h;
+  const int parts = std::max(1, int(std::ceil(h / limit)));
+  from_liquid_ = wall_to_ullage_ = 0;
+  for (int k = 0; k < parts; ++k) {
+    const double roof_cell = roof_ ? roof_->inner_temperature() : 0;
+    const double conductance = roof_ ? roof_->inner_conductance() * roof_->area() : 0;
+    const Ullage::Heat heat =
+        ullage_->step(h / parts, bed_.top(), upper_wall(), roof_cell, conductance, air.pressure);
+    from_liquid_ += heat.from_liquid / parts;
+    wall_to_ullage_ += heat.from_wall / parts;
+    if (!roof_) continue;
+    Film film = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
+    film = roof_film(p.insulation->outside, roof_->outer_surface(film), p.diameter, air);
+    const double lost = roof_->step(h / parts, heat.into_roof, film).outer;
+    ledger_.roof += lost;
+    ledger_.turnover += std::abs(lost);
+  }
+  if (!shell_) {  // a wall without a model of its own gives what it gets from the liquid beside it
+    from_liquid_ += wall_to_ullage_;
+    wall_to_ullage_ = 0;
+  }
+}
+
+void TankModel::step_bed(double t, double end, FlowControl& control, const AmbientSource& ambient,
+                         std::vector<BedStep>& steps, Speed& speed) {
+  const double tiny = 1e-9 * (end - t);
+  bool prepared = false;
+  while (end - t > tiny) {
+    BedStep s;
+    s.t = t;
+    s.ambient = ambient.at(t);
+    s.flow = control.decide(t, bed_.top(), bed_.bottom(), s.ambient);
+    const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared_flow();
+    const double until = s.flow.until > t + tiny ? std::min(end, s.flow.until) : end;
+    // New closures when the flow has changed by a tenth, a new step when the old one has become too long or
+    // would pass the time the control gave; a little over the limit is within the scheme's reserve.
+    const bool other_flow = (m == 0) != (now == 0) || m * now < 0 || std::abs(m - now) > 0.1 * std::abs(now);
+    const bool too_long = bed_.prepared_step() > 1.05 * limit || t + bed_.prepared_step() > until + tiny;
+    if (!prepared || other_flow || too_long) {
+      const Stopwatch watch(speed, Element::preparation);
+      const double steps_left = std::ceil((until - t) / limit * (1 - 1e-9));
+      bed_.prepare((until - t) / std::max(1.0, steps_left), m);
+      prepared = true;
+    }
+    s.dt = bed_.prepared_step();
+    const Stopwatch watch(speed, Element::bed);
+    const PackedBed::StepHeat heat = bed_.step(m, s.flow.inlet_temperature);
+    s.outlet_temperature = heat.outlet;
+    ledger_.flow += heat.by_flow;
+    ledger_.bed += heat.by_flow + heat.by_source;
+    ledger_.turnover += std::abs(heat.by_flow);
+    steps.push_back(s);
+    speed.cell_steps += bed_.grid().size();
+    ++speed.bed_steps;
+    t += s.dt;
+  }
+  if (setup_->parameters.bed.mix_inversions) bed_.mix_inversions();
+}
+
+void TankModel::update_stress() {
+  if (!shell_) return;
+  const std::span<const double> hoop = mechanics_ ? mechanics_->hoop() : std::span<const double>(hoop_);
+  wall_stress(*setup_->rings, *setup_->steel, setup_->pressure, setup_->parameters.shell->roof_pressure, hoop,
+              shell_->temperature(), stress_);
+}
+
+void TankModel::watch(double t) {
+  update_stress();
+  if (const auto now = bed_.inversion(); now.depth > inversion_.depth) inversion_ = {now.depth, now.z, t};
+  const auto fluid = bed_.fluid();
+  const auto [low, high] = std::minmax_element(fluid.begin(), fluid.end());
+  const auto place = [&](auto it) { return bed_.grid().z[it - fluid.begin()]; };
+  const Fluid& f = setup_->fluid;
+  if (!std::isfinite(*high) || !std::isfinite(*low))
+    throw SolveFailure("The bed's temperatures are not finite.");
+  if (*high > f.highest && !std::exchange(warned_hot_, true))
+    warnings_.push_back(
+        fmt::format("t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m, above its limit of {:.1f} degC, "
+                    "where it boils or "
+                    "decomposes. Lower the inlet temperature, or choose another fluid.",
+                    t, f.name, *high - zero_celsius, place(high), f.highest - zero_celsius));
+  if (*low < f.lowest && !std::exchange(warned_cold_, true))
+    warnings_.push_back(
+        fmt::format("t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m, below its limit of {:.1f} degC, "
+                    "where it freezes. "
+                    "Raise the inlet temperature, insulate the tank, or choose another fluid.",
+                    t, f.name, *low - zero_celsius, place(low), f.lowest - zero_celsius));
+  if (!shell_) return;
+  const auto wall = shell_->temperature();
+  const auto hottest = std::max_element(wall.begin(), wall.end());
+  if (*hottest > setup_->steel->highest && !std::exchange(warned_metal_, true))
+    warnings_.push_back(
+        fmt::format("t = {:.6g} s: the wall of {} is at {:.1f} degC at z = {:.3f} m, above the {:.1f} degC "
+                    "it may be used at.",
+                    t, setup_->steel->name, *hottest - zero_celsius, setup_->rings->z[hottest - wall.begin()],
+                    setup_->steel->highest - zero_celsius));
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/packed_bed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "common/base/error.hpp"
+
+namespace couplet::thermocline {
+
+PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& filler, double diameter)
+    : grid_(p.layers, p.cells),
+      liquid_(fluid),
+      area_(0.25 * std::numbers::pi * diameter * diameter),
+      shells_(p.shells),
+      advection_(p.advection),
+      courant_(p.courant),
+      conducting_inlet_(p.conducting_inlet) {
+  const int n = grid_.size();
+  limit_ = std::numeric_limits<double>::infinity();
+  capacity_.resize(n);
+  for (const BedGrid::Run& run : grid_.runs) {
+    closures_.emplace_back(p.closures, fluid, filler, run.layer.porosity, run.layer.diameter);
+    grains_.emplace_back(filler, run.layer.porosity, run.layer.diameter, shells_);
+    for (int i = run.first; i < run.first + run.count; ++i) {
+      capacity_[i] = run.layer.porosity * fluid.volumetric() * grid_.dz[i];
+      heat_capacity_ += area_ * (capacity_[i] + grains_.back().capacity * shells_ * grid_.dz[i]);
+      limit_ = std::min(limit_, run.layer.porosity * fluid.density * grid_.dz[i]);
+    }
+  }
+  for (auto* v : {&fluid_, &extra_, &extra2_, &fluid0_, &fluid1_, &source_, &film_, &conductivity_, &wall_})
+    v->assign(n, 0.0);
+  face_.assign(n + 1, 0.0);
+  for (auto* v : {&shell_, &shell0_, &shell1_}) v->assign(std::size_t(n) * shells_, 0.0);
+  std::vector<double> start(n, p.initial_temperature);
+  if (!p.profile_z.empty()) {
+    const Table profile(p.profile_z, p.profile_temperature);
+    for (int i = 0; i < n; ++i) start[i] = profile(grid_.z[i]);
+  }
+  set_temperature(start);
+}
+
+void PackedBed::set_temperature(std::span<const double> temperature) {
+  std::copy(temperature.begin(), temperature.end(), fluid_.begin());
+  for (int j = 0; j < shells_; ++j)
+    std::copy(temperature.begin(), temperature.end(), shell_.begin() + std::size_t(j) * grid_.size());
+}
+
+double PackedBed::largest_step(double mass_flow) const {
+  if (mass_flow == 0 || advection_ == Advection::implicit) return std::numeric_limits<double>::infinity();
+  return courant_ * limit_ * area_ / std::abs(mass_flow);
+}
+
+void PackedBed::prepare(double dt, double mass_flow) {
+  dt_ = dt;
+  prepared_flow_ = mass_flow;
+  const MassFlux flux(std::abs(mass_flow) / area_);
+  for (int i = 0; i < grid_.size(); ++i) {
+    const Closure c = closures_[grid_.layer[i]].at(fluid_[i], flux);
+    film_[i] = c.film, conductivity_[i] = c.conductivity, wall_[i] = c.wall;
+  }
+  // SDIRK of order 2 needs gamma = 1 - 1/sqrt(2); see second_order_step.
+  build(main_, advection_ == Advection::tvd ? dt * (1 - std::numbers::sqrt2 / 2) : dt);
+  fallback_is_built_ = false;
+}
+
+double PackedBed::inlet_conductance(bool upward) const {
+  const int i = upward ? 0 : grid_.size() - 1;
+  return conducting_inlet_ ? 2 * conductivity_[i] / grid_.dz[i] : 0;
+}
+
+void PackedBed::build(Operator& op, double tau) const {
+  const int n = grid_.size();
+  op.tau = tau;
+  for (auto* v : {&op.rate, &op.exchange, &op.surface}) v->resize(n);
+  op.grains.clear();
+  for (const Grains& g : grains_) op.grains.emplace_back(g, tau);
+  std::vector<double> a(n), b(n), c(n);
+  for (int i = 0; i < n; ++i) {
+    const int l = grid_.layer[i];
+    const double g = grains_[l].exchange(film_[i]), total = op.grains[l].own + g, dz = grid_.dz[i];
+    op.rate[i] = capacity_[i] / tau;
+    op.exchange[i] = g * dz;
+    op.surface[i] = total > 0 ? 1 / (total * dz) : 0;
+    b[i] = op.rate[i] + op.exchange[i] * (1 - op.exchange[i] * op.surface[i]);
+  }
+  for (int i = 0; i + 1 < n; ++i) {
+    const double resistance =
+        grid_.dz[i] / (2 * conductivity_[i]) + grid_.dz[i + 1] / (2 * conductivity_[i + 1]);
+    const double k = 1 / resistance;  // 0 for a bed that does not conduct
+    c[i] = a[i + 1] = -k;
+    b[i] += k, b[i + 1] += k;
+  }
+  if (prepared_flow_ != 0) b[prepared_flow_ > 0 ? 0 : n - 1] += inlet_conductance(prepared_flow_ > 0);
+  if (advection_ == Advection::implicit) {
+    const double gc = std::abs(prepared_flow_) / area_ * liquid_.specific_heat;
+    for (int i = 0; i < n; ++i) {
+      b[i] += gc;
+      if (prepared_flow_ > 0 && i > 0) a[i] -= gc;
+      if (prepared_flow_ < 0 && i + 1 < n) c[i] -= gc;
+    }
+  }
+  op.matrix.resize(n);
+  op.matrix.factorise(a.data(), b.data(), c.data());
+}
+
+void PackedBed::set_source(std::span<const double> source) {
+  source_rate_ = 0;
+  for (std::size_t i = 0; i < source_.size(); ++i) {
+    source_[i] = source[i] / area_;
+    source_rate_ = std::max(source_rate_, std::abs(source_[i]) / capacity_[i]);
+  }
+}
+
+double PackedBed::energy(double reference) const {
+  const int n = grid_.size();
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    double grain = 0;
+    for (int j = 0; j < shells_; ++j) grain += shell_[std::size_t(j) * n + i] - reference;
+    sum += capacity_[i] * (fluid_[i] - reference) + grains_[grid_.layer[i]].capacity * grid_.dz[i] * grain;
+  }
+  return area_ * sum;
+}
+
+void PackedBed::filler_temperature(std::vector<double>& mean) const {
+  const std::size_t n = grid_.size();
+  mean.assign(n, 0.0);
+  for (int j = 0; j < shells_; ++j)
+    for (std::size_t i = 0; i < n; ++i) mean[i] += shell_[j * n + i];
+  for (double& t : mean) t /= shells_;
+}
+
+double PackedBed::reynolds(int cell, double mass_flow) const {
+  return closures_[grid_.layer[cell]].reynolds(fluid_[cell], std::abs(mass_flow) / area_);
+}
+
+PackedBed::Inversion PackedBed::inversion() const {
+  Inversion worst;
+  for (int i = 0; i + 1 < grid_.size(); ++i)
+    if (fluid_[i] - fluid_[i + 1] > worst.depth)
+      worst = {fluid_[i] - fluid_[i + 1], grid_.z[i] + grid_.dz[i] / 2};
+  return worst;
+}
+
+void PackedBed::mix_inversions() {
+  // Pool adjacent violators: from the bottom up, a cell colder than the pool below it joins that pool.
+  struct Pool {
+    int first;
+    double capacity, heat;
+    double temperature() const { return heat / capacity; }
+  };
+  std::vector<Pool> pools;
+  for (int i = 0; i < grid_.size(); ++i) {
+    pools.push_back({i, capacity_[i], capacity_[i] * fluid_[i]});
+    while (pools.size() > 1 && pools.back().temperature() < pools[pools.size() - 2].temperature()) {
+      const Pool top = pools.back();
+      pools.pop_back();
+      pools.back().capacity += top.capacity;
+      pools.back().heat += top.heat;
+    }
+  }
+  for (std::size_t p = 0; p < pools.size(); ++p) {
+    const int end = p + 1 < pools.size() ? pools[p + 1].first : grid_.size();
+    if (end - pools[p].first > 1)
+      std::fill(fluid_.begin() + pools[p].first, fluid_.begin() + end, pools[p].temperature());
+  }
+}
+
+std::vector<double> PackedBed::state() const {
+  std::vector<double> all(fluid_);
+  all.insert(all.end(), shell_.begin(), shell_.end());
+  return all;
+}
+
+void PackedBed::restore(std::span<const double> state) {
+  if (state.size() != fluid_.size() + shell_.size())
+    throw Error("bed: the checkpoint has {} temperatures, the bed {}; run with the same cells and shells.",
+                state.size(), fluid_.size() + shell_.size());
+  std::copy_n(state.begin(), fluid_.size(), fluid_.begin());
+  std::copy(state.begin() + fluid_.size(), state.end(), shell_.begin());
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "thermocline/bed_grid.hpp"
+#include "thermocline/closures.hpp"
+#include "thermocline/grains.hpp"
+#include "thermocline/tridiagonal.hpp"
+
+namespace couplet::thermocline {
+
+/// How the front is carried.
+enum class Advection {
+  upwind,    ///< explicit, first order, as the thesis: its numerical diffusion is G c dz (1 - Courant)/2
+  tvd,       ///< explicit, van Leer's limiter, second order in space and time, bounded
+  implicit,  ///< first-order upwind at the new time: any step, stays bounded
+};
+
+struct BedParameters {
+  int cells = 500;
+  std::vector<BedLayer> layers;  ///< from the bottom up
+  int shells = 5;                ///< in a grain
+  Advection advection = Advection::upwind;
+  double courant = 0.5;           ///< step over the advective limit; at most 0.5 for tvd, 1 for upwind
+  bool conducting_inlet = false;  ///< heat conduction through the inlet face too
+  bool mix_inversions = false;    ///< cold fluid above hot is mixed
+  ClosureParameters closures;
+  double initial_temperature = 293.15;                 ///< [K]
+  std::vector<double> profile_z, profile_temperature;  ///< or a profile, piecewise linear
+};
+
+/// Fluid and filler of the tank (5.7, 5.8), one-dimensional in z. One step of the fluid:
+///   rho eps c dT/dt = d/dz(k_eff dT/dz) - G c dT/dz - h_v (T - T_surface) + source
+/// advection explicit (or implicit on demand), conduction and exchange implicit: the grains are eliminated
+/// cell by cell, what remains is tridiagonal. Coefficients are those at the start of a block of steps
+/// (prepare()).
+class PackedBed {
+ public:
+  PackedBed(const BedParameters& parameters, const Fluid& fluid, const Filler& filler, double diameter);
+
+  const BedGrid& grid() const { return grid_; }
+  double area() const { return area_; }
+  int shells() const { return shells_; }
+
+  /// Largest step that the scheme takes at this flow [s]; infinity at rest or implicit.
+  double largest_step(double mass_flow) const;
+  /// Steps of this length follow; film, conductivity and factorisation are made for this flow.
+  void prepare(double dt, double mass_flow);
+  double prepared_step() const { return dt_; }
+  double prepared_flow() const { return prepared_flow_; }
+  /// Heat given to the fluid of each cell by walls, ullage and ground during the following steps [W].
+  void set_source(std::span<const double> source);
+
+  struct StepHeat {
+    double outlet = 0;     ///< mean temperature of what left [K]; the inlet's at rest
+    double by_flow = 0;    ///< enthalpy that entered less what left, and conduction through the inlet [J]
+    double by_source = 0;  ///< [J]
+  };
+  /// One step of the prepared length. mass_flow > 0: upward.
+  StepHeat step(double mass_flow, double inlet_temperature);
+
+  /// Heat above a uniform temperature [J].
+  double energy(double reference) const;
+  double heat_capacity() const { return heat_capacity_; }  ///< [J/K]
+
+  std::span<const double> fluid() const { return fluid_; }
+  double top() const { return fluid_.back(); }
+  double bottom() const { return fluid_.front(); }
+  /// Mean temperature of the grains in each cell [K].
+  void filler_temperature(std::vector<double>& mean) const;
+  /// Shell j of all cells, 0 at the surface [K].
+  std::span<const double> shell(int j) const {
+    return {shell_.data() + std::size_t(j) * grid_.size(), fluid_.size()};
+  }
+  /// Fluid-wall coefficients of the prepared flow [W/(m^2 K)].
+  std::span<const double> wall_coefficient() const { return wall_; }
+  /// Those of a checkpoint: the walls use what the last steps used.
+  void set_wall_coefficient(std::span<const double> wall) { wall_.assign(wall.begin(), wall.end()); }
+  /// Film coefficient and axial conductivity of the prepared flow.
+  std::span<const double> film_coefficient() const { return film_; }
+  std::span<const double> conductivity() const { return conductivity_; }
+  double reynolds(int cell, double mass_flow) const;
+
+  /// Largest amount by which a cell is colder than the one below it, and where [K], [m].
+  struct Inversion {
+    double depth = 0, z = 0;
+  };
+  Inversion inversion() const;
+  /// Mixes fluid where it is colder than the fluid below it; keeps its heat.
+  void mix_inversions();
+  /// Steps of the tvd scheme that were taken again at first order in time to stay within bounds.
+  long fallbacks() const { return fallbacks_; }
+
+  /// Fluid and then the shells, cell by cell.
+  std::vector<double> state() const;
+  void restore(std::span<const double> state);
+  void set_temperature(std::span<const double> temperature);
+
+ private:
+  /// I - tau L with L conduction and exchange (and advection if implicit): matrix and grain factors.
+  struct Operator {
+    double tau = 0;
+    std::vector<double> rate;      // eps rho c dz/tau [W/(m^2 K)]
+    std::vector<double> exchange;  // g dz, fluid to outer shell
+    std::vector<double> surface;   // 1/(own dz + g dz) of GrainElimination
+    std::vector<GrainElimination> grains;
+    Tridiagonal matrix;
+  };
+  struct Stage {
+    double outlet = 0,
+           conducted = 0;  // temperature of what leaves; conduction through the inlet face [W/m^2]
+  };
+  void build(Operator& op, double tau) const;
+  /// (fluid, shells) become the solution of (I - tau L) x = (fluid, shells) + tau extra.
+  void solve(const Operator& op, double* fluid, double* shells, const double* extra) const;
+  /// Advection and sources [W/m^2] of the fluid temperatures given.
+  Stage explicit_terms(const double* fluid, double flux, double inlet, bool second_order);
+  StepHeat first_order_step(const Operator& op, double flux, double inlet, bool second_order);
+  bool second_order_step(double flux, double inlet, StepHeat& heat);
+  double inlet_conductance(bool upward) const;
+  void keep_state();
+  void take_back();
+
+  BedGrid grid_;
+  Fluid liquid_;
+  std::vector<LayerClosure> closures_;
+  std::vector<Grains> grains_;
+  double area_;
+  int shells_;
+  Advection advection_;
+  double courant_;
+  bool conducting_inlet_;
+  double heat_capacity_ = 0;
+  std::vector<double> capacity_;  // eps rho c dz [J/(m^2 K)]
+  double limit_;                  // smallest eps rho dz [kg/m^2]
+
+  double dt_ = 0, prepared_flow_ = 0;
+  Operator main_, fallback_;
+  bool fallback_is_built_ = false;
+  std::vector<double> fluid_, shell_;  // state
+  std::vector<double> source_, film_, conductivity_, wall_;
+  double source_rate_ = 0;  // largest |source|/capacity [K/s]
+  // Work space.
+  std::vector<double> extra_, face_, extra2_, fluid0_, shell0_, fluid1_, shell1_;
+  long fallbacks_ = 0;
+};
+
+void declare(config::Section& section, BedParameters& parameters);
+
+}  // namespace couplet::thermocline

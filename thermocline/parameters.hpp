@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "thermocline/ambient.hpp"
+#include "thermocline/flow.hpp"
+#include "thermocline/insulation.hpp"
+#include "thermocline/packed_bed.hpp"
+#include "thermocline/shell.hpp"
+#include "thermocline/ullage.hpp"
+
+namespace couplet::thermocline {
+
+struct UllageSpace {
+  double height = 0;  ///< between bed and roof [m]
+  UllageParameters gas;
+};
+
+struct GroundLayer {
+  std::string material = "soil";
+  double thickness = 0;  ///< [m]
+};
+struct GroundParameters {
+  std::vector<GroundLayer> layers;         ///< from the tank downwards
+  double cell = 0.05;                      ///< largest height of a cell near the tank [m]
+  double step = 900;                       ///< its own step [s]
+  std::optional<double> deep_temperature;  ///< [K]; else the air's annual mean
+};
+
+struct FillerMechanicsParameters {};
+
+struct TankOutput {
+  double monitor_interval = 0;  ///< [s]; 0: each step
+};
+
+/// What `participants.<name>` holds; each optional member is an effect.
+struct TankParameters {
+  double diameter = 0;  ///< inner [m]
+  double exchange_step =
+      0;  ///< longest step between exchanges of the elements [s]; 0: that of the simulation
+  FluidParameters fluid;
+  Filler filler;
+  BedParameters bed;
+  std::optional<ShellParameters> shell;
+  std::optional<FillerMechanicsParameters> mechanics;
+  std::optional<InsulationParameters> insulation;
+  std::optional<UllageSpace> ullage;
+  std::optional<GroundParameters> ground;
+  AmbientParameters ambient;
+  FlowParameters flow;
+  TankOutput output;
+};
+void declare(config::Section& section, TankParameters& parameters);
+
+}  // namespace couplet::thermocline

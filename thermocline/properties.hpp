@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/config/section.hpp"
+#include "thermocline/celsius.hpp"
+#include "thermocline/table.hpp"
+
+/// Materials of thesis table 5.1 with its misprints mended, the insulation and foundation materials of a
+/// tank, and materials of the user's own. Temperatures in K, everything in SI.
+namespace couplet::thermocline {
+
+inline constexpr double gravity = 9.81;  // [m/s^2]
+
+/// A heat-transfer fluid. Density and specific heat are constants: the tank's energy and mass balances rest
+/// on them (thesis table 5.1); conductivity and viscosity follow the temperature.
+struct Fluid {
+  std::string name;
+  double density = 0, specific_heat = 0;       // [kg/m^3], [J/(kg K)]
+  std::function<double(double)> conductivity;  // [W/(m K)] of [K]
+  std::function<double(double)> viscosity;     // [Pa s] of [K]
+  double lowest = 0, highest = 1e4;            // it is a liquid that lasts between these [K]
+  double volumetric() const { return density * specific_heat; }
+};
+
+/// Grains: sand and rock.
+struct Filler {
+  double density = 2643, specific_heat = 1000.5, conductivity = 2.2;  // quartzite, table 5.1
+  double friction_angle = 0.5235987755982988;                         // [rad]; 30 degrees
+  double expansion = 7.92e-6;                                         // linear [1/K]
+  double volumetric() const { return density * specific_heat; }
+};
+
+/// A metal of the shell. `expansion` is the instantaneous coefficient d(strain)/dT, as ASME II-D lists it:
+/// the thermal strain is its integral (the products alpha (T - T0) of a mean coefficient would be a third too
+/// much).
+struct Steel {
+  std::string name;
+  double density = 7850, poissons_ratio = 0.3;
+  Table specific_heat, conductivity, youngs_modulus, expansion, yield_strength;
+  double highest = 1e4;  // [K]
+  /// Strain from the lower end of the table to this temperature [1].
+  double thermal_strain(double temperature) const { return expansion.integral(temperature); }
+};
+
+/// Something that only conducts: insulation, foundation, soil.
+struct Insulator {
+  double density = 0, specific_heat = 0;
+  Table conductivity;
+};
+
+Fluid solar_salt();
+Fluid caloria_ht43();
+Steel steel_a537();     // A537 class 2, 477-577 K
+Steel steel_a387();     // A387 grade 91, 563-663 K
+Steel nickel_n06022();  // 563-838 K
+/// Wired mineral-wool mat of 100 kg/m^3.
+Insulator mineral_wool();
+/// Layers of a foundation by name ("dry-sand", "foam-glass", ...); throws std::out_of_range for another.
+Insulator foundation_material(const std::string& name);
+std::vector<std::string> foundation_materials();
+
+// -- as they stand in the YAML ------------------------------------------------------------------------------
+struct FluidParameters {
+  enum class Type { solar_salt, caloria_ht43, custom } type = Type::solar_salt;
+  double density = 0, specific_heat = 0;
+  std::vector<double> temperature, conductivity, viscosity;
+  double lowest = 0, highest = 1e4;
+};
+void declare(config::Section& section, FluidParameters& parameters);
+Fluid make_fluid(const FluidParameters& parameters);
+
+void declare(config::Section& section, Filler& filler);
+
+struct SteelParameters {
+  enum class Type { a537, a387, n06022, custom } type = Type::a537;
+  double density = 7850, poissons_ratio = 0.3, highest = 1e4;
+  std::vector<double> temperature, specific_heat, conductivity, youngs_modulus, expansion, yield_strength;
+};
+void declare(config::Section& section, SteelParameters& parameters);
+Steel make_steel(const SteelParameters& parameters);
+
+struct InsulatorParameters {
+  double density = 100, specific_heat = 840;
+  std::vector<double> temperature, conductivity;  // both empty: mineral wool
+};
+void declare(config::Section& section, InsulatorParameters& parameters);
+Insulator make_insulator(const InsulatorParameters& parameters);
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "thermocline/properties.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+void nothing(config::Section&) {}
+
+/// What is wrong with a column beside `temperature`.
+std::string problem_of(const std::vector<double>& temperature, const std::vector<double>& values,
+                       bool positive) {
+  if (temperature.empty()) return "'temperature' is empty; give the temperatures that the values belong to";
+  if (std::adjacent_find(temperature.begin(), temperature.end(), std::greater_equal<>()) != temperature.end())
+    return "'temperature' must grow from value to value";
+  if (values.size() != temperature.size())
+    return fmt::format("has {} values, 'temperature' has {}", values.size(), temperature.size());
+  if (positive && *std::min_element(values.begin(), values.end()) <= 0) return "must be above 0 everywhere";
+  return "";
+}
+
+void declare_table(config::Section& s, const char* name, const char* unit, std::vector<double>& values,
+                   const std::vector<double>& temperature, const char* doc) {
+  s.value(name, values).unit(unit).required().doc(doc);
+  s.check([&] { return problem_of(temperature, values, true); }, name);
+}
+
+}  // namespace
+
+void declare(config::Section& section, FluidParameters& p) {
+  using Type = FluidParameters::Type;
+  const auto custom = [&p](config::Section& s) {
+    s.value("density", p.density).unit("kg/m^3").positive().required().doc("density, a constant");
+    s.value("specific-heat", p.specific_heat).unit("J/(kg K)").positive().required().doc("a constant");
+    s.value("temperature", p.temperature).unit("K").required().doc("temperatures of the lists that follow");
+    declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
+    declare_table(s, "viscosity", "Pa s", p.viscosity, p.temperature, "piecewise linear");
+    s.value("lowest", p.lowest).unit("K").doc("below it the fluid freezes: a warning");
+    s.value("highest", p.highest).unit("K").doc("above it the fluid boils or decomposes: a warning");
+  };
+  section.variant<Type>("type", p.type,
+                        {{"solar-salt", Type::solar_salt, nothing},
+                         {"caloria-ht43", Type::caloria_ht43, nothing},
+                         {"custom", Type::custom, custom}},
+                        "60 % NaNO3 + 40 % KNO3, the oil of Solar One, or the values given here", true);
+}
+
+void declare(config::Section& s, Filler& f) {
+  s.value("density", f.density)
+      .unit("kg/m^3")
+      .positive()
+      .doc("of the grains; the defaults are those of quartzite");
+  s.value("specific-heat", f.specific_heat).unit("J/(kg K)").positive().doc("of the grains");
+  s.value("conductivity", f.conductivity).unit("W/(m K)").positive().doc("of the grains");
+  s.value("friction-angle", f.friction_angle)
+      .unit("rad")
+      .range(0.01, 1.5)
+      .doc("internal friction of the bulk, phi in (5.17)");
+  s.value("expansion", f.expansion).unit("1/K").not_negative().doc("linear thermal expansion of the bulk");
+}
+
+void declare(config::Section& section, SteelParameters& p) {
+  using Type = SteelParameters::Type;
+  const auto custom = [&p](config::Section& s) {
+    s.value("density", p.density).unit("kg/m^3").positive().doc("density");
+    s.value("poissons-ratio", p.poissons_ratio).range(0, 0.499).doc("Poisson's ratio");
+    s.value("highest", p.highest).unit("K").doc("above it the metal may not be used: a warning");
+    s.value("temperature", p.temperature).unit("K").required().doc("temperatures of the lists that follow");
+    declare_table(s, "specific-heat", "J/(kg K)", p.specific_heat, p.temperature, "piecewise linear");
+    declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
+    declare_table(s, "youngs-modulus", "Pa", p.youngs_modulus, p.temperature, "piecewise linear");
+    declare_table(s, "expansion", "1/K", p.expansion, p.temperature,
+                  "instantaneous coefficient, to be integrated");
+    declare_table(s, "yield-strength", "Pa", p.yield_strength, p.temperature, "piecewise linear");
+  };
+  section.variant<Type>("type", p.type,
+                        {{"a537-class-2", Type::a537, nothing},
+                         {"a387-grade-91", Type::a387, nothing},
+                         {"n06022", Type::n06022, nothing},
+                         {"custom", Type::custom, custom}},
+                        "a metal of thesis table 5.1, or the values given here", true);
+}
+
+void declare(config::Section& s, InsulatorParameters& p) {
+  s.value("density", p.density).unit("kg/m^3").positive().doc("density");
+  s.value("specific-heat", p.specific_heat).unit("J/(kg K)").positive().doc("specific heat");
+  s.value("temperature", p.temperature)
+      .unit("K")
+      .doc("temperatures of 'conductivity'; absent for a constant");
+  s.value("conductivity", p.conductivity)
+      .unit("W/(m K)")
+      .doc("piecewise linear; absent: a wired mineral-wool mat, 0.040 at 50 degC to 0.163 at 500 degC");
+  s.check(
+      [&]() -> std::string {
+        if (p.conductivity.empty() && p.temperature.empty()) return "";
+        if (p.temperature.empty())
+          return p.conductivity.size() == 1 ? "" : "needs 'temperature' beside it, unless it is one constant";
+        return problem_of(p.temperature, p.conductivity, true);
+      },
+      "conductivity");
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/tank.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::thermocline {
+
+Tank::Tank(const TankParameters& p, const ParticipantContext& context)
+    : name_(context.name),
+      ambient_(make_ambient(p.ambient, context.case_folder)),
+      control_(make_flow_control(p.flow)),
+      accepted_(std::make_shared<const TankSetup>(p), *ambient_),
+      next_(accepted_),
+      control_state_(control_->state()) {
+  if (comm_rank(context.comm) == 0)
+    files_ = std::make_unique<TankOutputFiles>(accepted_, context.output_folder, context.restart_time);
+}
+
+Exchange Tank::solve(const Exchange&) {
+  next_ = accepted_;
+  control_->restore(control_state_);
+  steps_.clear();
+  next_.advance(step_.time, step_.dt, *control_, *ambient_, steps_, speed_);
+  return {};
+}
+
+void Tank::accept_step() {
+  const Ledger &before = accepted_.ledger(), &now = next_.ledger();
+  stored_ = now.bed - before.bed;
+  side_ = now.side - before.side, roof_ = now.roof - before.roof, ground_ = now.ground - before.ground;
+  std::swap(accepted_, next_);
+  control_state_ = control_->state();
+  for (const std::string& sentence : accepted_.take_warnings())
+    if (files_) log::warn("{}", sentence);
+  if (observers_.empty()) return;
+  accepted_.bed().filler_temperature(filler_);
+  const TankRecord r = record();
+  for (const auto& observer : observers_) observer->record(r);
+}
+
+TankRecord Tank::record() const {
+  const TankModel& m = accepted_;
+  TankRecord r;
+  r.time = step_.time + step_.dt;
+  r.dt = step_.dt;
+  r.steps = steps_;
+  r.z = m.bed().grid().z, r.dz = m.bed().grid().dz;
+  r.fluid_temperature = m.bed().fluid();
+  r.filler_temperature = filler_;
+  if (m.shell()) {
+    r.wall_z = m.setup().rings->z;
+    r.wall_temperature = m.shell()->temperature();
+    r.hoop_stress = m.stress().hoop;
+    r.equivalent_stress = m.stress().equivalent;
+    r.yield_strength = m.stress().yield;
+  }
+  r.stored = stored_, r.loss_side = side_, r.loss_roof = roof_, r.loss_ground = ground_;
+  r.heat_capacity = m.bed().heat_capacity();
+  return r;
+}
+
+void Tank::save(CheckpointWriter& file) const {
+  for (const auto& [name, values] : accepted_.state()) file.write(name, values);
+  file.write("flow-control", control_state_);
+  for (std::size_t i = 0; i < observers_.size(); ++i)
+    file.write("observer-" + std::to_string(i), observers_[i]->state());
+}
+
+void Tank::load(CheckpointReader& file) {
+  accepted_.restore([&](const std::string& name) { return file.read(name); });
+  control_state_ = file.read("flow-control");
+  control_->restore(control_state_);
+  for (std::size_t i = 0; i < observers_.size(); ++i)
+    observers_[i]->restore(file.read("observer-" + std::to_string(i)));
+}
+
+void Tank::write_output(double time, int) {
+  if (files_) files_->profiles(accepted_, time);
+}
+
+void Tank::write_monitors(double time) {
+  if (files_ && !steps_.empty()) files_->monitor(accepted_, time, steps_.back());
+}
+
+std::vector<std::string> Tank::judge_left_out_effects() {
+  for (const auto& observer : observers_) observer->finish();
+  std::vector<std::string> lines;
+  const TankModel& m = accepted_;
+  const double t = step_.time + step_.dt, turnover = std::max(m.ledger().turnover, 1e-300);
+  lines.push_back(fmt::format(
+      "energy: {:.4g} MWh moved, {:.4g} MWh lost; the books of the bed are off by {:.1e}, those of "
+      "the tank by {:.1e} of what was moved",
+      turnover / 3.6e9, m.losses() / 3.6e9, std::abs(m.bed_imbalance()) / turnover,
+      std::abs(m.imbalance(t)) / turnover));
+  if (m.inversion().depth > 0.01)
+    lines.push_back(fmt::format(
+        "buoyancy: at t = {:.6g} s fluid at z = {:.3f} m was {:.2f} K colder than the fluid below it; {}",
+        m.inversion().time, m.inversion().z, m.inversion().depth,
+        m.setup().parameters.bed.mix_inversions ? "such fluid is mixed"
+                                                : "mixing it (bed.mix-inversions) was left out"));
+  if (m.bed().fallbacks() > 0)
+    lines.push_back(fmt::format("bed: {} of {} steps were taken at first order in time to stay within bounds",
+                                m.bed().fallbacks(), speed_.bed_steps));
+  if (m.mechanics())
+    lines.push_back(fmt::format("filler: {} of {} rings have reached the passive limit",
+                                m.mechanics()->ever_passive(), m.setup().rings->in_bed));
+  double total = 0;
+  for (const double s : speed_.seconds) total += s;
+  if (speed_.cell_steps > 0) {
+    std::string shares;
+    for (std::size_t i = 0; i < element_names.size(); ++i)
+      if (speed_.seconds[i] > 0)
+        shares += fmt::format("{}{} {:.2f} ns ({:.0f} %)", shares.empty() ? "" : ", ", element_names[i],
+                              1e9 * speed_.seconds[i] / speed_.cell_steps, 100 * speed_.seconds[i] / total);
+    lines.push_back(fmt::format("speed: {:.2f} ns per cell-step of the bed in {} steps of {} cells: {}",
+                                1e9 * total / speed_.cell_steps, speed_.bed_steps, m.bed().grid().size(),
+                                shares));
+  }
+  return lines;
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/app/program.hpp"
+#include "common/coupling/participant.hpp"
+#include "thermocline/model.hpp"
+#include "thermocline/output.hpp"
+
+namespace couplet::thermocline {
+
+/// The tank as a participant: runs the elements that the YAML asks for. A tank is small, so every rank
+/// computes all of it; rank 0 writes.
+class Tank final : public Participant {
+ public:
+  Tank(const TankParameters& parameters, const ParticipantContext& context);
+
+  Interface initialise() override { return {}; }
+  void begin_step(const Step& step) override { step_ = step; }
+  Exchange solve(const Exchange& in) override;
+  void accept_step() override;
+  void save(CheckpointWriter& file) const override;
+  void load(CheckpointReader& file) override;
+  void write_output(double time, int number) override;
+  void write_monitors(double time) override;
+  std::vector<std::string> judge_left_out_effects() override;
+
+  const TankModel& model() const { return accepted_; }
+  const Speed& speed() const { return speed_; }
+  const FlowControl& control() const { return *control_; }
+  void add_observer(std::unique_ptr<TankObserver> observer) { observers_.push_back(std::move(observer)); }
+
+ private:
+  TankRecord record() const;
+
+  std::string name_;
+  std::unique_ptr<AmbientSource> ambient_;
+  std::unique_ptr<FlowControl> control_;
+  std::vector<std::unique_ptr<TankObserver>> observers_;
+  TankModel accepted_, next_;
+  std::vector<double> control_state_;  // that of accepted_
+  std::vector<BedStep> steps_;         // of next_
+  Step step_;
+  Speed speed_;
+  std::unique_ptr<TankOutputFiles> files_;  // on rank 0
+  // Of the last accepted step, for its record.
+  std::vector<double> filler_;
+  double stored_ = 0, side_ = 0, roof_ = 0, ground_ = 0;
+};
+
+}  // namespace couplet::thermocline
