@@ -188,7 +188,8 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
 PackedBed::StepHeat PackedBed::step(double mass_flow, double inlet) {
   // The matrix of the implicit scheme belongs to one flow.
   const double flux = mass_flow / area_;
-  const bool other_inlet = conducting_inlet_ && (flux > 0) != (prepared_flow_ > 0);
+  const bool other_inlet =
+      conducting_inlet_ && ((flux > 0) != (prepared_flow_ > 0) || (flux < 0) != (prepared_flow_ < 0));
   if ((advection_ == Advection::implicit && mass_flow != prepared_flow_) || other_inlet)
     prepare(dt_, mass_flow);
   StepHeat heat;

@@ -14,7 +14,7 @@ enum class Conduction {
   stagnant,   ///< Zehner-Schluender's stagnant bed (grains conduct too) and the dispersion of wakao
   constant,   ///< a given value
 };
-/// Between fluid and wall.
+/// Between fluid and wall; at least that of the stagnant bed, 2 k0/d.
 enum class WallFilm { beek, yagi_wakao, constant };
 
 struct ClosureParameters {

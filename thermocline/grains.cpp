@@ -30,17 +30,19 @@ GrainElimination::GrainElimination(const Grains& grains, double tau)
   own = store;
   if (grains.capacity <= 0) return;
   // Row j: (store + a_{j-1} + a_j) theta_j - a_{j-1} theta_{j-1} - a_j theta_{j+1} = store theta_j^n.
-  double beta_inside = 0;
+  // 1 - beta is carried along by itself: in tiny grains it is far below the rounding of beta.
+  double rest_inside = 1;  // 1 - beta of the shell further in
   for (int j = n - 1; j >= 1; --j) {
     const double outward = grains.between[j - 1], inward = j + 1 < n ? grains.between[j] : 0;
-    const double diagonal = store + outward + inward * (1 - beta_inside);
+    const double held = store + inward * rest_inside, diagonal = held + outward;
     keep[j] = store / diagonal;
     pass[j] = inward / diagonal;
-    beta[j] = beta_inside = outward / diagonal;
+    beta[j] = outward / diagonal;
+    rest_inside = held / diagonal;
   }
   if (n > 1) {
     inner = grains.between[0];
-    own = store + inner * (1 - beta_inside);
+    own = store + inner * rest_inside;
   }
 }
 

@@ -44,7 +44,7 @@ FillerMechanics::FillerMechanics(const Rings& rings, const Steel& steel, const F
   }
   strain_.assign(rings.in_bed, -1e3);  // far inside: the first update finds every ring active
   hoop_.resize(n), lateral_.assign(n, 0.0), contact_.assign(rings.in_bed, Contact::active);
-  yielded_.assign(rings.in_bed, 0);
+  slip_.assign(rings.in_bed, 0.0);
   update(wall, grains);
 }
 
@@ -52,7 +52,8 @@ void FillerMechanics::update(std::span<const double> wall, std::span<const doubl
   for (int i = 0; i < rings_->in_bed; ++i) {
     const double e = steel_->youngs_modulus(wall[i]), free = steel_->thermal_strain(wall[i]);
     const double lowest = active_[i] * per_pressure_[i], highest = passive_[i] * per_pressure_[i];
-    strain_[i] += std::log1p(expansion_ * (grains[i] - grains_[i]));  // (5.18)
+    // (5.18) as D exp(alpha dT): printed as D (1 + alpha dT), which a cycle would leave smaller.
+    strain_[i] += expansion_ * (grains[i] - grains_[i]);
     grains_[i] = grains[i];
     const double held = e * (strain_[i] - free);
     if (held <= lowest) {
@@ -61,7 +62,7 @@ void FillerMechanics::update(std::span<const double> wall, std::span<const doubl
       strain_[i] = lowest / e + free;  // the grains slump after the wall
     } else if (held >= highest) {
       contact_[i] = Contact::passive;
-      yielded_[i] = 1;
+      slip_[i] += (held - highest) / e;
       hoop_[i] = highest;
       strain_[i] = highest / e + free;  // the wall pushes them in
     } else {
@@ -73,7 +74,9 @@ void FillerMechanics::update(std::span<const double> wall, std::span<const doubl
   for (int i = rings_->in_bed; i < rings_->size(); ++i) hoop_[i] = active_[i] * per_pressure_[i];
 }
 
-int FillerMechanics::ever_passive() const { return int(std::count(yielded_.begin(), yielded_.end(), 1)); }
+int FillerMechanics::ever_passive() const {
+  return int(std::count_if(slip_.begin(), slip_.end(), [](double s) { return s > 0; }));
+}
 
 std::vector<double> FillerMechanics::state() const {
   std::vector<double> all(strain_);
@@ -81,7 +84,7 @@ std::vector<double> FillerMechanics::state() const {
   all.insert(all.end(), hoop_.begin(), hoop_.end());
   all.insert(all.end(), lateral_.begin(), lateral_.end());
   for (const Contact c : contact_) all.push_back(double(c));
-  all.insert(all.end(), yielded_.begin(), yielded_.end());
+  all.insert(all.end(), slip_.begin(), slip_.end());
   return all;
 }
 
@@ -96,7 +99,7 @@ void FillerMechanics::restore(std::span<const double> state) {
   };
   take(strain_, bed), take(grains_, grains), take(hoop_, all), take(lateral_, all);
   for (std::size_t i = 0; i < bed; ++i) contact_[i] = Contact(int(*from++));
-  take(yielded_, bed);
+  take(slip_, bed);
 }
 
 std::vector<double> active_hoop(const Rings& rings, const Filler& filler, const InnerPressure& p) {

@@ -41,8 +41,10 @@ class FillerMechanics {
   std::span<const double> hoop() const { return hoop_; }        ///< [Pa]
   std::span<const double> lateral() const { return lateral_; }  ///< p_s [Pa]
   const std::vector<Contact>& contact() const { return contact_; }
-  /// Rings that have been passive at some time.
-  int ever_passive() const;
+  /// What passive yielding has taken from the filler's diameter so far, relative [1]; 0 where it never
+  /// yielded.
+  std::span<const double> slip() const { return slip_; }
+  int ever_passive() const;  ///< rings that have yielded
   /// Radius increase of the filler since the start, relative [1].
   std::span<const double> filler_strain() const { return strain_; }
 
@@ -55,10 +57,9 @@ class FillerMechanics {
   double expansion_;
   std::vector<double> per_pressure_;              // D/(2e) [1]
   std::vector<double> fluid_, active_, passive_;  // p_f, p_f + K_a p_v, p_f + p_v/K_a [Pa]
-  std::vector<double> strain_, grains_;           // of the filler [1], its temperature [K]
+  std::vector<double> strain_, slip_, grains_;    // of the filler [1], its temperature [K]
   std::vector<double> hoop_, lateral_;
   std::vector<Contact> contact_;
-  std::vector<char> yielded_;
 };
 
 /// Without filler mechanics the hoop stress is that of the fluid and the active load.

@@ -84,7 +84,8 @@ void PackedBed::build(Operator& op, double tau) const {
     op.rate[i] = capacity_[i] / tau;
     op.exchange[i] = g * dz;
     op.surface[i] = total > 0 ? 1 / (total * dz) : 0;
-    b[i] = op.rate[i] + op.exchange[i] * (1 - op.exchange[i] * op.surface[i]);
+    // g (1 - beta_0), in a form that does not cancel for large g.
+    b[i] = op.rate[i] + op.exchange[i] * op.grains[l].own * dz * op.surface[i];
   }
   for (int i = 0; i + 1 < n; ++i) {
     const double resistance =

@@ -20,7 +20,7 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
   s.value("conductivity", p.conductivity).unit("W/(m K)").not_negative().doc("with conduction: constant");
   s.choice("wall-film", p.wall_film,
            {{"beek", WallFilm::beek}, {"yagi-wakao", WallFilm::yagi_wakao}, {"constant", WallFilm::constant}})
-      .doc("heat transfer between fluid and wall");
+      .doc("heat transfer between fluid and wall; the correlations count from 2 k0/d of the stagnant bed on");
   s.value("wall-coefficient", p.wall_coefficient)
       .unit("W/(m^2 K)")
       .not_negative()

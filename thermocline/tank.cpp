@@ -107,9 +107,16 @@ std::vector<std::string> Tank::judge_left_out_effects() {
   if (m.bed().fallbacks() > 0)
     lines.push_back(fmt::format("bed: {} of {} steps were taken at first order in time to stay within bounds",
                                 m.bed().fallbacks(), speed_.bed_steps));
-  if (m.mechanics())
-    lines.push_back(fmt::format("filler: {} of {} rings have reached the passive limit",
-                                m.mechanics()->ever_passive(), m.setup().rings->in_bed));
+  if (m.mechanics()) {
+    const auto slip = m.mechanics()->slip();
+    const std::size_t i = std::max_element(slip.begin(), slip.end()) - slip.begin();
+    lines.push_back(
+        fmt::format("filler: {} of {} rings have reached the passive limit; the wall has pushed the grains "
+                    "in by {:.2g} mm at most, at "
+                    "z = {:.2f} m",
+                    m.mechanics()->ever_passive(), slip.size(), 500 * slip[i] * m.setup().parameters.diameter,
+                    m.setup().rings->z[i]));
+  }
   double total = 0;
   for (const double s : speed_.seconds) total += s;
   if (speed_.cell_steps > 0) {

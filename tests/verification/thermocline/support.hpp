@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "thermocline/packed_bed.hpp"
+
+namespace couplet::thermocline {
+
+/// Columns of a CSV by name; lines that begin with # are comments.
+inline std::map<std::string, std::vector<double>> read_columns(const std::string& file) {
+  std::ifstream in(std::string(COUPLET_TEST_DATA) + "/" + file);
+  if (!in) throw Error("{} cannot be read", file);
+  std::map<std::string, std::vector<double>> columns;
+  std::vector<std::string> names;
+  for (std::string line, cell; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::stringstream cells(line);
+    if (names.empty()) {
+      while (std::getline(cells, cell, ',')) names.push_back(cell);
+      continue;
+    }
+    for (std::size_t i = 0; std::getline(cells, cell, ','); ++i)
+      columns[names.at(i)].push_back(std::stod(cell));
+  }
+  return columns;
+}
+
+inline Fluid constant_fluid(double density, double specific_heat, double conductivity,
+                            double viscosity = 1e-3) {
+  return {"fluid", density, specific_heat, Table(conductivity), Table(viscosity), 1, 1e4};
+}
+
+/// One layer; conduction and film are constants.
+inline BedParameters plain_bed(int cells, double height, double porosity, double diameter) {
+  BedParameters p;
+  p.cells = cells;
+  p.layers = {{height, porosity, diameter}};
+  p.closures.conduction = Conduction::constant;
+  return p;
+}
+
+/// Value at a height, linear between cell centres.
+inline double value_at(const BedGrid& grid, std::span<const double> values, double z) {
+  return Table(grid.z, {values.begin(), values.end()})(z);
+}
+
+/// n steps of equal length up to `time`, no longer than the scheme allows.
+inline int run(PackedBed& bed, double time, double mass_flow, double inlet, double longest = 1e300) {
+  const double limit = std::min(longest, bed.largest_step(mass_flow));
+  const int n = std::max(1, int(std::ceil(time / limit * (1 - 1e-12))));
+  bed.prepare(time / n, mass_flow);
+  for (int i = 0; i < n; ++i) bed.step(mass_flow, inlet);
+  return n;
+}
+
+/// Of errors at doubled resolutions.
+inline double slope(double coarse, double fine) { return std::log2(coarse / fine); }
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tank as a whole: books, subsets of elements, the participant's contract.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "common/io/checkpoint.hpp"
+#include "tests/verification/thermocline/tank_case.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+TEST(Books, the_whole_tank_closes_over_a_week) {
+  TankRun run(solar_one_parameters());
+  run.until(7 * 86400, 900);
+  const double moved = run.model().ledger().turnover;
+  RecordProperty("imbalance", fmt::format("{:.3e}", std::abs(run.model().imbalance(run.time)) / moved));
+  RecordProperty("bed", fmt::format("{:.3e}", std::abs(run.model().bed_imbalance()) / moved));
+  EXPECT_LT(std::abs(run.model().imbalance(run.time)), 1e-6 * moved);
+  EXPECT_LT(std::abs(run.model().bed_imbalance()), 1e-9 * moved);
+  EXPECT_GT(run.model().ledger().side, 0);
+  EXPECT_GT(run.model().ledger().roof, 0);
+  EXPECT_GT(run.model().ledger().ground, 0);
+}
+
+TEST(Elements, any_subset_runs_and_closes_its_books) {
+  for (int mask = 0; mask < 32; ++mask) {
+    TankParameters p = solar_one_parameters();
+    if (!(mask & 1)) p.mechanics.reset();
+    if (!(mask & 2)) p.insulation.reset();
+    if (!(mask & 4)) p.ullage.reset();
+    if (!(mask & 8)) p.ground.reset();
+    if (!(mask & 16)) p.shell.reset(), p.mechanics.reset(), p.insulation.reset();
+    p.bed.cells = 50;
+    TankRun run(p);
+    run.until(6 * 3600, 900);
+    const TankModel& m = run.model();
+    EXPECT_LT(std::abs(m.imbalance(run.time)), 1e-6 * m.ledger().turnover) << mask;
+    EXPECT_EQ(m.shell().has_value(), p.shell.has_value());
+    EXPECT_EQ(m.ledger().ground != 0, p.ground.has_value());
+    EXPECT_EQ(m.ledger().side != 0, p.insulation.has_value());
+    EXPECT_EQ(m.ledger().roof != 0, p.insulation.has_value() && p.ullage.has_value());
+  }
+}
+
+TEST(Elements, a_tank_at_the_temperature_of_its_surroundings_stays) {
+  TankParameters p = solar_one_parameters();
+  p.bed.initial_temperature = p.ambient.constant.temperature = 300;
+  p.insulation->outside.emissivity = 0;  // the sky is colder than the air
+  p.flow = {};
+  TankRun run(p);
+  run.until(5 * 86400, 900);
+  for (const double t : run.model().bed().fluid()) EXPECT_NEAR(t, 300, 1e-6);
+  for (const double t : run.model().shell()->temperature()) EXPECT_NEAR(t, 300, 1e-6);
+}
+
+TEST(Elements, shorter_exchange_steps_change_little) {
+  TankParameters coarse = solar_one_parameters(), fine = coarse;
+  coarse.exchange_step = 300, fine.exchange_step = 30;
+  TankRun a(coarse), b(fine);
+  a.until(20 * 3600, 900), b.until(20 * 3600, 900);
+  double worst = 0, stress = 0;
+  for (int i = 0; i < a.model().bed().grid().size(); ++i)
+    worst = std::max(worst, std::abs(a.model().bed().fluid()[i] - b.model().bed().fluid()[i]));
+  for (std::size_t i = 0; i < a.model().stress().hoop.size(); ++i)
+    stress = std::max(stress, std::abs(a.model().stress().hoop[i] - b.model().stress().hoop[i]));
+  RecordProperty("kelvin", fmt::format("{:.3f}", worst));
+  EXPECT_LT(worst, 1.0);
+  EXPECT_LT(stress, 3e6);
+}
+
+TEST(Schedule, repeats_its_rows_and_stops_at_the_outlet) {
+  Schedule s(solar_one_parameters().flow);
+  const double hot = 304 + zero_celsius, cold = 204 + zero_celsius, hour = 3600;
+  const Ambient air;
+  EXPECT_EQ(s.decide(0, cold, cold, air).mass_flow, -90);
+  EXPECT_EQ(s.decide(0, cold, cold, air).until, 9 * hour);
+  EXPECT_EQ(s.decide(8 * hour, hot, cold + 5, air).mass_flow, 0);
+  EXPECT_EQ(s.decide(8.5 * hour, hot, cold, air).mass_flow, 0) << "a flow that was stopped stays so";
+  EXPECT_EQ(s.decide(9 * hour, hot, cold, air).mass_flow, 70);
+  EXPECT_EQ(s.decide(17 * hour, hot - 5, cold, air).mass_flow, 0);
+  EXPECT_EQ(s.decide(24 * hour, hot, cold, air).mass_flow, -70);
+  EXPECT_EQ(s.decide(10 * 24 * hour + hour, hot, cold, air).mass_flow, -70);
+  EXPECT_EQ(s.decide(10 * 24 * hour + hour, hot, cold, air).until, 10 * 24 * hour + 9 * hour);
+  EXPECT_EQ(s.decide(10 * 24 * hour + 12 * hour, hot, cold, air).mass_flow, 70);
+}
+
+class Participation : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() / ("couplet-tank-" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::unique_ptr<Tank> make() const {
+    ParticipantContext context;
+    context.name = "tank";
+    context.output_folder = folder_;
+    TankParameters p = solar_one_parameters();
+    p.bed.cells = 60;
+    return std::make_unique<Tank>(p, context);
+  }
+  static void take(Tank& tank, int n) {
+    tank.begin_step({n * 900.0, 900, Scheme::standalone, n});
+    tank.solve({});
+    tank.accept_step();
+  }
+  static void expect_equal(const Tank& a, const Tank& b) {
+    const auto all = a.model().state(), other = b.model().state();
+    for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].second, other[i].second) << all[i].first;
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(Participation, only_accepted_steps_change_the_state) {
+  const auto a = make(), b = make();
+  for (int n = 0; n < 50; ++n) {
+    a->begin_step({n * 900.0, 450, Scheme::standalone, n});
+    a->solve({});
+    a->begin_step({n * 900.0, 900, Scheme::standalone, n});
+    a->solve({});
+    take(*a, n), take(*b, n);
+  }
+  expect_equal(*a, *b);
+}
+
+TEST_F(Participation, a_checkpoint_continues_bit_for_bit) {
+  const auto a = make(), b = make();
+  for (int n = 0; n < 45; ++n) take(*a, n);
+  {
+    CheckpointWriter writer(MPI_COMM_SELF, folder_ / "state.h5");
+    a->save(writer);
+    writer.close();
+    CheckpointReader reader(MPI_COMM_SELF, folder_ / "state.h5");
+    b->load(reader);
+  }
+  for (int n = 45; n < 100; ++n) take(*a, n), take(*b, n);
+  expect_equal(*a, *b);
+}
+
+}  // namespace
+}  // namespace couplet::thermocline
