@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "thermocline/grain_kernels.hpp"
 #include "thermocline/packed_bed.hpp"
 
 namespace couplet::thermocline {
@@ -27,39 +28,22 @@ struct Range {
 
 }  // namespace
 
-void PackedBed::solve(const Operator& op, double* fluid, double* shells, const double* extra) const {
-  const std::size_t n = grid_.size();
-  const double* dz = grid_.dz.data();
-  for (const BedGrid::Run& run : grid_.runs) {
-    const GrainElimination& e = op.grains[&run - grid_.runs.data()];
-    const std::size_t first = run.first, last = run.first + run.count;
-    // Inside to surface: alpha_j in place of theta_j^n.
-    for (int j = shells_ - 1; j >= 1; --j) {
-      double* theta = shells + j * n;
-      const double keep = e.keep[j], pass = e.pass[j];
-      if (j == shells_ - 1)
-        for (std::size_t i = first; i < last; ++i) theta[i] *= keep;
-      else
-        for (std::size_t i = first; i < last; ++i) theta[i] = keep * theta[i] + pass * theta[i + n];
-    }
-    const double store = e.store, inner = e.inner;
-    const std::size_t inside = shells_ > 1 ? n : 0;
-    for (std::size_t i = first; i < last; ++i) {
-      shells[i] = (store * shells[i] + inner * shells[i + inside]) * dz[i] * op.surface[i];
-      fluid[i] = op.rate[i] * fluid[i] + extra[i] + op.exchange[i] * shells[i];
-    }
-  }
+void PackedBed::solve(const Operator& op, double* fluid, const double* shells, double* to_shells,
+                      const double* extra) const {
+  const auto cells = [&](const BedGrid::Run& run) {
+    return GrainCells{op.rate.data(),           op.share.data(),        op.beta.data(),
+                      op.heat.data(),           std::size_t(run.first), std::size_t(run.first + run.count),
+                      std::size_t(grid_.size())};
+  };
+  with_shells(shells_, [&](auto n) {
+    for (std::size_t r = 0; r < grid_.runs.size(); ++r)
+      gather_grains<n()>(op.grains[r], cells(grid_.runs[r]), shells, extra, fluid);
+  });
   op.matrix.solve(fluid);
-  for (const BedGrid::Run& run : grid_.runs) {
-    const GrainElimination& e = op.grains[&run - grid_.runs.data()];
-    const std::size_t first = run.first, last = run.first + run.count;
-    for (std::size_t i = first; i < last; ++i) shells[i] += op.exchange[i] * op.surface[i] * fluid[i];
-    for (int j = 1; j < shells_; ++j) {
-      double* theta = shells + j * n;
-      const double beta = e.beta[j];
-      for (std::size_t i = first; i < last; ++i) theta[i] += beta * theta[i - n];
-    }
-  }
+  with_shells(shells_, [&](auto n) {
+    for (std::size_t r = 0; r < grid_.runs.size(); ++r)
+      scatter_grains<n()>(op.grains[r], cells(grid_.runs[r]), shells, fluid, to_shells);
+  });
 }
 
 PackedBed::Stage PackedBed::explicit_terms(const double* t, double flux, double inlet, bool second_order) {
@@ -71,24 +55,32 @@ PackedBed::Stage PackedBed::explicit_terms(const double* t, double flux, double 
     return stage;
   }
   const bool up = flux > 0;
+  const double gc = flux * liquid_.specific_heat;
+  if (!second_order) {
+    const double* q = source_.data();
+    if (up) {
+      extra_[0] = q[0] + gc * (inlet - t[0]);
+      for (int i = 1; i < n; ++i) extra_[i] = q[i] + gc * (t[i - 1] - t[i]);
+    } else {
+      for (int i = 0; i + 1 < n; ++i) extra_[i] = q[i] + gc * (t[i] - t[i + 1]);
+      extra_[n - 1] = q[n - 1] + gc * (t[n - 1] - inlet);
+    }
+    stage.outlet = up ? t[n - 1] : t[0];
+    return stage;
+  }
   double* face = face_.data();
   // Temperature that crosses face i (below cell i), from the side where the flow comes from.
   if (up) {
     for (int i = 1; i <= n; ++i) face[i] = t[i - 1];
-    if (second_order) {
-      for (int i = 2; i < n; ++i) face[i] += half_slope(t[i - 1] - t[i - 2], t[i] - t[i - 1]);
-      if (n > 1) face[1] += half_slope(2 * (t[0] - inlet), t[1] - t[0]);
-    }
+    for (int i = 2; i < n; ++i) face[i] += half_slope(t[i - 1] - t[i - 2], t[i] - t[i - 1]);
+    if (n > 1) face[1] += half_slope(2 * (t[0] - inlet), t[1] - t[0]);
     face[0] = inlet;
   } else {
     for (int i = 0; i < n; ++i) face[i] = t[i];
-    if (second_order) {
-      for (int i = 1; i < n - 1; ++i) face[i] += half_slope(t[i] - t[i + 1], t[i - 1] - t[i]);
-      if (n > 1) face[n - 1] += half_slope(2 * (t[n - 1] - inlet), t[n - 2] - t[n - 1]);
-    }
+    for (int i = 1; i < n - 1; ++i) face[i] += half_slope(t[i] - t[i + 1], t[i - 1] - t[i]);
+    if (n > 1) face[n - 1] += half_slope(2 * (t[n - 1] - inlet), t[n - 2] - t[n - 1]);
     face[n] = inlet;
   }
-  const double gc = flux * liquid_.specific_heat;
   for (int i = 0; i < n; ++i) extra_[i] = source_[i] + gc * (face[i] - face[i + 1]);
   stage.outlet = up ? face[n] : face[0];
   return stage;
@@ -107,7 +99,7 @@ PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux,
     stage = explicit_terms(fluid_.data(), flux, inlet, second_order);
   }
   extra_[entry] += through_inlet * inlet;
-  solve(op, fluid_.data(), shell_.data(), extra_.data());
+  solve(op, fluid_.data(), shell_.data(), shell_.data(), extra_.data());
   if (advection_ == Advection::implicit && flux != 0) stage.outlet = fluid_[exit];
   stage.conducted = through_inlet * (inlet - fluid_[entry]);
   StepHeat heat;
@@ -117,16 +109,6 @@ PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux,
   return heat;
 }
 
-void PackedBed::keep_state() {
-  std::copy(fluid_.begin(), fluid_.end(), fluid0_.begin());
-  std::copy(shell_.begin(), shell_.end(), shell0_.begin());
-}
-
-void PackedBed::take_back() {
-  std::copy(fluid0_.begin(), fluid0_.end(), fluid_.begin());
-  std::copy(shell0_.begin(), shell0_.end(), shell_.begin());
-}
-
 /// IMEX-SSP2(2,2,2) of Pareschi and Russo (2005): Heun's strong-stability-preserving method for advection, an
 /// L-stable SDIRK with gamma = 1 - 1/sqrt(2) for conduction and exchange, second order together:
 ///   U1 = u + gamma dt L U1
@@ -134,55 +116,54 @@ void PackedBed::take_back() {
 ///   u' = u + dt/2 (A(U1) + A(U2)) + dt/2 (L U1 + L U2)
 /// False if the result leaves the range of what went in, which second order cannot exclude for exchange much
 /// faster than the step; the state is then as before.
+///
+/// Written without L: gamma dt L U1 = U1 - u, gamma dt L U2 = U2 - R2 with R2 the right-hand side of U2,
+/// hence u' = u + dt/2 (A(U1) + A(U2)) + (U1 - u + U2 - R2)/(2 gamma).
 bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   const std::size_t n = fluid_.size(), ns = shell_.size();
-  const double gamma = main_.tau / dt_, carry = (1 - 2 * gamma) / gamma;
+  const double gamma = main_.tau / dt_, carry = (1 - 2 * gamma) / gamma, half = 0.5 / gamma;
   const double through_inlet = flux != 0 ? inlet_conductance(flux > 0) : 0;
   const std::size_t entry = flux > 0 ? 0 : n - 1;
-  keep_state();
-  // U1 in fluid_, shell_. What enters by conduction counts as part of L.
-  std::fill(extra_.begin(), extra_.end(), 0.0);
-  extra_[entry] = through_inlet * inlet;
-  solve(main_, fluid_.data(), shell_.data(), extra_.data());
-  const double conducted1 = through_inlet * (inlet - fluid_[entry]);
-  const Stage first = explicit_terms(fluid_.data(), flux, inlet, true);
-  std::swap(extra_, extra2_);  // A(U1) in extra2_
-  // fluid1_, shell1_: the right-hand side of U2; kept in fluid0_, shell0_: u + dt/2 (A1 + L U1) so far.
+  // What enters by conduction counts as part of L.
+  const auto only_inlet = [&] {
+    std::fill(extra_.begin(), extra_.end(), 0.0);
+    extra_[entry] = through_inlet * inlet;
+  };
+  std::copy(fluid_.begin(), fluid_.end(), fluid1_.begin());
+  only_inlet();
+  solve(main_, fluid1_.data(), shell_.data(), shell1_.data(), extra_.data());
+  const double conducted1 = through_inlet * (inlet - fluid1_[entry]);
+  const Stage first = explicit_terms(fluid1_.data(), flux, inlet, true);
+  // R2 in fluid2_, shell2_; fluid1_ becomes u' as far as it is known.
   for (std::size_t i = 0; i < n; ++i) {
-    const double l = fluid_[i] - fluid0_[i], a = dt_ / capacity_[i] * extra2_[i];
-    fluid1_[i] = fluid0_[i] + a + carry * l;
-    fluid_[i] = fluid0_[i] + 0.5 * a + 0.5 / gamma * l;
+    const double a = dt_ / capacity_[i] * extra_[i], l = fluid1_[i] - fluid_[i];
+    fluid2_[i] = fluid_[i] + a + carry * l;
+    fluid1_[i] = fluid_[i] + 0.5 * a + half * (l - fluid2_[i]);
   }
-  for (std::size_t i = 0; i < ns; ++i) {
-    const double l = shell_[i] - shell0_[i];
-    shell1_[i] = shell0_[i] + carry * l;
-    shell_[i] = shell0_[i] + 0.5 / gamma * l;
-  }
-  // Half of U2's share is now in fluid_, shell_; its right-hand side is subtracted before it is overwritten.
-  for (std::size_t i = 0; i < n; ++i) fluid_[i] -= 0.5 / gamma * fluid1_[i];
-  for (std::size_t i = 0; i < ns; ++i) shell_[i] -= 0.5 / gamma * shell1_[i];
-  std::fill(extra_.begin(), extra_.end(), 0.0);
-  extra_[entry] = through_inlet * inlet;
-  solve(main_, fluid1_.data(), shell1_.data(), extra_.data());
-  const double conducted2 = through_inlet * (inlet - fluid1_[entry]);
-  const Stage second = explicit_terms(fluid1_.data(), flux, inlet, true);
-  for (std::size_t i = 0; i < n; ++i)
-    fluid_[i] += 0.5 / gamma * fluid1_[i] + 0.5 * dt_ / capacity_[i] * extra_[i];
-  for (std::size_t i = 0; i < ns; ++i) shell_[i] += 0.5 / gamma * shell1_[i];
+  for (std::size_t i = 0; i < ns; ++i) shell2_[i] = shell_[i] + carry * (shell1_[i] - shell_[i]);
+  only_inlet();
+  solve(main_, fluid2_.data(), shell2_.data(), shell2_.data(), extra_.data());
+  const double conducted2 = through_inlet * (inlet - fluid2_[entry]);
+  const Stage second = explicit_terms(fluid2_.data(), flux, inlet, true);
+  Range before{flux != 0 ? inlet : fluid_[0], flux != 0 ? inlet : fluid_[0]};
+  before.add(fluid_.data(), n);
+  before.add(shell_.data(), ns);
+  for (std::size_t i = 0; i < n; ++i) fluid1_[i] += half * fluid2_[i] + 0.5 * dt_ / capacity_[i] * extra_[i];
+  // u + (U1 - u + U2 - R2)/(2 gamma) with R2 = u + carry (U1 - u).
+  const double of_u = 1 - half * (2 - carry), of_u1 = half * (1 - carry);
+  for (std::size_t i = 0; i < ns; ++i) shell1_[i] = of_u * shell_[i] + of_u1 * shell1_[i] + half * shell2_[i];
+  Range after{before.low, before.high};
+  after.add(fluid1_.data(), n);
+  after.add(shell1_.data(), ns);
+  const double slack = 1e-9 * (before.high - before.low) + 1e-11 * before.high + source_rate_ * dt_;
+  if (!(after.low >= before.low - slack && after.high <= before.high + slack)) return false;
+  fluid_.swap(fluid1_);
+  shell_.swap(shell1_);
   heat.outlet = 0.5 * (first.outlet + second.outlet);
   heat.by_flow =
       area_ * dt_ *
       (std::abs(flux) * liquid_.specific_heat * (inlet - heat.outlet) + 0.5 * (conducted1 + conducted2));
-  Range before{flux != 0 ? inlet : fluid0_[0], flux != 0 ? inlet : fluid0_[0]};
-  before.add(fluid0_.data(), n);
-  before.add(shell0_.data(), ns);
-  Range after = before;
-  after.add(fluid_.data(), n);
-  after.add(shell_.data(), ns);
-  const double slack = 1e-9 * (before.high - before.low) + 1e-11 * before.high + source_rate_ * dt_;
-  if (after.low >= before.low - slack && after.high <= before.high + slack) return true;
-  take_back();
-  return false;
+  return true;
 }
 
 PackedBed::StepHeat PackedBed::step(double mass_flow, double inlet) {

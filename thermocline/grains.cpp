@@ -24,9 +24,8 @@ Grains::Grains(const Filler& filler, double porosity, double diameter, int shell
 }
 
 GrainElimination::GrainElimination(const Grains& grains, double tau)
-    : n(grains.n), keep(n, 0.0), pass(n, 0.0), beta(n, 0.0) {
-  store = grains.capacity / tau;
-  inner = 0;
+    : n(grains.n), keep(n, 0.0), pass(n, 0.0), beta(n, 0.0), weight(n, 0.0) {
+  const double store = grains.capacity / tau;
   own = store;
   if (grains.capacity <= 0) return;
   // Row j: (store + a_{j-1} + a_j) theta_j - a_{j-1} theta_{j-1} - a_j theta_{j+1} = store theta_j^n.
@@ -40,9 +39,13 @@ GrainElimination::GrainElimination(const Grains& grains, double tau)
     beta[j] = outward / diagonal;
     rest_inside = held / diagonal;
   }
-  if (n > 1) {
-    inner = grains.between[0];
-    own = store + inner * rest_inside;
+  weight[0] = store;
+  if (n == 1) return;
+  own = store + grains.between[0] * rest_inside;
+  double through = grains.between[0];
+  for (int j = 1; j < n; ++j) {
+    weight[j] = through * keep[j];
+    through *= pass[j];
   }
 }
 

@@ -36,8 +36,10 @@ struct GrainElimination {
   int n;
   /// Shell j > 0: alpha_j = keep_j theta_j^n + pass_j alpha_{j+1}.
   std::vector<double> keep, pass, beta;
-  // Shell 0: alpha_0 = (store theta_0^n + inner alpha_1)/(own + g), beta_0 = g/(own + g), g fluid to shell 0.
-  double store, inner, own;  // [W/(m^3 K)]
+  // Shell 0: alpha_0 = sum_j weight_j theta_j^n/(own + g), beta_0 = g/(own + g), g fluid to shell 0 [W/(m^3
+  // K)].
+  std::vector<double> weight;
+  double own;
 };
 
 }  // namespace couplet::thermocline

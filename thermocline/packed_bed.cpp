@@ -30,10 +30,10 @@ PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& f
       limit_ = std::min(limit_, run.layer.porosity * fluid.density * grid_.dz[i]);
     }
   }
-  for (auto* v : {&fluid_, &extra_, &extra2_, &fluid0_, &fluid1_, &source_, &film_, &conductivity_, &wall_})
+  for (auto* v : {&fluid_, &extra_, &fluid1_, &fluid2_, &source_, &film_, &conductivity_, &wall_})
     v->assign(n, 0.0);
   face_.assign(n + 1, 0.0);
-  for (auto* v : {&shell_, &shell0_, &shell1_}) v->assign(std::size_t(n) * shells_, 0.0);
+  for (auto* v : {&shell_, &shell1_, &shell2_}) v->assign(std::size_t(n) * shells_, 0.0);
   std::vector<double> start(n, p.initial_temperature);
   if (!p.profile_z.empty()) {
     const Table profile(p.profile_z, p.profile_temperature);
@@ -74,7 +74,7 @@ double PackedBed::inlet_conductance(bool upward) const {
 void PackedBed::build(Operator& op, double tau) const {
   const int n = grid_.size();
   op.tau = tau;
-  for (auto* v : {&op.rate, &op.exchange, &op.surface}) v->resize(n);
+  for (auto* v : {&op.rate, &op.share, &op.beta, &op.heat}) v->resize(n);
   op.grains.clear();
   for (const Grains& g : grains_) op.grains.emplace_back(g, tau);
   std::vector<double> a(n), b(n), c(n);
@@ -82,10 +82,11 @@ void PackedBed::build(Operator& op, double tau) const {
     const int l = grid_.layer[i];
     const double g = grains_[l].exchange(film_[i]), total = op.grains[l].own + g, dz = grid_.dz[i];
     op.rate[i] = capacity_[i] / tau;
-    op.exchange[i] = g * dz;
-    op.surface[i] = total > 0 ? 1 / (total * dz) : 0;
-    // g (1 - beta_0), in a form that does not cancel for large g.
-    b[i] = op.rate[i] + op.exchange[i] * op.grains[l].own * dz * op.surface[i];
+    op.share[i] = total > 0 ? 1 / total : 0;
+    op.beta[i] = g * op.share[i];
+    op.heat[i] = g * op.share[i] * dz;
+    // g (1 - beta), in a form that does not cancel for large g.
+    b[i] = op.rate[i] + op.grains[l].own * op.heat[i];
   }
   for (int i = 0; i + 1 < n; ++i) {
     const double resistance =

@@ -102,9 +102,10 @@ class PackedBed {
   /// I - tau L with L conduction and exchange (and advection if implicit): matrix and grain factors.
   struct Operator {
     double tau = 0;
-    std::vector<double> rate;      // eps rho c dz/tau [W/(m^2 K)]
-    std::vector<double> exchange;  // g dz, fluid to outer shell
-    std::vector<double> surface;   // 1/(own dz + g dz) of GrainElimination
+    std::vector<double> rate;  // eps rho c dz/tau [W/(m^2 K)]
+    // With g = exchange(film) and sum_j weight_j theta_j of the grains as they were: theta_0 = share sum +
+    // beta T, and the fluid gets heat sum from them.
+    std::vector<double> share, beta, heat;  // 1/(own + g), g/(own + g), g dz/(own + g)
     std::vector<GrainElimination> grains;
     Tridiagonal matrix;
   };
@@ -113,15 +114,14 @@ class PackedBed {
            conducted = 0;  // temperature of what leaves; conduction through the inlet face [W/m^2]
   };
   void build(Operator& op, double tau) const;
-  /// (fluid, shells) become the solution of (I - tau L) x = (fluid, shells) + tau extra.
-  void solve(const Operator& op, double* fluid, double* shells, const double* extra) const;
+  /// Solves (I - tau L) x = (fluid, shells) + tau extra. `to_shells` may be `shells`.
+  void solve(const Operator& op, double* fluid, const double* shells, double* to_shells,
+             const double* extra) const;
   /// Advection and sources [W/m^2] of the fluid temperatures given.
   Stage explicit_terms(const double* fluid, double flux, double inlet, bool second_order);
   StepHeat first_order_step(const Operator& op, double flux, double inlet, bool second_order);
   bool second_order_step(double flux, double inlet, StepHeat& heat);
   double inlet_conductance(bool upward) const;
-  void keep_state();
-  void take_back();
 
   BedGrid grid_;
   Fluid liquid_;
@@ -143,7 +143,7 @@ class PackedBed {
   std::vector<double> source_, film_, conductivity_, wall_;
   double source_rate_ = 0;  // largest |source|/capacity [K/s]
   // Work space.
-  std::vector<double> extra_, face_, extra2_, fluid0_, shell0_, fluid1_, shell1_;
+  std::vector<double> extra_, face_, fluid1_, fluid2_, shell1_, shell2_;
   long fallbacks_ = 0;
 };
 

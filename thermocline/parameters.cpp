@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/base/text.hpp"
+#include "thermocline/grain_kernels.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -84,7 +85,9 @@ void declare(config::Section& section, BedParameters& p) {
             .doc("effective diameter of the grains");
       },
       "from the bottom up");
-  section.value("shells", p.shells).range(1, 100).doc("of equal volume in a grain; 1: linear driving force");
+  section.value("shells", p.shells)
+      .range(1, most_shells)
+      .doc("of equal volume in a grain; 1: linear driving force");
   section
       .choice("advection", p.advection,
               {{"upwind", Advection::upwind}, {"tvd", Advection::tvd}, {"implicit", Advection::implicit}})

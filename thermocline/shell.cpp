@@ -34,7 +34,7 @@ double Rings::surface(int i) const { return std::numbers::pi * diameter * dz[i];
 Shell::Shell(const Rings& rings, const Steel& steel) : rings_(&rings), steel_(&steel) {
   const int n = rings.size();
   temperature_.assign(n, 293.15);
-  for (auto* v : {&a_, &b_, &c_, &r_, &capacity_, &specific_heat_}) v->assign(n, 0.0);
+  for (auto* v : {&a_, &b_, &c_, &r_, &capacity_, &specific_heat_, &resistance_}) v->assign(n, 0.0);
   matrix_.resize(n);
 }
 
@@ -47,7 +47,11 @@ void Shell::step(double dt, std::span<const double> fluid, std::span<const doubl
   const Rings& rings = *rings_;
   const int n = rings.size();
   const double around = std::numbers::pi * rings.diameter;
-  for (int i = 0; i < n; ++i) specific_heat_[i] = steel_->specific_heat(temperature_[i]);
+  for (int i = 0; i < n; ++i) {
+    specific_heat_[i] = steel_->specific_heat(temperature_[i]);
+    resistance_[i] = rings.dz[i] / (2 * steel_->conductivity(temperature_[i]) * around *
+                                    rings.thickness[i]);  // half a ring
+  }
   // Twice, so that the specific heat is its mean over the step: what is stored is then exactly what came in.
   for (int pass = 0; pass < 2; ++pass) {
     double below = 0;
@@ -61,22 +65,21 @@ void Shell::step(double dt, std::span<const double> fluid, std::span<const doubl
         r_[i] += g * fluid[i];
       }
       if (i + 1 == n) break;
-      const auto half = [&](int j) {
-        return rings.dz[j] / (2 * steel_->conductivity(temperature_[j]) * around * rings.thickness[j]);
-      };
-      below = 1 / (half(i) + half(i + 1));
+      below = 1 / (resistance_[i] + resistance_[i + 1]);
       c_[i] = a_[i + 1] = -below;
       b_[i] += below;
     }
     matrix_.factorise(a_.data(), b_.data(), c_.data());
     matrix_.solve(r_.data());
-    if (pass == 0)
-      for (int i = 0; i < n; ++i) {
-        const Table& cp = steel_->specific_heat;
-        const double change = r_[i] - temperature_[i];
-        if (std::abs(change) > 1e-6)
-          specific_heat_[i] = (cp.integral(r_[i]) - cp.integral(temperature_[i])) / change;
-      }
+    double largest = 0;
+    const Table& cp = steel_->specific_heat;
+    for (int i = 0; i < n && pass == 0; ++i) {
+      const double change = r_[i] - temperature_[i];
+      largest = std::max(largest, std::abs(change));
+      if (std::abs(change) > 1e-6)
+        specific_heat_[i] = (cp.integral(r_[i]) - cp.integral(temperature_[i])) / change;
+    }
+    if (largest < 0.01) break;  // then both agree to 1e-6
   }
   temperature_ = r_;
   for (int i = 0; i < rings.in_bed; ++i)

@@ -53,7 +53,7 @@ class Shell {
  private:
   const Rings* rings_;
   const Steel* steel_;
-  std::vector<double> temperature_, a_, b_, c_, r_, capacity_, specific_heat_;
+  std::vector<double> temperature_, a_, b_, c_, r_, capacity_, specific_heat_, resistance_;
   Tridiagonal matrix_;
 };
 
