@@ -71,7 +71,9 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource
     }
     hoop_ = active_hoop(*setup_->rings, setup_->filler, setup_->pressure);
     bed_.filler_temperature(filler_);
-    if (p.mechanics)
+    if (p.external_wall)
+      contact_.emplace(*setup_->rings, *setup_->steel, setup_->filler, setup_->pressure, wall, filler_);
+    else if (p.mechanics)
       mechanics_.emplace(*setup_->rings, *setup_->steel, setup_->filler, setup_->pressure, wall, filler_);
     update_stress();
   }
@@ -272,9 +274,17 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Ambie
   if (setup_->parameters.bed.mix_inversions) bed_.mix_inversions();
 }
 
+void TankModel::update_contact(std::span<const double> radial) {
+  bed_.filler_temperature(filler_);
+  contact_->update(radial, shell_->temperature(), filler_);
+  update_stress();
+}
+
 void TankModel::update_stress() {
   if (!shell_) return;
-  const std::span<const double> hoop = mechanics_ ? mechanics_->hoop() : std::span<const double>(hoop_);
+  const std::span<const double> hoop = mechanics_ ? mechanics_->hoop()
+                                       : contact_ ? contact_->hoop()
+                                                  : std::span<const double>(hoop_);
   wall_stress(*setup_->rings, *setup_->steel, setup_->pressure, setup_->parameters.shell->roof_pressure, hoop,
               shell_->temperature(), stress_);
 }

@@ -11,6 +11,7 @@
 #include "thermocline/interfaces.hpp"
 #include "thermocline/mechanics.hpp"
 #include "thermocline/parameters.hpp"
+#include "thermocline/wall_interface.hpp"
 
 namespace couplet::thermocline {
 
@@ -61,6 +62,10 @@ class TankModel {
   const PackedBed& bed() const { return bed_; }
   const std::optional<Shell>& shell() const { return shell_; }
   const std::optional<FillerMechanics>& mechanics() const { return mechanics_; }
+  const std::optional<ContactMechanics>& contact() const { return contact_; }
+  /// With an external wall: the filler's pressure at the end of a step from the wall's radial displacement
+  /// [m] at its begin, a value a ring; empty if the wall has not answered yet.
+  void update_contact(std::span<const double> radial);
   const WallStress& stress() const { return stress_; }
   const std::optional<Column>& ground() const { return ground_; }
   const std::optional<Ullage>& ullage() const { return ullage_; }
@@ -103,6 +108,7 @@ class TankModel {
   PackedBed bed_;
   std::optional<Shell> shell_;
   std::optional<FillerMechanics> mechanics_;
+  std::optional<ContactMechanics> contact_;
   std::optional<Insulation> insulation_;
   std::optional<Column> roof_, ground_;
   std::optional<Ullage> ullage_;

@@ -24,6 +24,7 @@ std::vector<std::pair<std::string, std::vector<double>>> TankModel::state() cons
     all.emplace_back("shell",
                      std::vector<double>(shell_->temperature().begin(), shell_->temperature().end()));
   if (mechanics_) all.emplace_back("filler-mechanics", mechanics_->state());
+  if (contact_) all.emplace_back("contact", contact_->state());
   if (insulation_) all.emplace_back("insulation", insulation_->temperature());
   if (insulation_) all.emplace_back("into-blanket", into_blanket_);
   if (roof_) all.emplace_back("roof", roof_->temperature());
@@ -51,6 +52,7 @@ void TankModel::restore(const std::function<std::vector<double>(const std::strin
     shell_->set_temperature(wall);
   }
   if (mechanics_) mechanics_->restore(read("filler-mechanics"));
+  if (contact_) contact_->restore(read("contact"));
   if (insulation_) replace("insulation", read("insulation"), insulation_->temperature());
   if (insulation_) replace("into-blanket", read("into-blanket"), into_blanket_);
   if (roof_) replace("roof", read("roof"), roof_->temperature());

@@ -66,6 +66,9 @@ void declare_ground(config::Section& section, GroundParameters& p) {
 
 void check_together(config::Section& s, TankParameters& p) {
   s.check([&p] { return p.mechanics && !p.shell ? "presses on a shell; add one" : ""; }, "filler-mechanics");
+  s.check(
+      [&p] { return p.external_wall && !(p.shell && p.mechanics) ? "needs shell and filler-mechanics" : ""; },
+      "external-wall");
   s.check([&p] { return p.insulation && !p.shell ? "lies around a shell; add one" : ""; }, "insulation");
 }
 
@@ -180,6 +183,9 @@ void declare(config::Section& section, TankParameters& p) {
       "filler-mechanics", p.mechanics, [](config::Section&, FillerMechanicsParameters&) {},
       "the filler follows the wall outwards and resists inwards, between Rankine's active and passive "
       "states");
+  section.optional_section<ExternalWallParameters>(
+      "external-wall", p.external_wall, [](config::Section& s, ExternalWallParameters& v) { declare(s, v); },
+      "the wall's stress is another program's: it gets temperature and pressure and gives its displacement");
   section.optional_section<InsulationParameters>(
       "insulation", p.insulation, [](config::Section& s, InsulationParameters& v) { declare(s, v); },
       "blanket around the shell");

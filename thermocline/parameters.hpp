@@ -11,6 +11,7 @@
 #include "thermocline/packed_bed.hpp"
 #include "thermocline/shell.hpp"
 #include "thermocline/ullage.hpp"
+#include "thermocline/wall_interface.hpp"
 
 namespace couplet::thermocline {
 
@@ -46,6 +47,7 @@ struct TankParameters {
   BedParameters bed;
   std::optional<ShellParameters> shell;
   std::optional<FillerMechanicsParameters> mechanics;
+  std::optional<ExternalWallParameters> external_wall;
   std::optional<InsulationParameters> insulation;
   std::optional<UllageSpace> ullage;
   std::optional<GroundParameters> ground;

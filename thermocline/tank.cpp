@@ -17,17 +17,46 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
       control_(make_flow_control(p.flow)),
       accepted_(std::make_shared<const TankSetup>(p), *ambient_),
       next_(accepted_),
-      control_state_(control_->state()) {
+      control_state_(control_->state()),
+      comm_(context.comm) {
+  if (p.external_wall) {
+    if (!context.coupled)
+      throw Error(
+          "participants.{}.external-wall: nobody computes the wall in a run of the tank alone. Start it "
+          "together with a "
+          "coupler and a solid_solver, or remove this section.",
+          context.name);
+    wall_.emplace(*p.external_wall, *accepted_.setup().rings);
+  }
   if (comm_rank(context.comm) == 0)
     files_ = std::make_unique<TankOutputFiles>(accepted_, context.output_folder, context.restart_time);
 }
 
-Exchange Tank::solve(const Exchange&) {
+Interface Tank::initialise() { return wall_ && comm_rank(comm_) == 0 ? wall_->describe() : Interface{}; }
+
+/// Temperature and pressure at the end of the step, on rank 0.
+Exchange Tank::given() const {
+  if (!wall_ || comm_rank(comm_) != 0) return {};
+  return {{"temperature", wall_->to_sections(next_.shell()->temperature())},
+          {"pressure", wall_->to_sections(next_.contact()->pressure())}};
+}
+
+Exchange Tank::solve(const Exchange& in) {
   next_ = accepted_;
   control_->restore(control_state_);
   steps_.clear();
   next_.advance(step_.time, step_.dt, *control_, *ambient_, steps_, speed_);
-  return {};
+  if (wall_) {
+    // Every rank computes the tank, so every rank needs the wall's answer.
+    std::vector<double> radial;
+    if (const auto found = in.find("displacement"); found != in.end()) radial = wall_->radial(found->second);
+    int n = int(radial.size());
+    MPI_Bcast(&n, 1, MPI_INT, 0, comm_);
+    radial.resize(n);
+    MPI_Bcast(radial.data(), n, MPI_DOUBLE, 0, comm_);
+    next_.update_contact(radial);
+  }
+  return given();
 }
 
 void Tank::accept_step() {

@@ -17,7 +17,7 @@ class Tank final : public Participant {
  public:
   Tank(const TankParameters& parameters, const ParticipantContext& context);
 
-  Interface initialise() override { return {}; }
+  Interface initialise() override;
   void begin_step(const Step& step) override { step_ = step; }
   Exchange solve(const Exchange& in) override;
   void accept_step() override;
@@ -34,6 +34,7 @@ class Tank final : public Participant {
 
  private:
   TankRecord record() const;
+  Exchange given() const;
 
   std::string name_;
   std::unique_ptr<AmbientSource> ambient_;
@@ -41,10 +42,12 @@ class Tank final : public Participant {
   std::vector<std::unique_ptr<TankObserver>> observers_;
   TankModel accepted_, next_;
   std::vector<double> control_state_;  // that of accepted_
-  std::vector<BedStep> steps_;         // of next_
+  MPI_Comm comm_;
+  std::vector<BedStep> steps_;  // of next_
   Step step_;
   Speed speed_;
   std::unique_ptr<TankOutputFiles> files_;  // on rank 0
+  std::optional<WallInterface> wall_;
   // Of the last accepted step, for its record.
   std::vector<double> filler_;
   double stored_ = 0, side_ = 0, roof_ = 0, ground_ = 0;

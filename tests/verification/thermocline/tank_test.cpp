@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "tests/verification/thermocline/tank_case.hpp"
 
@@ -139,6 +140,65 @@ TEST_F(Participation, a_checkpoint_continues_bit_for_bit) {
   }
   for (int n = 45; n < 100; ++n) take(*a, n), take(*b, n);
   expect_equal(*a, *b);
+}
+
+/// A wall that answers as a membrane, in place of another program: u = R (p R/(E e) + integral of alpha dT).
+TEST_F(Participation, a_wall_outside_that_is_a_membrane_gives_the_stress_of_the_rings) {
+  TankParameters p = solar_one_parameters();
+  p.bed.cells = 120;
+  p.shell->plates = {{14, 0.016}};
+  TankRun inside(p);
+  p.external_wall.emplace();
+  p.external_wall->sections = 240;
+  ParticipantContext context;
+  context.name = "tank";
+  context.output_folder = folder_;
+  context.coupled = true;
+  Tank tank(p, context);
+  const Interface interface = tank.initialise();
+  const Steel steel = steel_a537();
+  const double radius = p.diameter / 2, angle = p.external_wall->angle;
+  Exchange answer;
+  for (int n = 0; n < 4 * 24; ++n) {
+    tank.begin_step({n * 900.0, 900, Scheme::explicit_, n});
+    const Exchange given = tank.solve(answer);
+    ASSERT_EQ(given.at("temperature").size(), interface.face_centres.size());
+    const auto& t = given.at("temperature");
+    std::vector<double> u(interface.vertices.size() * 3);
+    for (std::size_t v = 0; v < interface.vertices.size(); ++v) {
+      const std::size_t k = std::min(v / 2, t.size() - 1), below = k > 0 ? k - 1 : 0;
+      double r = 0;
+      for (const std::size_t i : {below, k})
+        r += 0.5 * radius *
+             (given.at("pressure")[i] * radius / (steel.youngs_modulus(t[i]) * 0.016) +
+              steel.thermal_strain(t[i]));
+      u[3 * v] = r * std::cos(angle / 2);
+      u[3 * v + 1] = (v % 2 ? 1 : -1) * r * std::sin(angle / 2);
+    }
+    answer["displacement"] = std::move(u);
+    tank.accept_step();
+  }
+  inside.until(24 * 3600, 900);
+  double worst = 0, mean = 0, largest = 0;
+  const auto &a = tank.model().stress().hoop, &b = inside.model().stress().hoop;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    worst = std::max(worst, std::abs(a[i] - b[i]));
+    mean += std::abs(a[i] - b[i]) / a.size();
+    largest = std::max(largest, b[i]);
+  }
+  RecordProperty("worst", fmt::format("{:.4f}", worst / largest));
+  RecordProperty("mean", fmt::format("{:.4f}", mean / largest));
+  EXPECT_LT(mean, 0.01 * largest);
+  EXPECT_LT(worst, 0.05 * largest);
+}
+
+TEST_F(Participation, an_external_wall_needs_somebody_who_computes_it) {
+  TankParameters p = solar_one_parameters();
+  p.external_wall.emplace();
+  ParticipantContext context;
+  context.name = "tank";
+  context.output_folder = folder_;
+  EXPECT_THROW(Tank(p, context), Error);
 }
 
 }  // namespace
