@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/run_participant.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <chrono>
+#include <fstream>
 #include <limits>
 
 #include "common/app/step_loop.hpp"
@@ -70,11 +69,13 @@ class Bookkeeping {
   Clock::time_point since_ = Clock::now();
 };
 
-/// Most memory this process has had in use [MB].
+/// Most memory this process has had in use [MB]; 0 where the system does not tell. (getrusage would count
+/// what the process that started this one had in use before.)
 double peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) / 1024;
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (double kilobytes = 0; word == "VmHWM:" && status >> kilobytes) return kilobytes / 1024;
+  return 0;
 }
 
 void closing_words(const Job& job, Participant& participant, double seconds) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Unit square, finer towards the walls.
-n = 64;      // cells a side
-bump = 0.25; // cell size at the walls over that in the middle, roughly
+DefineConstant [
+  n = 64,     // cells a side
+  bump = 0.25 // cell size at the walls over that in the middle, roughly
+];
 
 Point(1) = {0, 0, 0};
 Point(2) = {1, 0, 0};

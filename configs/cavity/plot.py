@@ -36,6 +36,17 @@ def centre_lines(series):
     return s, np.asarray(u(0 * s + 0.5, s)), np.asarray(v(s, 0 * s + 0.5))
 
 
+def gaps(folder):
+    """Largest differences of u and v to Ghia on the two centre lines, in speeds of the lid."""
+    s, u, v = centre_lines(couplet.find_series(folder))
+    found = {}
+    for name, line, file in (("u", u, "ghia_u_x0.5.csv"), ("v", v, "ghia_v_y0.5.csv")):
+        place, wanted = reference(file)
+        inside = (place > 0.001) & (place < 0.999)
+        found[name] = np.abs(np.interp(place[inside], s, line) - wanted[inside]).max()
+    return found
+
+
 def main():
     out = here / "out"
     if not (out / "fluid").exists():
@@ -50,12 +61,12 @@ def main():
         ax.plot(place, wanted, "ok", fillstyle="none", label="Ghia, Ghia, Shin 1982, Re = 100")
         ax.set(xlabel=names[0], ylabel=names[1])
         ax.grid(alpha=0.3)
-        inside = (place > 0.001) & (place < 0.999)
-        gap = np.abs(np.interp(place[inside], s, line) - wanted[inside]).max()
-        print(f"{names[1].split()[0]}: largest difference to Ghia {gap:.4f} of the lid's speed")
+    for name, gap in gaps(out / "fluid").items():
+        print(f"{name}: largest difference to Ghia {gap:.4f} of the lid's speed")
     axes[0].legend(fontsize=8)
     figure.savefig(picture)
     print(f"picture: {picture}")
 
 
-main()
+if __name__ == "__main__":
+    main()
