@@ -73,6 +73,7 @@ void SolidOutput::write_series(double time, std::span<const double> points) {
   if (context_.output_folder.empty()) return;
   if (!probes_.empty()) write_probes(time, points);
   write_reactions(time, points);
+  write_effort(time);
 }
 
 void SolidOutput::write_probes(double time, std::span<const double> points) {
@@ -108,6 +109,20 @@ void SolidOutput::write_reactions(double time, std::span<const double> points) {
     reaction_series_.emplace(context_.output_folder / "reactions.csv", columns, context_.restart_time);
   }
   reaction_series_->row(row);
+}
+
+void SolidOutput::write_effort(double time) {
+  const SolverEffort& effort = solid_.effort();
+  if (effort.solves == 0 || comm_rank(solid_.mesh().comm) != 0) return;  // at the start nothing was solved
+  if (!solver_series_)
+    solver_series_.emplace(
+        context_.output_folder / "solver.csv",
+        std::vector<std::string>{"time [s]", "solves", "iterations", "inner iterations", "residual"},
+        context_.restart_time);
+  const std::array<double, 5> row{time, static_cast<double>(effort.solves),
+                                  static_cast<double>(effort.iterations),
+                                  static_cast<double>(effort.inner_iterations), effort.residual};
+  solver_series_->row(row);
 }
 
 }  // namespace couplet

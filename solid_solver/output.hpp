@@ -13,7 +13,8 @@
 
 namespace couplet {
 
-/// The files of a solid: fields, probes.csv, reactions.csv. They are opened when first written to.
+/// The files of a solid: fields, probes.csv, reactions.csv, solver.csv. They are opened when first written
+/// to.
 class SolidOutput {
  public:
   SolidOutput(const Solid& solid, const SolidContext& context);
@@ -25,12 +26,13 @@ class SolidOutput {
  private:
   void write_probes(double time, std::span<const double> points);
   void write_reactions(double time, std::span<const double> points);
+  void write_effort(double time);
 
   const Solid& solid_;
   const SolidContext& context_;
   std::vector<Probe> probes_;
   std::optional<FieldWriter> fields_;
-  std::optional<Series> probe_series_, reaction_series_;  // on rank 0
+  std::optional<Series> probe_series_, reaction_series_, solver_series_;  // on rank 0
 };
 
 }  // namespace couplet

@@ -78,6 +78,7 @@ Interface Solid::initialise() { return description_; }
 
 void Solid::begin_step(const Step& step) {
   step_ = step;
+  effort_ = {};
   if (!(step.dt > 0)) throw Error("The solid was asked for a step of {} s; time must go on.", step.dt);
   const std::vector<Stage> stages = stages_of(step.dt);
   stages_.resize(stages.size());

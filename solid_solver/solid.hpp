@@ -41,6 +41,12 @@ struct SolidState {
   std::vector<double> offset_rate;  ///< v_B - v_P at the middle of the last stage
 };
 
+/// What the solves of the last step took.
+struct SolverEffort {
+  int solves = 0, iterations = 0, inner_iterations = 0;
+  double residual = 0;  ///< norm of the last solve's
+};
+
 /// Force on the solid at a constrained patch [N].
 struct PatchForce {
   std::string patch;
@@ -78,6 +84,7 @@ class Solid final : public Participant {
   const ElasticOperator& elastic() const { return elastic_; }
   const SolidState& state() const { return state_; }
   const std::vector<std::unique_ptr<SolidEffect>>& effects() const { return effects_; }
+  const SolverEffort& effort() const { return effort_; }
   /// Packed values of all local points at the accepted time. Collective.
   std::vector<double> point_displacement() const;
   std::vector<double> point_velocity() const;
@@ -134,6 +141,7 @@ class Solid final : public Participant {
 
   SolidState state_, trial_;
   Step step_;
+  SolverEffort effort_;
   // Known displacements and rates at the end of the accepted and of the trial step.
   std::vector<double> known_accepted_, known_rate_accepted_, known_, known_rate_;
   Vec3 body_load_ = Vec3::Zero();  // this rank's sum of body forces

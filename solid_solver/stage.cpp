@@ -143,7 +143,9 @@ void Solid::solve_stage(const StageWork& work, std::span<const double> interface
   guess(work, now);
   {
     const log::ScopedTimer timer(log::timers(), "solid: linear solver");
-    work.system->method->solve(rhs_, unknowns_);
+    const SolveStatistics statistics = work.system->method->solve(rhs_, unknowns_);
+    effort_ = {effort_.solves + 1, effort_.iterations + statistics.iterations,
+               effort_.inner_iterations + statistics.inner_iterations, statistics.residual};
   }
   finish_offsets(work.stage, now);
   finish_cells(work, now);

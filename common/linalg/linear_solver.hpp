@@ -28,6 +28,7 @@ struct LinearOptions {
 
 struct SolveStatistics {
   int iterations = 0;
+  int inner_iterations = 0;  ///< of solves within an iteration; 0: there are none
   double residual = 0;
   double seconds = 0;
 };

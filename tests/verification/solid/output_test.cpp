@@ -88,6 +88,11 @@ TEST(SolidOutput, probes_and_reactions_hold_the_displacement_and_the_balance_of_
   EXPECT_NEAR(forces[1], -3e8, 1);
   EXPECT_NEAR(forces[5], 3e8, 1);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "solid.xdmf"));
+
+  const auto solver = lines_of(folder.path() / "solver.csv");
+  ASSERT_EQ(solver.size(), 4u);
+  EXPECT_EQ(solver[0], "time [s],solves,iterations,inner iterations,residual");
+  EXPECT_EQ(numbers_of(solver[3])[1], 1);
 }
 
 TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
