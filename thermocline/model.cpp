@@ -132,8 +132,14 @@ double TankModel::stable_exchange() const {
   };
   double step = std::numeric_limits<double>::infinity();
   if (ground_) step = std::min(step, 0.5 * capacity(0) / std::max(1e-30, bed_.wall_coefficient().front()));
-  // Gas and radiation: below 100 W/(m^2 K) at any temperature of interest.
-  if (ullage_) step = std::min(step, 0.5 * capacity(grid.size() - 1) / 100);
+  if (!ullage_) return step;
+  const double strongest = 100;  // of gas and radiation together at any temperature of interest [W/(m^2 K)]
+  step = std::min(step, 0.5 * capacity(grid.size() - 1) / strongest);
+  if (!shell_) return step;
+  const Steel& steel = *setup_->steel;
+  for (int i = setup_->rings->in_bed; i < setup_->rings->size(); ++i)
+    step = std::min(
+        step, 0.5 * steel.density * steel.specific_heat.y.front() * setup_->rings->thickness[i] / strongest);
   return step;
 }
 
@@ -159,9 +165,13 @@ double TankModel::exchange(double t, double h, FlowControl& control, const Ambie
     const Stopwatch watch(speed, Element::shell);
     const Rings& rings = *setup_->rings;
     from_wall_ = into_blanket_;
+    // Rings above the bed: the mean flux, and more from those warmer than the mean.
     double upper = 0;
-    for (int i = rings.in_bed; i < rings.size(); ++i) upper += rings.dz[i];
-    for (int i = rings.in_bed; i < rings.size(); ++i) from_wall_[i] += wall_to_ullage_ * rings.dz[i] / upper;
+    for (int i = rings.in_bed; i < rings.size(); ++i) upper += rings.surface(i);
+    const double mean = upper_wall();
+    for (int i = rings.in_bed; i < rings.size(); ++i)
+      from_wall_[i] += rings.surface(i) *
+                       (wall_to_ullage_ / upper + ullage_coefficient_ * (shell_->temperature()[i] - mean));
     shell_->step(h, bed_.fluid(), bed_.wall_coefficient(), from_wall_, from_bed_);
   }
   for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -from_bed_[i];
@@ -217,7 +227,7 @@ void TankModel::step_ullage(double h, const Ambient& air) {
   // The roof's inner cell takes the heat explicitly: steps of half its time constant.
   const double limit = roof_ ? 0.5 * roof_->inner_capacity() / roof_->inner_conductance() : h;
   const int parts = std::max(1, int(std::ceil(h / limit)));
-  from_liquid_ = wall_to_ullage_ = 0;
+  from_liquid_ = wall_to_ullage_ = ullage_coefficient_ = 0;
   for (int k = 0; k < parts; ++k) {
     const double roof_cell = roof_ ? roof_->inner_temperature() : 0;
     const double conductance = roof_ ? roof_->inner_conductance() * roof_->area() : 0;
@@ -225,6 +235,7 @@ void TankModel::step_ullage(double h, const Ambient& air) {
         ullage_->step(h / parts, bed_.top(), upper_wall(), roof_cell, conductance, air.pressure);
     from_liquid_ += heat.from_liquid / parts;
     wall_to_ullage_ += heat.from_wall / parts;
+    ullage_coefficient_ += heat.wall_coefficient / parts;
     if (!roof_) continue;
     Film film = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
     film = roof_film(p.insulation->outside, roof_->outer_surface(film), p.diameter, air);

@@ -118,7 +118,7 @@ class TankModel {
   std::vector<double> hoop_;
   // Heat flows during an exchange step [W].
   std::vector<double> into_blanket_, from_wall_, from_bed_, source_, filler_;
-  double from_liquid_ = 0, wall_to_ullage_ = 0;
+  double from_liquid_ = 0, wall_to_ullage_ = 0, ullage_coefficient_ = 0;
   double reference_ = 0, start_energy_ = 0, start_bed_ = 0;
   Ledger ledger_;
   Worst inversion_;

@@ -73,6 +73,7 @@ Ullage::Heat Ullage::step(double dt, double liquid, double wall, double roof_cel
   }
   Heat heat;
   heat.roof_surface = roof_;
+  heat.wall_coefficient = (side + 4 * x[2][2] * fourth(wall) / wall) / side_;
   heat.into_roof = roof_conductance * (roof_ - roof_cell);
   heat.from_wall =
       side * (wall - gas_) + x[2][0] * fourth(liquid) + x[2][1] * fourth(roof_) + x[2][2] * fourth(wall);

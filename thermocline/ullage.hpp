@@ -32,6 +32,7 @@ class Ullage {
   struct Heat {
     double from_liquid = 0, from_wall = 0, into_roof = 0;  // [W]
     double roof_surface = 0;                               // [K]
+    double wall_coefficient = 0;  // d(from_wall)/d(wall temperature) per area of the wall [W/(m^2 K)]
   };
   /// Over dt between surfaces of given temperature [K]. `roof_conductance`: roof surface to the roof's first
   /// cell [W/K], 0 without an insulated roof. Changes the gas.

@@ -58,6 +58,22 @@ TEST(Elements, a_tank_at_the_temperature_of_its_surroundings_stays) {
   for (const double t : run.model().shell()->temperature()) EXPECT_NEAR(t, 300, 1e-6);
 }
 
+TEST(Elements, nothing_gets_hotter_than_what_enters) {
+  TankParameters p = solar_one_parameters();
+  p.bed.cells = 100;
+  for (const double step : {60.0, 900.0}) {
+    p.exchange_step = step;
+    TankRun run(p);
+    for (double t = 1800; t < 86400; t += 1800) {
+      run.until(t, 900);
+      const auto wall = run.model().shell()->temperature();
+      const auto fluid = run.model().bed().fluid();
+      ASSERT_LE(*std::max_element(wall.begin(), wall.end()), 304.01 + zero_celsius) << "t = " << t;
+      ASSERT_LE(*std::max_element(fluid.begin(), fluid.end()), 304.01 + zero_celsius) << "t = " << t;
+    }
+  }
+}
+
 TEST(Elements, shorter_exchange_steps_change_little) {
   TankParameters coarse = solar_one_parameters(), fine = coarse;
   coarse.exchange_step = 300, fine.exchange_step = 30;
