@@ -17,8 +17,13 @@ void declare(config::Section& section, FlowParameters& p) {
     s.value("inlet-temperature", r.inlet_temperature).unit("K").positive().doc("of what enters");
     s.value("stop-above", r.stop_above).unit("K").doc("the flow stops when the outlet is hotter");
     s.value("stop-below", r.stop_below).unit("K").doc("the flow stops when the outlet is colder");
-    s.check([&r] { return r.mass_flow == 0 || r.inlet_temperature > 0 ? "" : "a flow needs it"; },
-            "inlet-temperature");
+    s.check(
+        [&r] {
+          return r.mass_flow == 0 || r.inlet_temperature > 0
+                     ? ""
+                     : "is missing; say how hot the fluid is that this flow brings";
+        },
+        "inlet-temperature");
   };
   const auto schedule = [&p, row](config::Section& s) {
     s.list<ScheduleRow>("rows", p.rows, row, "each in force until the next one; at rest before the first");

@@ -50,7 +50,7 @@ void declare_ground(config::Section& section, GroundParameters& p) {
               const auto known = foundation_materials();
               return std::find(known.begin(), known.end(), l.material) != known.end()
                          ? std::string()
-                         : "is not known. " + did_you_mean(l.material, known, "materials");
+                         : "'" + l.material + "' is none of: " + join(known);
             },
             "material");
       },

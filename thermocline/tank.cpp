@@ -65,6 +65,7 @@ void Tank::accept_step() {
   side_ = now.side - before.side, roof_ = now.roof - before.roof, ground_ = now.ground - before.ground;
   std::swap(accepted_, next_);
   control_state_ = control_->state();
+  for (const BedStep& s : steps_) peak_flow_ = std::max(peak_flow_, std::abs(s.flow.mass_flow));
   for (const std::string& sentence : accepted_.take_warnings())
     if (files_) log::warn("{}", sentence);
   if (observers_.empty()) return;
@@ -133,6 +134,28 @@ std::vector<std::string> Tank::judge_left_out_effects() {
         m.inversion().time, m.inversion().z, m.inversion().depth,
         m.setup().parameters.bed.mix_inversions ? "such fluid is mixed"
                                                 : "mixing it (bed.mix-inversions) was left out"));
+  if (peak_flow_ > 0) {
+    const auto& runs = m.bed().grid().runs;
+    std::string layers;
+    for (const auto& run : runs)
+      layers += fmt::format("{}{:.3g}", layers.empty() ? "" : ", ",
+                            m.bed().reynolds(run.first + run.count / 2, peak_flow_));
+    lines.push_back(
+        fmt::format("closures: Re of the layers at the largest flow {} from the bottom up; the film's "
+                    "correlation was fitted to Re from 15 to 8500",
+                    layers));
+  }
+  if (m.shell() && !m.mechanics() && !m.contact()) {
+    const auto wall = m.shell()->temperature();
+    const auto [low, high] = std::minmax_element(wall.begin(), wall.end());
+    const Steel& steel = *m.setup().steel;
+    const double strain = steel.thermal_strain(*high) - steel.thermal_strain(*low) -
+                          m.setup().filler.expansion * (*high - *low);
+    lines.push_back(fmt::format(
+        "filler mechanics were left out: cooling a ring from {:.0f} to {:.0f} degC against a filler "
+        "that does not yield would add {:.0f} MPa of hoop stress",
+        celsius(*high), celsius(*low), 1e-6 * steel.youngs_modulus(*low) * std::max(0.0, strain)));
+  }
   if (m.bed().fallbacks() > 0)
     lines.push_back(fmt::format("bed: {} of {} steps were taken at first order in time to stay within bounds",
                                 m.bed().fallbacks(), speed_.bed_steps));

@@ -46,6 +46,7 @@ class Tank final : public Participant {
   std::vector<BedStep> steps_;  // of next_
   Step step_;
   Speed speed_;
+  double peak_flow_ = 0;                    // largest |m| of this run [kg/s]
   std::unique_ptr<TankOutputFiles> files_;  // on rank 0
   std::optional<WallInterface> wall_;
   // Of the last accepted step, for its record.

@@ -2,6 +2,8 @@
 """The wrong configurations: how each differs from a right one, and what the program must say about it."""
 from dataclasses import dataclass, field
 
+import tank_table
+
 
 @dataclass
 class Case:
@@ -388,4 +390,6 @@ couplet: The job cannot start:
 """, arguments=["case.yaml", "--restart", "old"]),
 ]
 
-CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + FLUID + COUPLING + COMMAND_LINE + MESH
+RIGHT_TANK, TANK = tank_table.cases(Case, RUN)
+RIGHT += RIGHT_TANK
+CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + FLUID + COUPLING + COMMAND_LINE + MESH + TANK

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// One exchange step of the tank: the elements in turn.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "thermocline/model.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Adds the time until the end of the scope to an element.
+class Stopwatch final {
+ public:
+  Stopwatch(Speed& speed, Element element) : seconds_(speed.seconds[std::size_t(element)]) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace
+
+double TankModel::stable_exchange() const {
+  // The bed's end cells against the fluxes that ullage and ground compute from them: half their capacity over
+  // the coefficient. Elsewhere the flux is computed by the lighter side.
+  if (!ground_ && !ullage_) return std::numeric_limits<double>::infinity();
+  const auto& grid = bed_.grid();
+  const auto capacity = [&](int i) {
+    const double eps = grid.runs[grid.layer[i]].layer.porosity;
+    return (eps * setup_->fluid.volumetric() + (1 - eps) * setup_->filler.volumetric()) * grid.dz[i];
+  };
+  double step = std::numeric_limits<double>::infinity();
+  if (ground_) step = std::min(step, 0.5 * capacity(0) / std::max(1e-30, bed_.wall_coefficient().front()));
+  if (!ullage_) return step;
+  const double strongest = 100;  // of gas and radiation together at any temperature of interest [W/(m^2 K)]
+  step = std::min(step, 0.5 * capacity(grid.size() - 1) / strongest);
+  if (!shell_) return step;
+  const Steel& steel = *setup_->steel;
+  for (int i = setup_->rings->in_bed; i < setup_->rings->size(); ++i)
+    step = std::min(
+        step, 0.5 * steel.density * steel.specific_heat.y.front() * setup_->rings->thickness[i] / strongest);
+  return step;
+}
+
+double TankModel::exchange(double t, double h, FlowControl& control, const AmbientSource& ambient,
+                           std::vector<BedStep>& steps, Speed& speed) {
+  const double tiny = 1e-9 * h;
+  const Ambient air = ambient.at(t + h / 2);
+  if (insulation_) {
+    const Stopwatch watch(speed, Element::insulation);
+    if (side_.until <= t + tiny) step_insulation(t, h, air);
+    if (side_.until > t + tiny) h = std::min(h, side_.until - t);
+  }
+  if (ground_) {
+    const Stopwatch watch(speed, Element::ground);
+    if (soil_.until <= t + tiny) step_ground(t, h);
+    if (soil_.until > t + tiny) h = std::min(h, soil_.until - t);
+  }
+  if (ullage_) {
+    const Stopwatch watch(speed, Element::ullage);
+    step_ullage(h, air);
+  }
+  if (shell_) {
+    const Stopwatch watch(speed, Element::shell);
+    const Rings& rings = *setup_->rings;
+    from_wall_ = into_blanket_;
+    // Rings above the bed: the mean flux, and more from those warmer than the mean.
+    double upper = 0;
+    for (int i = rings.in_bed; i < rings.size(); ++i) upper += rings.surface(i);
+    const double mean = upper_wall();
+    for (int i = rings.in_bed; i < rings.size(); ++i)
+      from_wall_[i] += rings.surface(i) *
+                       (wall_to_ullage_ / upper + ullage_coefficient_ * (shell_->temperature()[i] - mean));
+    shell_->step(h, bed_.fluid(), bed_.wall_coefficient(), from_wall_, from_bed_);
+  }
+  for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -from_bed_[i];
+  source_.back() -= from_liquid_;
+  source_.front() -= soil_.in;
+  bed_.set_source(source_);
+  step_bed(t, t + h, control, ambient, steps, speed);
+  ledger_.side += side_.out * h;
+  ledger_.ground += soil_.out * h;
+  ledger_.turnover += (std::abs(side_.out) + std::abs(soil_.out)) * h;
+  if (mechanics_) {
+    const Stopwatch watch(speed, Element::mechanics);
+    bed_.filler_temperature(filler_);
+    mechanics_->update(shell_->temperature(), filler_);
+  }
+  watch(t + h);
+  return h;
+}
+
+void TankModel::step_insulation(double t, double h, const Ambient& air) {
+  const TankParameters& p = setup_->parameters;
+  const double step = std::max(h, p.insulation->step);
+  const Rings& rings = *setup_->rings;
+  const double height = rings.z.back() + rings.dz.back() / 2;
+  const double outer = p.diameter + 2 * (rings.thickness.front() + p.insulation->thickness);
+  // The film belongs to the surface temperature; one correction is enough for so weak a dependence.
+  Film film = side_film(p.insulation->outside, air.temperature + 5, outer, height, air);
+  film = side_film(p.insulation->outside, insulation_->outer_surface(film), outer, height, air);
+  const double lost = insulation_->step(step, shell_->temperature(), film, into_blanket_);
+  side_ = {t + step, 0, lost / step};
+  for (const double q : into_blanket_) side_.in += q;
+}
+
+void TankModel::step_ground(double t, double h) {
+  const double step = std::max(h, setup_->parameters.ground->step);
+  const Film plate{bed_.wall_coefficient().front(), bed_.bottom()};
+  const Film deep{std::numeric_limits<double>::infinity(), deep_temperature_};
+  const Column::Heat heat = ground_->step(step, plate, deep);
+  soil_ = {t + step, heat.inner / step, heat.outer / step};
+}
+
+double TankModel::upper_wall() const {
+  if (!shell_) return bed_.top();
+  const Rings& rings = *setup_->rings;
+  double sum = 0, height = 0;
+  for (int i = rings.in_bed; i < rings.size(); ++i)
+    sum += rings.dz[i] * shell_->temperature()[i], height += rings.dz[i];
+  return sum / height;
+}
+
+void TankModel::step_ullage(double h, const Ambient& air) {
+  const TankParameters& p = setup_->parameters;
+  // The roof's inner cell takes the heat explicitly: steps of half its time constant.
+  const double limit = roof_ ? 0.5 * roof_->inner_capacity() / roof_->inner_conductance() : h;
+  const int parts = std::max(1, int(std::ceil(h / limit)));
+  from_liquid_ = wall_to_ullage_ = ullage_coefficient_ = 0;
+  for (int k = 0; k < parts; ++k) {
+    const double roof_cell = roof_ ? roof_->inner_temperature() : 0;
+    const double conductance = roof_ ? roof_->inner_conductance() * roof_->area() : 0;
+    const Ullage::Heat heat =
+        ullage_->step(h / parts, bed_.top(), upper_wall(), roof_cell, conductance, air.pressure);
+    from_liquid_ += heat.from_liquid / parts;
+    wall_to_ullage_ += heat.from_wall / parts;
+    ullage_coefficient_ += heat.wall_coefficient / parts;
+    if (!roof_) continue;
+    Film film = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
+    film = roof_film(p.insulation->outside, roof_->outer_surface(film), p.diameter, air);
+    const double lost = roof_->step(h / parts, heat.into_roof, film).outer;
+    ledger_.roof += lost;
+    ledger_.turnover += std::abs(lost);
+  }
+  if (!shell_) {  // a wall without a model of its own gives what it gets from the liquid beside it
+    from_liquid_ += wall_to_ullage_;
+    wall_to_ullage_ = 0;
+  }
+}
+
+void TankModel::step_bed(double t, double end, FlowControl& control, const AmbientSource& ambient,
+                         std::vector<BedStep>& steps, Speed& speed) {
+  const double tiny = 1e-9 * (end - t);
+  bool prepared = false;
+  while (end - t > tiny) {
+    BedStep s;
+    s.t = t;
+    s.ambient = ambient.at(t);
+    s.flow = control.decide(t, bed_.top(), bed_.bottom(), s.ambient);
+    const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared_flow();
+    const double until = s.flow.until > t + tiny ? std::min(end, s.flow.until) : end;
+    // New closures when the flow has changed by a tenth, a new step when the old one has become too long or
+    // would pass the time the control gave; a little over the limit is within the scheme's reserve.
+    const bool other_flow = (m == 0) != (now == 0) || m * now < 0 || std::abs(m - now) > 0.1 * std::abs(now);
+    const bool too_long = bed_.prepared_step() > 1.05 * limit || t + bed_.prepared_step() > until + tiny;
+    if (!prepared || other_flow || too_long) {
+      const Stopwatch watch(speed, Element::preparation);
+      const double steps_left = std::ceil((until - t) / limit * (1 - 1e-9));
+      bed_.prepare((until - t) / std::max(1.0, steps_left), m);
+      prepared = true;
+    }
+    s.dt = bed_.prepared_step();
+    const Stopwatch watch(speed, Element::bed);
+    const PackedBed::StepHeat heat = bed_.step(m, s.flow.inlet_temperature);
+    s.outlet_temperature = heat.outlet;
+    ledger_.flow += heat.by_flow;
+    ledger_.bed += heat.by_flow + heat.by_source;
+    ledger_.turnover += std::abs(heat.by_flow);
+    steps.push_back(s);
+    speed.cell_steps += bed_.grid().size();
+    ++speed.bed_steps;
+    t += s.dt;
+  }
+  if (setup_->parameters.bed.mix_inversions) bed_.mix_inversions();
+}
+
+}  // namespace couplet::thermocline
