@@ -36,7 +36,7 @@ double TankModel::stable_exchange() const {
     return (eps * setup_->fluid.volumetric() + (1 - eps) * setup_->filler.volumetric()) * grid.dz[i];
   };
   double step = std::numeric_limits<double>::infinity();
-  if (ground_) step = std::min(step, 0.5 * capacity(0) / std::max(1e-30, bed_.wall_coefficient().front()));
+  if (ground_) step = std::min(step, 0.5 * capacity(0) / std::max(1e-30, plate_coefficient()));
   if (!ullage_) return step;
   const double strongest = 100;  // of gas and radiation together at any temperature of interest [W/(m^2 K)]
   step = std::min(step, 0.5 * capacity(grid.size() - 1) / strongest);
@@ -110,9 +110,17 @@ void TankModel::step_insulation(double t, double h, const Ambient& air) {
   for (const double q : into_blanket_) side_.in += q;
 }
 
+/// Bottom cell to the plate below it: the film of a wall, and half the cell in series, which conducts like
+/// the stagnant bed (k_0 = film d/2).
+double TankModel::plate_coefficient() const {
+  const BedGrid& grid = bed_.grid();
+  const double d = grid.runs.front().layer.diameter;
+  return bed_.wall_coefficient().front() * d / (d + grid.dz.front());
+}
+
 void TankModel::step_ground(double t, double h) {
   const double step = std::max(h, setup_->parameters.ground->step);
-  const Film plate{bed_.wall_coefficient().front(), bed_.bottom()};
+  const Film plate{plate_coefficient(), bed_.bottom()};
   const Film deep{std::numeric_limits<double>::infinity(), deep_temperature_};
   const Column::Heat heat = ground_->step(step, plate, deep);
   soil_ = {t + step, heat.inner / step, heat.outer / step};
