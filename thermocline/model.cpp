@@ -40,7 +40,7 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource
   const int n = bed_.grid().size();
   bed_.prepare(1, 0);
   reference_ = bed_.bottom();
-  from_bed_.assign(n, 0.0), source_.assign(n, 0.0);
+  owed_.assign(n, 0.0), source_.assign(n, 0.0);
   if (p.shell) {
     const int rings = setup_->rings->size();
     std::vector<double> wall(rings, bed_.top());
@@ -82,6 +82,7 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource
 
 double TankModel::energy(double t) const {
   double sum = bed_.energy(reference_);
+  for (const double owed : owed_) sum -= owed;
   // What is held is already in the insulation's or the ground's own temperatures until its step ends.
   const auto ahead = [&](const Held& h) { return h.until > t ? (h.in - h.out) * (h.until - t) : 0; };
   if (shell_) sum += shell_->energy(reference_);

@@ -99,6 +99,7 @@ class TankModel {
   void step_insulation(double t, double h, const Ambient& air);
   void step_ground(double t, double h);
   void step_ullage(double h, const Ambient& air);
+  void step_shell(double h);
   void step_bed(double t, double end, FlowControl& control, const AmbientSource& ambient,
                 std::vector<BedStep>& steps, Speed& speed);
   void update_stress();
@@ -118,7 +119,8 @@ class TankModel {
   WallStress stress_;
   std::vector<double> hoop_;
   // Heat flows during an exchange step [W].
-  std::vector<double> into_blanket_, from_wall_, from_bed_, source_, filler_;
+  std::vector<double> into_blanket_, from_wall_, source_, filler_;
+  std::vector<double> owed_;  // heat the shell has taken and the bed has yet to give, a value a cell [J]
   double from_liquid_ = 0, wall_to_ullage_ = 0, ullage_coefficient_ = 0;
   double reference_ = 0, start_energy_ = 0, start_bed_ = 0;
   Ledger ledger_;

@@ -66,24 +66,17 @@ double TankModel::exchange(double t, double h, FlowControl& control, const Ambie
     const Stopwatch watch(speed, Element::ullage);
     step_ullage(h, air);
   }
-  if (shell_) {
-    const Stopwatch watch(speed, Element::shell);
-    const Rings& rings = *setup_->rings;
-    from_wall_ = into_blanket_;
-    // Rings above the bed: the mean flux, and more from those warmer than the mean.
-    double upper = 0;
-    for (int i = rings.in_bed; i < rings.size(); ++i) upper += rings.surface(i);
-    const double mean = upper_wall();
-    for (int i = rings.in_bed; i < rings.size(); ++i)
-      from_wall_[i] += rings.surface(i) *
-                       (wall_to_ullage_ / upper + ullage_coefficient_ * (shell_->temperature()[i] - mean));
-    shell_->step(h, bed_.fluid(), bed_.wall_coefficient(), from_wall_, from_bed_);
-  }
-  for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -from_bed_[i];
+  // What the shell took in the step before: the wall sees the bed at the end of each step, so that both have
+  // the same time when the filler meets the wall; the bed, far heavier, pays one step later.
+  for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -owed_[i] / h;
   source_.back() -= from_liquid_;
   source_.front() -= soil_.in;
   bed_.set_source(source_);
   step_bed(t, t + h, control, ambient, steps, speed);
+  if (shell_) {
+    const Stopwatch watch(speed, Element::shell);
+    step_shell(h);
+  }
   ledger_.side += side_.out * h;
   ledger_.ground += soil_.out * h;
   ledger_.turnover += (std::abs(side_.out) + std::abs(soil_.out)) * h;
@@ -160,6 +153,20 @@ void TankModel::step_ullage(double h, const Ambient& air) {
     from_liquid_ += wall_to_ullage_;
     wall_to_ullage_ = 0;
   }
+}
+
+void TankModel::step_shell(double h) {
+  const Rings& rings = *setup_->rings;
+  from_wall_ = into_blanket_;
+  // Rings above the bed: the mean flux, and more from those warmer than the mean.
+  double upper = 0;
+  for (int i = rings.in_bed; i < rings.size(); ++i) upper += rings.surface(i);
+  const double mean = upper_wall();
+  for (int i = rings.in_bed; i < rings.size(); ++i)
+    from_wall_[i] += rings.surface(i) *
+                     (wall_to_ullage_ / upper + ullage_coefficient_ * (shell_->temperature()[i] - mean));
+  shell_->step(h, bed_.fluid(), bed_.wall_coefficient(), from_wall_, owed_);
+  for (double& heat : owed_) heat *= h;
 }
 
 void TankModel::step_bed(double t, double end, FlowControl& control, const AmbientSource& ambient,

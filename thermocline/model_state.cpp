@@ -23,6 +23,7 @@ std::vector<std::pair<std::string, std::vector<double>>> TankModel::state() cons
   if (shell_)
     all.emplace_back("shell",
                      std::vector<double>(shell_->temperature().begin(), shell_->temperature().end()));
+  if (shell_) all.emplace_back("owed-to-shell", owed_);
   if (mechanics_) all.emplace_back("filler-mechanics", mechanics_->state());
   if (contact_) all.emplace_back("contact", contact_->state());
   if (insulation_) all.emplace_back("insulation", insulation_->temperature());
@@ -51,6 +52,7 @@ void TankModel::restore(const std::function<std::vector<double>(const std::strin
     replace("shell", read("shell"), wall);
     shell_->set_temperature(wall);
   }
+  if (shell_) replace("owed-to-shell", read("owed-to-shell"), owed_);
   if (mechanics_) mechanics_->restore(read("filler-mechanics"));
   if (contact_) contact_->restore(read("contact"));
   if (insulation_) replace("insulation", read("insulation"), insulation_->temperature());
