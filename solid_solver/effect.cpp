@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/effect.hpp"
 
+#include "solid_solver/thermal_strain.hpp"
+
 namespace couplet {
 
-std::vector<std::unique_ptr<SolidEffect>> make_effects(const Mesh&, const ElasticOperator&,
-                                                       const SolidParameters&) {
-  return {};
+std::vector<std::unique_ptr<SolidEffect>> make_effects(const Mesh& mesh, const ElasticOperator& elastic,
+                                                       const SolidParameters& parameters) {
+  std::vector<std::unique_ptr<SolidEffect>> effects;
+  if (parameters.heat || parameters.temperature)
+    effects.push_back(std::make_unique<ThermalStrain>(mesh, elastic, parameters));
+  return effects;
 }
 
 }  // namespace couplet

@@ -25,6 +25,9 @@ class SolidEffect {
   /// Adds its forces [N] at time t within the step to the rows of the operator (see ElasticOperator).
   virtual void add_loads(double t, std::span<double> rhs) = 0;
   virtual void accept_step() {}
+  /// An effect that wants_stress() gets that of the owned cells after each accepted step [Pa].
+  virtual bool wants_stress() const { return false; }
+  virtual void take_stress(std::span<const Tensor3> /*stress*/) {}
   virtual void save(CheckpointWriter& /*file*/) const {}
   virtual void load(CheckpointReader& /*file*/) {}
   /// Adds its part of the stress of owned cells at the accepted time [Pa].

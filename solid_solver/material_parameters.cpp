@@ -3,13 +3,16 @@
 
 namespace couplet {
 
-void declare(config::Section& s, SolidMaterial& m) {
+void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   s.value("density", m.density).unit("kg/m^3").positive().required().doc("density");
-  s.value("youngs-modulus", m.youngs_modulus).unit("Pa").positive().required().doc("Young's modulus");
-  s.value("poissons-ratio", m.poissons_ratio)
-      .range(-0.99, 0.499)
-      .required()
-      .doc("Poisson's ratio; accuracy fades above 0.45");
+  const auto needed = [is_elastic](config::Key& key) -> config::Key& {
+    return is_elastic ? key.required() : key;
+  };
+  needed(s.value("youngs-modulus", m.youngs_modulus).unit("Pa").positive().doc("Young's modulus"));
+  needed(s.value("poissons-ratio", m.poissons_ratio)
+             .range(-0.99, 0.499)
+             .doc("Poisson's ratio; accuracy fades above 0.45"));
+  declare(s, m.heat);
 }
 
 }  // namespace couplet

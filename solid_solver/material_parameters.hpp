@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/config/section.hpp"
+#include "solid_solver/heat_parameters.hpp"
 
 namespace couplet {
 
@@ -9,8 +10,10 @@ struct SolidMaterial {
   double density = 0;         // [kg/m^3]
   double youngs_modulus = 0;  // [Pa]
   double poissons_ratio = 0;
+  HeatMaterial heat{};
 };
 
-void declare(config::Section& section, SolidMaterial& material);
+/// `is_elastic`: the elastic constants are needed.
+void declare(config::Section& section, SolidMaterial& material, bool is_elastic = true);
 
 }  // namespace couplet

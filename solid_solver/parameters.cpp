@@ -8,6 +8,57 @@
 namespace couplet {
 namespace {
 
+void declare_heat(config::Section& s, SolidParameters& p) {
+  s.optional_section<HeatParameters>(
+      "heat", p.heat, [](config::Section& h, HeatParameters& v) { declare(h, v); },
+      "conduction of heat; the temperature of a step is solved for before its displacement");
+  s.value("temperature", p.temperature).unit("K").doc("prescribed temperature, of x, y, z, t");
+  s.optional_section<ThermalExpansion>(
+      "thermal-expansion", p.expansion, [](config::Section& e, ThermalExpansion& v) { declare(e, v); },
+      "thermal strain; needs 'heat' or 'temperature', and 'expansion' of the material");
+  s.value("thermoelastic-coupling", p.thermoelastic_coupling)
+      .doc("a solid that is stretched cools: heat of the strain rate, thesis (2.27), one step late");
+  s.check(
+      [&] {
+        return p.thermoelastic_coupling &&
+                       !(p.expansion && p.heat && p.heat->analysis == HeatParameters::Analysis::transient)
+                   ? "it needs a transient 'heat' and 'thermal-expansion'"
+                   : "";
+      },
+      "thermoelastic-coupling");
+  const auto needs = [&](const std::optional<config::ExpressionText>& text, bool needed, const char* key,
+                         const char* by) {
+    s.check(
+        [&text, needed, key, by] {
+          return needed && !text ? fmt::format("'{}' of the material is missing; {} needs it", key, by) : "";
+        },
+        "material");
+  };
+  s.check([&] { return p.temperature ? problem_of(*p.temperature) : ""; }, "temperature");
+  s.check(
+      [&] {
+        return p.heat && p.temperature ? "'heat' solves for the temperature; remove one of the two" : "";
+      },
+      "temperature");
+  s.check(
+      [&] {
+        return p.expansion && !p.heat && !p.temperature
+                   ? "thermal strain needs a temperature; give 'heat' or 'temperature'"
+                   : "";
+      },
+      "thermal-expansion");
+  s.check(
+      [&] {
+        return p.analysis == SolidParameters::Analysis::thermal && !p.heat ? "a thermal analysis needs 'heat'"
+                                                                           : "";
+      },
+      "analysis");
+  needs(p.material.heat.conductivity, p.heat.has_value(), "conductivity", "'heat'");
+  needs(p.material.heat.specific_heat, p.heat && p.heat->analysis == HeatParameters::Analysis::transient,
+        "specific-heat", "a transient 'heat'");
+  needs(p.material.heat.expansion, p.expansion.has_value(), "expansion", "'thermal-expansion'");
+}
+
 void check_together(config::Section& s, SolidParameters& p) {
   const auto check_components = [&](const char* key, const std::vector<config::ExpressionText>& texts) {
     s.check([&] { return texts.empty() ? std::string() : problem_of(texts, p.dimension); }, key);
@@ -29,7 +80,13 @@ void check_together(config::Section& s, SolidParameters& p) {
                    : "";
       },
       "damping");
-  s.check([&] { return p.boundaries.empty() ? "each patch of the mesh needs an entry" : ""; }, "boundaries");
+  s.check(
+      [&] {
+        return p.boundaries.empty() && p.analysis != SolidParameters::Analysis::thermal
+                   ? "each patch of the mesh needs an entry"
+                   : "";
+      },
+      "boundaries");
 }
 
 }  // namespace
@@ -43,10 +100,13 @@ void declare(config::Section& s, SolidParameters& p) {
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
   s.choice("plane", p.plane, {{"strain", Plane::strain}, {"stress", Plane::stress}})
       .doc("what a 2-D scene is a cut of");
-  s.choice("analysis", p.analysis, {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}})
-      .doc("static leaves out inertia");
+  s.choice("analysis", p.analysis,
+           {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}, {"thermal", Analysis::thermal}})
+      .doc("static leaves out inertia; thermal conducts heat only");
   s.section(
-      "material", [&](config::Section& m) { declare(m, p.material); }, "linear elastic material");
+      "material",
+      [&](config::Section& m) { declare(m, p.material, p.analysis != SolidParameters::Analysis::thermal); },
+      "linear elastic material");
   s.map<SolidBoundary>(
       "boundaries", p.boundaries, [&p](config::Section& b, SolidBoundary& v) { declare(b, v, p.dimension); },
       "patch", "one entry for each patch of the mesh");
@@ -61,6 +121,7 @@ void declare(config::Section& s, SolidParameters& p) {
   s.optional_section<SolidDamping>(
       "damping", p.damping, [](config::Section& d, SolidDamping& v) { declare(d, v); },
       "structural damping; dynamic analysis only");
+  declare_heat(s, p);
   s.section(
       "solution-method", [&](config::Section& m) { declare(m, p.method); },
       "how the equations of a step are solved");

@@ -9,6 +9,7 @@
 #include "common/config/section.hpp"
 #include "common/fv/elasticity.hpp"
 #include "solid_solver/boundary_parameters.hpp"
+#include "solid_solver/heat_parameters.hpp"
 #include "solid_solver/material_parameters.hpp"
 #include "solid_solver/method_parameters.hpp"
 #include "solid_solver/output_parameters.hpp"
@@ -17,7 +18,7 @@
 namespace couplet {
 
 struct SolidParameters {
-  enum class Analysis { static_, dynamic };
+  enum class Analysis { static_, dynamic, thermal };
   enum class Plane { strain, stress };
   std::string mesh;
   std::map<std::string, double> mesh_parameters;
@@ -31,6 +32,10 @@ struct SolidParameters {
   std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
   TimeSchemeParameters time_scheme;
   std::optional<SolidDamping> damping;
+  std::optional<HeatParameters> heat;
+  std::optional<config::ExpressionText> temperature;  // prescribed [K]; none: solved for or not known
+  std::optional<ThermalExpansion> expansion;
+  bool thermoelastic_coupling = false;
   MethodParameters method;
   std::map<std::string, SolidProbe> probes;
   SolidOutputParameters output;

@@ -137,6 +137,8 @@ void Solid::accept_step() {
   std::swap(state_, trial_);
   std::swap(known_accepted_, known_);
   std::swap(known_rate_accepted_, known_rate_);
+  for (const auto& effect : effects_)
+    if (effect->wants_stress()) effect->take_stress(cell_stress(point_displacement()));
 }
 
 }  // namespace couplet

@@ -45,6 +45,7 @@ struct Expression::State {
     } catch (const mu::Parser::exception_type& e) {
       fail(column_of(e), reason_of(e));
     } catch (const TextProblem& problem) {
+      if (problem.is_sentence) throw Error("{}{}", where.empty() ? "" : where + ": ", problem.what);
       fail(problem.at + 1, problem.what);
     }
     if (!uses_time && !uses_space) require_finite(constant);

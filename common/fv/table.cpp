@@ -60,13 +60,13 @@ Table::Table(std::vector<double> at, std::vector<double> values, Outside outside
       integral_(at_.size(), 0),
       outside_(outside),
       where_(std::move(where)) {
-  const std::string place = where_.empty() ? "a table" : where_;
+  const std::string place = where_.empty() ? "" : where_ + ": ";
   if (at_.empty() || at_.size() != values_.size())
-    throw Error("{}: a table needs one value for each place, {} values for {} places were given.", place,
+    throw Error("{}a table needs one value for each place, {} values for {} places were given.", place,
                 values_.size(), at_.size());
   for (std::size_t i = 1; i < at_.size(); ++i) {
     if (!(at_[i] > at_[i - 1]))
-      throw Error("{}: the places of a table must grow, but {:g} stands before {:g}.", place, at_[i - 1],
+      throw Error("{}the places of a table must grow, but {:g} stands before {:g}.", place, at_[i - 1],
                   at_[i]);
     integral_[i] = integral_[i - 1] + 0.5 * (values_[i] + values_[i - 1]) * (at_[i] - at_[i - 1]);
   }
@@ -75,13 +75,17 @@ Table::Table(std::vector<double> at, std::vector<double> values, Outside outside
 void Table::check_inside(double at) const {
   if (outside_ == Outside::clamp || (at >= at_.front() && at <= at_.back())) return;
   throw Error(
-      "{}: the table goes from {:g} to {:g}, but its value at {:g} is needed. Extend it, or let its ends "
+      "{}the table goes from {:g} to {:g}, but its value at {:g} is needed. Extend it, or let its ends "
       "hold with 'outside: clamp'.",
-      where_.empty() ? "a table" : where_, at_.front(), at_.back(), at);
+      where_.empty() ? "" : where_ + ": ", at_.front(), at_.back(), at);
 }
 
 double Table::operator()(double at) const {
   check_inside(at);
+  return inside(at);
+}
+
+double Table::inside(double at) const {
   if (at <= at_.front()) return values_.front();
   if (at >= at_.back()) return values_.back();
   const auto i = static_cast<std::size_t>(std::upper_bound(at_.begin(), at_.end(), at) - at_.begin());
@@ -93,7 +97,7 @@ double Table::antiderivative(double at) const {
   if (at <= at_.front()) return (at - at_.front()) * values_.front();
   if (at >= at_.back()) return integral_.back() + (at - at_.back()) * values_.back();
   const auto i = static_cast<std::size_t>(std::upper_bound(at_.begin(), at_.end(), at) - at_.begin());
-  return integral_[i - 1] + 0.5 * (at - at_[i - 1]) * (values_[i - 1] + (*this)(at));
+  return integral_[i - 1] + 0.5 * (at - at_[i - 1]) * (values_[i - 1] + inside(at));
 }
 
 double Table::integral(double from, double to) const {
@@ -138,6 +142,7 @@ Property::Property(const config::ExpressionText& text, const std::string& where)
   try {
     rest = take_tables(text.text, tables);
   } catch (const TextProblem& problem) {
+    if (problem.is_sentence) throw Error("{}{}", place, problem.what);
     throw Error("{}'{}' cannot be read at column {}: {}.", place, text.text, problem.at + 1, problem.what);
   }
   const bool is_table = tables.size() == 1 && rest.starts_with("tab00(") && rest.ends_with(")") &&

@@ -24,12 +24,14 @@ class Table final {
   double operator()(double at) const;
   /// Integral from `from` to `to`, exact for the piecewise linear function (clamped ends go on as constants).
   double integral(double from, double to) const;
+  /// Integral from the first place to `at`, never an Error.
+  double antiderivative(double at) const;
   const std::vector<double>& at() const { return at_; }
   const std::vector<double>& values() const { return values_; }
 
  private:
   void check_inside(double at) const;
-  double antiderivative(double at) const;  // from at_.front()
+  double inside(double at) const;
 
   std::vector<double> at_, values_, integral_;  // integral_: from at_.front() to each entry
   Outside outside_;
@@ -45,6 +47,7 @@ Table read_table(const std::filesystem::path& file, const std::string& column, T
 struct TextProblem {
   std::size_t at = 0;  ///< position in the text, from 0
   std::string what;
+  bool is_sentence = false;  ///< says all by itself: the table, not the text, is wrong
 };
 
 /// Finds the calls table(variable, [clamp|error,] x0, y0, x1, y1, ...) and table(variable, [clamp|error,]
@@ -64,7 +67,11 @@ class Property final {
   double integral(double from, double to) const {
     return is_constant() ? constant_ * (to - from) : table_[0].integral(from, to);
   }
-  /// Smallest value it can take.
+  /// An integral from some fixed temperature on: differences of it are what counts.
+  double antiderivative(double temperature) const {
+    return is_constant() ? constant_ * temperature : table_[0].antiderivative(temperature);
+  }
+  /// Smallest and largest value it can take.
   double lowest() const;
   double highest() const;
 

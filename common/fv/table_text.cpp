@@ -56,7 +56,7 @@ std::vector<Argument> arguments_of(const std::string& text, std::size_t open, st
     }
     if (text[i] == ')') --depth;
   }
-  throw TextProblem{text.size(), "a ')' or '\"' of a table is missing"};
+  throw TextProblem{text.size(), "a ')' or '\"' of a table is missing", false};
 }
 
 double number(const Argument& argument) {
@@ -66,7 +66,7 @@ double number(const Argument& argument) {
     if (used == argument.text.size() && std::isfinite(value)) return value;
   } catch (const std::exception&) {
   }
-  throw TextProblem{argument.at, fmt::format("a table holds numbers, not '{}'", argument.text)};
+  throw TextProblem{argument.at, fmt::format("a table holds numbers, not '{}'", argument.text), false};
 }
 
 std::string unquoted(const std::string& text) {
@@ -80,16 +80,16 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
   if (i < arguments.size() && (arguments[i].text == "clamp" || arguments[i].text == "error"))
     outside = arguments[i++].text == "error" ? Table::Outside::error : Table::Outside::clamp;
   if (i >= arguments.size() || arguments[0].text.empty())
-    throw TextProblem{begin, "a table is written table(t, 0, 10, 5, 20), variable first, then pairs"};
+    throw TextProblem{begin, "a table is written table(t, 0, 10, 5, 20), variable first, then pairs", false};
   try {
     if (arguments[i].text.starts_with('"')) {
       if (arguments.size() > i + 2)
-        throw TextProblem{arguments[i + 2].at, "after the file of a table comes one column at most"};
+        throw TextProblem{arguments[i + 2].at, "after the file of a table comes one column at most", false};
       return read_table(unquoted(arguments[i].text),
                         i + 1 < arguments.size() ? unquoted(arguments[i + 1].text) : "2", outside);
     }
     if ((arguments.size() - i) % 2 != 0)
-      throw TextProblem{arguments.back().at, "a table needs pairs: a value for each place"};
+      throw TextProblem{arguments.back().at, "a table needs pairs: a value for each place", false};
     std::vector<double> at, values;
     for (; i < arguments.size(); i += 2) {
       at.push_back(number(arguments[i]));
@@ -97,7 +97,7 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
     }
     return Table(std::move(at), std::move(values), outside, "");
   } catch (const Error& e) {
-    throw TextProblem{begin, e.what()};
+    throw TextProblem{begin, e.what(), true};
   }
 }
 
@@ -106,7 +106,7 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
 std::string take_tables(const std::string& text, std::deque<Table>& tables) {
   std::string rest = text;
   for (std::size_t begin = last_call(rest); begin != std::string::npos; begin = last_call(rest)) {
-    if (tables.size() == most_tables) throw TextProblem{begin, "there are more than 100 tables"};
+    if (tables.size() == most_tables) throw TextProblem{begin, "there are more than 100 tables", false};
     std::size_t close = 0;
     const std::vector<Argument> arguments = arguments_of(rest, begin + name.size(), close);
     tables.push_back(table_from(arguments, begin));

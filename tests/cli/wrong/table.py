@@ -180,7 +180,7 @@ case.yaml:12:7: participants.solid.material.poisson-ratio: unknown key. Did you 
 case.yaml:12:7: participants.solid.material.poissons-ratio: '0.3 m' has more than a number in it ('m'); expected a plain number.
 """, ("poissons-ratio: 0.3", "poissons-ratio: 0.3 m")),
     solid("unknown word", """
-case.yaml:8:5: participants.solid.analysis: 'dynamics' is not one of: dynamic, static. Did you mean 'dynamic'?
+case.yaml:8:5: participants.solid.analysis: 'dynamics' is not one of: dynamic, static, thermal. Did you mean 'dynamic'?
 """, ("analysis: dynamic", "analysis: dynamics")),
     solid("four dimensions", """
 case.yaml:7:5: participants.solid.dimension: 4 is out of range; expected a value from 2 to 3.
@@ -220,6 +220,31 @@ case.yaml:2:14: simulation.end-time: 0 s is out of range; expected a value above
 case.yaml:6:5: participants.solid.mash: unknown key. Did you mean 'mesh'?
 case.yaml:11:7: participants.solid.material.youngs-modulus: 'soft' is not a number; expected a number in Pa or with its unit.
 """, ("1 MPa", "soft"), ("end-time: 1 s", "end-time: 0"), ("    mesh", "    mash")),
+]
+
+HEAT = [
+    solid("thermal strain without a temperature", """
+case.yaml:13:5: participants.solid.thermal-expansion: thermal strain needs a temperature; give 'heat' or 'temperature'.
+""", ("    boundaries:\n", "    thermal-expansion: {reference-temperature: 20 degC}\n    boundaries:\n")),
+    solid("heat without conductivity", """
+case.yaml:9:5: participants.solid.material: 'conductivity' of the material is missing; 'heat' needs it.
+""", ("    boundaries:\n", "    heat: {initial-temperature: 20 degC}\n    boundaries:\n")),
+    solid("heat and a prescribed temperature", """
+case.yaml:14:5: participants.solid.temperature: 'heat' solves for the temperature; remove one of the two.
+""", ("    boundaries:\n", "    temperature: 300 + x\n    heat: {analysis: steady}\n    boundaries:\n"),
+          ("poissons-ratio: 0.3", "poissons-ratio: 0.3\n      conductivity: 50")),
+    solid("thermal analysis without heat", """
+case.yaml:8:5: participants.solid.analysis: a thermal analysis needs 'heat'.
+""", ("analysis: dynamic", "analysis: thermal")),
+    solid("property that is an expression", """
+case.yaml:13:7: participants.solid.material.conductivity: '50 - 0.1*T' is neither a number nor a table of the temperature, such as {of: T, at: [300 K, 600 K], values: [210 GPa, 180 GPa]}.
+""", ("poissons-ratio: 0.3", "poissons-ratio: 0.3\n      conductivity: 50 - 0.1*T")),
+    solid("table with a value too few", """
+case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: a table needs one value for each place; 2 places and 1 values are given.
+""", ("value: [1000, 0]", "value: [{of: t, at: [0, 1], values: [1000]}, 0]")),
+    solid("places of a table that do not grow", """
+case.yaml:15:31: participants.solid.boundaries.right.value: the places of a table must grow, but 2 stands before 1.
+""", ("value: [1000, 0]", "value: [{of: t, at: [0, 2, 1], values: [0, 1, 2]}, 0]")),
 ]
 
 FLUID = [
@@ -392,4 +417,4 @@ couplet: The job cannot start:
 
 RIGHT_TANK, TANK = tank_table.cases(Case, RUN)
 RIGHT += RIGHT_TANK
-CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + FLUID + COUPLING + COMMAND_LINE + MESH + TANK
+CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + HEAT + FLUID + COUPLING + COMMAND_LINE + MESH + TANK

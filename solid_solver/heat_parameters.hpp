@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/config/section.hpp"
+
+namespace couplet {
+
+/// Thermal properties of a material; each is needed by the effects that use it only. Tables are of T [K].
+struct HeatMaterial {
+  std::optional<config::ExpressionText> conductivity;   // [W/(m K)]
+  std::optional<config::ExpressionText> specific_heat;  // [J/(kg K)]
+  std::optional<config::ExpressionText> expansion;      // instantaneous coefficient [1/K]
+};
+
+/// What is known of the temperature on one patch.
+struct HeatBoundary {
+  enum class Type { temperature, flux, convection, adiabatic, symmetry };
+  Type type = Type::adiabatic;
+  config::ExpressionText value;        // temperature [K] or heat flux into the solid [W/m^2]
+  config::ExpressionText coefficient;  // of convection [W/(m^2 K)]
+  config::ExpressionText ambient;      // temperature beyond the film [K]
+};
+
+/// Conduction of heat, thesis (2.35).
+struct HeatParameters {
+  enum class Analysis { transient, steady };
+  enum class Scheme { euler, three_point, trapezoidal };
+  Analysis analysis = Analysis::transient;
+  Scheme scheme = Scheme::three_point;
+  config::ExpressionText initial_temperature{"293.15"};  // [K]
+  config::ExpressionText source;                         // [W/m^3]
+  std::map<std::string, HeatBoundary> boundaries;
+  double tolerance = 1e-8;  // of the temperature, relative, when properties depend on it
+  int max_iterations = 50;
+  double linear_tolerance = 1e-12;
+};
+
+/// Thermal strain from a reference temperature on.
+struct ThermalExpansion {
+  double reference_temperature = 293.15;  // [K]
+};
+
+void declare(config::Section& section, HeatMaterial& material);
+void declare(config::Section& section, HeatParameters& heat);
+void declare(config::Section& section, ThermalExpansion& expansion);
+
+}  // namespace couplet

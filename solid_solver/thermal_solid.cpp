@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/thermal_solid.hpp"
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/thermal_strain.hpp"
+
+namespace couplet {
+
+ThermalSolid::ThermalSolid(Mesh mesh, SolidParameters parameters, SolidContext context)
+    : mesh_(std::move(mesh)),
+      parameters_(std::move(parameters)),
+      context_(std::move(context)),
+      heat_(make_heat(mesh_, parameters_)) {
+  for (const auto& [name, probe] : parameters_.probes) probes_.emplace_back(mesh_, name, probe.point);
+}
+
+Interface ThermalSolid::initialise() {
+  Interface none;
+  none.dim = mesh_.dim;
+  return none;
+}
+
+void ThermalSolid::begin_step(const Step& step) {
+  if (!(step.dt > 0)) throw Error("The solid was asked for a step of {} s; time must go on.", step.dt);
+  step_ = step;
+}
+
+Exchange ThermalSolid::solve(const Exchange&) {
+  heat_->solve(step_);
+  return {};
+}
+
+void ThermalSolid::write_output(double time, int) {
+  if (context_.output_folder.empty()) return;
+  if (!fields_) fields_.emplace(mesh_, context_.output_folder, context_.name, false, context_.restart_time);
+  const std::vector<double> points = heat_->point_temperature(heat_->accepted());
+  fields_->write(time, mesh_.reference_points,
+                 {{"temperature", "K", OutputField::Place::points, 1, points},
+                  {"cell-temperature", "K", OutputField::Place::cells, 1, heat_->accepted().cells}});
+}
+
+void ThermalSolid::write_monitors(double time) {
+  if (context_.output_folder.empty()) return;
+  if (!probes_.empty()) write_probes(time);
+  write_heat(time);
+}
+
+void ThermalSolid::write_probes(double time) {
+  const std::vector<double> points = heat_->point_temperature(heat_->accepted());
+  std::vector<double> row{time};
+  for (const Probe& probe : probes_) {
+    const std::vector<double> value = probe.sample(points, 1);
+    row.insert(row.end(), value.begin(), value.end());
+  }
+  if (comm_rank(mesh_.comm) != 0) return;
+  if (!probe_series_) {
+    std::vector<std::string> columns{"time [s]"};
+    for (const auto& [name, probe] : parameters_.probes) columns.push_back(name + " temperature [K]");
+    probe_series_.emplace(context_.output_folder / "probes.csv", columns, context_.restart_time);
+  }
+  probe_series_->row(row);
+}
+
+void ThermalSolid::write_heat(double time) {
+  const std::vector<PatchHeat> heat = heat_->patch_heat();
+  std::vector<double> row{time};
+  for (const PatchHeat& h : heat) row.push_back(h.heat);
+  row.push_back(heat_->stored_heat());
+  if (comm_rank(mesh_.comm) != 0) return;
+  if (!heat_series_) {
+    std::vector<std::string> columns{"time [s]"};
+    for (const PatchHeat& h : heat) columns.push_back(h.patch + " [W]");
+    columns.emplace_back("stored [J]");
+    heat_series_.emplace(context_.output_folder / "heat.csv", columns, context_.restart_time);
+  }
+  heat_series_->row(row);
+}
+
+std::vector<std::string> ThermalSolid::judge_left_out_effects() {
+  std::vector<std::string> sentences;
+  heat_->judge(sentences);
+  return sentences;
+}
+
+}  // namespace couplet

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/coupling/participant.hpp"
+#include "common/io/field_writer.hpp"
+#include "common/io/probe.hpp"
+#include "common/io/series.hpp"
+#include "common/mesh/mesh.hpp"
+#include "solid_solver/heat.hpp"
+#include "solid_solver/parameters.hpp"
+#include "solid_solver/solid.hpp"
+
+namespace couplet {
+
+/// A solid that conducts heat and does not deform (`analysis: thermal`): no elastic operator is built.
+/// Writes the fields `temperature` and `cell-temperature`, probes.csv, and heat.csv with the heat through
+/// each patch.
+class ThermalSolid final : public Participant {
+ public:
+  /// Collective over mesh.comm.
+  ThermalSolid(Mesh mesh, SolidParameters parameters, SolidContext context);
+
+  Interface initialise() override;
+  void begin_step(const Step& step) override;
+  Exchange solve(const Exchange& in) override;
+  void accept_step() override { heat_->accept_step(); }
+  void save(CheckpointWriter& file) const override { heat_->save(file); }
+  void load(CheckpointReader& file) override { heat_->load(file); }
+  void write_output(double time, int number) override;
+  void write_monitors(double time) override;
+  std::vector<std::string> judge_left_out_effects() override;
+
+  const Mesh& mesh() const { return mesh_; }
+  const Heat& heat() const { return *heat_; }
+
+ private:
+  void write_probes(double time);
+  void write_heat(double time);
+
+  const Mesh mesh_;
+  const SolidParameters parameters_;
+  const SolidContext context_;
+  std::unique_ptr<Heat> heat_;
+  Step step_;
+  std::vector<Probe> probes_;
+  std::optional<FieldWriter> fields_;
+  std::optional<Series> probe_series_, heat_series_;  // on rank 0
+};
+
+}  // namespace couplet

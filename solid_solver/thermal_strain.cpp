@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/thermal_strain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+std::vector<std::string> symmetry_patches(const SolidParameters& parameters) {
+  std::vector<std::string> names;
+  for (const auto& [name, boundary] : parameters.boundaries)
+    if (boundary.type == SolidBoundary::Type::symmetry) names.push_back(name);
+  return names;
+}
+
+Property property(const std::optional<config::ExpressionText>& text, const std::string& key,
+                  const char* needed_by) {
+  if (!text) throw Error("material.{}: this key is missing; {} needs it.", key, needed_by);
+  return Property(*text, "material." + key);
+}
+
+}  // namespace
+
+std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& parameters) {
+  const HeatMaterial& m = parameters.material.heat;
+  HeatProperties properties{parameters.material.density, property(m.conductivity, "conductivity", "'heat'"),
+                            0};
+  if (m.specific_heat || parameters.heat->analysis == HeatParameters::Analysis::transient)
+    properties.specific_heat = property(m.specific_heat, "specific-heat", "a transient 'heat'");
+  return std::make_unique<Heat>(mesh, std::vector<HeatProperties>(mesh.zones.size(), properties),
+                                *parameters.heat, symmetry_patches(parameters));
+}
+
+ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
+                             const SolidParameters& parameters)
+    : mesh_(&mesh),
+      elastic_(&elastic),
+      lame_(lame_constants(parameters)),
+      material_(parameters.material),
+      coupled_(parameters.thermoelastic_coupling) {
+  if (parameters.heat) heat_ = make_heat(mesh, parameters);
+  if (parameters.temperature) prescribed_.emplace(*parameters.temperature, "temperature");
+  if (parameters.expansion) {
+    expansion_.assign(mesh.zones.size(),
+                      property(parameters.material.heat.expansion, "expansion", "'thermal-expansion'"));
+    reference_ = parameters.expansion->reference_temperature;
+  }
+  plane_stress_ = mesh.dim == 2 && parameters.plane == SolidParameters::Plane::stress;
+  if (coupled_) dilation_.assign(mesh.cells.n_owned(), 0), dilation_rate_ = dilation_;
+  start_ = face_temperature(0, false);
+  lowest_ = *std::ranges::min_element(start_);
+  highest_ = *std::ranges::max_element(start_);
+  set_accepted();
+}
+
+double ThermalStrain::modulus(Index) const { return (plane_stress_ ? 2 : 3) * lame_.lambda + 2 * lame_.mu; }
+
+std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const {
+  if (heat_) return heat_->face_temperature(trial ? heat_->trial() : heat_->accepted());
+  std::vector<double> values(mesh_->n_flux_faces());
+  prescribed_->evaluate({mesh_->reference.face_centre.data(), values.size()}, t, values);
+  return values;
+}
+
+std::vector<double> ThermalStrain::strain(std::span<const double> temperature) const {
+  std::vector<double> result(temperature.size());
+  for (std::size_t f = 0; f < temperature.size(); ++f)
+    result[f] = expansion_[mesh_->cell_zone[mesh_->owner[f]]].integral(reference_, temperature[f]);
+  return result;
+}
+
+void ThermalStrain::set_accepted() {
+  if (expands()) accepted_strain_ = strain(start_);
+}
+
+void ThermalStrain::begin_step(const Step& step) {
+  step_ = step;
+  if (heat_) {
+    std::vector<double> source(dilation_rate_.size());
+    for (std::size_t c = 0; c < source.size(); ++c) {
+      const double temperature = heat_->accepted().cells[c];
+      source[c] = -material_.youngs_modulus / (1 - 2 * material_.poissons_ratio) *
+                  expansion_[mesh_->cell_zone[c]](temperature) * temperature * dilation_rate_[c];
+    }
+    heat_->solve(step, source);
+  }
+  end_ = face_temperature(step.time + step.dt, true);
+}
+
+// Row of a cell: - sum sigma . S over its faces without a known force; of a traction face: sigma . S.
+void ThermalStrain::add_loads(double t, std::span<double> rhs) {
+  if (!expands()) return;
+  std::vector<double> temperature;
+  if (prescribed_) {
+    temperature = face_temperature(t, true);
+  } else {
+    const double part = (t - step_.time) / step_.dt;
+    temperature = start_;
+    for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
+  }
+  const std::vector<double> epsilon = strain(temperature);
+  const int dim = mesh_->dim;
+  const Index n_owned = mesh_->cells.n_owned();
+  const auto add = [&](Index row, double size, const Vec3& area) {
+    for (int a = 0; a < dim; ++a) rhs[std::size_t(row) * dim + a] += size * area[a];
+  };
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
+    if (f >= mesh_->n_interior && elastic_->condition(f) == ElasticCondition::traction) continue;
+    const Vec3& area = mesh_->reference.face_area[f];
+    const Index owner = mesh_->owner[f];
+    const double size = modulus(owner) * epsilon[f];
+    if (owner < n_owned) add(owner, -size, area);
+    if (f < mesh_->n_interior && mesh_->neighbour[f] < n_owned) add(mesh_->neighbour[f], size, area);
+  }
+  const auto& faces = elastic_->traction_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const Index f = faces[i];
+    add(n_owned + static_cast<Index>(i), modulus(mesh_->owner[f]) * epsilon[f],
+        mesh_->reference.face_area[f]);
+  }
+}
+
+void ThermalStrain::accept_step() {
+  if (heat_) heat_->accept_step();
+  time_ = step_.time + step_.dt;
+  std::swap(start_, end_);
+  for (const double t : start_) {
+    lowest_ = std::min(lowest_, t);
+    highest_ = std::max(highest_, t);
+  }
+  set_accepted();
+}
+
+void ThermalStrain::add_face_stress(Index first, std::span<Tensor3> stress) const {
+  if (!expands()) return;
+  for (std::size_t i = 0; i < stress.size(); ++i) {
+    const Index f = first + static_cast<Index>(i);
+    stress[i].diagonal().array() -= modulus(mesh_->owner[f]) * accepted_strain_[f];
+  }
+}
+
+// Mean over the faces by the pyramids on them, as the displacement gradient is.
+std::vector<double> ThermalStrain::cell_strain() const {
+  const Index n_owned = mesh_->cells.n_owned();
+  std::vector<double> total(n_owned, 0), weight(n_owned, 0);
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
+    const auto add = [&](Index c) {
+      if (c >= n_owned) return;
+      const Vec3 arm = mesh_->reference.face_centre[f] - mesh_->reference.cell_centre[c];
+      const double pyramid = std::abs(arm.dot(mesh_->reference.face_area[f]));
+      total[c] += pyramid * accepted_strain_[f];
+      weight[c] += pyramid;
+    };
+    add(mesh_->owner[f]);
+    if (f < mesh_->n_interior) add(mesh_->neighbour[f]);
+  }
+  for (Index c = 0; c < n_owned; ++c) total[c] /= weight[c];
+  return total;
+}
+
+void ThermalStrain::add_cell_stress(std::span<Tensor3> stress) const {
+  if (!expands()) return;
+  const std::vector<double> strain = cell_strain();
+  for (Index c = 0; c < std::ssize(strain); ++c) stress[c].diagonal().array() -= modulus(c) * strain[c];
+}
+
+// tr(sigma) = 3 K [tr(eps) - 3 epsilon], in plane strain and plane stress, too.
+void ThermalStrain::take_stress(std::span<const Tensor3> stress) {
+  const double bulk3 = material_.youngs_modulus / (1 - 2 * material_.poissons_ratio);
+  const std::vector<double> strain = cell_strain();
+  for (std::size_t c = 0; c < stress.size(); ++c) {
+    const double now = stress[c].trace() / bulk3 + 3 * strain[c];
+    dilation_rate_[c] = (now - dilation_[c]) / step_.dt;
+    dilation_[c] = now;
+  }
+}
+
+/// (3 K alpha)^2 T / ((lambda + 2 mu) rho c): what the coupling adds to the stiffness, relatively.
+double ThermalStrain::coupling_number() const {
+  if (!heat_ || !expands() || !material_.heat.specific_heat) return 0;
+  const double temperature = max(mesh_->comm, highest_), e = material_.youngs_modulus,
+               nu = material_.poissons_ratio;
+  const double beta = e / (1 - 2 * nu) * expansion_.front()(temperature);
+  const double stiff = e * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+  return beta * beta * temperature /
+         (stiff * material_.density *
+          Property(*material_.heat.specific_heat, "material.specific-heat")(temperature));
+}
+
+std::vector<double> ThermalStrain::point_temperature() const {
+  if (heat_) return heat_->point_temperature(heat_->accepted());
+  std::vector<double> values(mesh_->points.n_local());
+  prescribed_->evaluate(mesh_->reference_points, time_, values);
+  return values;
+}
+
+void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
+  points_ = point_temperature();
+  if (heat_) {
+    cells_ = heat_->accepted().cells;
+  } else {
+    cells_.resize(mesh_->cells.n_local());
+    prescribed_->evaluate(mesh_->reference.cell_centre, time_, cells_);
+  }
+  fields.push_back({"temperature", "K", OutputField::Place::points, 1, points_});
+  fields.push_back({"cell-temperature", "K", OutputField::Place::cells, 1, cells_});
+}
+
+void ThermalStrain::save(CheckpointWriter& file) const {
+  if (heat_) heat_->save(file);
+  if (coupled_) {
+    file.write("dilation", dilation_);
+    file.write("dilation-rate", dilation_rate_);
+  }
+  file.write_scalar("temperature-time", time_);
+  file.write_scalar("lowest-temperature", min(mesh_->comm, lowest_));
+  file.write_scalar("highest-temperature", max(mesh_->comm, highest_));
+}
+
+void ThermalStrain::load(CheckpointReader& file) {
+  if (heat_) heat_->load(file);
+  if (coupled_) {
+    file.read("dilation", dilation_);
+    file.read("dilation-rate", dilation_rate_);
+  }
+  time_ = file.read_scalar("temperature-time");
+  lowest_ = file.read_scalar("lowest-temperature");
+  highest_ = file.read_scalar("highest-temperature");
+  start_ = face_temperature(time_, false);
+  set_accepted();
+}
+
+void ThermalStrain::judge(std::vector<std::string>& sentences) const {
+  if (heat_) heat_->judge(sentences);
+  if (const double number = coupling_number(); number > 0 && !coupled_)
+    sentences.push_back(fmt::format(
+        "thermoelastic coupling left out: heat of deformation would stiffen the solid by {:.1e}; {}.", number,
+        number < 0.05 ? "leaving it out was sound" : "'thermoelastic-coupling: true' takes it into account"));
+  if (expands()) return;
+  const double lowest = min(mesh_->comm, lowest_), highest = max(mesh_->comm, highest_);
+  sentences.push_back(fmt::format(
+      "thermal strain left out: temperatures from {:.6g} to {:.6g} K were seen; with a coefficient of 1e-5 "
+      "1/K "
+      "they would strain a free body by {:.2g}, to be compared with the displacement gradient above; "
+      "'thermal-expansion' takes it into account.",
+      lowest, highest, 1e-5 * (highest - lowest)));
+}
+
+}  // namespace couplet

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/fv/expression.hpp"
+#include "common/fv/table.hpp"
+#include "solid_solver/effect.hpp"
+#include "solid_solver/heat.hpp"
+
+namespace couplet {
+
+/// Conduction for this mesh and these parameters (`parameters.heat` must be there). Collective.
+std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& parameters);
+
+/// Temperature in the solid, solved for or prescribed, and the stress it makes, thesis (2.21), (2.60):
+///   sigma = sigma(grad u) - B epsilon I,   epsilon = integral of alpha dT from T_ref on,   B = 3 lambda + 2
+///   mu
+/// (plane stress: B = 2 lambda + 2 mu with the effective lambda). alpha is the instantaneous coefficient: 3 K
+/// alpha (T - T0) of (5.10) holds for a constant one only. In the equations B epsilon S is a known force of
+/// each face at its own temperature: uniform temperatures leave a free body without stress, exactly.
+/// With thermoelastic coupling the strain rate of the step before gives the heat -3 K alpha T tr(d eps/dt)
+/// (2.27).
+class ThermalStrain final : public SolidEffect {
+ public:
+  ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic, const SolidParameters& parameters);
+
+  void begin_step(const Step& step) override;
+  void add_loads(double t, std::span<double> rhs) override;
+  void accept_step() override;
+  bool wants_stress() const override { return coupled_; }
+  void take_stress(std::span<const Tensor3> stress) override;
+  void save(CheckpointWriter& file) const override;
+  void load(CheckpointReader& file) override;
+  void add_cell_stress(std::span<Tensor3> stress) const override;
+  void add_face_stress(Index first, std::span<Tensor3> stress) const override;
+  void add_fields(std::vector<OutputField>& fields) override;
+  void judge(std::vector<std::string>& sentences) const override;
+
+  /// None: the temperature is prescribed.
+  const Heat* heat() const { return heat_.get(); }
+  /// Of all local points at the accepted time [K]. Collective.
+  std::vector<double> point_temperature() const;
+
+ private:
+  bool expands() const { return !expansion_.empty(); }
+  /// Temperatures of the flux faces of the mesh at an end of the step: T^{n+1} of the trial, or accepted.
+  std::vector<double> face_temperature(double t, bool trial) const;
+  std::vector<double> strain(std::span<const double> temperature) const;
+  double modulus(Index cell) const;         // B
+  std::vector<double> cell_strain() const;  // thermal, of owned cells at the accepted time
+  double coupling_number() const;
+  void set_accepted();
+
+  const Mesh* mesh_;
+  const ElasticOperator* elastic_;
+  std::unique_ptr<Heat> heat_;  // none: prescribed
+  std::optional<Expression> prescribed_;
+  std::vector<Property> expansion_;  // one a zone; none: no thermal strain
+  double reference_ = 0;             // [K]
+  bool plane_stress_ = false;
+  LameConstants lame_;
+  SolidMaterial material_;
+  bool coupled_ = false;
+  std::vector<double> dilation_, dilation_rate_;  // tr(eps) and its rate, per owned cell; when coupled
+
+  Step step_;
+  double time_ = 0;                      // of the accepted state
+  std::vector<double> start_, end_;      // face temperatures at both ends of the step
+  std::vector<double> accepted_strain_;  // per flux face of the mesh, at the accepted time
+  std::vector<double> points_, cells_;   // of the last fields written
+  double lowest_ = 0, highest_ = 0;      // temperatures seen on this rank
+};
+
+}  // namespace couplet

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// Thermal strain that must be exact: free and constrained bodies at a uniform temperature.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/thermal_strain.hpp"
+#include "tests/verification/heat/thermoelastic.hpp"
+
+namespace couplet::testing {
+namespace {
+
+constexpr double modulus = 200e9, nu = 0.3, alpha = 1.2e-5, rise = 100;
+
+class Strain : public ::testing::TestWithParam<BoxCells> {};
+INSTANTIATE_TEST_SUITE_P(Heat, Strain,
+                         ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                                           BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));
+
+/// Largest deviation of the cells' stress from `wanted`, over E alpha times the rise.
+double stress_error(const Solid& solid, const Tensor3& wanted) {
+  double error = 0;
+  for (const Tensor3& s : solid.cell_stress(solid.point_displacement()))
+    error = std::max(error, (s - wanted).norm());
+  return max(solid.mesh().comm, error) / (modulus * alpha * rise);
+}
+
+/// Largest deviation of the points' displacement from growth^T x, over the largest.
+double growth_error(const Solid& solid, const Vec3& growth) {
+  const std::vector<double> u = solid.point_displacement();
+  const int dim = solid.mesh().dim;
+  double error = 0;
+  for (std::size_t v = 0; v < solid.mesh().reference_points.size(); ++v)
+    for (int a = 0; a < dim; ++a)
+      error = std::max(error, std::abs(u[v * dim + a] - growth[a] * solid.mesh().reference_points[v][a]));
+  return max(solid.mesh().comm, error) / (alpha * rise);
+}
+
+TEST_P(Strain, a_free_body_at_uniform_temperature_grows_without_stress) {
+  const int dim = dimension_of(GetParam());
+  SolidParameters p = warm_box(dim, "400");
+  if (dim == 2) p.plane = SolidParameters::Plane::stress;
+  const auto solid = make_solid(distorted_box(GetParam()), p);
+  step(*solid, 1);
+  const double error = stress_error(*solid, Tensor3::Zero());
+  ::testing::Test::RecordProperty("relative_error", fmt::format("{:.3e}", error));
+  EXPECT_LT(error, 1e-10);
+  EXPECT_LT(growth_error(*solid, Vec3::Constant(alpha * rise)), 1e-10);
+}
+
+// Growth along z and y is free, along x it is prevented: sigma_xx = - E alpha dT.
+TEST_P(Strain, a_bar_held_at_both_ends_is_compressed) {
+  const int dim = dimension_of(GetParam());
+  SolidParameters p = warm_box(dim, "400");
+  if (dim == 2) p.plane = SolidParameters::Plane::stress;
+  p.boundaries["xmax"] = boundary(Type::symmetry);
+  const auto solid = make_solid(distorted_box(GetParam()), p);
+  step(*solid, 1);
+  Tensor3 wanted = Tensor3::Zero();
+  wanted(0, 0) = -modulus * alpha * rise;
+  const double error = stress_error(*solid, wanted);
+  ::testing::Test::RecordProperty("relative_error", fmt::format("{:.3e}", error));
+  EXPECT_LT(error, 1e-10);
+  EXPECT_LT(growth_error(*solid, Vec3(0, 1, 1) * (1 + nu) * alpha * rise), 1e-10);
+  const double area = dim == 3 ? 0.48 : 0.8;
+  for (const PatchForce& r : solid->reactions(solid->point_displacement()))
+    if (r.patch == "xmin") {
+      EXPECT_NEAR(r.force[0] / (modulus * alpha * rise * area), 1, 1e-10);
+    }
+}
+
+TEST_P(Strain, a_body_held_all_around_is_under_pressure) {
+  const int dim = dimension_of(GetParam());
+  SolidParameters p = warm_box(dim, "400");
+  for (auto& [name, b] : p.boundaries)
+    b = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+  const auto solid = make_solid(distorted_box(GetParam()), p);
+  step(*solid, 1);
+  const double pressure = modulus * alpha * rise / (1 - 2 * nu);
+  EXPECT_LT(stress_error(*solid, -pressure * Tensor3::Identity()), 1e-10);
+}
+
+TEST(PlaneStrain, a_free_plate_is_stressed_across_its_plane_only) {
+  const auto solid = make_solid(distorted_box(BoxCells::quadrilaterals), warm_box(2, "400"));
+  step(*solid, 1);
+  Tensor3 wanted = Tensor3::Zero();
+  wanted(2, 2) = -modulus * alpha * rise;
+  EXPECT_LT(stress_error(*solid, wanted), 1e-10);
+  EXPECT_LT(growth_error(*solid, Vec3::Constant((1 + nu) * alpha * rise)), 1e-10);
+}
+
+// alpha rises from 1e-5 at 300 K to 2e-5 at 400 K and stays: 1.5e-3 up to 400 K, 3.5e-3 up to 500 K.
+TEST(VaryingExpansion, the_instantaneous_coefficient_is_integrated) {
+  SolidParameters p = warm_box(3, "500");
+  p.material.heat.expansion = config::ExpressionText{"table(T, 300, 1e-5, 400, 2e-5)"};
+  const auto solid = make_solid(distorted_box(BoxCells::hexahedra), p);
+  step(*solid, 1);
+  const double error = growth_error(*solid, Vec3::Constant(3.5e-3));
+  ::testing::Test::RecordProperty("relative_error", fmt::format("{:.3e}", error));
+  EXPECT_LT(error, 1e-10);
+}
+
+TEST(PrescribedTemperature, is_taken_at_the_end_of_a_static_step) {
+  SolidParameters p = warm_box(3, "300 + 50*t");
+  const auto solid = make_solid(distorted_box(BoxCells::hexahedra), p);
+  step(*solid, 1);
+  EXPECT_LT(growth_error(*solid, Vec3::Constant(alpha * 50)), 1e-10);
+  step(*solid, 1);
+  EXPECT_LT(growth_error(*solid, Vec3::Constant(alpha * 100)), 1e-10);
+  EXPECT_LT(stress_error(*solid, Tensor3::Zero()), 1e-10);
+}
+
+/// Heat that is solved for, in a solid that deforms.
+SolidParameters heated_box() {
+  SolidParameters p = warm_box(3, "0");
+  p.temperature.reset();
+  p.heat.emplace();
+  p.heat->initial_temperature = {"300"};
+  p.heat->boundaries["xmax"].type = HeatBoundary::Type::flux;
+  p.heat->boundaries["xmax"].value = {"1e6*y"};
+  p.material.heat.conductivity = config::ExpressionText{"table(T, 300, 50, 500, 30)"};
+  p.material.heat.specific_heat = config::ExpressionText{"480"};
+  return p;
+}
+
+TEST(SolvedTemperature, spreads_and_then_strains_the_body_without_stress) {
+  SolidParameters p = heated_box();
+  p.heat->scheme = HeatParameters::Scheme::euler;  // takes all of its heat from the flux at the end of a step
+  p.heat->boundaries["xmax"].value = {"t < 1000 ? 1e5 : 0"};
+  const auto solid = make_solid(distorted_box(BoxCells::hexahedra), p);
+  for (int i = 0; i < 4; ++i) step(*solid, 250);
+  for (int i = 0; i < 30; ++i) step(*solid, 5000);
+  const double warmer = 3 * 250 * 1e5 / (7800 * 480 * 1.0);  // the heat of three steps, over 1 m
+  const Vec3 growth = Vec3::Constant(alpha * warmer);
+  EXPECT_LT(growth_error(*solid, growth), 1e-6);
+  EXPECT_LT(stress_error(*solid, Tensor3::Zero()), 1e-6);
+}
+
+// dT/dt = - 3 K alpha / (rho c) T tr(d eps/dt) in an isolated body: a stretched one cools.
+TEST(ThermoelasticCoupling, a_stretched_body_cools_and_a_compressed_one_warms) {
+  for (const double strain : {1e-3, -1e-3}) {
+    SolidParameters p = heated_box();
+    p.thermoelastic_coupling = true;
+    p.heat->scheme = HeatParameters::Scheme::euler;
+    p.heat->boundaries.clear();
+    const std::string u = fmt::format("{}*x*table(t, 0, 0, 1, 1)", strain);
+    for (auto& [name, b] : p.boundaries) b = boundary(Type::fixed_displacement, {u, "0", "0"});
+    const auto solid = make_solid(distorted_box(BoxCells::mixed), p);
+    for (int i = 0; i < 22; ++i) step(*solid, 0.05);
+    const auto& effect = dynamic_cast<const ThermalStrain&>(*solid->effects().front());
+    const double rate = modulus / (1 - 2 * nu) * alpha / (7800 * 480);
+    const double exact = 300 * (std::exp(-rate * strain) - 1);
+    const std::vector<double>& t = effect.heat()->accepted().cells;
+    for (Index c = 0; c < solid->mesh().cells.n_owned(); ++c) ASSERT_NEAR((t[c] - 300) / exact, 1, 1e-3);
+    ::testing::Test::RecordProperty(strain > 0 ? "stretched" : "compressed",
+                                    fmt::format("{:.5f}", t[0] - 300));
+  }
+}
+
+class Scratch {
+ public:
+  Scratch()
+      : path_(std::filesystem::temp_directory_path() /
+              fmt::format("couplet-heat-restart-{}.h5", comm_size(MPI_COMM_WORLD))) {}
+  ~Scratch() {
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(path_);
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+TEST(SolvedTemperature, goes_on_bit_for_bit_after_a_restart) {
+  for (const auto scheme : {HeatParameters::Scheme::euler, HeatParameters::Scheme::three_point,
+                            HeatParameters::Scheme::trapezoidal}) {
+    SolidParameters p = heated_box();
+    p.heat->scheme = scheme;
+    const Mesh mesh = distribute(MPI_COMM_WORLD, distorted_box(BoxCells::mixed));
+    const auto first = std::make_unique<Solid>(mesh, p, SolidContext{});
+    step(*first, 20);
+    step(*first, 30);
+    const Scratch file;
+    {
+      CheckpointWriter writer(MPI_COMM_WORLD, file.path());
+      first->save(writer);
+      writer.close();
+    }
+    const auto second = std::make_unique<Solid>(mesh, p, SolidContext{});
+    CheckpointReader reader(MPI_COMM_WORLD, file.path());
+    second->load(reader);
+    for (Solid* solid : {first.get(), second.get()}) step(*solid, 10), step(*solid, 10);
+    EXPECT_EQ(first->state().cell_u, second->state().cell_u);
+    const auto u = first->point_displacement();
+    const auto s = first->cell_stress(u), t = second->cell_stress(u);
+    for (std::size_t c = 0; c < s.size(); ++c) EXPECT_EQ(s[c], t[c]);
+  }
+}
+
+}  // namespace
+}  // namespace couplet::testing

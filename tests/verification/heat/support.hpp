@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/mesh/load.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/heat.hpp"
+
+namespace couplet::testing {
+
+using HeatType = HeatBoundary::Type;
+using HeatScheme = HeatParameters::Scheme;
+
+inline HeatBoundary heat_boundary(HeatType type, const std::string& value) {
+  HeatBoundary b;
+  b.type = type;
+  b.value = {value};
+  return b;
+}
+
+inline HeatBoundary convection(const std::string& coefficient, const std::string& ambient) {
+  HeatBoundary b;
+  b.type = HeatType::convection;
+  b.coefficient = {coefficient};
+  b.ambient = {ambient};
+  return b;
+}
+
+/// A mesh with the heat equation on it.
+struct HeatCase {
+  std::unique_ptr<Mesh> mesh;
+  std::unique_ptr<Heat> heat;
+
+  HeatCase(const RawMesh& raw, const std::vector<HeatProperties>& materials, const HeatParameters& p,
+           MPI_Comm comm = MPI_COMM_WORLD)
+      : mesh(std::make_unique<Mesh>(distribute(comm, raw))),
+        heat(std::make_unique<Heat>(*mesh, materials, p, std::vector<std::string>{})) {}
+
+  void step(double dt) {
+    heat->solve({heat->accepted().time, dt, Scheme::standalone, heat->accepted().steps});
+    heat->accept_step();
+  }
+  double temperature(Index cell) const { return heat->accepted().cells[cell]; }
+  const Vec3& place(Index cell) const { return mesh->reference.cell_centre[cell]; }
+
+  using Exact = std::function<double(const Vec3&)>;
+  /// Volume-weighted L2 norm of the error.
+  double error(const Exact& exact) const {
+    double squares = 0, volume = 0;
+    for (Index c = 0; c < mesh->cells.n_owned(); ++c) {
+      squares += mesh->reference.volume[c] * std::pow(temperature(c) - exact(place(c)), 2);
+      volume += mesh->reference.volume[c];
+    }
+    return std::sqrt(sum(mesh->comm, squares) / sum(mesh->comm, volume));
+  }
+  /// Largest error of cells, boundary faces and points.
+  double largest_error(const Exact& exact) const {
+    double largest = 0;
+    const auto see = [&](double value, const Vec3& x) {
+      largest = std::max(largest, std::abs(value - exact(x)));
+    };
+    for (Index c = 0; c < mesh->cells.n_owned(); ++c) see(temperature(c), place(c));
+    const std::vector<double> faces = heat->face_temperature(heat->accepted());
+    for (std::size_t f = 0; f < faces.size(); ++f) see(faces[f], mesh->reference.face_centre[f]);
+    const std::vector<double> points = heat->point_temperature(heat->accepted());
+    for (std::size_t v = 0; v < points.size(); ++v) see(points[v], mesh->reference_points[v]);
+    return max(mesh->comm, largest);
+  }
+};
+
+inline HeatParameters steady() {
+  HeatParameters p;
+  p.analysis = HeatParameters::Analysis::steady;
+  return p;
+}
+
+inline int dimension_of(BoxCells cells) {
+  return cells == BoxCells::quadrilaterals || cells == BoxCells::triangles ? 2 : 3;
+}
+
+inline std::vector<std::string> box_patches(int dim) {
+  std::vector<std::string> names{"xmin", "xmax", "ymin", "ymax"};
+  if (dim == 3) names.insert(names.end(), {"zmin", "zmax"});
+  return names;
+}
+
+}  // namespace couplet::testing
