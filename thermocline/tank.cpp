@@ -163,9 +163,8 @@ std::vector<std::string> Tank::judge_left_out_effects() {
     const auto slip = m.mechanics()->slip();
     const std::size_t i = std::max_element(slip.begin(), slip.end()) - slip.begin();
     lines.push_back(
-        fmt::format("filler: {} of {} rings have reached the passive limit; the wall has pushed the grains "
-                    "in by {:.2g} mm at most, at "
-                    "z = {:.2f} m",
+        fmt::format("filler: {} of {} rings have reached the passive limit; over the run "
+                    "the wall has pushed the grains in by {:.2g} mm in all where that was most, z = {:.2f} m",
                     m.mechanics()->ever_passive(), slip.size(), 500 * slip[i] * m.setup().parameters.diameter,
                     m.setup().rings->z[i]));
   }
