@@ -67,37 +67,8 @@ std::vector<double> Solid::point_velocity() const {
   return to_points(state_.cell_v, state_.face_v, known_rate_accepted_);
 }
 
-std::vector<Tensor3> Solid::face_stress(Index first, Index count, std::span<const double> points) const {
-  std::vector<Tensor3> stress(count);
-  for (Index i = 0; i < count; ++i)
-    stress[i] = elastic_.stress(elastic_.gradient(first + i, state_.cell_u, state_.face_u, points));
-  for (const auto& effect : effects_) effect->add_face_stress(first, stress);
-  return stress;
-}
-
-std::vector<Tensor3> Solid::cell_stress(std::span<const double> points) const {
-  const Index n_owned = mesh_.cells.n_owned();
-  std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
-  std::vector<double> weight(n_owned, 0);
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const Tensor3 here = elastic_.gradient(f, state_.cell_u, state_.face_u, points);
-    const auto add = [&](Index c) {
-      if (c >= n_owned) return;
-      const Vec3 arm = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[c];
-      const double pyramid = std::abs(arm.dot(mesh_.reference.face_area[f]));
-      gradient[c] += pyramid * here;
-      weight[c] += pyramid;
-    };
-    add(mesh_.owner[f]);
-    if (f < mesh_.n_interior) add(mesh_.neighbour[f]);
-  }
-  for (Index c = 0; c < n_owned; ++c) gradient[c] = elastic_.stress(gradient[c] / weight[c]);
-  for (const auto& effect : effects_) effect->add_cell_stress(gradient);
-  // Across a 2-D scene: lambda tr(epsilon) in plane strain (it stands there already), nothing in plane
-  // stress.
-  if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
-    for (Tensor3& stress : gradient) stress(2, 2) = 0;
-  return gradient;
+std::vector<double> Solid::point_acceleration() const {
+  return to_points(state_.acceleration, state_.face_acceleration, known_acceleration());
 }
 
 std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
@@ -128,8 +99,9 @@ Vec3 Solid::total_load() const {
 
 double Solid::largest_gradient(std::span<const double> points) const {
   double largest = 0;
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
-    largest = std::max(largest, elastic_.gradient(f, state_.cell_u, state_.face_u, points).squaredNorm());
+  const std::vector<Tensor3> on_faces =
+      face_gradients(0, mesh_.n_flux_faces(), state_.cell_u, state_.face_u, points);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) largest = std::max(largest, on_faces[f].squaredNorm());
   return max(mesh_.comm, std::sqrt(largest));
 }
 
@@ -184,6 +156,11 @@ void Solid::save(CheckpointWriter& file) const {
   file.write("cell-displacement", state_.cell_u);
   file.write("cell-velocity", state_.cell_v);
   if (!state_.cell_a.empty()) file.write("cell-acceleration", state_.cell_a);
+  if (!state_.acceleration.empty()) {
+    file.write("acceleration", state_.acceleration);
+    file.write("mean-acceleration", state_.mean_acceleration);
+    file.write("face-acceleration", state_.face_acceleration);
+  }
   if (!state_.cell_u_old.empty()) {
     file.write("old-cell-displacement", state_.cell_u_old);
     file.write("old-cell-velocity", state_.cell_v_old);
@@ -195,6 +172,12 @@ void Solid::save(CheckpointWriter& file) const {
   file.write("known-displacement", known_accepted_);
   file.write("known-rate", known_rate_accepted_);
   file.write_scalar("time", state_.time);
+  if (parameters_.output.energies) {
+    const SolidEnergies& e = state_.energies;
+    file.write("energies", std::vector<double>{e.kinetic, e.initial_kinetic, e.internal_work, e.external_work,
+                                               e.damping_loss});
+  }
+  if (parameters_.step_control) file.write_scalar("error", state_.error);
   file.write_scalar("dt", state_.dt);
   file.write_scalar("stage-dt", state_.stage_dt);
   file.write_scalar("offset-lag", state_.offset_lag);
@@ -208,6 +191,11 @@ void Solid::load(CheckpointReader& file) {
   file.read("cell-displacement", state_.cell_u);
   file.read("cell-velocity", state_.cell_v);
   if (!state_.cell_a.empty()) file.read("cell-acceleration", state_.cell_a);
+  if (!state_.acceleration.empty()) {
+    file.read("acceleration", state_.acceleration);
+    file.read("mean-acceleration", state_.mean_acceleration);
+    file.read("face-acceleration", state_.face_acceleration);
+  }
   if (!state_.cell_u_old.empty()) {
     file.read("old-cell-displacement", state_.cell_u_old);
     file.read("old-cell-velocity", state_.cell_v_old);
@@ -219,6 +207,11 @@ void Solid::load(CheckpointReader& file) {
   file.read("known-displacement", known_accepted_);
   file.read("known-rate", known_rate_accepted_);
   state_.time = file.read_scalar("time");
+  if (parameters_.output.energies) {
+    const std::vector<double> e = file.read("energies");
+    state_.energies = {e.at(0), e.at(1), 0, e.at(2), e.at(3), e.at(4)};
+  }
+  if (parameters_.step_control) state_.error = file.read_scalar("error");
   state_.dt = file.read_scalar("dt");
   state_.stage_dt = file.read_scalar("stage-dt");
   state_.offset_lag = file.read_scalar("offset-lag");

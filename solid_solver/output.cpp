@@ -1,72 +1,106 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/output.hpp"
 
+#include <algorithm>
 #include <array>
-#include <cmath>
+#include <deque>
+#include <limits>
+#include <numbers>
 #include <string>
+#include <utility>
 
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "common/time/amplification.hpp"
+#include "solid_solver/stress.hpp"
 
 namespace couplet {
 namespace {
 
 constexpr std::array<const char*, 3> axis{"x", "y", "z"};
 
-/// von Mises.
-double equivalent_stress(const Tensor3& s) {
-  const Tensor3 deviator = s - s.trace() / 3 * Tensor3::Identity();
-  return std::sqrt(1.5 * deviator.squaredNorm());
+using Place = OutputField::Place;
+
+/// Fields together with the values that were made for them.
+class Fields {
+ public:
+  void add(std::string name, const char* unit, Place place, int components, std::vector<double> values) {
+    values_.push_back(std::move(values));
+    list.push_back({std::move(name), unit, place, components, values_.back()});
+  }
+  /// One field a component; a 2-D scene has no shear across it. `packed`: tensor after tensor.
+  void add_tensor(const std::string& name, const char* unit, Place place, int dim,
+                  std::span<const double> packed) {
+    for (std::size_t i = 0; i < (dim == 2 ? 4 : tensor_size); ++i) {
+      std::vector<double> values(packed.size() / tensor_size);
+      for (std::size_t e = 0; e < values.size(); ++e) values[e] = packed[e * tensor_size + i];
+      add(name + "-" + tensor_component[i], unit, place, 1, std::move(values));
+    }
+  }
+  std::vector<OutputField> list;
+
+ private:
+  std::deque<std::vector<double>> values_;
+};
+
+/// Of all local cells; ghosts, which are not written, hold zeros.
+std::vector<double> packed_cells(const Mesh& mesh, std::span<const Tensor3> owned) {
+  std::vector<double> values(std::size_t(mesh.cells.n_local()) * tensor_size, 0);
+  for (std::size_t c = 0; c < owned.size(); ++c)
+    std::ranges::copy(pack(owned[c]), values.begin() + std::ptrdiff_t(c * tensor_size));
+  return values;
 }
 
-struct StressField {
-  const char* name;
-  int row, column;
-};
-constexpr std::array<StressField, 6> stress_fields{{{"stress-xx", 0, 0},
-                                                    {"stress-yy", 1, 1},
-                                                    {"stress-zz", 2, 2},
-                                                    {"stress-xy", 0, 1},
-                                                    {"stress-yz", 1, 2},
-                                                    {"stress-xz", 0, 2}}};
+void add_cell_stress(const Solid& solid, std::span<const double> points, Fields& fields) {
+  const SolidOutputParameters& chosen = solid.parameters().output;
+  if (!chosen.stress && !chosen.principal_stress) return;
+  const Mesh& mesh = solid.mesh();
+  const std::vector<Tensor3> tensors = solid.cell_stress(points);
+  if (chosen.stress) {
+    fields.add_tensor("stress", "Pa", Place::cells, mesh.dim, packed_cells(mesh, tensors));
+    std::vector<double> equivalent(mesh.cells.n_local(), 0);
+    for (std::size_t c = 0; c < tensors.size(); ++c) equivalent[c] = equivalent_stress(tensors[c]);
+    fields.add("equivalent-stress", "Pa", Place::cells, 1, std::move(equivalent));
+  }
+  if (chosen.principal_stress) {
+    std::vector<double> principal(std::size_t(mesh.cells.n_local()) * 3, 0);
+    for (std::size_t c = 0; c < tensors.size(); ++c)
+      std::ranges::copy(principal_stresses(tensors[c]), principal.begin() + std::ptrdiff_t(3 * c));
+    fields.add("principal-stress", "Pa", Place::cells, 3, std::move(principal));
+  }
+}
 
 }  // namespace
 
-SolidOutput::SolidOutput(const Solid& solid, const SolidContext& context) : solid_(solid), context_(context) {
-  for (const auto& [name, probe] : solid.parameters().probes)
-    probes_.emplace_back(solid.mesh(), name, probe.point);
-}
+SolidOutput::SolidOutput(const Solid& solid, const SolidContext& context)
+    : solid_(solid), context_(context), probes_(solid) {}
 
 void SolidOutput::write_fields(double time, std::span<const double> points) {
   if (context_.output_folder.empty()) return;
   const Mesh& mesh = solid_.mesh();
+  const SolidOutputParameters& chosen = solid_.parameters().output;
+  const SolidState& state = solid_.state();
   const int dim = mesh.dim;
   if (!fields_)
-    fields_.emplace(mesh, context_.output_folder, context_.name, solid_.parameters().output.deformed,
-                    context_.restart_time);
-  const std::vector<double> velocity = solid_.point_velocity();
+    fields_.emplace(mesh, context_.output_folder, context_.name, chosen.deformed, context_.restart_time);
   std::vector<Vec3> places = mesh.reference_points;
   for (std::size_t v = 0; v < places.size(); ++v)
     for (int a = 0; a < dim; ++a) places[v][a] += points[v * dim + a];
-  std::vector<OutputField> fields{
-      {"displacement", "m", OutputField::Place::points, dim, points},
-      {"velocity", "m/s", OutputField::Place::points, dim, velocity},
-      {"cell-displacement", "m", OutputField::Place::cells, dim, solid_.state().cell_u}};
-  std::vector<std::vector<double>> columns;
-  if (solid_.parameters().output.stress) {
-    const std::vector<Tensor3> stress = solid_.cell_stress(points);
-    const std::size_t n_components = dim == 2 ? 4 : 6;
-    columns.assign(n_components + 1, std::vector<double>(mesh.cells.n_local(), 0));
-    for (std::size_t c = 0; c < stress.size(); ++c) {
-      for (std::size_t i = 0; i < n_components; ++i)
-        columns[i][c] = stress[c](stress_fields[i].row, stress_fields[i].column);
-      columns.back()[c] = equivalent_stress(stress[c]);
-    }
-    for (std::size_t i = 0; i < n_components; ++i)
-      fields.push_back({stress_fields[i].name, "Pa", OutputField::Place::cells, 1, columns[i]});
-    fields.push_back({"equivalent-stress", "Pa", OutputField::Place::cells, 1, columns.back()});
+  Fields fields;
+  fields.list.push_back({"displacement", "m", Place::points, dim, points});
+  fields.add("velocity", "m/s", Place::points, dim, solid_.point_velocity());
+  fields.list.push_back({"cell-displacement", "m", Place::cells, dim, state.cell_u});
+  if (chosen.acceleration && !state.acceleration.empty()) {
+    fields.add("acceleration", "m/s^2", Place::points, dim, solid_.point_acceleration());
+    fields.list.push_back({"cell-acceleration", "m/s^2", Place::cells, dim, state.acceleration});
   }
-  for (const auto& effect : solid_.effects()) effect->add_fields(fields);
-  fields_->write(time, places, fields);
+  add_cell_stress(solid_, points, fields);
+  if (chosen.strain)
+    fields.add_tensor("strain", "-", Place::cells, dim, packed_cells(mesh, solid_.cell_strain(points)));
+  if (chosen.point_stress)
+    fields.add_tensor("point-stress", "Pa", Place::points, dim, solid_.point_stress(points));
+  for (const auto& effect : solid_.effects()) effect->add_fields(fields.list);
+  fields_->write(time, places, fields.list);
 }
 
 void SolidOutput::write_series(double time, std::span<const double> points) {
@@ -74,23 +108,62 @@ void SolidOutput::write_series(double time, std::span<const double> points) {
   if (!probes_.empty()) write_probes(time, points);
   write_reactions(time, points);
   write_effort(time);
+  if (solid_.parameters().output.energies) write_energies(time, points);
+}
+
+void SolidOutput::write_spectrum(double dt) {
+  if (context_.output_folder.empty() || spectrum_written_) return;
+  spectrum_written_ = true;
+  const std::vector<std::complex<double>> values = solid_.eigenvalues();
+  if (comm_rank(solid_.mesh().comm) != 0) return;
+  const SolidParameters& p = solid_.parameters();
+  const SolidDamping chosen = p.damping.value_or(SolidDamping{});
+  const RayleighCoefficients damping{chosen.mass, chosen.stiffness};
+  Series series(context_.output_folder / "spectrum.csv",
+                {"number", "real [1/s^2]", "imaginary [1/s^2]", "frequency [Hz]", "growth rate [1/s]",
+                 "growth rate of the scheme [1/s]"});
+  double growth = 0, discrete = -std::numeric_limits<double>::infinity();
+  int n_complex = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double rate = growth_rate(values[i]),
+                 of_scheme = growth_rate(p.time_scheme, dt, values[i], damping);
+    growth = std::max(growth, rate);
+    discrete = std::max(discrete, of_scheme);
+    n_complex += values[i].imag() != 0;
+    series.row(std::vector<double>{double(i + 1), values[i].real(), values[i].imag(),
+                                   std::sqrt(values[i]).real() / (2 * std::numbers::pi), rate, of_scheme});
+  }
+  log::info(
+      "spectrum of M^-1 K: {} eigenvalues, {} of them in complex pairs; undamped vibration grows by up to "
+      "{:.3g} 1/s, "
+      "with {} and dt = {:g} s{} by up to {:.3g} 1/s",
+      values.size(), n_complex, growth, name(p.time_scheme.type), dt, p.damping ? ", damped," : "", discrete);
 }
 
 void SolidOutput::write_probes(double time, std::span<const double> points) {
-  const int dim = solid_.mesh().dim;
-  std::vector<double> row{time};
-  for (const Probe& probe : probes_) {
-    const std::vector<double> value = probe.sample(points, dim);
-    row.insert(row.end(), value.begin(), value.end());
-  }
+  const std::vector<double> values = probes_.sample(points);
   if (comm_rank(solid_.mesh().comm) != 0) return;
   if (!probe_series_) {
     std::vector<std::string> columns{"time [s]"};
-    for (const auto& [name, probe] : solid_.parameters().probes)
-      for (int a = 0; a < dim; ++a) columns.push_back(name + " " + axis[a] + " [m]");
+    columns.insert(columns.end(), probes_.columns().begin(), probes_.columns().end());
     probe_series_.emplace(context_.output_folder / "probes.csv", columns, context_.restart_time);
   }
+  std::vector<double> row{time};
+  row.insert(row.end(), values.begin(), values.end());
   probe_series_->row(row);
+}
+
+void SolidOutput::write_energies(double time, std::span<const double> points) {
+  const SolidEnergies e = solid_.energies(points);
+  if (comm_rank(solid_.mesh().comm) != 0) return;
+  if (!energy_series_)
+    energy_series_.emplace(
+        context_.output_folder / "energies.csv",
+        std::vector<std::string>{"time [s]", "kinetic [J]", "strain [J]", "internal work [J]",
+                                 "external work [J]", "damping loss [J]", "lost by the scheme [J]"},
+        context_.restart_time);
+  energy_series_->row(std::vector<double>{time, e.kinetic, e.strain, e.internal_work, e.external_work,
+                                          e.damping_loss, e.lost()});
 }
 
 void SolidOutput::write_reactions(double time, std::span<const double> points) {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/io/field_writer.hpp"
-#include "common/io/probe.hpp"
 #include "common/io/series.hpp"
+#include "solid_solver/probes.hpp"
 #include "solid_solver/solid.hpp"
 
 namespace couplet {
@@ -22,17 +22,22 @@ class SolidOutput {
   /// `points`: displacement of all local points.
   void write_fields(double time, std::span<const double> points);
   void write_series(double time, std::span<const double> points);
+  /// spectrum.csv and a sentence in the log, for steps of dt. Collective.
+  void write_spectrum(double dt);
 
  private:
   void write_probes(double time, std::span<const double> points);
   void write_reactions(double time, std::span<const double> points);
   void write_effort(double time);
+  void write_energies(double time, std::span<const double> points);
 
   const Solid& solid_;
   const SolidContext& context_;
-  std::vector<Probe> probes_;
+  SolidProbes probes_;
+  bool spectrum_written_ = false;
   std::optional<FieldWriter> fields_;
-  std::optional<Series> probe_series_, reaction_series_, solver_series_;  // on rank 0
+  // On rank 0.
+  std::optional<Series> probe_series_, reaction_series_, solver_series_, energy_series_;
 };
 
 }  // namespace couplet

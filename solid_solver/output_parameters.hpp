@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "common/base/types.hpp"
 #include "common/config/section.hpp"
 
@@ -8,12 +11,19 @@ namespace couplet {
 
 struct SolidProbe {
   Vec3 point = Vec3::Zero();
+  std::vector<std::string> fields{"displacement"};
 };
 
-/// Fields written at the output interval.
+/// Fields written at the output interval, and the energies.
 struct SolidOutputParameters {
   bool deformed = true;
   bool stress = true;
+  bool strain = false;
+  bool principal_stress = false;
+  bool point_stress = false;
+  bool acceleration = false;
+  bool energies = false;
+  bool spectrum = false;
 };
 
 void declare(config::Section& section, SolidProbe& probe);

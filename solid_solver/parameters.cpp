@@ -87,6 +87,13 @@ void check_together(config::Section& s, SolidParameters& p) {
                    : "";
       },
       "boundaries");
+  s.check(
+      [&] {
+        return p.step_control && p.analysis != SolidParameters::Analysis::dynamic
+                   ? "a static analysis has no time error to control; remove it"
+                   : "";
+      },
+      "time-step-control");
 }
 
 }  // namespace
@@ -122,6 +129,11 @@ void declare(config::Section& s, SolidParameters& p) {
       "damping", p.damping, [](config::Section& d, SolidDamping& v) { declare(d, v); },
       "structural damping; dynamic analysis only");
   declare_heat(s, p);
+  s.optional_section<TimeStepControl>(
+      "time-step-control", p.step_control, [](config::Section& c, TimeStepControl& v) { declare(c, v); },
+      "halves steps ('simulation.time-step' is the longest, 'max-step-halvings' limits) where the estimated "
+      "error of "
+      "the time scheme asks for it; dynamic analysis only");
   s.section(
       "solution-method", [&](config::Section& m) { declare(m, p.method); },
       "how the equations of a step are solved");

@@ -36,6 +36,7 @@ struct SolidParameters {
   std::optional<config::ExpressionText> temperature;  // prescribed [K]; none: solved for or not known
   std::optional<ThermalExpansion> expansion;
   bool thermoelastic_coupling = false;
+  std::optional<TimeStepControl> step_control;
   MethodParameters method;
   std::map<std::string, SolidProbe> probes;
   SolidOutputParameters output;

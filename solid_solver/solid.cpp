@@ -62,6 +62,10 @@ void Solid::start_from_rest() {
   if (is_dynamic() && uses_acceleration(parameters_.time_scheme.type)) state_.cell_a = state_.cell_u;
   if (is_dynamic() && uses_old_level(parameters_.time_scheme.type))
     state_.cell_u_old = state_.cell_v_old = state_.cell_u;
+  if (wants_acceleration()) {
+    state_.acceleration = state_.mean_acceleration = state_.cell_u;
+    state_.face_acceleration = state_.face_u;
+  }
   if (!parameters_.initial_velocity.empty()) {
     const auto velocity = make_expressions(parameters_.initial_velocity, dim, "initial-velocity");
     const std::span<const Vec3> faces(mesh_.reference.face_centre.data() + mesh_.n_interior,
@@ -71,6 +75,7 @@ void Solid::start_from_rest() {
       velocity[c].evaluate(faces, 0, state_.face_v, dim, c);
     }
   }
+  state_.energies.kinetic = state_.energies.initial_kinetic = kinetic_energy(state_.cell_v);
   trial_ = state_;
 }
 
@@ -87,6 +92,7 @@ void Solid::begin_step(const Step& step) {
     stages_[i].stage = stages[i];
     prepare_stage(stages_[i]);
   }
+  if (parameters_.output.spectrum && is_dynamic() && step.number == 0) output_->write_spectrum(step.dt);
   if (prescribed_.is_zero()) return;
   const double end = step.time + step.dt;
   prescribed_.evaluate(end, known_);
@@ -108,8 +114,10 @@ Exchange Solid::solve(const Exchange& in) {
     trial_.cell_u_old = state_.cell_u;
     trial_.cell_v_old = state_.cell_v;
   }
+  if (!trial_.acceleration.empty()) finish_acceleration();
   set_prescribed_faces();
   update_trial_ghosts();
+  if (parameters_.step_control) judge_step();
   return interface_values();
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <complex>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -15,7 +16,9 @@
 #include "common/time/time_scheme.hpp"
 #include "solid_solver/boundaries.hpp"
 #include "solid_solver/effect.hpp"
+#include "solid_solver/energies.hpp"
 #include "solid_solver/parameters.hpp"
+#include "solid_solver/stress.hpp"
 
 namespace couplet {
 
@@ -39,6 +42,11 @@ struct SolidState {
   double offset_lag = 0;                       ///< `offset` lives so long before `time`
   std::vector<double> offset;       ///< u_B - u_P of the traction faces where the last stage was solved
   std::vector<double> offset_rate;  ///< v_B - v_P at the middle of the last stage
+  SolidEnergies energies;           ///< if they are wanted
+  double error = 0;                 ///< estimated for the last step if the step size is controlled, rms [m]
+  // If the acceleration is wanted: at `time`, in cells and on faces, and its mean over the last step in
+  // cells.
+  std::vector<double> acceleration, face_acceleration, mean_acceleration;
 };
 
 /// What the solves of the last step took.
@@ -70,6 +78,7 @@ class Solid final : public Participant {
   ~Solid() override;
 
   Interface initialise() override;
+  double suggest_dt() override;
   void begin_step(const Step& step) override;
   Exchange solve(const Exchange& in) override;
   void accept_step() override;
@@ -88,14 +97,27 @@ class Solid final : public Participant {
   /// Packed values of all local points at the accepted time. Collective.
   std::vector<double> point_displacement() const;
   std::vector<double> point_velocity() const;
+  /// Needs wants_acceleration().
+  std::vector<double> point_acceleration() const;
+  /// Packed symmetric tensors (see stress.hpp) of all local points at the accepted time, interpolated from
+  /// those in the cells and on the boundary faces. `points`: as point_displacement() gives them. Collective.
+  std::vector<double> point_stress(std::span<const double> points) const;
+  std::vector<double> point_strain(std::span<const double> points) const;
   /// Stress of the local faces first, first + 1, ... (`count` of them) [Pa]. `points`: as
   /// point_displacement() gives them.
   std::vector<Tensor3> face_stress(Index first, Index count, std::span<const double> points) const;
   /// Stress of the local owned cells [Pa], mean of the face values by the pyramids over the faces; exact for
   /// linear displacements.
   std::vector<Tensor3> cell_stress(std::span<const double> points) const;
+  /// The same for strains, of faces and of cells.
+  std::vector<Tensor3> face_strain(Index first, Index count, std::span<const double> points) const;
+  std::vector<Tensor3> cell_strain(std::span<const double> points) const;
   /// Forces the solid gets at fixed and symmetry patches from the stress at the accepted time. Collective.
   std::vector<PatchForce> reactions(std::span<const double> points) const;
+  /// Energies over all ranks at the accepted time; needs output.energies. Collective.
+  SolidEnergies energies(std::span<const double> points) const;
+  /// Eigenvalues of M^-1 K [1/s^2] on rank 0, see spectrum.hpp. Collective.
+  std::vector<std::complex<double>> eigenvalues() const;
   /// All loads of the last solve: tractions, pressures, interface, body forces. Collective.
   Vec3 total_load() const;
   /// Largest norm of the displacement gradient at any face. Collective.
@@ -104,7 +126,25 @@ class Solid final : public Participant {
  private:
   struct System;
   struct StageWork;
+  /// Displacements at all local cells, boundary faces and points.
+  struct Placed {
+    std::vector<double> cells, faces, points;
+  };
   bool is_dynamic() const { return parameters_.analysis == SolidParameters::Analysis::dynamic; }
+  /// The acceleration is written or watched, so that it is kept.
+  bool wants_acceleration() const;
+  void finish_acceleration();
+  void judge_step();
+  std::vector<double> known_acceleration() const;
+  std::vector<Tensor3> face_gradients(Index first, Index count, std::span<const double> cells,
+                                      std::span<const double> faces, std::span<const double> points) const;
+  double stress_work(const Placed& stressed, std::span<const double> cell_change,
+                     std::span<const double> face_change, double* on_boundary) const;
+  double kinetic_energy(std::span<const double> velocity) const;
+  Placed place_unknowns(const StageWork& work) const;
+  void add_work(const StageWork& work, const SolidState& before);
+  std::vector<Tensor3> cell_gradient(std::span<const double> points) const;
+  const PointTensors& point_tensors() const;
   void check_supports() const;
   void start_from_rest();
   std::vector<Stage> stages_of(double dt) const;
@@ -149,6 +189,7 @@ class Solid final : public Participant {
   std::vector<double> rhs_, unknowns_;
   double largest_gradient_ = 0, inertia_over_load_ = 0;
   std::unique_ptr<SolidOutput> output_;
+  mutable std::unique_ptr<PointTensors> point_tensors_;  // made when first asked for
 };
 
 }  // namespace couplet

@@ -83,20 +83,27 @@ void Solid::prepare_stage(StageWork& work) {
   add_body_forces(work.place_time, work.rhs);
   for (const auto& effect : effects_) effect->add_loads(work.place_time, work.rhs);
   boundaries_.add_forces(work.place_time, work.face_force);
+  if (parameters_.output.energies) {
+    work.loads = work.rhs;
+    work.known.assign(known_.size(), 0);
+    work.known_change = work.known;
+  }
   if (!prescribed_.is_zero()) subtract_prescribed(work);
 }
 
 // Known w = x + beta v: the value between the ends is the same mean of them as in the cells.
 void Solid::subtract_prescribed(StageWork& work) {
   const double place = work.stage.place, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
-  std::vector<double> value(known_.size()), start(known_.size());
-  prescribed_.evaluate(work.end_time, value);
-  if (place != 1 || beta > 0) prescribed_.evaluate(work.start_time, start);
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    const double mean_rate = (value[i] - start[i]) / work.stage.dt;
-    value[i] = (1 - place) * start[i] + place * value[i] + (beta > 0 ? beta * mean_rate : 0);
+  std::vector<double> start(known_.size());
+  work.known.resize(known_.size());
+  prescribed_.evaluate(work.start_time, start);
+  prescribed_.evaluate(work.end_time, work.known);
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const double change = work.known[i] - start[i];
+    if (!work.known_change.empty()) work.known_change[i] = change;
+    work.known[i] = start[i] + (place + beta / work.stage.dt) * change;
   }
-  elastic_.subtract_known(value, work.rhs);
+  elastic_.subtract_known(work.known, work.rhs);
 }
 
 void Solid::add_body_forces(double t, std::span<double> rhs) {
@@ -147,8 +154,16 @@ void Solid::solve_stage(const StageWork& work, std::span<const double> interface
     effort_ = {effort_.solves + 1, effort_.iterations + statistics.iterations,
                effort_.inner_iterations + statistics.inner_iterations, statistics.residual};
   }
+  if (!parameters_.output.energies) {
+    finish_offsets(work.stage, now);
+    finish_cells(work, now);
+    return;
+  }
+  if (first) trial_.energies = state_.energies;
+  const SolidState before = now;
   finish_offsets(work.stage, now);
   finish_cells(work, now);
+  add_work(work, before);
 }
 
 void Solid::add_inertia(const StageWork& work, const SolidState& now) {

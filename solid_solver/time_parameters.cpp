@@ -11,4 +11,12 @@ void declare(config::Section& s, SolidDamping& d) {
       .doc("Rayleigh coefficient of the stiffness matrix");
 }
 
+void declare(config::Section& s, TimeStepControl& c) {
+  s.value("tolerance", c.tolerance)
+      .unit("m")
+      .positive()
+      .required()
+      .doc("wanted accuracy of the displacement, rms over the volume; one step may add a tenth of it");
+}
+
 }  // namespace couplet

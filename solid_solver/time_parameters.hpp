@@ -12,6 +12,12 @@ struct SolidDamping {
   double stiffness = 0;  // [s]
 };
 
+/// Step sizes that follow the local error.
+struct TimeStepControl {
+  double tolerance = 0;  // wanted accuracy of the displacement, rms over the volume [m]
+};
+
 void declare(config::Section& section, SolidDamping& damping);
+void declare(config::Section& section, TimeStepControl& control);
 
 }  // namespace couplet

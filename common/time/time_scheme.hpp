@@ -12,7 +12,7 @@ enum class TimeScheme { euler, three_point, trapezoidal, bathe, generalised_alph
 
 struct TimeSchemeParameters {
   TimeScheme type = TimeScheme::trapezoidal;
-  double spectral_radius = 0.9;  // of generalised-alpha: what is left of the highest modes after a step
+  double spectral_radius = 0.8;  // of generalised-alpha: what is left of the highest modes after a step
 };
 
 /// The keys of `time-scheme` of an equation with second time derivatives.

@@ -215,6 +215,15 @@ case.yaml:13:20: participants.solid.probes.tip.point: expected a list of 2 or 3 
     solid("damping of a static analysis", """
 case.yaml:9:5: participants.solid.damping: damping has no effect in a static analysis; remove it.
 """, ("analysis: dynamic", "analysis: static\n    damping: {mass: 1}")),
+    solid("step control of a static analysis", """
+case.yaml:9:5: participants.solid.time-step-control: a static analysis has no time error to control; remove it.
+""", ("analysis: dynamic", "analysis: static\n    time-step-control: {tolerance: 1 mm}")),
+    solid("probe of an unknown field", """
+case.yaml:19:28: participants.solid.probes.tip.fields: there is no field 'stres'; the fields are displacement, velocity, acceleration, stress, equivalent-stress, principal-stress, strain, temperature.
+""", ("      top: {type: free}", "      top: {type: free}\n    probes:\n      tip: {point: [1, 1], fields: [stres]}")),
+    solid("unknown time scheme", """
+case.yaml:9:19: participants.solid.time-scheme.type: 'bath' is not one of: euler, three-point, trapezoidal, bathe, generalised-alpha. Did you mean 'bathe'?
+""", ("analysis: dynamic", "analysis: dynamic\n    time-scheme: {type: bath}")),
     solid("several mistakes at once", """
 case.yaml:2:14: simulation.end-time: 0 s is out of range; expected a value above 0 s.
 case.yaml:6:5: participants.solid.mash: unknown key. Did you mean 'mesh'?

@@ -95,6 +95,102 @@ TEST(SolidOutput, probes_and_reactions_hold_the_displacement_and_the_balance_of_
   EXPECT_EQ(numbers_of(solver[3])[1], 1);
 }
 
+/// Column of probes.csv by its head, last row.
+double last_of(const std::vector<std::string>& lines, const std::string& head) {
+  std::vector<std::string> names;
+  std::istringstream in(lines.front());
+  for (std::string word; std::getline(in, word, ',');) names.push_back(word);
+  const auto found = std::ranges::find(names, head);
+  if (found == names.end()) throw std::runtime_error("no column '" + head + "' in " + lines.front());
+  return numbers_of(lines.back()).at(std::size_t(found - names.begin()));
+}
+
+TEST(SolidOutput, probes_watch_velocity_stress_strain_and_what_follows_from_them) {
+  const SharedFolder folder;
+  SolidParameters p = pulled_sheet();
+  for (auto& [name, probe] : p.probes)
+    probe.fields = {"velocity", "stress", "strain", "equivalent-stress", "principal-stress"};
+  RawMesh raw = make_box(BoxCells::triangles, {6, 4, 1}, Vec3::Zero(), Vec3(2, 1, 0));
+  perturb_interior(raw, 0.2, 2);
+  Solid solid(distribute(MPI_COMM_WORLD, raw), p, SolidContext{"solid", folder.path()});
+  for (int i = 0; i < 2; ++i) {
+    step(solid, 1);
+    solid.write_monitors(solid.state().time);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  const auto lines = lines_of(folder.path() / "probes.csv");
+  for (const std::string probe : {"corner", "inside"}) {
+    const double x = probe == "corner" ? 2 : 0.731;
+    EXPECT_NEAR(last_of(lines, probe + " velocity x [m/s]"), x * 1e8 / 200e9, 1e-12);
+    EXPECT_NEAR(last_of(lines, probe + " stress-xx [Pa]"), 2e8, 1);
+    EXPECT_NEAR(last_of(lines, probe + " stress-yy [Pa]"), 0, 1);
+    EXPECT_NEAR(last_of(lines, probe + " stress-zz [Pa]"), 0, 1e-6);
+    EXPECT_NEAR(last_of(lines, probe + " stress-xy [Pa]"), 0, 1);
+    EXPECT_NEAR(last_of(lines, probe + " strain-xx [-]"), 1e-3, 1e-11);
+    EXPECT_NEAR(last_of(lines, probe + " strain-yy [-]"), -3e-4, 1e-11);
+    EXPECT_NEAR(last_of(lines, probe + " equivalent-stress [Pa]"), 2e8, 1);
+    EXPECT_NEAR(last_of(lines, probe + " principal-stress-1 [Pa]"), 2e8, 1);
+    EXPECT_NEAR(last_of(lines, probe + " principal-stress-3 [Pa]"), 0, 1);
+  }
+}
+
+TEST(SolidOutput, acceleration_of_a_driven_block_is_that_of_its_support) {
+  const SharedFolder folder;
+  SolidParameters p = box_parameters(2);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  // So stiff and small that it moves as a whole.
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "1e-3*sin(50*t)"});
+  p.initial_velocity = {{"0"}, {"5e-2"}};
+  p.damping = SolidDamping{0, 1e-4};
+  p.probes["inside"] = {Vec3(0.03, 0.05, 0), {"acceleration"}};
+  p.probes["support"] = {Vec3(0, 0.05, 0), {"acceleration"}};
+  const RawMesh raw = make_box(BoxCells::quadrilaterals, {3, 3, 1}, Vec3::Zero(), Vec3(0.1, 0.1, 0));
+  Solid solid(distribute(MPI_COMM_WORLD, raw), p, SolidContext{"solid", folder.path()});
+  for (int i = 0; i < 100; ++i) {
+    step(solid, 2e-4);
+    solid.write_monitors(solid.state().time);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  const double expected = -1e-3 * 2500 * std::sin(50 * solid.state().time);
+  const auto lines = lines_of(folder.path() / "probes.csv");
+  EXPECT_NEAR(last_of(lines, "support acceleration y [m/s^2]") / expected, 1, 1e-4);
+  EXPECT_NEAR(last_of(lines, "inside acceleration y [m/s^2]") / expected, 1, 0.01);
+}
+
+// The stress at a point comes from cells and boundary faces; at a symmetry plane from their mirror images
+// too.
+TEST(SolidOutput, point_tensors_are_exact_for_linear_fields_up_to_the_boundary) {
+  RawMesh raw = make_box(BoxCells::hexahedra, {5, 4, 3}, Vec3::Zero(), Vec3(2, 1, 1));
+  perturb_interior(raw, 0.2, 3);
+  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  const std::size_t plane = std::size_t(mesh.find_patch("zmin") - mesh.patches.data());
+  std::vector<bool> is_symmetry(mesh.patches.size(), false);
+  is_symmetry[plane] = true;
+  // Even components do not depend on z, odd ones (shear across the plane) grow with z: smooth over the
+  // mirror.
+  const auto field = [](const Vec3& x) {
+    Tensor3 t;
+    const double shear = 3 * x[2], other = -2 * x[2];
+    t << 1 + x[0] - x[1], 2 * x[1], shear, 2 * x[1], x[0], other, shear, other, 4 - x[1];
+    return t;
+  };
+  std::vector<Tensor3> cells, faces;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) cells.push_back(field(mesh.reference.cell_centre[c]));
+  for (Index b = 0; b < mesh.boundary.n_owned(); ++b)
+    faces.push_back(field(mesh.reference.face_centre[mesh.n_interior + b]));
+  const std::vector<double> at_points = PointTensors(mesh, is_symmetry).interpolate(cells, faces);
+  for (Index v = 0; v < mesh.points.n_local(); ++v) {
+    const PackedTensor expected = pack(field(mesh.reference_points[v]));
+    const Vec3& x = mesh.reference_points[v];
+    for (int i = 0; i < tensor_size; ++i) {
+      if (x[2] > 1e-9 && x[2] < 0.4 && i >= 4) continue;  // mirrored stencils reach over the plane there only
+      EXPECT_NEAR(at_points[std::size_t(v) * tensor_size + i], expected[i], 1e-10) << x.transpose();
+    }
+  }
+}
+
 TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
   SolidParameters p = pulled_sheet();
   p.probes.clear();

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the solid's integration in time: case C of the thesis (vibrating cantilever), orders, energies, growth."""
+import math
+
+import couplet_series as couplet
+from validation.job import Bar
+
+SCHEMES = ("euler", "three-point", "trapezoidal", "bathe")
+# Table 3.2 of the thesis: period elongation and amplitude decay [%] in the order of SCHEMES.
+THESIS = {2: ((12, 10, 3.0, 1.9), (85, 20, 0.019, 0.18)), 1: ((3.0, 3.0, 0.90, 0.18), (62, 3.9, -0.77, 0.21)),
+          0.1: ((-0.13, -0.070, 0.056, 0.14), (9.5, 0.30, 0.032, 0.045)),
+          0.01: ((0.018, -0.10, None, -0.044), (1.3, 0.074, None, 0.082))}
+CONVERGED = 20.03  # s, three-dimensional continuum
+
+
+def beam(job, scheme, dt, *more):
+    """Output folder of a run of case C."""
+    sets = [f"simulation.time-step={dt}", "simulation.output.interval=100",
+            f"participants.solid.time-scheme.type={scheme}", *more]
+    folder, _ = job.solve("solid_solver", "vibrating-cantilever", sets)
+    return folder / "solid"
+
+
+def vibration(job, folder):
+    """(period, decay of the amplitude a period) of the free vibration."""
+    module = job.beside("configs/vibrating-cantilever/vibration.py")
+    return module.fit(*module.history(folder))[:2]
+
+
+def undisturbed(job):
+    """Period of the same mesh without error in time: the trapezoidal one at 0.1 s less its elongation, which goes with
+    the square of the step, from 0.2 s."""
+    fine, coarse = (vibration(job, beam(job, "trapezoidal", dt))[0] for dt in (0.1, 0.2))
+    return fine - (coarse - fine) / 3
+
+
+def table(dt):
+    def measure(job):
+        period = undisturbed(job)
+        rows = []
+        for i, scheme in enumerate(SCHEMES):
+            if THESIS[dt][0][i] is None:
+                continue  # grows without bound: see the bar of its own
+            got = vibration(job, beam(job, scheme, dt))
+            rows.append((f"{scheme} {100 * (got[0] / period - 1):.3f} / {100 * got[1]:.3f}", got))
+        return "; ".join(text for text, _ in rows) + f" % (undisturbed period {period:.3f} s)", all(
+            math.isfinite(value) for _, got in rows for value in got)
+    return measure
+
+
+def thesis_row(dt):
+    return "; ".join(f"{s} {e} / {d}" for s, e, d in zip(SCHEMES, *THESIS[dt]) if e is not None)
+
+
+def refined_period(job):
+    """On 160x16x16 over two free periods; the elongation of the scheme at this step is below 0.01 %."""
+    folder = beam(job, "bathe", 0.1, "simulation.end-time=50",
+                  "participants.solid.mesh-parameters={n_length: 160, n_side: 16}")
+    period, _ = vibration(job, folder)
+    return f"{period:.3f} s ({100 * (period / CONVERGED - 1):+.2f} %)", abs(period / CONVERGED - 1) <= 0.003
+
+
+def energy_drift(scheme, *more):
+    """Kinetic plus strain energy at 100 s over that at 10 s on the thesis's mesh at 0.01 s."""
+    def measure(job):
+        folder = beam(job, scheme, 0.01, "participants.solid.output={energies: true}", *more)
+        rows = couplet.read_csv(folder / "energies.csv")
+        total = rows["kinetic [J]"] + rows["strain [J]"]
+        drift = total[-1] / total[abs(rows["time [s]"] - 10).argmin()] - 1
+        return f"{100 * drift:+.3f} %", bool(abs(drift) < 0.01)
+    return measure
+
+
+def spectrum(key):
+    def measure(job):
+        values, passed = job.recorded("verification_solid_spectrum", "predicts_how_fast", f"predicted{key}")
+        seen, _ = job.recorded("verification_solid_spectrum", "predicts_how_fast", f"measured{key}")
+        return f"predicted {values[0]:.4f} 1/s, seen {seen[0]:.4f} 1/s", passed and abs(seen[0] / values[0] - 1) <= 0.1
+    return measure
+
+
+def kept(key):
+    def measure(job):
+        got, met = [], True
+        for what in ("damped", "bathe", "generalised-alpha"):
+            values, passed = job.recorded("verification_solid_spectrum", "do_not_grow", f"kept_{what}{key}")
+            got.append(f"{what} {100 * (values[0] - 1):+.3f} %")
+            met = met and passed and abs(values[0] - 1) < 0.01
+        return ", ".join(got), met
+    return measure
+
+
+def orders(job):
+    values, passed = job.recorded("verification_solid_time_schemes", "have_their_order/", "slope")
+    return ", ".join(f"{v:.2f}" for v in values), passed
+
+
+def imbalance(job):
+    values, passed = job.recorded("verification_solid_energy", "balances_to_round_off", "imbalance")
+    return f"{values[0]:.1e} of the largest energy", passed and values[0] < 1e-9
+
+
+def step_control(job):
+    tests, _ = job.gtest("verification_solid_step_control")
+    test = next(iter(tests.values()))
+    return "; ".join(f"{s}: {test[s + '_steps']} steps, {test[s + '_fixed_steps']} of the shortest"
+                     for s in SCHEMES[1:]), test["passed"]
+
+
+BARS = [
+    Bar("time schemes: order (Euler 1, three-point, trapezoidal, Bathe, generalised-alpha 2; even, uneven, damped)",
+        "1 or 2 +- 0.1", orders),
+    Bar("energy balance of the trapezoidal rule, undamped", "round-off", imbalance),
+    Bar("step size control: error below the tolerance with fewer steps", "all schemes", step_control),
+    *(Bar(f"C: period elongation / amplitude decay [%], dt = {dt} s", f"reported beside the thesis's {thesis_row(dt)}",
+          table(dt), long=True) for dt in THESIS),
+    Bar("C: period on a refined mesh (160x16x16)", "20.03 s within 0.3 %", refined_period, long=True),
+    Bar("C, plane model: growth of the trapezoidal rule at 0.01 s, from the spectrum and in the run", "equal within 10 %",
+        spectrum("")),
+    Bar("the same on a perturbed mesh", "equal within 10 %", spectrum("_perturbed")),
+    Bar("C, plane model: energy after 100 s at 0.01 s", "drift < 1 %", kept("")),
+    Bar("the same on a perturbed mesh", "drift < 1 %", kept("_perturbed")),
+    Bar("C, 80x8x8 at 0.01 s: energy from 10 to 100 s, trapezoidal with beta = 2e-5 s", "drift < 1 %",
+        energy_drift("trapezoidal", "participants.solid.damping={stiffness: 2e-5}"), long=True),
+    Bar("C, 80x8x8 at 0.01 s: energy from 10 to 100 s, Bathe", "drift < 1 %", energy_drift("bathe"), long=True),
+    Bar("C, 80x8x8 at 0.01 s: energy from 10 to 100 s, generalised-alpha (0.5)", "drift < 1 %",
+        energy_drift("generalised-alpha", "participants.solid.time-scheme.spectral-radius=0.5"), long=True),
+]

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/probes.hpp"
+
+#include <algorithm>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/stress.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr std::array<const char*, 3> axis{"x", "y", "z"};
+
+/// A field that an effect keeps at points; its name and unit are the effect's.
+OutputField effect_field(const Solid& solid, const std::string& name) {
+  std::vector<OutputField> fields;
+  for (const auto& effect : solid.effects()) effect->add_fields(fields);
+  for (const OutputField& field : fields)
+    if (field.name == name && field.place == OutputField::Place::points) return field;
+  throw Error("probes: the field '{}' is watched, but nothing in this scene computes it.", name);
+}
+
+}  // namespace
+
+SolidProbes::SolidProbes(const Solid& solid) : solid_(solid) {
+  for (const auto& [name, chosen] : solid.parameters().probes) {
+    probes_.push_back({Probe(solid.mesh(), name, chosen.point), chosen.fields});
+    for (const std::string& field : chosen.fields) add_columns(name, field);
+  }
+}
+
+void SolidProbes::add_columns(const std::string& probe, const std::string& field) {
+  const auto vector = [&](const std::string& what, const char* unit) {
+    for (int a = 0; a < solid_.mesh().dim; ++a)
+      columns_.push_back(probe + " " + what + axis[a] + " [" + unit + "]");
+  };
+  const auto tensor = [&](const char* unit) {
+    for (const char* component : tensor_component)
+      columns_.push_back(probe + " " + field + "-" + component + " [" + unit + "]");
+  };
+  if (field == "acceleration" && solid_.parameters().analysis == SolidParameters::Analysis::static_)
+    throw Error("probes.{}: a static analysis has no acceleration to watch.", probe);
+  if (field == "displacement") return vector("", "m");
+  if (field == "velocity") return vector("velocity ", "m/s");
+  if (field == "acceleration") return vector("acceleration ", "m/s^2");
+  if (field == "stress") return tensor("Pa");
+  if (field == "strain") return tensor("-");
+  if (field == "equivalent-stress") return columns_.push_back(probe + " equivalent-stress [Pa]");
+  if (field == "principal-stress") {
+    for (const char* i : {"1", "2", "3"}) columns_.push_back(probe + " principal-stress-" + i + " [Pa]");
+    return;
+  }
+  columns_.push_back(probe + " " + field + " [" + effect_field(solid_, field).unit + "]");
+}
+
+bool SolidProbes::any_watches(std::initializer_list<const char*> fields) const {
+  for (const Watched& watched : probes_)
+    for (const char* field : fields)
+      if (std::ranges::find(watched.fields, field) != watched.fields.end()) return true;
+  return false;
+}
+
+std::vector<double> SolidProbes::sample(std::span<const double> points) const {
+  const int dim = solid_.mesh().dim;
+  std::vector<double> velocity, acceleration, stress, strain, row;
+  if (any_watches({"velocity"})) velocity = solid_.point_velocity();
+  if (any_watches({"acceleration"})) acceleration = solid_.point_acceleration();
+  if (any_watches({"stress", "equivalent-stress", "principal-stress"})) stress = solid_.point_stress(points);
+  if (any_watches({"strain"})) strain = solid_.point_strain(points);
+  for (const Watched& watched : probes_) {
+    for (const std::string& field : watched.fields) {
+      std::vector<double> values;
+      if (field == "displacement") {
+        values = watched.probe.sample(points, dim);
+      } else if (field == "velocity") {
+        values = watched.probe.sample(velocity, dim);
+      } else if (field == "acceleration") {
+        values = watched.probe.sample(acceleration, dim);
+      } else if (field == "strain") {
+        values = watched.probe.sample(strain, tensor_size);
+      } else if (field == "stress" || field == "equivalent-stress" || field == "principal-stress") {
+        values = watched.probe.sample(stress, tensor_size);
+        // Of the interpolated tensor; other ranks hold nothing.
+        if (field == "equivalent-stress" && !values.empty()) values = {equivalent_stress(unpack(values))};
+        if (field == "principal-stress" && !values.empty()) {
+          const auto principal = principal_stresses(unpack(values));
+          values.assign(principal.begin(), principal.end());
+        }
+      } else {
+        values = watched.probe.sample(effect_field(solid_, field).values, 1);
+      }
+      row.insert(row.end(), values.begin(), values.end());
+    }
+  }
+  return row;
+}
+
+}  // namespace couplet

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/stress.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+std::vector<PatchStencil> stencils_of(const std::vector<bool>& is_symmetry) {
+  std::vector<PatchStencil> stencils;
+  for (const bool symmetric : is_symmetry)
+    stencils.push_back(symmetric ? PatchStencil::symmetry : PatchStencil::open);
+  return stencils;
+}
+
+/// Packed tensors with ghosts up to date.
+std::vector<double> with_ghosts(const IndexMap& map, std::span<const Tensor3> owned) {
+  std::vector<double> values(std::size_t(map.n_local()) * tensor_size, 0);
+  for (std::size_t i = 0; i < owned.size(); ++i)
+    std::ranges::copy(pack(owned[i]), values.begin() + std::ptrdiff_t(i * tensor_size));
+  map.update_ghosts(values, tensor_size);
+  return values;
+}
+
+}  // namespace
+
+PackedTensor pack(const Tensor3& t) { return {t(0, 0), t(1, 1), t(2, 2), t(0, 1), t(1, 2), t(0, 2)}; }
+
+Tensor3 unpack(std::span<const double> p) {
+  Tensor3 t;
+  t << p[0], p[3], p[5], p[3], p[1], p[4], p[5], p[4], p[2];
+  return t;
+}
+
+double equivalent_stress(const Tensor3& s) {
+  const Tensor3 deviator = s - s.trace() / 3 * Tensor3::Identity();
+  return std::sqrt(1.5 * deviator.squaredNorm());
+}
+
+std::array<double, 3> principal_stresses(const Tensor3& stress) {
+  const Vec3 values = Eigen::SelfAdjointEigenSolver<Tensor3>(stress, Eigen::EigenvaluesOnly).eigenvalues();
+  return {values[2], values[1], values[0]};
+}
+
+PointTensors::PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetry)
+    : mesh_(&mesh), vertices_(mesh, stencils_of(is_symmetry)) {
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
+    if (!is_symmetry[p]) continue;
+    const Patch& patch = mesh.patches[p];
+    Vec3 area = Vec3::Zero();
+    Mirror mirror;
+    const auto take = [&](Index first, Index count) {
+      for (Index f = first; f < first + count; ++f)
+        for (const Index v : mesh.face_points[f]) mirror.points.push_back(v);
+    };
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) area += mesh.reference.face_area[f];
+    take(patch.first, patch.count);
+    take(patch.ghost_first, patch.ghost_count);
+    std::ranges::sort(mirror.points);
+    mirror.points.erase(std::ranges::unique(mirror.points).begin(), mirror.points.end());
+    for (int a = 0; a < 3; ++a) area[a] = sum(mesh.comm, area[a]);
+    const Vec3 n = area.normalized();
+    mirror.reflection = Tensor3::Identity() - 2 * n * n.transpose();
+    mirrors_.push_back(std::move(mirror));
+  }
+}
+
+std::vector<double> PointTensors::interpolate(std::span<const Tensor3> cells,
+                                              std::span<const Tensor3> faces) const {
+  const std::vector<double> in_cells = with_ghosts(mesh_->cells, cells);
+  const std::vector<double> on_faces = with_ghosts(mesh_->boundary, faces);
+  std::vector<double> values(std::size_t(mesh_->points.n_local()) * tensor_size);
+  for (Index v = 0; v < mesh_->points.n_local(); ++v) {
+    const Vec<tensor_size> value = vertices_.scalar_at<tensor_size>(v, in_cells, on_faces);
+    std::copy_n(value.data(), tensor_size, values.begin() + std::ptrdiff_t(v) * tensor_size);
+  }
+  for (const Mirror& mirror : mirrors_)
+    for (const Index v : mirror.points) {
+      double* here = values.data() + std::size_t(v) * tensor_size;
+      const Tensor3 tensor = unpack({here, tensor_size});
+      std::ranges::copy(pack(0.5 * (tensor + mirror.reflection * tensor * mirror.reflection)), here);
+    }
+  mesh_->points.update_ghosts(values, tensor_size);
+  return values;
+}
+
+}  // namespace couplet

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "common/fv/vertex_interpolation.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// Symmetric tensors are packed as xx, yy, zz, xy, yz, xz.
+constexpr int tensor_size = 6;
+using PackedTensor = std::array<double, tensor_size>;
+constexpr std::array<const char*, tensor_size> tensor_component{"xx", "yy", "zz", "xy", "yz", "xz"};
+PackedTensor pack(const Tensor3& tensor);
+Tensor3 unpack(std::span<const double> packed);
+
+/// von Mises [Pa].
+double equivalent_stress(const Tensor3& stress);
+/// Largest first [Pa].
+std::array<double, 3> principal_stresses(const Tensor3& stress);
+
+/// Symmetric tensors at points from those in cells and on boundary faces, exact for linear fields (the vertex
+/// interpolation of the displacement, all faces of the boundary taking part). At symmetry planes the mirrored
+/// tensor is averaged in: no shear there.
+class PointTensors {
+ public:
+  /// `is_symmetry`: one a patch. Collective.
+  PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetry);
+  /// `cells`: of owned cells; `faces`: of boundary faces of owned cells. Packed, all local points.
+  /// Collective.
+  std::vector<double> interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
+
+ private:
+  struct Mirror {
+    Tensor3 reflection;  // I - 2 n n
+    std::vector<Index> points;
+  };
+  const Mesh* mesh_;
+  VertexInterpolation vertices_;
+  std::vector<Mirror> mirrors_;
+};
+
+}  // namespace couplet

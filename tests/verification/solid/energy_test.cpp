@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+/// A sheet under everything that does work: traction, pressure, body force, moving support, damping.
+SolidParameters busy_sheet(TimeScheme scheme) {
+  SolidParameters p = box_parameters(2);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.material = {1000, 1e5, 0.3};
+  p.time_scheme.type = scheme;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"5e-3*sin(2*t)", "0"});
+  p.boundaries["ymin"] = boundary(Type::symmetry);
+  p.boundaries["xmax"] = boundary(Type::traction, {"400*sin(4*t)", "300*t*cos(3*t)"});
+  p.boundaries["ymax"] = boundary(Type::pressure);
+  p.boundaries["ymax"].pressure = {"100*t"};
+  p.body_force = {{"0"}, {"300*x*sin(2*t)"}};
+  p.initial_velocity = {{"1e-2"}, {"0"}};  // that of the support
+  p.damping = SolidDamping{0.4, 3e-3};
+  p.output.energies = true;
+  return p;
+}
+
+std::unique_ptr<Solid> run(const SolidParameters& p, int steps, double dt) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {10, 4, 1}, Vec3::Zero(), Vec3(1, 0.4, 0));
+  perturb_interior(raw, 0.15, 4);
+  auto solid = make_solid(raw, p);
+  for (int i = 0; i < steps; ++i) step(*solid, dt);
+  return solid;
+}
+
+double largest(const SolidEnergies& e) {
+  return std::max({std::abs(e.internal_work), std::abs(e.external_work), e.kinetic, e.damping_loss});
+}
+
+TEST(SolidEnergy, balances_to_round_off_for_the_trapezoidal_rule) {
+  for (const bool damped : {false, true}) {
+    SolidParameters p = busy_sheet(TimeScheme::trapezoidal);
+    if (!damped) p.damping.reset();
+    const auto solid = run(p, 80, 0.02);
+    const SolidEnergies e = solid->energies(solid->point_displacement());
+    fmt::print(
+        "kinetic {:.3e}, internal work {:.3e}, strain {:.3e}, external {:.3e}, damping {:.3e}, lost {:.1e} "
+        "J\n",
+        e.kinetic, e.internal_work, e.strain, e.external_work, e.damping_loss, e.lost());
+    RecordProperty(damped ? "imbalance_damped" : "imbalance",
+                   fmt::format("{:.2e}", std::abs(e.lost()) / largest(e)));
+    EXPECT_LT(std::abs(e.lost()), 1e-9 * largest(e));
+    EXPECT_GT(e.external_work, 0.01);
+    EXPECT_EQ(e.damping_loss > 0.01 * largest(e), damped);
+    // The strain energy is a function of the state; the operator has a potential only nearly.
+    EXPECT_NEAR(e.strain / e.internal_work, 1, 0.2);
+  }
+}
+
+TEST(SolidEnergy, what_dissipative_schemes_lose_vanishes_with_the_step) {
+  for (const TimeScheme scheme :
+       {TimeScheme::euler, TimeScheme::three_point, TimeScheme::bathe, TimeScheme::generalised_alpha}) {
+    SolidParameters p = busy_sheet(scheme);
+    p.damping.reset();
+    const auto coarse = run(p, 80, 0.02), fine = run(p, 320, 0.005);
+    const SolidEnergies a = coarse->energies(coarse->point_displacement());
+    const SolidEnergies b = fine->energies(fine->point_displacement());
+    fmt::print("{}: lost {:.2e} and {:.2e} of {:.2e} J\n", name(scheme), a.lost(), b.lost(), largest(b));
+    EXPECT_GT(std::abs(a.lost()), 1e-8 * largest(a)) << name(scheme);
+    EXPECT_LT(std::abs(b.lost()), 0.7 * std::abs(a.lost()))
+        << name(scheme);  // Euler: not yet linear in the step
+  }
+}
+
+// A drop of a rigid weight: kinetic energy equals the work of gravity.
+TEST(SolidEnergy, of_a_falling_body_is_all_kinetic) {
+  SolidParameters p = box_parameters(2);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.material = {7800, 1e6, 0.3};
+  p.gravity = {0, -10};
+  p.output.energies = true;
+  const auto solid = run(p, 10, 0.1);
+  const SolidEnergies e = solid->energies(solid->point_displacement());
+  const double mass = 7800 * 0.4;
+  EXPECT_NEAR(e.kinetic / (0.5 * mass * 100), 1, 1e-9);
+  EXPECT_NEAR(e.external_work / (0.5 * mass * 100), 1, 1e-9);
+  EXPECT_LT(std::abs(e.strain), 1e-9 * e.kinetic);
+}
+
+}  // namespace
+}  // namespace couplet::testing

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// The thesis's operator is not symmetric: M^-1 K has complex pairs of eigenvalues, which let a scheme without
+// dissipation grow. The rate is predicted by the spectrum, seen in the run, and removed by dissipative
+// schemes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "common/time/amplification.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+/// The beam of case C (Slone et al. 2003) as a plane model.
+SolidParameters beam() {
+  SolidParameters p = box_parameters(2);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.plane = SolidParameters::Plane::stress;
+  p.material = {2600, 10e6, 0.3};
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmax"] = boundary(Type::traction, {"0", "t <= 7 ? -125*t/7 : 0"});
+  return p;
+}
+
+RawMesh beam_mesh(double perturbation) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {40, 8, 1}, Vec3::Zero(), Vec3(20, 2, 0));
+  if (perturbation > 0) perturb_interior(raw, perturbation, 7);
+  return raw;
+}
+
+/// Those of the beam, each made once.
+const std::vector<std::complex<double>>& beam_eigenvalues(double perturbation) {
+  static std::map<double, std::vector<std::complex<double>>> known;
+  auto [place, is_new] = known.try_emplace(perturbation);
+  if (is_new) place->second = make_solid(beam_mesh(perturbation), beam())->eigenvalues();
+  return place->second;
+}
+
+double largest_rate(const std::vector<std::complex<double>>& eigenvalues, const TimeSchemeParameters& scheme,
+                    double dt, const RayleighCoefficients& damping = {}) {
+  double rate = -1;
+  for (const auto& value : eigenvalues) rate = std::max(rate, growth_rate(scheme, dt, value, damping));
+  return rate;
+}
+
+double energy(const Solid& solid) {
+  double kinetic = 0;
+  for (Index c = 0; c < solid.mesh().cells.n_owned(); ++c)
+    for (int a = 0; a < 2; ++a)
+      kinetic += 0.5 * solid.parameters().material.density * solid.mesh().reference.volume[c] *
+                 std::pow(solid.state().cell_v[std::size_t(c) * 2 + a], 2);
+  return kinetic + solid.energies(solid.point_displacement()).strain;
+}
+
+/// Energy left of that after the release at 7 s, at the end of 100 s. Kinetic plus strain energy.
+double energy_kept(const SolidParameters& p, const RawMesh& raw, double dt, double end) {
+  const auto solid = make_solid(raw, p);
+  double released = 0;
+  const int steps = int(std::lround(end / dt));
+  for (int i = 1; i <= steps; ++i) {
+    step(*solid, dt);
+    if (i == int(std::lround(7.5 / dt))) released = energy(*solid);
+  }
+  return energy(*solid) / released;
+}
+
+TEST(Spectrum, has_the_frequencies_of_a_bar) {
+  // No lateral contraction: omega_n = (n - 1/2) pi c / L along the bar.
+  SolidParameters p = box_parameters(2);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.material = {1000, 1e6, 0};
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  for (const char* side : {"ymin", "ymax"}) p.boundaries[side] = boundary(Type::symmetry);
+  const auto solid =
+      make_solid(make_box(BoxCells::quadrilaterals, {40, 1, 1}, Vec3::Zero(), Vec3(1, 0.02, 0)), p);
+  const auto values = solid->eigenvalues();
+  ASSERT_EQ(values.size(), 80u);
+  const double expected = std::pow(0.5 * M_PI * std::sqrt(1e6 / 1000), 2);
+  EXPECT_NEAR(values.front().real() / expected, 1, 1e-3);
+}
+
+TEST(Spectrum, predicts_how_fast_the_trapezoidal_rule_grows) {
+  constexpr double dt = 0.01;
+  SolidParameters p = beam();
+  // A seed of all modes in place of the force.
+  p.boundaries["xmax"] = boundary(Type::free);
+  p.initial_velocity = {{"1e-6*sin(37*x)*cos(53*y)"}, {"1e-6*cos(41*x)*sin(29*y)"}};
+  for (const double perturbation : {0.0, 0.2}) {
+    const auto& values = beam_eigenvalues(perturbation);
+    const auto n_complex = std::ranges::count_if(values, [](const auto& z) { return z.imag() != 0; });
+    const double predicted = largest_rate(values, {TimeScheme::trapezoidal}, dt);
+    ASSERT_GT(n_complex, 0);
+    ASSERT_GT(predicted, 0.05);
+    // Energy grows at twice the rate once the fastest mode has outgrown the rest.
+    const auto solid = make_solid(beam_mesh(perturbation), p);
+    const int from = int(12 / predicted / dt), until = int(16 / predicted / dt);
+    double start = 0;
+    for (int i = 1; i <= until; ++i) {
+      step(*solid, dt);
+      if (i == from) start = energy(*solid);
+    }
+    const double measured = std::log(energy(*solid) / start) / (2 * (until - from) * dt);
+    fmt::print(
+        "perturbation {}: {} of {} eigenvalues complex, growth rate predicted {:.4f}, measured {:.4f} 1/s\n",
+        perturbation, n_complex, values.size(), predicted, measured);
+    RecordProperty(perturbation > 0 ? "predicted_perturbed" : "predicted", fmt::format("{:.4f}", predicted));
+    RecordProperty(perturbation > 0 ? "measured_perturbed" : "measured", fmt::format("{:.4f}", measured));
+    EXPECT_NEAR(measured / predicted, 1, 0.1);
+  }
+}
+
+TEST(Spectrum, dissipative_schemes_and_a_little_damping_do_not_grow) {
+  constexpr double dt = 0.01;
+  SolidParameters p = beam();
+  for (const double perturbation : {0.0, 0.2}) {
+    const RawMesh raw = beam_mesh(perturbation);
+    const auto& values = beam_eigenvalues(perturbation);
+    const auto check = [&](const char* what, const TimeSchemeParameters& scheme, double beta) {
+      EXPECT_LT(largest_rate(values, scheme, dt, {0, beta}), 1e-5) << what;
+      SolidParameters q = p;
+      q.time_scheme = scheme;
+      if (beta > 0) q.damping = SolidDamping{0, beta};
+      const double kept = energy_kept(q, raw, dt, 100);
+      fmt::print("perturbation {}, {}: {:.5f} of the energy after 100 s\n", perturbation, what, kept);
+      RecordProperty(fmt::format("kept_{}{}", what, perturbation > 0 ? "_perturbed" : ""),
+                     fmt::format("{:.5f}", kept));
+      EXPECT_NEAR(kept, 1, 0.01) << what;
+    };
+    check("damped", {TimeScheme::trapezoidal}, perturbation > 0 ? 5e-5 : 2e-5);
+    check("bathe", {TimeScheme::bathe}, 0);
+    check("generalised-alpha", {TimeScheme::generalised_alpha, 0.5}, 0);
+  }
+}
+
+}  // namespace
+}  // namespace couplet::testing

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+// Orders of the time schemes, measured against the exact solution of the semi-discrete equations: a clamped
+// sheet that moves at its root, is pulled at its end and loaded over its volume, all as functions of time.
+#include "common/time/time_scheme.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "common/io/checkpoint.hpp"
+#include "tests/verification/solid/semi_discrete.hpp"
+
+namespace couplet::testing {
+namespace {
+
+constexpr double end_time = 1.2;
+
+SolidParameters driven_sheet(TimeScheme scheme) {
+  SolidParameters p = box_parameters(2);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.plane = SolidParameters::Plane::stress;
+  p.material = {1000, 2e4, 0.3};
+  p.time_scheme.type = scheme;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"1e-3*sin(3*t)^2", "2e-3*sin(2*t)^2"});
+  p.boundaries["xmax"] = boundary(Type::traction, {"400*sin(4*t)", "100*t*cos(3*t)"});
+  p.body_force = {{"0"}, {"300*x*sin(2*t)"}};
+  p.initial_velocity = {{"1e-2*x"}, {"2e-2*x^2"}};
+  return p;
+}
+
+RawMesh sheet() { return make_box(BoxCells::quadrilaterals, {8, 3, 1}, Vec3::Zero(), Vec3(1, 0.4, 0)); }
+
+/// The cells at the end time, exactly.
+Eigen::VectorXd exact(const SolidParameters& p) {
+  const auto solid = make_solid(sheet(), p);
+  const SemiDiscrete model(*solid);
+  const SolidBoundaries boundaries(solid->mesh(), p);
+  const PrescribedDisplacement prescribed(solid->mesh(), boundaries, solid->elastic());
+  const auto body = make_expressions(p.body_force, 2, "body-force");
+  const Mesh& mesh = solid->mesh();
+  const SolidDamping damping = p.damping.value_or(SolidDamping{});
+  const auto force = [&](double t) {
+    std::vector<double> rhs(solid->elastic().n_unknowns(), 0);
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+      for (int a = 0; a < 2; ++a)
+        rhs[std::size_t(c) * 2 + a] = body[a](mesh.reference.cell_centre[c], t) * mesh.reference.volume[c];
+    std::vector<double> on_faces(std::size_t(mesh.boundary.n_owned()) * 2, 0);
+    boundaries.add_forces(t, on_faces);
+    const auto& faces = solid->elastic().traction_faces();
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      for (int a = 0; a < 2; ++a) {
+        const double value = on_faces[std::size_t(faces[i] - mesh.n_interior) * 2 + a];
+        rhs[std::size_t(mesh.owner[faces[i]]) * 2 + a] += value;
+        rhs[std::size_t(mesh.cells.n_owned() + Index(i)) * 2 + a] += value;
+      }
+    std::vector<double> known(prescribed.size() * 2), rate(known.size());
+    prescribed.evaluate(t, known);
+    prescribed.evaluate_rate(t, 1e-2, rate);
+    for (std::size_t i = 0; i < known.size(); ++i) known[i] += damping.stiffness * rate[i];
+    solid->elastic().subtract_known(known, rhs);
+    return model.reduced(rhs);
+  };
+  return model.integrate(force, damping, end_time, 6000);
+}
+
+/// Relative error of the cells' displacements with n steps; uneven: every second step is twice as long.
+double error_with(const SolidParameters& p, const Eigen::VectorXd& reference, int n, bool uneven) {
+  const auto solid = make_solid(sheet(), p);
+  for (int i = 0; i < n; ++i) step(*solid, uneven ? end_time / (1.5 * n) * (1 + i % 2) : end_time / n);
+  EXPECT_NEAR(solid->state().time, end_time, 1e-12);
+  const Eigen::Map<const Eigen::VectorXd> u(solid->state().cell_u.data(), reference.size());
+  return (u - reference).norm() / reference.norm();
+}
+
+struct Variant {
+  TimeScheme scheme;
+  bool uneven;
+  SolidDamping damping;
+};
+
+class TimeSchemes : public ::testing::TestWithParam<Variant> {};
+
+TEST_P(TimeSchemes, have_their_order) {
+  const auto [scheme, uneven, damping] = GetParam();
+  SolidParameters p = driven_sheet(scheme);
+  if (damping.mass > 0 || damping.stiffness > 0) p.damping = damping;
+  const Eigen::VectorXd reference = exact(p);
+  std::vector<double> errors;
+  for (const int n : {200, 400, 800}) errors.push_back(error_with(p, reference, n, uneven));
+  const double slope = std::log2(errors[1] / errors[2]);
+  fmt::print("{}{}: errors {:.2e} {:.2e} {:.2e}, slope {:.3f}\n", name(scheme),
+             uneven ? ", uneven steps" : "", errors[0], errors[1], errors[2], slope);
+  RecordProperty("slope", fmt::format("{:.3f}", slope));
+  const double order = scheme == TimeScheme::euler ? 1 : 2;
+  EXPECT_GT(slope, order - 0.1);
+  EXPECT_LT(slope, order + 0.2);
+  EXPECT_LT(errors[2], scheme == TimeScheme::euler ? 0.05 : 2e-3);
+}
+
+std::string variant_name(const ::testing::TestParamInfo<Variant>& info) {
+  std::string text = name(info.param.scheme);
+  std::replace(text.begin(), text.end(), '-', '_');
+  return text + (info.param.uneven ? "_uneven" : "") + (info.param.damping.mass > 0 ? "_damped" : "");
+}
+
+std::vector<Variant> all_variants() {
+  std::vector<Variant> all;
+  for (const TimeScheme scheme : {TimeScheme::euler, TimeScheme::three_point, TimeScheme::trapezoidal,
+                                  TimeScheme::bathe, TimeScheme::generalised_alpha}) {
+    all.push_back({scheme, false, {}});
+    all.push_back({scheme, true, {}});
+    all.push_back({scheme, false, {0.5, 2e-3}});
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Solid, TimeSchemes, ::testing::ValuesIn(all_variants()), variant_name);
+
+TEST(TimeSchemes, continue_from_a_checkpoint_bit_for_bit) {
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("couplet-schemes-{}.h5", ::getpid());
+  for (const TimeScheme scheme : {TimeScheme::euler, TimeScheme::three_point, TimeScheme::trapezoidal,
+                                  TimeScheme::bathe, TimeScheme::generalised_alpha}) {
+    const SolidParameters p = driven_sheet(scheme);
+    const auto run = make_solid(sheet(), p), restarted = make_solid(sheet(), p);
+    for (const double dt : {0.02, 0.01, 0.02}) step(*run, dt);
+    CheckpointWriter writer(MPI_COMM_WORLD, file);
+    run->save(writer);
+    writer.close();
+    CheckpointReader reader(MPI_COMM_WORLD, file);
+    restarted->load(reader);
+    for (const double dt : {0.02, 0.01, 0.01}) {
+      step(*run, dt);
+      step(*restarted, dt);
+    }
+    EXPECT_EQ(run->state().cell_u, restarted->state().cell_u) << name(scheme);
+    EXPECT_EQ(run->point_velocity(), restarted->point_velocity()) << name(scheme);
+  }
+  std::filesystem::remove(file);
+}
+
+/// What is left of a vibration of circular frequency omega after a step: u of one spring and mass.
+double kept(const TimeSchemeParameters& scheme, double omega_dt) {
+  double u = 0, v = 1, a = 0, u_old = -1, v_old = 1, largest_before = 0, largest_after = 0;
+  // Unit step; the level further back is that of no force. Growth is measured over many steps.
+  constexpr int steps = 400;
+  for (int n = 0; n < steps; ++n) {
+    const double u_start = u, v_start = v;
+    for (const Stage& s : second_order_stages(scheme, 1, {n, 1})) {
+      const bool second = s.start > 0;
+      const auto value = [&](const Levels& l, double x) {
+        return l.x * x + l.u * u + l.v * v + l.a * a + l.u_old * (second ? u_start : u_old) +
+               l.v_old * (second ? v_start : v_old);
+      };
+      const double x = -value(s.acceleration, 0) / (s.acceleration.x + omega_dt * omega_dt);
+      const double end = value(s.end_value, x), rate = value(s.end_rate, x),
+                   acc = value(s.end_acceleration, x);
+      u = end, v = rate, a = acc;
+    }
+    u_old = u_start, v_old = v_start;
+    const double size = std::hypot(omega_dt * u, v);
+    if (n >= steps / 4 && n < steps / 2) largest_before = std::max(largest_before, size);
+    if (n >= 3 * steps / 4) largest_after = std::max(largest_after, size);
+  }
+  return std::pow(largest_after / largest_before, 2.0 / steps);
+}
+
+TEST(TimeSchemes, keep_or_damp_vibrations_as_they_should) {
+  EXPECT_NEAR(kept({TimeScheme::trapezoidal}, 0.1), 1, 1e-9);
+  EXPECT_NEAR(kept({TimeScheme::trapezoidal}, 100), 1, 1e-9);
+  for (const double rho : {0.3, 0.8}) {
+    // Chung and Hulbert: the radius at infinity is rho; there it is reached from a triple root.
+    EXPECT_NEAR(kept({TimeScheme::generalised_alpha, rho}, 1e4), rho, 0.05);
+    EXPECT_GT(kept({TimeScheme::generalised_alpha, rho}, 0.05), 1 - 1e-4);
+  }
+  for (const TimeScheme scheme : {TimeScheme::euler, TimeScheme::three_point, TimeScheme::bathe})
+    EXPECT_LT(kept({scheme}, 100), 0.2) << name(scheme);
+  EXPECT_GT(kept({TimeScheme::bathe}, 0.1), 1 - 1e-5);
+}
+
+// Two sub-steps of Bathe share their factors: both have the same coefficient of the unknown.
+TEST(TimeSchemes, both_parts_of_a_bathe_step_have_one_matrix) {
+  const auto stages = second_order_stages({TimeScheme::bathe}, 0.37, {5, 0.2});
+  ASSERT_EQ(stages.size(), 2u);
+  EXPECT_NEAR(stages[0].acceleration.x / stages[1].acceleration.x, 1, 1e-14);
+  EXPECT_NEAR(stages[0].rate.x / stages[1].rate.x, 1, 1e-14);
+}
+
+// First derivatives: y' = -y + sin(t), from the same coefficients.
+TEST(TimeSchemes, have_their_order_for_first_derivatives) {
+  const auto error = [](TimeScheme scheme, int n) {
+    const double dt = 2. / n;
+    double y = 1, old = 0;
+    for (int i = 0; i < n; ++i) {
+      const double start = y;
+      for (const Stage& s : first_order_stages({scheme}, dt, {i, dt})) {
+        const double before = s.start > 0 ? start : old;
+        const double load = std::sin(i * dt + s.start + s.place * s.dt);
+        const double x = (load - s.rate.u * y - s.rate.u_old * before) / (s.rate.x + 1);
+        y = s.end_value.x * x + s.end_value.u * y + s.end_value.u_old * before;
+      }
+      old = start;
+    }
+    return std::abs(y - (1.5 * std::exp(-2.) + 0.5 * (std::sin(2.) - std::cos(2.))));
+  };
+  for (const TimeScheme scheme :
+       {TimeScheme::euler, TimeScheme::three_point, TimeScheme::trapezoidal, TimeScheme::bathe})
+    EXPECT_NEAR(std::log2(error(scheme, 100) / error(scheme, 200)), scheme == TimeScheme::euler ? 1 : 2, 0.1)
+        << name(scheme);
+}
+
+}  // namespace
+}  // namespace couplet::testing
