@@ -27,17 +27,22 @@ Property property(const std::optional<config::ExpressionText>& text, const std::
 }  // namespace
 
 std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& parameters) {
-  if (!mesh.twin.empty())
-    throw Error(
-        "materials: 'heat' does not yet conduct between different materials; give 'temperature', or one "
-        "'material'.");
-  const HeatMaterial& m = parameters.material.heat;
-  HeatProperties properties{parameters.material.density, property(m.conductivity, "conductivity", "'heat'"),
-                            0};
-  if (m.specific_heat || parameters.heat->analysis == HeatParameters::Analysis::transient)
-    properties.specific_heat = property(m.specific_heat, "specific-heat", "a transient 'heat'");
-  return std::make_unique<Heat>(mesh, std::vector<HeatProperties>(mesh.zones.size(), properties),
-                                *parameters.heat, symmetry_patches(parameters));
+  const auto properties = [&](const SolidMaterial& material) {
+    const HeatMaterial& m = material.heat;
+    HeatProperties result{material.density, property(m.conductivity, "conductivity", "'heat'"), 0};
+    if (m.specific_heat || parameters.heat->analysis == HeatParameters::Analysis::transient)
+      result.specific_heat = property(m.specific_heat, "specific-heat", "a transient 'heat'");
+    return result;
+  };
+  const std::vector<SolidMaterial> materials = materials_of(parameters);
+  const auto zones = zones_of(parameters.materials);
+  std::vector<HeatProperties> of_zone;
+  for (const std::string& zone : mesh.zones) {
+    std::size_t i = 0;
+    while (i + 1 < zones.size() && std::ranges::find(zones[i], zone) == zones[i].end()) ++i;
+    of_zone.push_back(properties(materials[i]));
+  }
+  return std::make_unique<Heat>(mesh, std::move(of_zone), *parameters.heat, symmetry_patches(parameters));
 }
 
 ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,

@@ -38,8 +38,8 @@ RawMesh two_zones(BoxCells cells, double slant) {
 
 SolidParameters two_materials(int dim) {
   SolidParameters p = box_parameters(dim);
-  p.materials["hard"] = {{7800, 200e9, 0.3}, {}};
-  p.materials["rubber"] = {{1100, 17e6, 0.45}, {"soft"}};
+  p.materials["hard"] = {{7800, 200e9, 0.3, {}}, {}};
+  p.materials["rubber"] = {{1100, 17e6, 0.45, {}}, {"soft"}};
   return p;
 }
 
@@ -164,6 +164,41 @@ TEST_P(Materials, both_ends_of_a_bar_in_series_carry_the_same_force) {
   EXPECT_LT((forces[0].force + forces[1].force).norm(), 1e-9 * forces[1].force.norm());
 }
 
+// Uniformly heated between walls that let it slide: one pushes the other, u_x linear in each.
+TEST_P(Materials, unequal_thermal_expansion_of_bonded_materials_is_exact) {
+  const int dim = dimension_of(GetParam());
+  SolidParameters p = two_materials(dim);
+  p.materials["rubber"].heat.expansion = {"2e-4"};
+  p.materials["hard"].heat.expansion = {"1.2e-5"};
+  p.temperature = {"60"};
+  p.expansion.emplace().reference_temperature = 10;
+  for (auto& [name, b] : p.boundaries) b = boundary(Type::frictionless);
+  const LameConstants soft = lame_constants(p, p.materials.at("rubber")),
+                      hard = lame_constants(p, p.materials.at("hard"));
+  // sigma_x = (lambda + 2 mu) e - (3 lambda + 2 mu) alpha dT in both, 0.6 e_soft + 0.4 e_hard = 0.
+  const auto axial = [](const LameConstants& l) { return l.lambda + 2 * l.mu; };
+  const auto thermal = [](const LameConstants& l, double alpha) {
+    return (3 * l.lambda + 2 * l.mu) * alpha * 50;
+  };
+  const double e_soft = (thermal(soft, 2e-4) - thermal(hard, 1.2e-5)) / (axial(soft) + 1.5 * axial(hard));
+  const double stress = axial(soft) * e_soft - thermal(soft, 2e-4);
+  const auto solid = make_solid(two_zones(GetParam(), 0), p);
+  step(*solid, 1);
+  const Mesh& mesh = solid->mesh();
+  double error = 0, stress_error = 0;
+  const std::vector<Tensor3> stresses = solid->cell_stress(solid->point_displacement());
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    const double x = mesh.reference.cell_centre[c][0];
+    const double wanted = x < 0.6 ? e_soft * x : 1.5 * e_soft * (1 - x);
+    Vec3 u = Vec3::Zero();
+    for (int a = 0; a < dim; ++a) u[a] = solid->state().cell_u[std::size_t(c) * dim + a];
+    error = std::max(error, (u - Vec3(wanted, 0, 0)).norm());
+    stress_error = std::max(stress_error, std::abs(stresses[c](0, 0) - stress));
+  }
+  EXPECT_LT(max(mesh.comm, error), 1e-10 * std::abs(0.6 * e_soft));
+  EXPECT_LT(max(mesh.comm, stress_error), 1e-9 * std::abs(stress));
+}
+
 TEST_P(Materials, zones_of_equal_material_give_the_answer_of_one_material) {
   const int dim = dimension_of(GetParam());
   SolidParameters p = box_parameters(dim);
@@ -177,7 +212,7 @@ TEST_P(Materials, zones_of_equal_material_give_the_answer_of_one_material) {
 double layered_ring_error(int n, double& stress_error) {
   constexpr double r0 = 1, r1 = 1.5, r2 = 2, pressure = 1e6;
   SolidParameters p = two_materials(2);
-  p.materials["rubber"] = {{1000, 20e9, 0.2}, {"soft"}};
+  p.materials["rubber"] = {{1000, 20e9, 0.2, {}}, {"soft"}};
   RawMesh raw = make_box(BoxCells::quadrilaterals, {2 * n, 2 * n, 1}, Vec3(r0, 0, 0), Vec3(r2, M_PI / 2, 0));
   raw.zones = {"soft", "hard"};
   for (Index c = 0; c < raw.cell_points.size(); ++c) {
