@@ -48,9 +48,10 @@ SolveStatistics BlockCoupled::solve(std::span<const double> b, std::span<double>
     return solver_.solve(b, u);
   } catch (const SolveFailure& e) {
     throw SolveFailure(
-        "{} If the loads are sound, another 'solution-method: {{linear-solver: ...}}' may help; 'direct' "
+        "{} The method is {}. If the loads are sound, another 'solution-method: {{linear-solver: ...}}' may "
+        "help; 'direct' "
         "needs most memory and bears most.",
-        e.what());
+        e.what(), name());
   }
 }
 

@@ -1,18 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <optional>
 #include <vector>
 
+#include "common/base/types.hpp"
 #include "common/config/section.hpp"
 
 namespace couplet {
 
-/// What happens on one patch. `value` and `pressure` are used by the types that have them.
-struct SolidBoundary {
-  enum class Type { fixed_displacement, traction, pressure, symmetry, free, interface_ };
+/// What happens on a patch or a part of it. The members below `type` are used by the types that name them.
+struct SolidCondition {
+  enum class Type {
+    fixed_displacement,
+    traction,
+    pressure,
+    symmetry,
+    frictionless,
+    soft_support,
+    hard_support,
+    spring,
+    zero_normal_gradient,
+    free,
+    interface_
+  };
   Type type = Type::free;
-  std::vector<config::ExpressionText> value;  // displacement [m] or traction [Pa], one a component
-  config::ExpressionText pressure;            // [Pa], pushes into the solid
+  /// fixed-displacement: displacement [m]; traction: [Pa]; spring: displacement of its far end [m]; one a
+  /// component.
+  std::vector<config::ExpressionText> value;
+  /// fixed-displacement: the components that are known, in place of `value` [m].
+  std::array<std::optional<config::ExpressionText>, 3> components;
+  /// fixed-displacement by component, spring: force per area beside it [Pa], one a component; empty: none.
+  std::vector<config::ExpressionText> traction;
+  config::ExpressionText pressure;    ///< pressure: [Pa], pushes into the solid
+  Vec3 plate_normal = Vec3::UnitZ();  ///< soft and hard support
+  config::ExpressionText stiffness;   ///< spring: [N/m^3]
+  bool along_normal = false;          ///< spring: resists the normal displacement only
+};
+
+/// The faces of a patch whose centre fulfils a condition.
+struct SolidPart : SolidCondition {
+  config::ExpressionText where;
+};
+
+struct SolidBoundary : SolidCondition {
+  std::vector<SolidPart> parts;  ///< the first one that selects a face counts; faces of none: the patch's own
 };
 
 /// `dimension`: of the scene; read before the boundaries, so it is a reference.

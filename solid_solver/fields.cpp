@@ -16,12 +16,15 @@ template <int D>
 void interpolate(const ElasticOperator& elastic, std::span<const Index> points, std::span<const double> cells,
                  std::span<const double> faces, std::span<const double> known, std::span<double> values) {
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Index column = elastic.known_of_point(points[i]);
-    Vec<D> value;
-    if (column >= 0)
-      value = Eigen::Map<const Vec<D>>(known.data() + std::size_t(column) * D);
-    else
-      value = elastic.vertices().template vector_at<D>(points[i], cells, faces);
+    const VertexConstraints& constraints = elastic.constraints();
+    Vec<D> value = Vec<D>::Zero();
+    if (!constraints.is_fixed(points[i])) {
+      value = elastic.vertices().template scalar_at<D>(points[i], cells, faces);
+      if (constraints.is_constrained(points[i]))
+        value = constraints.free_part(points[i]).template topLeftCorner<D, D>() * value;
+    }
+    if (const Index column = constraints.column(points[i]); column >= 0)
+      value += Eigen::Map<const Vec<D>>(known.data() + std::size_t(column) * D);
     for (int a = 0; a < D; ++a) values[i * D + a] = value[a];
   }
 }
@@ -74,19 +77,14 @@ std::vector<double> Solid::point_acceleration() const {
 std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
   std::vector<PatchForce> forces;
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
-    const ElasticCondition condition = boundaries_.conditions()[p];
-    if (condition == ElasticCondition::traction) continue;
+    if (!boundaries_.holds(p)) continue;
     const Patch& patch = mesh_.patches[p];
     const std::vector<Tensor3> stress = face_stress(patch.first, patch.count, points);
     Vec3 force = Vec3::Zero();
-    for (Index i = 0; i < patch.count; ++i) {
-      const Vec3& area = mesh_.reference.face_area[patch.first + i];
-      Vec3 here = stress[i] * area;
-      if (condition == ElasticCondition::symmetry) here = area * area.dot(here) / area.squaredNorm();
-      force += here;
-    }
+    for (Index i = 0; i < patch.count; ++i)
+      force += elastic_.holding_force(patch.first + i, stress[i], state_.face_u, known_accepted_);
     for (int a = 0; a < 3; ++a) force[a] = sum(mesh_.comm, force[a]);
-    forces.push_back({patch.name, force});
+    forces.push_back({mesh_.patches[p].name, force});
   }
   return forces;
 }
@@ -112,8 +110,8 @@ void Solid::judge_inertia() {
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     for (int a = 0; a < dim; ++a) {
       const std::size_t i = std::size_t(c) * dim + a;
-      inertia[a] += parameters_.material.density * mesh_.reference.volume[c] *
-                    (trial_.cell_v[i] - state_.cell_v[i]) / (0.5 * (trial_.dt + state_.dt));
+      inertia[a] += density(c) * mesh_.reference.volume[c] * (trial_.cell_v[i] - state_.cell_v[i]) /
+                    (0.5 * (trial_.dt + state_.dt));
     }
   for (int a = 0; a < dim; ++a) inertia[a] = sum(mesh_.comm, inertia[a]);
   const double load = total_load().norm();

@@ -72,13 +72,14 @@ void Heat::start() {
   for (std::size_t i = 0; i < faces.size(); ++i)
     state_.boundary[faces[i] - mesh_->n_interior] = state_.known[conduction_.known_points().size() + i];
   mesh_->boundary.update_ghosts(state_.boundary);
+  conduction_.join_twins(state_.boundary);
   state_.enthalpy.resize(n_owned);
   for (Index c = 0; c < n_owned; ++c)
     state_.enthalpy[c] = materials_[mesh_->cell_zone[c]].specific_heat.antiderivative(state_.cells[c]);
   state_.enthalpy_before = state_.enthalpy;
   state_.inflow.assign(n_owned, 0);
 
-  conductivity_.resize(mesh_->n_flux_faces());
+  conductivity_.resize(mesh_->n_faces());
   face_heat_.resize(conduction_.flux_faces().size());
   if (boundaries_.any_transfer()) transfer_.resize(face_heat_.size());
   if (!is_steady()) capacity_.resize(n_owned);
@@ -101,8 +102,8 @@ Heat::Coefficients Heat::coefficients(double dt) const {
   return {(1 + 2 * r) / (1 + r) / dt, -(1 + r) / dt, r * r / (1 + r) / dt, 1};
 }
 
-// Between different materials the conductance is that of the two layers in series, exact for layers along
-// the face: k = d . n / (d_P / k_P + d_N / k_N).
+// Between different materials that are not bonded the conductance is that of the two layers in series, exact
+// for layers along the face: k = d . n / (d_P / k_P + d_N / k_N).
 void Heat::set_conductivity(const HeatState& state, std::span<double> conductivity) const {
   const std::vector<double> at_faces = face_temperature(state);
   const Geometry& g = mesh_->reference;
@@ -119,6 +120,7 @@ void Heat::set_conductivity(const HeatState& state, std::span<double> conductivi
     const double part = (g.face_centre[f] - g.cell_centre[owner]).dot(faces.normal[f]) * faces.inverse_dn[f];
     conductivity[f] = 1 / (part / here + (1 - part) / there);
   }
+  if (!mesh_->twin.empty()) mesh_->boundary.update_ghosts(conductivity.subspan(mesh_->n_interior));
 }
 
 std::vector<double> Heat::sources(double t, std::span<const double> further) const {
@@ -223,6 +225,7 @@ double Heat::take_solution() {
     trial_.boundary[known[i] - mesh_->n_interior] = trial_.known[conduction_.known_points().size() + i];
   mesh_->cells.update_ghosts(trial_.cells);
   mesh_->boundary.update_ghosts(trial_.boundary);
+  conduction_.join_twins(trial_.boundary);
   const double level = max(mesh_->comm, highest), range = level - min(mesh_->comm, lowest);
   return max(mesh_->comm, change) / std::max({range, 1e-3 * std::abs(level), 1e-300});
 }
@@ -238,6 +241,7 @@ void Heat::set_inflow(std::span<const double> source) {
   // What is known of a flux face counts, as in the cell's row.
   const auto& faces = conduction_.flux_faces();
   for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (conduction_.condition(faces[i]) == HeatCondition::bonded) continue;
     const double h = transfer_.empty() ? 0 : transfer_[i];
     heat[faces[i]] = face_heat_[i] - h * mesh_->reference.face_area[faces[i]].norm() *
                                          trial_.boundary[faces[i] - mesh_->n_interior];
@@ -267,11 +271,12 @@ std::vector<double> Heat::face_temperature(const HeatState& state) const {
 }
 
 std::vector<PatchHeat> Heat::patch_heat() const {
-  std::vector<double> conductivity(mesh_->n_flux_faces()), heat(mesh_->n_flux_faces());
+  std::vector<double> conductivity(mesh_->n_faces()), heat(mesh_->n_flux_faces());
   set_conductivity(state_, conductivity);
   conduction_.face_heat(conductivity, state_.cells, state_.boundary, point_temperature(state_), heat);
   std::vector<PatchHeat> result;
   for (const Patch& patch : mesh_->patches) {
+    if (patch.bonded) continue;
     double through = 0;
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
       if (conduction_.condition(f) != HeatCondition::symmetry) through += heat[f];
@@ -297,7 +302,9 @@ void Heat::judge(std::vector<std::string>& sentences) const {
     level += mesh_->reference.volume[c] * state_.cells[c];
   }
   for (Index f = mesh_->n_interior; f < mesh_->n_flux_faces(); ++f)
-    if (conduction_.condition(f) != HeatCondition::symmetry) surface += mesh_->reference.face_area[f].norm();
+    if (conduction_.condition(f) != HeatCondition::symmetry &&
+        conduction_.condition(f) != HeatCondition::bonded)
+      surface += mesh_->reference.face_area[f].norm();
   volume = sum(mesh_->comm, volume);
   level = sum(mesh_->comm, level) / volume;
   const double size = volume / sum(mesh_->comm, surface);

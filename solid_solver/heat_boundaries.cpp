@@ -22,7 +22,8 @@ HeatBoundaries::HeatBoundaries(const Mesh& mesh, const HeatParameters& parameter
                                const std::vector<std::string>& symmetry_patches)
     : mesh_(&mesh) {
   std::vector<std::string> names;
-  for (const Patch& patch : mesh.patches) names.push_back(patch.name);
+  for (const Patch& patch : mesh.patches)
+    if (!patch.bonded) names.push_back(patch.name);
   for (const auto& [name, boundary] : parameters.boundaries)
     if (!mesh.find_patch(name))
       throw Error("heat.boundaries.{}: the mesh has no patch of this name. {}", name,
@@ -46,6 +47,10 @@ HeatBoundaries::HeatBoundaries(const Mesh& mesh, const HeatParameters& parameter
     conditions_.push_back(condition_of(here.type));
     on_patch_.push_back(std::move(here));
   }
+  // The patch of the faces between materials is the last one.
+  if (names.size() == mesh.patches.size()) return;
+  conditions_.push_back(HeatCondition::bonded);
+  on_patch_.emplace_back();
 }
 
 bool HeatBoundaries::fix_the_level() const {

@@ -15,4 +15,17 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   declare(s, m.heat);
 }
 
+void declare(config::Section& s, ZoneMaterial& m, bool is_elastic) {
+  s.value("zones", m.zones)
+      .doc("physical volumes (2-D: surfaces) of the mesh that are made of it; without: the one of this name");
+  declare(s, static_cast<SolidMaterial&>(m), is_elastic);
+}
+
+std::vector<std::vector<std::string>> zones_of(const ZoneMaterials& materials) {
+  std::vector<std::vector<std::string>> zones;
+  for (const auto& [name, material] : materials)
+    zones.push_back(material.zones.empty() ? std::vector<std::string>{name} : material.zones);
+  return zones;
+}
+
 }  // namespace couplet

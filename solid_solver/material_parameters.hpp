@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
+#include <string>
+#include <vector>
+
 #include "common/config/section.hpp"
 #include "solid_solver/heat_parameters.hpp"
 
@@ -13,7 +17,19 @@ struct SolidMaterial {
   HeatMaterial heat{};
 };
 
+/// One of several materials.
+struct ZoneMaterial : SolidMaterial {
+  std::vector<std::string>
+      zones;  ///< physical volumes (2-D: surfaces) of the mesh; empty: the one of its own name
+};
+
+using ZoneMaterials = std::map<std::string, ZoneMaterial>;
+
 /// `is_elastic`: the elastic constants are needed.
 void declare(config::Section& section, SolidMaterial& material, bool is_elastic = true);
+void declare(config::Section& section, ZoneMaterial& material, bool is_elastic = true);
+
+/// The zones of each material, as the mesh wants them (RawMesh::materials).
+std::vector<std::vector<std::string>> zones_of(const ZoneMaterials& materials);
 
 }  // namespace couplet

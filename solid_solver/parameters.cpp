@@ -26,13 +26,16 @@ void declare_heat(config::Section& s, SolidParameters& p) {
                    : "";
       },
       "thermoelastic-coupling");
-  const auto needs = [&](const std::optional<config::ExpressionText>& text, bool needed, const char* key,
-                         const char* by) {
+  const auto needs = [&](std::optional<config::ExpressionText> HeatMaterial::*property, bool needed,
+                         const char* key, const char* by) {
     s.check(
-        [&text, needed, key, by] {
-          return needed && !text ? fmt::format("'{}' of the material is missing; {} needs it", key, by) : "";
+        [&p, property, needed, key, by]() -> std::string {
+          for (const SolidMaterial& m : materials_of(p))
+            if (needed && !(m.heat.*property))
+              return fmt::format("'{}' of the material is missing; {} needs it", key, by);
+          return "";
         },
-        "material");
+        p.materials.empty() ? "material" : "materials");
   };
   s.check([&] { return p.temperature ? problem_of(*p.temperature) : ""; }, "temperature");
   s.check(
@@ -53,10 +56,10 @@ void declare_heat(config::Section& s, SolidParameters& p) {
                                                                            : "";
       },
       "analysis");
-  needs(p.material.heat.conductivity, p.heat.has_value(), "conductivity", "'heat'");
-  needs(p.material.heat.specific_heat, p.heat && p.heat->analysis == HeatParameters::Analysis::transient,
+  needs(&HeatMaterial::conductivity, p.heat.has_value(), "conductivity", "'heat'");
+  needs(&HeatMaterial::specific_heat, p.heat && p.heat->analysis == HeatParameters::Analysis::transient,
         "specific-heat", "a transient 'heat'");
-  needs(p.material.heat.expansion, p.expansion.has_value(), "expansion", "'thermal-expansion'");
+  needs(&HeatMaterial::expansion, p.expansion.has_value(), "expansion", "'thermal-expansion'");
 }
 
 void check_together(config::Section& s, SolidParameters& p) {
@@ -110,10 +113,22 @@ void declare(config::Section& s, SolidParameters& p) {
   s.choice("analysis", p.analysis,
            {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}, {"thermal", Analysis::thermal}})
       .doc("static leaves out inertia; thermal conducts heat only");
-  s.section(
-      "material",
-      [&](config::Section& m) { declare(m, p.material, p.analysis != SolidParameters::Analysis::thermal); },
-      "linear elastic material");
+  const bool is_elastic = p.analysis != SolidParameters::Analysis::thermal;
+  s.optional_section<bool>(
+      "material", p.material_given,
+      [&p, is_elastic](config::Section& m, bool&) { declare(m, p.material, is_elastic); },
+      "linear elastic material of the whole solid");
+  s.map<ZoneMaterial>(
+      "materials", p.materials,
+      [is_elastic](config::Section& m, ZoneMaterial& v) { declare(m, v, is_elastic); }, "material",
+      "in place of material: several, each with its zones of the mesh; bonded where they meet");
+  s.check(
+      [&p] {
+        return p.material_given.has_value() == p.materials.empty()
+                   ? ""
+                   : "give either 'material' (of the whole solid) or 'materials' (by zone of the mesh)";
+      },
+      "material");
   s.map<SolidBoundary>(
       "boundaries", p.boundaries, [&p](config::Section& b, SolidBoundary& v) { declare(b, v, p.dimension); },
       "patch", "one entry for each patch of the mesh");
@@ -145,13 +160,29 @@ void declare(config::Section& s, SolidParameters& p) {
   check_together(s, p);
 }
 
-LameConstants lame_constants(const SolidParameters& p) {
-  const double e = p.material.youngs_modulus, nu = p.material.poissons_ratio;
+std::vector<SolidMaterial> materials_of(const SolidParameters& p) {
+  if (p.materials.empty()) return {p.material};
+  std::vector<SolidMaterial> result;
+  for (const auto& [name, material] : p.materials) result.push_back(material);
+  return result;
+}
+
+LameConstants lame_constants(const SolidParameters& p, const SolidMaterial& material) {
+  const double e = material.youngs_modulus, nu = material.poissons_ratio;
   LameConstants lame{e / (2 * (1 + nu)), e * nu / ((1 + nu) * (1 - 2 * nu))};
   // sigma_zz = 0 eliminates the strain across the plane.
   if (p.dimension == 2 && p.plane == SolidParameters::Plane::stress)
     lame.lambda = 2 * lame.lambda * lame.mu / (lame.lambda + 2 * lame.mu);
   return lame;
+}
+
+ElasticBody elastic_body(const SolidParameters& p, const Mesh& mesh) {
+  std::vector<LameConstants> of_material;
+  for (const SolidMaterial& material : materials_of(p)) of_material.push_back(lame_constants(p, material));
+  if (mesh.cell_material.empty()) return {{of_material.front()}, {}};
+  ElasticBody body{{}, mesh.cell_material};
+  for (const int material : mesh.cell_material) body.lame.push_back(of_material[material]);
+  return body;
 }
 
 }  // namespace couplet

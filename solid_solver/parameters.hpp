@@ -26,6 +26,8 @@ struct SolidParameters {
   Plane plane = Plane::strain;
   Analysis analysis = Analysis::dynamic;
   SolidMaterial material;
+  std::optional<bool> material_given;  // `material` stands in the YAML
+  ZoneMaterials materials;             // by zone of the mesh
   std::map<std::string, SolidBoundary> boundaries;
   std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty: none
   std::vector<double> gravity;                           // [m/s^2]; empty: none
@@ -45,7 +47,16 @@ struct SolidParameters {
 /// The keys of `participants.<name>` of a solid_solver.
 void declare(config::Section& section, SolidParameters& parameters);
 
-/// Lame's constants; in plane stress lambda is the effective one of the plane problem.
-LameConstants lame_constants(const SolidParameters& parameters);
+/// The material, or the materials in the order of their names, which is that of Mesh::cell_material.
+std::vector<SolidMaterial> materials_of(const SolidParameters& parameters);
+
+/// Lame's constants of a material; in plane stress lambda is the effective one of the plane problem.
+LameConstants lame_constants(const SolidParameters& parameters, const SolidMaterial& material);
+inline LameConstants lame_constants(const SolidParameters& parameters) {
+  return lame_constants(parameters, parameters.material);
+}
+
+/// For ElasticOperator: the constants of the cells.
+ElasticBody elastic_body(const SolidParameters& parameters, const Mesh& mesh);
 
 }  // namespace couplet

@@ -7,7 +7,9 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/mesh_checks.hpp"
 #include "solid_solver/output.hpp"
+#include "solid_solver/rigid_modes.hpp"
 #include "solid_solver/system.hpp"
 
 namespace couplet {
@@ -16,8 +18,9 @@ Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
     : mesh_(std::move(mesh)),
       parameters_(std::move(parameters)),
       context_(std::move(context)),
+      materials_(materials_of(parameters_)),
       boundaries_(mesh_, parameters_),
-      elastic_(mesh_, boundaries_.conditions(), lame_constants(parameters_)),
+      elastic_(mesh_, boundaries_.elastic(), elastic_body(parameters_, mesh_)),
       prescribed_(mesh_, boundaries_, elastic_) {
   check_supports();
   if (!boundaries_.interface_patches().empty()) {
@@ -39,14 +42,11 @@ Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
 Solid::~Solid() = default;
 
 void Solid::check_supports() const {
+  check_mesh(mesh_, elastic_.vertices());
   if (!parameters_.gravity.empty() && std::ssize(parameters_.gravity) != mesh_.dim)
     throw Error("gravity: {} components are given where the {}-dimensional scene needs {}.",
                 parameters_.gravity.size(), mesh_.dim, mesh_.dim);
-  if (!is_dynamic() && !boundaries_.any_prescribed() && !boundaries_.any_symmetry())
-    throw Error(
-        "boundaries: a static analysis needs a support, or the solid can move freely; give at least one "
-        "patch 'type: "
-        "fixed-displacement' (or enough 'symmetry' patches).");
+  if (!is_dynamic()) check_supported(mesh_, elastic_);
 }
 
 void Solid::start_from_rest() {
@@ -115,21 +115,11 @@ Exchange Solid::solve(const Exchange& in) {
     trial_.cell_v_old = state_.cell_v;
   }
   if (!trial_.acceleration.empty()) finish_acceleration();
-  set_prescribed_faces();
+  elastic_.impose_known(known_, trial_.face_u);
+  elastic_.impose_known(known_rate_, trial_.face_v);
   update_trial_ghosts();
   if (parameters_.step_control) judge_step();
   return interface_values();
-}
-
-void Solid::set_prescribed_faces() {
-  const int dim = mesh_.dim;
-  for (const Index f : elastic_.prescribed_faces())
-    for (int a = 0; a < dim; ++a) {
-      const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
-      const std::size_t k = std::size_t(elastic_.known_of_face(f)) * dim + a;
-      trial_.face_u[b] = known_[k];
-      trial_.face_v[b] = known_rate_[k];
-    }
 }
 
 void Solid::update_trial_ghosts() {
@@ -137,6 +127,8 @@ void Solid::update_trial_ghosts() {
   mesh_.cells.update_ghosts(trial_.cell_v, mesh_.dim);
   mesh_.boundary.update_ghosts(trial_.face_u, mesh_.dim);
   mesh_.boundary.update_ghosts(trial_.face_v, mesh_.dim);
+  elastic_.join_twins(trial_.face_u);
+  elastic_.join_twins(trial_.face_v);
 }
 
 void Solid::accept_step() {

@@ -92,6 +92,8 @@ class Solid final : public Participant {
   const SolidParameters& parameters() const { return parameters_; }
   const ElasticOperator& elastic() const { return elastic_; }
   const SolidState& state() const { return state_; }
+  /// [kg/m^3]
+  double density(Index cell) const { return materials_[mesh_.material_of(cell)].density; }
   const std::vector<std::unique_ptr<SolidEffect>>& effects() const { return effects_; }
   const SolverEffort& effort() const { return effort_; }
   /// Packed values of all local points at the accepted time. Collective.
@@ -159,7 +161,6 @@ class Solid final : public Participant {
   void guess(const StageWork& work, const SolidState& now);
   void finish_offsets(const Stage& stage, const SolidState& now);
   void finish_cells(const StageWork& work, const SolidState& now);
-  void set_prescribed_faces();
   void update_trial_ghosts();
   Exchange interface_values() const;
   std::vector<double> to_points(std::span<const double> cells, std::span<const double> faces,
@@ -169,6 +170,7 @@ class Solid final : public Participant {
   const Mesh mesh_;
   const SolidParameters parameters_;
   const SolidContext context_;
+  const std::vector<SolidMaterial> materials_;
   SolidBoundaries boundaries_;
   ElasticOperator elastic_;
   PrescribedDisplacement prescribed_;

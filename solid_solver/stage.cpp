@@ -64,7 +64,7 @@ Solid::System& Solid::system_for(double mass_factor) {
   system->mass_factor = mass_factor;
   if (mass_factor > 0)
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-      system->inertia.push_back(mass_factor * parameters_.material.density * mesh_.reference.volume[c]);
+      system->inertia.push_back(mass_factor * density(c) * mesh_.reference.volume[c]);
   system->method = make_solution_method({mesh_, elastic_, system->inertia}, parameters_.method);
   systems_.insert(systems_.begin(), std::move(system));
   return *systems_.front();
@@ -113,7 +113,7 @@ void Solid::add_body_forces(double t, std::span<double> rhs) {
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     for (int a = 0; a < dim; ++a) {
       double force = body_force_.empty() ? 0 : body_force_[a](mesh_.reference.cell_centre[c], t);
-      if (!parameters_.gravity.empty()) force += parameters_.material.density * parameters_.gravity[a];
+      if (!parameters_.gravity.empty()) force += density(c) * parameters_.gravity[a];
       force *= mesh_.reference.volume[c];  // (2.59)
       rhs[std::size_t(c) * dim + a] += force;
       body_load_[a] += force;
@@ -174,7 +174,7 @@ void Solid::add_inertia(const StageWork& work, const SolidState& now) {
   const History levels = history(now, state_);
   const int dim = mesh_.dim;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const double mass = parameters_.material.density * mesh_.reference.volume[c];
+    const double mass = density(c) * mesh_.reference.volume[c];
     for (int a = 0; a < dim; ++a) {
       const std::size_t i = std::size_t(c) * dim + a;
       rhs_[i] -= mass * levels(known, i);
@@ -182,20 +182,14 @@ void Solid::add_inertia(const StageWork& work, const SolidState& now) {
   }
 }
 
-// The known force of a traction face stands in its own row and in its cell's.
 void Solid::add_face_forces(const StageWork& work, std::span<const double> interface_load) {
-  face_load_.setZero();
-  const int dim = mesh_.dim;
-  const auto& faces = elastic_.traction_faces();
-  const std::size_t first = std::size_t(mesh_.cells.n_owned()) * dim;
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for (int a = 0; a < dim; ++a) {
-      const std::size_t b = std::size_t(faces[i] - mesh_.n_interior) * dim + a;
-      const double value = work.face_force[b] + (interface_load.empty() ? 0 : interface_load[b]);
-      rhs_[std::size_t(mesh_.owner[faces[i]]) * dim + a] += value;
-      rhs_[first + i * dim + a] += value;
-      face_load_[a] += value;
-    }
+  if (interface_load.empty()) {
+    face_load_ = elastic_.add_forces(work.face_force, rhs_);
+    return;
+  }
+  std::vector<double> force = work.face_force;
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] += interface_load[i];
+  face_load_ = elastic_.add_forces(force, rhs_);
 }
 
 // For iterative methods: where the accepted motion leads, so that equal loads give equal answers.
@@ -204,7 +198,7 @@ void Solid::guess(const StageWork& work, const SolidState& now) {
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
   const double ahead = is_dynamic() ? work.stage.place * work.stage.dt : 0;
   for (std::size_t i = 0; i < n_cells; ++i) unknowns_[i] = now.cell_u[i] + ahead * now.cell_v[i];
-  const auto& faces = elastic_.traction_faces();
+  const auto& faces = elastic_.unknown_faces();
   for (std::size_t i = 0; i < faces.size(); ++i)
     for (int a = 0; a < dim; ++a) {
       const std::size_t b = std::size_t(faces[i] - mesh_.n_interior) * dim + a;
@@ -226,7 +220,7 @@ void Solid::finish_cells(const StageWork& work, const SolidState& now) {
   }
   trial_.stage_dt = stage.dt;
   const int dim = mesh_.dim;
-  for (const Index f : elastic_.traction_faces())
+  for (const Index f : elastic_.unknown_faces())
     for (int a = 0; a < dim; ++a) {
       const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
       const std::size_t c = std::size_t(mesh_.owner[f]) * dim + a;
@@ -247,7 +241,7 @@ void Solid::finish_offsets(const Stage& stage, const SolidState& now) {
   const double slope = is_first ? 0 : lag / gap;
   const double rate_slope = is_first || !is_dynamic() ? 0 : stage.dt / (stage.dt + now.stage_dt);
   const double relax = (parameters_.damping ? parameters_.damping->stiffness : 0) / gap;
-  const auto& faces = elastic_.traction_faces();
+  const auto& faces = elastic_.unknown_faces();
   for (std::size_t i = 0; i < faces.size(); ++i)
     for (int a = 0; a < dim; ++a) {
       const std::size_t b = std::size_t(faces[i] - mesh_.n_interior) * dim + a;

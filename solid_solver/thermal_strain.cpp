@@ -27,27 +27,35 @@ Property property(const std::optional<config::ExpressionText>& text, const std::
 }  // namespace
 
 std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& parameters) {
-  const HeatMaterial& m = parameters.material.heat;
-  HeatProperties properties{parameters.material.density, property(m.conductivity, "conductivity", "'heat'"),
-                            0};
-  if (m.specific_heat || parameters.heat->analysis == HeatParameters::Analysis::transient)
-    properties.specific_heat = property(m.specific_heat, "specific-heat", "a transient 'heat'");
-  return std::make_unique<Heat>(mesh, std::vector<HeatProperties>(mesh.zones.size(), properties),
-                                *parameters.heat, symmetry_patches(parameters));
+  const auto properties = [&](const SolidMaterial& material) {
+    const HeatMaterial& m = material.heat;
+    HeatProperties result{material.density, property(m.conductivity, "conductivity", "'heat'"), 0};
+    if (m.specific_heat || parameters.heat->analysis == HeatParameters::Analysis::transient)
+      result.specific_heat = property(m.specific_heat, "specific-heat", "a transient 'heat'");
+    return result;
+  };
+  const std::vector<SolidMaterial> materials = materials_of(parameters);
+  const auto zones = zones_of(parameters.materials);
+  std::vector<HeatProperties> of_zone;
+  for (const std::string& zone : mesh.zones) {
+    std::size_t i = 0;
+    while (i + 1 < zones.size() && std::ranges::find(zones[i], zone) == zones[i].end()) ++i;
+    of_zone.push_back(properties(materials[i]));
+  }
+  return std::make_unique<Heat>(mesh, std::move(of_zone), *parameters.heat, symmetry_patches(parameters));
 }
 
 ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
                              const SolidParameters& parameters)
     : mesh_(&mesh),
       elastic_(&elastic),
-      lame_(lame_constants(parameters)),
-      material_(parameters.material),
+      materials_(materials_of(parameters)),
       coupled_(parameters.thermoelastic_coupling) {
   if (parameters.heat) heat_ = make_heat(mesh, parameters);
   if (parameters.temperature) prescribed_.emplace(*parameters.temperature, "temperature");
   if (parameters.expansion) {
-    expansion_.assign(mesh.zones.size(),
-                      property(parameters.material.heat.expansion, "expansion", "'thermal-expansion'"));
+    for (const SolidMaterial& material : materials_)
+      expansion_.push_back(property(material.heat.expansion, "expansion", "'thermal-expansion'"));
     reference_ = parameters.expansion->reference_temperature;
   }
   plane_stress_ = mesh.dim == 2 && parameters.plane == SolidParameters::Plane::stress;
@@ -58,7 +66,15 @@ ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
   set_accepted();
 }
 
-double ThermalStrain::modulus(Index) const { return (plane_stress_ ? 2 : 3) * lame_.lambda + 2 * lame_.mu; }
+double ThermalStrain::modulus(Index cell) const {
+  const LameConstants& lame = elastic_->lame(cell);
+  return (plane_stress_ ? 2 : 3) * lame.lambda + 2 * lame.mu;
+}
+
+double ThermalStrain::three_bulk(Index cell) const {
+  const SolidMaterial& m = materials_[mesh_->material_of(cell)];
+  return m.youngs_modulus / (1 - 2 * m.poissons_ratio);
+}
 
 std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const {
   if (heat_) return heat_->face_temperature(trial ? heat_->trial() : heat_->accepted());
@@ -70,7 +86,7 @@ std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const 
 std::vector<double> ThermalStrain::strain(std::span<const double> temperature) const {
   std::vector<double> result(temperature.size());
   for (std::size_t f = 0; f < temperature.size(); ++f)
-    result[f] = expansion_[mesh_->cell_zone[mesh_->owner[f]]].integral(reference_, temperature[f]);
+    result[f] = expansion_[mesh_->material_of(mesh_->owner[f])].integral(reference_, temperature[f]);
   return result;
 }
 
@@ -84,15 +100,15 @@ void ThermalStrain::begin_step(const Step& step) {
     std::vector<double> source(dilation_rate_.size());
     for (std::size_t c = 0; c < source.size(); ++c) {
       const double temperature = heat_->accepted().cells[c];
-      source[c] = -material_.youngs_modulus / (1 - 2 * material_.poissons_ratio) *
-                  expansion_[mesh_->cell_zone[c]](temperature) * temperature * dilation_rate_[c];
+      const auto cell = static_cast<Index>(c);
+      source[c] = -three_bulk(cell) * expansion_[mesh_->material_of(cell)](temperature) * temperature *
+                  dilation_rate_[c];
     }
     heat_->solve(step, source);
   }
   end_ = face_temperature(step.time + step.dt, true);
 }
 
-// Row of a cell: - sum sigma . S over its faces without a known force; of a traction face: sigma . S.
 void ThermalStrain::add_loads(double t, std::span<double> rhs) {
   if (!expands()) return;
   std::vector<double> temperature;
@@ -103,26 +119,11 @@ void ThermalStrain::add_loads(double t, std::span<double> rhs) {
     temperature = start_;
     for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
   }
-  const std::vector<double> epsilon = strain(temperature);
-  const int dim = mesh_->dim;
-  const Index n_owned = mesh_->cells.n_owned();
-  const auto add = [&](Index row, double size, const Vec3& area) {
-    for (int a = 0; a < dim; ++a) rhs[std::size_t(row) * dim + a] += size * area[a];
-  };
-  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
-    if (f >= mesh_->n_interior && elastic_->condition(f) == ElasticCondition::traction) continue;
-    const Vec3& area = mesh_->reference.face_area[f];
-    const Index owner = mesh_->owner[f];
-    const double size = modulus(owner) * epsilon[f];
-    if (owner < n_owned) add(owner, -size, area);
-    if (f < mesh_->n_interior && mesh_->neighbour[f] < n_owned) add(mesh_->neighbour[f], size, area);
-  }
-  const auto& faces = elastic_->traction_faces();
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    const Index f = faces[i];
-    add(n_owned + static_cast<Index>(i), modulus(mesh_->owner[f]) * epsilon[f],
-        mesh_->reference.face_area[f]);
-  }
+  std::vector<double> pressure = strain(temperature);
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) pressure[f] *= modulus(mesh_->owner[f]);
+  pressure.resize(mesh_->n_faces());
+  mesh_->boundary.update_ghosts(std::span(pressure).subspan(mesh_->n_interior));
+  elastic_->add_pressure(pressure, rhs);
 }
 
 void ThermalStrain::accept_step() {
@@ -171,25 +172,30 @@ void ThermalStrain::add_cell_stress(std::span<Tensor3> stress) const {
 
 // tr(sigma) = 3 K [tr(eps) - 3 epsilon], in plane strain and plane stress, too.
 void ThermalStrain::take_stress(std::span<const Tensor3> stress) {
-  const double bulk3 = material_.youngs_modulus / (1 - 2 * material_.poissons_ratio);
   const std::vector<double> strain = cell_strain();
   for (std::size_t c = 0; c < stress.size(); ++c) {
-    const double now = stress[c].trace() / bulk3 + 3 * strain[c];
+    const double now = stress[c].trace() / three_bulk(static_cast<Index>(c)) + 3 * strain[c];
     dilation_rate_[c] = (now - dilation_[c]) / step_.dt;
     dilation_[c] = now;
   }
 }
 
-/// (3 K alpha)^2 T / ((lambda + 2 mu) rho c): what the coupling adds to the stiffness, relatively.
+/// (3 K alpha)^2 T / ((lambda + 2 mu) rho c): what the coupling adds to the stiffness, relatively; of the
+/// material where it is most.
 double ThermalStrain::coupling_number() const {
-  if (!heat_ || !expands() || !material_.heat.specific_heat) return 0;
-  const double temperature = max(mesh_->comm, highest_), e = material_.youngs_modulus,
-               nu = material_.poissons_ratio;
-  const double beta = e / (1 - 2 * nu) * expansion_.front()(temperature);
-  const double stiff = e * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
-  return beta * beta * temperature /
-         (stiff * material_.density *
-          Property(*material_.heat.specific_heat, "material.specific-heat")(temperature));
+  double most = 0;
+  const double temperature = max(mesh_->comm, highest_);
+  for (std::size_t i = 0; heat_ && expands() && i < materials_.size(); ++i) {
+    const SolidMaterial& m = materials_[i];
+    if (!m.heat.specific_heat) continue;
+    const double e = m.youngs_modulus, nu = m.poissons_ratio;
+    const double beta = e / (1 - 2 * nu) * expansion_[i](temperature);
+    const double stiff = e * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+    const double capacity =
+        m.density * Property(*m.heat.specific_heat, "material.specific-heat")(temperature);
+    most = std::max(most, beta * beta * temperature / (stiff * capacity));
+  }
+  return most;
 }
 
 std::vector<double> ThermalStrain::point_temperature() const {

@@ -52,6 +52,7 @@ class ThermalStrain final : public SolidEffect {
   std::vector<double> face_temperature(double t, bool trial) const;
   std::vector<double> strain(std::span<const double> temperature) const;
   double modulus(Index cell) const;         // B
+  double three_bulk(Index cell) const;      // 3 K
   std::vector<double> cell_strain() const;  // thermal, of owned cells at the accepted time
   double coupling_number() const;
   void set_accepted();
@@ -60,11 +61,10 @@ class ThermalStrain final : public SolidEffect {
   const ElasticOperator* elastic_;
   std::unique_ptr<Heat> heat_;  // none: prescribed
   std::optional<Expression> prescribed_;
-  std::vector<Property> expansion_;  // one a zone; none: no thermal strain
+  std::vector<Property> expansion_;  // one a material; none: no thermal strain
   double reference_ = 0;             // [K]
   bool plane_stress_ = false;
-  LameConstants lame_;
-  SolidMaterial material_;
+  std::vector<SolidMaterial> materials_;
   bool coupled_ = false;
   std::vector<double> dilation_, dilation_rate_;  // tr(eps) and its rate, per owned cell; when coupled
 

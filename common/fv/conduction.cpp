@@ -12,12 +12,12 @@ namespace {
 // On orthogonal faces the correction along the face is round-off; without it the stencil is two cells.
 constexpr double orthogonal = 1e-12;
 
-std::vector<PatchStencil> stencils_of(std::span<const HeatCondition> conditions) {
-  std::vector<PatchStencil> stencils;
-  for (const HeatCondition condition : conditions)
-    stencils.push_back(condition == HeatCondition::temperature ? PatchStencil::fixed
-                       : condition == HeatCondition::symmetry  ? PatchStencil::symmetry
-                                                               : PatchStencil::open);
+VertexInterpolation::ByFace stencils_of(const Mesh& mesh, std::span<const HeatCondition> conditions) {
+  VertexInterpolation::ByFace stencils{{}, mesh.cell_material};
+  for (const Index p : mesh.patch_of_boundary())
+    stencils.stencil.push_back(conditions[p] == HeatCondition::temperature ? PatchStencil::fixed
+                               : conditions[p] == HeatCondition::symmetry  ? PatchStencil::symmetry
+                                                                           : PatchStencil::open);
   return stencils;
 }
 
@@ -47,7 +47,7 @@ struct Sums {
 }  // namespace
 
 ConductionOperator::ConductionOperator(const Mesh& mesh, std::span<const HeatCondition> conditions)
-    : mesh_(&mesh), vertices_(mesh, stencils_of(conditions)), faces_(mesh) {
+    : mesh_(&mesh), vertices_(mesh, stencils_of(mesh, conditions)), faces_(mesh) {
   sort_boundary(conditions);
   number_unknowns();
   build_stencils();
@@ -72,7 +72,8 @@ void ConductionOperator::sort_boundary(std::span<const HeatCondition> conditions
     std::fill_n(condition_of_face_.begin() + (patch.ghost_first - n_interior), patch.ghost_count,
                 conditions[p]);
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      if (conditions[p] == HeatCondition::flux) {
+      const bool is_first_side = conditions[p] == HeatCondition::bonded && !is_second_side(f - n_interior);
+      if (conditions[p] == HeatCondition::flux || is_first_side) {
         flux_of_face_[f - n_interior] = static_cast<Index>(flux_faces_.size());
         flux_faces_.push_back(f);
       }
@@ -93,8 +94,17 @@ void ConductionOperator::number_unknowns() {
     boundary[flux_faces_[i] - mesh_->n_interior] = first + n_owned + static_cast<GlobalIndex>(i);
   mesh_->cells.update_ghosts(std::span<GlobalIndex>(cells));
   mesh_->boundary.update_ghosts(std::span<GlobalIndex>(boundary));
+  for (std::size_t b = 0; b < mesh_->twin.size(); ++b)
+    if (mesh_->twin[b] >= 0 && boundary[b] < 0) boundary[b] = boundary[mesh_->twin[b]];
   number_ = std::move(cells);
   number_.insert(number_.end(), boundary.begin(), boundary.end());
+}
+
+/// Fluxes of this rank's rows: faces of its own, and the far sides of its bonded faces.
+bool ConductionOperator::needs_stencil(Index face) const {
+  if (face < mesh_->n_flux_faces()) return true;
+  const Index b = face - mesh_->n_interior;
+  return mesh_->twin[b] >= 0 && mesh_->twin[b] < mesh_->boundary.n_owned();
 }
 
 // |S| n . grad T = |S| [(T_N - T_P) / (d . n) + sum_V (k . c_V) T_V] (2.58); nothing on symmetry planes.
@@ -103,9 +113,10 @@ void ConductionOperator::build_stencils() {
   offset_.assign(1, 0);
   known_offset_.assign(1, 0);
   const Index n_cells = mesh_->cells.n_local();
-  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
+  const Index n_faces = mesh_->twin.empty() ? mesh_->n_flux_faces() : mesh_->n_faces();
+  for (Index f = 0; f < n_faces; ++f) {
     const bool on_boundary = f >= mesh_->n_interior;
-    if (!on_boundary || condition(f) != HeatCondition::symmetry) {
+    if (needs_stencil(f) && (!on_boundary || condition(f) != HeatCondition::symmetry)) {
       const double area = mesh_->reference.face_area[f].norm(), across = area * faces_.inverse_dn[f];
       const Index b = f - mesh_->n_interior;
       nodes.add(mesh_->owner[f], -across);
@@ -160,11 +171,14 @@ void ConductionOperator::build_rows() {
       continue;
     }
     const Index i = flux_of_face_[f - mesh_->n_interior];
-    if (i < 0) {
+    const GlobalIndex own = number_[mesh_->cells.n_local() + f - mesh_->n_interior];
+    if (condition(f) != HeatCondition::flux) {
       add_term({Kind::conduction, true, -1, f}, number_[owner]);
+      if (i < 0) continue;
+      add_term({Kind::conduction, false, 1, f}, own);
+      add_term({Kind::conduction, false, 1, twin_of(f)}, own);
       continue;
     }
-    const GlobalIndex own = number_[mesh_->cells.n_local() + f - mesh_->n_interior];
     add_term({Kind::transfer, true, 1, i}, number_[owner]);
     add_term({Kind::conduction, false, 1, f}, own);
     add_term({Kind::transfer, false, 1, i}, own);
@@ -198,21 +212,30 @@ void ConductionOperator::fill(const Weights& weights, SparseMatrix& matrix) cons
 void ConductionOperator::subtract_known(const Weights& weights, std::span<const double> known,
                                         std::span<double> rhs) const {
   const Index n_owned = mesh_->cells.n_owned();
-  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
+  const auto known_heat = [&](Index f) {
     double heat = 0;
     for (auto i = known_offset_[f]; i < known_offset_[f + 1]; ++i)
       heat += known_coefficient_[i] * known[known_column_[i]];
-    if (heat == 0) continue;
-    heat *= weights.conductivity[f];
+    return heat == 0 ? 0 : heat * weights.conductivity[f];
+  };
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
+    const double heat = known_heat(f);
     const Index flux = f < mesh_->n_interior ? -1 : flux_of_face_[f - mesh_->n_interior];
     if (flux >= 0) {
-      rhs[n_owned + flux] -= heat;
-      continue;
+      const bool is_bonded = condition(f) == HeatCondition::bonded;
+      rhs[n_owned + flux] -= heat + (is_bonded ? known_heat(twin_of(f)) : 0);
+      if (!is_bonded) continue;
     }
+    if (heat == 0) continue;
     if (mesh_->owner[f] < n_owned) rhs[mesh_->owner[f]] += weights.share * heat;
     if (f < mesh_->n_interior && mesh_->neighbour[f] < n_owned)
       rhs[mesh_->neighbour[f]] -= weights.share * heat;
   }
+}
+
+void ConductionOperator::join_twins(std::span<double> boundary) const {
+  for (std::size_t b = 0; b < mesh_->twin.size(); ++b)
+    if (mesh_->twin[b] >= 0 && is_second_side(static_cast<Index>(b))) boundary[b] = boundary[mesh_->twin[b]];
 }
 
 void ConductionOperator::point_values(std::span<const double> cells, std::span<const double> boundary,

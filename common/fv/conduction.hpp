@@ -18,6 +18,7 @@ enum class HeatCondition {
   temperature,  ///< known at faces and vertices
   flux,         ///< heat flux known, or convection: the temperature of each face is an unknown
   symmetry,     ///< nothing flows, cells count as mirrored; no unknown
+  bonded,       ///< one side of a face between two materials; both sides share one unknown
 };
 
 /// Conduction of heat, div(k grad T), thesis (2.35) with the face gradient (2.53)-(2.58), of a scalar.
@@ -27,6 +28,9 @@ enum class HeatCondition {
 /// the owner, from the rows' own stencils,
 ///   cell row       - sum_f q_f over its faces that are not flux faces      + h |S| T_B over those that are
 ///   flux face row    q_f + h |S| T_B
+///   bonded face row  q_f + q_f' of the two sides (the unknown is that of the side with the smaller
+///   boundary_id, listed
+///                    with the flux faces)
 /// so that a flux face's known heat, |S| (q + h T_inf), stands on the right of both (h = 0 without
 /// convection).
 class ConductionOperator {
@@ -37,7 +41,7 @@ class ConductionOperator {
   const Mesh& mesh() const { return *mesh_; }
   const FaceGradient& faces() const { return faces_; }
   const VertexInterpolation& vertices() const { return vertices_; }
-  /// Flux faces of owned cells: unknown n_owned cells + i is entry i.
+  /// Flux faces of owned cells, then first sides of bonded faces: unknown n_owned cells + i is entry i.
   const std::vector<Index>& flux_faces() const { return flux_faces_; }
   const std::vector<Index>& known_points() const { return known_points_; }
   const std::vector<Index>& known_faces() const { return known_faces_; }  ///< of owned cells
@@ -50,7 +54,7 @@ class ConductionOperator {
 
   /// Numbers that turn the stencils into rows.
   struct Weights {
-    std::span<const double> conductivity;  ///< k_f per flux face of the mesh (mesh.n_flux_faces()) [W/(m K)]
+    std::span<const double> conductivity;  ///< k_f per local face (of ghosts: bonded only) [W/(m K)]
     std::span<const double> transfer;      ///< h per entry of flux_faces() [W/(m^2 K)]; empty: none
     std::span<const double> capacity;      ///< on the diagonal of owned cells [W/K]; empty: none
     double share = 1;                      ///< of the conduction in the cell rows (trapezoidal rule: 1/2)
@@ -58,6 +62,9 @@ class ConductionOperator {
   void fill(const Weights& weights, SparseMatrix& matrix) const;
   /// rhs -= (known columns) known, with the values of known points, then of known faces.
   void subtract_known(const Weights& weights, std::span<const double> known, std::span<double> rhs) const;
+
+  /// Gives the second side of bonded faces the value of the first (`boundary`: up-to-date ghosts).
+  void join_twins(std::span<double> boundary) const;
 
   /// Values of all local points: interpolated, the known ones set. Collective.
   void point_values(std::span<const double> cells, std::span<const double> boundary,
@@ -87,6 +94,11 @@ class ConductionOperator {
   void sort_boundary(std::span<const HeatCondition> conditions);
   void number_unknowns();
   void build_stencils();
+  bool is_second_side(Index entry) const {
+    return mesh_->boundary_id[mesh_->twin[entry]] < mesh_->boundary_id[entry];
+  }
+  Index twin_of(Index face) const { return mesh_->n_interior + mesh_->twin[face - mesh_->n_interior]; }
+  bool needs_stencil(Index face) const;
   void build_rows();
   void add_term(const Term& term, GlobalIndex row);
 

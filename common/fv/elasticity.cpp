@@ -9,12 +9,12 @@
 namespace couplet {
 namespace {
 
-std::vector<PatchStencil> stencils_of(std::span<const ElasticCondition> conditions) {
-  std::vector<PatchStencil> stencils;
-  for (const ElasticCondition condition : conditions)
-    stencils.push_back(condition == ElasticCondition::prescribed ? PatchStencil::fixed
-                       : condition == ElasticCondition::symmetry ? PatchStencil::symmetry
-                                                                 : PatchStencil::open);
+VertexInterpolation::ByFace stencils_of(const ElasticBoundary& boundary, const ElasticBody& body) {
+  VertexInterpolation::ByFace stencils{{}, body.material_of_cell};
+  for (const ElasticCondition condition : boundary.condition)
+    stencils.stencil.push_back(condition == ElasticCondition::prescribed ? PatchStencil::fixed
+                               : condition == ElasticCondition::symmetry ? PatchStencil::symmetry
+                                                                         : PatchStencil::open);
   return stencils;
 }
 
@@ -64,152 +64,218 @@ struct ElasticOperator::Row {
   Part nodes, known;
 };
 
-ElasticOperator::ElasticOperator(const Mesh& mesh, std::span<const ElasticCondition> conditions,
-                                 const LameConstants& lame)
-    : mesh_(&mesh), lame_(lame), vertices_(mesh, stencils_of(conditions)), faces_(mesh) {
-  sort_boundary(conditions);
+ElasticOperator::ElasticOperator(const Mesh& mesh, ElasticBoundary boundary, ElasticBody body)
+    : mesh_(&mesh),
+      boundary_(std::move(boundary)),
+      body_(std::move(body)),
+      vertices_(mesh, stencils_of(boundary_, body_)),
+      constraints_(mesh, boundary_, vertices_),
+      faces_(mesh) {
+  sort_boundary();
   number_unknowns();
-  assemble();
 }
 
-void ElasticOperator::sort_boundary(std::span<const ElasticCondition> conditions) {
-  const Index n_interior = mesh_->n_interior;
-  condition_of_face_.resize(mesh_->boundary.n_local());
+ElasticOperator::ElasticOperator(const Mesh& mesh, std::span<const ElasticCondition> conditions,
+                                 const LameConstants& lame)
+    : ElasticOperator(mesh, boundary_of_patches(mesh, conditions), {{lame}, {}}) {}
+
+void ElasticOperator::sort_boundary() {
   known_of_face_.assign(mesh_->boundary.n_local(), -1);
-  known_of_point_.assign(mesh_->points.n_local(), -1);
-  for (Index v = 0; v < mesh_->points.n_local(); ++v)
-    if (vertices_.is_fixed(v)) {
-      known_of_point_[v] = static_cast<Index>(prescribed_points_.size());
-      prescribed_points_.push_back(v);
-    }
-  auto next = static_cast<Index>(prescribed_points_.size());
-  for (std::size_t p = 0; p < mesh_->patches.size(); ++p) {
-    const Patch& patch = mesh_->patches[p];
-    std::fill_n(condition_of_face_.begin() + (patch.first - n_interior), patch.count, conditions[p]);
-    std::fill_n(condition_of_face_.begin() + (patch.ghost_first - n_interior), patch.ghost_count,
-                conditions[p]);
-    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      if (conditions[p] == ElasticCondition::traction) traction_faces_.push_back(f);
-      if (conditions[p] == ElasticCondition::prescribed) {
-        prescribed_faces_.push_back(f);
-        known_of_face_[f - n_interior] = next++;
-      }
-    }
+  for (Index f = mesh_->n_interior; f < mesh_->n_flux_faces(); ++f) {
+    const Index b = f - mesh_->n_interior;
+    const ElasticCondition here = condition(f);
+    const bool is_second =
+        here == ElasticCondition::bonded && mesh_->boundary_id[mesh_->twin[b]] < mesh_->boundary_id[b];
+    if (here != ElasticCondition::prescribed && here != ElasticCondition::symmetry && !is_second)
+      unknown_faces_.push_back(f);
+    if (here != ElasticCondition::prescribed && here != ElasticCondition::support) continue;
+    known_of_face_[b] = static_cast<Index>(n_known());
+    known_faces_.push_back(f);
   }
 }
 
 void ElasticOperator::number_unknowns() {
   const Index n_owned = mesh_->cells.n_owned(), n_cells = mesh_->cells.n_local();
-  const GlobalIndex first = exclusive_scan(mesh_->comm, GlobalIndex(n_owned) + std::ssize(traction_faces_));
+  const GlobalIndex first = exclusive_scan(mesh_->comm, GlobalIndex(n_owned) + std::ssize(unknown_faces_));
   std::vector<GlobalIndex> cells(n_cells, -1), boundary(mesh_->boundary.n_local(), -1);
   for (Index c = 0; c < n_owned; ++c) cells[c] = first + c;
-  for (std::size_t i = 0; i < traction_faces_.size(); ++i)
-    boundary[traction_faces_[i] - mesh_->n_interior] = first + n_owned + static_cast<GlobalIndex>(i);
+  for (std::size_t i = 0; i < unknown_faces_.size(); ++i)
+    boundary[unknown_faces_[i] - mesh_->n_interior] = first + n_owned + static_cast<GlobalIndex>(i);
   mesh_->cells.update_ghosts(std::span<GlobalIndex>(cells));
   mesh_->boundary.update_ghosts(std::span<GlobalIndex>(boundary));
+  for (std::size_t b = 0; b < mesh_->twin.size(); ++b)
+    if (mesh_->twin[b] >= 0 && boundary[b] < 0) boundary[b] = boundary[mesh_->twin[b]];
   number_ = std::move(cells);
   number_.insert(number_.end(), boundary.begin(), boundary.end());
 }
 
-void ElasticOperator::assemble() {
-  Row row{Row::Part(number_.size()), Row::Part(prescribed_points_.size() + prescribed_faces_.size())};
+void ElasticOperator::assemble() const {
+  Row row{Row::Part(number_.size()), Row::Part(n_known())};
   const Csr cell_faces = faces_of_cells(*mesh_);
   const Index n_owned = mesh_->cells.n_owned();
   for (Index c = 0; c < n_owned; ++c) {
-    for (const Index f : cell_faces[c]) {
-      if (f >= mesh_->n_interior && condition(f) == ElasticCondition::traction) continue;
-      add_face(f, mesh_->owner[f] == c ? -1.0 : 1.0, row);
-    }
+    add_cell(c, cell_faces[c], row);
     store(c, row);
-    row.nodes.clear();
-    row.known.clear();
   }
-  for (std::size_t i = 0; i < traction_faces_.size(); ++i) {
-    add_face(traction_faces_[i], 1.0, row);
+  for (std::size_t i = 0; i < unknown_faces_.size(); ++i) {
+    add_unknown_face(unknown_faces_[i], row);
     store(n_owned + static_cast<Index>(i), row);
-    row.nodes.clear();
-    row.known.clear();
   }
 }
 
-// Force on the face out of the owner, with g = n . grad u and c_V, k as in FaceGradient (2.77):
+void ElasticOperator::add_cell(Index cell, std::span<const Index> faces, Row& row) const {
+  for (const Index f : faces) {
+    const double out = (mesh_->owner[f] == cell ? -1 : 1) * area(f);
+    const ElasticCondition here = f < mesh_->n_interior ? ElasticCondition::bonded : condition(f);
+    switch (here) {
+      case ElasticCondition::traction:
+        break;
+      case ElasticCondition::symmetry:
+        add_flux(f, out * faces_.normal[f] * faces_.normal[f].transpose(), row);
+        break;
+      case ElasticCondition::support: {
+        const ElasticSupport& s = support(f);
+        if (!s.known.isZero(0)) add_flux(f, out * s.known, row);
+        if (!s.spring.isZero(0)) {
+          const Tensor3 held = -out * (Tensor3::Identity() - s.known) * s.spring;
+          add_face_node(f, held, row);
+          row.known.add(known_of_face(f), -held);
+        }
+        break;
+      }
+      default:
+        add_flux(f, out * Tensor3::Identity(), row);
+    }
+  }
+}
+
+void ElasticOperator::add_unknown_face(Index face, Row& row) const {
+  const LameConstants lame = lame_at(face);
+  const double size = area(face), stiffness = (2 * lame.mu + lame.lambda) * size;
+  switch (condition(face)) {
+    case ElasticCondition::support: {
+      const ElasticSupport& s = support(face);
+      const Tensor3 open = Tensor3::Identity() - s.known;
+      add_flux(face, size * open, row);
+      const Tensor3 held = size * open * s.spring + stiffness * faces_.inverse_dn[face] * s.known;
+      add_face_node(face, held, row);
+      row.known.add(known_of_face(face), -held);
+      break;
+    }
+    case ElasticCondition::zero_gradient: {
+      const Tensor3 across = stiffness * faces_.inverse_dn[face] * Tensor3::Identity();
+      row.nodes.add(mesh_->owner[face], -across);
+      add_face_node(face, across, row);
+      for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e)
+        add_vertex(mesh_->face_points.index[e],
+                   stiffness * faces_.skew[face].dot(faces_.tangential[e]) * Tensor3::Identity(), row);
+      break;
+    }
+    case ElasticCondition::bonded: {
+      const Index twin = mesh_->n_interior + mesh_->twin[face - mesh_->n_interior];
+      add_flux(face, size * Tensor3::Identity(), row);
+      add_flux(twin, area(twin) * Tensor3::Identity(), row);
+      break;
+    }
+    default:
+      add_flux(face, size * Tensor3::Identity(), row);
+  }
+}
+
+LameConstants ElasticOperator::lame_at(Index face) const {
+  const LameConstants here = lame(mesh_->owner[face]);
+  if (body_.lame.size() == 1 || face >= mesh_->n_interior) return here;
+  const LameConstants there = lame(mesh_->neighbour[face]);
+  return {0.5 * (here.mu + there.mu), 0.5 * (here.lambda + there.lambda)};
+}
+
+// scale . sigma . n, with g = n . grad u and c_V, k as in FaceGradient (2.77):
 //   sigma . n = mu (g + n (n . g) + grad_t(n . u)) + lambda n (n . g + tr grad_t u)
 //   g = (u_N - u_P) / (d . n) + sum_V (k . c_V) u_V
-void ElasticOperator::add_face(Index face, double sign, Row& row) const {
+void ElasticOperator::add_flux(Index face, const Tensor3& scale, Row& row) const {
   const bool on_boundary = face >= mesh_->n_interior;
-  const bool symmetric = on_boundary && condition(face) == ElasticCondition::symmetry;
   const Vec3& n = faces_.normal[face];
   const Tensor3 nn = n * n.transpose(), identity = Tensor3::Identity();
-  const double mu = lame_.mu, lambda = lame_.lambda;
-  Tensor3 scale = sign * mesh_->reference.face_area[face].norm() * identity;
-  if (symmetric) scale = scale * nn;  // no shear on a symmetry plane
-
+  const auto [mu, lambda] = lame_at(face);
   const Tensor3 across = scale * (mu * (identity + nn) + lambda * nn) * faces_.inverse_dn[face];
   row.nodes.add(mesh_->owner[face], -across);
-  if (!on_boundary) {
+  if (!on_boundary)
     row.nodes.add(mesh_->neighbour[face], across);
-  } else if (!symmetric) {
-    const Index b = face - mesh_->n_interior;
-    if (known_of_face_[b] >= 0)
-      row.known.add(known_of_face_[b], across);
-    else
-      row.nodes.add(mesh_->cells.n_local() + b, across);
-  }
+  else if (condition(face) == ElasticCondition::prescribed)
+    row.known.add(known_of_face(face), across);
+  else if (condition(face) != ElasticCondition::symmetry)
+    add_face_node(face, across, row);
   for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e) {
-    const Index v = mesh_->face_points.index[e];
     const Vec3& c = faces_.tangential[e];
     const double kc = faces_.skew[face].dot(c);
-    const Tensor3 block =
-        scale * (mu * (kc * (identity + nn) + c * n.transpose()) + lambda * (kc * nn + n * c.transpose()));
-    if (known_of_point_[v] >= 0) {
-      row.known.add(known_of_point_[v], block);
-      continue;
-    }
-    const Tensor3 projected = vertices_.on_symmetry(v) ? Tensor3(block * vertices_.projector(v)) : block;
-    const auto nodes = vertices_.nodes(v);
-    const auto weights = vertices_.weights(v);
-    for (std::size_t i = 0; i < nodes.size(); ++i) row.nodes.add(nodes[i], weights[i] * projected);
+    add_vertex(
+        mesh_->face_points.index[e],
+        scale * (mu * (kc * (identity + nn) + c * n.transpose()) + lambda * (kc * nn + n * c.transpose())),
+        row);
   }
 }
 
-void ElasticOperator::store(Index unknown_node, const Row& row) {
+void ElasticOperator::add_vertex(Index point, const Tensor3& block, Row& row) const {
+  const Index column = constraints_.column(point);
+  if (column >= 0) row.known.add(column, block);
+  if (constraints_.is_fixed(point)) return;
+  const Tensor3 free =
+      constraints_.is_constrained(point) ? Tensor3(block * constraints_.free_part(point)) : block;
+  const auto nodes = vertices_.nodes(point);
+  const auto weights = vertices_.weights(point);
+  for (std::size_t i = 0; i < nodes.size(); ++i) row.nodes.add(nodes[i], weights[i] * free);
+}
+
+void ElasticOperator::add_face_node(Index face, const Tensor3& block, Row& row) const {
+  row.nodes.add(mesh_->cells.n_local() + face - mesh_->n_interior, block);
+}
+
+void ElasticOperator::store(Index unknown_node, Row& row) const {
   const int dim = mesh_->dim;
   const bool is_cell = unknown_node < mesh_->cells.n_owned();
-  const Index node = is_cell
-                         ? unknown_node
-                         : mesh_->cells.n_local() +
-                               (traction_faces_[unknown_node - mesh_->cells.n_owned()] - mesh_->n_interior);
+  const GlobalIndex number =
+      number_[is_cell ? unknown_node
+                      : mesh_->cells.n_local() +
+                            (unknown_faces_[unknown_node - mesh_->cells.n_owned()] - mesh_->n_interior)];
+  Assembled& to = assembled_;
   for (int a = 0; a < dim; ++a)
     for (std::size_t i = 0; i < row.nodes.column.size(); ++i)
       for (int b = 0; b < dim; ++b) {
-        if (is_cell && a == b && row.nodes.column[i] == node) diagonal_.push_back(std::ssize(value_));
-        row_.push_back(number_[node] * dim + a);
-        column_.push_back(number_[row.nodes.column[i]] * dim + b);
-        value_.push_back(row.nodes.block[i](a, b));
+        const GlobalIndex column = number_[row.nodes.column[i]];
+        if (is_cell && a == b && column == number) to.diagonal.push_back(std::ssize(to.value));
+        to.row.push_back(number * dim + a);
+        to.column.push_back(column * dim + b);
+        to.value.push_back(row.nodes.block[i](a, b));
       }
   for (std::size_t i = 0; i < row.known.column.size(); ++i) {
-    known_column_.push_back(row.known.column[i]);
+    to.known_column.push_back(row.known.column[i]);
     for (int a = 0; a < dim; ++a)
-      for (int b = 0; b < dim; ++b) known_block_.push_back(row.known.block[i](a, b));
+      for (int b = 0; b < dim; ++b) to.known_block.push_back(row.known.block[i](a, b));
   }
-  known_offset_.push_back(std::ssize(known_column_));
+  to.known_offset.push_back(std::ssize(to.known_column));
+  row.nodes.clear();
+  row.known.clear();
 }
 
 SparseMatrix ElasticOperator::matrix(std::span<const double> inertia) const {
-  SparseMatrix matrix(mesh_->comm, static_cast<GlobalIndex>(n_unknowns()), row_, column_, mesh_->dim);
-  std::vector<double> values = value_;
+  if (assembled_.row.empty()) assemble();
+  SparseMatrix matrix(mesh_->comm, static_cast<GlobalIndex>(n_unknowns()), assembled_.row, assembled_.column,
+                      mesh_->dim);
+  std::vector<double> values = assembled_.value;
   for (std::size_t c = 0; c < inertia.size(); ++c)
-    for (int a = 0; a < mesh_->dim; ++a) values[diagonal_[c * mesh_->dim + a]] += inertia[c];
+    for (int a = 0; a < mesh_->dim; ++a) values[assembled_.diagonal[c * mesh_->dim + a]] += inertia[c];
   matrix.fill(values);
   return matrix;
 }
 
 void ElasticOperator::subtract_known(std::span<const double> known, std::span<double> rhs) const {
+  if (assembled_.row.empty()) assemble();
   const int dim = mesh_->dim;
-  for (std::size_t r = 0; r + 1 < known_offset_.size(); ++r)
-    for (auto i = known_offset_[r]; i < known_offset_[r + 1]; ++i) {
-      const double* block = known_block_.data() + i * dim * dim;
-      const double* u = known.data() + std::size_t(known_column_[i]) * dim;
+  const auto& offset = assembled_.known_offset;
+  for (std::size_t r = 0; r + 1 < offset.size(); ++r)
+    for (auto i = offset[r]; i < offset[r + 1]; ++i) {
+      const double* block = assembled_.known_block.data() + i * dim * dim;
+      const double* u = known.data() + std::size_t(assembled_.known_column[i]) * dim;
       for (int a = 0; a < dim; ++a)
         for (int b = 0; b < dim; ++b) rhs[r * dim + a] -= block[a * dim + b] * u[b];
     }
@@ -236,8 +302,9 @@ Tensor3 ElasticOperator::gradient(Index face, std::span<const double> cells, std
   return n * normal.transpose() + tangential;
 }
 
-Tensor3 ElasticOperator::stress(const Tensor3& gradient) const {
-  return lame_.mu * (gradient + gradient.transpose()) + lame_.lambda * gradient.trace() * Tensor3::Identity();
+Tensor3 ElasticOperator::stress(Index cell, const Tensor3& gradient) const {
+  const auto [mu, lambda] = lame(cell);
+  return mu * (gradient + gradient.transpose()) + lambda * gradient.trace() * Tensor3::Identity();
 }
 
 }  // namespace couplet

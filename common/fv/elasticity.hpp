@@ -6,19 +6,14 @@
 #include <vector>
 
 #include "common/base/types.hpp"
+#include "common/fv/elastic_boundary.hpp"
 #include "common/fv/face_gradient.hpp"
+#include "common/fv/vertex_constraints.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/linalg/matrix.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet {
-
-/// What is known of the displacement on a patch.
-enum class ElasticCondition {
-  traction,    ///< the force is known, the displacement of each face is an unknown
-  prescribed,  ///< the displacement is known at faces and vertices
-  symmetry,    ///< no displacement across the patch, no shear on it; no unknown
-};
 
 /// sigma = mu (grad u + grad u^T) + lambda tr(grad u) I [Pa]. Plane stress: lambda is 2 lambda mu / (lambda +
 /// 2 mu).
@@ -26,69 +21,127 @@ struct LameConstants {
   double mu = 0, lambda = 0;
 };
 
-/// Divergence of the linear-elastic stress on cells and traction faces: thesis (2.56)-(2.58) and (2.77) (with
+/// What the operator is made of. `lame`: one, or one a local cell (ghosts included). `material_of_cell`: per
+/// local cell, empty when there is one material; where it changes the faces must be bonded.
+struct ElasticBody {
+  std::vector<LameConstants> lame;
+  std::vector<int> material_of_cell;
+};
+
+/// Divergence of the linear-elastic stress on cells and boundary faces: thesis (2.56)-(2.58) and (2.77) (with
 /// errata), all displacement components coupled, reference configuration.
 ///
-/// Row of a cell:          - sum_f sigma_f . S_f   over its faces that are not traction faces (those bring a
-/// known force) Row of a traction face:   sigma_f . S_f Unknown nodes of a rank: its owned cells, then its
-/// traction faces patch by patch; `dim` unknowns a node. Known columns: displacement of the points, then of
-/// the faces, of prescribed patches (of what this rank needs).
+/// Unknown nodes of a rank: its owned cells, then its boundary faces with an unknown (unknown_faces()) in the
+/// order of the faces; `dim` unknowns a node. The two sides of a bonded face share the unknown of the side
+/// with the smaller boundary_id, which holds the row. Known columns of a rank: points with a known value,
+/// then prescribed and support faces of owned cells in the order of the faces; `dim` values a column.
+///
+/// Vertex values: u_V = F_V sum_i w_i u_i + g_V with the weights of VertexInterpolation and F_V, g_V of
+/// VertexConstraints.
+///
+/// Row of a cell, [A u + K g] = - sum_f [...] with, by the condition of face f (n out of the cell, S its
+/// area):
+///   interior, prescribed, zero-gradient, bonded    sigma_f . n S
+///   symmetry                                       n n . sigma_f . n S, with the displacement of the face =
+///   0 along n traction                                       nothing support P sigma_f . n S - (I - P) k S
+///   (u_B - g)
+/// Row of a face with an unknown:
+///   traction                                       sigma_f . n S
+///   support                                        (I - P) [sigma_f . n S + k S (u_B - g)] + s P (u_B - g)
+///   zero-gradient                                  (2 mu + lambda) S n . grad u
+///   bonded                                         sigma_f . n S + sigma_f' . n' S, of the two sides
+/// with s = (2 mu + lambda) S / (d . n). The known forces stand on the right: F of a traction face in its row
+/// and in its cell's, (I - P) F of a support likewise (add_forces()).
 class ElasticOperator {
  public:
-  /// `conditions`: one a patch. Collective.
+  ElasticOperator(const Mesh& mesh, ElasticBoundary boundary, ElasticBody body);
+  /// One condition a patch, one material. Collective.
   ElasticOperator(const Mesh& mesh, std::span<const ElasticCondition> conditions, const LameConstants& lame);
 
   const VertexInterpolation& vertices() const { return vertices_; }
+  const VertexConstraints& constraints() const { return constraints_; }
   const FaceGradient& faces() const { return faces_; }
-  /// Traction faces of owned cells (face indices): unknown node n_owned cells + i is entry i.
-  const std::vector<Index>& traction_faces() const { return traction_faces_; }
-  const std::vector<Index>& prescribed_points() const { return prescribed_points_; }
-  /// Prescribed faces of owned cells (face indices).
-  const std::vector<Index>& prescribed_faces() const { return prescribed_faces_; }
-  /// Known column of a point or of a boundary face (face index); -1: none.
-  Index known_of_point(Index point) const { return known_of_point_[point]; }
+  const ElasticBoundary& boundary() const { return boundary_; }
+  /// Faces of owned cells with an unknown of their own (face indices): unknown node n_owned cells + i is
+  /// entry i.
+  const std::vector<Index>& unknown_faces() const { return unknown_faces_; }
+  /// Faces of owned cells with a known column (face indices): column constraints().points().size() + i is
+  /// entry i.
+  const std::vector<Index>& known_faces() const { return known_faces_; }
+  std::size_t n_known() const { return constraints_.points().size() + known_faces_.size(); }
+  /// Known column of a boundary face (face index); -1: none.
   Index known_of_face(Index face) const { return known_of_face_[face - mesh_->n_interior]; }
   /// Unknowns of this rank.
-  std::size_t n_unknowns() const { return (mesh_->cells.n_owned() + traction_faces_.size()) * mesh_->dim; }
-  ElasticCondition condition(Index face) const { return condition_of_face_[face - mesh_->n_interior]; }
+  std::size_t n_unknowns() const { return (mesh_->cells.n_owned() + unknown_faces_.size()) * mesh_->dim; }
+  ElasticCondition condition(Index face) const { return boundary_.condition[face - mesh_->n_interior]; }
+  const ElasticSupport& support(Index face) const { return boundary_.support(face - mesh_->n_interior); }
+  const LameConstants& lame(Index cell) const { return body_.lame[body_.lame.size() == 1 ? 0 : cell]; }
 
   /// The matrix with `inertia[c]` added on the diagonal of owned cell c (empty: none). Collective.
   SparseMatrix matrix(std::span<const double> inertia) const;
-  /// rhs -= (known columns) known; `known`: dim values for each prescribed point, then for each prescribed
-  /// face.
+  /// rhs -= K known; `known`: dim values a known column.
   void subtract_known(std::span<const double> known, std::span<double> rhs) const;
+  /// Adds the known forces [N] of the boundary faces of owned cells (`dim` values a face) to the right-hand
+  /// side; gives the sum of what this rank added to its cells. Faces whose displacement is known take none.
+  Vec3 add_forces(std::span<const double> forces, std::span<double> rhs) const;
+
+  /// Adds the forces of an isotropic stress - p I beside that of the displacement (`pressure`: p [Pa] per
+  /// local face, boundary faces of ghost cells included): the rows' sigma becomes sigma - p I.
+  void add_pressure(std::span<const double> pressure, std::span<double> rhs) const;
+
+  /// Sets what is known of the values on boundary faces of owned cells (`faces`: dim a local boundary face):
+  /// prescribed faces, the known directions of supports.
+  void impose_known(std::span<const double> known, std::span<double> faces) const;
+  /// Gives the second side of bonded faces the value of the first. The ghosts of `faces` must be up to date.
+  void join_twins(std::span<double> faces) const;
 
   /// Gradient at a face, entry (i, j) = d u_j / d x_i; packed displacements of cells, boundary faces and
   /// points.
   Tensor3 gradient(Index face, std::span<const double> cells, std::span<const double> boundary,
                    std::span<const double> points) const;
-  Tensor3 stress(const Tensor3& gradient) const;
+  /// Stress for the gradient in a cell (or at one of its faces).
+  Tensor3 stress(Index cell, const Tensor3& gradient) const;
+  /// Force [N] with which a boundary face is held: along P and by springs (support), all of it (prescribed,
+  /// zero-gradient), across the plane (symmetry), none (traction). `stress` there, `known` in the order of
+  /// the columns.
+  Vec3 holding_force(Index face, const Tensor3& stress, std::span<const double> faces,
+                     std::span<const double> known) const;
 
  private:
   struct Row;
-  void sort_boundary(std::span<const ElasticCondition> conditions);
+  void sort_boundary();
   void number_unknowns();
-  void assemble();
-  void add_face(Index face, double sign, Row& row) const;
-  void store(Index unknown_node, const Row& row);
+  void assemble() const;
+  void add_cell(Index cell, std::span<const Index> faces, Row& row) const;
+  void add_unknown_face(Index face, Row& row) const;
+  void add_flux(Index face, const Tensor3& scale, Row& row) const;
+  void add_vertex(Index point, const Tensor3& block, Row& row) const;
+  void add_face_node(Index face, const Tensor3& block, Row& row) const;
+  void store(Index unknown_node, Row& row) const;
+  LameConstants lame_at(Index face) const;
+  double area(Index face) const { return mesh_->reference.face_area[face].norm(); }
 
   const Mesh* mesh_;
-  LameConstants lame_;
-  std::vector<ElasticCondition> condition_of_face_;  // per entry of mesh.boundary
+  ElasticBoundary boundary_;
+  ElasticBody body_;
   VertexInterpolation vertices_;
+  VertexConstraints constraints_;
   FaceGradient faces_;
-  std::vector<Index> traction_faces_, prescribed_points_, prescribed_faces_;
-  std::vector<Index> known_of_point_, known_of_face_;  // column, -1: not prescribed (or not needed) here
-  std::vector<GlobalIndex> number_;                    // of each local node as unknown, -1: none
+  std::vector<Index> unknown_faces_, known_faces_;
+  std::vector<Index> known_of_face_;  // column, -1: none (or not needed) here
+  std::vector<GlobalIndex> number_;   // of each local node as unknown, -1: none
 
-  // Triplets of the matrix, and where the diagonals of the cell rows are among them.
-  std::vector<GlobalIndex> row_, column_;
-  std::vector<double> value_;
-  std::vector<std::int64_t> diagonal_;
-  // The known columns: blocks of dim x dim.
-  std::vector<std::int64_t> known_offset_{0};
-  std::vector<Index> known_column_;
-  std::vector<double> known_block_;
+  /// Triplets of the matrix and where the diagonals of the cell rows are among them; the known columns as
+  /// blocks of dim x dim. Made when first asked for.
+  struct Assembled {
+    std::vector<GlobalIndex> row, column;
+    std::vector<double> value;
+    std::vector<std::int64_t> diagonal;
+    std::vector<std::int64_t> known_offset{0};
+    std::vector<Index> known_column;
+    std::vector<double> known_block;
+  };
+  mutable Assembled assembled_;
 };
 
 }  // namespace couplet

@@ -6,6 +6,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "common/mesh/transpose.hpp"
+
 namespace couplet {
 namespace {
 
@@ -14,8 +16,15 @@ namespace {
 constexpr double spanned = 1e-12;
 // No weighted mean of the nodes reaches the point: the weights cancel to this part of sum 1/d.
 constexpr double reachable = 1e-8;
-// Normals of a symmetry patch that differ by less than about 2 degrees are one plane.
-constexpr double one_plane = 1e-3;
+// The weighted mean of the nodes misses the point by this part of their distance: linear fields are not
+// exact.
+constexpr double exact = 1e-6;
+// Ratio of the eigenvalues of the mean of n n^T over the symmetry faces of a patch around a vertex, tan^2 of
+// half the angle between two normals: below the first (1 degree) the faces are one plane, above the second
+// (40 degrees) two.
+constexpr double one_plane = 1e-4, two_planes = 0.13;
+// Planes of different patches whose normals differ by less than this (0.06 degrees) are one.
+constexpr double new_direction = 1e-3;
 
 /// Least-norm solution of M lambda = -s.
 Vec3 solve_lambda(const Tensor3& m, const Vec3& s, int dim) {
@@ -37,14 +46,35 @@ Vec3 solve_lambda(const Tensor3& m, const Vec3& s, int dim) {
   return lambda;
 }
 
-/// I - sum of the directions n that span the normals (sum of n n^T given).
-Tensor3 projector_from(const Tensor3& normals) {
-  const Eigen::SelfAdjointEigenSolver<Tensor3> eigen(normals);
-  Tensor3 projector = Tensor3::Identity();
-  for (int i = 0; i < 3; ++i)
-    if (eigen.eigenvalues()[i] > one_plane * eigen.eigenvalues()[2])
-      projector -= eigen.eigenvectors().col(i) * eigen.eigenvectors().col(i).transpose();
-  return projector;
+VertexInterpolation::ByFace by_face(const Mesh& mesh, std::span<const PatchStencil> stencils) {
+  assert(stencils.size() == mesh.patches.size());
+  VertexInterpolation::ByFace result;
+  for (const Index p : mesh.patch_of_boundary()) result.stencil.push_back(stencils[p]);
+  return result;
+}
+
+/// The directions across the planes of one symmetry patch at a vertex, from the mean of n n^T.
+struct Planes {
+  std::vector<Vec3> normals;
+  bool bent = false;  // neither flat nor an edge
+};
+
+Planes planes_of(const Tensor3& mean) {
+  const Eigen::SelfAdjointEigenSolver<Tensor3> eigen(mean);
+  Planes planes{{eigen.eigenvectors().col(2)}};
+  for (int i = 1; i >= 0; --i) {
+    const double ratio = eigen.eigenvalues()[i] / eigen.eigenvalues()[2];
+    if (ratio > two_planes) planes.normals.push_back(eigen.eigenvectors().col(i));
+    planes.bent = planes.bent || (ratio > one_plane && ratio <= two_planes);
+  }
+  return planes;
+}
+
+/// Takes the direction n away from a projector.
+void take_away(const Vec3& n, Tensor3& projector) {
+  const Vec3 across = projector * n;
+  if (across.norm() < new_direction) return;
+  projector -= across * across.transpose() / across.squaredNorm();
 }
 
 }  // namespace
@@ -62,113 +92,146 @@ struct VertexInterpolation::Around {
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
       for (const Index p : mesh.cell_points[c]) complete[p] = 1;
   }
-
-  /// Rows [first, size) of `rows` by their entries; numbered from 0 at `first`.
-  static Csr transpose(const Csr& rows, Index first, Index n_entries) {
-    Csr result;
-    result.offset.assign(n_entries + 1, 0);
-    for (Index i = first; i < rows.size(); ++i)
-      for (const Index e : rows[i]) ++result.offset[e + 1];
-    for (Index e = 0; e < n_entries; ++e) result.offset[e + 1] += result.offset[e];
-    result.index.resize(result.offset.back());
-    std::vector<Index> next(result.offset.begin(), result.offset.end() - 1);
-    for (Index i = first; i < rows.size(); ++i)
-      for (const Index e : rows[i]) result.index[next[e]++] = i - first;
-    return result;
-  }
 };
 
 VertexInterpolation::VertexInterpolation(const Mesh& mesh, std::span<const PatchStencil> stencils)
+    : VertexInterpolation(mesh, by_face(mesh, stencils)) {}
+
+VertexInterpolation::VertexInterpolation(const Mesh& mesh, const ByFace& boundary)
     : mesh_(&mesh), n_cells_(mesh.cells.n_local()) {
-  assert(stencils.size() == mesh.patches.size());
-  std::vector<PatchStencil> kind_of_face(mesh.boundary.n_local(), PatchStencil::open);
-  for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
-    const Patch& patch = mesh.patches[p];
-    std::fill_n(kind_of_face.begin() + (patch.first - mesh.n_interior), patch.count, stencils[p]);
-    std::fill_n(kind_of_face.begin() + (patch.ghost_first - mesh.n_interior), patch.ghost_count, stencils[p]);
-  }
+  assert(Index(boundary.stencil.size()) == mesh.boundary.n_local());
   const Around around(mesh);
-  gather_rows(around, kind_of_face);
-  find_projectors(around, kind_of_face);
+  gather_rows(around, boundary);
+  find_projectors(around, boundary.stencil);
   update(mesh.reference, mesh.reference_points);
 }
 
-void VertexInterpolation::gather_rows(const Around& around, std::span<const PatchStencil> kind_of_face) {
+void VertexInterpolation::gather_rows(const Around& around, const ByFace& boundary) {
   const Index n_points = mesh_->points.n_local();
   fixed_.assign(n_points, 0);
   offset_.assign(1, 0);
+  if (!boundary.material_of_cell.empty()) ends_first_.assign(n_points, -1);
   for (Index v = 0; v < n_points; ++v) {
     if (around.complete[v]) {
       const auto faces = around.faces[v];
       fixed_[v] = std::any_of(faces.begin(), faces.end(),
-                              [&](Index b) { return kind_of_face[b] == PatchStencil::fixed; });
+                              [&](Index b) { return boundary.stencil[b] == PatchStencil::fixed; });
       const PatchStencil wanted = fixed_[v] ? PatchStencil::fixed : PatchStencil::open;
       if (!fixed_[v]) node_.insert(node_.end(), around.cells[v].begin(), around.cells[v].end());
       for (const Index b : faces)
-        if (kind_of_face[b] == wanted) node_.push_back(n_cells_ + b);
+        if (boundary.stencil[b] == wanted) node_.push_back(n_cells_ + b);
+      if (!boundary.material_of_cell.empty() && !fixed_[v]) group_by_material(v, boundary.material_of_cell);
     }
     offset_.push_back(static_cast<std::int64_t>(node_.size()));
   }
   weight_.assign(node_.size(), 0);
 }
 
-void VertexInterpolation::find_projectors(const Around& around, std::span<const PatchStencil> kind_of_face) {
+/// Sorts the nodes of the point whose row is being made, and notes where those of each material end.
+void VertexInterpolation::group_by_material(Index point, std::span<const int> material_of_cell) {
+  const auto material = [&](Index node) {
+    return material_of_cell[node < n_cells_ ? node : mesh_->owner[mesh_->n_interior + node - n_cells_]];
+  };
+  const auto first = node_.begin() + offset_.back();
+  std::stable_sort(first, node_.end(), [&](Index a, Index b) { return material(a) < material(b); });
+  if (first == node_.end() || material(*first) == material(node_.back())) return;
+  ends_first_[point] = static_cast<Index>(ends_.size());
+  for (auto i = first + 1; i != node_.end(); ++i)
+    if (material(*i) != material(*(i - 1))) ends_.push_back(i - node_.begin());
+  ends_.push_back(std::ssize(node_));
+}
+
+void VertexInterpolation::find_projectors(const Around& around, std::span<const PatchStencil> stencil) {
   const Index n_points = mesh_->points.n_local();
   projector_of_.assign(n_points, 0);
   projectors_.assign(1, Tensor3::Identity());
+  if (std::ranges::count(stencil, PatchStencil::symmetry) == 0) return;
+  const std::vector<Index> patch_of_face = mesh_->patch_of_boundary();
   for (Index v = 0; v < n_points; ++v) {
     if (!around.complete[v] || fixed_[v]) continue;
-    Tensor3 normals = Tensor3::Zero();
-    for (const Index b : around.faces[v])
-      if (kind_of_face[b] == PatchStencil::symmetry) {
+    Tensor3 projector = Tensor3::Identity();
+    for (std::size_t p = 0; p < mesh_->patches.size(); ++p) {
+      Tensor3 mean = Tensor3::Zero();
+      for (const Index b : around.faces[v]) {
+        if (stencil[b] != PatchStencil::symmetry || patch_of_face[b] != Index(p)) continue;
         const Vec3 n = mesh_->reference.face_area[mesh_->n_interior + b].normalized();
-        normals += n * n.transpose();
+        mean += n * n.transpose();
       }
-    if (normals.trace() == 0) continue;
+      if (mean.trace() == 0) continue;
+      const Planes planes = planes_of(mean);
+      if (planes.bent) bent_.push_back(v);
+      for (const Vec3& n : planes.normals) take_away(n, projector);
+    }
+    if (projector.trace() > 2.5) continue;
     projector_of_[v] = static_cast<Index>(projectors_.size());
-    projectors_.push_back(projector_from(normals));
+    projectors_.push_back(projector);
   }
 }
 
 void VertexInterpolation::update(const Geometry& geometry, std::span<const Vec3> points) {
-  const Index n_points = mesh_->points.n_local(), n_interior = mesh_->n_interior;
-  for (Index v = 0; v < n_points; ++v) {
+  inexact_.clear();
+  for (Index v = 0; v < mesh_->points.n_local(); ++v) {
     const auto first = offset_[v], last = offset_[v + 1];
-    const bool symmetric = on_symmetry(v);
-    const Tensor3& projector = projectors_[projector_of_[v]];
-    const auto place = [&](std::int64_t i) -> const Vec3& {
-      return node_[i] < n_cells_ ? geometry.cell_centre[node_[i]]
-                                 : geometry.face_centre[n_interior + node_[i] - n_cells_];
-    };
-    // d is the full distance, also at symmetry planes, where r keeps its part within the planes only.
-    Tensor3 m = Tensor3::Zero();
-    Vec3 s = Vec3::Zero();
-    double sum_inverse = 0;
-    for (auto i = first; i < last; ++i) {
-      Vec3 r = points[v] - place(i);
-      const double d = r.norm();
-      sum_inverse += 1 / d;
-      r /= d;
-      if (symmetric) r = projector * r;
-      m += r * r.transpose();
-      s += r;
+    bool exact_here = true;
+    if (ends_first_.empty() || ends_first_[v] < 0) {
+      exact_here = find_weights(v, first, last, geometry, points[v]);
+    } else {
+      int n_materials = 0;
+      auto begin = first;
+      for (auto end = ends_.begin() + ends_first_[v]; begin != last; begin = *end++, ++n_materials)
+        exact_here = find_weights(v, begin, *end, geometry, points[v]) && exact_here;
+      for (auto i = first; i < last; ++i) weight_[i] /= n_materials;
     }
-    // Across symmetry planes M is filled up with a diagonal: s has no part there, so lambda gets none.
-    if (symmetric) m += 0.5 * m.trace() * (Tensor3::Identity() - projector);
-    const Vec3 lambda = solve_lambda(m, s, mesh_->dim);
-    double sum = 0;
-    for (auto i = first; i < last; ++i) {
-      const Vec3 r = points[v] - place(i);
-      const double d = r.norm();
-      weight_[i] = (1 + lambda.dot(r) / d) / d;  // (2.50) with its erratum; lambda lies within the planes
-      sum += weight_[i];
-    }
-    if (std::abs(sum) < reachable * sum_inverse) {
-      for (auto i = first; i < last; ++i) weight_[i] = 1 / (points[v] - place(i)).norm();
-      sum = sum_inverse;
-    }
-    for (auto i = first; i < last; ++i) weight_[i] /= sum;
+    if (!exact_here && !fixed_[v] && v < mesh_->points.n_owned()) inexact_.push_back(v);
   }
+}
+
+/// Weights of the nodes [first, last) of a row, of sum 1; says whether they are exact for linear fields.
+bool VertexInterpolation::find_weights(Index point, std::int64_t first, std::int64_t last,
+                                       const Geometry& geometry, const Vec3& at) {
+  const bool symmetric = on_symmetry(point);
+  const Tensor3& projector = projectors_[projector_of_[point]];
+  const auto place = [&](std::int64_t i) -> const Vec3& {
+    return node_[i] < n_cells_ ? geometry.cell_centre[node_[i]]
+                               : geometry.face_centre[mesh_->n_interior + node_[i] - n_cells_];
+  };
+  // d is the full distance, also at symmetry planes, where r keeps its part within the planes only.
+  Tensor3 m = Tensor3::Zero();
+  Vec3 s = Vec3::Zero();
+  double sum_inverse = 0;
+  for (auto i = first; i < last; ++i) {
+    Vec3 r = at - place(i);
+    const double d = r.norm();
+    sum_inverse += 1 / d;
+    r /= d;
+    if (symmetric) r = projector * r;
+    m += r * r.transpose();
+    s += r;
+  }
+  // Across symmetry planes M is filled up with a diagonal: s has no part there, so lambda gets none.
+  if (symmetric) m += 0.5 * m.trace() * (Tensor3::Identity() - projector);
+  const Vec3 lambda = solve_lambda(m, s, mesh_->dim);
+  double sum = 0;
+  Vec3 miss = Vec3::Zero();
+  for (auto i = first; i < last; ++i) {
+    const Vec3 r = at - place(i);
+    const double d = r.norm();
+    weight_[i] = (1 + lambda.dot(r) / d) / d;  // (2.50) with its erratum; lambda lies within the planes
+    sum += weight_[i];
+    miss += weight_[i] * r;
+  }
+  bool is_exact = true;
+  if (std::abs(sum) < reachable * sum_inverse) {
+    for (auto i = first; i < last; ++i) weight_[i] = 1 / (at - place(i)).norm();
+    sum = sum_inverse;
+    is_exact = false;
+  } else {
+    // sum_inverse / (last - first) is one over the distance of the nodes.
+    if (symmetric) miss = projector * miss;
+    is_exact = miss.norm() * sum_inverse <= exact * double(last - first) * std::abs(sum);
+  }
+  for (auto i = first; i < last; ++i) weight_[i] /= sum;
+  return is_exact;
 }
 
 }  // namespace couplet

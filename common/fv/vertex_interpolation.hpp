@@ -29,6 +29,10 @@ enum class PatchStencil {
 /// it is enough to look for lambda within the planes, and to remove a vector's component across them (see
 /// project()).
 ///
+/// Where several materials meet at a vertex, each has its own weights for its own nodes (its cells, and the
+/// faces of these), and the value is the mean of the materials': exact for fields that are linear in each of
+/// them.
+///
 /// Node numbers: local cell i is node i, boundary face b (entry of mesh.boundary) is node
 /// mesh.cells.n_local() + b. Rows exist for the points of owned cells (those whose whole surroundings are on
 /// this rank); others are empty.
@@ -36,6 +40,12 @@ class VertexInterpolation {
  public:
   /// `stencils`: one a patch. The weights are those of the reference geometry.
   VertexInterpolation(const Mesh& mesh, std::span<const PatchStencil> stencils);
+  /// One stencil a local boundary face; `material_of_cell`: per local cell, empty: one material.
+  struct ByFace {
+    std::vector<PatchStencil> stencil;
+    std::span<const int> material_of_cell;
+  };
+  VertexInterpolation(const Mesh& mesh, const ByFace& boundary);
 
   /// The weights for another placement of the points. Allocates nothing.
   void update(const Geometry& geometry, std::span<const Vec3> points);
@@ -52,6 +62,11 @@ class VertexInterpolation {
   /// I minus the directions across the symmetry planes the point lies on; I where there are none.
   const Tensor3& projector(Index point) const { return projectors_[projector_of_[point]]; }
   bool on_symmetry(Index point) const { return projector_of_[point] != 0; }
+  /// Points whose value is not exact for linear fields: the nodes around them do not span the space.
+  /// Ascending; for the placement of the last update(). Owned points only.
+  const std::vector<Index>& inexact_points() const { return inexact_; }
+  /// A symmetry patch is neither flat nor does it have an edge at these points.
+  const std::vector<Index>& bent_points() const { return bent_; }
 
   /// Values at this point: `cells` and `boundary` hold `components` a node. No projection.
   template <int Components>
@@ -75,13 +90,21 @@ class VertexInterpolation {
 
  private:
   struct Around;
-  void gather_rows(const Around& around, std::span<const PatchStencil> kind_of_face);
-  void find_projectors(const Around& around, std::span<const PatchStencil> kind_of_face);
+  void gather_rows(const Around& around, const ByFace& boundary);
+  void group_by_material(Index point, std::span<const int> material_of_cell);
+  void find_projectors(const Around& around, std::span<const PatchStencil> stencil);
+  bool find_weights(Index point, std::int64_t first, std::int64_t last, const Geometry& geometry,
+                    const Vec3& at);
 
   const Mesh* mesh_;
   Index n_cells_;
   std::vector<std::int64_t> offset_;
   std::vector<Index> node_;
+  std::vector<std::int64_t>
+      ends_;  // where the nodes of each material end, of points with several materials ...
+  std::vector<Index>
+      ends_first_;  // ... and per point its first entry there, -1: one material; empty: one in all
+  std::vector<Index> inexact_, bent_;
   std::vector<double> weight_;
   std::vector<std::uint8_t> fixed_;
   std::vector<Index> projector_of_;

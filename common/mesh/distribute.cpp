@@ -14,7 +14,8 @@ namespace {
 struct WholeMesh {
   RawMesh raw;
   Faces faces;
-  std::vector<int> part;  // rank of each cell
+  std::vector<int> part;           // rank of each cell
+  std::vector<int> cell_material;  // empty: one material
 };
 
 WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
@@ -24,15 +25,16 @@ WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
     drop_unused_points(whole.raw);
     orient_cells(whole.raw);
     whole.faces = build_faces(whole.raw);
+    whole.cell_material = materials_of_cells(whole.raw);
+    split_materials(whole.raw, whole.faces, whole.cell_material);
     join_periodic(whole.raw, whole.faces);
     const Index n = whole.raw.cell_points.size();
     if (n < comm_size(comm))
       throw Error(
           "The mesh has {} cells, fewer than the {} ranks it is to be shared by. Start fewer processes.", n,
           comm_size(comm));
-    const std::span<const Index> owner(whole.faces.owner);
-    whole.part =
-        partition(make_graph(n, owner.first(whole.faces.n_interior), whole.faces.neighbour), comm_size(comm));
+    const CellPairs pairs = connected_cells(whole.faces);
+    whole.part = partition(make_graph(n, pairs.first, pairs.second), comm_size(comm));
     whole.raw.boundary_points = {};  // now in `faces`
   });
   if (comm_size(comm) == 1) return whole;
@@ -49,6 +51,8 @@ WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
   broadcast(comm, whole.faces.neighbour);
   broadcast(comm, whole.faces.patch);
   broadcast(comm, whole.faces.shift);
+  MPI_Bcast(&whole.faces.first_bonded, 1, MPI_INT32_T, 0, comm);
+  broadcast(comm, whole.cell_material);
   broadcast(comm, whole.part);
   return whole;
 }
@@ -78,7 +82,12 @@ IndexMap make_index_map(MPI_Comm comm, std::span<const GlobalIndex> ids, Index n
 class LocalPart {
  public:
   LocalPart(MPI_Comm comm, const WholeMesh& whole)
-      : comm_(comm), rank_(comm_rank(comm)), raw_(whole.raw), faces_(whole.faces), part_(whole.part) {}
+      : comm_(comm),
+        rank_(comm_rank(comm)),
+        raw_(whole.raw),
+        faces_(whole.faces),
+        part_(whole.part),
+        cell_material_(whole.cell_material) {}
 
   Mesh build() {
     mesh_.comm = comm_;
@@ -105,8 +114,9 @@ class LocalPart {
       for (const Index p : raw_.cell_points[c]) touched[p] = 1;
     }
     std::vector<Index> first, second;
-    for (Index f = 0; f < faces_.n_interior; ++f) {
-      const Index a = cell_local_[faces_.owner[f]], b = cell_local_[faces_.neighbour[f]];
+    const CellPairs pairs = connected_cells(faces_);
+    for (std::size_t i = 0; i < pairs.first.size(); ++i) {
+      const Index a = cell_local_[pairs.first[i]], b = cell_local_[pairs.second[i]];
       if (a < 0 || b < 0) continue;
       first.push_back(a);
       second.push_back(b);
@@ -178,6 +188,7 @@ class LocalPart {
     for (const GlobalIndex c : mesh_.cell_id) {
       mesh_.cell_type.push_back(raw_.cell_type[c]);
       mesh_.cell_zone.push_back(raw_.cell_zone[c]);
+      if (!cell_material_.empty()) mesh_.cell_material.push_back(cell_material_[c]);
       push_points(mesh_.cell_points, raw_.cell_points[static_cast<Index>(c)]);
     }
   }
@@ -231,6 +242,18 @@ class LocalPart {
     for (Patch& p : mesh_.patches) at = (p.first = at) + p.count;
     for (Patch& p : mesh_.patches) at = (p.ghost_first = at) + p.ghost_count;
     mesh_.boundary = make_index_map(comm_, mesh_.boundary_id, n_owned, ghost_owner);
+    if (faces_.first_bonded >= 0) find_twins();
+  }
+
+  void find_twins() {
+    mesh_.patches.back().bonded = true;
+    std::vector<Index> local(faces_.n_boundary() - faces_.first_bonded, -1);
+    for (std::size_t b = 0; b < mesh_.boundary_id.size(); ++b)
+      if (mesh_.boundary_id[b] >= faces_.first_bonded)
+        local[mesh_.boundary_id[b] - faces_.first_bonded] = static_cast<Index>(b);
+    mesh_.twin.assign(mesh_.boundary_id.size(), -1);
+    for (std::size_t i = 0; i < local.size(); ++i)
+      if (local[i] >= 0) mesh_.twin[local[i]] = local[i ^ 1];
   }
 
   MPI_Comm comm_;
@@ -238,6 +261,7 @@ class LocalPart {
   const RawMesh& raw_;
   const Faces& faces_;
   const std::vector<int>& part_;
+  const std::vector<int>& cell_material_;
   std::vector<Index> cell_local_, point_local_;  // -1: not on this rank
   Mesh mesh_;
 };

@@ -6,7 +6,8 @@
 namespace couplet {
 
 Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const MeshParameters& parameters,
-               const std::vector<std::array<std::string, 2>>& periodic) {
+               const std::vector<std::array<std::string, 2>>& periodic,
+               const std::vector<std::vector<std::string>>& materials) {
   RawMesh raw;
   on_root(comm, [&] {
     if (!std::filesystem::is_regular_file(file))
@@ -33,6 +34,7 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
           "The mesh '{}' is {}-dimensional, but 'dimension: {}' is asked for.{}", file.string(), raw.dim, dim,
           dim == 3 ? " Put the volume into a physical group, else gmsh does not save its cells." : "");
     raw.periodic = periodic;
+    raw.materials = materials;
   });
   try {
     return distribute(comm, raw);

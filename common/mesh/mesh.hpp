@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,6 +36,8 @@ struct Patch {
   std::string name;
   Index first = 0, count = 0;
   Index ghost_first = 0, ghost_count = 0;
+  bool bonded =
+      false;  ///< not on the boundary: the two sides of the faces between two materials, see Mesh::twin
 };
 
 /// Volumes, centres and face vectors of one placement of the points.
@@ -69,6 +72,8 @@ struct Mesh {
   Csr cell_points;                  ///< per local cell, VTK order, local points
   std::vector<int> cell_zone;       ///< per local cell, index into `zones`
   std::vector<std::string> zones;   ///< the same on all ranks
+  /// Per local cell, index into the materials the mesh was made with; empty with one material.
+  std::vector<int> cell_material;
 
   Index n_interior = 0;          ///< interior faces
   Csr face_points;               ///< per local face; turning right-handed about the face vector
@@ -78,6 +83,10 @@ struct Mesh {
   /// faces that were two periodic patches, whose points are those of the owner's side. Empty without such.
   std::vector<Vec3> neighbour_shift;
   std::vector<Patch> patches;  ///< the same names in the same order on all ranks
+  /// Per local boundary face (empty: no face is bonded): the entry of the other side of a bonded face, -1:
+  /// not bonded, or the other side is not on this rank. Around the points of owned cells both sides are
+  /// there.
+  std::vector<Index> twin;
 
   std::vector<Vec3> reference_points;  ///< per local point, as read [m]
   Geometry reference;                  ///< geometry of the reference points
@@ -85,9 +94,20 @@ struct Mesh {
   Vec3 shift(Index interior_face) const {
     return neighbour_shift.empty() ? Vec3(Vec3::Zero()) : neighbour_shift[interior_face];
   }
+  int material_of(Index cell) const { return cell_material.empty() ? 0 : cell_material[cell]; }
   Index n_faces() const { return static_cast<Index>(owner.size()); }
   /// Interior faces and boundary faces of owned cells: those that carry fluxes here.
   Index n_flux_faces() const { return n_interior + boundary.n_owned(); }
+  /// Index of the patch of each local boundary face.
+  std::vector<Index> patch_of_boundary() const {
+    std::vector<Index> result(boundary.n_local());
+    for (Index p = 0; p < static_cast<Index>(patches.size()); ++p) {
+      const Patch& patch = patches[p];
+      std::fill_n(result.begin() + (patch.first - n_interior), patch.count, p);
+      std::fill_n(result.begin() + (patch.ghost_first - n_interior), patch.ghost_count, p);
+    }
+    return result;
+  }
   const Patch* find_patch(std::string_view name) const {
     for (const Patch& p : patches)
       if (p.name == name) return &p;

@@ -18,6 +18,9 @@ struct Faces {
   std::vector<Index> neighbour;  ///< interior faces only
   std::vector<int> patch;        ///< boundary faces only
   std::vector<Vec3> shift;       ///< interior faces; empty without periodic patches; see Mesh
+  /// Boundary faces from here on are the sides of bonded faces: first_bonded + 2 i and first_bonded + 2 i + 1
+  /// are one face, the first side that of the cell with the smaller number. -1: none.
+  Index first_bonded = -1;
   Index n_boundary() const { return static_cast<Index>(owner.size()) - n_interior; }
 };
 
@@ -28,6 +31,19 @@ Faces build_faces(const RawMesh& raw);
 /// Makes interior faces of the faces of periodic patches (RawMesh::periodic). Throws Error naming the place
 /// of a face without a partner.
 void join_periodic(const RawMesh& raw, Faces& faces);
+
+/// The material of each cell after RawMesh::materials; empty with fewer than two. Throws Error for a zone
+/// without material or a material without zone.
+std::vector<int> materials_of_cells(const RawMesh& raw);
+
+/// Makes two boundary faces, in a patch of their own, of each interior face between two materials.
+void split_materials(RawMesh& raw, Faces& faces, const std::vector<int>& cell_material);
+
+/// Pairs of cells that hang together by an interior or a bonded face.
+struct CellPairs {
+  std::vector<Index> first, second;
+};
+CellPairs connected_cells(const Faces& faces);
 
 /// Faces of cells that no other cell shares, as boundary elements (for generators, which then name the
 /// patches).

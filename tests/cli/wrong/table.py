@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The wrong configurations: how each differs from a right one, and what the program must say about it."""
+import pathlib
 from dataclasses import dataclass, field
 
 import tank_table
@@ -224,6 +225,20 @@ case.yaml:19:28: participants.solid.probes.tip.fields: there is no field 'stres'
     solid("unknown time scheme", """
 case.yaml:9:19: participants.solid.time-scheme.type: 'bath' is not one of: euler, three-point, trapezoidal, bathe, generalised-alpha. Did you mean 'bathe'?
 """, ("analysis: dynamic", "analysis: dynamic\n    time-scheme: {type: bath}")),
+    solid("known components and all of them", "",
+          ("{type: fixed-displacement, value: [0, 0]}", "{type: fixed-displacement, value: [0, 0], components: {x: 0}}")),
+    solid("third component of a plane scene", "",
+          ("{type: fixed-displacement, value: [0, 0]}", "{type: fixed-displacement, components: {z: 0}}")),
+    solid("part without its faces", "", ("bottom: {type: free}", "bottom: {type: free, parts: [{type: symmetry}]}")),
+    solid("part with an unknown name", "",
+          ("bottom: {type: free}", "bottom: {type: free, parts: [{where: abs(r) < 1, type: symmetry}]}")),
+    solid("interface on a part", "",
+          ("bottom: {type: free}", "bottom: {type: free, parts: [{where: x < 1, type: interface}]}")),
+    solid("spring without stiffness", "", ("bottom: {type: free}", "bottom: {type: spring}")),
+    solid("no material", "", ("    material:\n      density: 1000 kg/m^3\n      youngs-modulus: 1 MPa\n"
+                             "      poissons-ratio: 0.3\n", "")),
+    solid("one material and several", "", ("    boundaries:", "    materials: {rubber: {density: 1000, youngs-modulus: 1e7, "
+                                           "poissons-ratio: 0.4}}\n    boundaries:")),
     solid("several mistakes at once", """
 case.yaml:2:14: simulation.end-time: 0 s is out of range; expected a value above 0 s.
 case.yaml:6:5: participants.solid.mash: unknown key. Did you mean 'mesh'?
@@ -372,6 +387,9 @@ Run with --help for more information.
 """, arguments=["case.yaml", "--chekc"]),
 ]
 
+# The point in the middle moved beyond the right side.
+FOLDED = (pathlib.Path(__file__).parent / "square.msh").read_text(encoding="utf-8").replace("5 0.5 0.5 0", "5 1.4 0.5 0")
+
 MESH = [
     solid("mesh file that is not there", """
 [solid 0] error: The mesh file 'squares.msh' does not exist. The path is relative to the folder of the YAML file.
@@ -388,6 +406,13 @@ MESH = [
     solid("patch without a boundary", """
 [solid 0] error: boundaries: patch 'top' of mesh 'square.msh' has no entry; each patch needs one (a stress-free patch: 'type: free'). The patches are left, right, bottom, top.
 """, ("      top: {type: free}\n", ""), **RUN),
+    solid("part that selects no face", "", ("bottom: {type: free}", "bottom: {type: free, parts: [{where: y > 2, type: symmetry}]}"), **RUN),
+    solid("spring that depends on time", "", ("bottom: {type: free}", "bottom: {type: spring, stiffness: 1e9*t}"), **RUN),
+    solid("static body that floats", "", ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: free}"), **RUN),
+    solid("static body on one roller", "", ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: symmetry}"), **RUN),
+    solid("zone that is not there", "", ("    material:\n      density", "    materials: {steel: {zones: [insid], density"),
+          (" kg/m^3\n      youngs-modulus: 1 MPa\n      poissons-ratio: 0.3\n", ", youngs-modulus: 1e6, poissons-ratio: 0.3}}\n"), **RUN),
+    solid("folded mesh", "", ("square.msh", "folded.msh"), files={"folded.msh": FOLDED}, **RUN),
     solid("plane mesh in three dimensions", """
 couplet: The job cannot start:
   [solid] case.yaml:14:40: participants.solid.boundaries.left.value: 2 components are given where the 3-dimensional scene needs 3.

@@ -108,6 +108,25 @@ TEST_P(OnEveryCellType, face_gradients_of_linear_fields_are_exact_on_skewed_and_
   }
 }
 
+TEST(VertexInterpolation, points_that_the_nodes_around_cannot_reach_are_reported) {
+  const Mesh mesh = distorted(BoxCells::quadrilaterals);
+  VertexInterpolation interpolation(mesh, std::vector(mesh.patches.size(), PatchStencil::open));
+  EXPECT_TRUE(interpolation.inexact_points().empty());
+  // All nodes in one line, the points beside it.
+  Geometry flat = mesh.reference;
+  for (Vec3& x : flat.cell_centre) x[1] = -1;
+  for (Vec3& x : flat.face_centre) x[1] = -1;
+  interpolation.update(flat, mesh.reference_points);
+  EXPECT_EQ(std::ssize(interpolation.inexact_points()), mesh.points.n_owned());
+  for (Index v = 0; v < mesh.points.n_owned(); ++v) {
+    double total = 0;
+    for (const double w : interpolation.weights(v)) total += w;
+    EXPECT_NEAR(total, 1, 1e-12);
+  }
+  interpolation.update(mesh.reference, mesh.reference_points);
+  EXPECT_TRUE(interpolation.inexact_points().empty());
+}
+
 TEST(VertexInterpolation, follows_a_moved_mesh) {
   const Mesh mesh = distorted(BoxCells::quadrilaterals);
   VertexInterpolation interpolation(mesh, std::vector(mesh.patches.size(), PatchStencil::open));

@@ -99,6 +99,46 @@ TEST_P(Exactness, ranks_agree_with_one_rank) {
   EXPECT_LT(gap, 1e-10);
 }
 
+// Two materials that meet in an oblique plane: T linear in each, k dT/dn the same on both sides.
+TEST_P(Exactness, a_piecewise_linear_temperature_is_exact_across_an_oblique_interface) {
+  const int dim = dimension_of(GetParam());
+  const double slant = 0.3, k_left = 2, k_right = 50;
+  RawMesh raw = make_box(GetParam(), {5, 4, 3}, Vec3::Zero(), Vec3(1, 0.8, 0.6));
+  for (Index c = 0; c < raw.cell_points.size(); ++c) {
+    double x = 0;
+    for (const Index v : raw.cell_points[c]) x += raw.points[v][0] / double(raw.cell_points[c].size());
+    raw.cell_zone[c] = x > 0.6;
+  }
+  raw.zones = {"left", "right"};
+  raw.materials = {{"left"}, {"right"}};
+  const std::vector<Vec3> before = raw.points;
+  perturb_interior(raw, 0.2, 5);
+  for (std::size_t p = 0; p < raw.points.size(); ++p) {
+    if (std::abs(before[p][0] - 0.6) < 1e-9) raw.points[p] = before[p];
+    raw.points[p][0] += slant * (raw.points[p][1] + 0.5 * raw.points[p][2]);
+  }
+  const Vec3 n = Vec3(1, -slant, dim == 3 ? -0.5 * slant : 0).normalized(), on_plane(0.6, 0, 0);
+  const Vec3 left(30, -20, dim == 3 ? 10 : 0), right = left + (k_left / k_right - 1) * n.dot(left) * n;
+  const auto exact = [&](const Vec3& x) {
+    return 300 + (n.dot(x - on_plane) > 0 ? right : left).dot(x - on_plane);
+  };
+  const auto linear = [&](const Vec3& g) {
+    return fmt::format("({:.17g} + {:.17g}*x + {:.17g}*y + {:.17g}*z)", -g.dot(on_plane), g[0], g[1], g[2]);
+  };
+  HeatParameters p = steady();
+  for (const std::string& name : box_patches(dim))
+    p.boundaries[name] =
+        heat_boundary(HeatType::temperature,
+                      fmt::format("300 + ({} > 0 ? {} : {})", linear(n), linear(right), linear(left)));
+  p.boundaries["xmax"] = heat_boundary(HeatType::flux, fmt::format("{:.17g}", k_right * n.dot(right)));
+  HeatCase scene(raw, {{1000, k_left, 800.0}, {7850, k_right, 480.0}}, p);
+  ASSERT_FALSE(scene.mesh->twin.empty());
+  scene.step(1);
+  const double error = scene.largest_error(exact) / 30;
+  ::testing::Test::RecordProperty("relative_error", fmt::format("{:.3e}", error));
+  EXPECT_LT(error, 1e-10);
+}
+
 /// Layers of different conductivity along x on a box with straight cells.
 struct Layers {
   RawMesh raw;

@@ -18,7 +18,7 @@ namespace {
 
 RawMesh flap_mesh(BoxCells cells) {
   RawMesh raw = make_box(cells, {3, 8, 2}, Vec3::Zero(), Vec3(0.1, 1, dimension_of(cells) == 3 ? 0.05 : 0));
-  perturb_interior(raw, 0.2, 3);
+  perturb_interior(raw, 0.15, 3);
   return raw;
 }
 

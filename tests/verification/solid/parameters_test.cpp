@@ -39,6 +39,35 @@ TEST(SolidParameters, are_read_with_units_and_expressions) {
   EXPECT_FALSE(p.damping.has_value());
 }
 
+TEST(SolidParameters, supports_parts_and_materials_are_read) {
+  SolidParameters p;
+  const auto errors = read(
+      "mesh: a.msh\n"
+      "materials:\n"
+      "  steel: {density: 7800, youngs-modulus: 200 GPa, poissons-ratio: 0.3}\n"
+      "  rubber: {zones: [core, lid], density: 1100, youngs-modulus: 17 MPa, poissons-ratio: 0.45}\n"
+      "boundaries:\n"
+      "  edge:\n"
+      "    type: fixed-displacement\n"
+      "    components: {x: 0, z: 0.1*t}\n"
+      "    traction: [0, 5, 0]\n"
+      "    parts: [{where: abs(z) < 0.1, type: hard-support, plate-normal: [0, 0, 2]}]\n"
+      "  bed: {type: spring, stiffness: 1e8*(1 + x), direction: normal}\n",
+      p);
+  EXPECT_THAT(errors, ::testing::IsEmpty());
+  const SolidBoundary& edge = p.boundaries.at("edge");
+  EXPECT_TRUE(edge.components[0] && !edge.components[1] && edge.components[2]);
+  EXPECT_EQ(edge.components[2]->text, "0.1*t");
+  EXPECT_EQ(edge.traction.at(1).text, "5");
+  ASSERT_EQ(edge.parts.size(), 1U);
+  EXPECT_EQ(edge.parts[0].type, SolidCondition::Type::hard_support);
+  EXPECT_EQ(edge.parts[0].plate_normal, Vec3(0, 0, 2));
+  EXPECT_TRUE(p.boundaries.at("bed").along_normal);
+  EXPECT_THAT(zones_of(p.materials),
+              ::testing::ElementsAre(::testing::ElementsAre("core", "lid"), ::testing::ElementsAre("steel")));
+  EXPECT_EQ(materials_of(p).at(1).youngs_modulus, 200e9);
+}
+
 TEST(SolidParameters, mistakes_are_reported_with_their_place) {
   SolidParameters p;
   const auto errors = read("mesh: a.msh\ndimension: 2\n" + material +

@@ -36,7 +36,8 @@ inline SolidParameters box_parameters(int dim) {
   return p;
 }
 
-inline std::unique_ptr<Solid> make_solid(const RawMesh& raw, const SolidParameters& p) {
+inline std::unique_ptr<Solid> make_solid(RawMesh raw, const SolidParameters& p) {
+  raw.materials = zones_of(p.materials);
   return std::make_unique<Solid>(distribute(MPI_COMM_WORLD, raw), p, SolidContext{});
 }
 

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/fv/vertex_constraints.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "common/mesh/transpose.hpp"
+
+namespace couplet {
+namespace {
+
+// Share of a patch's faces around a vertex that must know a direction for the vertex to know it.
+constexpr double agreed = 0.75;
+// A direction whose part across the known ones is shorter than this (0.06 degrees) is known already.
+constexpr double new_direction = 1e-3;
+
+/// Eigenvectors of a symmetric tensor with eigenvalues above the threshold, the largest first.
+std::vector<Vec3> directions_above(const Tensor3& tensor, double threshold) {
+  const Eigen::SelfAdjointEigenSolver<Tensor3> eigen(tensor);
+  std::vector<Vec3> result;
+  for (int i = 2; i >= 0; --i)
+    if (eigen.eigenvalues()[i] > threshold) result.push_back(eigen.eigenvectors().col(i));
+  return result;
+}
+
+}  // namespace
+
+/// Q and the shares G_j of one vertex under construction.
+class VertexConstraints::Known {
+ public:
+  /// b . u = b . g_face for a unit vector b; face < 0: g is zero. With the part r of b across what is known,
+  /// r . u = b . (g_face - g so far).
+  void add(const Vec3& b, Index face) {
+    const Vec3 across = b - q * b;
+    const double size = across.norm();
+    if (size < new_direction) return;
+    const Tensor3 solve = across / (size * size) * b.transpose();
+    for (Source& s : sources) s.share -= solve * s.share;
+    if (face >= 0) {
+      const auto same = std::ranges::find(sources, face, &Source::face);
+      if (same != sources.end())
+        same->share += solve;
+      else
+        sources.push_back({face, solve});
+    }
+    q += across * across.transpose() / (size * size);
+  }
+
+  Tensor3 q = Tensor3::Zero();
+  std::vector<Source> sources;
+};
+
+ElasticBoundary boundary_of_patches(const Mesh& mesh, std::span<const ElasticCondition> conditions) {
+  ElasticBoundary boundary;
+  for (const Index p : mesh.patch_of_boundary())
+    boundary.condition.push_back(mesh.patches[p].bonded ? ElasticCondition::bonded : conditions[p]);
+  return boundary;
+}
+
+VertexConstraints::VertexConstraints(const Mesh& mesh, const ElasticBoundary& boundary,
+                                     const VertexInterpolation& vertices) {
+  const Index n_points = mesh.points.n_local();
+  const Csr faces = transpose(mesh.face_points, mesh.n_interior, n_points);
+  const std::vector<Index> patch_of_face = mesh.patch_of_boundary();
+  std::vector<std::uint8_t> complete(n_points, 0);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    for (const Index v : mesh.cell_points[c]) complete[v] = 1;
+  free_of_.assign(n_points, 0);
+  column_.assign(n_points, -1);
+  for (Index v = 0; v < n_points; ++v)
+    if (complete[v] && faces[v].size() > 0)
+      constrain(v, faces[v], mesh, boundary, patch_of_face, vertices.projector(v));
+}
+
+void VertexConstraints::constrain(Index point, std::span<const Index> faces, const Mesh& mesh,
+                                  const ElasticBoundary& boundary, std::span<const Index> patch_of_face,
+                                  const Tensor3& symmetry) {
+  // The same order on every rank: by patch, then by the number in the mesh file.
+  std::vector<Index> ordered(faces.begin(), faces.end());
+  std::ranges::sort(ordered, {}, [&](Index b) { return std::pair(patch_of_face[b], mesh.boundary_id[b]); });
+  Known known;
+  if (mesh.dim == 2) known.q(2, 2) = 1;
+  for (const Index b : ordered)
+    if (boundary.condition[b] == ElasticCondition::prescribed) {
+      known.q = Tensor3::Identity();
+      known.sources.push_back({b, Tensor3::Identity()});
+      return store(point, known);
+    }
+  for (auto first = ordered.begin(); first != ordered.end();) {
+    const auto last = std::find_if(first, ordered.end(),
+                                   [&](Index b) { return patch_of_face[b] != patch_of_face[*first]; });
+    Tensor3 mean = Tensor3::Zero();
+    Index source = -1;
+    double most = 0;
+    for (auto b = first; b != last; ++b) {
+      if (boundary.condition[*b] != ElasticCondition::support) continue;
+      const Tensor3& p = boundary.support(*b).known;
+      mean += p / double(last - first);
+      if (p.trace() > most + 0.5) source = *b, most = p.trace();
+    }
+    if (source >= 0)
+      for (const Vec3& b : directions_above(mean, agreed)) known.add(b, source);
+    first = last;
+  }
+  for (const Vec3& n : directions_above(Tensor3::Identity() - symmetry, 0.5)) known.add(n, -1);
+  if (known.q.trace() > (mesh.dim == 2 ? 1.5 : 0.5)) store(point, known);
+}
+
+void VertexConstraints::store(Index point, const Known& known) {
+  const Tensor3 free = Tensor3::Identity() - known.q;
+  if (free.norm() < 1e-6) {
+    free_of_[point] = 1;
+  } else {
+    free_of_[point] = static_cast<Index>(free_parts_.size());
+    free_parts_.push_back(free);
+  }
+  if (known.sources.empty()) return;
+  column_[point] = static_cast<Index>(points_.size());
+  points_.push_back(point);
+  sources_.insert(sources_.end(), known.sources.begin(), known.sources.end());
+  offset_.push_back(static_cast<Index>(sources_.size()));
+}
+
+}  // namespace couplet

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the solid's boundary conditions, materials and bad input, and its orders of accuracy: test executables."""
+import re
+
+from validation.job import Bar
+
+
+def largest(executable, pattern, key, limit):
+    """The largest recorded value over the matching tests."""
+    def measure(job):
+        values, passed = job.recorded(executable, pattern, key)
+        return f"{max(values):.1e} at most in {len(values)} cases", passed and max(values) <= limit
+    return measure
+
+
+def smallest(executable, pattern, key, limit, also=()):
+    """All recorded slopes; `also`: further keys to be shown."""
+    def measure(job):
+        values, passed = job.recorded(executable, pattern, key)
+        text = ", ".join(f"{v:.2f}" for v in values)
+        for more in also:
+            text += f" ({more.replace('_', ' ')} {', '.join(f'{v:.2f}' for v in job.recorded(executable, pattern, more)[0])})"
+        return text, passed and min(values) >= limit
+    return measure
+
+
+def all_pass(executable, pattern, at_least):
+    def measure(job):
+        tests, _ = job.gtest(executable)
+        chosen = [v["passed"] for k, v in tests.items() if re.search(pattern, k)]
+        return f"{sum(chosen)} of {len(chosen)} tests passed", len(chosen) >= at_least and all(chosen)
+    return measure
+
+
+def on_ranks(pattern, at_least):
+    def measure(job):
+        passed, total, skipped, _ = job.ctest(pattern)
+        return f"{passed} of {total} test programs passed", total >= at_least and passed == total and not skipped
+    return measure
+
+
+def wrong_input(job):
+    passed, total, _, output = job.ctest("^wrong_configurations|cli_wrong")
+    found = re.findall(r"(\d+) wrong configurations|^(\d+) of \d+", output, flags=re.M)
+    return f"{passed} of {total} test programs passed" + (f", {max(found[-1])} configurations" if found else ""), (
+        total > 0 and passed == total)
+
+
+ORDER, CLOSED = "verification_solid_order", "verification_solid_closed_forms"
+MATERIALS, CONDITIONS, PATCH = (f"verification_solid_{n}" for n in ("materials", "conditions", "patch"))
+MESHES = {"hexahedra": "_on_hexahedra", "tetrahedra": "_on_tetrahedra", "prisms": "_on_prisms", "mixed cells": "_on_mixed",
+          "perturbed hexahedra": "_on_perturbed_hex", "quadrilaterals": "_on_quad", "triangles": "_on_triangles",
+          "perturbed triangles": "_on_perturbed_tri"}
+CONDITIONS_EXACT = ("by_component|springs_with_displaced|zero_normal_gradient|soft_and_hard|parts_of_a_patch")
+
+BARS = [
+    *(bar for name, pattern in MESHES.items() for bar in (
+        Bar(f"MMS {name}: slope of the displacement", ">= 1.9", smallest(ORDER, pattern, "displacement_slope", 1.9)),
+        Bar(f"MMS {name}: slope of the stress (all cells)", ">= 0.95",
+            smallest(ORDER, pattern, "stress_slope", 0.95, also=("inner_stress_slope",))))),
+    Bar("Lame cylinder, plane strain and stress, quadrilaterals and triangles: slope of the displacement", ">= 1.9",
+        smallest(CLOSED, "lame_cylinder_converges", "displacement_slope", 1.9, also=("stress_slope",))),
+    Bar("Lame cylinder in a frictionless rigid wall: slope of the displacement", ">= 1.9",
+        smallest(CLOSED, "rigid_wall", "displacement_slope", 1.9, also=("stress_slope",))),
+    Bar("Kirsch hole, analytic tractions: slope of the stress", ">= 0.95", smallest(CLOSED, "kirsch", "stress_slope", 0.95)),
+    Bar("Kirsch hole: hoop stress on the faces of the hole, part of 3 T", "<= 2 %",
+        largest(CLOSED, "kirsch", "hoop_stress_error_at_hole", 0.02)),
+    Bar("Two materials, oblique interface, piecewise linear field: displacement", "exact to 1e-10",
+        largest(MATERIALS, "piecewise_linear", "relative_error", 1e-10)),
+    Bar("Two materials: jump of the traction at the bonded faces", "<= 1e-10 of the stress",
+        largest(MATERIALS, "piecewise_linear", "relative_traction_jump", 1e-10)),
+    Bar("Two materials in series: forces at both ends", "equal to 1e-9", all_pass(MATERIALS, "both_ends", 6)),
+    Bar("Layered cylinder (Lame): slope of the displacement", ">= 1.9",
+        smallest(MATERIALS, "layered_cylinder", "displacement_slope", 1.9, also=("stress_slope",))),
+    Bar("Rigid motion without stress, all cell types", "stress <= 1e-8 of that of an equal strain",
+        largest(PATCH, "small_rigid_rotation", "relative_stress", 1e-8)),
+    Bar("Linear fields under every condition, all cell types", "exact to 1e-10",
+        largest(CONDITIONS, CONDITIONS_EXACT, "relative_error", 1e-10)),
+    Bar("Symmetry planes of any orientation: turned box against straight one", "equal to 1e-10",
+        largest(CONDITIONS, "any_orientation", "symmetry", 1e-10)),
+    Bar("Patches, conditions and materials on 1, 2 and 3 ranks", "all pass",
+        on_ranks("^verification_solid_(patch|conditions|materials)(_[23])?$", 9)),
+    Bar("Floating static bodies: free rigid motions named", "all pass", all_pass(CONDITIONS, "FreeMotions", 5)),
+    Bar("Wrong configurations and meshes", "clear errors, exit code 2", wrong_input),
+]

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/fv/vertex_interpolation.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// Throws Error for inverted cells and for bent symmetry planes; warns of vertices whose value cannot be
+/// exact for linear fields. Collective.
+void check_mesh(const Mesh& mesh, const VertexInterpolation& vertices);
+
+}  // namespace couplet

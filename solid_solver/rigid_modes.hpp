@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/fv/elasticity.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// Motions without strain that the supports of one body leave free.
+struct FreeMotion {
+  Vec3 centre = Vec3::Zero();  ///< of the body [m]
+  std::vector<std::string>
+      modes;  ///< "translation along y", "rotation about x through (0, 0.5, 0)"; empty: held
+};
+
+/// One entry a body: cells that hang together by faces, in the order of their smallest cell_id. The rank of
+/// the conditions on the rigid motions (6, in 2-D 3) over all supported faces and vertices counts.
+/// Collective, the same on all ranks.
+std::vector<FreeMotion> free_motions(const Mesh& mesh, const ElasticOperator& elastic);
+
+/// Throws Error naming the free motions if the supports do not hold all bodies in place. Collective.
+void check_supported(const Mesh& mesh, const ElasticOperator& elastic);
+
+}  // namespace couplet

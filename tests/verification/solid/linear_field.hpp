@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+
+/// u = slope^T x: entry (i, j) is d u_j / d x_i.
+struct LinearField {
+  Tensor3 slope;
+  Vec3 at(const Vec3& x) const { return slope.transpose() * x; }
+  std::vector<std::string> text(int dim) const {
+    std::vector<std::string> result;
+    for (int j = 0; j < dim; ++j)
+      result.push_back(
+          fmt::format("{:.17g}*x + {:.17g}*y + {:.17g}*z", slope(0, j), slope(1, j), slope(2, j)));
+    return result;
+  }
+};
+
+inline LinearField general_field(int dim) {
+  LinearField field;
+  field.slope << 1.1e-3, -0.4e-3, 0.7e-3, 0.9e-3, 0.6e-3, -0.3e-3, -0.5e-3, 0.8e-3, 1.3e-3;
+  if (dim == 2) field.slope.row(2).setZero(), field.slope.col(2).setZero();
+  return field;
+}
+
+inline std::vector<std::string> traction_text(const SolidParameters& p, const LinearField& field,
+                                              const Vec3& n) {
+  const LameConstants lame = lame_constants(p);
+  const Tensor3 stress = lame.mu * (field.slope + field.slope.transpose()) +
+                         lame.lambda * field.slope.trace() * Tensor3::Identity();
+  const Vec3 traction = stress * n;
+  std::vector<std::string> result;
+  for (int c = 0; c < p.dimension; ++c) result.push_back(fmt::format("{:.17g}", traction[c]));
+  return result;
+}
+
+inline RawMesh distorted_box(BoxCells cells) {
+  RawMesh raw = make_box(cells, {5, 4, 3}, Vec3::Zero(), Vec3(1, 0.8, 0.6));
+  perturb_interior(raw, 0.25, 11);
+  return raw;
+}
+
+/// Largest error of cells, points and traction faces over the largest displacement.
+inline double relative_error(const Solid& solid, const LinearField& field) {
+  const Mesh& mesh = solid.mesh();
+  const int dim = mesh.dim;
+  double error = 0, size = 0;
+  const auto compare = [&](std::span<const double> values, Index i, const Vec3& x) {
+    for (int a = 0; a < dim; ++a) {
+      error = std::max(error, std::abs(values[std::size_t(i) * dim + a] - field.at(x)[a]));
+      size = std::max(size, std::abs(field.at(x)[a]));
+    }
+  };
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    compare(solid.state().cell_u, c, mesh.reference.cell_centre[c]);
+  const std::vector<double> points = solid.point_displacement();
+  for (Index v = 0; v < mesh.points.n_local(); ++v) compare(points, v, mesh.reference_points[v]);
+  for (const Index f : solid.elastic().unknown_faces())
+    compare(solid.state().face_u, f - mesh.n_interior, mesh.reference.face_centre[f]);
+  return max(mesh.comm, error) / max(mesh.comm, size);
+}
+
+/// Largest error of the stress over the largest stress.
+inline double relative_stress_error(const Solid& solid, const LinearField& field) {
+  const Tensor3 exact = solid.elastic().stress(0, field.slope);
+  double error = 0;
+  const int dim = solid.mesh().dim;
+  for (const Tensor3& s : solid.cell_stress(solid.point_displacement()))
+    error = std::max(error, (s - exact).topLeftCorner(dim, dim).norm());
+  return max(solid.mesh().comm, error) / exact.norm();
+}
+
+inline void expect_exact(const Solid& solid, const LinearField& field) {
+  const double error = relative_error(solid, field), stress_error = relative_stress_error(solid, field);
+  ::testing::Test::RecordProperty("relative_error", fmt::format("{:.3e}", error));
+  ::testing::Test::RecordProperty("relative_stress_error", fmt::format("{:.3e}", stress_error));
+  EXPECT_LT(error, 1e-10);
+  EXPECT_LT(stress_error, 1e-10);
+}
+
+}  // namespace couplet::testing
