@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "common/fv/elasticity.hpp"
+
+namespace couplet {
+
+/// Least-squares gradients of the owned cells: G_P = sum_i c_i (u_i - u_P) over the nodes across the cell's
+/// faces, weight 1/d^3; a symmetry plane gives the mirrored cell, u_mirror - u_P = -2 n (n . u_P).
+struct CellGradients {
+  std::vector<Index> offset{0}, node;  ///< nodes as in VertexInterpolation
+  std::vector<Vec3> weight;            ///< c_i [1/m]
+  struct Mirror {
+    Index cell;
+    Vec3 weight, normal;
+  };
+  std::vector<Mirror> mirrors;
+
+  CellGradients(const Mesh& mesh, const ElasticOperator& rows);
+};
+
+/// The edges of the flux faces (3-D): first those whose middle value is corrected, then those with a known
+/// vertex.
+struct FaceEdges {
+  std::vector<std::array<Index, 2>> points;
+  Index n_corrected = 0;
+  std::vector<std::array<Index, 4>>
+      of_face;  ///< edge i joins points i and i + 1; a triangle repeats its last one
+
+  FaceEdges(const Mesh& mesh, const ElasticOperator& rows);
+};
+
+/// A vertex on symmetry planes and their normals (those that differ).
+struct MirrorVertex {
+  Index point;
+  std::vector<Vec3> normals;
+};
+std::vector<MirrorVertex> mirror_vertices(const Mesh& mesh, const ElasticOperator& rows,
+                                          const std::vector<Index>& on_planes);
+
+}  // namespace couplet

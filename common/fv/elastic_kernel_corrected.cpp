@@ -1,0 +1,508 @@
+// SPDX-License-Identifier: Apache-2.0
+// ElasticKernel with the corrected face gradient. Passes: gradients of the cells; vertices of open boundaries
+// and from them the gradients of the boundary nodes; all vertices; middles of edges; faces.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+
+#include "common/fv/elastic_corrections.hpp"
+#include "common/fv/elastic_nodes.hpp"
+#include "common/fv/elastic_vertices.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+using lanes::Lane;
+using lanes::load;
+using lanes::store;
+
+/// grad_t u = sum_i m_i w_i with the values w on the edges around the face (3-D, m_i = L_i n / |S|, sum zero)
+/// or at its two end points (2-D).
+template <int D>
+struct CorrectedFace {
+  static constexpr int n_slopes = D == 2 ? 1 : 3;
+  double n[D];            // out of the owner
+  double m[n_slopes][D];  // [1/m]; w is taken relative to the last edge (the first point)
+  double k[D];            // n - d / (d . n)
+  double off[D];          // interior: x_f - (x_P + x_N) / 2 [m]; boundary: d / (d . n)
+  double inverse_dn;      // [1/m]
+  double mu, lambda;      // times the area [N]
+  Index around[D == 2 ? 2 : 4];
+};
+
+void place(const Vec3& from, double* to, int dim) { std::copy_n(from.data(), dim, to); }
+
+template <int D>
+CorrectedFace<D> make_face(const Mesh& mesh, const FaceGradient& faces, Index f, double mu, double lambda) {
+  CorrectedFace<D> face{};
+  const Geometry& g = mesh.reference;
+  const auto point = mesh.face_points[f];
+  const Vec3& n = faces.normal[f];
+  const double area = g.face_area[f].norm();
+  if constexpr (D == 2) {
+    place(faces.tangential[mesh.face_points.offset[f] + 1], face.m[0], D);
+    face.around[0] = point[0];
+    face.around[1] = point[1];
+  } else {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 edge =
+          mesh.reference_points[point[(i + 1) % point.size()]] - mesh.reference_points[point[i]];
+      place(edge.cross(n) / area, face.m[i], D);
+    }
+  }
+  place(n, face.n, D);
+  place(faces.skew[f], face.k, D);
+  if (f < mesh.n_interior)
+    place(g.face_centre[f] - 0.5 * (g.cell_centre[mesh.owner[f]] + g.cell_centre[mesh.neighbour[f]]),
+          face.off, D);
+  else
+    place(n - faces.skew[f], face.off, D);
+  face.inverse_dn = faces.inverse_dn[f];
+  face.mu = mu * area;
+  face.lambda = lambda * area;
+  return face;
+}
+
+/// Rows i of a gradient: d u / d x_i.
+template <int D>
+struct Rows {
+  Lane<D> row[D] = {};
+};
+
+template <int D>
+[[gnu::always_inline]] inline Lane<D> contract(const double* v, const double* rows) {
+  Lane<D> sum = v[0] * load<D>(rows);
+  for (int i = 1; i < D; ++i) sum += v[i] * load<D>(rows + i * lanes::width<D>);
+  return sum;
+}
+
+/// grad_t u from the values around the face.
+template <int D>
+[[gnu::always_inline]] inline Rows<D> tangential(const CorrectedFace<D>& face, const double* values,
+                                                 int stride) {
+  Rows<D> result;
+  if constexpr (D == 2) {
+    const Lane<D> along = load<D>(values + std::size_t(face.around[1]) * stride) -
+                          load<D>(values + std::size_t(face.around[0]) * stride);
+    for (int i = 0; i < D; ++i) result.row[i] = face.m[0][i] * along;
+  } else {
+    const Lane<D> last = load<D>(values + std::size_t(face.around[3]) * stride);
+    for (int e = 0; e < 3; ++e) {
+      const Lane<D> w = load<D>(values + std::size_t(face.around[e]) * stride) - last;
+      for (int i = 0; i < D; ++i) result.row[i] += face.m[e][i] * w;
+    }
+  }
+  return result;
+}
+
+/// n . grad u from `along` = d . grad u at the face centre, k . grad_t completing it.
+template <int D>
+[[gnu::always_inline]] inline Lane<D> normal_derivative(const CorrectedFace<D>& face, const Lane<D>& along,
+                                                        const Rows<D>& grad) {
+  Lane<D> g = along * face.inverse_dn;
+  for (int i = 0; i < D; ++i) g += face.k[i] * grad.row[i];
+  return g;
+}
+
+/// sigma . S for grad u = n g + grad_t u, as in the thesis's kernel.
+template <int D>
+[[gnu::always_inline]] inline Lane<D> force_on(const CorrectedFace<D>& face, const Lane<D>& g,
+                                               const Rows<D>& grad) {
+  const Lane<D> n = load<D>(face.n);
+  Lane<D> turned = {};
+  double trace = 0;
+  for (int i = 0; i < D; ++i) {
+    turned[i] = lanes::dot<D>(n, grad.row[i]);
+    trace += grad.row[i][i];
+  }
+  const double normal = lanes::dot<D>(n, g);
+  return face.mu * (g + normal * n + turned) + (face.lambda * (normal + trace)) * n;
+}
+
+template <int D>
+class CorrectedKernel final : public ElasticKernel::Implementation {
+ public:
+  CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> mu,
+                  std::span<const double> lambda);
+
+  void apply(std::span<const double> unknowns, std::span<const double> known,
+             std::span<double> result) override;
+  void face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                      std::span<Tensor3> gradients) override;
+  void point_values(std::span<const double> unknowns, std::span<const double> known,
+                    std::span<double> points) override;
+
+  [[gnu::always_inline]] inline void find_cell_gradients();
+  [[gnu::always_inline]] inline void find_boundary_gradients();
+  [[gnu::always_inline]] inline void find_vertices(std::span<const Index> points);
+  [[gnu::always_inline]] inline void find_edges();
+  [[gnu::always_inline]] inline void collect_forces(std::span<double> result);
+
+ private:
+  static constexpr int width = lanes::width<D>;
+  static constexpr int record = (D + 1) * width;  // u (or q), then the rows of the gradient
+  static constexpr int value_stride = D == 2 ? record : width;
+
+  void prepare(std::span<const double> unknowns, std::span<const double> known);
+  void mirror_vertex_records(bool with_gradients);
+  double* cell(Index node) { return records_.data() + std::size_t(node) * record; }
+  double* vertex(Index point) { return points_.data() + std::size_t(point) * record; }
+  const double* values() const { return D == 2 ? points_.data() : edge_values_.data(); }
+  [[gnu::always_inline]] inline Lane<D> inner(Index f, const Rows<D>& grad);
+  [[gnu::always_inline]] inline Lane<D> outer(Index f, const Rows<D>& grad);
+  [[gnu::always_inline]] inline Lane<D> at_symmetry(Index f, const Rows<D>& grad);
+  template <class Take>
+  [[gnu::always_inline]] inline void set_record(Index node, const Vec3& place, const Take& row);
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  ElasticNodes<D> nodes_;
+  FaceKinds kinds_;
+  ElasticVertices vertices_;
+  CellGradients gradients_;
+  std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include the ghosts
+  std::vector<MirrorVertex> mirrors_;
+  std::vector<std::array<Index, 2>> edges_;
+  Index n_corrected_edges_ = 0;
+  std::vector<CorrectedFace<D>> faces_;
+  Vec3 origin_ = Vec3::Zero();
+  // q = u - 1/2 x . G and G of the nodes; u and G of the vertices: sum w (u_i + 1/2 r_i . G_i) is then
+  // sum w q_i + 1/2 x_V . sum w G_i.
+  std::vector<double> records_, points_, edge_values_;
+};
+
+template <int D>
+CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> mu,
+                                    std::span<const double> lambda)
+    : mesh_(mesh),
+      rows_(rows),
+      nodes_(mesh, rows),
+      kinds_(mesh, rows),
+      vertices_(mesh, rows),
+      gradients_(mesh, rows),
+      mirrors_(mirror_vertices(mesh, rows, vertices_.on_planes)),
+      records_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * record, 0.0),
+      points_(std::size_t(mesh.points.n_local()) * record, 0.0) {
+  faces_.reserve(mesh.n_flux_faces());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+    faces_.push_back(make_face<D>(mesh, rows.faces(), f, mu[mesh.owner[f]], lambda[mesh.owner[f]]));
+  if constexpr (D == 3) {
+    const FaceEdges edges(mesh, rows);
+    edges_ = edges.points;
+    n_corrected_edges_ = edges.n_corrected;
+    edge_values_.assign(edges_.size() * width, 0.0);
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f) std::copy_n(edges.of_face[f].data(), 4, faces_[f].around);
+  }
+  std::vector<std::uint8_t> open(mesh.points.n_local(), 0);
+  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
+    if (rows.condition(f) != ElasticCondition::traction) continue;
+    open_faces_.push_back(f);
+    for (const Index v : mesh.face_points[f]) open[v] = 1;
+  }
+  for (const Index v : vertices_.free)
+    if (open[v]) open_points_.push_back(v);
+  // Any place near the mesh will do, the same on all ranks: it only keeps x . G small beside u.
+  for (int a = 0; a < D; ++a) {
+    double lowest = std::numeric_limits<double>::max();
+    for (const Vec3& x : mesh.reference_points) lowest = std::min(lowest, x[a]);
+    origin_[a] = min(mesh.comm, lowest);
+  }
+}
+
+/// Gradient rows and q of a node at `place`.
+template <int D>
+template <class Take>
+inline void CorrectedKernel<D>::set_record(Index node, const Vec3& place, const Take& row) {
+  double* here = cell(node);
+  Lane<D> q = load<D>(nodes_[node]);
+  for (int i = 0; i < D; ++i) {
+    const Lane<D> g = row(i);
+    store<D>(here + (i + 1) * width, g);
+    q -= 0.5 * (place[i] - origin_[i]) * g;
+  }
+  store<D>(here, q);
+}
+
+template <int D>
+inline void CorrectedKernel<D>::find_cell_gradients() {
+  const Index* offset = gradients_.offset.data();
+  const Index* node = gradients_.node.data();
+  const Vec3* weight = gradients_.weight.data();
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const Lane<D> here = load<D>(nodes_[c]);
+    Rows<D> g;
+    for (Index i = offset[c]; i < offset[c + 1]; ++i) {
+      const Lane<D> difference = load<D>(nodes_[node[i]]) - here;
+      for (int a = 0; a < D; ++a) g.row[a] += weight[i][a] * difference;
+    }
+    set_record(
+        c, mesh_.reference.cell_centre[c], [&](int a) __attribute__((always_inline)) { return g.row[a]; });
+  }
+  for (const auto& mirror : gradients_.mirrors) {
+    double* here = cell(mirror.cell);
+    const Lane<D> u = load<D>(nodes_[mirror.cell]);
+    Lane<D> difference = {};
+    double normal = 0, reach = 0;
+    for (int a = 0; a < D; ++a) {
+      normal += mirror.normal[a] * u[a];
+      reach += mirror.weight[a] * (mesh_.reference.cell_centre[mirror.cell][a] - origin_[a]);
+    }
+    for (int a = 0; a < D; ++a) difference[a] = -2 * normal * mirror.normal[a];
+    for (int a = 0; a < D; ++a) lanes::add<D>(here + (a + 1) * width, mirror.weight[a] * difference);
+    lanes::add<D>(here, -0.5 * reach * difference);
+  }
+}
+
+template <int D>
+inline void CorrectedKernel<D>::find_vertices(std::span<const Index> points) {
+  for (const Index v : points) {
+    const auto index = rows_.vertices().nodes(v);
+    const auto weight = rows_.vertices().weights(v);
+    Lane<D> u = {};
+    Rows<D> g;
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      const double* node = records_.data() + std::size_t(index[i]) * record;
+      const double w = weight[i];
+      u += w * load<D>(node);
+      for (int a = 0; a < D; ++a) g.row[a] += w * load<D>(node + (a + 1) * width);
+    }
+    const Vec3& x = mesh_.reference_points[v];
+    double* here = vertex(v);
+    for (int a = 0; a < D; ++a) {
+      u += 0.5 * (x[a] - origin_[a]) * g.row[a];
+      store<D>(here + (a + 1) * width, g.row[a]);
+    }
+    store<D>(here, u);
+  }
+}
+
+// On a symmetry plane: no displacement across it, and the mean of the gradient and its mirror image, G - NG -
+// GN + 2 NGN with N = n n^T.
+template <int D>
+void CorrectedKernel<D>::mirror_vertex_records(bool with_gradients) {
+  for (const MirrorVertex& mirror : mirrors_) {
+    double* here = vertex(mirror.point);
+    Eigen::Map<Vec<D>> u(here);
+    u = (rows_.vertices().projector(mirror.point).template topLeftCorner<D, D>() * u).eval();
+    if (!with_gradients) continue;
+    for (const Vec3& normal : mirror.normals) {
+      const Vec<D> n = normal.head<D>();
+      Tensor<D> g;
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) g(a, b) = here[(a + 1) * width + b];
+      const Vec<D> right = g * n, left = g.transpose() * n;
+      g += n * (2 * n.dot(right) * n - left).transpose() - right * n.transpose();
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) here[(a + 1) * width + b] = g(a, b);
+    }
+  }
+}
+
+template <int D>
+inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
+  const CorrectedFace<D>& face = faces_[f];
+  const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+  const double *here = cell(p) + width, *there = cell(n) + width;
+  Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
+  for (int i = 0; i < D; ++i) along += face.off[i] * (load<D>(there + i * width) - load<D>(here + i * width));
+  return normal_derivative<D>(face, along, grad);
+}
+
+// On the boundary, with d / (d . n) in `off`: n . grad u = 2 (u_B - u_P) / (d . n) - off . G_P + k . grad_t
+// u.
+template <int D>
+inline Lane<D> CorrectedKernel<D>::outer(Index f, const Rows<D>& grad) {
+  const CorrectedFace<D>& face = faces_[f];
+  const Index p = mesh_.owner[f];
+  const Lane<D> across = load<D>(nodes_[mesh_.cells.n_local() + f - mesh_.n_interior]) - load<D>(nodes_[p]);
+  return normal_derivative<D>(face, 2 * across, grad) - contract<D>(face.off, cell(p) + width);
+}
+
+// The mirrored difference is central already.
+template <int D>
+inline Lane<D> CorrectedKernel<D>::at_symmetry(Index f, const Rows<D>& grad) {
+  return normal_derivative<D>(faces_[f], -load<D>(nodes_[mesh_.owner[f]]), grad);
+}
+
+template <int D>
+inline void CorrectedKernel<D>::find_boundary_gradients() {
+  for (const Index f : kinds_.traction) {
+    const CorrectedFace<D>& face = faces_[f];
+    const auto point = mesh_.face_points[f];
+    Rows<D> grad;
+    for (std::size_t i = 0; i < point.size(); ++i) {
+      const Lane<D> u = load<D>(vertex(point[i]));
+      const Vec3& c = rows_.faces().tangential[mesh_.face_points.offset[f] + static_cast<Index>(i)];
+      for (int a = 0; a < D; ++a) grad.row[a] += c[a] * u;
+    }
+    const Lane<D> g = outer(f, grad);
+    set_record(
+        mesh_.cells.n_local() + f - mesh_.n_interior,
+        mesh_.reference.face_centre[f], [&](int a) __attribute__((always_inline)) {
+          return grad.row[a] + face.n[a] * g;
+        });
+  }
+}
+
+template <int D>
+inline void CorrectedKernel<D>::find_edges() {
+  if constexpr (D == 3) {
+    double* value = edge_values_.data();
+    for (std::size_t e = 0; e < edges_.size(); ++e, value += width) {
+      const auto [p, q] = edges_[e];
+      const double *first = vertex(p), *second = vertex(q);
+      Lane<D> middle = 0.5 * (load<D>(first) + load<D>(second));
+      if (static_cast<Index>(e) < n_corrected_edges_) {
+        const Vec3 &from = mesh_.reference_points[p], &to = mesh_.reference_points[q];
+        for (int a = 0; a < D; ++a)
+          middle -= 0.125 * (to[a] - from[a]) *
+                    (load<D>(second + (a + 1) * width) - load<D>(first + (a + 1) * width));
+      }
+      store<D>(value, middle);
+    }
+  }
+}
+
+template <int D>
+inline void CorrectedKernel<D>::collect_forces(std::span<double> result) {
+  nodes_.clear_forces();
+  const double* around = values();
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Rows<D> grad = tangential<D>(faces_[f], around, value_stride);
+    const Lane<D> force = force_on<D>(faces_[f], inner(f, grad), grad);
+    lanes::add<D>(nodes_.force(mesh_.owner[f]), -force);
+    lanes::add<D>(nodes_.force(mesh_.neighbour[f]), force);
+  }
+  for (const Index f : kinds_.prescribed) {
+    const Rows<D> grad = tangential<D>(faces_[f], around, value_stride);
+    lanes::add<D>(nodes_.force(mesh_.owner[f]), -force_on<D>(faces_[f], outer(f, grad), grad));
+  }
+  for (const Index f : kinds_.symmetry) {
+    const Rows<D> grad = tangential<D>(faces_[f], around, value_stride);
+    const Lane<D> n = load<D>(faces_[f].n);
+    const Lane<D> force = force_on<D>(faces_[f], at_symmetry(f, grad), grad);
+    lanes::add<D>(nodes_.force(mesh_.owner[f]), -lanes::dot<D>(n, force) * n);  // no shear
+  }
+  double* row = result.data() + std::size_t(mesh_.cells.n_owned()) * D;
+  for (const Index f : kinds_.traction) {
+    const Rows<D> grad = tangential<D>(faces_[f], around, value_stride);
+    const Lane<D> force = force_on<D>(faces_[f], outer(f, grad), grad);
+    for (int a = 0; a < D; ++a) *row++ = force[a];
+  }
+  nodes_.take_forces(result);
+}
+
+// The loops for several generations of processors; the right one is picked when the program starts. Halo
+// exchanges stand between them.
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void cells_pass(
+    CorrectedKernel<3>& kernel) {
+  kernel.find_cell_gradients();
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void boundary_pass(
+    CorrectedKernel<3>& kernel) {
+  kernel.find_boundary_gradients();
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
+    CorrectedKernel<3>& kernel, std::span<const Index> points) {
+  kernel.find_vertices(points);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
+    CorrectedKernel<3>& kernel, std::span<double> result) {
+  kernel.collect_forces(result);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void cells_pass(
+    CorrectedKernel<2>& kernel) {
+  kernel.find_cell_gradients();
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void boundary_pass(
+    CorrectedKernel<2>& kernel) {
+  kernel.find_boundary_gradients();
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
+    CorrectedKernel<2>& kernel, std::span<const Index> points) {
+  kernel.find_vertices(points);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
+    CorrectedKernel<2>& kernel, std::span<double> result) {
+  kernel.collect_forces(result);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void edges_pass(
+    CorrectedKernel<3>& kernel) {
+  kernel.find_edges();
+}
+void edges_pass(CorrectedKernel<2>&) {}
+
+/// All that stands before the faces: node records, vertices, edges.
+template <int D>
+void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<const double> known) {
+  nodes_.fill(unknowns, known);
+  for (const Index v : vertices_.known)
+    for (int a = 0; a < D; ++a)
+      vertex(v)[a] = known.empty() ? 0 : known[std::size_t(rows_.known_of_point(v)) * D + a];
+  cells_pass(*this);
+  const std::span<double> all(records_);
+  const std::size_t n_cells = mesh_.cells.n_local();
+  mesh_.cells.update_ghosts(all.first(n_cells * record), record);
+  // Boundary nodes begin with their cell's gradient; its error is the same for neighbours where cells are.
+  for (const Index f : open_faces_) {
+    const double* owner = cell(mesh_.owner[f]) + width;
+    set_record(static_cast<Index>(n_cells) + f - mesh_.n_interior, mesh_.reference.face_centre[f],
+               [&](int a) { return load<D>(owner + a * width); });
+  }
+  vertices_pass(*this, open_points_);
+  mirror_vertex_records(false);
+  boundary_pass(*this);
+  mesh_.boundary.update_ghosts(all.subspan(n_cells * record), record);
+  vertices_pass(*this, vertices_.free);
+  mirror_vertex_records(true);
+  edges_pass(*this);
+}
+
+template <int D>
+void CorrectedKernel<D>::apply(std::span<const double> unknowns, std::span<const double> known,
+                               std::span<double> result) {
+  prepare(unknowns, known);
+  faces_pass(*this, result);
+}
+
+template <int D>
+void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                                        std::span<Tensor3> gradients) {
+  prepare(unknowns, known);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const Rows<D> grad = tangential<D>(faces_[f], values(), value_stride);
+    const Lane<D> n = load<D>(faces_[f].n);
+    Lane<D> g;
+    if (f < mesh_.n_interior)
+      g = inner(f, grad);
+    else if (rows_.condition(f) == ElasticCondition::symmetry)
+      g = lanes::dot<D>(n, at_symmetry(f, grad)) * n;
+    else
+      g = outer(f, grad);
+    gradients[f].setZero();
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) gradients[f](a, b) = grad.row[a][b] + n[a] * g[b];
+  }
+}
+
+template <int D>
+void CorrectedKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
+                                      std::span<double> points) {
+  prepare(unknowns, known);
+  const auto take = [&](Index v) { std::copy_n(vertex(v), D, points.data() + std::size_t(v) * D); };
+  for (const Index v : vertices_.free) take(v);
+  for (const Index v : vertices_.known) take(v);
+}
+
+}  // namespace
+
+std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const Mesh& mesh,
+                                                                     const ElasticOperator& rows,
+                                                                     std::span<const double> mu,
+                                                                     std::span<const double> lambda) {
+  if (mesh.dim == 2) return std::make_unique<CorrectedKernel<2>>(mesh, rows, mu, lambda);
+  return std::make_unique<CorrectedKernel<3>>(mesh, rows, mu, lambda);
+}
+
+}  // namespace couplet
