@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/fv/elastic_nodes.hpp"
+
 namespace couplet {
 namespace {
 
@@ -74,10 +76,10 @@ FaceEdges::FaceEdges(const Mesh& mesh, const ElasticOperator& rows) {
     Index to, face, place;
   };
   // Edges in the rows of their smaller point, so that neighbours in space are neighbours in memory.
-  const Index n_points = mesh.points.n_local();
+  const Index n_points = mesh.points.n_local(), n_faces = n_faces_with_force(mesh);
   std::vector<Index> offset(n_points + 1, 0);
   const auto visit = [&](auto&& take) {
-    for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    for (Index f = 0; f < n_faces; ++f) {
       const auto p = mesh.face_points[f];
       for (std::size_t i = 0; i < p.size(); ++i) {
         const Index a = p[i], b = p[(i + 1) % p.size()];
@@ -91,14 +93,20 @@ FaceEdges::FaceEdges(const Mesh& mesh, const ElasticOperator& rows) {
   std::vector<Index> next(offset.begin(), offset.end() - 1);
   visit([&](Index from, const Slot& slot) { slots[next[from]++] = slot; });
 
-  of_face.assign(mesh.n_flux_faces(), {});
+  // Known vertices have no gradient, those between materials several.
+  std::vector<std::uint8_t> uncorrected(n_points, 0);
+  for (Index v = 0; v < n_points; ++v) uncorrected[v] = rows.constraints().is_fixed(v);
+  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f)
+    if (rows.condition(f) == ElasticCondition::bonded)
+      for (const Index v : mesh.face_points[f]) uncorrected[v] = 1;
+
+  of_face.assign(n_faces, {});
   for (const bool corrected : {true, false}) {
     for (Index v = 0; v < n_points; ++v) {
       const auto first_edge = static_cast<Index>(points.size());
       for (Index s = offset[v]; s < offset[v + 1]; ++s) {
         const Slot& slot = slots[s];
-        const bool known = rows.known_of_point(v) >= 0 || rows.known_of_point(slot.to) >= 0;
-        if (known == corrected) continue;
+        if ((uncorrected[v] || uncorrected[slot.to]) == corrected) continue;
         Index edge = first_edge;
         while (edge < std::ssize(points) && points[edge][1] != slot.to) ++edge;
         if (edge == std::ssize(points)) points.push_back({v, slot.to});
@@ -107,15 +115,16 @@ FaceEdges::FaceEdges(const Mesh& mesh, const ElasticOperator& rows) {
     }
     if (corrected) n_corrected = static_cast<Index>(points.size());
   }
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+  for (Index f = 0; f < n_faces; ++f)
     if (mesh.face_points[f].size() == 3) of_face[f][3] = of_face[f][2];
 }
 
 std::vector<MirrorVertex> mirror_vertices(const Mesh& mesh, const ElasticOperator& rows,
-                                          const std::vector<Index>& on_planes) {
+                                          const std::vector<Index>& points) {
   std::vector<Index> place(mesh.points.n_local(), -1);
   std::vector<MirrorVertex> result;
-  for (const Index v : on_planes) {
+  for (const Index v : points) {
+    if (!rows.vertices().on_symmetry(v)) continue;
     place[v] = static_cast<Index>(result.size());
     result.push_back({v, {}});
   }

@@ -33,12 +33,12 @@ struct FaceEdges {
   FaceEdges(const Mesh& mesh, const ElasticOperator& rows);
 };
 
-/// A vertex on symmetry planes and their normals (those that differ).
+/// Of these points those on symmetry planes, with the normals that differ.
 struct MirrorVertex {
   Index point;
   std::vector<Vec3> normals;
 };
 std::vector<MirrorVertex> mirror_vertices(const Mesh& mesh, const ElasticOperator& rows,
-                                          const std::vector<Index>& on_planes);
+                                          const std::vector<Index>& points);
 
 }  // namespace couplet

@@ -5,11 +5,10 @@
 
 namespace couplet {
 
-ElasticKernel::ElasticKernel(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> mu,
-                             std::span<const double> lambda, FaceGradientScheme scheme)
+ElasticKernel::ElasticKernel(const Mesh& mesh, const ElasticOperator& rows, FaceGradientScheme scheme)
     : scheme_(scheme),
-      implementation_(scheme == FaceGradientScheme::thesis ? make_thesis_kernel(mesh, rows, mu, lambda)
-                                                           : make_corrected_kernel(mesh, rows, mu, lambda)) {}
+      implementation_(scheme == FaceGradientScheme::thesis ? make_thesis_kernel(mesh, rows)
+                                                           : make_corrected_kernel(mesh, rows)) {}
 
 ElasticKernel::~ElasticKernel() = default;
 ElasticKernel::ElasticKernel(ElasticKernel&&) noexcept = default;

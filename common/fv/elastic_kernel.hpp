@@ -34,10 +34,9 @@ enum class FaceGradientScheme {
 /// cancel; these do not.
 class ElasticKernel {
  public:
-  /// `rows` describes unknowns, known columns and vertices (kept by reference, as the mesh). `mu`, `lambda`:
-  /// Lame's constants of each local cell [Pa]; a face takes its owner's. Collective.
-  ElasticKernel(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> mu,
-                std::span<const double> lambda, FaceGradientScheme scheme);
+  /// `rows` describes unknowns, known columns, vertices and materials (kept by reference, as the mesh).
+  /// Collective.
+  ElasticKernel(const Mesh& mesh, const ElasticOperator& rows, FaceGradientScheme scheme);
   ~ElasticKernel();
   ElasticKernel(ElasticKernel&&) noexcept;
 

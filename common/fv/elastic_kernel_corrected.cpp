@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/fv/elastic_corrections.hpp"
+#include "common/fv/elastic_faces.hpp"
 #include "common/fv/elastic_nodes.hpp"
 #include "common/fv/elastic_vertices.hpp"
 #include "common/parallel/collective.hpp"
@@ -34,7 +35,9 @@ struct CorrectedFace {
 void place(const Vec3& from, double* to, int dim) { std::copy_n(from.data(), dim, to); }
 
 template <int D>
-CorrectedFace<D> make_face(const Mesh& mesh, const FaceGradient& faces, Index f, double mu, double lambda) {
+CorrectedFace<D> make_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const FaceGradient& faces = rows.faces();
+  const LameConstants lame = face_lame(mesh, rows, f);
   CorrectedFace<D> face{};
   const Geometry& g = mesh.reference;
   const auto point = mesh.face_points[f];
@@ -59,8 +62,8 @@ CorrectedFace<D> make_face(const Mesh& mesh, const FaceGradient& faces, Index f,
   else
     place(n - faces.skew[f], face.off, D);
   face.inverse_dn = faces.inverse_dn[f];
-  face.mu = mu * area;
-  face.lambda = lambda * area;
+  face.mu = lame.mu * area;
+  face.lambda = lame.lambda * area;
   return face;
 }
 
@@ -123,8 +126,7 @@ template <int D>
 template <int D>
 class CorrectedKernel final : public ElasticKernel::Implementation {
  public:
-  CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> mu,
-                  std::span<const double> lambda);
+  CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows);
 
   void apply(std::span<const double> unknowns, std::span<const double> known,
              std::span<double> result) override;
@@ -137,7 +139,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   [[gnu::always_inline]] inline void find_boundary_gradients();
   [[gnu::always_inline]] inline void find_vertices(std::span<const Index> points);
   [[gnu::always_inline]] inline void find_edges();
-  [[gnu::always_inline]] inline void collect_forces(std::span<double> result);
+  [[gnu::always_inline]] inline void collect_forces(std::span<const double> known, std::span<double> result);
 
  private:
   static constexpr int width = lanes::width<D>;
@@ -145,7 +147,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   static constexpr int value_stride = D == 2 ? record : width;
 
   void prepare(std::span<const double> unknowns, std::span<const double> known);
-  void mirror_vertex_records(bool with_gradients);
+  void mirror_vertex_gradients();
   double* cell(Index node) { return records_.data() + std::size_t(node) * record; }
   double* vertex(Index point) { return points_.data() + std::size_t(point) * record; }
   const double* values() const { return D == 2 ? points_.data() : edge_values_.data(); }
@@ -158,7 +160,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   const Mesh& mesh_;
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
-  FaceKinds kinds_;
+  ElasticFaces boundary_;
   ElasticVertices vertices_;
   CellGradients gradients_;
   std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include the ghosts
@@ -173,30 +175,30 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
 };
 
 template <int D>
-CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> mu,
-                                    std::span<const double> lambda)
+CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows)
     : mesh_(mesh),
       rows_(rows),
       nodes_(mesh, rows),
-      kinds_(mesh, rows),
+      boundary_(mesh, rows),
       vertices_(mesh, rows),
       gradients_(mesh, rows),
-      mirrors_(mirror_vertices(mesh, rows, vertices_.on_planes)),
+      mirrors_(mirror_vertices(mesh, rows, vertices_.free)),
       records_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * record, 0.0),
       points_(std::size_t(mesh.points.n_local()) * record, 0.0) {
-  faces_.reserve(mesh.n_flux_faces());
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
-    faces_.push_back(make_face<D>(mesh, rows.faces(), f, mu[mesh.owner[f]], lambda[mesh.owner[f]]));
+  faces_.reserve(n_faces_with_force(mesh));
+  for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face<D>(mesh, rows, f));
   if constexpr (D == 3) {
     const FaceEdges edges(mesh, rows);
     edges_ = edges.points;
     n_corrected_edges_ = edges.n_corrected;
     edge_values_.assign(edges_.size() * width, 0.0);
-    for (Index f = 0; f < mesh.n_flux_faces(); ++f) std::copy_n(edges.of_face[f].data(), 4, faces_[f].around);
+    for (Index f = 0; f < n_faces_with_force(mesh); ++f)
+      std::copy_n(edges.of_face[f].data(), 4, faces_[f].around);
   }
   std::vector<std::uint8_t> open(mesh.points.n_local(), 0);
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
-    if (rows.condition(f) != ElasticCondition::traction) continue;
+    const ElasticCondition here = rows.condition(f);
+    if (here == ElasticCondition::prescribed || here == ElasticCondition::symmetry) continue;
     open_faces_.push_back(f);
     for (const Index v : mesh.face_points[f]) open[v] = 1;
   }
@@ -277,15 +279,12 @@ inline void CorrectedKernel<D>::find_vertices(std::span<const Index> points) {
   }
 }
 
-// On a symmetry plane: no displacement across it, and the mean of the gradient and its mirror image, G - NG -
+// On a symmetry plane: the mean of the gradient and its mirror image, G - NG -
 // GN + 2 NGN with N = n n^T.
 template <int D>
-void CorrectedKernel<D>::mirror_vertex_records(bool with_gradients) {
+void CorrectedKernel<D>::mirror_vertex_gradients() {
   for (const MirrorVertex& mirror : mirrors_) {
     double* here = vertex(mirror.point);
-    Eigen::Map<Vec<D>> u(here);
-    u = (rows_.vertices().projector(mirror.point).template topLeftCorner<D, D>() * u).eval();
-    if (!with_gradients) continue;
     for (const Vec3& normal : mirror.normals) {
       const Vec<D> n = normal.head<D>();
       Tensor<D> g;
@@ -315,7 +314,7 @@ template <int D>
 inline Lane<D> CorrectedKernel<D>::outer(Index f, const Rows<D>& grad) {
   const CorrectedFace<D>& face = faces_[f];
   const Index p = mesh_.owner[f];
-  const Lane<D> across = load<D>(nodes_[mesh_.cells.n_local() + f - mesh_.n_interior]) - load<D>(nodes_[p]);
+  const Lane<D> across = load<D>(nodes_.of_face(f)) - load<D>(nodes_[p]);
   return normal_derivative<D>(face, 2 * across, grad) - contract<D>(face.off, cell(p) + width);
 }
 
@@ -327,7 +326,8 @@ inline Lane<D> CorrectedKernel<D>::at_symmetry(Index f, const Rows<D>& grad) {
 
 template <int D>
 inline void CorrectedKernel<D>::find_boundary_gradients() {
-  for (const Index f : kinds_.traction) {
+  for (const Index f : open_faces_) {
+    if (f >= mesh_.n_flux_faces()) break;
     const CorrectedFace<D>& face = faces_[f];
     const auto point = mesh_.face_points[f];
     Rows<D> grad;
@@ -365,7 +365,7 @@ inline void CorrectedKernel<D>::find_edges() {
 }
 
 template <int D>
-inline void CorrectedKernel<D>::collect_forces(std::span<double> result) {
+inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
   nodes_.clear_forces();
   const double* around = values();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
@@ -374,22 +374,18 @@ inline void CorrectedKernel<D>::collect_forces(std::span<double> result) {
     lanes::add<D>(nodes_.force(mesh_.owner[f]), -force);
     lanes::add<D>(nodes_.force(mesh_.neighbour[f]), force);
   }
-  for (const Index f : kinds_.prescribed) {
-    const Rows<D> grad = tangential<D>(faces_[f], around, value_stride);
-    lanes::add<D>(nodes_.force(mesh_.owner[f]), -force_on<D>(faces_[f], outer(f, grad), grad));
-  }
-  for (const Index f : kinds_.symmetry) {
-    const Rows<D> grad = tangential<D>(faces_[f], around, value_stride);
-    const Lane<D> n = load<D>(faces_[f].n);
-    const Lane<D> force = force_on<D>(faces_[f], at_symmetry(f, grad), grad);
-    lanes::add<D>(nodes_.force(mesh_.owner[f]), -lanes::dot<D>(n, force) * n);  // no shear
-  }
-  double* row = result.data() + std::size_t(mesh_.cells.n_owned()) * D;
-  for (const Index f : kinds_.traction) {
-    const Rows<D> grad = tangential<D>(faces_[f], around, value_stride);
-    const Lane<D> force = force_on<D>(faces_[f], outer(f, grad), grad);
-    for (int a = 0; a < D; ++a) *row++ = force[a];
-  }
+  const auto slope = [&](Index f, const Rows<D>& grad) __attribute__((always_inline)) {
+    return rows_.condition(f) == ElasticCondition::symmetry ? at_symmetry(f, grad) : outer(f, grad);
+  };
+  boundary_.add_rows<D>(
+      nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
+      [&](Index f) __attribute__((always_inline)) {
+        const Rows<D> grad = tangential<D>(faces_[f], around, value_stride);
+        return force_on<D>(faces_[f], slope(f, grad), grad);
+      },
+      [&](Index f) __attribute__((always_inline)) {
+        return slope(f, tangential<D>(faces_[f], around, value_stride));
+      });
   nodes_.take_forces(result);
 }
 
@@ -408,8 +404,8 @@ inline void CorrectedKernel<D>::collect_forces(std::span<double> result) {
   kernel.find_vertices(points);
 }
 [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
-    CorrectedKernel<3>& kernel, std::span<double> result) {
-  kernel.collect_forces(result);
+    CorrectedKernel<3>& kernel, std::span<const double> known, std::span<double> result) {
+  kernel.collect_forces(known, result);
 }
 [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void cells_pass(
     CorrectedKernel<2>& kernel) {
@@ -424,8 +420,8 @@ inline void CorrectedKernel<D>::collect_forces(std::span<double> result) {
   kernel.find_vertices(points);
 }
 [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
-    CorrectedKernel<2>& kernel, std::span<double> result) {
-  kernel.collect_forces(result);
+    CorrectedKernel<2>& kernel, std::span<const double> known, std::span<double> result) {
+  kernel.collect_forces(known, result);
 }
 [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void edges_pass(
     CorrectedKernel<3>& kernel) {
@@ -437,9 +433,6 @@ void edges_pass(CorrectedKernel<2>&) {}
 template <int D>
 void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<const double> known) {
   nodes_.fill(unknowns, known);
-  for (const Index v : vertices_.known)
-    for (int a = 0; a < D; ++a)
-      vertex(v)[a] = known.empty() ? 0 : known[std::size_t(rows_.known_of_point(v)) * D + a];
   cells_pass(*this);
   const std::span<double> all(records_);
   const std::size_t n_cells = mesh_.cells.n_local();
@@ -451,11 +444,12 @@ void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<con
                [&](int a) { return load<D>(owner + a * width); });
   }
   vertices_pass(*this, open_points_);
-  mirror_vertex_records(false);
+  vertices_.constrain<D>(points_, record, known);
   boundary_pass(*this);
   mesh_.boundary.update_ghosts(all.subspan(n_cells * record), record);
   vertices_pass(*this, vertices_.free);
-  mirror_vertex_records(true);
+  vertices_.constrain<D>(points_, record, known);
+  mirror_vertex_gradients();
   edges_pass(*this);
 }
 
@@ -463,7 +457,7 @@ template <int D>
 void CorrectedKernel<D>::apply(std::span<const double> unknowns, std::span<const double> known,
                                std::span<double> result) {
   prepare(unknowns, known);
-  faces_pass(*this, result);
+  faces_pass(*this, known, result);
 }
 
 template <int D>
@@ -492,17 +486,15 @@ void CorrectedKernel<D>::point_values(std::span<const double> unknowns, std::spa
   prepare(unknowns, known);
   const auto take = [&](Index v) { std::copy_n(vertex(v), D, points.data() + std::size_t(v) * D); };
   for (const Index v : vertices_.free) take(v);
-  for (const Index v : vertices_.known) take(v);
+  for (const Index v : vertices_.constrained) take(v);
 }
 
 }  // namespace
 
 std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const Mesh& mesh,
-                                                                     const ElasticOperator& rows,
-                                                                     std::span<const double> mu,
-                                                                     std::span<const double> lambda) {
-  if (mesh.dim == 2) return std::make_unique<CorrectedKernel<2>>(mesh, rows, mu, lambda);
-  return std::make_unique<CorrectedKernel<3>>(mesh, rows, mu, lambda);
+                                                                     const ElasticOperator& rows) {
+  if (mesh.dim == 2) return std::make_unique<CorrectedKernel<2>>(mesh, rows);
+  return std::make_unique<CorrectedKernel<3>>(mesh, rows);
 }
 
 }  // namespace couplet

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ElasticKernel with the thesis's face gradient: two passes, vertices then faces.
+#include "common/fv/elastic_faces.hpp"
 #include "common/fv/elastic_nodes.hpp"
 #include "common/fv/elastic_vertices.hpp"
 
@@ -23,7 +24,9 @@ struct ThesisFace {
 };
 
 template <int D>
-ThesisFace<D> make_face(const Mesh& mesh, const FaceGradient& faces, Index f, double mu, double lambda) {
+ThesisFace<D> make_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const FaceGradient& faces = rows.faces();
+  const LameConstants lame = face_lame(mesh, rows, f);
   ThesisFace<D> face;
   const Index first = mesh.face_points.offset[f], count = mesh.face_points.offset[f + 1] - first;
   const Index* point = mesh.face_points.index.data() + first;
@@ -39,8 +42,8 @@ ThesisFace<D> make_face(const Mesh& mesh, const FaceGradient& faces, Index f, do
   }
   for (int a = 0; a < D; ++a) face.n[a] = faces.normal[f][a];
   face.inverse_dn = faces.inverse_dn[f];
-  face.mu = mu * area;
-  face.lambda = lambda * area;
+  face.mu = lame.mu * area;
+  face.lambda = lame.lambda * area;
   return face;
 }
 
@@ -66,20 +69,30 @@ template <int D>
   return face.mu * (g + normal * n + turned) + (face.lambda * (normal + trace)) * n;
 }
 
+/// n . grad u, the g above.
+template <int D>
+[[gnu::always_inline]] inline Lane<D> slope_at(const ThesisFace<D>& face, const Lane<D>& across,
+                                               const double* points) {
+  constexpr int stride = lanes::width<D>;
+  Lane<D> g = across * face.inverse_dn;
+  for (int i = 0; i < D - 1; ++i)
+    g += face.kc[i] * (load<D>(points + std::size_t(face.plus[i]) * stride) -
+                       load<D>(points + std::size_t(face.minus[i]) * stride));
+  return g;
+}
+
 template <int D>
 class ThesisKernel final : public ElasticKernel::Implementation {
  public:
-  ThesisKernel(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> mu,
-               std::span<const double> lambda)
+  ThesisKernel(const Mesh& mesh, const ElasticOperator& rows)
       : mesh_(mesh),
         rows_(rows),
         nodes_(mesh, rows),
-        kinds_(mesh, rows),
+        boundary_(mesh, rows),
         vertices_(mesh, rows),
         points_(std::size_t(mesh.points.n_local()) * stride, 0.0) {
-    faces_.reserve(mesh.n_flux_faces());
-    for (Index f = 0; f < mesh.n_flux_faces(); ++f)
-      faces_.push_back(make_face<D>(mesh, rows.faces(), f, mu[mesh.owner[f]], lambda[mesh.owner[f]]));
+    faces_.reserve(n_faces_with_force(mesh));
+    for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face<D>(mesh, rows, f));
   }
 
   void apply(std::span<const double> unknowns, std::span<const double> known,
@@ -90,19 +103,16 @@ class ThesisKernel final : public ElasticKernel::Implementation {
                     std::span<double> points) override;
 
   [[gnu::always_inline]] inline void interpolate_free();
-  [[gnu::always_inline]] inline void collect_forces(std::span<double> result);
+  [[gnu::always_inline]] inline void collect_forces(std::span<const double> known, std::span<double> result);
 
  private:
   static constexpr int stride = lanes::width<D>;
   void fill(std::span<const double> unknowns, std::span<const double> known);
-  const double* other_side(Index f) const {
-    return nodes_[f < mesh_.n_interior ? mesh_.neighbour[f] : mesh_.cells.n_local() + f - mesh_.n_interior];
-  }
 
   const Mesh& mesh_;
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
-  FaceKinds kinds_;
+  ElasticFaces boundary_;
   ElasticVertices vertices_;
   std::vector<ThesisFace<D>> faces_;
   std::vector<double> points_;  // padded displacements of the vertices
@@ -110,75 +120,81 @@ class ThesisKernel final : public ElasticKernel::Implementation {
 
 template <int D>
 inline void ThesisKernel<D>::interpolate_free() {
-  interpolate_records<D, 1, stride, stride>(rows_.vertices(), vertices_.free, nodes_[0], points_.data());
-  for (const Index v : vertices_.on_planes) {
-    double* u = points_.data() + std::size_t(v) * stride;
-    Eigen::Map<Vec<D>> here(u);
-    here = (rows_.vertices().projector(v).template topLeftCorner<D, D>() * here).eval();
+  const double* nodes = nodes_[0];
+  double* points = points_.data();
+  for (const Index v : vertices_.free) {
+    const auto index = rows_.vertices().nodes(v);
+    const auto weight = rows_.vertices().weights(v);
+    Lane<D> sum = {};
+    for (std::size_t i = 0; i < index.size(); ++i)
+      sum += weight[i] * load<D>(nodes + std::size_t(index[i]) * stride);
+    lanes::store<D>(points + std::size_t(v) * stride, sum);
   }
 }
 
 template <int D>
-inline void ThesisKernel<D>::collect_forces(std::span<double> result) {
+inline void ThesisKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
   nodes_.clear_forces();
-  const auto on = [&](Index f) __attribute__((always_inline)) {
-    return force_on<D>(faces_[f], load<D>(other_side(f)) - load<D>(nodes_[mesh_.owner[f]]), points_.data());
-  };
+  const double* points = points_.data();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const Lane<D> force = on(f);
-    lanes::add<D>(nodes_.force(mesh_.owner[f]), -force);
-    lanes::add<D>(nodes_.force(mesh_.neighbour[f]), force);
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const Lane<D> force = force_on<D>(faces_[f], load<D>(nodes_[n]) - load<D>(nodes_[p]), points);
+    lanes::add<D>(nodes_.force(p), -force);
+    lanes::add<D>(nodes_.force(n), force);
   }
-  for (const Index f : kinds_.prescribed) lanes::add<D>(nodes_.force(mesh_.owner[f]), -on(f));
-  for (const Index f : kinds_.symmetry) {
-    const Lane<D> n = load<D>(faces_[f].n);
-    lanes::add<D>(nodes_.force(mesh_.owner[f]), -lanes::dot<D>(n, on(f)) * n);  // no shear
-  }
-  double* row = result.data() + std::size_t(mesh_.cells.n_owned()) * D;
-  for (const Index f : kinds_.traction) {
-    const Lane<D> force = on(f);
-    for (int a = 0; a < D; ++a) *row++ = force[a];
-  }
+  const auto across = [&](Index f) __attribute__((always_inline)) {
+    return load<D>(nodes_.of_face(f)) - load<D>(nodes_[mesh_.owner[f]]);
+  };
+  boundary_.add_rows<D>(
+      nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
+      [&](Index f) __attribute__((always_inline)) { return force_on<D>(faces_[f], across(f), points); },
+      [&](Index f) __attribute__((always_inline)) { return slope_at<D>(faces_[f], across(f), points); });
   nodes_.take_forces(result);
 }
 
 // The loops for several generations of processors; the right one is picked when the program starts.
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void passes(ThesisKernel<3>& kernel,
-                                                                                  std::span<double> result) {
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
+    ThesisKernel<3>& kernel) {
   kernel.interpolate_free();
-  kernel.collect_forces(result);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void passes(ThesisKernel<2>& kernel,
-                                                                                  std::span<double> result) {
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
+    ThesisKernel<3>& kernel, std::span<const double> known, std::span<double> result) {
+  kernel.collect_forces(known, result);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
+    ThesisKernel<2>& kernel) {
   kernel.interpolate_free();
-  kernel.collect_forces(result);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
+    ThesisKernel<2>& kernel, std::span<const double> known, std::span<double> result) {
+  kernel.collect_forces(known, result);
 }
 
+/// All that stands before the faces.
 template <int D>
 void ThesisKernel<D>::fill(std::span<const double> unknowns, std::span<const double> known) {
   nodes_.fill(unknowns, known);
-  for (const Index v : vertices_.known)
-    for (int a = 0; a < D; ++a)
-      points_[std::size_t(v) * stride + a] =
-          known.empty() ? 0 : known[std::size_t(rows_.known_of_point(v)) * D + a];
+  vertices_pass(*this);
+  vertices_.constrain<D>(points_, stride, known);
 }
 
 template <int D>
 void ThesisKernel<D>::apply(std::span<const double> unknowns, std::span<const double> known,
                             std::span<double> result) {
   fill(unknowns, known);
-  passes(*this, result);
+  faces_pass(*this, known, result);
 }
 
 template <int D>
 void ThesisKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
                                      std::span<Tensor3> gradients) {
   fill(unknowns, known);
-  interpolate_free();
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const ThesisFace<D>& face = faces_[f];
     const bool symmetric = f >= mesh_.n_interior && rows_.condition(f) == ElasticCondition::symmetry;
-    Lane<D> g = (load<D>(other_side(f)) - load<D>(nodes_[mesh_.owner[f]])) * face.inverse_dn;
+    Lane<D> g = (load<D>(f < mesh_.n_interior ? nodes_[mesh_.neighbour[f]] : nodes_.of_face(f)) -
+                 load<D>(nodes_[mesh_.owner[f]])) *
+                face.inverse_dn;
     Tensor3& gradient = gradients[f];
     gradient.setZero();
     for (int i = 0; i < D - 1; ++i) {
@@ -199,22 +215,19 @@ template <int D>
 void ThesisKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
                                    std::span<double> points) {
   fill(unknowns, known);
-  interpolate_free();
   const auto take = [&](Index v) {
     for (int a = 0; a < D; ++a) points[std::size_t(v) * D + a] = points_[std::size_t(v) * stride + a];
   };
   for (const Index v : vertices_.free) take(v);
-  for (const Index v : vertices_.known) take(v);
+  for (const Index v : vertices_.constrained) take(v);
 }
 
 }  // namespace
 
 std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const Mesh& mesh,
-                                                                  const ElasticOperator& rows,
-                                                                  std::span<const double> mu,
-                                                                  std::span<const double> lambda) {
-  if (mesh.dim == 2) return std::make_unique<ThesisKernel<2>>(mesh, rows, mu, lambda);
-  return std::make_unique<ThesisKernel<3>>(mesh, rows, mu, lambda);
+                                                                  const ElasticOperator& rows) {
+  if (mesh.dim == 2) return std::make_unique<ThesisKernel<2>>(mesh, rows);
+  return std::make_unique<ThesisKernel<3>>(mesh, rows);
 }
 
 }  // namespace couplet

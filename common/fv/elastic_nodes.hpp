@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,16 +23,27 @@ class ElasticKernel::Implementation {
 };
 
 std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const Mesh& mesh,
-                                                                  const ElasticOperator& rows,
-                                                                  std::span<const double> mu,
-                                                                  std::span<const double> lambda);
+                                                                  const ElasticOperator& rows);
 std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const Mesh& mesh,
-                                                                     const ElasticOperator& rows,
-                                                                     std::span<const double> mu,
-                                                                     std::span<const double> lambda);
+                                                                     const ElasticOperator& rows);
 
-/// Displacements of all nodes (local cells, then boundary faces) padded to whole lanes, and back. A symmetry
-/// face is a node of value zero.
+/// Lame's constants of a face: the owner's where cells have their own, the mean of both across an interior
+/// face.
+inline LameConstants face_lame(const Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const LameConstants here = rows.lame(mesh.owner[f]);
+  if (f >= mesh.n_interior) return here;
+  const LameConstants there = rows.lame(mesh.neighbour[f]);
+  return {0.5 * (here.mu + there.mu), 0.5 * (here.lambda + there.lambda)};
+}
+
+/// Faces whose force is asked for: the flux faces, and with bonded faces those of ghosts too, since the row
+/// of a bonded face holds the force on its other side.
+inline Index n_faces_with_force(const Mesh& mesh) {
+  return mesh.twin.empty() ? mesh.n_flux_faces() : mesh.n_faces();
+}
+
+/// Displacements of all nodes (local cells, then boundary faces) padded to whole lanes, and the forces on the
+/// cells. A symmetry face is a node of value zero.
 template <int D>
 class ElasticNodes {
  public:
@@ -44,6 +56,9 @@ class ElasticNodes {
         force_(std::size_t(mesh.cells.n_local()) * stride, 0.0) {}
 
   const double* operator[](Index node) const { return value_.data() + std::size_t(node) * stride; }
+  const double* of_face(Index face) const {
+    return (*this)[mesh_->cells.n_local() + face - mesh_->n_interior];
+  }
   double* force(Index cell) { return force_.data() + std::size_t(cell) * stride; }
   void clear_forces() { std::fill(force_.begin(), force_.end(), 0.0); }
 
@@ -51,10 +66,11 @@ class ElasticNodes {
   void fill(std::span<const double> unknowns, std::span<const double> known) {
     const Index n_owned = mesh_->cells.n_owned(), n_cells = mesh_->cells.n_local();
     for (Index c = 0; c < n_owned; ++c) copy(unknowns.data() + std::size_t(c) * D, at(c));
-    const auto& open = rows_->traction_faces();
+    const auto& open = rows_->unknown_faces();
     for (std::size_t i = 0; i < open.size(); ++i)
       copy(unknowns.data() + (n_owned + i) * D, at(n_cells + open[i] - mesh_->n_interior));
-    for (const Index f : rows_->prescribed_faces()) {
+    for (const Index f : rows_->known_faces()) {
+      if (rows_->condition(f) != ElasticCondition::prescribed) continue;
       double* here = at(n_cells + f - mesh_->n_interior);
       if (known.empty())
         std::fill_n(here, D, 0.0);
@@ -64,6 +80,11 @@ class ElasticNodes {
     const std::span<double> all(value_);
     mesh_->cells.update_ghosts(all.first(std::size_t(n_cells) * stride), stride);
     mesh_->boundary.update_ghosts(all.subspan(std::size_t(n_cells) * stride), stride);
+    for (std::size_t b = 0; b < mesh_->twin.size(); ++b) {
+      const Index first = mesh_->twin[b];
+      if (first < 0 || mesh_->boundary_id[first] > mesh_->boundary_id[b]) continue;
+      copy(at(n_cells + first), at(n_cells + static_cast<Index>(b)));
+    }
   }
 
   /// The rows of the owned cells from the forces collected.
@@ -81,20 +102,6 @@ class ElasticNodes {
   const Mesh* mesh_;
   const ElasticOperator* rows_;
   std::vector<double> value_, force_;
-};
-
-/// Flux faces by what happens to their force: into both cells, the owner, the owner across the plane only, or
-/// the face's own row.
-struct FaceKinds {
-  Index n_interior = 0;
-  std::vector<Index> prescribed, symmetry, traction;  ///< traction: in the order of the rows
-  FaceKinds(const Mesh& mesh, const ElasticOperator& rows)
-      : n_interior(mesh.n_interior), traction(rows.traction_faces()) {
-    for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
-      if (rows.condition(f) == ElasticCondition::prescribed) prescribed.push_back(f);
-      if (rows.condition(f) == ElasticCondition::symmetry) symmetry.push_back(f);
-    }
-  }
 };
 
 }  // namespace couplet

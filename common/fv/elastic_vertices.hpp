@@ -9,39 +9,34 @@
 
 namespace couplet {
 
-/// Which vertices a kernel interpolates, and their weights as one stream.
-struct ElasticVertices {
-  std::vector<Index> free;       ///< points with a row of weights; those on symmetry planes included
-  std::vector<Index> on_planes;  ///< those on symmetry planes
-  std::vector<Index> known;      ///< prescribed points
+/// Which vertices a kernel interpolates and which it constrains: u_V = F_V sum_i w_i u_i + g_V.
+class ElasticVertices {
+ public:
+  std::vector<Index> free;         ///< points whose nodes matter
+  std::vector<Index> constrained;  ///< points with F_V other than I; those that are not free have F_V = 0
 
-  ElasticVertices(const Mesh& mesh, const ElasticOperator& rows) : known(rows.prescribed_points()) {
+  ElasticVertices(const Mesh& mesh, const ElasticOperator& rows) : rows_(&rows) {
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
-      if (rows.known_of_point(v) >= 0 || rows.vertices().nodes(v).empty()) continue;
-      free.push_back(v);
-      if (rows.vertices().on_symmetry(v)) on_planes.push_back(v);
+      if (rows.constraints().is_constrained(v)) constrained.push_back(v);
+      if (!rows.constraints().is_fixed(v) && !rows.vertices().nodes(v).empty()) free.push_back(v);
     }
   }
-};
 
-/// sum_i w_i value_i for these points: `Lanes` lanes a record, records of `Stride` doubles.
-template <int D, int Lanes, int Stride, int OutStride>
-[[gnu::always_inline]] inline void interpolate_records(const VertexInterpolation& vertices,
-                                                       std::span<const Index> points, const double* nodes,
-                                                       double* out) {
-  constexpr int width = lanes::width<D>;
-  for (const Index v : points) {
-    const auto index = vertices.nodes(v);
-    const auto weight = vertices.weights(v);
-    lanes::Lane<D> sum[Lanes] = {};
-    for (std::size_t i = 0; i < index.size(); ++i) {
-      const double* here = nodes + std::size_t(index[i]) * Stride;
-      const double w = weight[i];
-      for (int l = 0; l < Lanes; ++l) sum[l] += w * lanes::load<D>(here + l * width);
+  /// Applies F_V and g_V to the values, `stride` doubles a point, whose first D are the displacement.
+  template <int D>
+  void constrain(std::span<double> values, int stride, std::span<const double> known) const {
+    const VertexConstraints& constraints = rows_->constraints();
+    for (const Index v : constrained) {
+      Eigen::Map<Vec<D>> u(values.data() + std::size_t(v) * stride);
+      u = (constraints.free_part(v).topLeftCorner<D, D>() * u).eval();
+      const Index column = constraints.column(v);
+      if (column >= 0 && !known.empty())
+        u += Eigen::Map<const Vec<D>>(known.data() + std::size_t(column) * D);
     }
-    double* there = out + std::size_t(v) * OutStride;
-    for (int l = 0; l < Lanes; ++l) lanes::store<D>(there + l * width, sum[l]);
   }
-}
+
+ private:
+  const ElasticOperator* rows_;
+};
 
 }  // namespace couplet

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "common/fv/elastic_nodes.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -91,7 +92,7 @@ struct RigidCoarseSpace::Assembly {
   }
 
   void add_vertex(Index v) {
-    if (rows.known_of_point(v) >= 0) return;
+    if (rows.constraints().is_fixed(v)) return;
     const std::size_t first = shares.size();
     const auto nodes = rows.vertices().nodes(v);
     const auto weights = rows.vertices().weights(v);
@@ -114,25 +115,30 @@ struct RigidCoarseSpace::Assembly {
     if (space.aggregate_[mesh.neighbour[f]] != a) return false;
     for (const Index v : mesh.face_points[f])
       if (offset[v + 1] - offset[v] != 1 || shares[offset[v]].aggregate != a ||
-          rows.vertices().on_symmetry(v))
+          rows.constraints().is_constrained(v))
         return false;
     return true;
   }
 
   /// Force on the face by the modes of each aggregate in its stencil, and from there into the rows of its
   /// cells.
-  void add_face(Index f, double mu, double lambda) {
+  void add_face(Index f) {
     const bool on_boundary = f >= mesh.n_interior;
-    const bool symmetric = on_boundary && rows.condition(f) == ElasticCondition::symmetry;
+    const ElasticCondition condition = on_boundary ? rows.condition(f) : ElasticCondition::bonded;
     const FaceGradient& faces = rows.faces();
+    const auto [mu, lambda] = face_lame(mesh, rows, f);
     const Vec3& n = faces.normal[f];
     const Tensor3 nn = n * n.transpose(), identity = Tensor3::Identity();
     Tensor3 scale = mesh.reference.face_area[f].norm() * identity;
-    if (symmetric) scale = scale * nn;
+    if (condition == ElasticCondition::symmetry) scale = scale * nn;
+    if (condition == ElasticCondition::support) scale = scale * rows.support(f).known;
     const Tensor3 across = scale * (mu * (identity + nn) + lambda * nn) * faces.inverse_dn[f];
     found_.clear();
     add_node(mesh.owner[f], -across);
-    if (!on_boundary) add_node(mesh.neighbour[f], across);
+    if (!on_boundary)
+      add_node(mesh.neighbour[f], across);
+    else if (condition != ElasticCondition::symmetry && condition != ElasticCondition::prescribed)
+      add_face_node(f, condition, across);
     for (Index e = mesh.face_points.offset[f]; e < mesh.face_points.offset[f + 1]; ++e) {
       const Index v = mesh.face_points.index[e];
       if (offset[v] == offset[v + 1]) continue;
@@ -140,7 +146,7 @@ struct RigidCoarseSpace::Assembly {
       const double kc = faces.skew[f].dot(c);
       Tensor3 block =
           scale * (mu * (kc * (identity + nn) + c * n.transpose()) + lambda * (kc * nn + n * c.transpose()));
-      if (rows.vertices().on_symmetry(v)) block = block * rows.vertices().projector(v);
+      if (rows.constraints().is_constrained(v)) block = block * rows.constraints().free_part(v);
       for (auto s = offset[v]; s < offset[v + 1]; ++s)
         add(shares[s].aggregate, block, shares[s].weight, shares[s].arm);
     }
@@ -161,6 +167,23 @@ struct RigidCoarseSpace::Assembly {
 
  private:
   void add_node(Index cell, const Tensor3& block) { add(space.aggregate_[cell], block, 1, space.arm(cell)); }
+
+  // Bonded: the mean of both sides, for want of the true balance.
+  void add_face_node(Index f, ElasticCondition condition, const Tensor3& across) {
+    const Vec3& x = mesh.reference.face_centre[f];
+    const auto follow = [&](Index cell, const Tensor3& block, double share) {
+      const Index a = space.aggregate_[cell];
+      add(a, block, share, share * (x - space.centre_[a]));
+    };
+    if (condition == ElasticCondition::bonded) {
+      follow(mesh.owner[f], across, 0.5);
+      return follow(mesh.owner[mesh.n_interior + mesh.twin[f - mesh.n_interior]], across, 0.5);
+    }
+    if (condition != ElasticCondition::support) return follow(mesh.owner[f], across, 1);
+    const ElasticSupport& s = rows.support(f);
+    const Tensor3 open = Tensor3::Identity() - s.known;
+    follow(mesh.owner[f], (across - mesh.reference.face_area[f].norm() * open * s.spring) * open, 1);
+  }
 
   // block u with u = weight t + spin x arm.
   void add(Index aggregate, const Tensor3& block, double weight, const Vec3& arm) {
@@ -185,9 +208,8 @@ struct RigidCoarseSpace::Assembly {
   std::vector<std::pair<Index, Modes>> found_;
 };
 
-RigidCoarseSpace::RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> mu,
-                                   std::span<const double> lambda, std::span<const double> inertia,
-                                   int n_aggregates)
+RigidCoarseSpace::RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows,
+                                   std::span<const double> inertia, int n_aggregates)
     : mesh_(&mesh), rows_(&rows), modes_(mesh.dim == 2 ? 3 : 6) {
   const Index n_owned = mesh.cells.n_owned();
   const double share = double(n_aggregates) * n_owned / static_cast<double>(mesh.cells.n_global());
@@ -198,7 +220,7 @@ RigidCoarseSpace::RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows
   Assembly assembly(*this, mesh, rows, first, n_here);
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     if (f >= mesh.n_interior && rows.condition(f) == ElasticCondition::traction) continue;
-    if (!assembly.within_one(f)) assembly.add_face(f, mu[mesh.owner[f]], lambda[mesh.owner[f]]);
+    if (!assembly.within_one(f)) assembly.add_face(f);
   }
   assembly.add_inertia(inertia);
 
@@ -273,11 +295,14 @@ void RigidCoarseSpace::add_correction(std::span<const double> r, std::span<doubl
   };
   for (Index c = 0; c < mesh_->cells.n_owned(); ++c)
     move(aggregate_[c], arm(c), z.data() + std::size_t(c) * dim);
-  const auto& faces = rows_->traction_faces();
+  const auto& faces = rows_->unknown_faces();
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const Index a = aggregate_[mesh_->owner[faces[i]]];
-    move(a, mesh_->reference.face_centre[faces[i]] - centre_[a],
-         z.data() + (std::size_t(mesh_->cells.n_owned()) + i) * dim);
+    Vec3 u = Vec3::Zero();
+    move(a, mesh_->reference.face_centre[faces[i]] - centre_[a], u.data());
+    if (rows_->condition(faces[i]) == ElasticCondition::support)
+      u -= (rows_->support(faces[i]).known * u).eval();
+    for (int c = 0; c < dim; ++c) z[(std::size_t(mesh_->cells.n_owned()) + i) * dim + c] += u[c];
   }
 }
 

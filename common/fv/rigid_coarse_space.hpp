@@ -21,8 +21,8 @@ namespace couplet {
 class RigidCoarseSpace {
  public:
   /// About `n_aggregates` over all ranks. Collective.
-  RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> mu,
-                   std::span<const double> lambda, std::span<const double> inertia, int n_aggregates);
+  RigidCoarseSpace(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
+                   int n_aggregates);
   ~RigidCoarseSpace();
 
   /// z += Z (Z^T A Z)^-1 Z^T r. Collective.

@@ -61,6 +61,16 @@ std::vector<Index> aggregate(const Rows& a, const std::vector<std::uint8_t>& is_
   return of;
 }
 
+/// Neighbours ascending, by insertion: rows are short and nearly in order.
+void sort_rows(Rows& a) {
+  for (Index i = 0; i < a.size(); ++i)
+    for (Index e = a.offset[i] + 1; e < a.offset[i + 1]; ++e)
+      for (Index k = e; k > a.offset[i] && a.index[k] < a.index[k - 1]; --k) {
+        std::swap(a.index[k], a.index[k - 1]);
+        std::swap(a.value[k], a.value[k - 1]);
+      }
+}
+
 }  // namespace
 
 ComponentMultigrid::ComponentMultigrid(Rows rows) {
@@ -162,6 +172,7 @@ void ComponentMultigrid::add_level(Rows rows) {
   Level level;
   level.a = std::move(rows);
   const Index n = level.a.size();
+  sort_rows(level.a);
   level.inverse_diagonal.resize(n);
   level.middle.resize(n);
   for (Index i = 0; i < n; ++i) {

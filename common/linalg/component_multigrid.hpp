@@ -20,7 +20,7 @@ class ComponentMultigrid {
   static constexpr int lanes = 4;
   using Lanes [[gnu::vector_size(16)]] = float;
 
-  /// Symmetric rows without their diagonals: neighbours `index` ascending within a row, `value` = a_ij <= 0.
+  /// Symmetric rows without their diagonals: neighbours `index`, `value` = a_ij <= 0.
   struct Rows {
     std::vector<Index> offset{0}, index;
     std::vector<Lanes> value;

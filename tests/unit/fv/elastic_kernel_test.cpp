@@ -34,14 +34,13 @@ struct Setting {
   Setting(const Case& c, FaceGradientScheme scheme, std::vector<ElasticCondition> first, int n = 4)
       : mesh(make_mesh(c, n)),
         rows(mesh, padded(first), {mu, lambda}),
-        kernel(mesh, rows, std::vector<double>(mesh.cells.n_local(), mu),
-               std::vector<double>(mesh.cells.n_local(), lambda), scheme) {}
+        kernel(mesh, rows, scheme) {}
   std::vector<ElasticCondition> padded(std::vector<ElasticCondition> c) const {
     c.resize(mesh.patches.size(), ElasticCondition::traction);
     return c;
   }
   std::size_t n_known() const {
-    return (rows.prescribed_points().size() + rows.prescribed_faces().size()) * mesh.dim;
+    return rows.n_known() * mesh.dim;
   }
 
   /// Unknowns and known values of a field.
@@ -52,9 +51,9 @@ struct Setting {
       to.insert(to.end(), u.data(), u.data() + mesh.dim);
     };
     for (Index c = 0; c < mesh.cells.n_owned(); ++c) put(mesh.reference.cell_centre[c], unknowns);
-    for (const Index f : rows.traction_faces()) put(mesh.reference.face_centre[f], unknowns);
-    for (const Index v : rows.prescribed_points()) put(mesh.reference_points[v], known);
-    for (const Index f : rows.prescribed_faces()) put(mesh.reference.face_centre[f], known);
+    for (const Index f : rows.unknown_faces()) put(mesh.reference.face_centre[f], unknowns);
+    for (const Index v : rows.constraints().points()) put(mesh.reference_points[v], known);
+    for (const Index f : rows.known_faces()) put(mesh.reference.face_centre[f], known);
   }
 
   Mesh mesh;
@@ -117,12 +116,12 @@ TEST(ElasticKernel, linear_fields_have_their_exact_constant_stress_in_both_schem
       std::vector<double> points(std::size_t(s.mesh.points.n_local()) * s.mesh.dim), force(u.size());
       s.kernel.point_values(u, known, points);
       s.kernel.apply(u, known, force);
-      const Tensor3 stress = s.rows.stress(gradient);
+      const Tensor3 stress = s.rows.stress(0, gradient);
       const std::size_t n_cells = s.mesh.cells.n_owned();
-      for (std::size_t i = 0; i < s.rows.traction_faces().size(); ++i)
+      for (std::size_t i = 0; i < s.rows.unknown_faces().size(); ++i)
         for (int a = 0; a < s.mesh.dim; ++a)
           ASSERT_NEAR(force[(n_cells + i) * s.mesh.dim + a],
-                      (stress * s.mesh.reference.face_area[s.rows.traction_faces()[i]])[a], 1e-11);
+                      (stress * s.mesh.reference.face_area[s.rows.unknown_faces()[i]])[a], 1e-11);
     }
 }
 

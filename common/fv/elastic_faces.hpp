@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/fv/elastic_nodes.hpp"
+
+namespace couplet {
+
+/// What the boundary faces of owned cells do with the force on them: the rows that ElasticOperator defines.
+class ElasticFaces {
+ public:
+  ElasticFaces(const Mesh& mesh, const ElasticOperator& rows) : mesh_(&mesh), rows_(&rows) {
+    for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
+      const ElasticCondition here = rows.condition(f);
+      if (here == ElasticCondition::symmetry) symmetry_.push_back(f);
+      if (here == ElasticCondition::prescribed || here == ElasticCondition::bonded) held_.push_back(f);
+    }
+  }
+
+  /// Adds the forces to the cells and writes the rows of the unknown faces. `force(f)`: sigma . S;
+  /// `slope(f)`: n . grad u.
+  template <int D, class Force, class Slope>
+  [[gnu::always_inline]] inline void add_rows(ElasticNodes<D>& nodes, std::span<const double> known,
+                                              double* row, const Force& force, const Slope& slope) const {
+    for (const Index f : held_) lanes::add<D>(nodes.force(mesh_->owner[f]), -force(f));
+    for (const Index f : symmetry_) {
+      lanes::Lane<D> n{};
+      for (int a = 0; a < D; ++a) n[a] = rows_->faces().normal[f][a];
+      lanes::add<D>(nodes.force(mesh_->owner[f]), -lanes::dot<D>(n, force(f)) * n);  // no shear
+    }
+    for (const Index f : rows_->unknown_faces()) {
+      lanes::Lane<D> own = {};
+      switch (rows_->condition(f)) {
+        case ElasticCondition::support:
+          own = support_row<D>(f, nodes, known, force(f));
+          break;
+        case ElasticCondition::zero_gradient: {
+          const LameConstants lame = rows_->lame(mesh_->owner[f]);
+          lanes::add<D>(nodes.force(mesh_->owner[f]), -force(f));
+          own = (2 * lame.mu + lame.lambda) * mesh_->reference.face_area[f].norm() * slope(f);
+          break;
+        }
+        case ElasticCondition::bonded:
+          own = force(f) + force(mesh_->n_interior + mesh_->twin[f - mesh_->n_interior]);
+          break;
+        default:
+          own = force(f);
+      }
+      for (int a = 0; a < D; ++a) *row++ = own[a];
+    }
+  }
+
+ private:
+  template <int D>
+  lanes::Lane<D> support_row(Index f, ElasticNodes<D>& nodes, std::span<const double> known,
+                             const lanes::Lane<D>& force) const {
+    const ElasticSupport& support = rows_->support(f);
+    const LameConstants lame = rows_->lame(mesh_->owner[f]);
+    const double area = mesh_->reference.face_area[f].norm();
+    Vec3 jump = Vec3::Zero(), flux = Vec3::Zero();
+    for (int a = 0; a < D; ++a) {
+      jump[a] =
+          nodes.of_face(f)[a] - (known.empty() ? 0 : known[std::size_t(rows_->known_of_face(f)) * D + a]);
+      flux[a] = force[a];
+    }
+    const Vec3 pull = area * (support.spring * jump);
+    const Vec3 spring = pull - support.known * pull;
+    const Vec3 across = support.known * flux;
+    const double stiffness = (2 * lame.mu + lame.lambda) * area * rows_->faces().inverse_dn[f];
+    const Vec3 own = flux - across + spring + stiffness * (support.known * jump);
+    lanes::Lane<D> to_cell = {}, row = {};
+    for (int a = 0; a < D; ++a) {
+      to_cell[a] = spring[a] - across[a];
+      row[a] = own[a];
+    }
+    lanes::add<D>(nodes.force(mesh_->owner[f]), to_cell);
+    return row;
+  }
+
+  const Mesh* mesh_;
+  const ElasticOperator* rows_;
+  std::vector<Index> symmetry_, held_;  // held: the whole force goes into the cell
+};
+
+}  // namespace couplet
