@@ -74,6 +74,7 @@ CellGradients::CellGradients(const Mesh& mesh, const ElasticOperator& rows) {
 FaceEdges::FaceEdges(const Mesh& mesh, const ElasticOperator& rows) {
   struct Slot {
     Index to, face, place;
+    bool triangle;
   };
   // Edges in the rows of their smaller point, so that neighbours in space are neighbours in memory.
   const Index n_points = mesh.points.n_local(), n_faces = n_faces_with_force(mesh);
@@ -83,7 +84,7 @@ FaceEdges::FaceEdges(const Mesh& mesh, const ElasticOperator& rows) {
       const auto p = mesh.face_points[f];
       for (std::size_t i = 0; i < p.size(); ++i) {
         const Index a = p[i], b = p[(i + 1) % p.size()];
-        take(std::min(a, b), Slot{std::max(a, b), f, static_cast<Index>(i)});
+        take(std::min(a, b), Slot{std::max(a, b), f, static_cast<Index>(i), p.size() == 3});
       }
     }
   };
@@ -101,19 +102,23 @@ FaceEdges::FaceEdges(const Mesh& mesh, const ElasticOperator& rows) {
       for (const Index v : mesh.face_points[f]) uncorrected[v] = 1;
 
   of_face.assign(n_faces, {});
-  for (const bool corrected : {true, false}) {
+  const auto kind_of = [&](Index from, const Slot& slot) {
+    if (uncorrected[from] || uncorrected[slot.to]) return plain;
+    return slot.triangle ? mean : middle;
+  };
+  for (const int kind : {middle, mean, plain}) {
     for (Index v = 0; v < n_points; ++v) {
       const auto first_edge = static_cast<Index>(points.size());
       for (Index s = offset[v]; s < offset[v + 1]; ++s) {
         const Slot& slot = slots[s];
-        if ((uncorrected[v] || uncorrected[slot.to]) == corrected) continue;
+        if (kind_of(v, slot) != kind) continue;
         Index edge = first_edge;
         while (edge < std::ssize(points) && points[edge][1] != slot.to) ++edge;
         if (edge == std::ssize(points)) points.push_back({v, slot.to});
         of_face[slot.face][slot.place] = edge;
       }
     }
-    if (corrected) n_corrected = static_cast<Index>(points.size());
+    if (kind != plain) end[kind] = static_cast<Index>(points.size());
   }
   for (Index f = 0; f < n_faces; ++f)
     if (mesh.face_points[f].size() == 3) of_face[f][3] = of_face[f][2];
