@@ -44,6 +44,17 @@ LinearOptions options_of(LinearMethod method, const MethodParameters& parameters
   return options;
 }
 
+const char* name_of(LinearMethod method) {
+  switch (method) {
+    case LinearMethod::direct:
+      return "block-coupled (direct)";
+    case LinearMethod::bicgstab_ilu:
+      return "block-coupled (BiCGStab, ILU)";
+    default:
+      return "block-coupled (GMRES, multigrid)";
+  }
+}
+
 }  // namespace
 
 BlockCoupled::BlockCoupled(const SolidProblem& problem, const MethodParameters& parameters)
@@ -53,10 +64,10 @@ BlockCoupled::BlockCoupled(const SolidProblem& problem, const MethodParameters& 
       max_iterations_(parameters.max_iterations),
       matrix_(problem.elastic.matrix(problem.inertia)),
       solver_("displacement", matrix_, options_of(linear_, parameters, problem.is_corrected())) {
+  name_ = name_of(linear_);
   if (!problem.is_corrected()) return;
   const std::size_t n = problem.elastic.n_unknowns();
-  accelerator_.emplace(problem.mesh.comm, n,
-                       Acceleration{Acceleration::Type::anderson, 1, deferred_history});
+  accelerator_.emplace(problem.mesh.comm, n, Acceleration{Acceleration::Type::anderson, 1, deferred_history});
   residual_.resize(n);
   step_.resize(n);
 }
@@ -84,7 +95,8 @@ SolveStatistics BlockCoupled::solve_corrected(std::span<const double> b, std::sp
     if (statistics.residual <= tolerance_ * size) break;
     if (statistics.iterations == max_iterations_ || !std::isfinite(statistics.residual))
       throw SolveFailure(
-          "The deferred correction of the block-coupled method did not converge: residual {:.3e} of the right-hand "
+          "The deferred correction of the block-coupled method did not converge: residual {:.3e} of the "
+          "right-hand "
           "side after {} corrections, {:.3e} wanted.",
           statistics.residual / size, statistics.iterations, tolerance_);
     ++statistics.iterations;
@@ -94,17 +106,6 @@ SolveStatistics BlockCoupled::solve_corrected(std::span<const double> b, std::sp
   }
   statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return statistics;
-}
-
-std::string BlockCoupled::name() const {
-  switch (linear_) {
-    case LinearMethod::direct:
-      return "block-coupled (direct)";
-    case LinearMethod::bicgstab_ilu:
-      return "block-coupled (BiCGStab, ILU)";
-    default:
-      return "block-coupled (GMRES, multigrid)";
-  }
 }
 
 }  // namespace couplet

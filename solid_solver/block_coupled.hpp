@@ -11,14 +11,13 @@
 
 namespace couplet {
 
-/// The thesis's block-coupled method: all displacement components in one assembled matrix (2.77). The corrected face
-/// gradient comes by deferred correction: the assembled matrix solves for what the corrected operator leaves, again and
-/// again, Anderson-accelerated.
+/// The thesis's block-coupled method: all displacement components in one assembled matrix (2.77). The
+/// corrected face gradient comes by deferred correction: the assembled matrix solves for what the corrected
+/// operator leaves, again and again, Anderson-accelerated.
 class BlockCoupled final : public SolutionMethod {
  public:
   BlockCoupled(const SolidProblem& problem, const MethodParameters& parameters);
   SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
-  std::string name() const override;
 
  private:
   SolveStatistics solve_corrected(std::span<const double> b, std::span<double> u);

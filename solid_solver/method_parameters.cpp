@@ -15,15 +15,18 @@ void declare(config::Section& s, MethodParameters& m) {
             {"segregated", Type::segregated},
             {"newton-krylov", Type::newton_krylov}})
       .doc(
-          "block-coupled: one assembled system of all displacement components; segregated: one scalar system a "
-          "component and outer iterations; newton-krylov: the operator applied without a matrix; auto: by size and "
+          "block-coupled: one assembled system of all displacement components; segregated: one scalar system "
+          "a "
+          "component and outer iterations; newton-krylov: the operator applied without a matrix; auto: by "
+          "size and "
           "scene, the log says what and why");
   s.choice("face-gradient", m.face_gradient,
            {{"auto", FaceGradient::automatic},
             {"thesis", FaceGradient::thesis},
             {"corrected", FaceGradient::corrected}})
       .doc(
-          "displacement gradient at the faces; thesis: locks in bending with few or long cells; corrected: does not, at "
+          "displacement gradient at the faces; thesis: locks in bending with few or long cells; corrected: "
+          "does not, at "
           "two to three times the work; auto: by the cells of the mesh");
   s.choice("linear-solver", m.linear_solver,
            {{"auto", LinearSolver::automatic},
@@ -36,13 +39,19 @@ void declare(config::Section& s, MethodParameters& m) {
             {"multigrid", Preconditioner::multigrid},
             {"factors", Preconditioner::factors}})
       .doc(
-          "of newton-krylov; multigrid: compact component-wise operator and rigid motions of aggregates; factors: LU of "
+          "of newton-krylov; multigrid: compact component-wise operator and rigid motions of aggregates; "
+          "factors: LU of "
           "the thesis's operator, kept for all steps of one size");
-  s.choice("acceleration", m.acceleration,
-           {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}})
+  s.choice(
+       "acceleration", m.acceleration,
+       {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}})
       .doc("of the outer iterations of segregated");
-  s.value("aitken-interval", m.aitken_interval).range(2, 100).doc("Aitken's formula after every so many iterations");
-  s.value("anderson-history", m.anderson_history).range(1, 30).doc("iterations that Anderson's method combines");
+  s.value("aitken-interval", m.aitken_interval)
+      .range(2, 100)
+      .doc("Aitken's formula after every so many iterations");
+  s.value("anderson-history", m.anderson_history)
+      .range(1, 30)
+      .doc("iterations that Anderson's method combines");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc("residual over right-hand side at which the iteration stops");

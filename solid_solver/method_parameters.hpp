@@ -14,7 +14,7 @@ struct MethodParameters {
   enum class Acceleration { none, aitken, anderson };
   Type type = Type::automatic;
   FaceGradient face_gradient = FaceGradient::automatic;
-  LinearSolver linear_solver = LinearSolver::automatic;        // of the block-coupled method
+  LinearSolver linear_solver = LinearSolver::automatic;       // of the block-coupled method
   Preconditioner preconditioner = Preconditioner::automatic;  // of newton-krylov
   Acceleration acceleration = Acceleration::anderson;         // of the segregated method
   int aitken_interval = 5;

@@ -16,7 +16,8 @@ namespace {
 constexpr int most_aggregates = 200;
 // Fewer cells than this in an aggregate, and its rigid motions are no longer smooth beside the cells.
 constexpr GlobalIndex cells_of_aggregate = 64;
-// Length over thickness 2 V / S from which bending is slow without the rigid coarse space in front: a cube has 3.
+// Length over thickness 2 V / S from which bending is slow without the rigid coarse space in front: a cube
+// has 3.
 constexpr double slender = 12;
 // Inertia over the stiffness of a cell's faces from which no motion is slow.
 constexpr double heavy = 0.03;
@@ -61,11 +62,8 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
     choose_factors();
   else
     choose_multigrid(parameters);
-  const std::size_t n = problem.elastic.n_unknowns(), dim = problem.mesh.dim;
-  const LinearMap apply = [this, dim](std::span<const double> x, std::span<double> y) {
-    problem_.kernel->apply(x, {}, y);
-    for (std::size_t i = 0; i < problem_.inertia.size() * dim; ++i) y[i] += problem_.inertia[i / dim] * x[i];
-  };
+  const std::size_t n = problem.elastic.n_unknowns();
+  const LinearMap apply = [this](std::span<const double> x, std::span<double> y) { problem_.apply(x, y); };
   const LinearMap precondition = [this](std::span<const double> r, std::span<double> z) {
     if (multigrid_) return multigrid_->apply(r, z);
     factors_->solve(r, z);
@@ -77,24 +75,26 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
   const Mesh& mesh = problem_.mesh;
   const double heavy_here = heaviness(problem_);
   ElasticPreconditioner::Options options;
-  options.scheme = problem_.kernel->scheme();
-  options.n_aggregates =
-      heavy_here > heavy ? 0
-                         : static_cast<int>(std::min<GlobalIndex>(most_aggregates, mesh.cells.n_global() / cells_of_aggregate));
+  options.scheme = problem_.kernel.scheme();
+  options.n_aggregates = heavy_here > heavy
+                             ? 0
+                             : static_cast<int>(std::min<GlobalIndex>(
+                                   most_aggregates, mesh.cells.n_global() / cells_of_aggregate));
   if (options.n_aggregates < 8) options.n_aggregates = 0;
   if (options.n_aggregates > 0) {
     if (options.scheme == FaceGradientScheme::thesis) {
-      options.between = problem_.kernel;
+      options.between = &problem_.kernel;
     } else if (slenderness(mesh) > slender) {
       between_ = std::make_unique<ElasticKernel>(mesh, problem_.elastic, FaceGradientScheme::thesis);
       options.between = between_.get();
     }
   }
   multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
-  name_ = options.n_aggregates == 0
-              ? "newton-krylov (BiCGStab, multigrid)"
-              : fmt::format("newton-krylov (BiCGStab, multigrid{}rigid motions of {} aggregates)",
-                            options.between ? " after " : " and ", multigrid_->coarse_space()->n_aggregates());
+  name_ =
+      options.n_aggregates == 0
+          ? "newton-krylov (BiCGStab, multigrid)"
+          : fmt::format("newton-krylov (BiCGStab, multigrid{}rigid motions of {} aggregates)",
+                        options.between ? " after " : " and ", multigrid_->coarse_space()->n_aggregates());
 }
 
 void NewtonKrylov::choose_factors() {
@@ -110,7 +110,8 @@ SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double>
     return krylov_->solve(b, u, options_);
   } catch (const SolveFailure& e) {
     throw SolveFailure(
-        "{} Is the solid held everywhere, is nu below 0.5, are the cells sound? If the loads and supports are, "
+        "{} Is the solid held everywhere, is nu below 0.5, are the cells sound? If the loads and supports "
+        "are, "
         "'solution-method: {{type: block-coupled, linear-solver: direct}}' needs most memory and bears most.",
         e.what());
   }

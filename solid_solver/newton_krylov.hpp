@@ -13,14 +13,13 @@
 
 namespace couplet {
 
-/// BiCGStab on the operator applied matrix-free. One Newton step: the problem is linear. Preconditioned by the compact
-/// component-wise operator and the rigid coarse space (ElasticPreconditioner), or, when the body is small and one
-/// matrix serves many steps, by the factors of the thesis's operator.
+/// BiCGStab on the operator applied matrix-free. One Newton step: the problem is linear. Preconditioned by
+/// the compact component-wise operator and the rigid coarse space (ElasticPreconditioner), or, when the body
+/// is small and one matrix serves many steps, by the factors of the thesis's operator.
 class NewtonKrylov final : public SolutionMethod {
  public:
   NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters);
   SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
-  std::string name() const override { return name_; }
 
  private:
   void choose_multigrid(const MethodParameters& parameters);
@@ -28,7 +27,6 @@ class NewtonKrylov final : public SolutionMethod {
 
   SolidProblem problem_;
   KrylovOptions options_;
-  std::string name_;
   std::unique_ptr<ElasticKernel> between_;
   std::unique_ptr<ElasticPreconditioner> multigrid_;
   std::unique_ptr<SparseMatrix> matrix_;

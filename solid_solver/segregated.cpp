@@ -16,6 +16,15 @@ namespace {
 // Of the residual of a component in one outer iteration, as in the thesis.
 constexpr double inner_tolerance = 1e-2;
 
+Acceleration acceleration_of(const MethodParameters& parameters) {
+  using Choice = MethodParameters::Acceleration;
+  const Choice choice = parameters.acceleration;
+  return {choice == Choice::none     ? Acceleration::Type::none
+          : choice == Choice::aitken ? Acceleration::Type::aitken
+                                     : Acceleration::Type::anderson,
+          parameters.aitken_interval, parameters.anderson_history};
+}
+
 double stiffness(const SolidProblem& problem, Index f) {
   const LameConstants lame = problem.elastic.lame(problem.mesh.owner[f]);
   return (2 * lame.mu + lame.lambda) * problem.mesh.reference.face_area[f].norm() *
@@ -37,7 +46,8 @@ double boundary_diagonal(const SolidProblem& problem, Index f, int component) {
       return k * (known + (1 - known) * spring / (k + spring));
     }
     case ElasticCondition::bonded: {
-      const double other = stiffness(problem, problem.mesh.n_interior + problem.mesh.twin[f - problem.mesh.n_interior]);
+      const double other =
+          stiffness(problem, problem.mesh.n_interior + problem.mesh.twin[f - problem.mesh.n_interior]);
       return k * other / (k + other);
     }
     default:
@@ -51,7 +61,7 @@ Segregated::Segregated(const SolidProblem& problem, const MethodParameters& para
     : problem_(problem),
       tolerance_(parameters.relative_tolerance),
       max_iterations_(parameters.max_iterations),
-      accelerator_(problem.mesh.comm, problem.elastic.n_unknowns(), parameters.acceleration) {
+      accelerator_(problem.mesh.comm, problem.elastic.n_unknowns(), acceleration_of(parameters)) {
   const std::size_t n = problem.elastic.n_unknowns();
   residual_.resize(n);
   step_.resize(n);
@@ -66,11 +76,11 @@ Segregated::Segregated(const SolidProblem& problem, const MethodParameters& para
       own += problem.mesh.reference.face_area[f].norm() * problem.elastic.support(f).spring.trace();
     own_.push_back(own);
   }
-  const bool plain = parameters.acceleration.type == Acceleration::Type::none;
-  const bool aitken = parameters.acceleration.type == Acceleration::Type::aitken;
-  name_ = plain    ? "segregated"
-          : aitken ? fmt::format("segregated (Aitken every {} iterations)", parameters.acceleration.every)
-                   : fmt::format("segregated (Anderson over {} iterations)", parameters.acceleration.history);
+  name_ = "segregated";
+  if (parameters.acceleration == MethodParameters::Acceleration::aitken)
+    name_ += fmt::format(" (Aitken every {} iterations)", parameters.aitken_interval);
+  if (parameters.acceleration == MethodParameters::Acceleration::anderson)
+    name_ += fmt::format(" (Anderson over {} iterations)", parameters.anderson_history);
 }
 
 void Segregated::assemble(int component) {
@@ -87,7 +97,8 @@ void Segregated::assemble(int component) {
       diagonal[from] += k;
     }
   };
-  for (Index f = 0; f < mesh.n_interior; ++f) couple(mesh.owner[f], mesh.neighbour[f], stiffness(problem_, f));
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    couple(mesh.owner[f], mesh.neighbour[f], stiffness(problem_, f));
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     diagonal[mesh.owner[f]] += boundary_diagonal(problem_, f, component);
   for (Index c = 0; c < n; ++c) {
@@ -139,8 +150,10 @@ SolveStatistics Segregated::solve(std::span<const double> b, std::span<double> u
   while (!(statistics.residual <= wanted)) {
     if (statistics.iterations == max_iterations_ || !std::isfinite(statistics.residual))
       throw SolveFailure(
-          "The segregated method did not converge: {} outer iterations, residual {:.3e} of the right-hand side, {:.3e} "
-          "wanted. Bending and large nu couple the components too much for it: 'solution-method: {{type: newton-krylov}}' "
+          "The segregated method did not converge: {} outer iterations, residual {:.3e} of the right-hand "
+          "side, {:.3e} "
+          "wanted. Bending and large nu couple the components too much for it: 'solution-method: {{type: "
+          "newton-krylov}}' "
           "needs no outer iterations.",
           statistics.iterations, statistics.residual / wanted * tolerance_, tolerance_);
     ++statistics.iterations;

@@ -13,15 +13,14 @@
 
 namespace couplet {
 
-/// The thesis's segregated method: outer iterations that each solve one scalar system a displacement component, face
-/// coefficient (2 mu + lambda) |S| / (d . n), by CG with incomplete Cholesky factors to a hundredth of its residual;
-/// what the scalar systems leave out follows from the last iterate. The outer iteration is plain, or accelerated by
-/// Aitken (2.70) or Anderson.
+/// The thesis's segregated method: outer iterations that each solve one scalar system a displacement
+/// component, face coefficient (2 mu + lambda) |S| / (d . n), by CG with incomplete Cholesky factors to a
+/// hundredth of its residual; what the scalar systems leave out follows from the last iterate. The outer
+/// iteration is plain, or accelerated by Aitken (2.70) or Anderson.
 class Segregated final : public SolutionMethod {
  public:
   Segregated(const SolidProblem& problem, const MethodParameters& parameters);
   SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
-  std::string name() const override { return name_; }
 
  private:
   struct Component {
@@ -35,7 +34,6 @@ class Segregated final : public SolutionMethod {
   SolidProblem problem_;
   double tolerance_;
   int max_iterations_;
-  std::string name_;
   std::vector<Component> components_;
   std::vector<double> own_;  // coefficient of each unknown of a face in its row
   Accelerator accelerator_;

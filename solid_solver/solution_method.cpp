@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/block_coupled.hpp"
 #include "solid_solver/newton_krylov.hpp"
@@ -17,7 +16,7 @@ namespace {
 using Type = MethodParameters::Type;
 using Preconditioner = MethodParameters::Preconditioner;
 
-// Factors kept for all steps win up to here: in the plane they stay thin, in space they fill quickly.
+// Cells up to which factors kept for all steps win: in the plane they stay thin, in space they fill quickly.
 constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 1500;
 
 /// Fills in what is left to the program; gives the reason.
@@ -65,14 +64,14 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
     default:
       method = std::make_unique<BlockCoupled>(problem, parameters);
   }
-  log::info("solution method: {}, {} face gradient{}", method->name(),
-            problem.is_corrected() ? "corrected" : "thesis's", why.empty() ? "" : fmt::format(" (auto: {})", why));
+  method->name_ += problem.is_corrected() ? ", corrected face gradient" : ", thesis's face gradient";
+  if (!why.empty()) method->name_ += fmt::format(" (auto: {})", why);
   return method;
 }
 
-FaceGradientScheme face_gradient_scheme(const Mesh&, const MethodParameters& parameters) {
+FaceGradientScheme face_gradient_scheme(const MethodParameters& parameters) {
   return parameters.face_gradient == MethodParameters::FaceGradient::corrected ? FaceGradientScheme::corrected
-                                                                              : FaceGradientScheme::thesis;
+                                                                               : FaceGradientScheme::thesis;
 }
 
 double norm(MPI_Comm comm, std::span<const double> values) {

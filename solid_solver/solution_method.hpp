@@ -35,16 +35,22 @@ class SolutionMethod {
   /// `b`, `u`: packed rows of this rank (owned cells, then unknown faces); `u` holds the guess. Throws
   /// SolveFailure if the tolerance was not reached.
   virtual SolveStatistics solve(std::span<const double> b, std::span<double> u) = 0;
-  /// "block-coupled (direct)": for the log.
-  virtual std::string name() const = 0;
+  /// "block-coupled (direct), thesis's face gradient": for the log, with the reason if the program chose.
+  const std::string& name() const { return name_; }
+
+ protected:
+  std::string name_;
+
+ private:
+  friend std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem&, const MethodParameters&);
 };
 
-/// The method that the parameters ask for; `automatic` picks by size and scene and logs what and why.
+/// The method that the parameters ask for; `automatic` picks by size and scene, the name says what and why.
 std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
                                                      const MethodParameters& parameters);
 
-/// The face gradient that the parameters ask for on this mesh. Collective.
-FaceGradientScheme face_gradient_scheme(const Mesh& mesh, const MethodParameters& parameters);
+/// The face gradient that the parameters ask for.
+FaceGradientScheme face_gradient_scheme(const MethodParameters& parameters);
 
 /// Euclidean norm over all ranks.
 double norm(MPI_Comm comm, std::span<const double> values);

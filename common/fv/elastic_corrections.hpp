@@ -22,15 +22,16 @@ struct CellGradients {
   CellGradients(const Mesh& mesh, const ElasticOperator& rows);
 };
 
-/// The edges of the faces that carry a force (3-D) by what is asked of them, an edge between both kinds of faces
-/// being there twice: first those of quadrilaterals, whose middle value is wanted, then those of triangles, whose
-/// mean is (for a quadratic field the mean gradient of a triangle is that at its centre), then those with a vertex
-/// that is known or stands between materials, which get no correction.
+/// The edges of the faces that carry a force (3-D) by what is asked of them, an edge between both kinds of
+/// faces being there twice: first those of quadrilaterals, whose middle value is wanted, then those of
+/// triangles, whose mean is (for a quadratic field the mean gradient of a triangle is that at its centre),
+/// then those with a vertex that is known or stands between materials, which get no correction.
 struct FaceEdges {
   enum Kind { middle, mean, plain };
   std::vector<std::array<Index, 2>> points;
-  std::array<Index, 2> end{};                 ///< of `middle` and of `mean`
-  std::vector<std::array<Index, 4>> of_face;  ///< edge i joins points i and i + 1; a triangle repeats its last
+  std::array<Index, 2> end{};  ///< of `middle` and of `mean`
+  std::vector<std::array<Index, 4>>
+      of_face;  ///< edge i joins points i and i + 1; a triangle repeats its last
 
   FaceEdges(const Mesh& mesh, const ElasticOperator& rows);
 };

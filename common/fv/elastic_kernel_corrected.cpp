@@ -32,8 +32,8 @@ struct CorrectedFace {
   Index around[D == 2 ? 2 : 4];
 };
 
-// The gradients of a pyramid, or of two cells of different kind, err too differently for their difference to tell the
-// second derivative.
+// The gradients of a pyramid, or of two cells of different kind, err too differently for their difference to
+// tell the second derivative.
 bool alike(const Mesh& mesh, Index f) {
   const CellType here = mesh.cell_type[mesh.owner[f]];
   return here == mesh.cell_type[mesh.neighbour[f]] && here != CellType::pyramid;

@@ -43,7 +43,8 @@ void Accelerator::aitken(std::span<double> u, std::span<const double> step) {
   }
 }
 
-// With the differences dU, dF of the last m iterates and steps: u <- u + f - (dU + dF) g, where g minimises |f - dF g|.
+// With the differences dU, dF of the last m iterates and steps: u <- u + f - (dU + dF) g, where g minimises
+// |f - dF g|.
 void Accelerator::anderson(std::span<double> u, std::span<const double> step) {
   const std::size_t n = u.size();
   if (steps_ > 1) {
