@@ -55,6 +55,7 @@ Exchange Solid::interface_values() const {
 
 std::vector<double> Solid::to_points(std::span<const double> cells, std::span<const double> faces,
                                      std::span<const double> known) const {
+  if (is_corrected()) return corrected_points(cells, faces, known);
   std::vector<Index> all(mesh_.points.n_local());
   for (Index v = 0; v < mesh_.points.n_local(); ++v) all[v] = v;
   std::vector<double> values = at_points(mesh_, elastic_, all, cells, faces, known);
@@ -70,11 +71,19 @@ std::vector<double> Solid::point_velocity() const {
   return to_points(state_.cell_v, state_.face_v, known_rate_accepted_);
 }
 
+/// All gradients of displacements pass here. `cells`, `faces`, `points`: of all local ones. Collective.
+std::vector<Tensor3> Solid::face_gradients(Index first, Index count, std::span<const double> cells,
+                                           std::span<const double> faces,
+                                           std::span<const double> points) const {
+  if (is_corrected()) return corrected_gradients(first, count, cells, faces);
+  std::vector<Tensor3> gradients(count);
+  for (Index i = 0; i < count; ++i) gradients[i] = elastic_.gradient(first + i, cells, faces, points);
+  return gradients;
+}
+
 std::vector<Tensor3> Solid::face_stress(Index first, Index count, std::span<const double> points) const {
-  std::vector<Tensor3> stress(count);
-  for (Index i = 0; i < count; ++i)
-    stress[i] = elastic_.stress(mesh_.owner[first + i],
-                                elastic_.gradient(first + i, state_.cell_u, state_.face_u, points));
+  std::vector<Tensor3> stress = face_gradients(first, count, state_.cell_u, state_.face_u, points);
+  for (Index i = 0; i < count; ++i) stress[i] = elastic_.stress(mesh_.owner[first + i], stress[i]);
   for (const auto& effect : effects_) effect->add_face_stress(first, stress);
   return stress;
 }
@@ -83,8 +92,10 @@ std::vector<Tensor3> Solid::cell_stress(std::span<const double> points) const {
   const Index n_owned = mesh_.cells.n_owned();
   std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
   std::vector<double> weight(n_owned, 0);
+  const std::vector<Tensor3> on_faces =
+      face_gradients(0, mesh_.n_flux_faces(), state_.cell_u, state_.face_u, points);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const Tensor3 here = elastic_.gradient(f, state_.cell_u, state_.face_u, points);
+    const Tensor3& here = on_faces[f];
     const auto add = [&](Index c) {
       if (c >= n_owned) return;
       const Vec3 arm = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[c];
@@ -127,8 +138,8 @@ Vec3 Solid::total_load() const {
 
 double Solid::largest_gradient(std::span<const double> points) const {
   double largest = 0;
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
-    largest = std::max(largest, elastic_.gradient(f, state_.cell_u, state_.face_u, points).squaredNorm());
+  for (const Tensor3& g : face_gradients(0, mesh_.n_flux_faces(), state_.cell_u, state_.face_u, points))
+    largest = std::max(largest, g.squaredNorm());
   return max(mesh_.comm, std::sqrt(largest));
 }
 

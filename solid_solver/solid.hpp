@@ -127,6 +127,14 @@ class Solid final : public Participant {
   Exchange interface_values() const;
   std::vector<double> to_points(std::span<const double> cells, std::span<const double> faces,
                                 std::span<const double> known) const;
+  bool is_corrected() const { return kernel_.scheme() == FaceGradientScheme::corrected; }
+  std::vector<double> unknowns_of(std::span<const double> cells, std::span<const double> faces) const;
+  std::vector<Tensor3> face_gradients(Index first, Index count, std::span<const double> cells,
+                                      std::span<const double> faces, std::span<const double> points) const;
+  std::vector<Tensor3> corrected_gradients(Index first, Index count, std::span<const double> cells,
+                                           std::span<const double> faces) const;
+  std::vector<double> corrected_points(std::span<const double> cells, std::span<const double> faces,
+                                       std::span<const double> known) const;
   void judge_inertia();
 
   const Mesh mesh_;
