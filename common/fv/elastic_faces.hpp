@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -33,9 +34,13 @@ class ElasticFaces {
     for (const Index f : rows_->unknown_faces()) {
       lanes::Lane<D> own = {};
       switch (rows_->condition(f)) {
-        case ElasticCondition::support:
-          own = support_row<D>(f, nodes, known, force(f));
+        case ElasticCondition::support: {
+          std::array<double, lanes::width<D>> here{};
+          lanes::store<D>(here.data(), force(f));
+          support_row(f, nodes, known, here);
+          own = lanes::load<D>(here.data());
           break;
+        }
         case ElasticCondition::zero_gradient: {
           const LameConstants lame = rows_->lame(mesh_->owner[f]);
           lanes::add<D>(nodes.force(mesh_->owner[f]), -force(f));
@@ -53,9 +58,11 @@ class ElasticFaces {
   }
 
  private:
-  template <int D>
-  lanes::Lane<D> support_row(Index f, ElasticNodes<D>& nodes, std::span<const double> known,
-                             const lanes::Lane<D>& force) const {
+  /// The force on the face becomes its row. No lanes in the signature: how they are passed depends on the
+  /// processor.
+  template <int D, std::size_t Width>
+  void support_row(Index f, ElasticNodes<D>& nodes, std::span<const double> known,
+                   std::array<double, Width>& force) const {
     const ElasticSupport& support = rows_->support(f);
     const LameConstants lame = rows_->lame(mesh_->owner[f]);
     const double area = mesh_->reference.face_area[f].norm();
@@ -70,13 +77,11 @@ class ElasticFaces {
     const Vec3 across = support.known * flux;
     const double stiffness = (2 * lame.mu + lame.lambda) * area * rows_->faces().inverse_dn[f];
     const Vec3 own = flux - across + spring + stiffness * (support.known * jump);
-    lanes::Lane<D> to_cell = {}, row = {};
+    double* cell = nodes.force(mesh_->owner[f]);
     for (int a = 0; a < D; ++a) {
-      to_cell[a] = spring[a] - across[a];
-      row[a] = own[a];
+      cell[a] += spring[a] - across[a];
+      force[a] = own[a];
     }
-    lanes::add<D>(nodes.force(mesh_->owner[f]), to_cell);
-    return row;
   }
 
   const Mesh* mesh_;

@@ -23,8 +23,18 @@ const std::vector<Case> all_cases = {{BoxCells::quadrilaterals, 0}, {BoxCells::q
                                      {BoxCells::hexahedra, 0.2},    {BoxCells::tetrahedra, 0.2},
                                      {BoxCells::prisms, 0.2},       {BoxCells::mixed, 0.2}};
 
-Mesh make_mesh(const Case& c, int n = 4) {
+/// With `materials`: two zones, left and right of a plane in the middle.
+Mesh make_mesh(const Case& c, int n = 4, bool materials = false) {
   RawMesh raw = make_box(c.cells, {n + 1, n, n}, Vec3(0.1, 0.2, 0.3), Vec3(1.1, 1.0, 1.4));
+  if (materials) {
+    raw.zones = {"left", "right"};
+    raw.materials = {{"left"}, {"right"}};
+    for (std::size_t i = 0; i < raw.cell_zone.size(); ++i) {
+      double x = 0;
+      for (const Index p : raw.cell_points[static_cast<Index>(i)]) x += raw.points[p][0];
+      raw.cell_zone[i] = x / double(raw.cell_points[static_cast<Index>(i)].size()) > 0.5;
+    }
+  }
   if (c.perturbation > 0) perturb_interior(raw, c.perturbation, 7);
   return distribute(MPI_COMM_WORLD, raw);
 }
@@ -32,16 +42,38 @@ Mesh make_mesh(const Case& c, int n = 4) {
 /// An operator and its kernel; the first patches get the conditions given, the others are open.
 struct Setting {
   Setting(const Case& c, FaceGradientScheme scheme, std::vector<ElasticCondition> first, int n = 4)
-      : mesh(make_mesh(c, n)),
-        rows(mesh, padded(first), {mu, lambda}),
+      : mesh(make_mesh(c, n)), rows(mesh, padded(first), {mu, lambda}), kernel(mesh, rows, scheme) {}
+  Setting(const Case& c, FaceGradientScheme scheme, bool materials)
+      : mesh(make_mesh(c, 4, materials)),
+        rows(mesh, all_conditions(), {lame(), materials ? mesh.cell_zone : std::vector<int>{}}),
         kernel(mesh, rows, scheme) {}
+
+  /// xmin known, xmax held along an oblique direction and by springs, ymin a plane of symmetry, ymax without
+  /// normal gradient, the rest open.
+  ElasticBoundary all_conditions() const {
+    std::vector<ElasticCondition> c = {ElasticCondition::prescribed, ElasticCondition::support,
+                                       ElasticCondition::symmetry, ElasticCondition::zero_gradient};
+    ElasticBoundary boundary = boundary_of_patches(mesh, padded(c));
+    const Vec3 along = Vec3(2, 1, mesh.dim == 3 ? -1 : 0).normalized();
+    ElasticSupport support;
+    support.known = along * along.transpose();
+    support.spring = Vec3(0.3, 0.5, mesh.dim == 3 ? 0.2 : 0).asDiagonal();
+    boundary.supports = {support};
+    boundary.support_of_face.assign(boundary.condition.size(), -1);
+    for (std::size_t b = 0; b < boundary.condition.size(); ++b)
+      if (boundary.condition[b] == ElasticCondition::support) boundary.support_of_face[b] = 0;
+    return boundary;
+  }
+  std::vector<LameConstants> lame() const {
+    std::vector<LameConstants> result;
+    for (const int zone : mesh.cell_zone) result.push_back({mu * (1 + 2 * zone), lambda});
+    return result;
+  }
   std::vector<ElasticCondition> padded(std::vector<ElasticCondition> c) const {
     c.resize(mesh.patches.size(), ElasticCondition::traction);
     return c;
   }
-  std::size_t n_known() const {
-    return rows.n_known() * mesh.dim;
-  }
+  std::size_t n_known() const { return rows.n_known() * mesh.dim; }
 
   /// Unknowns and known values of a field.
   template <class Field>
@@ -65,35 +97,73 @@ struct Setting {
 const std::vector<ElasticCondition> all_kinds = {ElasticCondition::prescribed, ElasticCondition::traction,
                                                  ElasticCondition::symmetry};
 
-TEST(ElasticKernel, thesis_rows_are_those_of_the_assembled_matrix) {
-  for (const Case& c : all_cases) {
-    const Setting s(c, FaceGradientScheme::thesis, all_kinds);
-    // Values that do not depend on the partition are not needed: the matrix sees the same ones.
-    std::mt19937 random(17 + comm_rank(MPI_COMM_WORLD));
-    std::uniform_real_distribution<double> number(-1, 1);
-    std::vector<double> u(s.rows.n_unknowns()), known(s.n_known());
-    for (double& x : u) x = number(random);
-    std::vector<double> expected(u.size()), got(u.size());
-    s.rows.matrix({}).multiply(u, expected);
-    s.kernel.apply(u, {}, got);
-    double scale = 0;
-    for (const double x : expected) scale = std::max(scale, std::abs(x));
-    for (std::size_t i = 0; i < u.size(); ++i) ASSERT_NEAR(got[i], expected[i], 1e-12 * scale);
+/// The kernel beside the assembled matrix and its known columns.
+void expect_the_rows_of_the_matrix(const Setting& s) {
+  std::mt19937 random(17 + comm_rank(MPI_COMM_WORLD));
+  std::uniform_real_distribution<double> number(-1, 1);
+  std::vector<double> u(s.rows.n_unknowns()), known;
+  for (double& x : u) x = number(random);
+  std::vector<double> expected(u.size()), got(u.size());
+  s.rows.matrix({}).multiply(u, expected);
+  s.kernel.apply(u, {}, got);
+  double scale = 1e-300;
+  for (const double x : expected) scale = std::max(scale, std::abs(x));
+  for (std::size_t i = 0; i < u.size(); ++i) ASSERT_NEAR(got[i], expected[i], 1e-12 * scale);
 
-    // Known values: the columns that the operator takes to the right-hand side. They are those of a field, so
-    // that what ranks share agrees.
-    u.clear();
-    known.clear();
-    s.sample(
-        [](const Vec3& x) { return Vec3(std::sin(3 * x[1]), x[0] * x[2] + x[1], std::cos(2 * x[0] + x[1])); },
-        u, known);
-    std::fill(expected.begin(), expected.end(), 0.0);
-    s.rows.subtract_known(known, expected);
-    std::vector<double> without(u.size());
-    s.kernel.apply(u, {}, without);
-    s.kernel.apply(u, known, got);
-    for (std::size_t i = 0; i < u.size(); ++i) ASSERT_NEAR(got[i] - without[i], -expected[i], 1e-12 * scale);
-  }
+  // Known values are those of a field, so that what ranks share agrees.
+  u.clear();
+  s.sample(
+      [](const Vec3& x) { return Vec3(std::sin(3 * x[1]), x[0] * x[2] + x[1], std::cos(2 * x[0] + x[1])); },
+      u, known);
+  std::fill(expected.begin(), expected.end(), 0.0);
+  s.rows.subtract_known(known, expected);
+  std::vector<double> without(u.size());
+  s.kernel.apply(u, {}, without);
+  s.kernel.apply(u, known, got);
+  for (std::size_t i = 0; i < u.size(); ++i) ASSERT_NEAR(got[i] - without[i], -expected[i], 1e-12 * scale);
+}
+
+TEST(ElasticKernel, thesis_rows_are_those_of_the_assembled_matrix) {
+  for (const Case& c : all_cases)
+    expect_the_rows_of_the_matrix(Setting(c, FaceGradientScheme::thesis, all_kinds));
+}
+
+TEST(ElasticKernel, thesis_rows_of_supports_and_springs_are_those_of_the_assembled_matrix) {
+  for (const Case& c : all_cases)
+    expect_the_rows_of_the_matrix(Setting(c, FaceGradientScheme::thesis, false));
+}
+
+TEST(ElasticKernel, thesis_rows_between_materials_are_those_of_the_assembled_matrix) {
+  for (const Case& c : all_cases) expect_the_rows_of_the_matrix(Setting(c, FaceGradientScheme::thesis, true));
+}
+
+// Two materials with the same constants: a linear field through both, its forces in balance on the faces
+// between them.
+TEST(ElasticKernel, linear_fields_pass_from_one_material_into_the_next) {
+  for (const FaceGradientScheme scheme : {FaceGradientScheme::thesis, FaceGradientScheme::corrected})
+    for (const Case& c : all_cases) {
+      const Mesh mesh = make_mesh(c, 4, true);
+      std::vector<ElasticCondition> conditions(mesh.patches.size(), ElasticCondition::prescribed);
+      const ElasticOperator rows(mesh, boundary_of_patches(mesh, conditions),
+                                 {{{mu, lambda}}, mesh.cell_zone});
+      const ElasticKernel kernel(mesh, rows, scheme);
+      const auto field = [&](const Vec3& x) {
+        return Vec3(0.3 * x[0] - x[1], x[2] + 0.5 * x[1], mesh.dim == 3 ? x[0] : 0);
+      };
+      std::vector<double> u, known;
+      const auto put = [&](const Vec3& x, std::vector<double>& to) {
+        const Vec3 value = field(x);
+        to.insert(to.end(), value.data(), value.data() + mesh.dim);
+      };
+      for (Index i = 0; i < mesh.cells.n_owned(); ++i) put(mesh.reference.cell_centre[i], u);
+      for (const Index f : rows.unknown_faces()) put(mesh.reference.face_centre[f], u);
+      for (const Index v : rows.constraints().points()) put(mesh.reference_points[v], known);
+      for (const Index f : rows.known_faces()) put(mesh.reference.face_centre[f], known);
+      EXPECT_GT(sum(MPI_COMM_WORLD, GlobalIndex(rows.unknown_faces().size())), 0);
+      std::vector<double> force(u.size());
+      kernel.apply(u, known, force);
+      for (const double x : force) ASSERT_NEAR(x, 0, 1e-11);
+    }
 }
 
 TEST(ElasticKernel, linear_fields_have_their_exact_constant_stress_in_both_schemes) {
