@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <iterator>
 #include <span>
 
 #include "common/fv/elastic_nodes.hpp"
@@ -14,18 +14,16 @@ using lanes::Lane;
 using lanes::load;
 using lanes::store;
 
-/// grad_t u = sum_i m_i w_i with the values w on the edges around the face (3-D, m_i = L_i n / |S|, sum zero)
-/// or at its two end points (2-D).
+/// What a face needs beyond the mesh: its vectors are made from the places of points and cells when they are
+/// wanted, which costs less than to keep and read them.
 template <int D>
 struct CorrectedFace {
-  static constexpr int n_slopes = D == 2 ? 1 : 3;
-  double n[D];            // out of the owner
-  double m[n_slopes][D];  // [1/m]; w is taken relative to the last edge (the first point)
-  double k[D];            // n - d / (d . n)
-  double off[D];          // interior: x_f - (x_P + x_N) / 2 [m]; boundary: d / (d . n)
-  double inverse_dn;      // [1/m]
-  double mu, lambda;      // times the area [N]
-  Index around[D == 2 ? 2 : 4];
+  double n[D];                   // out of the owner
+  double inverse_dn;             // [1/m]
+  double inverse_area;           // [1/m^2]
+  double mu, lambda;             // times the area [N]
+  Index around[D == 2 ? 2 : 4];  // edges (3-D) or points (2-D) whose values its gradient is made of
+  Index curved;                  // whether the cells' gradients tell the second derivative across it
 };
 
 // The gradients of a pyramid, or of two cells of different kind, err too differently for their difference to
@@ -35,40 +33,18 @@ inline bool alike(const Mesh& mesh, Index f) {
   return here == mesh.cell_type[mesh.neighbour[f]] && here != CellType::pyramid;
 }
 
-inline void place(const Vec3& from, double* to, int dim) { std::copy_n(from.data(), dim, to); }
-
 template <int D>
 CorrectedFace<D> make_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
-  const FaceGradient& faces = rows.faces();
   const LameConstants lame = face_lame(mesh, rows, f);
   CorrectedFace<D> face{};
-  const Geometry& g = mesh.reference;
-  const auto point = mesh.face_points[f];
-  const Vec3& n = faces.normal[f];
-  const double area = g.face_area[f].norm();
-  if constexpr (D == 2) {
-    place(faces.tangential[mesh.face_points.offset[f] + 1], face.m[0], D);
-    face.around[0] = point[0];
-    face.around[1] = point[1];
-  } else {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3 edge =
-          mesh.reference_points[point[(i + 1) % point.size()]] - mesh.reference_points[point[i]];
-      place(edge.cross(n) / area, face.m[i], D);
-    }
-  }
-  place(n, face.n, D);
-  place(faces.skew[f], face.k, D);
-  if (f < mesh.n_interior && !alike(mesh, f))
-    place(Vec3::Zero(), face.off, D);
-  else if (f < mesh.n_interior)
-    place(g.face_centre[f] - 0.5 * (g.cell_centre[mesh.owner[f]] + g.cell_centre[mesh.neighbour[f]]),
-          face.off, D);
-  else
-    place(n - faces.skew[f], face.off, D);
-  face.inverse_dn = faces.inverse_dn[f];
+  const double area = mesh.reference.face_area[f].norm();
+  std::copy_n(rows.faces().normal[f].data(), D, face.n);
+  if constexpr (D == 2) std::copy_n(mesh.face_points[f].data(), 2, face.around);
+  face.inverse_dn = rows.faces().inverse_dn[f];
+  face.inverse_area = 1 / area;
   face.mu = lame.mu * area;
   face.lambda = lame.lambda * area;
+  face.curved = f < mesh.n_interior && alike(mesh, f);
   return face;
 }
 
@@ -79,38 +55,52 @@ struct Rows {
 };
 
 template <int D>
-[[gnu::always_inline]] inline Lane<D> contract(const double* v, const double* rows) {
+[[gnu::always_inline]] inline Lane<D> contract(const Vec3& v, const double* rows) {
   Lane<D> sum = v[0] * load<D>(rows);
   for (int i = 1; i < D; ++i) sum += v[i] * load<D>(rows + i * lanes::width<D>);
   return sum;
 }
 
-/// grad_t u from the values around the face.
-template <int D>
-[[gnu::always_inline]] inline Rows<D> tangential(const CorrectedFace<D>& face, const double* values,
-                                                 int stride) {
-  Rows<D> result;
-  if constexpr (D == 2) {
-    const Lane<D> along = load<D>(values + std::size_t(face.around[1]) * stride) -
-                          load<D>(values + std::size_t(face.around[0]) * stride);
-    for (int i = 0; i < D; ++i) result.row[i] = face.m[0][i] * along;
-  } else {
-    const Lane<D> last = load<D>(values + std::size_t(face.around[3]) * stride);
-    for (int e = 0; e < 3; ++e) {
-      const Lane<D> w = load<D>(values + std::size_t(face.around[e]) * stride) - last;
-      for (int i = 0; i < D; ++i) result.row[i] += face.m[e][i] * w;
-    }
-  }
+/// T x n / |S| of the rows T_i = sum_e L_e,i w_e: the surface Gauss theorem with the edges' L_e.
+[[gnu::always_inline]] inline Rows<3> turn(const Rows<3>& t, const CorrectedFace<3>& face) {
+  const double n[3] = {face.n[0] * face.inverse_area, face.n[1] * face.inverse_area,
+                       face.n[2] * face.inverse_area};
+  Rows<3> result;
+  result.row[0] = n[2] * t.row[1] - n[1] * t.row[2];
+  result.row[1] = n[0] * t.row[2] - n[2] * t.row[0];
+  result.row[2] = n[1] * t.row[0] - n[0] * t.row[1];
   return result;
 }
 
-/// n . grad u from `along` = d . grad u at the face centre, k . grad_t completing it.
+/// grad_t u from `value(i)`: on edge i of the face's `corners` (a triangle repeats its first as its fourth,
+/// its last edge is then 2), in 2-D at its two points. Edge 3 needs no vector: the edges add up to nothing.
+template <int D, class Value>
+[[gnu::always_inline]] inline Rows<D> tangential(const CorrectedFace<D>& face, std::span<const Index> corners,
+                                                 const Vec3* x, const Value& value) {
+  Rows<D> result;
+  if constexpr (D == 2) {
+    const Lane<D> along = (value(1) - value(0)) * (face.inverse_area * face.inverse_area);
+    for (int i = 0; i < D; ++i) result.row[i] = (x[corners[1]][i] - x[corners[0]][i]) * along;
+    return result;
+  } else {
+    const Lane<D> last = value(3);
+    for (int e = 0; e < 3; ++e) {
+      const Vec3 &from = x[corners[e]], &to = x[corners[e + 1 < std::ssize(corners) ? e + 1 : 0]];
+      const Lane<D> w = value(e) - last;
+      for (int i = 0; i < D; ++i) result.row[i] += (to[i] - from[i]) * w;
+    }
+    return turn(result, face);
+  }
+}
+
+/// n . grad u from `along` = d . grad u at the face centre: with k = n - d / (d . n) and grad_t across n,
+/// g = along / (d . n) + k . grad_t u = (along - d . grad_t u) / (d . n).
 template <int D>
-[[gnu::always_inline]] inline Lane<D> normal_derivative(const CorrectedFace<D>& face, const Lane<D>& along,
-                                                        const Rows<D>& grad) {
-  Lane<D> g = along * face.inverse_dn;
-  for (int i = 0; i < D; ++i) g += face.k[i] * grad.row[i];
-  return g;
+[[gnu::always_inline]] inline Lane<D> normal_derivative(const CorrectedFace<D>& face, const Vec3& d,
+                                                        const Lane<D>& along, const Rows<D>& grad) {
+  Lane<D> rest = along;
+  for (int i = 0; i < D; ++i) rest -= d[i] * grad.row[i];
+  return rest * face.inverse_dn;
 }
 
 /// sigma . S for grad u = n g + grad_t u, as in the thesis's kernel.

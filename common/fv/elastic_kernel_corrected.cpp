@@ -43,7 +43,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   void mirror_vertex_gradients();
   double* cell(Index node) { return records_.data() + std::size_t(node) * record; }
   double* vertex(Index point) { return points_.data() + std::size_t(point) * record; }
-  const double* values() const { return D == 2 ? points_.data() : edge_values_.data(); }
+  [[gnu::always_inline]] inline Rows<D> around(Index f);
   [[gnu::always_inline]] inline Lane<D> inner(Index f, const Rows<D>& grad);
   [[gnu::always_inline]] inline Lane<D> outer(Index f, const Rows<D>& grad);
   [[gnu::always_inline]] inline Lane<D> at_symmetry(Index f, const Rows<D>& grad);
@@ -192,29 +192,46 @@ void CorrectedKernel<D>::mirror_vertex_gradients() {
 }
 
 template <int D>
+inline Rows<D> CorrectedKernel<D>::around(Index f) {
+  const CorrectedFace<D>& face = faces_[f];
+  const double* values = D == 2 ? points_.data() : edge_values_.data();
+  return tangential<D>(
+      face, mesh_.face_points[f], mesh_.reference_points.data(), [&](int i) __attribute__((always_inline)) {
+        return load<D>(values + std::size_t(face.around[i]) * value_stride);
+      });
+}
+
+template <int D>
 inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
   const CorrectedFace<D>& face = faces_[f];
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-  const double *here = cell(p) + width, *there = cell(n) + width;
+  const Vec3 &from = mesh_.reference.cell_centre[p], &to = mesh_.reference.cell_centre[n];
   Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
-  for (int i = 0; i < D; ++i) along += face.off[i] * (load<D>(there + i * width) - load<D>(here + i * width));
-  return normal_derivative<D>(face, along, grad);
+  if (face.curved != 0) {
+    const double *here = cell(p) + width, *there = cell(n) + width;
+    const Vec3& centre = mesh_.reference.face_centre[f];
+    for (int i = 0; i < D; ++i)
+      along +=
+          (centre[i] - 0.5 * (from[i] + to[i])) * (load<D>(there + i * width) - load<D>(here + i * width));
+  }
+  return normal_derivative<D>(face, to - from, along, grad);
 }
 
-// On the boundary, with d / (d . n) in `off`: n . grad u = 2 (u_B - u_P) / (d . n) - off . G_P + k . grad_t
-// u.
+// On the boundary d . grad u = 2 (u_B - u_P) - d . G_P.
 template <int D>
 inline Lane<D> CorrectedKernel<D>::outer(Index f, const Rows<D>& grad) {
-  const CorrectedFace<D>& face = faces_[f];
   const Index p = mesh_.owner[f];
+  const Vec3 d = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[p];
   const Lane<D> across = load<D>(nodes_.of_face(f)) - load<D>(nodes_[p]);
-  return normal_derivative<D>(face, 2 * across, grad) - contract<D>(face.off, cell(p) + width);
+  return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + width), grad);
 }
 
 // The mirrored difference is central already.
 template <int D>
 inline Lane<D> CorrectedKernel<D>::at_symmetry(Index f, const Rows<D>& grad) {
-  return normal_derivative<D>(faces_[f], -load<D>(nodes_[mesh_.owner[f]]), grad);
+  const Index p = mesh_.owner[f];
+  const Vec3 d = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[p];
+  return normal_derivative<D>(faces_[f], d, -load<D>(nodes_[p]), grad);
 }
 
 template <int D>
@@ -223,12 +240,15 @@ inline void CorrectedKernel<D>::find_boundary_gradients() {
     if (f >= mesh_.n_flux_faces()) break;
     const CorrectedFace<D>& face = faces_[f];
     const auto point = mesh_.face_points[f];
-    Rows<D> grad;
-    for (std::size_t i = 0; i < point.size(); ++i) {
-      const Lane<D> u = load<D>(vertex(point[i]));
-      const Vec3& c = rows_.faces().tangential[mesh_.face_points.offset[f] + static_cast<Index>(i)];
-      for (int a = 0; a < D; ++a) grad.row[a] += c[a] * u;
-    }
+    const auto n_points = static_cast<int>(point.size());
+    // In 3-D means of the edges' end points.
+    const Rows<D> grad = tangential<D>(
+        face, point, mesh_.reference_points.data(), [&](int i) __attribute__((always_inline)) {
+          const int e = std::min(i, n_points - 1);
+          const Lane<D> first = load<D>(vertex(point[e]));
+          if (D == 2) return first;
+          return 0.5 * (first + load<D>(vertex(point[(e + 1) % n_points])));
+        });
     const Lane<D> g = outer(f, grad);
     set_record(
         mesh_.cells.n_local() + f - mesh_.n_interior,
@@ -264,9 +284,8 @@ inline void CorrectedKernel<D>::find_edges() {
 template <int D>
 inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
   nodes_.clear_forces();
-  const double* around = values();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const Rows<D> grad = tangential<D>(faces_[f], around, value_stride);
+    const Rows<D> grad = around(f);
     const Lane<D> force = force_on<D>(faces_[f], inner(f, grad), grad);
     lanes::add<D>(nodes_.force(mesh_.owner[f]), -force);
     lanes::add<D>(nodes_.force(mesh_.neighbour[f]), force);
@@ -277,12 +296,10 @@ inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, st
   boundary_.add_rows<D>(
       nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
       [&](Index f) __attribute__((always_inline)) {
-        const Rows<D> grad = tangential<D>(faces_[f], around, value_stride);
+        const Rows<D> grad = around(f);
         return force_on<D>(faces_[f], slope(f, grad), grad);
       },
-      [&](Index f) __attribute__((always_inline)) {
-        return slope(f, tangential<D>(faces_[f], around, value_stride));
-      });
+      [&](Index f) __attribute__((always_inline)) { return slope(f, around(f)); });
   nodes_.take_forces(result);
 }
 
@@ -362,7 +379,7 @@ void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::s
                                         std::span<Tensor3> gradients) {
   prepare(unknowns, known);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const Rows<D> grad = tangential<D>(faces_[f], values(), value_stride);
+    const Rows<D> grad = around(f);
     const Lane<D> n = load<D>(faces_[f].n);
     Lane<D> g;
     if (f < mesh_.n_interior)
