@@ -18,6 +18,7 @@ Tensor3 symmetric(const Tensor3& gradient) { return 0.5 * (gradient + gradient.t
 std::vector<Tensor3> Solid::face_gradients(Index first, Index count, std::span<const double> cells,
                                            std::span<const double> faces,
                                            std::span<const double> points) const {
+  if (is_corrected()) return corrected_gradients(first, count, cells, faces);
   std::vector<Tensor3> gradients(count);
   for (Index i = 0; i < count; ++i) gradients[i] = elastic_.gradient(first + i, cells, faces, points);
   return gradients;
@@ -25,7 +26,7 @@ std::vector<Tensor3> Solid::face_gradients(Index first, Index count, std::span<c
 
 std::vector<Tensor3> Solid::face_stress(Index first, Index count, std::span<const double> points) const {
   std::vector<Tensor3> stress = face_gradients(first, count, state_.cell_u, state_.face_u, points);
-  for (Tensor3& s : stress) s = elastic_.stress(s);
+  for (Index i = 0; i < count; ++i) stress[i] = elastic_.stress(mesh_.owner[first + i], stress[i]);
   for (const auto& effect : effects_) effect->add_face_stress(first, stress);
   return stress;
 }
@@ -66,7 +67,7 @@ std::vector<Tensor3> Solid::cell_strain(std::span<const double> points) const {
 
 std::vector<Tensor3> Solid::cell_stress(std::span<const double> points) const {
   std::vector<Tensor3> stress = cell_gradient(points);
-  for (Tensor3& s : stress) s = elastic_.stress(s);
+  for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = elastic_.stress(Index(c), stress[c]);
   for (const auto& effect : effects_) effect->add_cell_stress(stress);
   // Across a 2-D scene: lambda tr(epsilon) in plane strain (it stands there already), nothing in plane
   // stress.
@@ -77,18 +78,20 @@ std::vector<Tensor3> Solid::cell_stress(std::span<const double> points) const {
 
 std::vector<std::complex<double>> Solid::eigenvalues() const {
   std::vector<double> mass;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    mass.push_back(parameters_.material.density * mesh_.reference.volume[c]);
-  const SparseMatrix matrix = elastic_.matrix({});
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) mass.push_back(density(c) * mesh_.reference.volume[c]);
+  const std::vector<double> still(known_accepted_.size(), 0);
   return spectrum(mesh_, mass, elastic_.n_unknowns(),
-                  [&](std::span<const double> x, std::span<double> y) { matrix.multiply(x, y); });
+                  [&](std::span<const double> x, std::span<double> y) { kernel_.apply(x, still, y); });
 }
 
 const PointTensors& Solid::point_tensors() const {
   if (!point_tensors_) {
     std::vector<bool> is_symmetry;
-    for (const ElasticCondition c : boundaries_.conditions())
-      is_symmetry.push_back(c == ElasticCondition::symmetry);
+    for (const Patch& patch : mesh_.patches) {
+      const auto found = parameters_.boundaries.find(patch.name);
+      is_symmetry.push_back(found != parameters_.boundaries.end() && found->second.parts.empty() &&
+                            found->second.type == SolidBoundary::Type::symmetry);
+    }
     point_tensors_ = std::make_unique<PointTensors>(mesh_, is_symmetry);
   }
   return *point_tensors_;
@@ -124,7 +127,7 @@ void Solid::finish_acceleration() {
     trial_.acceleration[i] = mean + slope * (mean - state_.mean_acceleration[i]);
   }
   const int dim = mesh_.dim;
-  for (const Index f : elastic_.traction_faces())
+  for (const Index f : elastic_.unknown_faces())
     for (int a = 0; a < dim; ++a) {
       const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
       const std::size_t c = std::size_t(mesh_.owner[f]) * dim + a;

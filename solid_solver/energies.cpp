@@ -32,7 +32,7 @@ double Solid::stress_work(const Placed& stressed, std::span<const double> cell_c
     const Index owner = mesh_.owner[f];
     if (owner >= n_owned) continue;  // another rank's
     const Vec3& area = mesh_.reference.face_area[f];
-    Vec3 force = elastic_.stress(gradients[f]) * area;
+    Vec3 force = elastic_.stress(owner, gradients[f]) * area;
     const Vec3 here = at(cell_change, owner, dim);
     if (f < mesh_.n_interior) {
       work += force.dot(at(cell_change, mesh_.neighbour[f], dim) - here);
@@ -52,8 +52,7 @@ double Solid::kinetic_energy(std::span<const double> velocity) const {
   const int dim = mesh_.dim;
   double energy = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    energy +=
-        0.5 * parameters_.material.density * mesh_.reference.volume[c] * at(velocity, c, dim).squaredNorm();
+    energy += 0.5 * density(c) * mesh_.reference.volume[c] * at(velocity, c, dim).squaredNorm();
   return energy;
 }
 
@@ -65,16 +64,14 @@ Solid::Placed Solid::place_unknowns(const StageWork& work) const {
   placed.cells.assign(std::size_t(mesh_.cells.n_local()) * dim, 0);
   placed.faces.assign(std::size_t(mesh_.boundary.n_local()) * dim, 0);
   std::copy_n(unknowns_.begin(), n_cells, placed.cells.begin());
-  const auto& free = elastic_.traction_faces();
+  const auto& free = elastic_.unknown_faces();
   for (std::size_t i = 0; i < free.size(); ++i)
     for (int a = 0; a < dim; ++a)
       placed.faces[std::size_t(free[i] - mesh_.n_interior) * dim + a] = unknowns_[n_cells + i * dim + a];
-  for (const Index f : elastic_.prescribed_faces())
-    for (int a = 0; a < dim; ++a)
-      placed.faces[std::size_t(f - mesh_.n_interior) * dim + a] =
-          work.known[std::size_t(elastic_.known_of_face(f)) * dim + a];
+  elastic_.impose_known(work.known, placed.faces);
   mesh_.cells.update_ghosts(placed.cells, dim);
   mesh_.boundary.update_ghosts(placed.faces, dim);
+  elastic_.join_twins(placed.faces);
   placed.points = to_points(placed.cells, placed.faces, work.known);
   return placed;
 }
@@ -88,16 +85,13 @@ void Solid::add_work(const StageWork& work, const SolidState& before) {
   for (std::size_t i = 0; i < faces.size(); ++i) faces[i] = trial_.face_u[i] - before.face_u[i];
   mesh_.cells.update_ghosts(cells, dim);
   // Supports: the change over the stage, which the state of the faces may not hold yet.
-  for (const Index f : elastic_.prescribed_faces())
-    for (int a = 0; a < dim; ++a)
-      faces[std::size_t(f - mesh_.n_interior) * dim + a] =
-          work.known_change[std::size_t(elastic_.known_of_face(f)) * dim + a];
+  elastic_.impose_known(work.known_change, faces);
   double outside = 0;
   const double inside = stress_work(place_unknowns(work), cells, faces, &outside);
   // Body forces and effects stand in the rows without the known force of the faces.
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
   for (std::size_t i = 0; i < n_cells; ++i) outside += work.loads[i] * cells[i];
-  const auto& free = elastic_.traction_faces();
+  const auto& free = elastic_.unknown_faces();
   for (std::size_t i = 0; i < free.size(); ++i)
     for (int a = 0; a < dim; ++a)
       outside -= work.loads[n_cells + i * dim + a] * cells[std::size_t(mesh_.owner[free[i]]) * dim + a];
@@ -113,8 +107,7 @@ void Solid::add_work(const StageWork& work, const SolidState& before) {
   }
   energies.internal_work += inside - loss;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    loss += damping.mass / dt * parameters_.material.density * mesh_.reference.volume[c] *
-            at(cells, c, dim).squaredNorm();
+    loss += damping.mass / dt * density(c) * mesh_.reference.volume[c] * at(cells, c, dim).squaredNorm();
   energies.damping_loss += loss;
   energies.external_work += outside;
   energies.kinetic = kinetic_energy(trial_.cell_v);

@@ -55,6 +55,7 @@ Exchange Solid::interface_values() const {
 
 std::vector<double> Solid::to_points(std::span<const double> cells, std::span<const double> faces,
                                      std::span<const double> known) const {
+  if (is_corrected()) return corrected_points(cells, faces, known);
   std::vector<Index> all(mesh_.points.n_local());
   for (Index v = 0; v < mesh_.points.n_local(); ++v) all[v] = v;
   std::vector<double> values = at_points(mesh_, elastic_, all, cells, faces, known);

@@ -5,15 +5,53 @@ namespace couplet {
 
 void declare(config::Section& s, MethodParameters& m) {
   using Type = MethodParameters::Type;
+  using FaceGradient = MethodParameters::FaceGradient;
   using LinearSolver = MethodParameters::LinearSolver;
-  s.choice("type", m.type, {{"auto", Type::automatic}, {"block-coupled", Type::block_coupled}})
-      .doc("block-coupled: one assembled system of all displacement components");
+  using Preconditioner = MethodParameters::Preconditioner;
+  using Acceleration = MethodParameters::Acceleration;
+  s.choice("type", m.type,
+           {{"auto", Type::automatic},
+            {"block-coupled", Type::block_coupled},
+            {"segregated", Type::segregated},
+            {"newton-krylov", Type::newton_krylov}})
+      .doc(
+          "block-coupled: one assembled system of all displacement components; segregated: one scalar system "
+          "a "
+          "component and outer iterations; newton-krylov: the operator applied without a matrix; auto: by "
+          "size and "
+          "scene, the log says what and why");
+  s.choice("face-gradient", m.face_gradient,
+           {{"auto", FaceGradient::automatic},
+            {"thesis", FaceGradient::thesis},
+            {"corrected", FaceGradient::corrected}})
+      .doc(
+          "displacement gradient at the faces; thesis: locks in bending with few or long cells; corrected: "
+          "does not, at "
+          "two to three times the work; auto: by the cells of the mesh");
   s.choice("linear-solver", m.linear_solver,
            {{"auto", LinearSolver::automatic},
             {"direct", LinearSolver::direct},
             {"bicgstab-ilu", LinearSolver::bicgstab_ilu},
             {"gmres-multigrid", LinearSolver::gmres_multigrid}})
       .doc("of block-coupled; auto: direct up to 60 000 unknowns (static: 200 000), above that bicgstab-ilu");
+  s.choice("preconditioner", m.preconditioner,
+           {{"auto", Preconditioner::automatic},
+            {"multigrid", Preconditioner::multigrid},
+            {"factors", Preconditioner::factors}})
+      .doc(
+          "of newton-krylov; multigrid: compact component-wise operator and rigid motions of aggregates; "
+          "factors: LU of "
+          "the thesis's operator, kept for all steps of one size");
+  s.choice(
+       "acceleration", m.acceleration,
+       {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}})
+      .doc("of the outer iterations of segregated");
+  s.value("aitken-interval", m.aitken_interval)
+      .range(2, 100)
+      .doc("Aitken's formula after every so many iterations");
+  s.value("anderson-history", m.anderson_history)
+      .range(1, 30)
+      .doc("iterations that Anderson's method combines");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc("residual over right-hand side at which the iteration stops");

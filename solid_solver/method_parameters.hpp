@@ -7,10 +7,18 @@ namespace couplet {
 
 /// How the equations of a step are solved.
 struct MethodParameters {
-  enum class Type { automatic, block_coupled };
+  enum class Type { automatic, block_coupled, segregated, newton_krylov };
+  enum class FaceGradient { automatic, thesis, corrected };
   enum class LinearSolver { automatic, direct, bicgstab_ilu, gmres_multigrid };
+  enum class Preconditioner { automatic, multigrid, factors };
+  enum class Acceleration { none, aitken, anderson };
   Type type = Type::automatic;
-  LinearSolver linear_solver = LinearSolver::automatic;  // of the block-coupled method
+  FaceGradient face_gradient = FaceGradient::automatic;
+  LinearSolver linear_solver = LinearSolver::automatic;       // of the block-coupled method
+  Preconditioner preconditioner = Preconditioner::automatic;  // of newton-krylov
+  Acceleration acceleration = Acceleration::anderson;         // of the segregated method
+  int aitken_interval = 5;
+  int anderson_history = 10;
   double relative_tolerance = 1e-10;
   int max_iterations = 2000;
 };

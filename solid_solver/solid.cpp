@@ -10,6 +10,7 @@
 #include "solid_solver/mesh_checks.hpp"
 #include "solid_solver/output.hpp"
 #include "solid_solver/rigid_modes.hpp"
+#include "solid_solver/solution_method.hpp"
 #include "solid_solver/system.hpp"
 
 namespace couplet {
@@ -21,6 +22,7 @@ Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
       materials_(materials_of(parameters_)),
       boundaries_(mesh_, parameters_),
       elastic_(mesh_, boundaries_.elastic(), elastic_body(parameters_, mesh_)),
+      kernel_(mesh_, elastic_, face_gradient_scheme(parameters_.method)),
       prescribed_(mesh_, boundaries_, elastic_) {
   check_supports();
   if (!boundaries_.interface_patches().empty()) {

@@ -11,6 +11,7 @@
 
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/fv/elastic_kernel.hpp"
 #include "common/fv/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 #include "common/time/time_scheme.hpp"
@@ -151,6 +152,7 @@ class Solid final : public Participant {
   void start_from_rest();
   std::vector<Stage> stages_of(double dt) const;
   System& system_for(double mass_factor);
+  void announce(const System& system);
   void prepare_stage(StageWork& work);
   void subtract_prescribed(StageWork& work);
   void add_body_forces(double t, std::span<double> rhs);
@@ -165,6 +167,12 @@ class Solid final : public Participant {
   Exchange interface_values() const;
   std::vector<double> to_points(std::span<const double> cells, std::span<const double> faces,
                                 std::span<const double> known) const;
+  bool is_corrected() const { return kernel_.scheme() == FaceGradientScheme::corrected; }
+  std::vector<double> unknowns_of(std::span<const double> cells, std::span<const double> faces) const;
+  std::vector<Tensor3> corrected_gradients(Index first, Index count, std::span<const double> cells,
+                                           std::span<const double> faces) const;
+  std::vector<double> corrected_points(std::span<const double> cells, std::span<const double> faces,
+                                       std::span<const double> known) const;
   void judge_inertia();
 
   const Mesh mesh_;
@@ -173,6 +181,7 @@ class Solid final : public Participant {
   const std::vector<SolidMaterial> materials_;
   SolidBoundaries boundaries_;
   ElasticOperator elastic_;
+  ElasticKernel kernel_;  // the rows of elastic_ with the face gradient that was chosen
   PrescribedDisplacement prescribed_;
   std::unique_ptr<InterfaceMap> interface_;  // none: no interface patch
   Interface description_;
@@ -180,6 +189,7 @@ class Solid final : public Participant {
   std::vector<std::unique_ptr<SolidEffect>> effects_;  // those that the scene has
   std::vector<std::unique_ptr<System>> systems_;       // those used last, latest first
   std::vector<StageWork> stages_;                      // of the step under way
+  std::string method_announced_;                       // what the log said last
 
   SolidState state_, trial_;
   Step step_;

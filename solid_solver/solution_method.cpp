@@ -1,13 +1,83 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/solution_method.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
 #include "solid_solver/block_coupled.hpp"
+#include "solid_solver/newton_krylov.hpp"
+#include "solid_solver/segregated.hpp"
 
 namespace couplet {
+namespace {
+
+using Type = MethodParameters::Type;
+using Preconditioner = MethodParameters::Preconditioner;
+
+// Cells up to which factors kept for all steps win: in the plane they stay thin, in space they fill quickly.
+constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 1500;
+
+/// Fills in what is left to the program; gives the reason.
+std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
+  const GlobalIndex cells = problem.mesh.cells.n_global();
+  const bool small = cells <= (problem.mesh.dim == 2 ? factors_up_to_2d : factors_up_to_3d);
+  std::string why;
+  if (parameters.type == Type::automatic) {
+    const bool direct = small && !problem.is_corrected();
+    parameters.type = direct ? Type::block_coupled : Type::newton_krylov;
+    if (direct) parameters.linear_solver = MethodParameters::LinearSolver::direct;
+    why = fmt::format("{} cells in {}-D", cells, problem.mesh.dim);
+  }
+  if (parameters.preconditioner == Preconditioner::automatic)
+    parameters.preconditioner = small ? Preconditioner::factors : Preconditioner::multigrid;
+  return why;
+}
+
+}  // namespace
+
+void SolidProblem::apply(std::span<const double> x, std::span<double> y) const {
+  kernel.apply(x, {}, y);
+  const std::size_t dim = mesh.dim;
+  for (std::size_t c = 0; c < inertia.size(); ++c)
+    for (std::size_t a = 0; a < dim; ++a) y[c * dim + a] += inertia[c] * x[c * dim + a];
+}
+
+void SolidProblem::residual(std::span<const double> b, std::span<const double> u, std::span<double> r) const {
+  apply(u, r);
+  for (std::size_t i = 0; i < b.size(); ++i) r[i] = b[i] - r[i];
+}
 
 std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
-                                                     const MethodParameters& parameters) {
-  return std::make_unique<BlockCoupled>(problem, parameters);
+                                                     const MethodParameters& asked) {
+  MethodParameters parameters = asked;
+  const std::string why = decide(problem, parameters);
+  std::unique_ptr<SolutionMethod> method;
+  switch (parameters.type) {
+    case Type::segregated:
+      method = std::make_unique<Segregated>(problem, parameters);
+      break;
+    case Type::newton_krylov:
+      method = std::make_unique<NewtonKrylov>(problem, parameters);
+      break;
+    default:
+      method = std::make_unique<BlockCoupled>(problem, parameters);
+  }
+  method->name_ += problem.is_corrected() ? ", corrected face gradient" : ", thesis's face gradient";
+  if (!why.empty()) method->name_ += fmt::format(" (auto: {})", why);
+  return method;
+}
+
+FaceGradientScheme face_gradient_scheme(const MethodParameters& parameters) {
+  return parameters.face_gradient == MethodParameters::FaceGradient::corrected ? FaceGradientScheme::corrected
+                                                                               : FaceGradientScheme::thesis;
+}
+
+double norm(MPI_Comm comm, std::span<const double> values) {
+  double square = 0;
+  for (const double x : values) square += x * x;
+  return std::sqrt(sum(comm, square));
 }
 
 }  // namespace couplet

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "common/fv/elastic_kernel.hpp"
 #include "common/fv/elasticity.hpp"
 #include "common/linalg/linear_solver.hpp"
 #include "common/mesh/mesh.hpp"
@@ -18,7 +19,13 @@ struct SolidProblem {
   const Mesh& mesh;
   const ElasticOperator& elastic;
   std::span<const double> inertia;  ///< per owned cell [N/m]; empty: static
+  const ElasticKernel& kernel;      ///< A, with the face gradient that was chosen
   bool is_static() const { return inertia.empty(); }
+  bool is_corrected() const { return kernel.scheme() == FaceGradientScheme::corrected; }
+  /// y = (diag(inertia) + A) x. Collective.
+  void apply(std::span<const double> x, std::span<double> y) const;
+  /// r = b - (diag(inertia) + A) u. Collective.
+  void residual(std::span<const double> b, std::span<const double> u, std::span<double> r) const;
 };
 
 /// Solves one problem again and again: what does not change with b is made once. Collective.
@@ -28,12 +35,24 @@ class SolutionMethod {
   /// `b`, `u`: packed rows of this rank (owned cells, then unknown faces); `u` holds the guess. Throws
   /// SolveFailure if the tolerance was not reached.
   virtual SolveStatistics solve(std::span<const double> b, std::span<double> u) = 0;
-  /// "block-coupled (direct)": for the log.
-  virtual std::string name() const = 0;
+  /// "block-coupled (direct), thesis's face gradient": for the log, with the reason if the program chose.
+  const std::string& name() const { return name_; }
+
+ protected:
+  std::string name_;
+
+ private:
+  friend std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem&, const MethodParameters&);
 };
 
-/// The method that the parameters ask for; `automatic` picks by size and scene and logs what and why.
+/// The method that the parameters ask for; `automatic` picks by size and scene, the name says what and why.
 std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
                                                      const MethodParameters& parameters);
+
+/// The face gradient that the parameters ask for.
+FaceGradientScheme face_gradient_scheme(const MethodParameters& parameters);
+
+/// Euclidean norm over all ranks.
+double norm(MPI_Comm comm, std::span<const double> values);
 
 }  // namespace couplet

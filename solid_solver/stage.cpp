@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/log/log.hpp"
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/solid.hpp"
@@ -65,9 +66,17 @@ Solid::System& Solid::system_for(double mass_factor) {
   if (mass_factor > 0)
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
       system->inertia.push_back(mass_factor * density(c) * mesh_.reference.volume[c]);
-  system->method = make_solution_method({mesh_, elastic_, system->inertia}, parameters_.method);
+  system->method = make_solution_method({mesh_, elastic_, system->inertia, kernel_}, parameters_.method);
+  announce(*system);
   systems_.insert(systems_.begin(), std::move(system));
   return *systems_.front();
+}
+
+void Solid::announce(const System& system) {
+  const std::string chosen = system.method->name();
+  if (chosen == method_announced_) return;
+  method_announced_ = chosen;
+  log::info("Solution method: {}", chosen);
 }
 
 void Solid::prepare_stage(StageWork& work) {
@@ -103,7 +112,9 @@ void Solid::subtract_prescribed(StageWork& work) {
     if (!work.known_change.empty()) work.known_change[i] = change;
     work.known[i] = start[i] + (place + beta / work.stage.dt) * change;
   }
-  elastic_.subtract_known(work.known, work.rhs);
+  std::vector<double> still(work.rhs.size(), 0), force(work.rhs.size());
+  kernel_.apply(still, work.known, force);
+  for (std::size_t i = 0; i < force.size(); ++i) work.rhs[i] -= force[i];
 }
 
 void Solid::add_body_forces(double t, std::span<double> rhs) {

@@ -93,6 +93,14 @@ void choose_method(KSP ksp, PC pc, const SparseMatrix& matrix, LinearMethod meth
       petsc_check(KSPSetPCSide(ksp, PC_RIGHT));
       petsc_check(PCSetType(pc, PCBJACOBI));
       return;
+    case LinearMethod::cg_icc:
+      petsc_check(KSPSetType(ksp, KSPCG));
+      petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
+      petsc_check(PCSetType(pc, PCBJACOBI));
+      petsc_check(PetscOptionsSetValue(nullptr, "-couplet_icc_sub_pc_type", "icc"));
+      petsc_check(PCSetOptionsPrefix(pc, "couplet_icc_"));
+      petsc_check(PCSetFromOptions(pc));
+      return;
   }
 }
 

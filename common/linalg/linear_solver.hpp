@@ -17,6 +17,7 @@ enum class LinearMethod {
   cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
   gmres_multigrid,   ///< GMRES with BoomerAMG
   bicgstab_ilu,      ///< BiCGStab with ILU(0), block Jacobi over the ranks
+  cg_icc,            ///< CG with incomplete Cholesky factors, block Jacobi over the ranks
 };
 
 struct LinearOptions {

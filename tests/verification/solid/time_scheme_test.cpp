@@ -47,7 +47,7 @@ Eigen::VectorXd exact(const SolidParameters& p) {
         rhs[std::size_t(c) * 2 + a] = body[a](mesh.reference.cell_centre[c], t) * mesh.reference.volume[c];
     std::vector<double> on_faces(std::size_t(mesh.boundary.n_owned()) * 2, 0);
     boundaries.add_forces(t, on_faces);
-    const auto& faces = solid->elastic().traction_faces();
+    const auto& faces = solid->elastic().unknown_faces();
     for (std::size_t i = 0; i < faces.size(); ++i)
       for (int a = 0; a < 2; ++a) {
         const double value = on_faces[std::size_t(faces[i] - mesh.n_interior) * 2 + a];

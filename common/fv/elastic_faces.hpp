@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/fv/elastic_nodes.hpp"
+
+namespace couplet {
+
+/// What the boundary faces of owned cells do with the force on them: the rows that ElasticOperator defines.
+class ElasticFaces {
+ public:
+  ElasticFaces(const Mesh& mesh, const ElasticOperator& rows) : mesh_(&mesh), rows_(&rows) {
+    for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
+      const ElasticCondition here = rows.condition(f);
+      if (here == ElasticCondition::symmetry) symmetry_.push_back({f, rows.faces().normal[f]});
+      if (here == ElasticCondition::prescribed || here == ElasticCondition::bonded) held_.push_back(f);
+    }
+    for (const Index f : rows.unknown_faces()) {
+      const LameConstants lame = rows.lame(mesh.owner[f]);
+      stiffness_.push_back((2 * lame.mu + lame.lambda) * mesh.reference.face_area[f].norm() *
+                           rows.faces().inverse_dn[f]);
+    }
+  }
+
+  /// Adds the forces to the cells and writes the rows of the unknown faces. `force(f)`: sigma . S;
+  /// `slope(f)`: n . grad u.
+  template <int D, class Force, class Slope>
+  [[gnu::always_inline]] inline void add_rows(ElasticNodes<D>& nodes, std::span<const double> known,
+                                              double* row, const Force& force, const Slope& slope) const {
+    for (const Index f : held_) lanes::add<D>(nodes.force(mesh_->owner[f]), -force(f));
+    for (const auto& [f, normal] : symmetry_) {
+      lanes::Lane<D> n{};
+      for (int a = 0; a < D; ++a) n[a] = normal[a];
+      lanes::add<D>(nodes.force(mesh_->owner[f]), -lanes::dot<D>(n, force(f)) * n);  // no shear
+    }
+    const auto& unknown = rows_->unknown_faces();
+    for (std::size_t i = 0; i < unknown.size(); ++i) {
+      const Index f = unknown[i];
+      lanes::Lane<D> own = {};
+      switch (rows_->condition(f)) {
+        case ElasticCondition::support: {
+          std::array<double, lanes::width<D>> here{};
+          lanes::store<D>(here.data(), force(f));
+          support_row(f, stiffness_[i], nodes, known, here);
+          own = lanes::load<D>(here.data());
+          break;
+        }
+        case ElasticCondition::zero_gradient: {
+          const LameConstants lame = rows_->lame(mesh_->owner[f]);
+          lanes::add<D>(nodes.force(mesh_->owner[f]), -force(f));
+          own = (2 * lame.mu + lame.lambda) * mesh_->reference.face_area[f].norm() * slope(f);
+          break;
+        }
+        case ElasticCondition::bonded:
+          own = force(f) + force(mesh_->n_interior + mesh_->twin[f - mesh_->n_interior]);
+          break;
+        default:
+          own = force(f);
+      }
+      for (int a = 0; a < D; ++a) *row++ = own[a];
+    }
+  }
+
+ private:
+  /// The force on the face becomes its row. No lanes in the signature: how they are passed depends on the
+  /// processor.
+  template <int D, std::size_t Width>
+  void support_row(Index f, double stiffness, ElasticNodes<D>& nodes, std::span<const double> known,
+                   std::array<double, Width>& force) const {
+    const ElasticSupport& support = rows_->support(f);
+    const double area = mesh_->reference.face_area[f].norm();
+    Vec3 jump = Vec3::Zero(), flux = Vec3::Zero();
+    for (int a = 0; a < D; ++a) {
+      jump[a] =
+          nodes.of_face(f)[a] - (known.empty() ? 0 : known[std::size_t(rows_->known_of_face(f)) * D + a]);
+      flux[a] = force[a];
+    }
+    const Vec3 pull = area * (support.spring * jump);
+    const Vec3 spring = pull - support.known * pull;
+    const Vec3 across = support.known * flux;
+    const Vec3 own = flux - across + spring + stiffness * (support.known * jump);
+    double* cell = nodes.force(mesh_->owner[f]);
+    for (int a = 0; a < D; ++a) {
+      cell[a] += spring[a] - across[a];
+      force[a] = own[a];
+    }
+  }
+
+  const Mesh* mesh_;
+  const ElasticOperator* rows_;
+  std::vector<std::pair<Index, Vec3>> symmetry_;  // with the normals
+  std::vector<Index> held_;                       // the whole force goes into the cell
+  std::vector<double> stiffness_;                 // (2 mu + lambda) S / (d . n) of the unknown faces
+};
+
+}  // namespace couplet

@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: Apache-2.0
+// ElasticKernel with the corrected face gradient. Passes: gradients of the cells; vertices of open boundaries
+// and from them the gradients of the boundary nodes; all vertices; middles of edges; faces.
+#include <algorithm>
+#include <limits>
+
+#include "common/fv/elastic_corrected_face.hpp"
+#include "common/fv/elastic_corrections.hpp"
+#include "common/fv/elastic_faces.hpp"
+#include "common/fv/elastic_nodes.hpp"
+#include "common/fv/elastic_vertices.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+using namespace corrected;
+
+template <int D>
+class CorrectedKernel final : public ElasticKernel::Implementation {
+ public:
+  CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows);
+
+  void apply(std::span<const double> unknowns, std::span<const double> known,
+             std::span<double> result) override;
+  void face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                      std::span<Tensor3> gradients) override;
+  void point_values(std::span<const double> unknowns, std::span<const double> known,
+                    std::span<double> points) override;
+
+  [[gnu::always_inline]] inline void find_cell_gradients();
+  [[gnu::always_inline]] inline void find_boundary_gradients();
+  [[gnu::always_inline]] inline void find_vertices(std::span<const Index> points);
+  [[gnu::always_inline]] inline void find_edges();
+  [[gnu::always_inline]] inline void collect_forces(std::span<const double> known, std::span<double> result);
+
+ private:
+  static constexpr int width = lanes::width<D>;
+  static constexpr int record = (D + 1) * width;  // u (or q), then the rows of the gradient
+  static constexpr int value_stride = D == 2 ? record : width;
+
+  void prepare(std::span<const double> unknowns, std::span<const double> known);
+  void mirror_vertex_gradients();
+  double* cell(Index node) { return records_.data() + std::size_t(node) * record; }
+  double* vertex(Index point) { return points_.data() + std::size_t(point) * record; }
+  [[gnu::always_inline]] inline Rows<D> around(Index f);
+  [[gnu::always_inline]] inline Lane<D> inner(Index f, const Rows<D>& grad);
+  [[gnu::always_inline]] inline Lane<D> outer(Index f, const Rows<D>& grad);
+  [[gnu::always_inline]] inline Lane<D> at_symmetry(Index f, const Rows<D>& grad);
+  template <class Take>
+  [[gnu::always_inline]] inline void set_record(Index node, const Vec3& place, const Take& row);
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  ElasticNodes<D> nodes_;
+  ElasticFaces boundary_;
+  ElasticVertices vertices_;
+  CellGradients gradients_;
+  std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include the ghosts
+  std::vector<MirrorVertex> mirrors_;
+  std::vector<std::array<Index, 2>> edges_;
+  std::array<Index, 2> edges_end_{};  // as in FaceEdges
+  std::vector<CorrectedFace<D>> faces_;
+  Vec3 origin_ = Vec3::Zero();
+  // q = u - 1/2 x . G and G of the nodes; u and G of the vertices: sum w (u_i + 1/2 r_i . G_i) is then
+  // sum w q_i + 1/2 x_V . sum w G_i.
+  std::vector<double> records_, points_, edge_values_;
+};
+
+template <int D>
+CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& rows)
+    : mesh_(mesh),
+      rows_(rows),
+      nodes_(mesh, rows),
+      boundary_(mesh, rows),
+      vertices_(mesh, rows),
+      gradients_(mesh, rows),
+      mirrors_(mirror_vertices(mesh, rows, vertices_.free)),
+      records_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * record, 0.0),
+      points_(std::size_t(mesh.points.n_local()) * record, 0.0) {
+  faces_.reserve(n_faces_with_force(mesh));
+  for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face<D>(mesh, rows, f));
+  if constexpr (D == 3) {
+    const FaceEdges edges(mesh, rows);
+    edges_ = edges.points;
+    edges_end_ = edges.end;
+    edge_values_.assign(edges_.size() * width, 0.0);
+    for (Index f = 0; f < n_faces_with_force(mesh); ++f)
+      std::copy_n(edges.of_face[f].data(), 4, faces_[f].around);
+  }
+  std::vector<std::uint8_t> open(mesh.points.n_local(), 0);
+  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
+    const ElasticCondition here = rows.condition(f);
+    if (here == ElasticCondition::prescribed || here == ElasticCondition::symmetry) continue;
+    open_faces_.push_back(f);
+    for (const Index v : mesh.face_points[f]) open[v] = 1;
+  }
+  for (const Index v : vertices_.free)
+    if (open[v]) open_points_.push_back(v);
+  // Any place near the mesh will do, the same on all ranks: it only keeps x . G small beside u.
+  for (int a = 0; a < D; ++a) {
+    double lowest = std::numeric_limits<double>::max();
+    for (const Vec3& x : mesh.reference_points) lowest = std::min(lowest, x[a]);
+    origin_[a] = min(mesh.comm, lowest);
+  }
+}
+
+/// Gradient rows and q of a node at `place`.
+template <int D>
+template <class Take>
+inline void CorrectedKernel<D>::set_record(Index node, const Vec3& place, const Take& row) {
+  double* here = cell(node);
+  Lane<D> q = load<D>(nodes_[node]);
+  for (int i = 0; i < D; ++i) {
+    const Lane<D> g = row(i);
+    store<D>(here + (i + 1) * width, g);
+    q -= 0.5 * (place[i] - origin_[i]) * g;
+  }
+  store<D>(here, q);
+}
+
+template <int D>
+inline void CorrectedKernel<D>::find_cell_gradients() {
+  const Index* offset = gradients_.offset.data();
+  const Index* node = gradients_.node.data();
+  const Vec3* weight = gradients_.weight.data();
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const Lane<D> here = load<D>(nodes_[c]);
+    Rows<D> g;
+    for (Index i = offset[c]; i < offset[c + 1]; ++i) {
+      const Lane<D> difference = load<D>(nodes_[node[i]]) - here;
+      for (int a = 0; a < D; ++a) g.row[a] += weight[i][a] * difference;
+    }
+    set_record(
+        c, mesh_.reference.cell_centre[c], [&](int a) __attribute__((always_inline)) { return g.row[a]; });
+  }
+  for (const auto& mirror : gradients_.mirrors) {
+    double* here = cell(mirror.cell);
+    const Lane<D> u = load<D>(nodes_[mirror.cell]);
+    Lane<D> difference = {};
+    double normal = 0, reach = 0;
+    for (int a = 0; a < D; ++a) {
+      normal += mirror.normal[a] * u[a];
+      reach += mirror.weight[a] * (mesh_.reference.cell_centre[mirror.cell][a] - origin_[a]);
+    }
+    for (int a = 0; a < D; ++a) difference[a] = -2 * normal * mirror.normal[a];
+    for (int a = 0; a < D; ++a) lanes::add<D>(here + (a + 1) * width, mirror.weight[a] * difference);
+    lanes::add<D>(here, -0.5 * reach * difference);
+  }
+}
+
+template <int D>
+inline void CorrectedKernel<D>::find_vertices(std::span<const Index> points) {
+  for (const Index v : points) {
+    const auto index = rows_.vertices().nodes(v);
+    const auto weight = rows_.vertices().weights(v);
+    Lane<D> u = {};
+    Rows<D> g;
+    for (std::size_t i = 0; i < index.size(); ++i) {
+      const double* node = records_.data() + std::size_t(index[i]) * record;
+      const double w = weight[i];
+      u += w * load<D>(node);
+      for (int a = 0; a < D; ++a) g.row[a] += w * load<D>(node + (a + 1) * width);
+    }
+    const Vec3& x = mesh_.reference_points[v];
+    double* here = vertex(v);
+    for (int a = 0; a < D; ++a) {
+      u += 0.5 * (x[a] - origin_[a]) * g.row[a];
+      store<D>(here + (a + 1) * width, g.row[a]);
+    }
+    store<D>(here, u);
+  }
+}
+
+// On a symmetry plane: the mean of the gradient and its mirror image, G - NG -
+// GN + 2 NGN with N = n n^T.
+template <int D>
+void CorrectedKernel<D>::mirror_vertex_gradients() {
+  for (const MirrorVertex& mirror : mirrors_) {
+    double* here = vertex(mirror.point);
+    for (const Vec3& normal : mirror.normals) {
+      const Vec<D> n = normal.head<D>();
+      Tensor<D> g;
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) g(a, b) = here[(a + 1) * width + b];
+      const Vec<D> right = g * n, left = g.transpose() * n;
+      g += n * (2 * n.dot(right) * n - left).transpose() - right * n.transpose();
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) here[(a + 1) * width + b] = g(a, b);
+    }
+  }
+}
+
+template <int D>
+inline Rows<D> CorrectedKernel<D>::around(Index f) {
+  const CorrectedFace<D>& face = faces_[f];
+  const double* values = D == 2 ? points_.data() : edge_values_.data();
+  return tangential<D>(
+      face, mesh_.face_points[f], mesh_.reference_points.data(), [&](int i) __attribute__((always_inline)) {
+        return load<D>(values + std::size_t(face.around[i]) * value_stride);
+      });
+}
+
+template <int D>
+inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
+  const CorrectedFace<D>& face = faces_[f];
+  const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+  const Vec3 &from = mesh_.reference.cell_centre[p], &to = mesh_.reference.cell_centre[n];
+  Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
+  if (face.curved != 0) {
+    const double *here = cell(p) + width, *there = cell(n) + width;
+    const Vec3& centre = mesh_.reference.face_centre[f];
+    for (int i = 0; i < D; ++i)
+      along +=
+          (centre[i] - 0.5 * (from[i] + to[i])) * (load<D>(there + i * width) - load<D>(here + i * width));
+  }
+  return normal_derivative<D>(face, to - from, along, grad);
+}
+
+// On the boundary d . grad u = 2 (u_B - u_P) - d . G_P.
+template <int D>
+inline Lane<D> CorrectedKernel<D>::outer(Index f, const Rows<D>& grad) {
+  const Index p = mesh_.owner[f];
+  const Vec3 d = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[p];
+  const Lane<D> across = load<D>(nodes_.of_face(f)) - load<D>(nodes_[p]);
+  return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + width), grad);
+}
+
+// The mirrored difference is central already.
+template <int D>
+inline Lane<D> CorrectedKernel<D>::at_symmetry(Index f, const Rows<D>& grad) {
+  const Index p = mesh_.owner[f];
+  const Vec3 d = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[p];
+  return normal_derivative<D>(faces_[f], d, -load<D>(nodes_[p]), grad);
+}
+
+template <int D>
+inline void CorrectedKernel<D>::find_boundary_gradients() {
+  for (const Index f : open_faces_) {
+    if (f >= mesh_.n_flux_faces()) break;
+    const CorrectedFace<D>& face = faces_[f];
+    const auto point = mesh_.face_points[f];
+    const auto n_points = static_cast<int>(point.size());
+    // In 3-D means of the edges' end points.
+    const Rows<D> grad = tangential<D>(
+        face, point, mesh_.reference_points.data(), [&](int i) __attribute__((always_inline)) {
+          const int e = std::min(i, n_points - 1);
+          const Lane<D> first = load<D>(vertex(point[e]));
+          if (D == 2) return first;
+          return 0.5 * (first + load<D>(vertex(point[(e + 1) % n_points])));
+        });
+    const Lane<D> g = outer(f, grad);
+    set_record(
+        mesh_.cells.n_local() + f - mesh_.n_interior,
+        mesh_.reference.face_centre[f], [&](int a) __attribute__((always_inline)) {
+          return grad.row[a] + face.n[a] * g;
+        });
+  }
+}
+
+// The middle value lies L^2/8 u'' below the trapezoid, the mean L^2/12 u''.
+template <int D>
+inline void CorrectedKernel<D>::find_edges() {
+  if constexpr (D == 3) {
+    const std::array<double, 3> below{1.0 / 8, 1.0 / 12, 0};
+    double* value = edge_values_.data();
+    Index e = 0;
+    for (int kind = 0; kind < 3; ++kind) {
+      const Index end = kind < 2 ? edges_end_[kind] : static_cast<Index>(edges_.size());
+      for (; e < end; ++e, value += width) {
+        const auto [p, q] = edges_[e];
+        const double *first = vertex(p), *second = vertex(q);
+        Lane<D> here = 0.5 * (load<D>(first) + load<D>(second));
+        const Vec3 &from = mesh_.reference_points[p], &to = mesh_.reference_points[q];
+        for (int a = 0; a < D && kind < 2; ++a)
+          here -= below[kind] * (to[a] - from[a]) *
+                  (load<D>(second + (a + 1) * width) - load<D>(first + (a + 1) * width));
+        store<D>(value, here);
+      }
+    }
+  }
+}
+
+template <int D>
+inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
+  nodes_.clear_forces();
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Rows<D> grad = around(f);
+    const Lane<D> force = force_on<D>(faces_[f], inner(f, grad), grad);
+    lanes::add<D>(nodes_.force(mesh_.owner[f]), -force);
+    lanes::add<D>(nodes_.force(mesh_.neighbour[f]), force);
+  }
+  const auto slope = [&](Index f, const Rows<D>& grad) __attribute__((always_inline)) {
+    return rows_.condition(f) == ElasticCondition::symmetry ? at_symmetry(f, grad) : outer(f, grad);
+  };
+  boundary_.add_rows<D>(
+      nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
+      [&](Index f) __attribute__((always_inline)) {
+        const Rows<D> grad = around(f);
+        return force_on<D>(faces_[f], slope(f, grad), grad);
+      },
+      [&](Index f) __attribute__((always_inline)) { return slope(f, around(f)); });
+  nodes_.take_forces(result);
+}
+
+// The loops for several generations of processors; the right one is picked when the program starts. Halo
+// exchanges stand between them.
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void cells_pass(
+    CorrectedKernel<3>& kernel) {
+  kernel.find_cell_gradients();
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void boundary_pass(
+    CorrectedKernel<3>& kernel) {
+  kernel.find_boundary_gradients();
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
+    CorrectedKernel<3>& kernel, std::span<const Index> points) {
+  kernel.find_vertices(points);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
+    CorrectedKernel<3>& kernel, std::span<const double> known, std::span<double> result) {
+  kernel.collect_forces(known, result);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void cells_pass(
+    CorrectedKernel<2>& kernel) {
+  kernel.find_cell_gradients();
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void boundary_pass(
+    CorrectedKernel<2>& kernel) {
+  kernel.find_boundary_gradients();
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
+    CorrectedKernel<2>& kernel, std::span<const Index> points) {
+  kernel.find_vertices(points);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
+    CorrectedKernel<2>& kernel, std::span<const double> known, std::span<double> result) {
+  kernel.collect_forces(known, result);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void edges_pass(
+    CorrectedKernel<3>& kernel) {
+  kernel.find_edges();
+}
+void edges_pass(CorrectedKernel<2>&) {}
+
+/// All that stands before the faces: node records, vertices, edges.
+template <int D>
+void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<const double> known) {
+  nodes_.fill(unknowns, known);
+  cells_pass(*this);
+  const std::span<double> all(records_);
+  const std::size_t n_cells = mesh_.cells.n_local();
+  mesh_.cells.update_ghosts(all.first(n_cells * record), record);
+  // Boundary nodes begin with their cell's gradient; its error is the same for neighbours where cells are.
+  for (const Index f : open_faces_) {
+    const double* owner = cell(mesh_.owner[f]) + width;
+    set_record(static_cast<Index>(n_cells) + f - mesh_.n_interior, mesh_.reference.face_centre[f],
+               [&](int a) { return load<D>(owner + a * width); });
+  }
+  vertices_pass(*this, open_points_);
+  vertices_.constrain<D>(points_, record, known);
+  boundary_pass(*this);
+  mesh_.boundary.update_ghosts(all.subspan(n_cells * record), record);
+  vertices_pass(*this, vertices_.free);
+  vertices_.constrain<D>(points_, record, known);
+  mirror_vertex_gradients();
+  edges_pass(*this);
+}
+
+template <int D>
+void CorrectedKernel<D>::apply(std::span<const double> unknowns, std::span<const double> known,
+                               std::span<double> result) {
+  prepare(unknowns, known);
+  faces_pass(*this, known, result);
+}
+
+template <int D>
+void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                                        std::span<Tensor3> gradients) {
+  prepare(unknowns, known);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const Rows<D> grad = around(f);
+    const Lane<D> n = load<D>(faces_[f].n);
+    Lane<D> g;
+    if (f < mesh_.n_interior)
+      g = inner(f, grad);
+    else if (rows_.condition(f) == ElasticCondition::symmetry)
+      g = lanes::dot<D>(n, at_symmetry(f, grad)) * n;
+    else
+      g = outer(f, grad);
+    gradients[f].setZero();
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) gradients[f](a, b) = grad.row[a][b] + n[a] * g[b];
+  }
+}
+
+template <int D>
+void CorrectedKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
+                                      std::span<double> points) {
+  prepare(unknowns, known);
+  const auto take = [&](Index v) { std::copy_n(vertex(v), D, points.data() + std::size_t(v) * D); };
+  for (const Index v : vertices_.free) take(v);
+  for (const Index v : vertices_.constrained) take(v);
+}
+
+}  // namespace
+
+std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const Mesh& mesh,
+                                                                     const ElasticOperator& rows) {
+  if (mesh.dim == 2) return std::make_unique<CorrectedKernel<2>>(mesh, rows);
+  return std::make_unique<CorrectedKernel<3>>(mesh, rows);
+}
+
+}  // namespace couplet

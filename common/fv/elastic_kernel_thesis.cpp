@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// ElasticKernel with the thesis's face gradient: two passes, vertices then faces.
+#include "common/fv/elastic_faces.hpp"
+#include "common/fv/elastic_nodes.hpp"
+#include "common/fv/elastic_vertices.hpp"
+
+namespace couplet {
+namespace {
+
+using lanes::Lane;
+using lanes::load;
+
+/// What the force on one face takes. Since the c_V of (2.56) add up to nothing, grad_t u = sum_i c_i (u_plus
+/// - u_minus) with one difference of vertices in 2-D and two in 3-D: the diagonals of a quadrilateral, two
+/// sides of a triangle.
+template <int D>
+struct ThesisFace {
+  double n[D];         // out of the owner
+  double c[D - 1][D];  // [1/m]
+  double kc[D - 1];    // k . c_i [1/m]
+  double inverse_dn;   // [1/m]
+  double mu, lambda;   // times the area [N]
+  Index plus[D - 1], minus[D - 1];
+};
+
+template <int D>
+ThesisFace<D> make_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const FaceGradient& faces = rows.faces();
+  const LameConstants lame = face_lame(mesh, rows, f);
+  ThesisFace<D> face;
+  const Index first = mesh.face_points.offset[f], count = mesh.face_points.offset[f + 1] - first;
+  const Index* point = mesh.face_points.index.data() + first;
+  const double area = mesh.reference.face_area[f].norm();
+  for (int i = 0; i < D - 1; ++i) {
+    const bool diagonals = count == 4;
+    const int plus = diagonals ? i : i + 1;
+    face.plus[i] = point[plus];
+    face.minus[i] = point[diagonals ? i + 2 : 0];
+    const Vec3& c = faces.tangential[first + plus];
+    for (int a = 0; a < D; ++a) face.c[i][a] = c[a];
+    face.kc[i] = faces.skew[f].dot(c);
+  }
+  for (int a = 0; a < D; ++a) face.n[a] = faces.normal[f][a];
+  face.inverse_dn = faces.inverse_dn[f];
+  face.mu = lame.mu * area;
+  face.lambda = lame.lambda * area;
+  return face;
+}
+
+//   sigma . S = mu |S| (g + n (n . g) + grad_t(n . u)) + lambda |S| n (n . g + tr grad_t u)
+//   g = n . grad u = (u_N - u_P) / (d . n) + k . grad_t u                                        (2.57),
+//   (2.77)
+template <int D>
+[[gnu::always_inline]] inline Lane<D> force_on(const ThesisFace<D>& face, const Lane<D>& across,
+                                               const double* points) {
+  constexpr int stride = lanes::width<D>;
+  const Lane<D> n = load<D>(face.n);
+  Lane<D> g = across * face.inverse_dn, turned = {};
+  double trace = 0;
+  for (int i = 0; i < D - 1; ++i) {
+    const Lane<D> along = load<D>(points + std::size_t(face.plus[i]) * stride) -
+                          load<D>(points + std::size_t(face.minus[i]) * stride);
+    const Lane<D> c = load<D>(face.c[i]);
+    g += face.kc[i] * along;
+    turned += lanes::dot<D>(n, along) * c;
+    trace += lanes::dot<D>(c, along);
+  }
+  const double normal = lanes::dot<D>(n, g);
+  return face.mu * (g + normal * n + turned) + (face.lambda * (normal + trace)) * n;
+}
+
+/// n . grad u, the g above.
+template <int D>
+[[gnu::always_inline]] inline Lane<D> slope_at(const ThesisFace<D>& face, const Lane<D>& across,
+                                               const double* points) {
+  constexpr int stride = lanes::width<D>;
+  Lane<D> g = across * face.inverse_dn;
+  for (int i = 0; i < D - 1; ++i)
+    g += face.kc[i] * (load<D>(points + std::size_t(face.plus[i]) * stride) -
+                       load<D>(points + std::size_t(face.minus[i]) * stride));
+  return g;
+}
+
+template <int D>
+class ThesisKernel final : public ElasticKernel::Implementation {
+ public:
+  ThesisKernel(const Mesh& mesh, const ElasticOperator& rows)
+      : mesh_(mesh),
+        rows_(rows),
+        nodes_(mesh, rows),
+        boundary_(mesh, rows),
+        vertices_(mesh, rows),
+        points_(std::size_t(mesh.points.n_local()) * stride, 0.0) {
+    faces_.reserve(n_faces_with_force(mesh));
+    for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face<D>(mesh, rows, f));
+  }
+
+  void apply(std::span<const double> unknowns, std::span<const double> known,
+             std::span<double> result) override;
+  void face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                      std::span<Tensor3> gradients) override;
+  void point_values(std::span<const double> unknowns, std::span<const double> known,
+                    std::span<double> points) override;
+
+  [[gnu::always_inline]] inline void interpolate_free();
+  [[gnu::always_inline]] inline void collect_forces(std::span<const double> known, std::span<double> result);
+
+ private:
+  static constexpr int stride = lanes::width<D>;
+  void fill(std::span<const double> unknowns, std::span<const double> known);
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  ElasticNodes<D> nodes_;
+  ElasticFaces boundary_;
+  ElasticVertices vertices_;
+  std::vector<ThesisFace<D>> faces_;
+  std::vector<double> points_;  // padded displacements of the vertices
+};
+
+template <int D>
+inline void ThesisKernel<D>::interpolate_free() {
+  const double* nodes = nodes_[0];
+  double* points = points_.data();
+  for (const Index v : vertices_.free) {
+    const auto index = rows_.vertices().nodes(v);
+    const auto weight = rows_.vertices().weights(v);
+    Lane<D> sum = {};
+    for (std::size_t i = 0; i < index.size(); ++i)
+      sum += weight[i] * load<D>(nodes + std::size_t(index[i]) * stride);
+    lanes::store<D>(points + std::size_t(v) * stride, sum);
+  }
+}
+
+template <int D>
+inline void ThesisKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
+  nodes_.clear_forces();
+  const double* points = points_.data();
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const Lane<D> force = force_on<D>(faces_[f], load<D>(nodes_[n]) - load<D>(nodes_[p]), points);
+    lanes::add<D>(nodes_.force(p), -force);
+    lanes::add<D>(nodes_.force(n), force);
+  }
+  const auto across = [&](Index f) __attribute__((always_inline)) {
+    return load<D>(nodes_.of_face(f)) - load<D>(nodes_[mesh_.owner[f]]);
+  };
+  boundary_.add_rows<D>(
+      nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
+      [&](Index f) __attribute__((always_inline)) { return force_on<D>(faces_[f], across(f), points); },
+      [&](Index f) __attribute__((always_inline)) { return slope_at<D>(faces_[f], across(f), points); });
+  nodes_.take_forces(result);
+}
+
+// The loops for several generations of processors; the right one is picked when the program starts.
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
+    ThesisKernel<3>& kernel) {
+  kernel.interpolate_free();
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
+    ThesisKernel<3>& kernel, std::span<const double> known, std::span<double> result) {
+  kernel.collect_forces(known, result);
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
+    ThesisKernel<2>& kernel) {
+  kernel.interpolate_free();
+}
+[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
+    ThesisKernel<2>& kernel, std::span<const double> known, std::span<double> result) {
+  kernel.collect_forces(known, result);
+}
+
+/// All that stands before the faces.
+template <int D>
+void ThesisKernel<D>::fill(std::span<const double> unknowns, std::span<const double> known) {
+  nodes_.fill(unknowns, known);
+  vertices_pass(*this);
+  vertices_.constrain<D>(points_, stride, known);
+}
+
+template <int D>
+void ThesisKernel<D>::apply(std::span<const double> unknowns, std::span<const double> known,
+                            std::span<double> result) {
+  fill(unknowns, known);
+  faces_pass(*this, known, result);
+}
+
+template <int D>
+void ThesisKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                                     std::span<Tensor3> gradients) {
+  fill(unknowns, known);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const ThesisFace<D>& face = faces_[f];
+    const bool symmetric = f >= mesh_.n_interior && rows_.condition(f) == ElasticCondition::symmetry;
+    Lane<D> g = (load<D>(f < mesh_.n_interior ? nodes_[mesh_.neighbour[f]] : nodes_.of_face(f)) -
+                 load<D>(nodes_[mesh_.owner[f]])) *
+                face.inverse_dn;
+    Tensor3& gradient = gradients[f];
+    gradient.setZero();
+    for (int i = 0; i < D - 1; ++i) {
+      const Lane<D> along = load<D>(points_.data() + std::size_t(face.plus[i]) * stride) -
+                            load<D>(points_.data() + std::size_t(face.minus[i]) * stride);
+      g += face.kc[i] * along;
+      for (int a = 0; a < D; ++a)
+        for (int b = 0; b < D; ++b) gradient(a, b) += face.c[i][a] * along[b];
+    }
+    const Lane<D> n = load<D>(face.n);
+    if (symmetric) g = lanes::dot<D>(n, g) * n;
+    for (int a = 0; a < D; ++a)
+      for (int b = 0; b < D; ++b) gradient(a, b) += face.n[a] * g[b];
+  }
+}
+
+template <int D>
+void ThesisKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
+                                   std::span<double> points) {
+  fill(unknowns, known);
+  const auto take = [&](Index v) {
+    for (int a = 0; a < D; ++a) points[std::size_t(v) * D + a] = points_[std::size_t(v) * stride + a];
+  };
+  for (const Index v : vertices_.free) take(v);
+  for (const Index v : vertices_.constrained) take(v);
+}
+
+}  // namespace
+
+std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const Mesh& mesh,
+                                                                  const ElasticOperator& rows) {
+  if (mesh.dim == 2) return std::make_unique<ThesisKernel<2>>(mesh, rows);
+  return std::make_unique<ThesisKernel<3>>(mesh, rows);
+}
+
+}  // namespace couplet

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/fv/elastic_preconditioner.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+#include "common/fv/elastic_nodes.hpp"
+
+namespace couplet {
+namespace {
+
+using Lanes = ComponentMultigrid::Lanes;
+
+/// Two-point rows of the owned cells; boundary and partition faces stand on the diagonal only.
+class CompactRows {
+ public:
+  CompactRows(const Mesh& mesh, const ElasticOperator& rows, double boundary_factor)
+      : mesh_(mesh), rows_(rows), boundary_factor_(boundary_factor) {}
+
+  ComponentMultigrid::Rows make(std::span<const double> inertia);
+
+ private:
+  bool owned(Index c) const { return c < mesh_.cells.n_owned(); }
+  /// |S| / (d . n) [mu + (mu + lambda) n_c^2] per component.
+  Lanes coefficient(Index f) const;
+  /// What a boundary face adds on the diagonal of its cell.
+  Lanes boundary_diagonal(Index f) const;
+  /// Both sides of a bonded face in series.
+  Lanes bond(Index f) const;
+  template <class Take>
+  void visit_couplings(const Take& take) const;
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  double boundary_factor_;
+};
+
+Lanes CompactRows::coefficient(Index f) const {
+  const LameConstants lame = face_lame(mesh_, rows_, f);
+  const double scale = mesh_.reference.face_area[f].norm() * rows_.faces().inverse_dn[f];
+  Lanes k{};
+  for (int c = 0; c < mesh_.dim; ++c) {
+    const double nc = rows_.faces().normal[f][c];
+    k[c] = static_cast<float>(scale * (lame.mu + (lame.mu + lame.lambda) * nc * nc));
+  }
+  return k;
+}
+
+Lanes CompactRows::bond(Index f) const {
+  const Lanes here = coefficient(f), there = coefficient(mesh_.n_interior + mesh_.twin[f - mesh_.n_interior]);
+  Lanes k{};
+  for (int c = 0; c < mesh_.dim; ++c)
+    k[c] = static_cast<float>(boundary_factor_) * here[c] * there[c] / (here[c] + there[c]);
+  return k;
+}
+
+Lanes CompactRows::boundary_diagonal(Index f) const {
+  Lanes k = coefficient(f);
+  const double area = mesh_.reference.face_area[f].norm();
+  for (int c = 0; c < mesh_.dim; ++c) {
+    const double nc = rows_.faces().normal[f][c], whole = boundary_factor_ * k[c];
+    double value = 0;
+    switch (rows_.condition(f)) {
+      case ElasticCondition::prescribed:
+        value = whole;
+        break;
+      case ElasticCondition::symmetry:
+        value = k[c] * nc * nc;
+        break;
+      case ElasticCondition::support: {
+        const double known = rows_.support(f).known(c, c), spring = area * rows_.support(f).spring(c, c);
+        value = whole * (known + (1 - known) * spring / (whole + spring));  // spring and half cell in series
+        break;
+      }
+      case ElasticCondition::bonded:
+        value = bond(f)[c];
+        break;
+      default:
+        break;
+    }
+    k[c] = static_cast<float>(value);
+  }
+  return k;
+}
+
+template <class Take>
+void CompactRows::visit_couplings(const Take& take) const {
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    if (owned(mesh_.owner[f]) && owned(mesh_.neighbour[f])) take(mesh_.owner[f], mesh_.neighbour[f], f);
+  if (mesh_.twin.empty()) return;
+  for (const Index f : rows_.unknown_faces()) {
+    if (rows_.condition(f) != ElasticCondition::bonded) continue;
+    const Index other = mesh_.owner[mesh_.n_interior + mesh_.twin[f - mesh_.n_interior]];
+    if (owned(other)) take(mesh_.owner[f], other, f);
+  }
+}
+
+ComponentMultigrid::Rows CompactRows::make(std::span<const double> inertia) {
+  const Index n = mesh_.cells.n_owned();
+  ComponentMultigrid::Rows result;
+  result.offset.assign(n + 1, 0);
+  visit_couplings([&](Index a, Index b, Index) {
+    ++result.offset[a + 1];
+    ++result.offset[b + 1];
+  });
+  for (Index c = 0; c < n; ++c) result.offset[c + 1] += result.offset[c];
+  result.index.resize(result.offset.back());
+  result.value.resize(result.offset.back());
+  std::vector<Index> next(result.offset.begin(), result.offset.end() - 1);
+  visit_couplings([&](Index a, Index b, Index f) {
+    const Lanes k = f < mesh_.n_interior ? coefficient(f) : bond(f);
+    result.index[next[a]] = b;
+    result.value[next[a]++] = -k;
+    result.index[next[b]] = a;
+    result.value[next[b]++] = -k;
+  });
+  Lanes unused{};
+  for (int c = mesh_.dim; c < ComponentMultigrid::lanes; ++c) unused[c] = 1;
+  result.diagonal.assign(n, unused);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const Lanes k = f < mesh_.n_interior ? coefficient(f) : boundary_diagonal(f);
+    if (owned(mesh_.owner[f])) result.diagonal[mesh_.owner[f]] += k;
+    if (f < mesh_.n_interior && owned(mesh_.neighbour[f])) result.diagonal[mesh_.neighbour[f]] += k;
+  }
+  for (std::size_t c = 0; c < inertia.size(); ++c)
+    for (int a = 0; a < mesh_.dim; ++a) result.diagonal[c][a] += static_cast<float>(inertia[c]);
+  return result;
+}
+
+}  // namespace
+
+ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOperator& rows,
+                                             std::span<const double> inertia, const Options& options)
+    : mesh_(&mesh), rows_(&rows), inertia_(inertia.begin(), inertia.end()), between_(options.between) {
+  // The corrected gradient has 2 (u_B - u_P) on the boundary.
+  const double boundary_factor = options.scheme == FaceGradientScheme::corrected ? 2 : 1;
+  multigrid_ = std::make_unique<ComponentMultigrid>(CompactRows(mesh, rows, boundary_factor).make(inertia));
+  find_face_rows(boundary_factor);
+  if (options.n_aggregates > 0)
+    coarse_ = std::make_unique<RigidCoarseSpace>(mesh, rows, inertia, options.n_aggregates);
+  if (!coarse_) between_ = nullptr;
+  if (between_) left_.resize(rows.n_unknowns()), smooth_.resize(rows.n_unknowns());
+}
+
+void ElasticPreconditioner::find_face_rows(double boundary_factor) {
+  const Mesh& mesh = *mesh_;
+  const auto stiffness = [&](Index f) {
+    const LameConstants lame = rows_->lame(mesh.owner[f]);
+    const Vec3& n = rows_->faces().normal[f];
+    const double scale = boundary_factor * mesh.reference.face_area[f].norm() * rows_->faces().inverse_dn[f];
+    return Tensor3(scale * (lame.mu * Tensor3::Identity() + (lame.mu + lame.lambda) * n * n.transpose()));
+  };
+  for (const Index f : rows_->unknown_faces()) {
+    const LameConstants lame = rows_->lame(mesh.owner[f]);
+    const double whole =
+        (2 * lame.mu + lame.lambda) * mesh.reference.face_area[f].norm() * rows_->faces().inverse_dn[f];
+    Tensor3 own = stiffness(f), cell = own;
+    FaceRow row{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero(), mesh.owner[f], -1};
+    switch (rows_->condition(f)) {
+      case ElasticCondition::zero_gradient:
+        own = cell = boundary_factor * whole * Tensor3::Identity();
+        break;
+      case ElasticCondition::support: {
+        const ElasticSupport& s = rows_->support(f);
+        const Tensor3 open = Tensor3::Identity() - s.known;
+        cell = open * own;
+        own = open * (own + mesh.reference.face_area[f].norm() * s.spring) + whole * s.known;
+        break;
+      }
+      case ElasticCondition::bonded: {
+        const Index twin = mesh.n_interior + mesh.twin[f - mesh.n_interior];
+        const Tensor3 other = stiffness(twin);
+        own += other;
+        // The other cell's part goes to this one where it lives on another rank: constants stay constants.
+        if (mesh.owner[twin] < mesh.cells.n_owned()) {
+          row.twin_owner = mesh.owner[twin];
+          row.other = own.inverse() * other;
+        } else {
+          cell += other;
+        }
+        break;
+      }
+      default:
+        break;
+    }
+    row.inverse = own.inverse();
+    row.cell = row.inverse * cell;
+    face_rows_.push_back(row);
+  }
+}
+
+void ElasticPreconditioner::smooth(std::span<const double> r, std::span<double> z) {
+  const int dim = mesh_->dim;
+  const std::size_t n_cells = std::size_t(mesh_->cells.n_owned()) * dim;
+  multigrid_->apply(r.first(n_cells), z.first(n_cells), dim);
+  for (std::size_t i = 0; i < face_rows_.size(); ++i) {
+    const FaceRow& row = face_rows_[i];
+    const double* own = r.data() + n_cells + i * dim;
+    const double* cell = z.data() + std::size_t(row.owner) * dim;
+    for (int a = 0; a < dim; ++a) {
+      double u = 0;
+      for (int b = 0; b < dim; ++b) u += row.inverse(a, b) * own[b] + row.cell(a, b) * cell[b];
+      if (row.twin_owner >= 0)
+        for (int b = 0; b < dim; ++b) u += row.other(a, b) * z[std::size_t(row.twin_owner) * dim + b];
+      z[n_cells + i * dim + a] = u;
+    }
+  }
+}
+
+void ElasticPreconditioner::apply(std::span<const double> r, std::span<double> z) {
+  if (!between_) {
+    smooth(r, z);
+    if (coarse_) coarse_->add_correction(r, z);
+    return;
+  }
+  std::fill(z.begin(), z.end(), 0.0);
+  coarse_->add_correction(r, z);
+  between_->apply(z, {}, left_);
+  for (std::size_t i = 0; i < left_.size(); ++i) left_[i] = r[i] - left_[i];
+  const std::size_t dim = mesh_->dim;
+  for (std::size_t i = 0; i < inertia_.size() * dim; ++i) left_[i] -= inertia_[i / dim] * z[i];
+  smooth(left_, smooth_);
+  for (std::size_t i = 0; i < smooth_.size(); ++i) z[i] += smooth_[i];
+}
+
+}  // namespace couplet

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstring>
+
+// Vector values are passed between inlined functions only; no ABI is involved.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+/// Short vectors for loops over packed fields: the components of one node, padded to a power of two (2 in the
+/// plane, 4 in space). GCC's vector extension: one register where the processor has it, several where it has
+/// not.
+namespace couplet::lanes {
+
+template <int Width>
+struct OfWidth {
+  using type [[gnu::vector_size(sizeof(double) * Width)]] = double;
+};
+template <int D>
+constexpr int width = D == 2 ? 2 : 4;
+template <int D>
+using Lane = typename OfWidth<width<D>>::type;
+
+template <int D>
+[[gnu::always_inline]] inline Lane<D> load(const double* from) {
+  Lane<D> value;
+  std::memcpy(&value, from, sizeof value);
+  return value;
+}
+
+template <int D>
+[[gnu::always_inline]] inline void store(double* to, const Lane<D>& value) {
+  std::memcpy(to, &value, sizeof value);
+}
+
+template <int D>
+[[gnu::always_inline]] inline void add(double* to, const Lane<D>& value) {
+  store<D>(to, load<D>(to) + value);
+}
+
+/// Over the D components; what stands in the padding is not looked at.
+template <int D>
+[[gnu::always_inline]] inline double dot(const Lane<D>& a, const Lane<D>& b) {
+  const Lane<D> product = a * b;
+  if constexpr (D == 2)
+    return product[0] + product[1];
+  else
+    return product[0] + product[1] + product[2];
+}
+
+}  // namespace couplet::lanes

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/linalg/acceleration.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace couplet {
+
+Accelerator::Accelerator(MPI_Comm comm, std::size_t n, const Acceleration& options)
+    : comm_(comm), options_(options), last_step_(n) {
+  if (options.type == Acceleration::Type::anderson) last_u_.resize(n);
+}
+
+void Accelerator::restart() {
+  steps_ = 0;
+  du_.clear();
+  df_.clear();
+}
+
+void Accelerator::advance(std::span<double> u, std::span<const double> step) {
+  ++steps_;
+  if (options_.type == Acceleration::Type::anderson) return anderson(u, step);
+  if (options_.type == Acceleration::Type::aitken) return aitken(u, step);
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] += step[i];
+}
+
+//   u <- u + r - gamma r,   gamma = r . (r - r') / |r - r'|^2        (2.70)-(2.72), sign corrected
+void Accelerator::aitken(std::span<double> u, std::span<const double> step) {
+  double factor = 1;
+  if (steps_ % options_.every == 0 && steps_ > 1) {
+    double sums[2] = {0, 0};
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const double change = step[i] - last_step_[i];
+      sums[0] += step[i] * change;
+      sums[1] += change * change;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
+    if (sums[1] > 0) factor = 1 - sums[0] / sums[1];
+  }
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    u[i] += factor * step[i];
+    last_step_[i] = step[i];
+  }
+}
+
+// With the differences dU, dF of the last m iterates and steps: u <- u + f - (dU + dF) g, where g minimises
+// |f - dF g|.
+void Accelerator::anderson(std::span<double> u, std::span<const double> step) {
+  const std::size_t n = u.size();
+  if (steps_ > 1) {
+    if (std::ssize(du_) == options_.history) {
+      std::rotate(du_.begin(), du_.begin() + 1, du_.end());
+      std::rotate(df_.begin(), df_.begin() + 1, df_.end());
+    } else {
+      du_.emplace_back(n);
+      df_.emplace_back(n);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      du_.back()[i] = u[i] - last_u_[i];
+      df_.back()[i] = step[i] - last_step_[i];
+    }
+  }
+  std::copy(u.begin(), u.end(), last_u_.begin());
+  std::copy(step.begin(), step.end(), last_step_.begin());
+  const auto m = static_cast<int>(df_.size());
+  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(m, m + 1);  // dF^T dF and dF^T f
+  for (int a = 0; a < m; ++a) {
+    for (int b = 0; b <= a; ++b)
+      for (std::size_t i = 0; i < n; ++i) sums(a, b) += df_[a][i] * df_[b][i];
+    for (std::size_t i = 0; i < n; ++i) sums(a, m) += df_[a][i] * step[i];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  Eigen::MatrixXd gram = sums.leftCols(m);
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
+  // Scaled to ones on the diagonal; directions that repeat others are left out by the rank of the factors.
+  const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * gram * scale.asDiagonal();
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(1e-10);
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(m);
+  if (m > 0) {
+    solver.compute(scaled);
+    g = scale.asDiagonal() * solver.solve(scale.asDiagonal() * sums.col(m));
+  }
+  for (std::size_t i = 0; i < n; ++i) u[i] += step[i];
+  for (int a = 0; a < m; ++a)
+    for (std::size_t i = 0; i < n; ++i) u[i] -= g[a] * (du_[a][i] + df_[a][i]);
+}
+
+}  // namespace couplet

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/linalg/component_multigrid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace couplet {
+namespace {
+
+using Lanes = ComponentMultigrid::Lanes;
+using Rows = ComponentMultigrid::Rows;
+
+constexpr Index largest_coarsest = 60;
+constexpr int most_levels = 12;
+// A neighbour is strong when |a_ij| is at least this part of the largest in its row or in the other's.
+constexpr float strong = 0.25F;
+// Damping of the prolongation smoother: 4/3 over the largest eigenvalue of D^-1 A, which is below 2.
+constexpr float omega = 0.66F;
+
+float total(const Lanes& v) { return v[0] + v[1] + v[2] + v[3]; }
+
+/// For each entry whether it is strong.
+std::vector<std::uint8_t> strong_entries(const Rows& a) {
+  std::vector<float> largest(a.size(), 0);
+  for (Index i = 0; i < a.size(); ++i)
+    for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
+      largest[i] = std::max(largest[i], -total(a.value[e]));
+  std::vector<std::uint8_t> result(a.index.size());
+  for (Index i = 0; i < a.size(); ++i)
+    for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
+      result[e] = -total(a.value[e]) >= strong * std::min(largest[i], largest[a.index[e]]);
+  return result;
+}
+
+/// Aggregates: roots take their whole strong neighbourhood where all of it is free; what remains joins a
+/// neighbour.
+std::vector<Index> aggregate(const Rows& a, const std::vector<std::uint8_t>& is_strong, Index& n_aggregates) {
+  std::vector<Index> of(a.size(), -1);
+  n_aggregates = 0;
+  for (Index i = 0; i < a.size(); ++i) {
+    if (of[i] >= 0) continue;
+    bool free = true;
+    for (Index e = a.offset[i]; e < a.offset[i + 1] && free; ++e) free = !is_strong[e] || of[a.index[e]] < 0;
+    if (!free) continue;
+    of[i] = n_aggregates;
+    for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
+      if (is_strong[e]) of[a.index[e]] = n_aggregates;
+    ++n_aggregates;
+  }
+  const std::vector<Index> roots = of;
+  for (Index i = 0; i < a.size(); ++i) {
+    if (of[i] >= 0) continue;
+    float best = 0;
+    for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
+      if (roots[a.index[e]] >= 0 && -total(a.value[e]) > best) {
+        best = -total(a.value[e]);
+        of[i] = roots[a.index[e]];
+      }
+    if (of[i] < 0) of[i] = n_aggregates++;
+  }
+  return of;
+}
+
+/// Neighbours ascending, by insertion: rows are short and nearly in order.
+void sort_rows(Rows& a) {
+  for (Index i = 0; i < a.size(); ++i)
+    for (Index e = a.offset[i] + 1; e < a.offset[i + 1]; ++e)
+      for (Index k = e; k > a.offset[i] && a.index[k] < a.index[k - 1]; --k) {
+        std::swap(a.index[k], a.index[k - 1]);
+        std::swap(a.value[k], a.value[k - 1]);
+      }
+}
+
+}  // namespace
+
+ComponentMultigrid::ComponentMultigrid(Rows rows) {
+  add_level(std::move(rows));
+  while (levels_.back().a.size() > largest_coarsest && n_levels() < most_levels) {
+    Level& fine = levels_.back();
+    const std::vector<std::uint8_t> is_strong = strong_entries(fine.a);
+    Index n_coarse = 0;
+    const std::vector<Index> of = aggregate(fine.a, is_strong, n_coarse);
+    if (n_coarse * 4 > fine.a.size() * 3) break;
+    prolong(fine, of, is_strong);
+    Rows coarse = galerkin(fine, n_coarse);
+    add_level(std::move(coarse));
+  }
+  residual_.resize(levels_.front().a.size());
+  factor_coarsest();
+}
+
+// P = (I - omega D^-1 A) P_0, weak neighbours lumped on the diagonal of A so that constants stay constants.
+void ComponentMultigrid::prolong(Level& fine, const std::vector<Index>& of,
+                                 const std::vector<std::uint8_t>& is_strong) {
+  const Rows& a = fine.a;
+  fine.p_offset.assign(1, 0);
+  for (Index i = 0; i < a.size(); ++i) {
+    const std::size_t first = fine.p_index.size();
+    const auto add = [&](Index aggregate, const Lanes& value) {
+      for (std::size_t k = first; k < fine.p_index.size(); ++k)
+        if (fine.p_index[k] == aggregate) {
+          fine.p_value[k] += value;
+          return;
+        }
+      fine.p_index.push_back(aggregate);
+      fine.p_value.push_back(value);
+    };
+    Lanes diagonal = a.diagonal[i];
+    for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
+      if (!is_strong[e]) diagonal += a.value[e];
+    // A row without strong neighbours may lump to nothing.
+    diagonal = diagonal > 1e-3F * a.diagonal[i] ? diagonal : a.diagonal[i];
+    add(of[i], Lanes{1, 1, 1, 1} * (1 - omega));
+    for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
+      if (is_strong[e]) add(of[a.index[e]], -omega * a.value[e] / diagonal);
+    fine.p_offset.push_back(static_cast<Index>(fine.p_index.size()));
+  }
+}
+
+// P^T A P, one coarse row after the other.
+ComponentMultigrid::Rows ComponentMultigrid::galerkin(const Level& fine, Index n_coarse) {
+  const Rows& a = fine.a;
+  std::vector<Index> offset(n_coarse + 1, 0);
+  for (const Index c : fine.p_index) ++offset[c + 1];
+  for (Index c = 0; c < n_coarse; ++c) offset[c + 1] += offset[c];
+  std::vector<Index> row(offset.back()), entry(offset.back()), next(offset.begin(), offset.end() - 1);
+  for (Index i = 0; i < a.size(); ++i)
+    for (Index k = fine.p_offset[i]; k < fine.p_offset[i + 1]; ++k) {
+      const Index at = next[fine.p_index[k]]++;
+      row[at] = i;
+      entry[at] = k;
+    }
+  Rows coarse;
+  std::vector<Index> place(n_coarse, -1);
+  std::vector<std::pair<Index, Lanes>> sums;
+  for (Index c = 0; c < n_coarse; ++c) {
+    sums.clear();
+    const auto spread = [&](Index j, const Lanes& value) {
+      for (Index k = fine.p_offset[j]; k < fine.p_offset[j + 1]; ++k) {
+        const Index to = fine.p_index[k];
+        if (place[to] < 0) {
+          place[to] = static_cast<Index>(sums.size());
+          sums.push_back({to, Lanes{}});
+        }
+        sums[place[to]].second += value * fine.p_value[k];
+      }
+    };
+    for (Index t = offset[c]; t < offset[c + 1]; ++t) {
+      const Index i = row[t];
+      const Lanes p = fine.p_value[entry[t]];
+      spread(i, p * a.diagonal[i]);
+      for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e) spread(a.index[e], p * a.value[e]);
+    }
+    for (const auto& [to, value] : sums) place[to] = -1;
+    std::sort(sums.begin(), sums.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
+    Lanes diagonal{1, 1, 1, 1};
+    for (const auto& [to, value] : sums) {
+      if (to == c) {
+        diagonal = value;
+        continue;
+      }
+      coarse.index.push_back(to);
+      coarse.value.push_back(value);
+    }
+    coarse.diagonal.push_back(diagonal);
+    coarse.offset.push_back(static_cast<Index>(coarse.index.size()));
+  }
+  return coarse;
+}
+
+void ComponentMultigrid::add_level(Rows rows) {
+  Level level;
+  level.a = std::move(rows);
+  const Index n = level.a.size();
+  sort_rows(level.a);
+  level.inverse_diagonal.resize(n);
+  level.middle.resize(n);
+  for (Index i = 0; i < n; ++i) {
+    level.inverse_diagonal[i] = 1 / level.a.diagonal[i];
+    const auto first = level.a.index.begin() + level.a.offset[i],
+               last = level.a.index.begin() + level.a.offset[i + 1];
+    level.middle[i] = static_cast<Index>(std::lower_bound(first, last, i) - level.a.index.begin());
+  }
+  level.x.assign(n, Lanes{});
+  level.b = level.x;
+  levels_.push_back(std::move(level));
+}
+
+void ComponentMultigrid::factor_coarsest() {
+  const Rows& a = levels_.back().a;
+  if (a.size() > 4 * largest_coarsest) return;  // could not be made smaller: smoothing must do
+  for (int l = 0; l < lanes; ++l) {
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(a.size(), a.size());
+    for (Index i = 0; i < a.size(); ++i) {
+      dense(i, i) = a.diagonal[i][l] * (1 + 1e-5);  // a pure Neumann problem is singular
+      for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e) dense(i, a.index[e]) = a.value[e][l];
+    }
+    coarsest_.emplace_back(dense);
+  }
+}
+
+void ComponentMultigrid::solve_coarsest(Level& level) const {
+  if (coarsest_.empty()) {
+    smooth_forward(level);
+    smooth_backward(level);
+    return;
+  }
+  Eigen::VectorXd b(level.a.size());
+  for (int l = 0; l < lanes; ++l) {
+    for (Index i = 0; i < level.a.size(); ++i) b[i] = level.b[i][l];
+    b = coarsest_[l].solve(b).eval();
+    for (Index i = 0; i < level.a.size(); ++i) level.x[i][l] = static_cast<float>(b[i]);
+  }
+}
+
+/// x = (D + L)^-1 b.
+void ComponentMultigrid::smooth_forward(Level& level) {
+  const Index *offset = level.a.offset.data(), *middle = level.middle.data(), *index = level.a.index.data();
+  const Lanes *value = level.a.value.data(), *b = level.b.data(), *inverse = level.inverse_diagonal.data();
+  Lanes* x = level.x.data();
+  for (Index i = 0, n = level.a.size(); i < n; ++i) {
+    Lanes sum = b[i];
+    for (Index e = offset[i]; e < middle[i]; ++e) sum -= value[e] * x[index[e]];
+    x[i] = sum * inverse[i];
+  }
+}
+
+/// b - A x = - U x after smooth_forward().
+void ComponentMultigrid::residual_after_forward(const Level& level, std::vector<Lanes>& residual) {
+  const Index *offset = level.a.offset.data(), *middle = level.middle.data(), *index = level.a.index.data();
+  const Lanes *value = level.a.value.data(), *x = level.x.data();
+  for (Index i = 0, n = level.a.size(); i < n; ++i) {
+    Lanes sum{};
+    for (Index e = middle[i]; e < offset[i + 1]; ++e) sum -= value[e] * x[index[e]];
+    residual[i] = sum;
+  }
+}
+
+/// One Gauss-Seidel sweep from the last row to the first.
+void ComponentMultigrid::smooth_backward(Level& level) {
+  const Index *offset = level.a.offset.data(), *index = level.a.index.data();
+  const Lanes *value = level.a.value.data(), *b = level.b.data(), *inverse = level.inverse_diagonal.data();
+  Lanes* x = level.x.data();
+  for (Index i = level.a.size() - 1; i >= 0; --i) {
+    Lanes sum = b[i];
+    for (Index e = offset[i]; e < offset[i + 1]; ++e) sum -= value[e] * x[index[e]];
+    x[i] = sum * inverse[i];
+  }
+}
+
+void ComponentMultigrid::cycle() {
+  const std::size_t last = levels_.size() - 1;
+  for (std::size_t l = 0; l < last; ++l) {
+    Level &fine = levels_[l], &coarse = levels_[l + 1];
+    smooth_forward(fine);
+    residual_after_forward(fine, residual_);
+    std::fill(coarse.b.begin(), coarse.b.end(), Lanes{});
+    for (Index i = 0; i < fine.a.size(); ++i)
+      for (Index k = fine.p_offset[i]; k < fine.p_offset[i + 1]; ++k)
+        coarse.b[fine.p_index[k]] += fine.p_value[k] * residual_[i];
+  }
+  solve_coarsest(levels_[last]);
+  for (std::size_t l = last; l-- > 0;) {
+    Level &fine = levels_[l], &coarse = levels_[l + 1];
+    for (Index i = 0; i < fine.a.size(); ++i)
+      for (Index k = fine.p_offset[i]; k < fine.p_offset[i + 1]; ++k)
+        fine.x[i] += fine.p_value[k] * coarse.x[fine.p_index[k]];
+    smooth_backward(fine);
+  }
+}
+
+void ComponentMultigrid::apply(std::span<const double> b, std::span<double> x, int components) {
+  Level& finest = levels_.front();
+  // Single precision holds the shape of b, its size goes around it.
+  double largest = 0;
+  for (Index i = 0; i < finest.a.size() * components; ++i) largest = std::max(largest, std::abs(b[i]));
+  const double scale = largest > 0 ? 1 / largest : 0;
+  for (Index i = 0; i < finest.a.size(); ++i) {
+    Lanes value{};
+    for (int c = 0; c < components; ++c)
+      value[c] = static_cast<float>(scale * b[std::size_t(i) * components + c]);
+    finest.b[i] = value;
+  }
+  cycle();
+  for (Index i = 0; i < finest.a.size(); ++i)
+    for (int c = 0; c < components; ++c) x[std::size_t(i) * components + c] = largest * finest.x[i][c];
+}
+
+}  // namespace couplet

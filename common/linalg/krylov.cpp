@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/linalg/krylov.hpp"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+namespace {
+
+// Several partial sums, so that additions do not wait for each other.
+double dot_here(std::span<const double> a, std::span<const double> b) {
+  std::array<double, 8> sum{};
+  std::size_t i = 0;
+  for (; i + 8 <= a.size(); i += 8)
+    for (std::size_t k = 0; k < 8; ++k) sum[k] += a[i + k] * b[i + k];
+  for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
+  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+}
+
+template <std::size_t N>
+std::array<double, N> over_ranks(MPI_Comm comm, std::array<double, N> local) {
+  MPI_Allreduce(MPI_IN_PLACE, local.data(), N, MPI_DOUBLE, MPI_SUM, comm);
+  return local;
+}
+
+}  // namespace
+
+BiCgStab::BiCgStab(std::string what, MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap precondition)
+    : what_(std::move(what)),
+      comm_(comm),
+      apply_(std::move(apply)),
+      precondition_(std::move(precondition)),
+      r_(n),
+      shadow_(n),
+      p_(n),
+      v_(n),
+      t_(n),
+      z_(n) {}
+
+/// r = b - A x and its norm.
+double BiCgStab::true_residual(std::span<const double> b, std::span<const double> x) {
+  apply_(x, r_);
+  for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = b[i] - r_[i];
+  return std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]);
+}
+
+SolveStatistics BiCgStab::solve(std::span<const double> b, std::span<double> x,
+                                const KrylovOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  SolveStatistics statistics;
+  const double size = std::sqrt(over_ranks<1>(comm_, {dot_here(b, b)})[0]);
+  const double wanted = options.relative_tolerance * size;
+  statistics.residual = true_residual(b, x);
+  // A restart that gains nothing means that rounding, not the method, sets the limit.
+  double before = std::numeric_limits<double>::infinity();
+  while (statistics.residual > wanted) {
+    const bool stuck = statistics.residual > 0.9 * before;
+    if (stuck || statistics.iterations >= options.max_iterations || !std::isfinite(statistics.residual))
+      throw SolveFailure(
+          "The Krylov solver for {} did not converge: BiCGStab reached a residual of {:.3e} of the "
+          "right-hand side "
+          "({:.3e} wanted) in {} of at most {} iterations{}.",
+          what_, statistics.residual / size, options.relative_tolerance, statistics.iterations,
+          options.max_iterations, stuck ? " and a restart gains nothing" : "");
+    before = statistics.residual;
+    run(x, wanted, options.max_iterations, statistics);
+    statistics.residual = true_residual(b, x);
+  }
+  statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return statistics;
+}
+
+BiCgStab::Outcome BiCgStab::run(std::span<double> x, double wanted, int max_iterations,
+                                SolveStatistics& statistics) {
+  const std::size_t n = r_.size();
+  shadow_ = r_;
+  p_ = r_;
+  double rho = over_ranks<1>(comm_, {dot_here(r_, r_)})[0];
+  while (statistics.iterations < max_iterations) {
+    ++statistics.iterations;
+    precondition_(p_, z_);
+    apply_(z_, v_);
+    const double alpha = rho / over_ranks<1>(comm_, {dot_here(shadow_, v_)})[0];
+    if (!std::isfinite(alpha)) return Outcome::restart;
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] += alpha * z_[i];
+      r_[i] -= alpha * v_[i];
+    }
+    precondition_(r_, z_);
+    apply_(z_, t_);
+    const auto [tr, tt] = over_ranks<2>(comm_, {dot_here(t_, r_), dot_here(t_, t_)});
+    if (tt == 0) return Outcome::restart;
+    const double omega = tr / tt;
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] += omega * z_[i];
+      r_[i] -= omega * t_[i];
+    }
+    const auto [next, rr] = over_ranks<2>(comm_, {dot_here(shadow_, r_), dot_here(r_, r_)});
+    if (std::sqrt(rr) <= wanted) return Outcome::converged;
+    const double beta = next / rho * (alpha / omega);
+    if (!std::isfinite(beta) || beta == 0) return Outcome::restart;
+    rho = next;
+    for (std::size_t i = 0; i < n; ++i) p_[i] = r_[i] + beta * (p_[i] - omega * v_[i]);
+  }
+  return Outcome::exhausted;
+}
+
+}  // namespace couplet

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/linalg/linear_solver.hpp"
+
+namespace couplet {
+
+/// y = F(x) on the rows of this rank. Collective.
+using LinearMap = std::function<void(std::span<const double> x, std::span<double> y)>;
+
+struct KrylovOptions {
+  double relative_tolerance = 1e-8;  ///< of |b - A x| / |b|
+  int max_iterations = 500;
+};
+
+/// BiCGStab [vandervorst1992] preconditioned from the right, for operators that are only applied. The
+/// residual that is judged is the true one, b - A x: the recurrence drifts away from it on long runs, so that
+/// it is computed anew when the recurrence has reached the tolerance, and the iteration begins again from
+/// there if it has not.
+class BiCgStab {
+ public:
+  /// `what` names the unknown in messages. `n`: rows of this rank.
+  BiCgStab(std::string what, MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap precondition);
+
+  /// `x` holds the guess on entry. Throws SolveFailure if the tolerance was not reached. Collective.
+  SolveStatistics solve(std::span<const double> b, std::span<double> x, const KrylovOptions& options);
+
+ private:
+  enum class Outcome { converged, restart, exhausted };
+  double true_residual(std::span<const double> b, std::span<const double> x);
+  Outcome run(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
+
+  std::string what_;
+  MPI_Comm comm_;
+  LinearMap apply_, precondition_;
+  std::vector<double> r_, shadow_, p_, v_, t_, z_;
+};
+
+}  // namespace couplet

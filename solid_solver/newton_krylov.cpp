@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/newton_krylov.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// Aggregates of the rigid coarse space: more gain little and their factors grow.
+constexpr int most_aggregates = 200;
+// Fewer cells than this in an aggregate, and its rigid motions are no longer smooth beside the cells.
+constexpr GlobalIndex cells_of_aggregate = 64;
+// Length over thickness 2 V / S from which bending is slow without the rigid coarse space in front: a cube
+// has 3.
+constexpr double slender = 12;
+// Inertia over the stiffness of a cell's faces from which no motion is slow.
+constexpr double heavy = 0.03;
+
+/// Largest extent over the mean thickness 2 V / S.
+double slenderness(const Mesh& mesh) {
+  double volume = 0, surface = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) surface += mesh.reference.face_area[f].norm();
+  double longest = 0;
+  for (int a = 0; a < mesh.dim; ++a) {
+    double lower = 1e300, upper = -1e300;
+    for (const Vec3& x : mesh.reference_points) {
+      lower = std::min(lower, x[a]);
+      upper = std::max(upper, x[a]);
+    }
+    longest = std::max(longest, max(mesh.comm, upper) - min(mesh.comm, lower));
+  }
+  return longest * sum(mesh.comm, surface) / (2 * sum(mesh.comm, volume));
+}
+
+/// Mean of inertia over (2 mu + lambda) |S| / (d . n) summed over the faces of a cell.
+double heaviness(const SolidProblem& problem) {
+  if (problem.is_static()) return 0;
+  const Mesh& mesh = problem.mesh;
+  double inertia = 0, stiffness = 0;
+  for (const double m : problem.inertia) inertia += m;
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const LameConstants lame = problem.elastic.lame(mesh.owner[f]);
+    stiffness += 2 * (2 * lame.mu + lame.lambda) * mesh.reference.face_area[f].norm() *
+                 problem.elastic.faces().inverse_dn[f];
+  }
+  return sum(mesh.comm, inertia) / sum(mesh.comm, stiffness);
+}
+
+}  // namespace
+
+NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters)
+    : problem_(problem), options_{parameters.relative_tolerance, parameters.max_iterations} {
+  using Preconditioner = MethodParameters::Preconditioner;
+  if (parameters.preconditioner == Preconditioner::factors)
+    choose_factors();
+  else
+    choose_multigrid(parameters);
+  const std::size_t n = problem.elastic.n_unknowns();
+  const LinearMap apply = [this](std::span<const double> x, std::span<double> y) { problem_.apply(x, y); };
+  const LinearMap precondition = [this](std::span<const double> r, std::span<double> z) {
+    if (multigrid_) return multigrid_->apply(r, z);
+    factors_->solve(r, z);
+  };
+  krylov_ = std::make_unique<BiCgStab>("displacement", problem.mesh.comm, n, apply, precondition);
+}
+
+void NewtonKrylov::choose_multigrid(const MethodParameters&) {
+  const Mesh& mesh = problem_.mesh;
+  const double heavy_here = heaviness(problem_);
+  ElasticPreconditioner::Options options;
+  options.scheme = problem_.kernel.scheme();
+  options.n_aggregates = heavy_here > heavy
+                             ? 0
+                             : static_cast<int>(std::min<GlobalIndex>(
+                                   most_aggregates, mesh.cells.n_global() / cells_of_aggregate));
+  if (options.n_aggregates < 8) options.n_aggregates = 0;
+  if (options.n_aggregates > 0) {
+    if (options.scheme == FaceGradientScheme::thesis) {
+      options.between = &problem_.kernel;
+    } else if (slenderness(mesh) > slender) {
+      between_ = std::make_unique<ElasticKernel>(mesh, problem_.elastic, FaceGradientScheme::thesis);
+      options.between = between_.get();
+    }
+  }
+  multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
+  name_ =
+      options.n_aggregates == 0
+          ? "newton-krylov (BiCGStab, multigrid)"
+          : fmt::format("newton-krylov (BiCGStab, multigrid{}rigid motions of {} aggregates)",
+                        options.between ? " after " : " and ", multigrid_->coarse_space()->n_aggregates());
+}
+
+void NewtonKrylov::choose_factors() {
+  matrix_ = std::make_unique<SparseMatrix>(problem_.elastic.matrix(problem_.inertia));
+  LinearOptions options;
+  options.method = LinearMethod::direct;
+  factors_ = std::make_unique<LinearSolver>("displacement", *matrix_, options);
+  name_ = "newton-krylov (BiCGStab, factors of the thesis's operator)";
+}
+
+SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double> u) {
+  try {
+    return krylov_->solve(b, u, options_);
+  } catch (const SolveFailure& e) {
+    throw SolveFailure(
+        "{} Is the solid held everywhere, is nu below 0.5, are the cells sound? If the loads and supports "
+        "are, "
+        "'solution-method: {{type: block-coupled, linear-solver: direct}}' needs most memory and bears most.",
+        e.what());
+  }
+}
+
+}  // namespace couplet

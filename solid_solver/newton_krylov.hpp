@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/fv/elastic_kernel.hpp"
+#include "common/fv/elastic_preconditioner.hpp"
+#include "common/linalg/krylov.hpp"
+#include "common/linalg/matrix.hpp"
+#include "solid_solver/solution_method.hpp"
+
+namespace couplet {
+
+/// BiCGStab on the operator applied matrix-free. One Newton step: the problem is linear. Preconditioned by
+/// the compact component-wise operator and the rigid coarse space (ElasticPreconditioner), or, when the body
+/// is small and one matrix serves many steps, by the factors of the thesis's operator.
+class NewtonKrylov final : public SolutionMethod {
+ public:
+  NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters);
+  SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
+
+ private:
+  void choose_multigrid(const MethodParameters& parameters);
+  void choose_factors();
+
+  SolidProblem problem_;
+  KrylovOptions options_;
+  std::unique_ptr<ElasticKernel> between_;
+  std::unique_ptr<ElasticPreconditioner> multigrid_;
+  std::unique_ptr<SparseMatrix> matrix_;
+  std::unique_ptr<LinearSolver> factors_;
+  std::unique_ptr<BiCgStab> krylov_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/fv/elastic_kernel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "common/mesh/load.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr double mu = 1.1, lambda = 1.7;
+
+struct Case {
+  BoxCells cells;
+  double perturbation;
+};
+const std::vector<Case> all_cases = {{BoxCells::quadrilaterals, 0}, {BoxCells::quadrilaterals, 0.2},
+                                     {BoxCells::triangles, 0.2},    {BoxCells::hexahedra, 0},
+                                     {BoxCells::hexahedra, 0.2},    {BoxCells::tetrahedra, 0.2},
+                                     {BoxCells::prisms, 0.2},       {BoxCells::mixed, 0.2}};
+
+/// With `materials`: two zones, left and right of a plane in the middle.
+Mesh make_mesh(const Case& c, int n = 4, bool materials = false) {
+  RawMesh raw = make_box(c.cells, {n + 1, n, n}, Vec3(0.1, 0.2, 0.3), Vec3(1.1, 1.0, 1.4));
+  if (materials) {
+    raw.zones = {"left", "right"};
+    raw.materials = {{"left"}, {"right"}};
+    for (std::size_t i = 0; i < raw.cell_zone.size(); ++i) {
+      double x = 0;
+      for (const Index p : raw.cell_points[static_cast<Index>(i)]) x += raw.points[p][0];
+      raw.cell_zone[i] = x / double(raw.cell_points[static_cast<Index>(i)].size()) > 0.5;
+    }
+  }
+  if (c.perturbation > 0) perturb_interior(raw, c.perturbation, 7);
+  return distribute(MPI_COMM_WORLD, raw);
+}
+
+/// An operator and its kernel; the first patches get the conditions given, the others are open.
+struct Setting {
+  Setting(const Case& c, FaceGradientScheme scheme, std::vector<ElasticCondition> first, int n = 4)
+      : mesh(make_mesh(c, n)), rows(mesh, padded(first), {mu, lambda}), kernel(mesh, rows, scheme) {}
+  Setting(const Case& c, FaceGradientScheme scheme, bool materials)
+      : mesh(make_mesh(c, 4, materials)),
+        rows(mesh, all_conditions(), {lame(), materials ? mesh.cell_zone : std::vector<int>{}}),
+        kernel(mesh, rows, scheme) {}
+
+  /// xmin known, xmax held along an oblique direction and by springs, ymin a plane of symmetry, ymax without
+  /// normal gradient, the rest open.
+  ElasticBoundary all_conditions() const {
+    std::vector<ElasticCondition> c = {ElasticCondition::prescribed, ElasticCondition::support,
+                                       ElasticCondition::symmetry, ElasticCondition::zero_gradient};
+    ElasticBoundary boundary = boundary_of_patches(mesh, padded(c));
+    const Vec3 along = Vec3(2, 1, mesh.dim == 3 ? -1 : 0).normalized();
+    ElasticSupport support;
+    support.known = along * along.transpose();
+    support.spring = Vec3(0.3, 0.5, mesh.dim == 3 ? 0.2 : 0).asDiagonal();
+    boundary.supports = {support};
+    boundary.support_of_face.assign(boundary.condition.size(), -1);
+    for (std::size_t b = 0; b < boundary.condition.size(); ++b)
+      if (boundary.condition[b] == ElasticCondition::support) boundary.support_of_face[b] = 0;
+    return boundary;
+  }
+  std::vector<LameConstants> lame() const {
+    std::vector<LameConstants> result;
+    for (const int zone : mesh.cell_zone) result.push_back({mu * (1 + 2 * zone), lambda});
+    return result;
+  }
+  std::vector<ElasticCondition> padded(std::vector<ElasticCondition> c) const {
+    c.resize(mesh.patches.size(), ElasticCondition::traction);
+    return c;
+  }
+  std::size_t n_known() const { return rows.n_known() * mesh.dim; }
+
+  /// Unknowns and known values of a field.
+  template <class Field>
+  void sample(const Field& field, std::vector<double>& unknowns, std::vector<double>& known) const {
+    const auto put = [&](const Vec3& x, std::vector<double>& to) {
+      const Vec3 u = field(x);
+      to.insert(to.end(), u.data(), u.data() + mesh.dim);
+    };
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) put(mesh.reference.cell_centre[c], unknowns);
+    for (const Index f : rows.unknown_faces()) put(mesh.reference.face_centre[f], unknowns);
+    for (const Index v : rows.constraints().points()) put(mesh.reference_points[v], known);
+    for (const Index f : rows.known_faces()) put(mesh.reference.face_centre[f], known);
+  }
+
+  Mesh mesh;
+  ElasticOperator rows;
+  ElasticKernel kernel;
+};
+
+// xmin known, ymin a symmetry plane, the others open: all kinds, and the edges where they meet.
+const std::vector<ElasticCondition> all_kinds = {ElasticCondition::prescribed, ElasticCondition::traction,
+                                                 ElasticCondition::symmetry};
+
+/// The kernel beside the assembled matrix and its known columns.
+void expect_the_rows_of_the_matrix(const Setting& s) {
+  std::mt19937 random(17 + comm_rank(MPI_COMM_WORLD));
+  std::uniform_real_distribution<double> number(-1, 1);
+  std::vector<double> u(s.rows.n_unknowns()), known;
+  for (double& x : u) x = number(random);
+  std::vector<double> expected(u.size()), got(u.size());
+  s.rows.matrix({}).multiply(u, expected);
+  s.kernel.apply(u, {}, got);
+  double scale = 1e-300;
+  for (const double x : expected) scale = std::max(scale, std::abs(x));
+  for (std::size_t i = 0; i < u.size(); ++i) ASSERT_NEAR(got[i], expected[i], 1e-12 * scale);
+
+  // Known values are those of a field, so that what ranks share agrees.
+  u.clear();
+  s.sample(
+      [](const Vec3& x) { return Vec3(std::sin(3 * x[1]), x[0] * x[2] + x[1], std::cos(2 * x[0] + x[1])); },
+      u, known);
+  std::fill(expected.begin(), expected.end(), 0.0);
+  s.rows.subtract_known(known, expected);
+  std::vector<double> without(u.size());
+  s.kernel.apply(u, {}, without);
+  s.kernel.apply(u, known, got);
+  for (std::size_t i = 0; i < u.size(); ++i) ASSERT_NEAR(got[i] - without[i], -expected[i], 1e-12 * scale);
+}
+
+TEST(ElasticKernel, thesis_rows_are_those_of_the_assembled_matrix) {
+  for (const Case& c : all_cases)
+    expect_the_rows_of_the_matrix(Setting(c, FaceGradientScheme::thesis, all_kinds));
+}
+
+TEST(ElasticKernel, thesis_rows_of_supports_and_springs_are_those_of_the_assembled_matrix) {
+  for (const Case& c : all_cases)
+    expect_the_rows_of_the_matrix(Setting(c, FaceGradientScheme::thesis, false));
+}
+
+TEST(ElasticKernel, thesis_rows_between_materials_are_those_of_the_assembled_matrix) {
+  for (const Case& c : all_cases) expect_the_rows_of_the_matrix(Setting(c, FaceGradientScheme::thesis, true));
+}
+
+// Two materials with the same constants: a linear field through both, its forces in balance on the faces
+// between them.
+TEST(ElasticKernel, linear_fields_pass_from_one_material_into_the_next) {
+  for (const FaceGradientScheme scheme : {FaceGradientScheme::thesis, FaceGradientScheme::corrected})
+    for (const Case& c : all_cases) {
+      const Mesh mesh = make_mesh(c, 4, true);
+      std::vector<ElasticCondition> conditions(mesh.patches.size(), ElasticCondition::prescribed);
+      const ElasticOperator rows(mesh, boundary_of_patches(mesh, conditions),
+                                 {{{mu, lambda}}, mesh.cell_zone});
+      const ElasticKernel kernel(mesh, rows, scheme);
+      const auto field = [&](const Vec3& x) {
+        return Vec3(0.3 * x[0] - x[1], x[2] + 0.5 * x[1], mesh.dim == 3 ? x[0] : 0);
+      };
+      std::vector<double> u, known;
+      const auto put = [&](const Vec3& x, std::vector<double>& to) {
+        const Vec3 value = field(x);
+        to.insert(to.end(), value.data(), value.data() + mesh.dim);
+      };
+      for (Index i = 0; i < mesh.cells.n_owned(); ++i) put(mesh.reference.cell_centre[i], u);
+      for (const Index f : rows.unknown_faces()) put(mesh.reference.face_centre[f], u);
+      for (const Index v : rows.constraints().points()) put(mesh.reference_points[v], known);
+      for (const Index f : rows.known_faces()) put(mesh.reference.face_centre[f], known);
+      EXPECT_GT(sum(MPI_COMM_WORLD, GlobalIndex(rows.unknown_faces().size())), 0);
+      std::vector<double> force(u.size());
+      kernel.apply(u, known, force);
+      for (const double x : force) ASSERT_NEAR(x, 0, 1e-11);
+    }
+}
+
+TEST(ElasticKernel, linear_fields_have_their_exact_constant_stress_in_both_schemes) {
+  for (const FaceGradientScheme scheme : {FaceGradientScheme::thesis, FaceGradientScheme::corrected})
+    for (const Case& c : all_cases) {
+      const Setting s(c, scheme, {ElasticCondition::prescribed});
+      Tensor3 gradient;
+      gradient << 0.3, -0.7, 0.2, 0.5, 0.9, -0.4, 0.1, 0.8, -0.6;  // entry (i, j) = d u_j / d x_i
+      if (s.mesh.dim == 2) {
+        gradient.row(2).setZero();
+        gradient.col(2).setZero();
+      }
+      std::vector<double> u, known;
+      s.sample([&](const Vec3& x) { return Vec3(gradient.transpose() * x + Vec3(0.3, -0.2, 0.1)); }, u,
+               known);
+      std::vector<Tensor3> found(s.mesh.n_flux_faces());
+      s.kernel.face_gradients(u, known, found);
+      for (const Tensor3& g : found)
+        ASSERT_LT((g - gradient).topLeftCorner(s.mesh.dim, s.mesh.dim).norm(), 1e-11);
+      std::vector<double> points(std::size_t(s.mesh.points.n_local()) * s.mesh.dim), force(u.size());
+      s.kernel.point_values(u, known, points);
+      s.kernel.apply(u, known, force);
+      const Tensor3 stress = s.rows.stress(0, gradient);
+      const std::size_t n_cells = s.mesh.cells.n_owned();
+      for (std::size_t i = 0; i < s.rows.unknown_faces().size(); ++i)
+        for (int a = 0; a < s.mesh.dim; ++a)
+          ASSERT_NEAR(force[(n_cells + i) * s.mesh.dim + a],
+                      (stress * s.mesh.reference.face_area[s.rows.unknown_faces()[i]])[a], 1e-11);
+    }
+}
+
+TEST(ElasticKernel, a_symmetry_plane_keeps_a_symmetric_linear_field_exact) {
+  for (const FaceGradientScheme scheme : {FaceGradientScheme::thesis, FaceGradientScheme::corrected})
+    for (const Case& c : all_cases) {
+      const Setting s(c, scheme, all_kinds);
+      const Vec3 slope(0.3, -0.5, s.mesh.dim == 3 ? 0.7 : 0.0);
+      std::vector<double> u, known;
+      // Symmetric about y = 0.2, where ymin lies.
+      s.sample(
+          [&](const Vec3& x) {
+            return Vec3(slope[0] * x[0] + 0.4 * x[2], slope[1] * (x[1] - 0.2), slope[2] * x[2]);
+          },
+          u, known);
+      std::vector<Tensor3> found(s.mesh.n_flux_faces());
+      s.kernel.face_gradients(u, known, found);
+      Tensor3 exact = slope.asDiagonal();
+      if (s.mesh.dim == 3) exact(2, 0) = 0.4;
+      for (const Tensor3& g : found)
+        ASSERT_LT((g - exact).topLeftCorner(s.mesh.dim, s.mesh.dim).norm(), 1e-11);
+    }
+}
+
+TEST(ElasticKernel, corrected_gradients_are_exact_for_quadratic_fields_on_even_bricks) {
+  for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::hexahedra}) {
+    const Setting s({cells, 0}, FaceGradientScheme::corrected, {}, 6);
+    const auto field = [](const Vec3& x) {
+      return Vec3(x[0] * x[0] - 2 * x[1] * x[1] + x[0] * x[1] + 0.5 * x[2] * x[2],
+                  x[0] * x[1] + 3 * x[1] * x[1] - x[2] * x[0], x[2] * x[2] - x[0] * x[1] + 2 * x[1] * x[2]);
+    };
+    const auto exact = [](const Vec3& x) {
+      Tensor3 g;  // (i, j) = d u_j / d x_i
+      g << 2 * x[0] + x[1], x[1] - x[2], -x[1], -4 * x[1] + x[0], x[0] + 6 * x[1], -x[0] + 2 * x[2], x[2],
+          -x[0], 2 * x[2] + 2 * x[1];
+      return g;
+    };
+    std::vector<double> u, known;
+    s.sample(field, u, known);
+    std::vector<Tensor3> found(s.mesh.n_flux_faces());
+    s.kernel.face_gradients(u, known, found);
+    const int dim = s.mesh.dim;
+    // Edges of the body excepted (in 2-D its corners): there vertices differ from their neighbours in kind.
+    const Vec3 lower(0.1, 0.2, 0.3), upper(1.1, 1.0, 1.4),
+        cell = (upper - lower).cwiseQuotient(Vec3(7, 6, 6));
+    const auto near_edge = [&](const Vec3& x) {
+      int planes = 0;
+      for (int a = 0; a < dim; ++a) planes += std::min(x[a] - lower[a], upper[a] - x[a]) < 2.1 * cell[a];
+      return planes > 1;
+    };
+    for (Index f = 0; f < s.mesh.n_flux_faces(); ++f) {
+      if (near_edge(s.mesh.reference.face_centre[f])) continue;
+      ASSERT_LT((found[f] - exact(s.mesh.reference.face_centre[f])).topLeftCorner(dim, dim).norm(), 1e-10)
+          << f << " of " << s.mesh.n_interior;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace couplet

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/linalg/krylov.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/linalg/acceleration.hpp"
+#include "common/linalg/component_multigrid.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+/// Upwind convection and diffusion on a line of n cells a rank, uncoupled between ranks: not symmetric.
+void convect(std::span<const double> x, std::span<double> y) {
+  const std::size_t n = x.size();
+  for (std::size_t i = 0; i < n; ++i)
+    y[i] = 3 * x[i] - (i > 0 ? 2 * x[i - 1] : 0) - (i + 1 < n ? 0.9 * x[i + 1] : 0);
+}
+void identity(std::span<const double> r, std::span<double> z) { std::copy(r.begin(), r.end(), z.begin()); }
+
+double true_residual(std::span<const double> b, std::span<const double> x) {
+  std::vector<double> y(x.size());
+  convect(x, y);
+  double square = 0, size = 0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    square += (b[i] - y[i]) * (b[i] - y[i]);
+    size += b[i] * b[i];
+  }
+  return std::sqrt(sum(MPI_COMM_WORLD, square) / sum(MPI_COMM_WORLD, size));
+}
+
+TEST(BiCgStab, reaches_the_tolerance_in_the_true_residual) {
+  const std::size_t n = 200;
+  BiCgStab solver("u", MPI_COMM_WORLD, n, convect, identity);
+  std::vector<double> b(n), x(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) b[i] = std::sin(0.3 * double(i));
+  for (const double tolerance : {1e-3, 1e-8, 1e-13}) {
+    const SolveStatistics s = solver.solve(b, x, {tolerance, 500});
+    EXPECT_LE(true_residual(b, x), tolerance);
+    EXPECT_GT(s.iterations, 0);
+  }
+}
+
+TEST(BiCgStab, a_good_guess_costs_no_iteration) {
+  const std::size_t n = 50;
+  BiCgStab solver("u", MPI_COMM_WORLD, n, convect, identity);
+  std::vector<double> x(n), b(n);
+  for (std::size_t i = 0; i < n; ++i) x[i] = std::cos(double(i));
+  convect(x, b);
+  const std::vector<double> before = x;
+  EXPECT_EQ(solver.solve(b, x, {1e-10, 10}).iterations, 0);
+  EXPECT_EQ(x, before);
+}
+
+TEST(BiCgStab, says_what_was_reached_when_it_fails) {
+  const std::size_t n = 200;
+  BiCgStab solver("displacement", MPI_COMM_WORLD, n, convect, identity);
+  std::vector<double> b(n, 1.0), x(n, 0.0);
+  try {
+    solver.solve(b, x, {1e-12, 3});
+    FAIL() << "three iterations cannot be enough";
+  } catch (const SolveFailure& e) {
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("displacement"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("1.000e-12 wanted"));
+    EXPECT_THAT(e.what(), ::testing::HasSubstr("3 of at most 3 iterations"));
+  }
+}
+
+using Lanes = ComponentMultigrid::Lanes;
+
+/// Seven-point Laplacians on n x n x n cells, Dirichlet on one side, three components with different
+/// anisotropy.
+ComponentMultigrid::Rows laplacians(int n) {
+  ComponentMultigrid::Rows rows;
+  const std::array<Lanes, 3> k = {Lanes{3, 1, 1, 0}, Lanes{1, 3, 1, 0}, Lanes{1, 1, 3, 0}};  // along x, y, z
+  const auto at = [n](int i, int j, int l) { return static_cast<Index>(i + n * (j + n * l)); };
+  for (int l = 0; l < n; ++l)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        Lanes diagonal{0, 0, 0, 1};
+        const auto add = [&](int a, int b, int c, const Lanes& value) {
+          if (a < 0 || b < 0 || c < 0 || a == n || b == n || c == n) return;
+          rows.index.push_back(at(a, b, c));
+          rows.value.push_back(-value);
+          diagonal += value;
+        };
+        for (const int s : {-1, 1}) {
+          add(i + s, j, l, k[0]);
+          add(i, j + s, l, k[1]);
+          add(i, j, l + s, k[2]);
+        }
+        if (i == 0) diagonal += 2 * k[0];
+        rows.diagonal.push_back(diagonal);
+        rows.offset.push_back(static_cast<Index>(rows.index.size()));
+      }
+  return rows;
+}
+
+int iterations_with_multigrid(int n) {
+  const ComponentMultigrid::Rows rows = laplacians(n);
+  ComponentMultigrid multigrid(rows);
+  const auto apply = [&](std::span<const double> x, std::span<double> y) {
+    for (Index i = 0; i < rows.size(); ++i)
+      for (int c = 0; c < 3; ++c) {
+        double sum = rows.diagonal[i][c] * x[std::size_t(i) * 3 + c];
+        for (Index e = rows.offset[i]; e < rows.offset[i + 1]; ++e)
+          sum += rows.value[e][c] * x[std::size_t(rows.index[e]) * 3 + c];
+        y[std::size_t(i) * 3 + c] = sum;
+      }
+  };
+  const auto precondition = [&](std::span<const double> r, std::span<double> z) { multigrid.apply(r, z, 3); };
+  const std::size_t size = std::size_t(rows.size()) * 3;
+  BiCgStab solver("u", MPI_COMM_WORLD, size, apply, precondition);
+  std::vector<double> b(size), x(size, 0.0);
+  for (std::size_t i = 0; i < size; ++i) b[i] = std::sin(0.01 * double(i)) + 0.2;
+  return solver.solve(b, x, {1e-10, 200}).iterations;
+}
+
+TEST(ComponentMultigrid, iterations_hardly_grow_with_the_mesh) {
+  const int coarse = iterations_with_multigrid(8), fine = iterations_with_multigrid(32);
+  EXPECT_LE(coarse, 9);
+  EXPECT_LE(fine, 14);
+}
+
+TEST(ComponentMultigrid, components_do_not_see_each_other) {
+  ComponentMultigrid multigrid(laplacians(12));
+  const std::size_t n = 12 * 12 * 12;
+  std::vector<double> b(3 * n, 0.0), x(3 * n);
+  for (std::size_t i = 0; i < n; ++i) b[3 * i + 1] = 1;
+  multigrid.apply(b, x, 3);
+  for (std::size_t i = 0; i < n; ++i) {
+    EXPECT_EQ(x[3 * i], 0);
+    EXPECT_GT(x[3 * i + 1], 0);
+    EXPECT_EQ(x[3 * i + 2], 0);
+  }
+}
+
+// A contraction by `rate` to u = 1.
+std::vector<double> step_to_one(std::span<const double> u, double rate) {
+  std::vector<double> step;
+  for (const double x : u) step.push_back((1 - rate) * (1 - x));
+  return step;
+}
+
+TEST(Acceleration, aitken_lands_on_the_fixed_point_of_a_contraction) {
+  Accelerator accelerator(MPI_COMM_WORLD, 3, {Acceleration::Type::aitken, 5, 0});
+  std::vector<double> u{5, -3, 0.5};
+  for (int k = 0; k < 4; ++k) {
+    accelerator.advance(u, step_to_one(u, 0.8));
+    EXPECT_GT(std::abs(u[0] - 1), 0.1);
+  }
+  accelerator.advance(u, step_to_one(u, 0.8));
+  for (const double x : u) EXPECT_NEAR(x, 1, 1e-12);
+}
+
+TEST(Acceleration, anderson_solves_as_many_unknowns_as_it_remembers) {
+  // Four different rates: plain iteration would need hundreds of steps.
+  const std::array<double, 4> rate{0.99, 0.9, -0.5, 0.3};
+  Accelerator accelerator(MPI_COMM_SELF, 4, {Acceleration::Type::anderson, 0, 4});
+  std::vector<double> u(4, 0.0), step(4);
+  for (int k = 0; k < 6; ++k) {
+    for (std::size_t i = 0; i < 4; ++i) step[i] = (1 - rate[i]) * (double(i) + 1 - u[i]);
+    accelerator.advance(u, step);
+  }
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(u[i], double(i) + 1, 1e-8);
+}
+
+}  // namespace
+}  // namespace couplet

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// All solution methods give the same answer, and the same on any number of ranks.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+using MethodType = MethodParameters::Type;
+using FaceGradient = MethodParameters::FaceGradient;
+using Acceleration = MethodParameters::Acceleration;
+using Preconditioner = MethodParameters::Preconditioner;
+using Choice = MethodParameters::LinearSolver;
+
+/// A block 2 x 1 x 1 m clamped at xmin, sliding on ymin, sheared on top, its own weight.
+SolidParameters sheared_block() {
+  SolidParameters p = box_parameters(3);
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "1e-6*y"});
+  p.boundaries["ymin"] = boundary(Type::symmetry);
+  p.boundaries["zmax"] = boundary(Type::traction, {"1e6", "2e5*x", "-3e6"});
+  p.gravity = {0, 0, -9.81};
+  p.method.relative_tolerance = 1e-10;
+  p.method.max_iterations = 5000;
+  return p;
+}
+
+std::unique_ptr<Solid> solved(SolidParameters p, const MethodParameters& method,
+                              BoxCells cells = BoxCells::hexahedra) {
+  p.method = method;
+  RawMesh raw = make_box(cells, {10, 5, 5}, Vec3::Zero(), Vec3(2, 1, 1));
+  perturb_interior(raw, 0.15, 3);
+  auto solid = make_solid(raw, p);
+  step(*solid, 1);
+  return solid;
+}
+
+MethodParameters method(MethodType type, FaceGradient gradient, double tolerance = 1e-10) {
+  MethodParameters m;
+  m.type = type;
+  m.face_gradient = gradient;
+  m.relative_tolerance = tolerance;
+  m.max_iterations = 5000;
+  return m;
+}
+
+/// Largest difference of the cells' displacements over their largest size.
+double difference(const Solid& a, const Solid& b) {
+  double gap = 0, size = 0;
+  for (std::size_t i = 0; i < std::size_t(a.mesh().cells.n_owned()) * a.mesh().dim; ++i) {
+    gap = std::max(gap, std::abs(a.state().cell_u[i] - b.state().cell_u[i]));
+    size = std::max(size, std::abs(a.state().cell_u[i]));
+  }
+  return max(MPI_COMM_WORLD, gap) / max(MPI_COMM_WORLD, size);
+}
+
+std::vector<MethodParameters> all_methods(FaceGradient gradient) {
+  std::vector<MethodParameters> methods;
+  for (const Choice c : {Choice::direct, Choice::bicgstab_ilu}) {
+    methods.push_back(method(MethodType::block_coupled, gradient));
+    methods.back().linear_solver = c;
+  }
+  for (const Preconditioner c : {Preconditioner::multigrid, Preconditioner::factors}) {
+    methods.push_back(method(MethodType::newton_krylov, gradient));
+    methods.back().preconditioner = c;
+  }
+  for (const Acceleration a : {Acceleration::none, Acceleration::aitken, Acceleration::anderson}) {
+    methods.push_back(method(MethodType::segregated, gradient));
+    methods.back().acceleration = a;
+  }
+  return methods;
+}
+
+TEST(SolidMethods, all_give_the_same_answer) {
+  double worst = 0;
+  for (const FaceGradient gradient : {FaceGradient::thesis, FaceGradient::corrected}) {
+    const auto methods = all_methods(gradient);
+    const auto first = solved(sheared_block(), methods.front());
+    for (std::size_t m = 1; m < methods.size(); ++m) {
+      const auto other = solved(sheared_block(), methods[m]);
+      const double gap = difference(*first, *other);
+      EXPECT_LT(gap, 1e-6) << "gradient " << int(gradient) << ", method " << m;
+      worst = std::max(worst, gap);
+    }
+  }
+  RecordProperty("worst", fmt::format("{:.3e}", worst));
+}
+
+TEST(SolidMethods, the_two_face_gradients_differ) {
+  const auto thesis = solved(sheared_block(), method(MethodType::newton_krylov, FaceGradient::thesis));
+  const auto corrected = solved(sheared_block(), method(MethodType::newton_krylov, FaceGradient::corrected));
+  EXPECT_GT(difference(*thesis, *corrected), 1e-3);
+}
+
+// Numbers that do not depend on the partition: compared with those of one rank, computed beside on
+// MPI_COMM_SELF.
+TEST(SolidMethods, ranks_do_not_change_the_answer) {
+  double worst = 0;
+  for (const FaceGradient gradient : {FaceGradient::thesis, FaceGradient::corrected})
+    for (const MethodType type : {MethodType::newton_krylov, MethodType::segregated}) {
+      MethodParameters m = method(type, gradient, 1e-12);
+      m.preconditioner = Preconditioner::multigrid;
+      const auto together = solved(sheared_block(), m);
+      SolidParameters p = sheared_block();
+      p.method = m;
+      RawMesh raw = make_box(BoxCells::hexahedra, {10, 5, 5}, Vec3::Zero(), Vec3(2, 1, 1));
+      perturb_interior(raw, 0.15, 3);
+      Solid alone(distribute(MPI_COMM_SELF, raw), p, SolidContext{});
+      step(alone, 1);
+      std::vector<Index> place(alone.mesh().cells.n_owned());
+      for (Index c = 0; c < alone.mesh().cells.n_owned(); ++c) place[alone.mesh().cell_id[c]] = c;
+      double gap = 0, size = 0;
+      for (Index c = 0; c < together->mesh().cells.n_owned(); ++c)
+        for (int a = 0; a < 3; ++a) {
+          const double here = together->state().cell_u[std::size_t(c) * 3 + a];
+          const double there = alone.state().cell_u[std::size_t(place[together->mesh().cell_id[c]]) * 3 + a];
+          gap = std::max(gap, std::abs(here - there));
+          size = std::max(size, std::abs(there));
+        }
+      const double relative = max(MPI_COMM_WORLD, gap) / max(MPI_COMM_WORLD, size);
+      EXPECT_LT(relative, 1e-8);
+      worst = std::max(worst, relative);
+    }
+  RecordProperty("worst", fmt::format("{:.3e}", worst));
+}
+
+TEST(SolidMethods, a_segregated_run_that_is_cut_short_says_so) {
+  MethodParameters m = method(MethodType::segregated, FaceGradient::thesis);
+  m.max_iterations = 3;
+  try {
+    solved(sheared_block(), m);
+    FAIL() << "three outer iterations cannot be enough";
+  } catch (const SolveFailure& e) {
+    EXPECT_NE(std::string(e.what()).find("3 outer iterations"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace couplet::testing
