@@ -25,6 +25,11 @@ class SolidEffect {
   /// Adds its forces [N] at time t within the step to the rows of the operator (see ElasticOperator).
   virtual void add_loads(double t, std::span<double> rhs) = 0;
   virtual void accept_step() {}
+  /// An effect that wants_temperature() gets the place of the interface once, and what was given at its faces
+  /// at the start of each solve (empty: nothing yet); begin_step() follows. Collective.
+  virtual bool wants_temperature() const { return false; }
+  virtual void set_interface(const InterfaceTemperature& /*interface*/) {}
+  virtual void take_temperature(const std::vector<double>& /*faces*/) {}
   /// An effect that wants_stress() gets that of the owned cells after each accepted step [Pa].
   virtual bool wants_stress() const { return false; }
   virtual void take_stress(std::span<const Tensor3> /*stress*/) {}

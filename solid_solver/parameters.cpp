@@ -8,6 +8,8 @@
 namespace couplet {
 namespace {
 
+bool takes_temperature(const SolidParameters& p) { return p.interface_data && p.interface_data->temperature; }
+
 void declare_heat(config::Section& s, SolidParameters& p) {
   s.optional_section<HeatParameters>(
       "heat", p.heat, [](config::Section& h, HeatParameters& v) { declare(h, v); },
@@ -16,6 +18,9 @@ void declare_heat(config::Section& s, SolidParameters& p) {
   s.optional_section<ThermalExpansion>(
       "thermal-expansion", p.expansion, [](config::Section& e, ThermalExpansion& v) { declare(e, v); },
       "thermal strain; needs 'heat' or 'temperature', and 'expansion' of the material");
+  s.optional_section<InterfaceData>(
+      "interface", p.interface_data, [](config::Section& i, InterfaceData& v) { declare(i, v); },
+      "what the patches of type 'interface' take from the coupler; absent: forces");
   s.value("thermoelastic-coupling", p.thermoelastic_coupling)
       .doc("a solid that is stretched cools: heat of the strain rate, thesis (2.27), one step late");
   s.check(
@@ -40,12 +45,19 @@ void declare_heat(config::Section& s, SolidParameters& p) {
   s.check([&] { return p.temperature ? problem_of(*p.temperature) : ""; }, "temperature");
   s.check(
       [&] {
+        return takes_temperature(p) && (p.heat || p.temperature)
+                   ? "the temperature is taken at the interface; remove 'heat' or 'temperature'"
+                   : "";
+      },
+      "interface");
+  s.check(
+      [&] {
         return p.heat && p.temperature ? "'heat' solves for the temperature; remove one of the two" : "";
       },
       "temperature");
   s.check(
       [&] {
-        return p.expansion && !p.heat && !p.temperature
+        return p.expansion && !p.heat && !p.temperature && !takes_temperature(p)
                    ? "thermal strain needs a temperature; give 'heat' or 'temperature'"
                    : "";
       },

@@ -10,6 +10,7 @@
 #include "common/fv/elasticity.hpp"
 #include "solid_solver/boundary_parameters.hpp"
 #include "solid_solver/heat_parameters.hpp"
+#include "solid_solver/interface_data.hpp"
 #include "solid_solver/material_parameters.hpp"
 #include "solid_solver/method_parameters.hpp"
 #include "solid_solver/output_parameters.hpp"
@@ -36,6 +37,7 @@ struct SolidParameters {
   std::optional<SolidDamping> damping;
   std::optional<HeatParameters> heat;
   std::optional<config::ExpressionText> temperature;  // prescribed [K]; none: solved for or not known
+  std::optional<InterfaceData> interface_data;        // none: forces only
   std::optional<ThermalExpansion> expansion;
   bool thermoelastic_coupling = false;
   std::optional<TimeStepControl> step_control;

@@ -30,13 +30,19 @@ Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
     description_ = interface_->describe();
   }
   description_.dim = mesh_.dim;
-  description_.takes = {{"pressure-force", "N", Interface::Place::faces},
-                        {"viscous-force", "N", Interface::Place::faces}};
+  description_.takes = taken(parameters_.interface_data.value_or(InterfaceData{}));
   description_.gives = {{"displacement", "m", Interface::Place::vertices},
                         {"velocity", "m/s", Interface::Place::vertices}};
   if (!parameters_.body_force.empty())
     body_force_ = make_expressions(parameters_.body_force, mesh_.dim, "body-force");
   effects_ = make_effects(mesh_, elastic_, parameters_);
+  if (parameters_.interface_data && parameters_.interface_data->temperature) {
+    if (!interface_)
+      throw Error("interface: no patch has 'type: interface', where a temperature could be taken.");
+    interface_temperature_ = std::make_unique<InterfaceTemperature>(mesh_.comm, description_.face_centres);
+    for (const auto& effect : effects_)
+      if (effect->wants_temperature()) effect->set_interface(*interface_temperature_);
+  }
   start_from_rest();
   output_ = std::make_unique<SolidOutput>(*this, context_);
 }
@@ -87,13 +93,7 @@ void Solid::begin_step(const Step& step) {
   step_ = step;
   effort_ = {};
   if (!(step.dt > 0)) throw Error("The solid was asked for a step of {} s; time must go on.", step.dt);
-  const std::vector<Stage> stages = stages_of(step.dt);
-  stages_.resize(stages.size());
-  for (const auto& effect : effects_) effect->begin_step(step);
-  for (std::size_t i = 0; i < stages.size(); ++i) {
-    stages_[i].stage = stages[i];
-    prepare_stage(stages_[i]);
-  }
+  if (!interface_temperature_) prepare_stages();
   if (parameters_.output.spectrum && is_dynamic() && step.number == 0) output_->write_spectrum(step.dt);
   if (prescribed_.is_zero()) return;
   const double end = step.time + step.dt;
@@ -106,7 +106,31 @@ void Solid::begin_step(const Step& step) {
   }
 }
 
+void Solid::prepare_stages() {
+  const std::vector<Stage> stages = stages_of(step_.dt);
+  stages_.resize(stages.size());
+  for (const auto& effect : effects_) effect->begin_step(step_);
+  for (std::size_t i = 0; i < stages.size(); ++i) {
+    stages_[i].stage = stages[i];
+    prepare_stage(stages_[i]);
+  }
+}
+
+/// The temperature comes with the load, so the loads it makes are prepared here and not when the step begins.
+void Solid::take_temperature(const Exchange& in) {
+  const auto found = in.find("temperature");
+  const std::vector<double> faces =
+      interface_temperature_->broadcast(found == in.end() ? std::vector<double>{} : found->second);
+  if (!faces.empty() && faces.size() != interface_temperature_->n_faces())
+    throw Error("The solid was given {} temperatures; its interface has {} faces.", faces.size(),
+                interface_temperature_->n_faces());
+  for (const auto& effect : effects_)
+    if (effect->wants_temperature()) effect->take_temperature(faces);
+  prepare_stages();
+}
+
 Exchange Solid::solve(const Exchange& in) {
+  if (interface_temperature_) take_temperature(in);
   const std::vector<double> load = interface_load(in);
   for (std::size_t i = 0; i < stages_.size(); ++i) solve_stage(stages_[i], load, i == 0);
   trial_.time = step_.time + step_.dt;

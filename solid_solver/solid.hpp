@@ -157,6 +157,8 @@ class Solid final : public Participant {
   void subtract_prescribed(StageWork& work);
   void add_body_forces(double t, std::span<double> rhs);
   std::vector<double> interface_load(const Exchange& in) const;
+  void prepare_stages();
+  void take_temperature(const Exchange& in);
   void solve_stage(const StageWork& work, std::span<const double> interface_load, bool first);
   void add_inertia(const StageWork& work, const SolidState& now);
   void add_face_forces(const StageWork& work, std::span<const double> interface_load);
@@ -185,6 +187,7 @@ class Solid final : public Participant {
   PrescribedDisplacement prescribed_;
   std::unique_ptr<InterfaceMap> interface_;  // none: no interface patch
   Interface description_;
+  std::unique_ptr<InterfaceTemperature> interface_temperature_;  // none: not taken
   std::vector<Expression> body_force_;
   std::vector<std::unique_ptr<SolidEffect>> effects_;  // those that the scene has
   std::vector<std::unique_ptr<System>> systems_;       // those used last, latest first

@@ -137,9 +137,16 @@ std::vector<double> Solid::interface_load(const Exchange& in) const {
   const int dim = mesh_.dim;
   std::vector<double> on_root(comm_rank(mesh_.comm) == 0 ? description_.face_centres.size() * dim : 0, 0.0);
   for (const auto& [name, values] : in) {
-    if (name != "pressure-force" && name != "viscous-force")
-      throw Error("The solid was given '{}'; it takes 'pressure-force' and 'viscous-force'.", name);
+    if (name == "temperature" && interface_temperature_) continue;
+    if (std::ranges::none_of(description_.takes, [&](const auto& datum) { return datum.name == name; }))
+      throw Error("The solid was given '{}', which it does not take.", name);
     if (comm_rank(mesh_.comm) != 0) continue;
+    if (name == "pressure" && values.size() * dim == on_root.size()) {
+      // A normal force on each face; the areas point out of the solid.
+      for (std::size_t i = 0; i < values.size(); ++i)
+        for (int a = 0; a < dim; ++a) on_root[i * dim + a] -= values[i] * description_.face_areas[i][a];
+      continue;
+    }
     if (values.size() != on_root.size())
       throw Error("The solid was given {} values of '{}'; its interface has {} faces of {} components.",
                   values.size(), name, description_.face_centres.size(), dim);

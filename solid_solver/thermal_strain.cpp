@@ -52,6 +52,7 @@ ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
       materials_(materials_of(parameters)),
       coupled_(parameters.thermoelastic_coupling) {
   if (parameters.heat) heat_ = make_heat(mesh, parameters);
+  given_ = parameters.interface_data && parameters.interface_data->temperature;
   if (parameters.temperature) prescribed_.emplace(*parameters.temperature, "temperature");
   if (parameters.expansion) {
     for (const SolidMaterial& material : materials_)
@@ -60,7 +61,8 @@ ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
   }
   plane_stress_ = mesh.dim == 2 && parameters.plane == SolidParameters::Plane::stress;
   if (coupled_) dilation_.assign(mesh.cells.n_owned(), 0), dilation_rate_ = dilation_;
-  start_ = face_temperature(0, false);
+  // What is given at the interface comes later: see set_interface().
+  start_ = given_ ? std::vector<double>(mesh.n_flux_faces(), reference_) : face_temperature(0, false);
   lowest_ = *std::ranges::min_element(start_);
   highest_ = *std::ranges::max_element(start_);
   set_accepted();
@@ -78,9 +80,31 @@ double ThermalStrain::three_bulk(Index cell) const {
 
 std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const {
   if (heat_) return heat_->face_temperature(trial ? heat_->trial() : heat_->accepted());
+  if (given_) return given_at(nearest_to_faces_, trial);
   std::vector<double> values(mesh_->n_flux_faces());
   prescribed_->evaluate({mesh_->reference.face_centre.data(), values.size()}, t, values);
   return values;
+}
+
+/// Before anything was given the solid has its reference temperature.
+std::vector<double> ThermalStrain::given_at(const std::vector<Index>& nearest, bool trial) const {
+  const std::vector<double>& faces = trial ? given_trial_ : given_accepted_;
+  std::vector<double> values(nearest.size(), reference_);
+  for (std::size_t i = 0; i < nearest.size() && !faces.empty(); ++i) values[i] = faces[nearest[i]];
+  return values;
+}
+
+void ThermalStrain::set_interface(const InterfaceTemperature& interface) {
+  const auto& g = mesh_->reference;
+  nearest_to_faces_ = interface.nearest({g.face_centre.data(), std::size_t(mesh_->n_flux_faces())});
+  nearest_to_points_ = interface.nearest(mesh_->reference_points);
+  nearest_to_cells_ = interface.nearest(g.cell_centre);
+  start_ = face_temperature(0, false);
+  set_accepted();
+}
+
+void ThermalStrain::take_temperature(const std::vector<double>& faces) {
+  given_trial_ = faces.empty() ? given_accepted_ : faces;
 }
 
 std::vector<double> ThermalStrain::strain(std::span<const double> temperature) const {
@@ -128,6 +152,7 @@ void ThermalStrain::add_loads(double t, std::span<double> rhs) {
 
 void ThermalStrain::accept_step() {
   if (heat_) heat_->accept_step();
+  given_accepted_ = given_trial_;
   time_ = step_.time + step_.dt;
   std::swap(start_, end_);
   for (const double t : start_) {
@@ -200,6 +225,7 @@ double ThermalStrain::coupling_number() const {
 
 std::vector<double> ThermalStrain::point_temperature() const {
   if (heat_) return heat_->point_temperature(heat_->accepted());
+  if (given_) return given_at(nearest_to_points_, false);
   std::vector<double> values(mesh_->points.n_local());
   prescribed_->evaluate(mesh_->reference_points, time_, values);
   return values;
@@ -209,6 +235,8 @@ void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
   points_ = point_temperature();
   if (heat_) {
     cells_ = heat_->accepted().cells;
+  } else if (given_) {
+    cells_ = given_at(nearest_to_cells_, false);
   } else {
     cells_.resize(mesh_->cells.n_local());
     prescribed_->evaluate(mesh_->reference.cell_centre, time_, cells_);
@@ -219,6 +247,7 @@ void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
 
 void ThermalStrain::save(CheckpointWriter& file) const {
   if (heat_) heat_->save(file);
+  if (given_) file.write("interface-temperature", given_accepted_);
   if (coupled_) {
     file.write("dilation", dilation_);
     file.write("dilation-rate", dilation_rate_);
@@ -230,6 +259,7 @@ void ThermalStrain::save(CheckpointWriter& file) const {
 
 void ThermalStrain::load(CheckpointReader& file) {
   if (heat_) heat_->load(file);
+  if (given_) given_trial_ = given_accepted_ = file.read("interface-temperature");
   if (coupled_) {
     file.read("dilation", dilation_);
     file.read("dilation-rate", dilation_rate_);

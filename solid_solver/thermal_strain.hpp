@@ -32,6 +32,9 @@ class ThermalStrain final : public SolidEffect {
   void begin_step(const Step& step) override;
   void add_loads(double t, std::span<double> rhs) override;
   void accept_step() override;
+  bool wants_temperature() const override { return given_; }
+  void set_interface(const InterfaceTemperature& interface) override;
+  void take_temperature(const std::vector<double>& faces) override;
   bool wants_stress() const override { return coupled_; }
   void take_stress(std::span<const Tensor3> stress) override;
   void save(CheckpointWriter& file) const override;
@@ -50,6 +53,7 @@ class ThermalStrain final : public SolidEffect {
   bool expands() const { return !expansion_.empty(); }
   /// Temperatures of the flux faces of the mesh at an end of the step: T^{n+1} of the trial, or accepted.
   std::vector<double> face_temperature(double t, bool trial) const;
+  std::vector<double> given_at(const std::vector<Index>& nearest, bool trial) const;
   std::vector<double> strain(std::span<const double> temperature) const;
   double modulus(Index cell) const;         // B
   double three_bulk(Index cell) const;      // 3 K
@@ -61,6 +65,9 @@ class ThermalStrain final : public SolidEffect {
   const ElasticOperator* elastic_;
   std::unique_ptr<Heat> heat_;  // none: prescribed
   std::optional<Expression> prescribed_;
+  bool given_ = false;                                                          // at the interface
+  std::vector<Index> nearest_to_faces_, nearest_to_points_, nearest_to_cells_;  // faces of the interface
+  std::vector<double> given_accepted_, given_trial_;                            // at them [K]
   std::vector<Property> expansion_;  // one a material; none: no thermal strain
   double reference_ = 0;             // [K]
   bool plane_stress_ = false;

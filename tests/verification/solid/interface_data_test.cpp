@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pressure and temperature taken at an interface patch: a box that expands and is pressed, whose displacement
+// is linear in space and therefore exact.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet {
+namespace {
+
+using testing::boundary;
+using Type = SolidBoundary::Type;
+
+SolidParameters pressed_box() {
+  SolidParameters p = testing::box_parameters(3);
+  for (const char* name : {"xmin", "ymin", "zmin"}) p.boundaries[name] = boundary(Type::symmetry);
+  p.boundaries["xmax"] = boundary(Type::interface_);
+  p.material.heat.expansion = config::ExpressionText{"1.2e-5"};
+  p.expansion.emplace();
+  p.expansion->reference_temperature = 300;
+  p.interface_data.emplace();
+  p.interface_data->load = InterfaceData::Load::pressure;
+  p.interface_data->temperature = true;
+  return p;
+}
+
+RawMesh raw_box() { return make_box(BoxCells::hexahedra, {4, 3, 2}, Vec3::Zero(), Vec3(2, 1, 0.5)); }
+
+Exchange given(const Interface& interface, double pressure, double temperature) {
+  const std::size_t n = interface.face_centres.size();
+  if (n == 0) return {};
+  return {{"pressure", std::vector<double>(n, pressure)},
+          {"temperature", std::vector<double>(n, temperature)}};
+}
+
+void take(Solid& solid, const Exchange& in) {
+  solid.begin_step({solid.state().time, 1, Scheme::explicit_, solid.state().steps});
+  solid.solve(in);
+  solid.accept_step();
+}
+
+double largest_error(const Solid& solid, double pressure, double warmer) {
+  const double e = solid.parameters().material.youngs_modulus,
+               nu = solid.parameters().material.poissons_ratio;
+  const Vec3 strain(1.2e-5 * warmer - pressure / e, 1.2e-5 * warmer + nu * pressure / e,
+                    1.2e-5 * warmer + nu * pressure / e);
+  const std::vector<double> u = solid.point_displacement();
+  double worst = 0;
+  for (std::size_t v = 0; v < u.size() / 3; ++v)
+    for (int c = 0; c < 3; ++c)
+      worst = std::max(worst, std::abs(u[3 * v + c] - strain[c] * solid.mesh().reference_points[v][c]));
+  return max(solid.mesh().comm, worst) / 1e-3;
+}
+
+TEST(InterfaceData, pressure_and_temperature_deform_a_box_as_they_must) {
+  const auto solid = testing::make_solid(raw_box(), pressed_box());
+  const Interface interface = solid->initialise();
+  ASSERT_EQ(interface.takes.size(), 2u);
+  EXPECT_EQ(interface.takes[0].name, "pressure");
+  EXPECT_EQ(interface.takes[1].name, "temperature");
+  take(*solid, given(interface, 5e7, 350));
+  EXPECT_LT(largest_error(*solid, 5e7, 50), 1e-9);
+  take(*solid, given(interface, -2e7, 280));
+  EXPECT_LT(largest_error(*solid, -2e7, -20), 1e-9);
+}
+
+TEST(InterfaceData, before_anything_is_given_the_solid_has_its_reference_temperature) {
+  const auto solid = testing::make_solid(raw_box(), pressed_box());
+  solid->initialise();
+  take(*solid, {});
+  EXPECT_LT(largest_error(*solid, 0, 0), 1e-12);
+}
+
+TEST(InterfaceData, a_step_that_is_solved_again_forgets_what_was_tried) {
+  const auto solid = testing::make_solid(raw_box(), pressed_box());
+  const Interface interface = solid->initialise();
+  take(*solid, given(interface, 1e7, 320));
+  solid->begin_step({1, 1, Scheme::explicit_, 1});
+  solid->solve(given(interface, 9e7, 900));
+  take(*solid, given(interface, 2e7, 330));
+  EXPECT_LT(largest_error(*solid, 2e7, 30), 1e-9);
+}
+
+TEST(InterfaceData, stress_of_free_expansion_is_zero) {
+  const auto solid = testing::make_solid(raw_box(), pressed_box());
+  const Interface interface = solid->initialise();
+  take(*solid, given(interface, 0, 400));
+  double worst = 0;
+  for (const Tensor3& s : solid->cell_stress(solid->point_displacement())) worst = std::max(worst, s.norm());
+  EXPECT_LT(worst, 1e-3 * 200e9 * 1.2e-5 * 100 * 1e-6);
+}
+
+}  // namespace
+}  // namespace couplet
