@@ -160,9 +160,7 @@ participants:
 
 SOLID = [
     solid("missing section", """
-case.yaml:4:3: participants.solid.material.density: this required key is missing (density: number in kg/m^3).
-case.yaml:4:3: participants.solid.material.youngs-modulus: this required key is missing (Young's modulus: number in Pa).
-case.yaml:4:3: participants.solid.material.poissons-ratio: this required key is missing (Poisson's ratio; accuracy fades above 0.45: number).
+case.yaml:4:3: participants.solid.material: give either 'material' (of the whole solid) or 'materials' (by zone of the mesh).
 """, ("    material:\n      density: 1000 kg/m^3\n      youngs-modulus: 1 MPa\n"
                                       "      poissons-ratio: 0.3\n", "")),
     solid("modulus in kilograms", """
@@ -188,16 +186,16 @@ case.yaml:7:5: participants.solid.dimension: 4 is out of range; expected a value
 """, ("dimension: 2", "dimension: 4")),
     solid("half a dimension", "case.yaml:7:5: participants.solid.dimension: '2.5' is not a whole number.", ("dimension: 2", "dimension: 2.5")),
     solid("unknown boundary type", """
-case.yaml:15:15: participants.solid.boundaries.right.type: 'tractions' is not one of: fixed-displacement, traction, pressure, symmetry, free, interface. Did you mean 'traction'?
+case.yaml:15:15: participants.solid.boundaries.right.type: 'tractions' is not one of: fixed-displacement, traction, pressure, symmetry, frictionless, soft-support, hard-support, spring, zero-normal-gradient, free, interface. Did you mean 'traction'?
 """, ("type: traction", "type: tractions")),
     solid("boundary without type", """
-case.yaml:16:7: participants.solid.boundaries.bottom.type: this required key is missing (one of: fixed-displacement, traction, pressure, symmetry, free, interface).
+case.yaml:16:7: participants.solid.boundaries.bottom.type: this required key is missing (one of: fixed-displacement, traction, pressure, symmetry, frictionless, soft-support, hard-support, spring, zero-normal-gradient, free, interface).
 """, ("{type: free}\n      top", "{}\n      top")),
     solid("boundary without value", """
-case.yaml:14:7: participants.solid.boundaries.left.value: this required key is missing (displacement, one expression of x, y, z, t a component [m]: list of numbers or expressions).
+case.yaml:14:7: participants.solid.boundaries.left.value: give either 'value' (all components) or 'components' (those that are known, x, y, z).
 """, ("value: [0, 0]", "")),
     solid("key of another boundary type", """
-case.yaml:16:28: participants.solid.boundaries.bottom.value: this key does not belong here; it goes with type: fixed-displacement or type: traction or type: pressure.
+case.yaml:16:28: participants.solid.boundaries.bottom.value: this key does not belong here; it goes with type: fixed-displacement or type: traction or type: pressure or type: spring.
 """, ("bottom: {type: free}", "bottom: {type: free, value: [0, 0]}")),
     solid("boundaries as a list", """
 case.yaml:13:5: participants.solid.boundaries: expected a mapping with one entry for each patch, found a list.
@@ -225,19 +223,35 @@ case.yaml:19:28: participants.solid.probes.tip.fields: there is no field 'stres'
     solid("unknown time scheme", """
 case.yaml:9:19: participants.solid.time-scheme.type: 'bath' is not one of: euler, three-point, trapezoidal, bathe, generalised-alpha. Did you mean 'bathe'?
 """, ("analysis: dynamic", "analysis: dynamic\n    time-scheme: {type: bath}")),
-    solid("known components and all of them", "",
+    solid("known components and all of them", """
+case.yaml:14:40: participants.solid.boundaries.left.value: give either 'value' (all components) or 'components' (those that are known, x, y, z).
+""",
           ("{type: fixed-displacement, value: [0, 0]}", "{type: fixed-displacement, value: [0, 0], components: {x: 0}}")),
-    solid("third component of a plane scene", "",
+    solid("third component of a plane scene", """
+case.yaml:14:7: participants.solid.boundaries.left.value: a 2-dimensional scene has no component z.
+""",
           ("{type: fixed-displacement, value: [0, 0]}", "{type: fixed-displacement, components: {z: 0}}")),
-    solid("part without its faces", "", ("bottom: {type: free}", "bottom: {type: free, parts: [{type: symmetry}]}")),
-    solid("part with an unknown name", "",
+    solid("part without its faces", """
+case.yaml:16:36: participants.solid.boundaries.bottom.parts[0].where: this required key is missing (expression of x, y, z at the centre of a face that is not 0 on the faces of this part: number or expression).
+""", ("bottom: {type: free}", "bottom: {type: free, parts: [{type: symmetry}]}")),
+    solid("part with an unknown name", """
+case.yaml:16:37: participants.solid.boundaries.bottom.parts[0].where: the expression 'abs(r) < 1' cannot be read at column 5: unknown name 'r'. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
+""",
           ("bottom: {type: free}", "bottom: {type: free, parts: [{where: abs(r) < 1, type: symmetry}]}")),
-    solid("interface on a part", "",
+    solid("interface on a part", """
+case.yaml:16:51: participants.solid.boundaries.bottom.parts[0].type: 'interface' is not one of: fixed-displacement, traction, pressure, symmetry, frictionless, soft-support, hard-support, spring, zero-normal-gradient, free.
+""",
           ("bottom: {type: free}", "bottom: {type: free, parts: [{where: x < 1, type: interface}]}")),
-    solid("spring without stiffness", "", ("bottom: {type: free}", "bottom: {type: spring}")),
-    solid("no material", "", ("    material:\n      density: 1000 kg/m^3\n      youngs-modulus: 1 MPa\n"
+    solid("spring without stiffness", """
+case.yaml:16:7: participants.solid.boundaries.bottom.stiffness: this required key is missing (force per area and displacement, of x, y, z [N/m^3] (Winkler's bedding): number or expression).
+""", ("bottom: {type: free}", "bottom: {type: spring}")),
+    solid("no material", """
+case.yaml:4:3: participants.solid.material: give either 'material' (of the whole solid) or 'materials' (by zone of the mesh).
+""", ("    material:\n      density: 1000 kg/m^3\n      youngs-modulus: 1 MPa\n"
                              "      poissons-ratio: 0.3\n", "")),
-    solid("one material and several", "", ("    boundaries:", "    materials: {rubber: {density: 1000, youngs-modulus: 1e7, "
+    solid("one material and several", """
+case.yaml:9:5: participants.solid.material: give either 'material' (of the whole solid) or 'materials' (by zone of the mesh).
+""", ("    boundaries:", "    materials: {rubber: {density: 1000, youngs-modulus: 1e7, "
                                            "poissons-ratio: 0.4}}\n    boundaries:")),
     solid("several mistakes at once", """
 case.yaml:2:14: simulation.end-time: 0 s is out of range; expected a value above 0 s.
@@ -406,13 +420,25 @@ MESH = [
     solid("patch without a boundary", """
 [solid 0] error: boundaries: patch 'top' of mesh 'square.msh' has no entry; each patch needs one (a stress-free patch: 'type: free'). The patches are left, right, bottom, top.
 """, ("      top: {type: free}\n", ""), **RUN),
-    solid("part that selects no face", "", ("bottom: {type: free}", "bottom: {type: free, parts: [{where: y > 2, type: symmetry}]}"), **RUN),
-    solid("spring that depends on time", "", ("bottom: {type: free}", "bottom: {type: spring, stiffness: 1e9*t}"), **RUN),
-    solid("static body that floats", "", ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: free}"), **RUN),
-    solid("static body on one roller", "", ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: symmetry}"), **RUN),
-    solid("zone that is not there", "", ("    material:\n      density", "    materials: {steel: {zones: [insid], density"),
+    solid("part that selects no face", """
+[solid 0] error: boundaries.bottom.parts[0].where: 'y > 2' selects no face of patch 'bottom'. It is tested at the centres of the faces; widen it, for example to abs(z - 0.5) < half the height of a face.
+""", ("bottom: {type: free}", "bottom: {type: free, parts: [{where: y > 2, type: symmetry}]}"), **RUN),
+    solid("spring that depends on time", """
+[solid 0] error: boundaries.bottom.stiffness: the stiffness of a spring cannot depend on the time t.
+""", ("bottom: {type: free}", "bottom: {type: spring, stiffness: 1e9*t}"), **RUN),
+    solid("static body that floats", """
+[solid 0] error: boundaries: a static analysis needs supports that hold the solid in place; these leave it free: translation along x, translation along y, rotation about (0.5, 0.5). Hold it by 'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use 'analysis: dynamic'.
+""", ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: free}"), **RUN),
+    solid("static body on one roller", """
+[solid 0] error: boundaries: a static analysis needs supports that hold the solid in place; these leave it free: translation along y. Hold it by 'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use 'analysis: dynamic'.
+""", ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: symmetry}"), **RUN),
+    solid("zone that is not there", """
+[solid 0] error: The mesh 'square.msh' cannot be used. It has no zone 'insid' for a material. Did you mean 'inside'? The zones (physical surfaces of gmsh) are inside.
+""", ("    material:\n      density", "    materials: {steel: {zones: [insid], density"),
           (" kg/m^3\n      youngs-modulus: 1 MPa\n      poissons-ratio: 0.3\n", ", youngs-modulus: 1e6, poissons-ratio: 0.3}}\n"), **RUN),
-    solid("folded mesh", "", ("square.msh", "folded.msh"), files={"folded.msh": FOLDED}, **RUN),
+    solid("folded mesh", """
+[solid 0] error: The mesh is folded at (1.2, 0.5): cell 1 (counted from 0 in the file) does not lie behind its face there. A cell is inverted or bent over; mesh that place anew.
+""", ("square.msh", "folded.msh"), files={"folded.msh": FOLDED}, **RUN),
     solid("plane mesh in three dimensions", """
 couplet: The job cannot start:
   [solid] case.yaml:14:40: participants.solid.boundaries.left.value: 2 components are given where the 3-dimensional scene needs 3.
