@@ -58,6 +58,8 @@ class LinearSolver {
   int total_iterations() const { return total_iterations_; }
 
  private:
+  double norm(std::span<const double> values) const;
+  double true_residual(std::span<const double> b, std::span<const double> x) const;
   KSPConvergedReason attempt(std::span<const double> b, std::span<double> x, SolveStatistics& statistics);
 
   std::string what_;

@@ -448,7 +448,6 @@ TEST_F(FreeMotions, on_symmetry_planes_are_those_within_them) {
 }
 
 TEST_F(FreeMotions, about_a_line_of_held_faces_is_the_rotation_about_it) {
-  // The row of faces with centre z = 0.625 on xmin.
   EXPECT_THAT(message(with(3, {{"xmin", row("abs(z - 0.625) < 0.1", "xyz")}}), box(3)), "held");
   EXPECT_THAT(message(with(3, {{"xmin", row("abs(z - 0.625) < 0.1", "xz")}}), box(3)),
               HasSubstr("free: translation along y, rotation about y through (0, 0.5, 0.625). "));

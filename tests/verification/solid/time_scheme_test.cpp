@@ -88,7 +88,8 @@ TEST_P(TimeSchemes, have_their_order) {
   const Eigen::VectorXd reference = exact(p);
   std::vector<double> errors;
   for (const int n : {200, 400, 800}) errors.push_back(error_with(p, reference, n, uneven));
-  const double slope = std::log2(errors[1] / errors[2]);
+  // With uneven steps single pairs scatter by 0.15: the mean over both.
+  const double slope = uneven ? 0.5 * std::log2(errors[0] / errors[2]) : std::log2(errors[1] / errors[2]);
   fmt::print("{}{}: errors {:.2e} {:.2e} {:.2e}, slope {:.3f}\n", name(scheme),
              uneven ? ", uneven steps" : "", errors[0], errors[1], errors[2], slope);
   RecordProperty("slope", fmt::format("{:.3f}", slope));
