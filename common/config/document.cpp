@@ -198,7 +198,9 @@ void Document::set(const std::string& assignment) {
     const bool last = i + 1 == parts.size();
     if (last && node.IsMap()) {
       // operator[] would not find a key whose text YAML reads as a number or a truth value.
-      if (const Entry entry = find(node, parts[i]); entry.found) {
+      if (const Entry entry = find(node, parts[i]); entry.found && value.IsNull()) {
+        node.remove(parts[i]);
+      } else if (entry.found) {
         YAML::Node target = entry.node;
         target = value;
       } else {

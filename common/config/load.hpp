@@ -17,8 +17,8 @@ class Document {
   static Document parse(const std::string& text, const std::string& name = "<text>");
   ~Document();
   Document(Document&&) noexcept;
-  /// Overrides one value: "participants.solid.material.density=1000" (command line --set). Throws Error on a
-  /// bad path.
+  /// Overrides one value: "participants.solid.material.density=1000" (command line --set); without a value,
+  /// or with ~, the key is removed. Throws Error on a bad path.
   void set(const std::string& assignment);
   const std::string& name() const;
   /// Same for equal text after overrides; compared at the roll call of a coupled job.

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: the thesis's meshes and one finer, thesis's and corrected face gradient, methods, tolerances."""
+"""Runs for scripts/accuracy: meshes, the thesis's and the corrected face gradient, methods, tolerances."""
 import nine_points
 
 PROGRAM = "solid_solver"
 TITLE = "Thick elliptic plate"
-MESHES = ((4, 6, 3), (8, 12, 6), (16, 24, 12), (32, 48, 24))
+MESHES = ((4, 6, 3), (8, 12, 6), (16, 24, 12), (32, 48, 24), (64, 96, 48))
 
 
 def runs(method, meshes=MESHES):
@@ -18,7 +18,15 @@ def runs(method, meshes=MESHES):
 
 
 SERIES = {
-    "block-coupled": runs("type: block-coupled, linear-solver: bicgstab-ilu, relative-tolerance: 1e-6"),
+    "newton-krylov, corrected, 1e-4": runs("type: newton-krylov, face-gradient: corrected, relative-tolerance: 1e-4"),
+    "newton-krylov, corrected, 1e-8": runs("type: newton-krylov, face-gradient: corrected, relative-tolerance: 1e-8"),
+    "newton-krylov, thesis, 1e-8": runs("type: newton-krylov, face-gradient: thesis, relative-tolerance: 1e-8"),
+    "segregated with Anderson, thesis, 1e-6": runs(
+        "type: segregated, face-gradient: thesis, acceleration: anderson, relative-tolerance: 1e-6", MESHES[:4]),
+    "segregated with Aitken, thesis, 1e-6": runs(
+        "type: segregated, face-gradient: thesis, acceleration: aitken, relative-tolerance: 1e-6", MESHES[:4]),
+    "block-coupled (ILU), thesis, 1e-6": runs(
+        "type: block-coupled, face-gradient: thesis, linear-solver: bicgstab-ilu, relative-tolerance: 1e-6", MESHES[:4]),
 }
 
 

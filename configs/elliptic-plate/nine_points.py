@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """Error of a run on hexahedra at the nine points of reference/nine_points.csv: relative L2 norm over the points of the
-displacement vector and of the von Mises stress. Vertex displacements and cell stresses are interpolated by cubic splines
-in (s, phi) and by four points over the thickness, so that the error is the discretisation's, not the interpolation's.
+displacement vector and of the von Mises stress. The values of the cells are interpolated by cubic splines in (s, phi) and
+by four points over the thickness, so that the error is the discretisation's, not the interpolation's.
 Usage: nine_points.py [FOLDER]     FOLDER: output of the solid, by default out/solid beside this file"""
 import pathlib
 import sys
@@ -67,14 +67,13 @@ class Plate:
         nodes = [len(np.unique(np.round(v, 9))) for v in (*map_back(points[:, 0], points[:, 1]), points[:, 2])]
         cell_shape = [n - 1 for n in nodes]
         self.cells = len(cells)
-        by_point = order(points, nodes)
         by_cell = order(points[cells].mean(axis=1), cell_shape)
         axes = [np.linspace(0, end, n) for end, n in zip((1, np.pi / 2, THICKNESS), nodes)]
         centres = [(a[1:] + a[:-1]) / 2 for a in axes]
-        u = series.field(last, "displacement")[by_point].reshape(*nodes, 3)
+        u = series.field(last, "cell-displacement")[by_cell].reshape(*cell_shape, 3)
         stress = np.stack([series.field(last, name)[by_cell] for name in STRESS], axis=-1).reshape(*cell_shape, 6)
         self.first_centre = centres[0][0]
-        self.u = self.splines(axes, at_middle(u, axes[2]))
+        self.u = self.splines(centres, at_middle(u, centres[2]))
         self.stress_ = self.splines(centres, at_middle(stress, centres[2]))
 
     @staticmethod

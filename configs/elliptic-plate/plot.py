@@ -27,10 +27,10 @@ def main():
     line, circle, paper = map(reference, ("line_x_equals_y.csv", "circle_2.1.csv", "circle_2.1_demirdzic.csv"))
     x = np.linspace(line[1, 0], line[1, -1], 200)
     s, _ = map_back(x, x)
-    inner = x[(s >= plate.first_centre) & (s <= 1 - plate.first_centre)]  # stress lives at cell centres
+    inner = x[(s >= plate.first_centre) & (s <= 1 - plate.first_centre)]  # values live at cell centres
     angle = np.linspace(0, 90, 200)
     on_circle = 2.1 * np.cos(np.radians(angle)), 2.1 * np.sin(np.radians(angle))
-    curves = ((x * np.sqrt(2), plate.displacement(x, x)[:, 2] * 1e6, line[0], line[4] * 1e6),
+    curves = ((inner * np.sqrt(2), plate.displacement(inner, inner)[:, 2] * 1e6, line[0], line[4] * 1e6),
               (inner * np.sqrt(2), von_mises(plate.stress(inner, inner)) / 1e6, line[0], line[11]),
               (angle, von_mises(plate.stress(*on_circle)) / 1e6, circle[0], circle[1]))
     for ax, (place, ours, where, wanted) in zip(axes, curves):

@@ -2,8 +2,7 @@
 // Quarter of the NAFEMS LE11 body: a sphere's cap, a taper and a cylinder, revolved about z. Hexahedra in four bands along
 // the wall; 2 x 3 x 10 cells times `refine` in each direction.
 DefineConstant [
-  refine = 4, // 1, 2, 4, 8: the four meshes of the thesis
-  growth = 1  // length of the last cell over that of the first, across the wall and along the first band
+  refine = 4 // 1, 2, 4, 8: the four meshes of the thesis
 ];
 s = Sqrt(0.5);
 Point(1) = {0, 0, 0};
@@ -39,8 +38,8 @@ EndFor
 n_wall = 2 * refine;
 n_first = 4 * refine;
 n_other = 2 * refine;
-Transfinite Curve {30 : 34} = n_wall + 1 Using Progression growth ^ (1 / n_wall);
-Transfinite Curve {10, 20} = n_first + 1 Using Progression growth ^ (1 / n_first);
+Transfinite Curve {30 : 34} = n_wall + 1;
+Transfinite Curve {10, 20} = n_first + 1;
 Transfinite Curve {11 : 13, 21 : 23} = n_other + 1;
 Transfinite Surface {1 : 4};
 Recombine Surface {1 : 4};

@@ -1,24 +1,77 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the thesis's cases A, B and D and of LE10: solid_solver on configs/, meshes chosen by --set."""
+"""Bars of the thesis's cases A, B and D and of LE10: solid_solver on configs/, meshes and methods chosen by --set."""
 import math
 
+import couplet_series as couplet
 from validation.job import Bar
+
+GRADIENTS = ("thesis", "corrected")
+
+
+def method(gradient, tolerance="1e-9"):
+    return "participants.solid.solution-method={type: newton-krylov, face-gradient: %s, relative-tolerance: %s}" % (
+        gradient, tolerance)
+
+
+def probe(job, case, sets, column):
+    """Last value of a column of probes.csv."""
+    folder, _ = job.solve("solid_solver", case, sets)
+    return couplet.read_csv(folder / "solid" / "probes.csv")[column][-1]
+
+
+def observed_order(values):
+    """Order p of three values on meshes halved twice; none if they do not approach a limit."""
+    coarse, middle, fine = values
+    ratio = (middle - coarse) / (fine - middle)
+    return math.log2(ratio) if ratio > 1 else None
+
+
+def extrapolated(values):
+    """Richardson's extrapolation from the last two of three values by the scheme's order 2, thesis (3.3); the uncertainty
+    that the grid convergence index gives the last one, 1.25 times the correction; the observed order."""
+    correction = (values[-1] - values[-2]) / 3
+    return values[-1] + correction, 1.25 * abs(correction), observed_order(values)
+
+
+# -- A: LE11 ------------------------------------------------------------------------------------------------------------
+LE11 = -105.67e6  # [Pa], converged p-FEM
+
+
+def le11(job, gradient):
+    """Axial stress at A on the thesis's four meshes."""
+    return [probe(job, "le11", ("participants.solid.mesh-parameters={refine: %d}" % n, method(gradient)), "A stress-zz [Pa]")
+            for n in (1, 2, 4, 8)]
+
+
+def le11_finest(gradient, limit):
+    def measure(job):
+        values = le11(job, gradient)
+        gap = abs(values[-1] / LE11 - 1)
+        return ", ".join(f"{v / 1e6:.2f}" for v in values) + f" MPa; finest {100 * gap:.2f} % off", gap <= limit
+    return measure
+
+
+def le11_limit(gradient, limit):
+    def measure(job):
+        value, uncertainty, order = extrapolated(le11(job, gradient)[1:])
+        gap = abs(value / LE11 - 1)
+        return (f"{value / 1e6:.2f} MPa, {100 * gap:.2f} % off; observed order {f'{order:.2f}' if order else 'none'}, "
+                f"grid convergence index {100 * uncertainty / abs(LE11):.2f} %"), gap <= limit
+    return measure
+
 
 # -- B: thick elliptic plate --------------------------------------------------------------------------------------------
 PLATE = ((4, 6, 3), (8, 12, 6), (16, 24, 12), (32, 48, 24))
 
 
 def plate(job, gradient, mesh):
-    sets = ["participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d}" % mesh] + gradient
+    sets = ("participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d}" % mesh, method(gradient))
     folder, _ = job.solve("solid_solver", "elliptic-plate", sets)
     return job.beside("configs/elliptic-plate/nine_points.py").errors(folder / "solid")
 
 
-THESIS = []
-
-
 def plate_errors(gradient, which, limits):
-    """Errors [%] of all four meshes; the bars are on the last two."""
+    """Errors [%] of all four meshes; the limits are on the last two."""
     def measure(job):
         errors = [100 * plate(job, gradient, mesh)[which] for mesh in PLATE]
         return ", ".join(f"{e:.2f} %" for e in errors), all(e <= limit for e, limit in zip(errors[2:], limits))
@@ -33,8 +86,70 @@ def plate_slope(gradient, wanted):
     return measure
 
 
+# -- D: thick plate -----------------------------------------------------------------------------------------------------
+WHOLE_FACE = tuple("participants.solid.boundaries.edge-%s={type: hard-support}" % a for a in "xy")
+STATIC = ("participants.solid.analysis=static", "participants.solid.damping=~", "simulation.time-step=0.03")
+
+
+def thick_mesh(n, nz):
+    return ("participants.solid.mesh-parameters={n: %d, nz: %d}" % (n, nz),)
+
+
+def thick_static(support, gradient, wanted, limit):
+    def measure(job):
+        values = [-1e3 * probe(job, "thick-plate", (*STATIC, *support, *thick_mesh(*m), method(gradient)), "centre z [m]")
+                  for m in ((15, 3), (30, 5), (60, 11))]
+        gap = abs(values[-1] / wanted - 1)
+        return ", ".join(f"{v:.4f}" for v in values) + f" mm; finest {100 * gap:.2f} % off", gap <= limit
+    return measure
+
+
+def thick_peak(damping, mesh, step, wanted, limit):
+    """`wanted`: deflection [mm], its time [s] (none: not compared), stress [MPa]."""
+    def measure(job):
+        sets = ("participants.solid.damping={%s}" % damping, *thick_mesh(*mesh), "simulation.end-time=0.0116",
+                f"simulation.time-step={step}", method("auto"))
+        folder, _ = job.solve("solid_solver", "thick-plate", sets, timeout=6 * 3600)
+        (t, w), (_, s) = job.beside("configs/thick-plate/plot.py").peaks(folder / "solid")
+        gaps = [abs(w / wanted[0] - 1), abs(s / wanted[2] - 1)] + ([abs(t / wanted[1] - 1)] if wanted[1] else [])
+        return f"{w:.3f} mm at {t:.5f} s, {s:.2f} MPa", max(gaps) <= limit
+    return measure
+
+
+# -- LE10 ---------------------------------------------------------------------------------------------------------------
+def le10(gradient, wanted, limit):
+    def measure(job):
+        values = [probe(job, "le10", ("participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d}" % m, method(gradient)),
+                        "D stress-yy [Pa]") / 1e6 for m in ((8, 12, 5), (16, 24, 11), (32, 48, 23))]
+        return ", ".join(f"{v:.3f}" for v in values) + " MPa", abs(values[-1] / wanted - 1) <= limit
+    return measure
+
+
+RAYLEIGH, MASS = "mass: 5.772, stiffness: 6.929e-5", "mass: 11.54"
+REPORTED = (math.inf, math.inf)
 BARS = [
-    Bar("B: displacement, thesis's gradient, 4x6x3 to 32x48x24", "reported (about 4.9 % and 1.5 % on the two finest)",
-        plate_errors(THESIS, 0, (math.inf, math.inf)), long=True),
-    Bar("B: von Mises stress, thesis's gradient", "reported", plate_errors(THESIS, 1, (math.inf, math.inf)), long=True),
+    *(Bar(f"A (LE11): axial stress at A on 16x24x80, {g} gradient", "-105.67 MPa within 1 %", le11_finest(g, 0.01))
+      for g in GRADIENTS),
+    *(Bar(f"A (LE11): Richardson-extrapolated, {g} gradient", "within 0.3 %", le11_limit(g, 0.003)) for g in GRADIENTS),
+    Bar("B: displacement at the nine points, corrected gradient, 4x6x3 to 32x48x24", "16x24x12 <= 1.05 %, 32x48x24 <= 0.35 %",
+        plate_errors("corrected", 0, (1.05, 0.35))),
+    Bar("B: von Mises stress, corrected gradient", "16x24x12 <= 1.05 %, 32x48x24 <= 0.4 %",
+        plate_errors("corrected", 1, (1.05, 0.4))),
+    Bar("B: slope of the displacement's error over the two finest, corrected gradient", ">= 1.68",
+        plate_slope("corrected", 1.68)),
+    Bar("B: displacement, thesis's gradient", "reported (about 4.9 % and 1.5 %)", plate_errors("thesis", 0, REPORTED)),
+    Bar("B: von Mises stress, thesis's gradient", "reported", plate_errors("thesis", 1, REPORTED)),
+    *(Bar(f"D: static deflection, well-posed support, 15x15x3 to 60x60x11, {g} gradient", wanted,
+          thick_static(WHOLE_FACE, g, 2.3198, limit))
+      for g, wanted, limit in (("corrected", "2.3198 mm within 0.5 %", 0.005), ("thesis", "reported", math.inf))),
+    Bar("D: static deflection, hard mid-line support, corrected gradient", "reported (2.332 to 2.342 mm, creeping)",
+        thick_static((), "corrected", 2.337, math.inf)),
+    Bar("D: peak, Rayleigh damping, 60x60x11, step 2e-5 s", "4.60 mm at 0.0106 s, 61.0 MPa, each within 1.5 %",
+        thick_peak(RAYLEIGH, (60, 11), 2e-5, (4.60, 0.0106, 61.0), 0.015), long=True),
+    Bar("D: peak, mass-proportional damping, 60x60x11, step 2e-5 s", "4.62 mm, 64.2 MPa, each within 1.5 %",
+        thick_peak(MASS, (60, 11), 2e-5, (4.62, None, 64.2), 0.015), long=True),
+    Bar("D: peak, Rayleigh damping, the thesis's finest mesh 120x120x23", "reported (p-FEM 4.601 mm at 0.01064 s, 61.04 MPa)",
+        thick_peak(RAYLEIGH, (120, 23), 2e-5, (4.60, 0.0106, 61.0), math.inf), long=True),
+    Bar("LE10: stress yy at D, 8x12x5 to 32x48x23, corrected gradient", "-5.38 MPa within 1 % on the finest",
+        le10("corrected", -5.38, 0.01)),
 ]

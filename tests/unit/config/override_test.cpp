@@ -34,6 +34,13 @@ TEST(Override, replaces_adds_and_reaches_into_lists) {
   EXPECT_EQ(read_with({"mesh=one.msh", "mesh=two.msh"}).mesh, "two.msh");
 }
 
+TEST(Override, without_a_value_removes_the_key) {
+  EXPECT_FALSE(read_with({"damping={mass: 3}", "damping="}).damping.has_value());
+  EXPECT_FALSE(read_with({"damping={mass: 3}", "damping=~"}).damping.has_value());
+  EXPECT_DOUBLE_EQ(read_with({"material.poisson-ratio=0.1", "material.poisson-ratio="}).poisson_ratio, 0.3);
+  EXPECT_THROW(read_with({"mesh="}), Error) << "it is required";
+}
+
 TEST(Override, leaves_everything_else_as_it_was) {
   const Parameters p = read_with({"material.poisson-ratio=0.1"});
   EXPECT_DOUBLE_EQ(p.youngs_modulus, 5.6e6);
