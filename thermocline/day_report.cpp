@@ -25,6 +25,10 @@ void declare(config::Section& s, ReportParameters& p) {
       .unit("day")
       .not_negative()
       .doc("the means leave out these days at the start, in which the cycle becomes periodic");
+  s.value("profile-day", p.profile_day)
+      .unit("day")
+      .not_negative()
+      .doc("so many days after the start the profiles of one day are written, every hour; absent: none");
   s.value("thickness-margin", p.thickness_margin)
       .unit("K")
       .positive()
@@ -53,6 +57,27 @@ DayReport::DayReport(const ReportParameters& parameters, const Plant& plant, con
       std::vector<std::string>{"time [s]", "solar field [W]", "power block [W]", "tank flow [kg/s]",
                                "top [degC]", "bottom [degC]", "thermocline thickness [m]", "losses [W]"},
       restart_time);
+  if (p_.profile_day)
+    profiles_ = std::make_unique<Series>(
+        folder_ / "profiles.csv",
+        std::vector<std::string>{"time [s]", "z [m]", "fluid [degC]", "filler [degC]", "wall [degC]",
+                                 "share of yield strength [-]"},
+        restart_time);
+}
+
+void DayReport::write_profiles(const TankRecord& record) {
+  const double begin = *p_.profile_day * day_length;
+  const double before = std::floor((record.time - record.dt - begin) / hour + 1e-9);
+  const double now = std::floor((record.time - begin) / hour + 1e-9);
+  if (now == before || now < 0 || now > 24) return;
+  for (std::size_t i = 0; i < record.z.size(); ++i) {
+    const bool wall = i < record.wall_z.size();
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    profiles_->row(std::array{record.time, record.z[i], celsius(record.fluid_temperature[i]),
+                              celsius(record.filler_temperature[i]),
+                              wall ? celsius(record.wall_temperature[i]) : none,
+                              wall ? record.equivalent_stress[i] / record.yield_strength[i] : none});
+  }
 }
 
 /// Books one step of the bed; gives the heat that the flow brought into it [J].
@@ -125,6 +150,7 @@ void DayReport::record(const TankRecord& record) {
         record.time, field, plant_.block_heat(), moved / record.dt, celsius(record.fluid_temperature.back()),
         celsius(record.fluid_temperature.front()), last_thickness_, record.losses() / record.dt});
   }
+  if (profiles_) write_profiles(record);
   // A hair's breadth before midnight is midnight.
   if (record.time >= (days_seen_ + 1) * day_length - 1e-3) end_day(record.time);
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/config/section.hpp"
@@ -20,8 +21,9 @@ struct ReportParameters {
   double run_in = 0;  ///< days before the first that counts
   /// Margins of the critical temperatures of the thermocline's thickness (5.30) [K].
   double thickness_margin = 15;
-  double outlet_margin = 5;    ///< "near the design temperature" of the outlets [K]
-  double dead_state = 318.15;  ///< T_ref of the exergy (5.29) [K]
+  double outlet_margin = 5;           ///< "near the design temperature" of the outlets [K]
+  std::optional<double> profile_day;  ///< days from the start; its profiles are written every hour
+  double dead_state = 318.15;         ///< T_ref of the exergy (5.29) [K]
 };
 void declare(config::Section& section, ReportParameters& parameters);
 
@@ -59,10 +61,11 @@ struct ReportLine {
 };
 
 /// Keeps the books of tank and plant day by day, and writes
-///   days.csv      one line a day, all rows of tables 5.5 and 5.6 for that day alone;
-///   summary.csv   their means over the days after the run-in, and both factors of safety with place and
-///   time; plant.csv     time series at each step of the simulation; stress.csv    by ring: means of the
-///   daily extremes and the largest share of the yield strength.
+///  - days.csv: one line a day, all rows of tables 5.5 and 5.6 for that day alone;
+///  - summary.csv: their means over the days after the run-in, both factors of safety with place and time;
+///  - plant.csv: a time series, one line a step of the simulation;
+///  - profiles.csv: temperatures and stress over height, every hour of the profile day, if there is one;
+///  - stress.csv: ring by ring, means of the daily extremes and the largest share of the yield strength.
 class DayReport final : public TankObserver {
  public:
   /// `folder`: empty for none of the files. On restart the files go on from `restart_time`.
@@ -84,6 +87,7 @@ class DayReport final : public TankObserver {
   double add_step(const BedStep& step);
   void add_thickness(const TankRecord& record);
   void end_day(double time);
+  void write_profiles(const TankRecord& record);
   std::vector<ReportLine> lines_of(const ReportSums& sums, double days) const;
   void write_day(double time);
 
@@ -95,7 +99,7 @@ class DayReport final : public TankObserver {
   StressHistory stress_;
   int days_seen_ = 0, days_counted_ = 0;
   double storable_ = 0, bed_height_ = 0, last_thickness_ = 0;
-  std::unique_ptr<Series> days_, series_;
+  std::unique_ptr<Series> days_, series_, profiles_;
 };
 
 }  // namespace couplet::thermocline

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "thermocline/plant_control.hpp"
+
 namespace couplet::thermocline {
 
 void declare(config::Section& section, FlowParameters& p) {
@@ -46,12 +48,16 @@ void declare(config::Section& section, FlowParameters& p) {
         },
         "rows");
   };
-  section.variant<Type>(
-      "type", p.type, {{"rest", Type::rest, [](config::Section&) {}}, {"schedule", Type::schedule, schedule}},
-      "what is pumped through the tank");
+  section.variant<Type>("type", p.type,
+                        {{"rest", Type::rest, [](config::Section&) {}},
+                         {"schedule", Type::schedule, schedule},
+                         {"plant", Type::plant, [&p](config::Section& s) { declare(s, p.plant); }}},
+                        "what is pumped through the tank");
 }
 
-std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& p) {
+std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& p, double specific_heat) {
+  if (p.type == FlowParameters::Type::plant)
+    return std::make_unique<PlantControl>(Plant(p.plant, specific_heat));
   return std::make_unique<Schedule>(p);
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/config/section.hpp"
 #include "thermocline/interfaces.hpp"
+#include "thermocline/plant.hpp"
 
 namespace couplet::thermocline {
 
@@ -22,12 +23,14 @@ struct ScheduleRepeat {
 };
 
 struct FlowParameters {
-  enum class Type { rest, schedule } type = Type::rest;
+  enum class Type { rest, schedule, plant } type = Type::rest;
   std::vector<ScheduleRow> rows;
   std::optional<ScheduleRepeat> repeat;
+  PlantParameters plant;
 };
 void declare(config::Section& section, FlowParameters& parameters);
-std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& parameters);
+/// `specific_heat` of the fluid [J/(kg K)].
+std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& parameters, double specific_heat);
 
 /// Flow by the clock. Labels: the number of the row (from 1) while it flows, 0 at rest.
 class Schedule final : public FlowControl {

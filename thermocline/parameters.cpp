@@ -69,6 +69,13 @@ void check_together(config::Section& s, TankParameters& p) {
   s.check(
       [&p] { return p.external_wall && !(p.shell && p.mechanics) ? "needs shell and filler-mechanics" : ""; },
       "external-wall");
+  s.check(
+      [&p] {
+        return p.report && p.flow.type != FlowParameters::Type::plant
+                   ? "is about a plant: give flow: {type: plant, ...} or leave it out"
+                   : "";
+      },
+      "report");
   s.check([&p] { return p.insulation && !p.shell ? "lies around a shell; add one" : ""; }, "insulation");
 }
 
@@ -212,6 +219,9 @@ void declare(config::Section& section, TankParameters& p) {
             .doc("between rows of tank.csv; 0: each step");
       },
       "profiles are written at the output interval of the simulation");
+  section.optional_section<ReportParameters>(
+      "report", p.report, [](config::Section& s, ReportParameters& r) { declare(s, r); },
+      "books of plant and tank, day by day, and factors of safety; needs flow: {type: plant}");
   check_together(section, p);
 }
 

@@ -5,13 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "thermocline/ambient.hpp"
+#include "thermocline/day_report.hpp"
 #include "thermocline/flow.hpp"
 #include "thermocline/insulation.hpp"
 #include "thermocline/packed_bed.hpp"
 #include "thermocline/shell.hpp"
 #include "thermocline/ullage.hpp"
 #include "thermocline/wall_interface.hpp"
+#include "thermocline/weather_parameters.hpp"
 
 namespace couplet::thermocline {
 
@@ -51,8 +52,9 @@ struct TankParameters {
   std::optional<InsulationParameters> insulation;
   std::optional<UllageSpace> ullage;
   std::optional<GroundParameters> ground;
-  AmbientParameters ambient;
+  WeatherParameters ambient;
   FlowParameters flow;
+  std::optional<ReportParameters> report;
   TankOutput output;
 };
 void declare(config::Section& section, TankParameters& parameters);

@@ -13,9 +13,9 @@ namespace couplet::thermocline {
 
 Tank::Tank(const TankParameters& p, const ParticipantContext& context)
     : name_(context.name),
-      ambient_(make_ambient(p.ambient, context.case_folder)),
-      control_(make_flow_control(p.flow)),
-      accepted_(std::make_shared<const TankSetup>(p), *ambient_),
+      weather_(make_weather(p.ambient, context.case_folder)),
+      control_(make_flow_control(p.flow, make_fluid(p.fluid).specific_heat)),
+      accepted_(std::make_shared<const TankSetup>(p), *weather_),
       next_(accepted_),
       control_state_(control_->state()),
       comm_(context.comm) {
@@ -30,6 +30,12 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
   }
   if (comm_rank(context.comm) == 0)
     files_ = std::make_unique<TankOutputFiles>(accepted_, context.output_folder, context.restart_time);
+  if (files_)
+    for (const std::string& sentence : weather_->warnings()) log::warn("{}", sentence);
+  if (p.report)
+    add_observer(std::make_unique<DayReport>(
+        *p.report, Plant(p.flow.plant, make_fluid(p.fluid).specific_heat), *weather_,
+        files_ ? context.output_folder : std::filesystem::path(), context.restart_time));
 }
 
 Interface Tank::initialise() { return wall_ && comm_rank(comm_) == 0 ? wall_->describe() : Interface{}; }
@@ -45,7 +51,7 @@ Exchange Tank::solve(const Exchange& in) {
   next_ = accepted_;
   control_->restore(control_state_);
   steps_.clear();
-  next_.advance(step_.time, step_.dt, *control_, *ambient_, steps_, speed_);
+  next_.advance(step_.time, step_.dt, *control_, *weather_, steps_, speed_);
   if (wall_) {
     // Every rank computes the tank, so every rank needs the wall's answer.
     std::vector<double> radial;

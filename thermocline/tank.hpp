@@ -37,7 +37,7 @@ class Tank final : public Participant {
   Exchange given() const;
 
   std::string name_;
-  std::unique_ptr<AmbientSource> ambient_;
+  std::unique_ptr<Weather> weather_;
   std::unique_ptr<FlowControl> control_;
   std::vector<std::unique_ptr<TankObserver>> observers_;
   TankModel accepted_, next_;

@@ -28,7 +28,7 @@ std::vector<std::size_t> chosen_hours(const WeatherHours& record, const WeatherP
   const int first = record.first_day, days = record.days();
   const bool whole_year = days == days_a_year;
   const int begin = period.from;
-  int count = whole_year ? days_a_year : first + days - begin;
+  int count = whole_year ? days_a_year : std::max(1, first + days - begin);
   if (period.to) count = (*period.to - begin + days_a_year) % days_a_year + 1;
   for (int d = 0; d < count; ++d) {
     const int day = (begin + d) % days_a_year;
@@ -68,6 +68,7 @@ Weather::Weather(const WeatherHours& record, const WeatherPeriod& period, int sh
   hours_.source = record.source;
   hours_.state_offset = record.state_offset;
   hours_.site = record.site;
+  hours_.warnings = record.warnings;
   mean_temperature_ = kelvin(std::accumulate(record.temperature.begin(), record.temperature.end(), 0.) /
                              double(record.temperature.size()));
   for (const WeatherQuantity& q : weather_quantities)

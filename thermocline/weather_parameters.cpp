@@ -60,26 +60,24 @@ void declare_clear_sky(config::Section& s, WeatherParameters& p) {
 }
 
 void declare_constant(config::Section& s, WeatherParameters& p) {
-  s.value("irradiance", p.irradiance)
-      .unit("W/m^2")
-      .range(0, 1412)
-      .doc("direct normal irradiance, day and night");
-  s.value("temperature", p.temperature).unit("K").range(200, 340).doc("of the air");
-  s.value("wind", p.wind).unit("m/s").range(0, 80).doc("speed of the wind");
-  s.value("humidity", p.humidity).range(0, 1).doc("relative humidity of the air");
-  s.value("pressure", p.pressure).unit("Pa").range(40000, 110000).doc("of the air");
+  Ambient& a = p.constant;
+  s.value("dni", a.dni).unit("W/m^2").range(0, 1412).doc("direct normal irradiance, day and night");
+  s.value("temperature", a.temperature).unit("K").range(200, 340).doc("of the air");
+  s.value("wind", a.wind).unit("m/s").range(0, 80).doc("speed of the wind");
+  s.value("humidity", a.humidity).range(0, 1).doc("relative humidity of the air");
+  s.value("pressure", a.pressure).unit("Pa").range(40000, 110000).doc("of the air");
 }
 
-WeatherHours constant_day(const WeatherParameters& p) {
+WeatherHours constant_year(const WeatherParameters& p) {
   WeatherHours year;
   year.source = "constant weather";
   year.state_offset = 0;
   constexpr std::size_t n = days_a_year * hours_a_day;
-  year.dni.assign(n, p.irradiance);
-  year.temperature.assign(n, celsius(p.temperature));
-  year.wind.assign(n, p.wind);
-  year.humidity.assign(n, p.humidity);
-  year.pressure.assign(n, p.pressure);
+  year.dni.assign(n, p.constant.dni);
+  year.temperature.assign(n, celsius(p.constant.temperature));
+  year.wind.assign(n, p.constant.wind);
+  year.humidity.assign(n, p.constant.humidity);
+  year.pressure.assign(n, p.constant.pressure);
   return year;
 }
 
@@ -88,7 +86,7 @@ WeatherHours record_of(const WeatherParameters& p, const std::filesystem::path& 
     WeatherHours record = read_weather(case_folder / p.file);
     return p.mean_days ? with_mean_days(std::move(record)) : record;
   }
-  return p.kind == WeatherKind::clear_sky ? clear_sky_year(p.sky) : constant_day(p);
+  return p.kind == WeatherKind::clear_sky ? clear_sky_year(p.sky) : constant_year(p);
 }
 
 }  // namespace
@@ -102,10 +100,8 @@ void declare(config::Section& section, WeatherParameters& p) {
       "where the sun and the air come from");
 }
 
-std::unique_ptr<Weather> make_weather(const WeatherParameters& p, const std::filesystem::path& case_folder,
-                                      std::vector<std::string>& warnings) {
+std::unique_ptr<Weather> make_weather(const WeatherParameters& p, const std::filesystem::path& case_folder) {
   const WeatherHours record = record_of(p, case_folder);
-  warnings.insert(warnings.end(), record.warnings.begin(), record.warnings.end());
   WeatherPeriod period{day_of_year(p.from), {}};
   if (!p.to.empty()) period.to = day_of_year(p.to);
   return std::make_unique<Weather>(record, period, p.shift_hours);

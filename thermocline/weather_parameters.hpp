@@ -21,14 +21,12 @@ struct WeatherParameters {
   int shift_hours = 0;
   bool mean_days = false;
   std::string from = "01-01", to;  ///< dates MM-DD; empty: the whole year
-  // of constant weather
-  double irradiance = 0, temperature = 293.15, wind = 0, humidity = 0.5, pressure = 101325;
+  Ambient constant;
 };
 void declare(config::Section& section, WeatherParameters& parameters);
 
-/// Reads or makes it. `warnings` gets what was mended in the file, with file:line. Throws Error.
+/// Reads or makes it. Throws Error.
 std::unique_ptr<Weather> make_weather(const WeatherParameters& parameters,
-                                      const std::filesystem::path& case_folder,
-                                      std::vector<std::string>& warnings);
+                                      const std::filesystem::path& case_folder);
 
 }  // namespace couplet::thermocline

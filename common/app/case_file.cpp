@@ -11,7 +11,7 @@ namespace couplet {
 namespace {
 
 void check_top_level(const config::Document& document, CaseFile& result) {
-  static const std::vector<std::string> known{"simulation", "participants", "coupling"};
+  static const std::vector<std::string> known{"simulation", "participants", "coupling", "study"};
   for (const std::string& key : config::keys_of(document, ""))
     if (std::find(known.begin(), known.end(), key) == known.end())
       result.errors.push_back(fmt::format("{}: unknown section. {}", config::where(document, key),

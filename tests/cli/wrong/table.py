@@ -3,6 +3,7 @@
 import pathlib
 from dataclasses import dataclass, field
 
+import plant_table
 import tank_table
 
 
@@ -476,5 +477,6 @@ couplet: The job cannot start:
 ]
 
 RIGHT_TANK, TANK = tank_table.cases(Case, RUN)
-RIGHT += RIGHT_TANK
-CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + HEAT + FLUID + COUPLING + COMMAND_LINE + MESH + TANK
+RIGHT_PLANT, PLANT = plant_table.cases(Case, RUN)
+RIGHT += RIGHT_TANK + RIGHT_PLANT
+CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + HEAT + FLUID + COUPLING + COMMAND_LINE + MESH + TANK + PLANT

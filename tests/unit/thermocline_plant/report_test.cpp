@@ -169,8 +169,7 @@ TEST(DayReport, goes_on_from_a_checkpoint_bit_for_bit) {
 TEST(DayReport, exergy_of_heat_at_the_design_temperatures_is_that_of_the_thesis) {
   const auto factor = [](double hot) {
     WeatherParameters dark;
-    std::vector<std::string> warnings;
-    const auto weather = make_weather(dark, {}, warnings);
+    const auto weather = make_weather(dark, {});
     DayReport report({}, Plant({1e6, 0.4, 1, 0.5, 273.15 + hot, 563.15, 15, 10}, salt), *weather, {});
     BedStep step;
     step.dt = 3600;

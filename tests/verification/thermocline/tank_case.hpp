@@ -25,8 +25,8 @@ inline TankParameters solar_one_parameters() {
 /// A tank without files.
 struct TankRun {
   explicit TankRun(const TankParameters& p)
-      : ambient(make_ambient(p.ambient, ".")),
-        control(make_flow_control(p.flow)),
+      : ambient(make_weather(p.ambient, ".")),
+        control(make_flow_control(p.flow, make_fluid(p.fluid).specific_heat)),
         tank(std::make_shared<const TankSetup>(p), *ambient) {}
   const TankModel& model() const { return tank; }
   void until(double end, double step) {

@@ -1,0 +1,11 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Draws out/thermocline-gemasolar.png from what scripts/study has left in out/study."""
+import pathlib
+import sys
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "scripts"))
+import couplet_thermocline
+
+print(couplet_thermocline.picture(HERE, 23, "Case G: Gemasolar, 19.9 MW, 290 to 565 °C"))

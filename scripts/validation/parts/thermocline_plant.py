@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of weather, plant, reports and studies: identities, tables 5.3, 5.5 and 5.6 of the thesis beside ours, and the cost of
+the study on one and on two processors."""
+import csv
+import re
+
+from validation.job import Bar
+
+TESTS = "unit_thermocline_plant"
+CASES = {"A": ("thermocline-andasol", "table5_5.csv"), "G": ("thermocline-gemasolar", "table5_6.csv")}
+TABLE = {"A": "5.5", "G": "5.6"}
+VARIANTS = ("B", "AR1", "AR2", "CO1", "CO2", "S1", "L1", "L2", "T1")
+# Row of the published table: our name of it.
+ROWS = {"Q_SF": "Q_SF", "Q_excess/Q_SF": "Q_excess/Q_SF", "Q_C/Q_excess": "Q_C/Q_excess", "Q_D/Q_C": "Q_D/Q_C", "B_D": "B_D",
+        "Q_lacking/Q_PB": "Q_lacking/Q_PB", "Energy_losses": "energy losses", "t_charge": "charge time",
+        "t_discharge": "discharge time", "t_standby_charged": "charged stand-by time",
+        "t_standby_discharged": "discharged stand-by time", "time_TCout<Tcold+5": "time with cold outlet",
+        "time_TDout>Thot-5": "time with hot outlet", "eta_th": "eta_th", "h_th/h_bed": "h_th/h_bed",
+        "FoS_static": "FoS_static", "FoS_dynamic": "FoS_dynamic"}
+
+
+# -- tables -----------------------------------------------------------------------------------------------------------
+def read_table(file):
+    """{row: {variant: number}} of a table with the columns result or quantity, unit, variants."""
+    with open(file, newline="") as lines:
+        rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    key = next(iter(rows[0]))
+    return {row[key]: {v: float(row[v]) for v in VARIANTS if row.get(v)} for row in rows}
+
+
+def published(job, case):
+    folder, file = CASES[case]
+    return read_table(job.root / "configs" / folder / "reference" / file)
+
+
+def study(job, case, changes=(), only=",".join(VARIANTS)):
+    """Our table: the study of the case with the built program."""
+    folder = CASES[case][0]
+    out = job.scratch / f"study-{case}-{abs(hash((changes, only)))}"
+
+    def make():
+        command = [job.root / "scripts/study", job.root / "configs" / folder / "case.yaml", f"--only={only}", f"--out={out}",
+                   f"--build={job.build}"]
+        result = job.run([*command, *(f"--set={c}" for c in changes)], timeout=7200)
+        if result.returncode != 0:
+            raise RuntimeError(f"scripts/study ended with code {result.returncode}: {(result.stderr or result.stdout)[-300:]}")
+        return read_table(out / "table.csv")
+    return job.once(out.name, make)
+
+
+TVD = ("participants.tank.bed.advection=tvd", "participants.tank.bed.courant=0.5")
+MEAN_DAYS = ("participants.tank.ambient.days=monthly-mean",)
+
+
+def shown(values):
+    return " ".join(f"{values[v]:.4g}" if v in values else "-" for v in VARIANTS)
+
+
+def row(case, name, points=None, percent=None, by=()):
+    """A row of a table: all variants within so many points or per cent; the other columns are for the reader."""
+    def measure(job):
+        wanted, ours = published(job, case)[name], study(job, case, by)[ROWS[name]]
+        tvd = study(job, case, TVD)[ROWS[name]]
+
+        def close(v):
+            gap = abs(ours[v] - wanted[v])
+            return (points is not None and gap <= points) or (percent is not None and gap <= percent / 100 * abs(wanted[v]))
+        outside = [v for v in VARIANTS if not close(v)]
+        text = f"{shown(ours)}; outside: {' '.join(outside) or 'none'}; TVD: {shown(tvd)}"
+        if name not in ("FoS_static", "FoS_dynamic"):
+            text += f"; sun of monthly mean days: {shown(study(job, case, MEAN_DAYS)[ROWS[name]])}"
+        return text, not outside
+
+    def wanted(root_text=""):
+        limits = [f"{points} points" if points is not None else "", f"{percent} %" if percent is not None else ""]
+        return " or ".join(x for x in limits if x)
+    return Bar(f"table {TABLE[case]} ({case}: {' '.join(VARIANTS)}), {name}", f"published row within {wanted()}", measure, long=True)
+
+
+def numerical_diffusion(case):
+    """How much of the thermocline's thickness and of what it costs is the first-order scheme's."""
+    def measure(job):
+        upwind, tvd, print_ = study(job, case), study(job, case, TVD), published(job, case)
+        parts = []
+        for name in ("h_th/h_bed", "eta_th", "Q_C/Q_excess", "B_D"):
+            a, b = upwind[ROWS[name]], tvd[ROWS[name]]
+            share = {v: 100 * (a[v] - b[v]) / a[v] for v in VARIANTS}
+            parts.append(f"{name} {shown(share)} %")
+        return "part of the upwind value that goes with TVD: " + "; ".join(parts), bool(print_)
+    return Bar(f"table {TABLE[case]}: numerical diffusion of the upwind scheme ({' '.join(VARIANTS)})", "a number", measure, long=True)
+
+
+# -- identities -------------------------------------------------------------------------------------------------------
+def solar_field(job):
+    tests, _ = job.gtest(TESTS)
+    chosen = {k: v for k, v in tests.items() if "SolarField" in k}
+    got = " ".join(f"{float(v['field_heat']):.1f}/{float(v['published']):.0f}" for v in chosen.values())
+    return got, len(chosen) == 8 and all(v["passed"] for v in chosen.values())
+
+
+def passed(pattern, at_least=1):
+    def measure(job):
+        tests, _ = job.gtest(TESTS)
+        chosen = {k: v["passed"] for k, v in tests.items() if re.search(pattern, k)}
+        return f"{sum(chosen.values())} of {len(chosen)} tests passed", len(chosen) >= at_least and all(chosen.values())
+    return measure
+
+
+def table_5_3(job):
+    tests, _ = job.gtest(TESTS)
+    chosen = [v for k, v in tests.items() if "Table53" in k]
+    worst = max(float(v["worst"]) for v in chosen)
+    return f"largest deviation {100 * worst:.2f} % of {len(chosen)} tanks", len(chosen) == 4 and worst <= 0.005
+
+
+# -- cost -------------------------------------------------------------------------------------------------------------
+def scaling(job):
+    """The 18 variants over fewer days, one and two at a time, alternately: the better time of each."""
+    command = [job.root / "scripts/study", *(job.root / "configs" / folder / "case.yaml" for folder, _ in CASES.values()),
+               f"--only={','.join(VARIANTS)}", f"--build={job.build}", f"--out={job.scratch / 'scaling'}",
+               "--set=simulation.end-time=10 day", "--set=participants.tank.report.run-in=2 day"]
+    seconds = {1: [], 2: []}
+    for jobs in (1, 2, 1, 2):
+        result = job.run([*command, f"--jobs={jobs}"], timeout=3600)
+        seconds[jobs].append(float(re.search(r"variants in ([\d.]+) s", result.stdout).group(1)))
+    ratio = min(seconds[1]) / min(seconds[2])
+    return f"{min(seconds[1]):.1f} s and {min(seconds[2]):.1f} s for 10 days of 18 variants: {ratio:.2f} times", ratio >= 1.8
+
+
+def base_speed(job):
+    """Four months of case A."""
+    out = job.scratch / "base-speed"
+    result = job.run([job.build / "bin/thermocline", job.root / "configs/thermocline-andasol/case.yaml",
+                      f"--set=simulation.output.folder={out}"])
+    total = float(re.search(r"total\s+([\d.]+)", result.stdout).group(1))
+    return f"{total:.0f} s; {re.search(r'speed: (.*)', result.stdout).group(1)}", total <= 25
+
+
+BARS = [
+    Bar("solar field, 8 entries of Q_SF (tables 5.5, 5.6)", "published [MWh/day] to rounding", solar_field),
+    Bar("plant: power block heat 3158 and 1194 MWh/day; balances 5.3 to 5.6; mixing; cut-off; restart", "to rounding",
+        passed(r"Plant", 12)),
+    Bar("exergy factors 0.480 and 0.540, kelvin in the logarithm", "to rounding", passed("exergy")),
+    Bar("day report: every row by hand, factors of safety with place and time, checkpoint bit for bit", "exact", passed("DayReport", 5)),
+    Bar("table 5.3: masses and capacities", "0.5 %", table_5_3),
+    Bar("weather files: gaps, columns, hours, ranges, damage, EPW codes", "each said with file and line", passed("WeatherFile", 8)),
+    Bar("clear sky: worked example of Duffie and Beckman, day length, seasons", "830 W/m^2 within 5", passed("ClearSky", 5)),
+    *(bar for case in CASES for bar in (
+        row(case, "Q_SF", points=0.5),
+        row(case, "Q_C/Q_excess", points=6, percent=10),
+        row(case, "eta_th", points=6, percent=10),
+        row(case, "h_th/h_bed", points=6, percent=10),
+        row(case, "B_D", percent=10),
+        row(case, "t_charge", percent=10),
+        row(case, "t_discharge", percent=10),
+        row(case, "FoS_static", percent=8),
+        numerical_diffusion(case))),
+    Bar("speed: 4 months of case A at the thesis grid", "about 20 s", base_speed, long=True),
+    Bar("speed: the 18-variant study on 2 processors", "1.8 times that on one", scaling, long=True),
+]
