@@ -28,7 +28,19 @@ Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving
       boundary_(mesh, parameters_),
       step_(mesh, boundary_, parameters_),
       step_size_(mesh, boundary_, parameters.viscosity / parameters.density) {
+  if (!parameters.bodies.empty()) check_bodies();
   start(start_time);
+}
+
+template <int D>
+void Fluid<D>::check_bodies() {
+  if (moving_)
+    throw Error("bodies: the mesh of a fluid with immersed bodies must rest; remove its mesh mover.");
+  if (boundary_.closed())
+    throw Error("bodies: a fluid with immersed bodies needs an outlet, since they may displace fluid.");
+  if (parameters_.viscous == ViscousTreatment::implicit)
+    throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
+  parameters_.viscous = ViscousTreatment::explicit_;
 }
 
 template <int D>
@@ -70,11 +82,13 @@ void Fluid<D>::start(double time) {
     s.pressure[0] = level;
   }
   s.implicit = parameters_.viscous == ViscousTreatment::implicit;
+  step_.set_eddy_viscosity(s);
 }
 
 template <int D>
 void Fluid<D>::restore(State<D> state) {
   accepted_ = std::move(state);
+  step_.set_eddy_viscosity(accepted_);
 }
 
 template <int D>

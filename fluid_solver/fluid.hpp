@@ -57,7 +57,11 @@ class Fluid {
   }
   bool moving() const { return moving_; }
 
+  /// Null: no immersed bodies.
+  const ImmersedBodies<D>* bodies() const { return step_.bodies(); }
+
  private:
+  void check_bodies();
   void start(double time);
   void choose_viscous_treatment();
   double next_size(double remaining, bool& last);

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "fluid_solver/immersed.hpp"
 #include "fluid_solver/pressure.hpp"
 #include "fluid_solver/rates.hpp"
 #include "fluid_solver/state.hpp"
@@ -54,6 +55,10 @@ class FractionalStep {
   /// Of the last project(), acting on what is outside the fluid [N]: +p_b S^{n+1/2} and the wall shear.
   const Vectors<D>& pressure_force() const { return pressure_force_; }
   const Vectors<D>& viscous_force() const { return viscous_force_; }
+  /// state.eddy, if there is a turbulence model. Collective.
+  void set_eddy_viscosity(State<D>& state);
+  /// Null: none.
+  const ImmersedBodies<D>* bodies() const { return bodies_.get(); }
   void refresh_solvers() { pressure_.refresh(); }
   const StepStatistics& statistics() const { return statistics_; }
   double size() const { return step_.dt; }
@@ -61,6 +66,12 @@ class FractionalStep {
   bool oblique() const { return oblique_; }
 
  private:
+  void solve_initial(const Placement<D>& at);
+  void mark_bodies(double time);
+  /// The placement as the pressure equation sees it: blocked faces conduct nothing.
+  const Placement<D>& pressure_placement() const { return bodies_ ? *around_bodies_ : *step_.to; }
+  void fill_pressure_in_bodies();
+  void clear_bodies(std::vector<double>& values) const;
   void add_body_force(const State<D>& from);
   void add_swept(const State<D>& from, double e0, double e1);
   void add_old_pressure(const State<D>& from, bool implicit);
@@ -95,6 +106,8 @@ class FractionalStep {
   PressureEquation<D> pressure_;
   std::shared_ptr<const Placement<D>> assembled_;  // placement of the pressure matrix
 
+  std::unique_ptr<ImmersedBodies<D>> bodies_;          // null: none
+  std::shared_ptr<const Placement<D>> around_bodies_;  // with bodies only
   std::vector<Expression> body_force_;
   Vectors<D> force_;  // f at t^{n+1/2} per local cell [m/s^2]; empty: none
 

@@ -8,16 +8,12 @@
 #include <cmath>
 
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/derived.hpp"
 
 namespace couplet::fluid {
 namespace {
 
 constexpr std::array<const char*, 3> axis{"x", "y", "z"};
-
-bool is_wall(BoundaryType type) {
-  return type == BoundaryType::no_slip || type == BoundaryType::moving_wall ||
-         type == BoundaryType::interface;
-}
 
 }  // namespace
 
@@ -32,23 +28,104 @@ FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, FluidContext context)
 }
 
 template <int D>
-void FluidOutput<D>::write_fields(double time) {
+void FluidOutput<D>::write_fields(double time, const RunningStatistics<D>* statistics) {
   if (context_.output_folder.empty()) return;
   if (!fields_)
     fields_.emplace(mesh_, context_.output_folder, context_.name, fluid_.moving(), context_.restart_time);
+  using Place = OutputField::Place;
   const State<D>& s = fluid_.state();
+  const FluidOutputParameters& wanted = fluid_.parameters().output;
   const std::vector<double> none(mesh_.cells.n_local(), 0.0);
-  fields_->write(time, fluid_.moving() ? s.points : mesh_.reference_points,
-                 {{"velocity", "m/s", OutputField::Place::cells, D, flat<D>(s.u)},
-                  {"pressure", "Pa", OutputField::Place::cells, 1, s.pressure[0] ? s.pressure[0]->p : none}});
+  std::vector<OutputField> fields{
+      {"velocity", "m/s", Place::cells, D, flat<D>(s.u)},
+      {"pressure", "Pa", Place::cells, 1, s.pressure[0] ? s.pressure[0]->p : none}};
+  std::vector<double> curl, q, p_rms, shear;
+  Vectors<D> u_rms;
+  if (wanted.vorticity || wanted.q_criterion) {
+    std::vector<Tensor<D>> gradient;
+    velocity_gradient<D>(mesh_, *s.placement, s.u, s.u_boundary, gradient);
+    if (wanted.vorticity) {
+      curl = vorticity<D>(gradient);
+      fields.push_back({"vorticity", "1/s", Place::cells, D == 2 ? 1 : 3, curl});
+    }
+    if (wanted.q_criterion) {
+      q = q_criterion<D>(gradient);
+      fields.push_back({"q-criterion", "1/s^2", Place::cells, 1, q});
+    }
+  }
+  if (!s.eddy.empty()) fields.push_back({"eddy-viscosity", "m^2/s", Place::cells, 1, s.eddy});
+  if (statistics) {
+    u_rms = statistics->velocity_rms();
+    p_rms = statistics->pressure_rms();
+    shear = statistics->reynolds_shear();
+    fields.push_back({"velocity-mean", "m/s", Place::cells, D, flat<D>(statistics->velocity_mean())});
+    fields.push_back({"velocity-rms", "m/s", Place::cells, D, flat<D>(u_rms)});
+    fields.push_back({"pressure-mean", "Pa", Place::cells, 1, statistics->pressure_mean()});
+    fields.push_back({"pressure-rms", "Pa", Place::cells, 1, p_rms});
+    fields.push_back({"reynolds-shear", "m^2/s^2", Place::cells, RunningStatistics<D>::n_shear, shear});
+  }
+  fields_->write(time, fluid_.moving() ? s.points : mesh_.reference_points, fields);
 }
 
 template <int D>
 void FluidOutput<D>::write_series(double time) {
   if (context_.output_folder.empty()) return;
   if (!walls_.empty()) write_forces(time);
+  if (!walls_.empty() && fluid_.parameters().turbulence) write_walls(time);
   write_balance(time);
+  if (fluid_.parameters().output.energy_budget) write_energy(time);
+  if (fluid_.bodies()) write_bodies(time);
   if (!probes_.empty()) write_probes(time);
+}
+
+template <int D>
+void FluidOutput<D>::write_walls(double time) {
+  std::vector<double> row{time};
+  for (const Patch* patch : walls_) {
+    const WallSummary w = summarise_wall(fluid_, *patch);
+    row.insert(row.end(), {w.mean_shear, w.largest_shear, w.mean_yplus, w.largest_yplus});
+  }
+  if (!root_) return;
+  if (!walls_series_) {
+    std::vector<std::string> columns{"time [s]"};
+    for (const Patch* patch : walls_)
+      for (const char* what : {"mean shear [Pa]", "largest shear [Pa]", "mean y+ [-]", "largest y+ [-]"})
+        columns.push_back(fmt::format("{} {}", patch->name, what));
+    walls_series_.emplace(open("walls.csv", columns));
+  }
+  walls_series_->row(row);
+}
+
+// Forces on the immersed bodies, and what leaks through their surfaces.
+template <int D>
+void FluidOutput<D>::write_bodies(double time) {
+  const State<D>& s = fluid_.state();
+  if (!s.pressure[0]) return;
+  std::vector<double> row{time};
+  for (const auto& [pressure, friction] :
+       fluid_.bodies()->forces(*s.placement, s.pressure[0]->p, s.u, fluid_.parameters().viscosity))
+    for (const Vec<D>& force : {pressure, friction}) row.insert(row.end(), force.data(), force.data() + D);
+  row.push_back(fluid_.bodies()->leak(*s.placement, s.phi));
+  if (!root_) return;
+  if (!bodies_) {
+    std::vector<std::string> columns{"time [s]"};
+    for (const std::string& name : fluid_.bodies()->names())
+      for (const char* part : {"pressure", "viscous"})
+        for (int c = 0; c < D; ++c) columns.push_back(fmt::format("{} {} {} [N]", name, part, axis[c]));
+    columns.push_back("leak [m^3/s]");
+    bodies_.emplace(open("bodies.csv", columns));
+  }
+  bodies_->row(row);
+}
+
+template <int D>
+void FluidOutput<D>::write_energy(double time) {
+  const EnergyBudget e = energy_budget(fluid_);
+  if (!root_) return;
+  if (!energy_)
+    energy_.emplace(open("energy.csv", {"time [s]", "kinetic energy [J]", "viscous power [W]",
+                                        "eddy power [W]", "pressure power [W]"}));
+  energy_->row(std::array<double, 5>{time, e.kinetic, e.viscous, e.eddies, e.pressure});
 }
 
 template <int D>
@@ -86,8 +163,8 @@ template <int D>
 void FluidOutput<D>::write_balance(double time) {
   const State<D>& s = fluid_.state();
   const Placement<D>& at = *s.placement;
-  enum { inflow, outflow, volume, energy };
-  double sums[4] = {};
+  enum { inflow, outflow, volume, energy, divergence };
+  double sums[5] = {};
   divergence_.assign(mesh_.cells.n_local(), 0.0);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     divergence_[mesh_.owner[f]] += s.phi[f];
@@ -99,19 +176,22 @@ void FluidOutput<D>::write_balance(double time) {
   double worst = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     worst = std::max(worst, std::abs(divergence_[c]) / at.volume[c]);
+    sums[divergence] += std::abs(divergence_[c]);
     sums[volume] += at.volume[c];
     sums[energy] += 0.5 * fluid_.parameters().density * at.volume[c] * s.u[c].squaredNorm();
   }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   worst = max(mesh_.comm, worst);
   if (!root_) return;
   if (!balance_)
-    balance_.emplace(open(
-        "balance.csv", {"time [s]", "inflow [m^3/s]", "outflow [m^3/s]", "volume [m^3]", "kinetic energy [J]",
-                        "largest divergence [1/s]", "sub-steps [-]", "pressure iterations so far [-]"}));
-  balance_->row(std::array<double, 8>{time, sums[inflow], sums[outflow], sums[volume], sums[energy], worst,
-                                      double(fluid_.statistics().sub_steps),
-                                      double(fluid_.statistics().pressure_iterations)});
+    balance_.emplace(
+        open("balance.csv", {"time [s]", "inflow [m^3/s]", "outflow [m^3/s]", "volume [m^3]",
+                             "kinetic energy [J]", "largest divergence [1/s]", "mean divergence [1/s]",
+                             "mass defect [m^3/s]", "sub-steps [-]", "pressure iterations so far [-]"}));
+  balance_->row(std::array<double, 10>{time, sums[inflow], sums[outflow], sums[volume], sums[energy], worst,
+                                       sums[divergence] / sums[volume], sums[outflow] - sums[inflow],
+                                       double(fluid_.statistics().sub_steps),
+                                       double(fluid_.statistics().pressure_iterations)});
 }
 
 template <int D>

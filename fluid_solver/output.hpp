@@ -12,6 +12,7 @@
 #include "common/io/probe.hpp"
 #include "common/io/series.hpp"
 #include "fluid_solver/fluid.hpp"
+#include "fluid_solver/statistics.hpp"
 
 namespace couplet::fluid {
 
@@ -22,16 +23,21 @@ struct FluidContext {
   double restart_time = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The files of a fluid: fields, forces.csv, balance.csv, probes.csv. They are opened when first written to.
+/// The files of a fluid: fields, forces.csv, walls.csv, balance.csv, energy.csv, bodies.csv, probes.csv. They
+/// are opened when first written to.
 template <int D>
 class FluidOutput {
  public:
   FluidOutput(const Fluid<D>& fluid, FluidContext context);
-  void write_fields(double time);
+  /// `statistics` may be null.
+  void write_fields(double time, const RunningStatistics<D>* statistics);
   void write_series(double time);
 
  private:
   void write_forces(double time);
+  void write_walls(double time);
+  void write_energy(double time);
+  void write_bodies(double time);
   void write_balance(double time);
   void write_probes(double time);
   Series open(const std::string& file, const std::vector<std::string>& columns) const;
@@ -45,7 +51,7 @@ class FluidOutput {
   std::vector<const Patch*> walls_;
   std::optional<FieldWriter> fields_;
   std::vector<double> divergence_;
-  std::optional<Series> forces_, balance_, probe_series_;  // on rank 0
+  std::optional<Series> forces_, walls_series_, balance_, energy_, bodies_, probe_series_;  // on rank 0
 };
 
 }  // namespace couplet::fluid

@@ -67,6 +67,15 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
       true);
 }
 
+void declare_output(config::Section& s, FluidOutputParameters& p) {
+  s.value("vorticity", p.vorticity).doc("field of the curl of the velocity [1/s]");
+  s.value("q-criterion", p.q_criterion).doc("field of Q = (|W|^2 - |S|^2)/2 [1/s^2]: positive in vortices");
+  s.value("energy-budget", p.energy_budget)
+      .doc(
+          "energy.csv: kinetic energy and the power that viscosity, eddy viscosity and pressure take from "
+          "it");
+}
+
 }  // namespace
 
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters) {
@@ -131,6 +140,43 @@ void declare(config::Section& s, FluidParameters& p) {
           "keep the difference between face fluxes and averaged cell velocities from step to step, so that "
           "small "
           "steps do not smooth the pressure");
+  s.map<BodyParameters>(
+      "bodies", p.bodies,
+      [](config::Section& b, BodyParameters& body) {
+        b.value("level", body.level)
+            .unit("m")
+            .required()
+            .doc(
+                "expression of x, y, z [m] and t [s]: below zero inside, near the surface about the distance "
+                "to it");
+        b.value("velocity", body.velocity)
+            .unit("m/s")
+            .doc(
+                "one expression of x, y, z [m] and t [s] a component, that of the motion which level "
+                "describes; "
+                "absent: at rest");
+      },
+      "body", "rigid bodies in a mesh that does not know them; needs an outlet and a mesh at rest");
+  s.optional_section<TurbulenceParameters>(
+      "turbulence", p.turbulence,
+      [](config::Section& t, TurbulenceParameters& turbulence) {
+        t.choice("model", turbulence.model,
+                 {{"smagorinsky", TurbulenceModel::smagorinsky}, {"wale", TurbulenceModel::wale}})
+            .doc("wale: no eddy viscosity in pure shear, right at walls; smagorinsky: the classic");
+        t.value("constant", turbulence.constant)
+            .positive()
+            .doc("of the model, times the cell's width; absent: 0.325 (wale), 0.17 (smagorinsky)");
+      },
+      "eddy viscosity of the scales that the mesh does not resolve; absent: none");
+  s.optional_section<StatisticsParameters>(
+      "statistics", p.statistics,
+      [](config::Section& t, StatisticsParameters& statistics) {
+        t.value("start", statistics.start).unit("s").not_negative().doc("time from which on means are taken");
+      },
+      "time means of velocity and pressure, their fluctuations and Reynolds stresses in the field output");
+  s.section(
+      "output", [&p](config::Section& o) { declare_output(o, p.output); },
+      "what is written beyond velocity, pressure, forces and balance");
   s.map<ProbeParameters>(
       "probes", p.probes,
       [](config::Section& q, ProbeParameters& probe) {

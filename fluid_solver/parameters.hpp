@@ -22,6 +22,11 @@ enum class BoundaryType {
   periodic,
   interface
 };
+/// No-slip wall, whoever gives its velocity.
+inline bool is_wall(BoundaryType type) {
+  return type == BoundaryType::no_slip || type == BoundaryType::moving_wall ||
+         type == BoundaryType::interface;
+}
 enum class InletProfile { uniform, parabolic };
 enum class ViscousTreatment { automatic, explicit_, implicit };
 
@@ -34,6 +39,31 @@ struct BoundaryParameters {
   config::ExpressionText pressure;                   // [Pa], outlet
   bool backflow_stabilisation = true;                // outlet
   std::string partner;                               // periodic
+};
+
+enum class TurbulenceModel { smagorinsky, wale };
+
+/// Large-eddy simulation; absent: no model, no cost.
+struct TurbulenceParameters {
+  TurbulenceModel model = TurbulenceModel::wale;
+  std::optional<double> constant;  // by default the usual one of the model
+  double constant_of() const { return constant.value_or(model == TurbulenceModel::wale ? 0.325 : 0.17); }
+};
+
+/// A rigid body inside the mesh.
+struct BodyParameters {
+  config::ExpressionText level;                  // [m], below zero inside
+  std::vector<config::ExpressionText> velocity;  // [m/s]; empty: at rest
+};
+
+/// Running means from a time on; absent: none.
+struct StatisticsParameters {
+  double start = 0;  // [s]
+};
+
+/// Fields and series beyond velocity, pressure, forces and balance.
+struct FluidOutputParameters {
+  bool vorticity = false, q_criterion = false, energy_budget = false;
 };
 
 struct ProbeParameters {
@@ -54,6 +84,10 @@ struct FluidParameters {
   std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
   config::ExpressionText initial_pressure;               // [Pa]
   std::vector<config::ExpressionText> body_force;        // [m/s^2]; empty: none
+  std::optional<TurbulenceParameters> turbulence;
+  std::optional<StatisticsParameters> statistics;
+  FluidOutputParameters output;
+  std::map<std::string, BodyParameters> bodies;
   bool flux_memory = true;
   std::map<std::string, ProbeParameters> probes;
 };

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "common/io/checkpoint.hpp"
+#include "fluid_solver/derived.hpp"
 #include "fluid_solver/state_io.hpp"
 
 namespace couplet::fluid {
@@ -18,6 +19,7 @@ FluidParticipant<D>::FluidParticipant(Mesh mesh, const FluidParameters& paramete
       fluid_(std::make_unique<Fluid<D>>(mesh_, parameters, bool(link))),
       output_(*fluid_, std::move(context)) {
   if (link) motion_ = link(mesh_);
+  if (parameters.statistics) statistics_.emplace(mesh_.cells.n_local());
   if (fluid_->boundary().interface_patches().empty()) return;
   interface_ = std::make_unique<InterfaceMap>(mesh_, fluid_->boundary().interface_patches());
   const std::vector<Index>& points = interface_->points();
@@ -108,23 +110,27 @@ Exchange FluidParticipant<D>::solve(const Exchange& in) {
 template <int D>
 void FluidParticipant<D>::accept_step() {
   fluid_->accept();
+  if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
+    statistics_->add(fluid_->state(), step_.dt);
 }
 
 template <int D>
 void FluidParticipant<D>::save(CheckpointWriter& file) const {
   fluid_->refresh_solvers();
   write_state(file, fluid_->state());
+  if (statistics_) statistics_->save(file);
 }
 
 template <int D>
 void FluidParticipant<D>::load(CheckpointReader& file) {
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving()));
+  if (statistics_) statistics_->load(file);
   fluid_->refresh_solvers();
 }
 
 template <int D>
 void FluidParticipant<D>::write_output(double time, int) {
-  output_.write_fields(time);
+  output_.write_fields(time, statistics_ ? &*statistics_ : nullptr);
 }
 
 template <int D>
@@ -135,11 +141,21 @@ void FluidParticipant<D>::write_monitors(double time) {
 template <int D>
 std::vector<std::string> FluidParticipant<D>::judge_left_out_effects() {
   const double peclet = fluid_->largest_peclet();
-  const bool sound = peclet < 50;
+  double yplus = 0;
+  for (const Patch& patch : mesh_.patches)
+    if (is_wall(fluid_->parameters().boundaries.at(patch.name).type))
+      yplus = std::max(yplus, summarise_wall(*fluid_, patch).largest_yplus);
+  const std::string numbers =
+      fmt::format("the largest cell Reynolds number is {:.3g}, the largest y+ {:.3g}", peclet, yplus);
+  if (fluid_->parameters().turbulence)
+    return {fmt::format("Turbulence model: {}{}", numbers,
+                        yplus < 2
+                            ? "; the walls are resolved."
+                            : ". There is no wall function: y+ should be about 1, refine at the walls.")};
   return {fmt::format(
-      "No turbulence model: the largest cell Reynolds number is {:.3g}{}", peclet,
-      sound ? "; the mesh resolves the flow, leaving it out was sound."
-            : ". Steep layers may be finer than the mesh: refine it or read the result with care.")};
+      "No turbulence model: {}{}", numbers,
+      peclet < 50 ? "; the mesh resolves the flow, leaving it out was sound."
+                  : ". Steep layers may be finer than the mesh: refine it or read the result with care.")};
 }
 
 template class FluidParticipant<2>;

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,7 @@ class FluidParticipant final : public Participant {
   std::unique_ptr<InterfaceMap> interface_;  // null: no interface patch
   Csr interface_vertices_;                   // per interface face: entries of interface_->points()
   std::unique_ptr<MeshMotionSource> motion_;
+  std::optional<RunningStatistics<D>> statistics_;
   FluidOutput<D> output_;
   Step step_;
   bool prepared_ = false;

@@ -30,11 +30,15 @@ void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vec
         const Index f = mesh_.n_interior + static_cast<Index>(b);
         w_[b] = step_.swept[f] / (step_.dt * step_.to->area[f].squaredNorm()) * step_.to->area[f];
       }
+  if (bodies_) mark_bodies(from.time + step_.dt);
   const double dt = step_.dt, ratio = from.dt_old > 0 ? dt / from.dt_old : 0;
   const double e0 = 1 + ratio / 2, e1 = -ratio / 2;
 
   rate_operator_.apply(from, implicit, oblique_, rates_);
   wall_shear<D>(mesh_, *from.placement, parameters_.viscosity, from.u, from.u_boundary, shear_);
+  if (bodies_)
+    for (Index c = 0; c < mesh_.cells.n_local(); ++c)
+      if (bodies_->is_solid(c)) rates_.rate[c].setZero();
   right_side_.resize(from.u.size());
   const std::vector<double>& volume = from.placement->volume;
   for (Index c = 0; c < mesh_.cells.n_local(); ++c)
@@ -58,10 +62,11 @@ void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vec
       viscous_force_[b] = ratio > 0 ? Vec<D>(e0 * shear_[b] + e1 * from.shear_old[b]) : shear_[b];
   }
   mesh_.cells.update_ghosts(flat<D>(u_p_), D);
+  if (bodies_) bodies_->force(*step_.to, u_p_);
   extrapolate_pressure(from);
   predict_flux(from);
   if (assembled_ != step_.to) {
-    pressure_.set(*step_.to);
+    pressure_.set(pressure_placement());
     assembled_ = step_.to;
   }
 }
@@ -201,6 +206,9 @@ void FractionalStep<D>::predict_flux(const State<D>& from) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
     if (boundary_.kind()[b] == FaceKind::pressure) phi_orthogonal_[f] = u_p_[mesh_.owner[f]].dot(now.area[f]);
   }
+  if (!bodies_) return;
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    if (bodies_->blocked(f)) phi_orthogonal_[f] = bodies_->flux(f, now);
 }
 
 /// d delta/dt = e - a delta: e is what the pressure does to the flux and not to the mean velocity, O(h^2); a

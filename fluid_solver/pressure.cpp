@@ -9,7 +9,7 @@
 namespace couplet::fluid {
 
 // Up to here kept Cholesky factors beat multigrid in 2-D: thin cells cost them no iterations.
-constexpr GlobalIndex largest_direct = 60000;
+constexpr GlobalIndex largest_direct = 120000;
 
 // Triplets: the diagonal of each owned cell first, then the neighbours face by face.
 template <int D>
@@ -47,6 +47,8 @@ void PressureEquation<D>::set(const Placement<D>& at) {
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
     if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::pressure)
       values_[mesh_.owner[f]] += at.conductance[f];
+  for (Index c = 0; c < owned; ++c)
+    if (values_[c] == 0) values_[c] = 1;  // inside a body: p = 0 there
   if (boundary_.closed() && owned > 0 && mesh_.cells.first() == 0) values_[0] *= 2;
   matrix_->fill(values_);
   if (solver_) {

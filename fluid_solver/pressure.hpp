@@ -20,7 +20,9 @@ class PressureEquation {
   /// Collective.
   void set(const Placement<D>& at);
   /// A new preconditioner at the next solve.
-  void refresh() { solver_->refresh(); }
+  void refresh() {
+    if (solver_) solver_->refresh();
+  }
   /// `b`: per owned cell, made compatible here when the domain is closed; `p`: per local cell, guess on
   /// entry, mean zero in a closed domain (at its convective outlets, if there are any), ghosts current on
   /// exit. Stops at max(relative |b|, absolute). Collective.

@@ -32,6 +32,7 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       rate_operator_(mesh, boundary, nu_),
       viscous_solver_(mesh, boundary),
       pressure_(mesh, boundary) {
+  if (!parameters.bodies.empty()) bodies_ = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
   if (!parameters.body_force.empty()) body_force_ = make_expressions(parameters.body_force, D, "body-force");
   slot_.assign(mesh.cells.n_local(), -1);
   for (std::size_t b = 0; b < boundary.kind().size(); ++b) {
@@ -91,12 +92,13 @@ template <int D>
 void FractionalStep<D>::add_oblique_pressure() {
   const Placement<D>& now = *step_.to;
   const double factor = step_.dt / rho_;
+  const Placement<D>& around = pressure_placement();
   phi_p_ = phi_orthogonal_;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const double w = now.weight[f];
     phi_p_[f] -=
         factor * (w * gradient_guess_[mesh_.owner[f]] + (1 - w) * gradient_guess_[mesh_.neighbour[f]])
-                     .dot(now.oblique[f]);
+                     .dot(around.oblique[f]);
   }
   for (std::size_t b = 0; b < w_.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
@@ -145,11 +147,14 @@ void FractionalStep<D>::solve_pressure(const State<D>& from, const Vectors<D>& w
     size += phi_p_[f] * phi_p_[f];
     if (boundary_.kind()[b] == FaceKind::pressure) b_[mesh_.owner[f]] += now.conductance[f] * p_boundary_[b];
   }
+  clear_bodies(b_);
+  clear_bodies(p_);
   b_.resize(mesh_.cells.n_owned());
   const double floor = flux_floor * factor * std::sqrt(sum(mesh_.comm, size));
   const SolveStatistics solved = pressure_.solve(now, b_, p_, parameters_.pressure_tolerance,
                                                  std::max(floor, std::numeric_limits<double>::min()));
   statistics_.pressure_iterations += solved.iterations;
+  if (bodies_) fill_pressure_in_bodies();
   set_boundary_pressure(from, w);
 }
 
@@ -249,10 +254,11 @@ std::shared_ptr<const PressureLevel<D>> FractionalStep<D>::pressure_level(const 
 template <int D>
 void FractionalStep<D>::correct(State<D>& s) {
   const Placement<D>& now = *step_.to;
+  const std::vector<double>& conductance = pressure_placement().conductance;
   const double factor = step_.dt / rho_;
   s.phi.swap(phi_p_);
   for (Index f = 0; f < mesh_.n_interior; ++f)
-    s.phi[f] -= factor * now.conductance[f] * (p_[mesh_.neighbour[f]] - p_[mesh_.owner[f]]);
+    s.phi[f] -= factor * conductance[f] * (p_[mesh_.neighbour[f]] - p_[mesh_.owner[f]]);
   for (std::size_t b = 0; b < w_.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
     if (boundary_.kind()[b] == FaceKind::pressure)
@@ -263,6 +269,7 @@ void FractionalStep<D>::correct(State<D>& s) {
   s.u.resize(u_p_.size());
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) s.u[c] = u_p_[c] - factor * level->gradient[c];
   mesh_.cells.update_ghosts(flat<D>(s.u), D);
+  if (bodies_) bodies_->force(now, s.u);
   s.pressure = {level, s.pressure[0], s.pressure[1]};
 }
 
@@ -273,6 +280,9 @@ void FractionalStep<D>::remember_flux(State<D>& s) const {
   s.memory.resize(mesh_.n_interior);
   for (Index f = 0; f < mesh_.n_interior; ++f)
     s.memory[f] = s.phi[f] - 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(step_.to->area[f]);
+  if (!bodies_) return;
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    if (bodies_->blocked(f)) s.memory[f] = 0;
 }
 
 template <int D>
@@ -295,7 +305,13 @@ void FractionalStep<D>::finish(State<D>& s) {
     s.start = Start::after_impulse;
     s.dt_old = 0;
   }
+  set_eddy_viscosity(s);
   check(s);
+}
+
+template <int D>
+void FractionalStep<D>::set_eddy_viscosity(State<D>& state) {
+  if (parameters_.turbulence) rate_operator_.set_eddy_viscosity(*parameters_.turbulence, state);
 }
 
 // One reduction: largest speed and where, and the mass defect.
@@ -328,52 +344,6 @@ void FractionalStep<D>::check(const State<D>& s) {
         s.time, GlobalIndex(data[3]), data[0], data[1], data[2]);
   }
   speed_scale_ = std::max(speed_scale_, fastest.value);
-}
-
-/// u = u0 - grad psi with phi free of divergence: the same equation with dt = 1 s, rho = 1. Where the given
-/// wall velocity differs from u0 at the wall (an inlet that starts at once) the field becomes the potential
-/// flow.
-template <int D>
-void FractionalStep<D>::project_initial(State<D>& s) {
-  oblique_ = max(mesh_.comm, s.placement->obliqueness) > 1e-9 || !s.points.empty();
-  const Placement<D>& at = *s.placement;
-  phi_p_.assign(mesh_.n_flux_faces(), 0.0);
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    phi_p_[f] = 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(at.area[f]);
-  for (std::size_t b = 0; b < s.w.size(); ++b)
-    phi_p_[mesh_.n_interior + b] = s.u_boundary[b].dot(at.area[mesh_.n_interior + b]);
-  step_ = {rho_, s.placement, {}, {}};  // dt/rho = 1
-  w_ = s.w;
-  gradient_guess_.clear();
-  u_p_ = s.u;
-  p_.assign(mesh_.cells.n_local(), 0.0);
-  p_boundary_.assign(s.w.size(), 0.0);
-  pressure_.set(at);
-  assembled_ = s.placement;
-  const Vectors<D> jump_from = s.u_boundary;
-  set_boundary_flux(s.w);
-  b_.assign(mesh_.cells.n_local(), 0.0);
-  double size = 0;
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    b_[mesh_.owner[f]] -= phi_p_[f];
-    if (f < mesh_.n_interior) b_[mesh_.neighbour[f]] += phi_p_[f];
-    size += phi_p_[f] * phi_p_[f];
-  }
-  b_.resize(mesh_.cells.n_owned());
-  const double floor = 1e-14 * std::sqrt(sum(mesh_.comm, size));
-  pressure_.solve(at, b_, p_, std::min(1e-8, parameters_.pressure_tolerance),
-                  std::max(floor, std::numeric_limits<double>::min()));
-  for (std::size_t b = 0; b < s.w.size(); ++b) {
-    const Index f = mesh_.n_interior + static_cast<Index>(b);
-    if (boundary_.kind()[b] == FaceKind::pressure) continue;
-    p_boundary_[b] = p_[mesh_.owner[f]] - (s.w[b] - jump_from[b]).dot(at.area[f]) / at.conductance[f];
-  }
-  correct(s);
-  s.w = w_;
-  s.u_old.clear();
-  s.pressure = {};
-  boundary_.close(mesh_, at, s.u, s.w, s.u_boundary);
-  remember_flux(s);
 }
 
 template class FractionalStep<2>;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "fluid_solver/turbulence.hpp"
+
 namespace couplet::fluid {
 
 template <int D>
@@ -69,12 +71,31 @@ void RateOperator<D>::add_oblique(const Placement<D>& at, const Vectors<D>& u, c
 }
 
 template <int D>
+void RateOperator<D>::set_eddy_viscosity(const TurbulenceParameters& model, State<D>& s) {
+  velocity_gradient<D>(mesh_, *s.placement, s.u, s.u_boundary, gradient_);
+  eddy_viscosity<D>(model, *s.placement, gradient_, s.eddy);
+}
+
+template <int D>
+void RateOperator<D>::add_eddies(const State<D>& s, Vectors<D>& rate) {
+  const Placement<D>& at = *s.placement;
+  velocity_gradient<D>(mesh_, at, s.u, s.u_boundary, gradient_);
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const Vec<D> part = eddy_stress<D>(at, s, gradient_, f, p, n);
+    rate[p] += part;
+    rate[n] -= part;
+  }
+}
+
+template <int D>
 void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates) {
   rates.rate.assign(mesh_.cells.n_local(), Vec<D>::Zero());
   rates.viscous.assign(split ? mesh_.cells.n_local() : 0, Vec<D>::Zero());
   split ? face_loop<true>(state, rates) : face_loop<false>(state, rates);
   if (correct_oblique)
     add_oblique(*state.placement, state.u, state.u_boundary, split ? rates.viscous : rates.rate);
+  if (!state.eddy.empty()) add_eddies(state, rates.rate);
 }
 
 template <int D>

@@ -12,9 +12,20 @@ template <int D>
 void velocity_gradient(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient);
 
+/// nu_t (grad u + grad u^T).S at an interior face between p and n [m^4/s^2], force per density.
+template <int D>
+Vec<D> eddy_stress(const Placement<D>& at, const State<D>& s, const std::vector<Tensor<D>>& gradient, Index f,
+                   Index p, Index n) {
+  const double w = at.weight[f];
+  const Tensor<D> mean = w * gradient[p] + (1 - w) * gradient[n];
+  return 0.5 * (s.eddy[p] + s.eddy[n]) *
+         (at.conductance[f] * (s.u[n] - s.u[p]) + mean * at.oblique[f] + mean.transpose() * at.area[f]);
+}
+
 /// R = -sum phi u_f + nu sum [g du + (grad u)_f . k], see reference [trias2014] for the skew-symmetric
 /// mid-point u_f. All at level n, on mesh n. `split`: the viscous part goes to Rates::viscous.
-/// `correct_oblique`: the mesh is not orthogonal. Collective.
+/// `correct_oblique`: the mesh is not orthogonal. With an eddy viscosity, which vanishes on walls, its stress
+/// nu_t (grad u + grad u^T) comes to the explicit part. Collective.
 template <int D>
 class RateOperator {
  public:
@@ -25,8 +36,11 @@ class RateOperator {
   /// Collective.
   void add_oblique(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
                    Vectors<D>& rate);
+  /// state.eddy from state.u. Collective.
+  void set_eddy_viscosity(const TurbulenceParameters& model, State<D>& state);
 
  private:
+  void add_eddies(const State<D>& state, Vectors<D>& rate);
   template <bool Split>
   void face_loop(const State<D>& state, Rates<D>& rates) const;
   const Mesh& mesh_;

@@ -44,6 +44,8 @@ struct State {
   std::vector<double> memory, memory_old;  ///< delta^n per interior face [m^3/s]
   std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;  ///< latest first; null: not there yet
 
+  std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty: no model
+
   Vectors<D> u_old, u_boundary_old;  ///< at t^{n-1}
   Rates<D> rates_old;                ///< at t^{n-1}
   Vectors<D> shear_old;              ///< viscous force on the boundary faces at t^{n-1} [N]

@@ -95,6 +95,17 @@ template <int D>
 StepSize<D>::StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity)
     : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity) {}
 
+// The stress nu_t (grad u + grad u^T) has at most twice the rate of nu_t grad u.
+template <int D>
+void StepSize<D>::add_eddies(const State<D>& s) {
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const double rate = 2 * (s.eddy[p] + s.eddy[n]) * s.placement->conductance[f];
+    eddy_[p] += rate;
+    eddy_[n] += rate;
+  }
+}
+
 template <int D>
 StepLimits StepSize<D>::limits(const State<D>& s) {
   const Placement<D>& at = *s.placement;
@@ -118,16 +129,23 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
     add(mesh_.owner[f], flux, g, ratio);
     if (inside) add(mesh_.neighbour[f], flux, g, ratio);
   }
+  eddy_.assign(s.eddy.size(), 0.0);
+  if (!s.eddy.empty()) add_eddies(s);
   // Few cells can be the one that decides: most are passed over with the lowest value the limits can take.
   const double lowest_explicit = limit.back(), lowest_implicit = implicit_table().least();
   double least[3] = {infinity, infinity, -peclet};
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const double convection = convection_[c] /= at.volume[c], diffusion = diffusion_[c] /= at.volume[c];
+    const double convection = convection_[c] / at.volume[c];
+    const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
+    const double diffusion = diffusion_[c] / at.volume[c] + eddy;
     const double size = std::sqrt(convection * convection + diffusion * diffusion);
     if (lowest_explicit < least[0] * size)
       least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion)) / size);
     if (lowest_implicit < least[1] * convection)
       least[1] = std::min(least[1], implicit_convective_limit(least_ratio_[c]) / convection);
+    if (eddy > 0)  // the eddy part stays explicit
+      least[1] =
+          std::min(least[1], explicit_limit(std::atan2(convection, eddy)) / std::hypot(convection, eddy));
   }
   MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, mesh_.comm);
   peclet_ = -least[2];

@@ -27,10 +27,11 @@ class StepSize {
   double largest_peclet() const { return peclet_; }
 
  private:
+  void add_eddies(const State<D>& state);
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
   double nu_;
-  std::vector<double> convection_, diffusion_, least_ratio_;
+  std::vector<double> convection_, diffusion_, eddy_, least_ratio_;
   double peclet_ = 0;
 };
 

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Velocity on the two centre lines against Ghia et al. Usage: plot.py [PICTURE.png], by default out/cavity.png."""
+"""Velocity on the two centre lines against Ghia et al.
+Usage: plot.py [--re 100|400|1000] [--out FOLDER] [PICTURE.png], by default out/cavity.png."""
+import argparse
 import pathlib
 import sys
 
@@ -16,9 +18,10 @@ sys.path.insert(0, str(here.parents[1] / "scripts"))
 import couplet_series as couplet  # noqa: E402
 
 
-def reference(file):
+def reference(file, reynolds):
     rows = [line.split(",") for line in (here / "reference" / file).read_text().splitlines() if line[0] != "#"]
-    return np.array([[float(r[0]), float(r[1])] for r in rows[1:]]).T
+    column = next(i for i, name in enumerate(rows[0]) if name.endswith(f"_Re{reynolds}"))
+    return np.array([[float(r[0]), float(r[column])] for r in rows[1:]]).T
 
 
 def centre_lines(series):
@@ -48,17 +51,22 @@ def gaps(folder):
 
 
 def main():
-    out = here / "out"
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--re", type=int, default=100, choices=(100, 400, 1000))
+    parser.add_argument("--out", type=pathlib.Path, default=here / "out")
+    parser.add_argument("picture", nargs="?", type=pathlib.Path)
+    arguments = parser.parse_args()
+    out = arguments.out
     if not (out / "fluid").exists():
         sys.exit(f"There is no result in {out}. Run the case first; the README says how.")
-    picture = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else out / "cavity.png"
+    picture = arguments.picture or out / "cavity.png"
     s, u, v = centre_lines(couplet.find_series(out / "fluid"))
     figure, axes = plt.subplots(1, 2, figsize=(9, 4), dpi=130, constrained_layout=True)
     for ax, line, file, names in ((axes[0], u, "ghia_u_x0.5.csv", ("y [m]", "u at x = 0.5 [m/s]")),
                                   (axes[1], v, "ghia_v_y0.5.csv", ("x [m]", "v at y = 0.5 [m/s]"))):
-        place, wanted = reference(file)
+        place, wanted = reference(file, arguments.re)
         ax.plot(s, line, label="Couplet")
-        ax.plot(place, wanted, "ok", fillstyle="none", label="Ghia, Ghia, Shin 1982, Re = 100")
+        ax.plot(place, wanted, "ok", fillstyle="none", label=f"Ghia, Ghia, Shin 1982, Re = {arguments.re}")
         ax.set(xlabel=names[0], ylabel=names[1])
         ax.grid(alpha=0.3)
     for name, gap in gaps(out / "fluid").items():

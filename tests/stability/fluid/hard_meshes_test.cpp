@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Meshes that nobody should make: the fluid solves them or refuses with the reason; it never gives NaN.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "../../verification/fluid/fluid_case.hpp"
+#include "common/base/error.hpp"
+#include "common/mesh/quality.hpp"
+
+namespace couplet::fluid::test {
+namespace {
+
+struct Outcome {
+  bool solved = false;
+  double error = 0, non_orthogonality = 0;
+  std::string reason;
+};
+
+/// Channel flow u = 4 y (1 - y) through a box [0, 2] x [0, 1] (x [0, 0.5]) whose points were moved by `map`.
+template <int D>
+Outcome channel_on(RawMesh raw, ViscousTreatment viscous) {
+  FluidParameters p;
+  p.density = 1.3;
+  p.viscosity = 0.05;
+  p.viscous = viscous;
+  p.pressure_tolerance = 1e-6;
+  std::vector<std::string> profile{"4*y*(1-y)", "0"};
+  if (D == 3) {
+    profile.push_back("0");
+    p.boundaries["zmin"] = p.boundaries["zmax"] = boundary(BoundaryType::slip);
+  }
+  p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::no_slip);
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, profile);
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+  for (const std::string& text : profile) p.initial_velocity.push_back({text});
+  Outcome outcome;
+  try {
+    FluidCase<D> c(MPI_COMM_WORLD, raw, p);
+    outcome.non_orthogonality = measure_quality(c.mesh(), c.mesh().reference).max_non_orthogonality;
+    c.run(0.4, 8);
+    outcome.error = c.velocity_error([](const Vec3& x) { return Vec3(4 * x.y() * (1 - x.y()), 0, 0); });
+    outcome.solved = true;
+  } catch (const Error& e) {
+    outcome.reason = e.what();
+  }
+  return outcome;
+}
+
+void judge(const char* name, const Outcome& o, double largest_error) {
+  printf("%s: non-orthogonality %.1f degrees, %s %.2e %s\n", name, o.non_orthogonality,
+         o.solved ? "solved, error" : "refused", o.error, o.reason.substr(0, 150).c_str());
+  ::testing::Test::RecordProperty("solved", o.solved ? 1 : 0);
+  if (o.solved) {
+    EXPECT_TRUE(std::isfinite(o.error));
+    EXPECT_LT(o.error, largest_error);
+  } else {
+    EXPECT_GT(o.reason.size(), 20u);
+  }
+}
+
+class HardMeshes : public ::testing::TestWithParam<ViscousTreatment> {};
+
+// Columns lean over: 70 degrees between the normals of the rows and the lines between cell centres.
+TEST_P(HardMeshes, sheared_by_seventy_degrees) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {30, 16, 1}, Vec3::Zero(), Vec3(2, 1, 1));
+  for (Vec3& x : raw.points) {
+    const double slope = std::tan(70 * std::numbers::pi / 180);
+    x.x() += slope * (0.5 - std::abs(x.y() - 0.5));
+  }
+  const Outcome o = channel_on<2>(raw, GetParam());
+  EXPECT_TRUE(!o.solved || o.non_orthogonality > 69);
+  judge("70 degrees", o, 0.2);
+}
+
+TEST_P(HardMeshes, cells_a_thousand_times_longer_than_thick) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {4, 30, 1}, Vec3::Zero(), Vec3(2, 1, 1));
+  for (Vec3& x : raw.points) {  // first row 0.5 / 1000 thick
+    const double s = 2 * x.y() - 1;
+    x.y() = 0.5 * (1 + std::tanh(3.65 * s) / std::tanh(3.65));
+  }
+  judge("aspect ratio 1000", channel_on<2>(raw, GetParam()), 0.1);
+}
+
+TEST_P(HardMeshes, needle_tetrahedra) {
+  RawMesh raw = make_box(BoxCells::tetrahedra, {20, 5, 2}, Vec3::Zero(), Vec3(2, 1, 0.01));
+  perturb_interior(raw, 0.2, 3);
+  judge("needles", channel_on<3>(raw, GetParam()), 0.2);
+}
+
+TEST_P(HardMeshes, tetrahedra_stretched_to_slivers) {
+  RawMesh raw = make_box(BoxCells::tetrahedra, {8, 6, 3}, Vec3::Zero(), Vec3(2, 1, 0.5));
+  perturb_interior(raw, 0.33, 5);
+  judge("slivers", channel_on<3>(raw, GetParam()), 0.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(viscous, HardMeshes,
+                         ::testing::Values(ViscousTreatment::explicit_, ViscousTreatment::implicit),
+                         [](const auto& info) {
+                           return info.param == ViscousTreatment::explicit_ ? "explicit" : "implicit";
+                         });
+
+}  // namespace
+}  // namespace couplet::fluid::test

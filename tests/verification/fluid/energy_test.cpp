@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the discrete operators do to the kinetic energy, and the orders of the vortex array in a moving frame.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+#include "fluid_case.hpp"
+#include "fluid_solver/rates.hpp"
+
+namespace couplet::fluid::test {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+template <int D>
+FluidParameters periodic_box(RawMesh& raw, double viscosity) {
+  FluidParameters p;
+  p.density = 1;
+  p.viscosity = viscosity;
+  p.viscous = ViscousTreatment::explicit_;
+  p.pressure_tolerance = 1e-12;
+  p.time_step = 1;
+  all_sides(p, D, boundary(BoundaryType::periodic));
+  raw.periodic = {{"xmin", "xmax"}, {"ymin", "ymax"}};
+  if (D == 3) raw.periodic.push_back({"zmin", "zmax"});
+  return p;
+}
+
+template <int D>
+RawMesh box(BoxCells cells, int n, int nz = 1) {
+  RawMesh raw = make_box(cells, {n, n, nz}, Vec3::Zero(), Vec3(2 * pi, 2 * pi, D == 3 ? 2 * pi * nz / n : 1));
+  return raw;
+}
+
+/// sum u.R / sum |u||R| of one operator in a state, R the volume-integrated rate.
+template <int D>
+double share_of_energy(FluidCase<D>& c, const State<D>& s, double nu) {
+  const Boundary<D>& b = c.fluid().boundary();
+  RateOperator<D> rates(c.mesh(), b, nu);
+  Rates<D> r;
+  rates.apply(s, false, false, r);
+  double work = 0, size = 0;
+  for (Index i = 0; i < c.mesh().cells.n_owned(); ++i) {
+    work += s.u[i].dot(r.rate[i]);
+    size += s.u[i].norm() * r.rate[i].norm();
+  }
+  return sum(c.mesh().comm, work) / sum(c.mesh().comm, size);
+}
+
+template <int D>
+void check_convection(BoxCells cells, int n, int nz) {
+  RawMesh raw = box<D>(cells, n, nz);
+  perturb_interior(raw, 0.15, 3);
+  FluidParameters p = periodic_box<D>(raw, 0);
+  p.initial_velocity = {{"0.6+sin(x)*cos(y)"}, {"0.3-cos(x)*sin(y)"}};
+  if (D == 3) p.initial_velocity.push_back({"0.2*cos(x)"});
+  FluidCase<D> c(MPI_COMM_WORLD, raw, p);
+  for (int i = 0; i < 3; ++i) c.step(0.01);
+  const double share = std::abs(share_of_energy(c, c.state(), 0));
+  printf("convection: u.C(u)u / |u||Cu| = %.1e\n", share);
+  ::testing::Test::RecordProperty("share", std::to_string(share * 1e12) + "e-12");
+  EXPECT_LT(share, 1e-12);
+}
+
+TEST(Convection, does_no_work_on_perturbed_quadrilaterals) {
+  check_convection<2>(BoxCells::quadrilaterals, 32, 1);
+}
+TEST(Convection, does_no_work_on_perturbed_triangles) { check_convection<2>(BoxCells::triangles, 20, 1); }
+TEST(Convection, does_no_work_on_perturbed_hexahedra) { check_convection<3>(BoxCells::hexahedra, 10, 5); }
+TEST(Convection, does_no_work_on_perturbed_mixed_cells) { check_convection<3>(BoxCells::mixed, 6, 6); }
+
+TEST(Diffusion, is_symmetric_and_negative_definite) {
+  RawMesh raw = make_box(BoxCells::mixed, {4, 4, 3}, Vec3::Zero(), Vec3::Ones());
+  perturb_interior(raw, 0.15, 3);
+  FluidParameters p;
+  p.density = 1;
+  p.viscosity = 1;
+  all_sides(p, 3, boundary(BoundaryType::no_slip));
+  FluidCase<3> c(MPI_COMM_SELF, raw, p);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> value(-1, 1);
+  State<3> a = c.state(), b = c.state();
+  for (auto* s : {&a, &b}) {
+    std::fill(s->phi.begin(), s->phi.end(), 0.0);
+    for (Vec<3>& u : s->u) u = Vec<3>(value(random), value(random), value(random));
+  }
+  RateOperator<3> rates(c.mesh(), c.fluid().boundary(), 1);
+  Rates<3> la, lb;
+  rates.apply(a, false, false, la);
+  rates.apply(b, false, false, lb);
+  double ab = 0, ba = 0, aa = 0;
+  for (std::size_t i = 0; i < a.u.size(); ++i) {
+    ab += a.u[i].dot(lb.rate[i]);
+    ba += b.u[i].dot(la.rate[i]);
+    aa += a.u[i].dot(la.rate[i]);
+  }
+  EXPECT_NEAR(ab, ba, 1e-12 * std::abs(aa));
+  EXPECT_LT(aa, 0);
+}
+
+double kinetic(const FluidCase<2>& c) {
+  double energy = 0;
+  for (Index i = 0; i < c.mesh().cells.n_owned(); ++i)
+    energy += 0.5 * c.state().placement->volume[i] * c.state().u[i].squaredNorm();
+  return sum(c.mesh().comm, energy);
+}
+
+/// Inviscid vortex array in a moving frame over one second: the drift of the kinetic energy, and the largest
+/// part that convection has in it in a step.
+struct Drift {
+  double total = 0, convection = 0;
+};
+Drift inviscid_drift(double dt, bool memory) {
+  RawMesh raw = box<2>(BoxCells::quadrilaterals, 64);
+  FluidParameters p = periodic_box<2>(raw, 0);
+  p.flux_memory = memory;
+  p.initial_velocity = {{"0.6+sin(x)*cos(y)"}, {"0.3-cos(x)*sin(y)"}};
+  FluidCase<2> c(MPI_COMM_WORLD, raw, p);
+  const double before = kinetic(c);
+  RateOperator<2> rates(c.mesh(), c.fluid().boundary(), 0);
+  Rates<2> r;
+  Drift drift;
+  while (c.state().time < 1 - dt / 2) {
+    c.step(dt);
+    rates.apply(c.state(), false, false, r);
+    double work = 0;
+    for (Index k = 0; k < c.mesh().cells.n_owned(); ++k) work += c.state().u[k].dot(r.rate[k]);
+    drift.convection = std::max(drift.convection, std::abs(dt * sum(MPI_COMM_WORLD, work)) / before);
+  }
+  drift.total = std::abs(kinetic(c) / before - 1);
+  return drift;
+}
+
+/// Without flux memory the drift is the pressure's, of the order of the step; with it an error in space.
+TEST(InviscidVortices, keep_their_energy_but_for_the_time_error) {
+  const Drift coarse = inviscid_drift(0.01, false), fine = inviscid_drift(0.005, false),
+              memory = inviscid_drift(0.005, true);
+  const double slope = std::log2(coarse.total / fine.total);
+  printf("inviscid: convection %.1e a step; drift %.2e %.2e slope %.2f; with memory %.2e\n", fine.convection,
+         coarse.total, fine.total, slope, memory.total);
+  RecordProperty("convection_per_step",
+                 std::to_string(std::max(fine.convection, memory.convection) * 1e12) + "e-12");
+  RecordProperty("drift", std::to_string(fine.total));
+  RecordProperty("drift_slope", std::to_string(slope));
+  RecordProperty("drift_with_memory", std::to_string(memory.total));
+  EXPECT_LT(std::max(fine.convection, memory.convection), 1e-12);
+  EXPECT_LT(fine.total, 5e-3);
+  EXPECT_LT(memory.total, 1e-3);
+  EXPECT_GT(slope, 0.7);
+}
+
+struct Errors {
+  double u, p;
+};
+
+/// Vortex array carried along; viscosity 0.05.
+template <int D>
+Errors travelling(RawMesh raw, double dt, bool memory) {
+  const double nu = 0.05, end = 0.5;
+  FluidParameters p = periodic_box<D>(raw, nu);
+  p.pressure_tolerance = 1e-9;
+  p.flux_memory = memory;
+  p.time_step = dt;
+  p.initial_velocity = {{"0.6+sin(x)*cos(y)"}, {"0.3-cos(x)*sin(y)"}};
+  if (D == 3) p.initial_velocity.push_back({"0"});
+  FluidCase<D> c(MPI_COMM_WORLD, raw, p);
+  c.run(end, static_cast<int>(std::lround(end / dt)));
+  const auto place = [](const Vec3& x, double t) { return Vec3(x.x() - 0.6 * t, x.y() - 0.3 * t, 0); };
+  const double u = c.velocity_error([&](const Vec3& x) {
+    const Vec3 y = place(x, end);
+    const double f = std::exp(-2 * nu * end);
+    return Vec3(0.6 + f * std::sin(y.x()) * std::cos(y.y()), 0.3 - f * std::cos(y.x()) * std::sin(y.y()), 0);
+  });
+  const double middle = end - dt / 2;
+  const double pressure = c.pressure_error([&](const Vec3& x) {
+    const Vec3 y = place(x, middle);
+    return 0.25 * std::exp(-4 * nu * middle) * (std::cos(2 * y.x()) + std::cos(2 * y.y()));
+  });
+  return {u, pressure};
+}
+
+double slope(double coarse, double fine) { return std::log2(coarse / fine); }
+
+TEST(TravellingVortices, are_second_order_in_space_on_quadrilaterals) {
+  Errors e[3];
+  for (int i = 0; i < 3; ++i)
+    e[i] = travelling<2>(box<2>(BoxCells::quadrilaterals, 40 << i), 0.01 / (1 << i), true);
+  const double u = slope(e[1].u, e[2].u), p = slope(e[1].p, e[2].p);
+  printf("quadrilaterals: u %.2e %.2e %.2e slope %.3f; p %.2e %.2e %.2e slope %.3f\n", e[0].u, e[1].u, e[2].u,
+         u, e[0].p, e[1].p, e[2].p, p);
+  RecordProperty("velocity_slope", std::to_string(u));
+  RecordProperty("pressure_slope", std::to_string(p));
+  EXPECT_GE(u, 1.95);
+  EXPECT_GE(p, 1.93);
+}
+
+TEST(TravellingVortices, converge_faster_than_first_order_on_perturbed_prisms) {
+  Errors e[3];
+  for (int i = 0; i < 3; ++i) {
+    RawMesh raw = box<3>(BoxCells::prisms, 12 << i, 3);
+    // Columns of prisms: points move in the plane only, all layers alike, the boundary stays.
+    const std::size_t layer = raw.points.size() / 4;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> shift(-0.15, 0.15);
+    const double h = 2 * pi / (12 << i);
+    for (std::size_t k = 0; k < layer; ++k) {
+      const double dx = shift(random) * h, dy = shift(random) * h;
+      Vec3& x = raw.points[k];
+      if (x.x() < 1e-9 || x.y() < 1e-9 || x.x() > 2 * pi - 1e-9 || x.y() > 2 * pi - 1e-9) continue;
+      for (int l = 0; l < 4; ++l) raw.points[k + l * layer].head<2>() += Vec<2>(dx, dy);
+    }
+    e[i] = travelling<3>(raw, 0.01 / (1 << i), true);
+  }
+  const double u = slope(e[1].u, e[2].u), p = slope(e[1].p, e[2].p);
+  printf("prisms: u %.2e %.2e %.2e slope %.3f; p %.2e %.2e %.2e slope %.3f\n", e[0].u, e[1].u, e[2].u, u,
+         e[0].p, e[1].p, e[2].p, p);
+  RecordProperty("velocity_slope", std::to_string(u));
+  RecordProperty("pressure_slope", std::to_string(p));
+  EXPECT_GE(u, 1.3);
+}
+
+/// Differences between runs with halved steps; the variant without memory beside it.
+TEST(TravellingVortices, are_second_order_in_time) {
+  for (const bool memory : {true, false}) {
+    std::vector<std::unique_ptr<FluidCase<2>>> runs;
+    for (int i = 0; i < 4; ++i) {
+      RawMesh raw = box<2>(BoxCells::quadrilaterals, 48);
+      FluidParameters p = periodic_box<2>(raw, 0.05);
+      p.pressure_tolerance = 1e-11;
+      p.flux_memory = memory;
+      p.initial_velocity = {{"0.6+sin(x)*cos(y)"}, {"0.3-cos(x)*sin(y)"}};
+      runs.push_back(std::make_unique<FluidCase<2>>(MPI_COMM_WORLD, raw, p));
+      runs.back()->run(0.5, 20 << i);
+    }
+    const double d0 = difference(*runs[0], *runs[1]), d1 = difference(*runs[1], *runs[2]),
+                 d2 = difference(*runs[2], *runs[3]);
+    printf("time, flux memory %d: %.2e %.2e %.2e slopes %.2f %.2f\n", int(memory), d0, d1, d2, slope(d0, d1),
+           slope(d1, d2));
+    RecordProperty(memory ? "time_slope" : "time_slope_without_memory", std::to_string(slope(d1, d2)));
+    if (memory) {
+      EXPECT_GE(slope(d1, d2), 1.9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace couplet::fluid::test
