@@ -300,7 +300,7 @@ case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity'
 case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity' or 'mean-speed'.
 """, (", velocity: [1 m/s", ", mean-speed: 1, velocity: [1 m/s")),
     fluid("turbulence model that is not there", """
-case.yaml:10:24: participants.fluid.turbulence.model: 'smagorinski' is not one of: smagorinsky, wale. Did you mean 'smagorinsky'?
+case.yaml:10:18: participants.fluid.turbulence.model: 'smagorinski' is not one of: smagorinsky, wale. Did you mean 'smagorinsky'?
 """, ("    boundaries:\n", "    turbulence: {model: smagorinski}\n    boundaries:\n")),
     fluid("immersed body without a level", """
 case.yaml:10:14: participants.fluid.bodies.ball.level: this required key is missing (expression of x, y, z [m] and t [s]: below zero inside, near the surface about the distance to it: number or expression in m).
