@@ -59,6 +59,8 @@ class Job:
                 for test in suite["testsuite"]:
                     known = {"name", "value_param", "type_param", "status", "result", "timestamp", "time", "classname",
                              "failures", "file", "line"}
+                    if test.get("result") == "SKIPPED":  # does not apply to this mesh: says nothing about a bar
+                        continue
                     tests[f"{suite['name']}.{test['name']}"] = {
                         "passed": not test.get("failures") and test.get("result") == "COMPLETED",
                         **{k: v for k, v in test.items() if k not in known}}
