@@ -136,6 +136,7 @@ void Solid::finish_acceleration() {
     }
   mesh_.cells.update_ghosts(trial_.acceleration, dim);
   mesh_.boundary.update_ghosts(trial_.face_acceleration, dim);
+  elastic_.join_twins(trial_.face_acceleration);
 }
 
 /// Of the prescribed columns at the accepted time: a difference over half of the last step.

@@ -86,22 +86,25 @@ void Solid::add_work(const StageWork& work, const SolidState& before) {
   mesh_.cells.update_ghosts(cells, dim);
   // Supports: the change over the stage, which the state of the faces may not hold yet.
   elastic_.impose_known(work.known_change, faces);
+  mesh_.boundary.update_ghosts(faces, dim);
+  elastic_.join_twins(faces);
   double outside = 0;
   const double inside = stress_work(place_unknowns(work), cells, faces, &outside);
   // Body forces and effects stand in the rows without the known force of the faces.
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
   for (std::size_t i = 0; i < n_cells; ++i) outside += work.loads[i] * cells[i];
   const auto& free = elastic_.unknown_faces();
-  for (std::size_t i = 0; i < free.size(); ++i)
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (elastic_.condition(free[i]) == ElasticCondition::bonded) continue;  // their cells take the stress
     for (int a = 0; a < dim; ++a)
       outside -= work.loads[n_cells + i * dim + a] * cells[std::size_t(mesh_.owner[free[i]]) * dim + a];
+  }
   const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
   const double dt = work.stage.dt, beta = damping.stiffness;
   double loss = 0;
   if (beta > 0) {
     // sigma(w) = sigma(x) + beta sigma(v); v is the change over the stage by its length.
     Placed rate{cells, faces, {}};
-    mesh_.boundary.update_ghosts(rate.faces, dim);
     rate.points = to_points(rate.cells, rate.faces, work.known_change);
     loss = beta / dt * stress_work(rate, cells, faces, nullptr);
   }

@@ -10,10 +10,10 @@
 namespace couplet {
 namespace {
 
-std::vector<PatchStencil> stencils_of(const std::vector<bool>& is_symmetry) {
-  std::vector<PatchStencil> stencils;
-  for (const bool symmetric : is_symmetry)
-    stencils.push_back(symmetric ? PatchStencil::symmetry : PatchStencil::open);
+VertexInterpolation::ByFace stencils_of(const Mesh& mesh, const std::vector<bool>& is_symmetry) {
+  VertexInterpolation::ByFace stencils{{}, mesh.cell_material};
+  for (const Index p : mesh.patch_of_boundary())
+    stencils.stencil.push_back(is_symmetry[p] ? PatchStencil::symmetry : PatchStencil::open);
   return stencils;
 }
 
@@ -47,7 +47,7 @@ std::array<double, 3> principal_stresses(const Tensor3& stress) {
 }
 
 PointTensors::PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetry)
-    : mesh_(&mesh), vertices_(mesh, stencils_of(is_symmetry)) {
+    : mesh_(&mesh), vertices_(mesh, stencils_of(mesh, is_symmetry)) {
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     if (!is_symmetry[p]) continue;
     const Patch& patch = mesh.patches[p];

@@ -24,7 +24,7 @@ std::array<double, 3> principal_stresses(const Tensor3& stress);
 
 /// Symmetric tensors at points from those in cells and on boundary faces, exact for linear fields (the vertex
 /// interpolation of the displacement, all faces of the boundary taking part). At symmetry planes the mirrored
-/// tensor is averaged in: no shear there.
+/// tensor is averaged in: no shear there. Where materials meet it is the mean of theirs.
 class PointTensors {
  public:
   /// `is_symmetry`: one a patch. Collective.
