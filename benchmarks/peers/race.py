@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What one run costs: whole process, started without mpirun, one core. Plate of configs/elliptic-plate and vibrating
+beam of configs/vibrating-cantilever with solid_solver; the plate with OpenFOAM's solidDisplacementFoam and CalculiX."""
+import dataclasses
+import os
+import pathlib
+import re
+import shutil
+import statistics
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
+import calculix_plate  # noqa: E402
+import openfoam_plate  # noqa: E402
+import plate as geometry  # noqa: E402
+from couplet_series import read_csv  # noqa: E402
+
+METHODS = {  # keys of solution-method as in the thesis's table 3.1, and ours; its tolerance
+    "S": "type: segregated, acceleration: none, face-gradient: thesis",
+    "SA": "type: segregated, acceleration: aitken, face-gradient: thesis",
+    "segregated, Anderson": "type: segregated, acceleration: anderson, face-gradient: thesis",
+    "C": "type: block-coupled, linear-solver: bicgstab-ilu, face-gradient: thesis",
+    "newton-krylov": "type: newton-krylov, preconditioner: multigrid, face-gradient: thesis",
+    "newton-krylov, corrected": "type: newton-krylov, preconditioner: multigrid, face-gradient: corrected",
+}
+EMPTY = 44e6  # bytes of a process that has read its case and nothing else
+
+
+@dataclasses.dataclass
+class Cost:
+    seconds: float  # wall
+    memory: float   # bytes, at most
+    output: str
+
+
+def cost(command, folder, environment, timeout=3600):
+    """Runs a program and takes its own account; raises what it said last if it fails."""
+    log = pathlib.Path(folder) / "race.log"
+    with open(log, "w") as out:
+        start = time.perf_counter()
+        process = subprocess.Popen([str(c) for c in command], cwd=folder, env=environment, stdout=out,
+                                   stderr=subprocess.STDOUT)
+        _, status, usage = os.wait4(process.pid, 0)
+        seconds = time.perf_counter() - start
+    process.returncode = os.waitstatus_to_exitcode(status)
+    text = log.read_text(errors="replace")
+    if process.returncode != 0:
+        raise RuntimeError(f"{command[0]} ended with code {process.returncode}: {' / '.join(text.splitlines()[-3:])}")
+    return Cost(seconds, usage.ru_maxrss * 1024.0, text)
+
+
+def ours(job, case, sets, times=1):
+    """solid_solver on configs/<case>: the median of so many runs as (Cost, output folder, iterations of all steps)."""
+    folder = job.scratch / "race" / case
+    folder.mkdir(parents=True, exist_ok=True)
+    command = [job.build / "bin/solid_solver", job.root / "configs" / case / "case.yaml",
+               f"--set=simulation.output.folder={folder / 'out'}", *(f"--set={s}" for s in sets)]
+    runs = [cost(command, folder, job.environment) for _ in range(times)]
+    solver = read_csv(folder / "out/solid/solver.csv")
+    median = statistics.median(r.seconds for r in runs)
+    return min(runs, key=lambda r: abs(r.seconds - median)), folder / "out", solver["iterations"]
+
+
+def plate_sets(n, method, tolerance, shape=0, extra=()):
+    return ["participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d, shape: %d}" % (*n, shape),
+            "participants.solid.solution-method={%s, relative-tolerance: %g, max-iterations: 20000}" % (method, tolerance),
+            *extra]
+
+
+def our_plate(job, n, method="newton-krylov, corrected", tolerance=1e-8, shape=0, times=1):
+    """Seconds, memory, iterations, cells, and on hexahedra the error of the displacement at the nine points. The mesh is
+    made before the clock starts."""
+    def make():
+        sets = plate_sets(n, METHODS[method], tolerance, shape)
+        job.once(("meshed", n, shape), lambda: ours(job, "elliptic-plate", plate_sets(n, METHODS[method], 1e-2, shape)))
+        run, folder, iterations = ours(job, "elliptic-plate", sets, times)
+        result = {"seconds": run.seconds, "memory": run.memory, "iterations": int(iterations[-1])}
+        result["cells"] = n[0] * n[1] * n[2] if shape == 0 else cells_of(folder)
+        if shape == 0:
+            result["error"] = geometry.nine_points.errors(folder / "solid")[0]
+        return result
+    return job.once(("our plate", n, method, tolerance, shape, times), make)
+
+
+def cells_of(folder):
+    from couplet_series import find_series
+    return len(find_series(folder / "solid").cells)
+
+
+def foam_plate(job, n, tolerance=1e-5, solver="GAMG", relative=0.9, times=1):
+    """solidDisplacementFoam; None where OpenFOAM is not installed."""
+    program = shutil.which("solidDisplacementFoam")
+    if not program:
+        return None
+
+    def make():
+        folder = job.scratch / ("foam-%d-%d-%d" % n)
+        openfoam_plate.write(folder, n, tolerance, solver, relative)
+        environment = dict(job.environment, WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"))
+        runs = [cost([program], folder, environment) for _ in range(times)]
+        iterations = re.findall(r"^Iteration: (\d+)", runs[0].output, flags=re.M)
+        return {"seconds": statistics.median(r.seconds for r in runs), "memory": runs[0].memory,
+                "iterations": int(iterations[-1]) if iterations else 0, "cells": n[0] * n[1] * n[2],
+                "error": openfoam_plate.plate_error(folder, n)}
+    return job.once(("foam", n, tolerance, solver, relative, times), make)
+
+
+def calculix(job, n, element, solver="SPOOLES", times=1):
+    """CalculiX; None where it is not installed."""
+    program = shutil.which("ccx")
+    if not program:
+        return None
+
+    def make():
+        folder = job.scratch / f"ccx-{element}-{n[0]}-{solver.split()[-1]}"
+        folder.mkdir(parents=True, exist_ok=True)
+        calculix_plate.write(folder / "plate.inp", n, element, solver)
+        runs = [cost([program, "plate"], folder, job.environment) for _ in range(times)]
+        return {"seconds": statistics.median(r.seconds for r in runs), "memory": runs[0].memory, "iterations": 0,
+                "cells": n[0] * n[1] * n[2], "error": calculix_plate.plate_error(folder / "plate.frd", n, element)}
+    return job.once(("ccx", n, element, solver, times), make)
+
+
+def beam(job, method, tolerance=1e-7, step=0.01, steps=60, extra=()):
+    """Seconds a time step of the vibrating beam (5120 cells): the difference of a long and a short run."""
+    def one(n):
+        sets = ["participants.solid.solution-method={%s, relative-tolerance: %g, max-iterations: 20000}" % (method, tolerance),
+                f"simulation.time-step={step}", f"simulation.end-time={n * step}", "simulation.output.interval=1000",
+                "participants.solid.time-scheme={type: three-point-backward}", *extra]
+        run, _, iterations = ours(job, "vibrating-cantilever", sets)
+        return run.seconds, iterations
+    short, _ = one(steps // 6)
+    long, iterations = one(steps)
+    return (long - short) / (steps - steps // 6), statistics.mean(iterations)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of speed and memory: the plate beside solidDisplacementFoam and CalculiX in one run, the vibrating beam beside
+block-coupled. Whole processes, one core, started without mpirun."""
+from validation.job import Bar
+
+FINE, FINEST = (32, 48, 24), (64, 96, 48)
+OURS, CORRECTED = "newton-krylov", "newton-krylov, corrected"
+
+
+def race(job):
+    return job.beside("benchmarks/peers/race.py")
+
+
+def cells_per_second(method, wanted):
+    def measure(job):
+        foam = race(job).foam_plate(job, FINE)
+        mine = race(job).our_plate(job, FINE, method, times=3)
+        rate = mine["cells"] / mine["seconds"]
+        if foam is None:
+            return f"{rate:.0f} cells/s; solidDisplacementFoam is not installed", False
+        ratio = foam["seconds"] / mine["seconds"]
+        return f"{ratio:.1f} times, {rate:.0f} cells/s", ratio >= wanted
+    return measure
+
+
+def memory(method):
+    def measure(job):
+        r = race(job).our_plate(job, FINEST, method)
+        kb = (r["memory"] - race(job).EMPTY) / r["cells"] / 1e3
+        return f"{kb:.2f} kB", kb <= 2.0
+    return measure
+
+
+def growth(method, limit):
+    def measure(job):
+        small, large = (race(job).our_plate(job, n, method, times=t) for n, t in ((FINE, 3), (FINEST, 1)))
+        ratio = large["seconds"] / large["cells"] / (small["seconds"] / small["cells"])
+        return f"{ratio:.2f}, iterations {small['iterations']} and {large['iterations']}", ratio < limit
+    return measure
+
+
+def tetrahedra(method):
+    def measure(job):
+        hexahedra = race(job).our_plate(job, FINE, method, times=3)
+        tets = race(job).our_plate(job, (16, 24, 12), method, shape=2)
+        ratio = tets["seconds"] / tets["cells"] / (hexahedra["seconds"] / hexahedra["cells"])
+        return f"{ratio:.2f} times per cell ({tets['cells']} tetrahedra, {tets['iterations']} iterations)", ratio <= 3
+    return measure
+
+
+def beside(error, mesh, rivals):
+    """Time to this error beside others' times: (name, run, how many times sooner)."""
+    def measure(job):
+        mine = race(job).our_plate(job, mesh, times=3)
+        parts, met = [f"{100 * mine['error']:.2f} % in {mine['seconds']:.2f} s"], mine["error"] <= error
+        for name, run, wanted in rivals:
+            other = run(race(job), job)
+            if other is None:
+                parts.append(f"{name} is not installed")
+                met = False
+                continue
+            ratio = other["seconds"] / mine["seconds"]
+            parts.append(f"{name} {100 * other['error']:.2f} % in {other['seconds']:.2f} s: {ratio:.1f} times")
+            met = met and ratio >= wanted
+        return ", ".join(parts), met
+    return measure
+
+
+def beam(job):
+    """10^4 steps of 0.01 s, shortened to a sample; three-point backward as the thesis's table 3.4."""
+    mine, iterations = race(job).beam(job, "")
+    other, others = race(job).beam(job, race(job).METHODS["C"])
+    ratio = other / mine
+    return f"{ratio:.1f} times: {1e3 * mine:.1f} ms a step ({iterations:.1f} iterations) beside {1e3 * other:.1f} ms ({others:.1f})", ratio >= 8
+
+
+def table_3_1(job):
+    """Case B, meshes 1 to 3, S/SA and SA/C, and newton-krylov beside C."""
+    parts = []
+    for n in ((4, 6, 3), (8, 12, 6), (16, 24, 12)):
+        t = {m: race(job).our_plate(job, n, m, 1e-7)["seconds"] for m in ("S", "SA", "C", OURS)}
+        parts.append(f"{t['S'] / t['SA']:.1f} {t['SA'] / t['C']:.1f} {t['C'] / t[OURS]:.1f}")
+    return "; ".join(parts), True
+
+
+CCX_1 = ("CalculiX C3D20 8x12x6", lambda r, job: r.calculix(job, (8, 12, 6), "C3D20", times=3), 2)
+FOAM_1 = ("solidDisplacementFoam 16x24x12", lambda r, job: r.foam_plate(job, (16, 24, 12)), 5)
+CCX_03 = ("CalculiX C3D8I 32x48x24", lambda r, job: r.calculix(job, FINE, "C3D8I", "ITERATIVE CHOLESKY"), 4)
+CCX_01 = ("CalculiX C3D20 32x48x24", lambda r, job: r.calculix(job, FINE, "C3D20", "ITERATIVE CHOLESKY"), 5)
+BARS = [
+    Bar("B 32x48x24 to 1e-8, thesis's gradient: cells per second over solidDisplacementFoam's", ">= 13",
+        cells_per_second(OURS, 13)),
+    Bar("B 32x48x24 to 1e-8, corrected gradient: the same", ">= 9", cells_per_second(CORRECTED, 9)),
+    Bar("B 64x96x48: memory a cell, thesis's gradient", "<= 2.0 kB", memory(OURS), long=True),
+    Bar("B 64x96x48: memory a cell, corrected gradient", "<= 2.0 kB", memory(CORRECTED), long=True),
+    Bar("B: time per cell, 295 k over 37 k cells, thesis's gradient", "< 1.4", growth(OURS, 1.4), long=True),
+    Bar("B: the same, corrected gradient", "< 1.7", growth(CORRECTED, 1.7), long=True),
+    Bar("B on tetrahedra: time per cell over hexahedra's, thesis's gradient", "<= 3", tetrahedra(OURS)),
+    Bar("B on tetrahedra: the same, corrected gradient", "<= 3", tetrahedra(CORRECTED)),
+    Bar("B: 1 % error of u, beside CalculiX and solidDisplacementFoam", ">= 2 and 5 times sooner",
+        beside(0.0105, (16, 24, 12), (CCX_1, FOAM_1))),
+    Bar("B: 0.3 % error of u, beside CalculiX at 0.2 to 0.3 %", ">= 4 times sooner", beside(0.0035, FINE, (CCX_03,))),
+    Bar("B: 0.1 % error of u, beside CalculiX's quadratic elements", ">= 5 times sooner", beside(0.001, FINEST, (CCX_01,)),
+        long=True),
+    Bar("C: a step of 0.01 s, over block-coupled with BiCGStab and ILU", ">= 8 times faster", beam),
+    Bar("table 3.1, case B, meshes 1 to 3: S/SA, SA/C, C/newton-krylov", "reported (thesis 1.6 2.6; 2.1 5.7; 3.8 4.3)",
+        table_3_1),
+]
