@@ -101,7 +101,7 @@ SolveStatistics BlockCoupled::solve_corrected(std::span<const double> b, std::sp
           statistics.residual / size, statistics.iterations, tolerance_);
     ++statistics.iterations;
     std::ranges::fill(step_, 0.0);
-    solver_.solve(residual_, step_);
+    statistics.inner_iterations += solver_.solve(residual_, step_).iterations;
     accelerator_->advance(u, step_);
   }
   statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -17,12 +17,25 @@ std::vector<double> Solid::unknowns_of(std::span<const double> cells, std::span<
   return unknowns;
 }
 
-/// Gradients at these flux faces with the known displacements of the accepted time. Collective.
-std::vector<Tensor3> Solid::corrected_gradients(Index first, Index count, std::span<const double> cells,
-                                                std::span<const double> faces) const {
-  std::vector<Tensor3> gradients(mesh_.n_flux_faces());
-  kernel_.face_gradients(unknowns_of(cells, faces), known_accepted_, gradients);
-  return {gradients.begin() + first, gradients.begin() + first + count};
+/// The known columns of elastic() in these fields: what of a point's value is not free, and the known faces.
+std::vector<double> Solid::known_of(std::span<const double> faces, std::span<const double> points) const {
+  const int dim = mesh_.dim;
+  const VertexConstraints& constraints = elastic_.constraints();
+  std::vector<double> known(elastic_.n_known() * dim, 0);
+  const auto at = [dim](std::span<const double> values, Index i) {
+    Vec3 u = Vec3::Zero();
+    for (int a = 0; a < dim; ++a) u[a] = values[std::size_t(i) * dim + a];
+    return u;
+  };
+  for (const Index v : constraints.points()) {
+    const Vec3 u = at(points, v), held = u - constraints.free_part(v) * u;
+    for (int a = 0; a < dim; ++a) known[std::size_t(constraints.column(v)) * dim + a] = held[a];
+  }
+  for (const Index f : elastic_.known_faces()) {
+    const Vec3 u = at(faces, f - mesh_.n_interior);
+    for (int a = 0; a < dim; ++a) known[std::size_t(elastic_.known_of_face(f)) * dim + a] = u[a];
+  }
+  return known;
 }
 
 /// Values of all local points. Collective.

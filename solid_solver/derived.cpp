@@ -14,13 +14,20 @@ Tensor3 symmetric(const Tensor3& gradient) { return 0.5 * (gradient + gradient.t
 
 }  // namespace
 
-/// All gradients of displacements pass here. `cells`, `faces`, `points`: of all local ones.
+/// All gradients of displacements pass here. `cells`, `faces`, `points`: of all local ones. Collective.
+void Solid::visit_gradients(std::span<const double> cells, std::span<const double> faces,
+                            std::span<const double> points, const ElasticKernel::TakeGradient& take) const {
+  kernel_.face_gradients(unknowns_of(cells, faces), known_of(faces, points), take);
+}
+
+/// Those of the flux faces first, first + 1, ... Collective.
 std::vector<Tensor3> Solid::face_gradients(Index first, Index count, std::span<const double> cells,
                                            std::span<const double> faces,
                                            std::span<const double> points) const {
-  if (is_corrected()) return corrected_gradients(first, count, cells, faces);
   std::vector<Tensor3> gradients(count);
-  for (Index i = 0; i < count; ++i) gradients[i] = elastic_.gradient(first + i, cells, faces, points);
+  visit_gradients(cells, faces, points, [&](Index f, const Tensor3& gradient) {
+    if (f >= first && f < first + count) gradients[f - first] = gradient;
+  });
   return gradients;
 }
 
@@ -41,10 +48,7 @@ std::vector<Tensor3> Solid::cell_gradient(std::span<const double> points) const 
   const Index n_owned = mesh_.cells.n_owned();
   std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
   std::vector<double> weight(n_owned, 0);
-  const std::vector<Tensor3> on_faces =
-      face_gradients(0, mesh_.n_flux_faces(), state_.cell_u, state_.face_u, points);
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const Tensor3& here = on_faces[f];
+  visit_gradients(state_.cell_u, state_.face_u, points, [&](Index f, const Tensor3& here) {
     const auto add = [&](Index c) {
       if (c >= n_owned) return;
       const Vec3 arm = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[c];
@@ -54,7 +58,7 @@ std::vector<Tensor3> Solid::cell_gradient(std::span<const double> points) const 
     };
     add(mesh_.owner[f]);
     if (f < mesh_.n_interior) add(mesh_.neighbour[f]);
-  }
+  });
   for (Index c = 0; c < n_owned; ++c) gradient[c] /= weight[c];
   return gradient;
 }

@@ -77,13 +77,13 @@ std::vector<double> Solid::point_acceleration() const {
 
 std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
   std::vector<PatchForce> forces;
+  const std::vector<Tensor3> stress = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     if (!boundaries_.holds(p)) continue;
     const Patch& patch = mesh_.patches[p];
-    const std::vector<Tensor3> stress = face_stress(patch.first, patch.count, points);
     Vec3 force = Vec3::Zero();
-    for (Index i = 0; i < patch.count; ++i)
-      force += elastic_.holding_force(patch.first + i, stress[i], state_.face_u, known_accepted_);
+    for (Index f = patch.first; f < patch.first + patch.count; ++f)
+      force += elastic_.holding_force(f, stress[f - mesh_.n_interior], state_.face_u, known_accepted_);
     for (int a = 0; a < 3; ++a) force[a] = sum(mesh_.comm, force[a]);
     forces.push_back({mesh_.patches[p].name, force});
   }
@@ -98,9 +98,8 @@ Vec3 Solid::total_load() const {
 
 double Solid::largest_gradient(std::span<const double> points) const {
   double largest = 0;
-  const std::vector<Tensor3> on_faces =
-      face_gradients(0, mesh_.n_flux_faces(), state_.cell_u, state_.face_u, points);
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) largest = std::max(largest, on_faces[f].squaredNorm());
+  visit_gradients(state_.cell_u, state_.face_u, points,
+                  [&](Index, const Tensor3& g) { largest = std::max(largest, g.squaredNorm()); });
   return max(mesh_.comm, std::sqrt(largest));
 }
 

@@ -9,6 +9,7 @@ void declare(config::Section& s, MethodParameters& m) {
   using LinearSolver = MethodParameters::LinearSolver;
   using Preconditioner = MethodParameters::Preconditioner;
   using Acceleration = MethodParameters::Acceleration;
+  using Predictor = MethodParameters::Predictor;
   s.choice("type", m.type,
            {{"auto", Type::automatic},
             {"block-coupled", Type::block_coupled},
@@ -52,6 +53,11 @@ void declare(config::Section& s, MethodParameters& m) {
   s.value("anderson-history", m.anderson_history)
       .range(1, 30)
       .doc("iterations that Anderson's method combines");
+  s.choice("predictor", m.predictor,
+           {{"none", Predictor::none}, {"euler", Predictor::euler}, {"adams", Predictor::adams}})
+      .doc(
+          "first guess of a dynamic step: the last displacement; moved on with the velocity (2.73); with two "
+          "velocities (2.74)");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc("residual over right-hand side at which the iteration stops");

@@ -12,6 +12,7 @@ struct MethodParameters {
   enum class LinearSolver { automatic, direct, bicgstab_ilu, gmres_multigrid };
   enum class Preconditioner { automatic, multigrid, factors };
   enum class Acceleration { none, aitken, anderson };
+  enum class Predictor { none, euler, adams };
   Type type = Type::automatic;
   FaceGradient face_gradient = FaceGradient::automatic;
   LinearSolver linear_solver = LinearSolver::automatic;       // of the block-coupled method
@@ -19,6 +20,7 @@ struct MethodParameters {
   Acceleration acceleration = Acceleration::anderson;         // of the segregated method
   int aitken_interval = 5;
   int anderson_history = 10;
+  Predictor predictor = Predictor::euler;
   double relative_tolerance = 1e-10;
   int max_iterations = 2000;
 };

@@ -47,8 +47,8 @@ double heaviness(const SolidProblem& problem) {
   for (const double m : problem.inertia) inertia += m;
   for (Index f = 0; f < mesh.n_interior; ++f) {
     const LameConstants lame = problem.elastic.lame(mesh.owner[f]);
-    stiffness += 2 * (2 * lame.mu + lame.lambda) * mesh.reference.face_area[f].norm() *
-                 problem.elastic.faces().inverse_dn[f];
+    const FaceLine line = face_line(mesh, mesh.reference, f);
+    stiffness += 2 * (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
   }
   return sum(mesh.comm, inertia) / sum(mesh.comm, stiffness);
 }

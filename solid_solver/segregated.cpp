@@ -27,13 +27,13 @@ Acceleration acceleration_of(const MethodParameters& parameters) {
 
 double stiffness(const SolidProblem& problem, Index f) {
   const LameConstants lame = problem.elastic.lame(problem.mesh.owner[f]);
-  return (2 * lame.mu + lame.lambda) * problem.mesh.reference.face_area[f].norm() *
-         problem.elastic.faces().inverse_dn[f];
+  const FaceLine line = face_line(problem.mesh, problem.mesh.reference, f);
+  return (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
 }
 
 /// What a boundary face adds on the diagonal of its cell.
 double boundary_diagonal(const SolidProblem& problem, Index f, int component) {
-  const double k = stiffness(problem, f), n = problem.elastic.faces().normal[f][component];
+  const double k = stiffness(problem, f), n = problem.mesh.reference.face_area[f].normalized()[component];
   switch (problem.elastic.condition(f)) {
     case ElasticCondition::prescribed:
       return k;
@@ -122,12 +122,13 @@ double Segregated::find_residual(std::span<const double> b, std::span<const doub
   return norm(problem_.mesh.comm, residual_);
 }
 
-void Segregated::find_step() {
+int Segregated::find_step() {
+  int inner = 0;
   const std::size_t n = problem_.mesh.cells.n_owned(), dim = problem_.mesh.dim;
   for (std::size_t a = 0; a < dim; ++a) {
     for (std::size_t c = 0; c < n; ++c) scalar_b_[c] = residual_[c * dim + a];
     std::fill(scalar_u_.begin(), scalar_u_.end(), 0.0);
-    components_[a].solver->solve(scalar_b_, scalar_u_);
+    inner += components_[a].solver->solve(scalar_b_, scalar_u_).iterations;
     for (std::size_t c = 0; c < n; ++c) step_[c * dim + a] = scalar_u_[c];
   }
   const auto& faces = problem_.elastic.unknown_faces();
@@ -139,6 +140,7 @@ void Segregated::find_step() {
       step_[(n + i) * dim + a] = follows * cell + residual_[(n + i) * dim + a] / own_[i];
     }
   }
+  return inner;
 }
 
 SolveStatistics Segregated::solve(std::span<const double> b, std::span<double> u) {
@@ -157,7 +159,7 @@ SolveStatistics Segregated::solve(std::span<const double> b, std::span<double> u
           "needs no outer iterations.",
           statistics.iterations, statistics.residual / wanted * tolerance_, tolerance_);
     ++statistics.iterations;
-    find_step();
+    statistics.inner_iterations += find_step();
     accelerator_.advance(u, step_);
     statistics.residual = find_residual(b, u);
   }

@@ -29,7 +29,8 @@ class Segregated final : public SolutionMethod {
   };
   void assemble(int component);
   double find_residual(std::span<const double> b, std::span<const double> u);
-  void find_step();
+  /// The scalar solves for the residual; gives their iterations.
+  int find_step();
 
   SolidProblem problem_;
   double tolerance_;

@@ -68,7 +68,8 @@ void Solid::start_from_rest() {
   rhs_.assign(elastic_.n_unknowns(), 0);
   unknowns_ = rhs_;
   if (is_dynamic() && uses_acceleration(parameters_.time_scheme.type)) state_.cell_a = state_.cell_u;
-  if (is_dynamic() && uses_old_level(parameters_.time_scheme.type))
+  if (is_dynamic() && (uses_old_level(parameters_.time_scheme.type) ||
+                       parameters_.method.predictor == MethodParameters::Predictor::adams))
     state_.cell_u_old = state_.cell_v_old = state_.cell_u;
   if (wants_acceleration()) {
     state_.acceleration = state_.mean_acceleration = state_.cell_u;

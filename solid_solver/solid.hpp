@@ -38,7 +38,7 @@ struct SolidState {
   int steps = 0;            ///< accepted so far
   std::vector<double> cell_u, cell_v, face_u, face_v;
   std::vector<double> cell_a;                  ///< generalised-alpha alone
-  std::vector<double> cell_u_old, cell_v_old;  ///< a step earlier; three-point alone
+  std::vector<double> cell_u_old, cell_v_old;  ///< a step earlier; three-point, Adams's predictor
   double stage_dt = 0;                         ///< of the last stage
   double offset_lag = 0;                       ///< `offset` lives so long before `time`
   std::vector<double> offset;       ///< u_B - u_P of the traction faces where the last stage was solved
@@ -139,6 +139,8 @@ class Solid final : public Participant {
   void finish_acceleration();
   void judge_step();
   std::vector<double> known_acceleration() const;
+  void visit_gradients(std::span<const double> cells, std::span<const double> faces,
+                       std::span<const double> points, const ElasticKernel::TakeGradient& take) const;
   std::vector<Tensor3> face_gradients(Index first, Index count, std::span<const double> cells,
                                       std::span<const double> faces, std::span<const double> points) const;
   double stress_work(const Placed& stressed, std::span<const double> cell_change,
@@ -171,8 +173,7 @@ class Solid final : public Participant {
                                 std::span<const double> known) const;
   bool is_corrected() const { return kernel_.scheme() == FaceGradientScheme::corrected; }
   std::vector<double> unknowns_of(std::span<const double> cells, std::span<const double> faces) const;
-  std::vector<Tensor3> corrected_gradients(Index first, Index count, std::span<const double> cells,
-                                           std::span<const double> faces) const;
+  std::vector<double> known_of(std::span<const double> faces, std::span<const double> points) const;
   std::vector<double> corrected_points(std::span<const double> cells, std::span<const double> faces,
                                        std::span<const double> known) const;
   void judge_inertia();

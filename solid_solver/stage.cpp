@@ -67,6 +67,7 @@ Solid::System& Solid::system_for(double mass_factor) {
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
       system->inertia.push_back(mass_factor * density(c) * mesh_.reference.volume[c]);
   system->method = make_solution_method({mesh_, elastic_, system->inertia, kernel_}, parameters_.method);
+  elastic_.forget_faces();  // what the method needs of them it has by now
   announce(*system);
   systems_.insert(systems_.begin(), std::move(system));
   return *systems_.front();
@@ -211,16 +212,24 @@ void Solid::add_face_forces(const StageWork& work, std::span<const double> inter
 }
 
 // For iterative methods: where the accepted motion leads, so that equal loads give equal answers.
+// Thesis (2.73): u^n + a v^n; (2.74): and a^2 / (2 dt^n) (v^n - v^{n-1}), a the way to the place of the
+// stage.
 void Solid::guess(const StageWork& work, const SolidState& now) {
+  using Predictor = MethodParameters::Predictor;
+  const Predictor predictor = parameters_.method.predictor;
+  const double ahead = is_dynamic() && predictor != Predictor::none ? work.stage.place * work.stage.dt : 0;
+  const bool adams = predictor == Predictor::adams && &now == &state_ && state_.steps > 0;
+  const double bend = adams ? ahead * ahead / (2 * state_.dt) : 0;
+  const auto curve = [&](std::size_t i) { return adams ? bend * (now.cell_v[i] - now.cell_v_old[i]) : 0.0; };
   const int dim = mesh_.dim;
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
-  const double ahead = is_dynamic() ? work.stage.place * work.stage.dt : 0;
-  for (std::size_t i = 0; i < n_cells; ++i) unknowns_[i] = now.cell_u[i] + ahead * now.cell_v[i];
+  for (std::size_t i = 0; i < n_cells; ++i) unknowns_[i] = now.cell_u[i] + ahead * now.cell_v[i] + curve(i);
   const auto& faces = elastic_.unknown_faces();
   for (std::size_t i = 0; i < faces.size(); ++i)
     for (int a = 0; a < dim; ++a) {
       const std::size_t b = std::size_t(faces[i] - mesh_.n_interior) * dim + a;
-      unknowns_[n_cells + i * dim + a] = now.face_u[b] + ahead * now.face_v[b];
+      const std::size_t c = std::size_t(mesh_.owner[faces[i]]) * dim + a;
+      unknowns_[n_cells + i * dim + a] = now.face_u[b] + ahead * now.face_v[b] + curve(c);
     }
 }
 

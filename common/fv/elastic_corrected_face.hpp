@@ -37,13 +37,13 @@ template <int D>
 CorrectedFace<D> make_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
   const LameConstants lame = face_lame(mesh, rows, f);
   CorrectedFace<D> face{};
-  const double area = mesh.reference.face_area[f].norm();
-  std::copy_n(rows.faces().normal[f].data(), D, face.n);
+  const FaceLine line = face_line(mesh, mesh.reference, f);
+  std::copy_n(line.normal.data(), D, face.n);
   if constexpr (D == 2) std::copy_n(mesh.face_points[f].data(), 2, face.around);
-  face.inverse_dn = rows.faces().inverse_dn[f];
-  face.inverse_area = 1 / area;
-  face.mu = lame.mu * area;
-  face.lambda = lame.lambda * area;
+  face.inverse_dn = line.inverse_dn;
+  face.inverse_area = 1 / line.area;
+  face.mu = lame.mu * line.area;
+  face.lambda = lame.lambda * line.area;
   face.curved = f < mesh.n_interior && alike(mesh, f);
   return face;
 }

@@ -37,6 +37,9 @@ Csr flux_faces_of_cells(const Mesh& mesh) {
 CellGradients::CellGradients(const Mesh& mesh, const ElasticOperator& rows) {
   const Csr faces = flux_faces_of_cells(mesh);
   const Geometry& g = mesh.reference;
+  offset.reserve(faces.offset.size());
+  node.reserve(faces.index.size());
+  weight.reserve(faces.index.size());
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     Tensor3 m = Tensor3::Zero();
     if (mesh.dim == 2) m(2, 2) = 1;

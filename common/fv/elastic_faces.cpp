@@ -94,7 +94,7 @@ void ElasticOperator::join_twins(std::span<double> faces) const {
 Vec3 ElasticOperator::holding_force(Index face, const Tensor3& stress, std::span<const double> faces,
                                     std::span<const double> known) const {
   const Vec3 force = stress * mesh_->reference.face_area[face];
-  const Vec3& n = faces_.normal[face];
+  const Vec3 n = mesh_->reference.face_area[face].normalized();
   switch (condition(face)) {
     case ElasticCondition::symmetry:
       return n * n.dot(force);

@@ -19,8 +19,8 @@ void ElasticKernel::apply(std::span<const double> unknowns, std::span<const doub
 }
 
 void ElasticKernel::face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                                   std::span<Tensor3> gradients) const {
-  implementation_->face_gradients(unknowns, known, gradients);
+                                   const TakeGradient& take) const {
+  implementation_->face_gradients(unknowns, known, take);
 }
 
 void ElasticKernel::point_values(std::span<const double> unknowns, std::span<const double> known,

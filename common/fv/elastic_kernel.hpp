@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -43,9 +44,11 @@ class ElasticKernel {
   /// Rows and columns as ElasticOperator has them; an empty `known` stands for zeros. Allocates nothing but
   /// what the halo exchange needs. Collective.
   void apply(std::span<const double> unknowns, std::span<const double> known, std::span<double> result) const;
-  /// Gradient at the flux faces, entry (i, j) = d u_j / d x_i; zeros across the plane in 2-D. Collective.
+  /// Takes (face, gradient) for each flux face, entry (i, j) = d u_j / d x_i; zeros across the plane in 2-D.
+  using TakeGradient = std::function<void(Index, const Tensor3&)>;
+  /// Collective.
   void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                      std::span<Tensor3> gradients) const;
+                      const TakeGradient& take) const;
   /// dim values a local point; those of points that belong to no owned cell are left as they are. Collective.
   void point_values(std::span<const double> unknowns, std::span<const double> known,
                     std::span<double> points) const;

@@ -6,8 +6,8 @@
 
 #include "common/fv/elastic_corrected_face.hpp"
 #include "common/fv/elastic_corrections.hpp"
-#include "common/fv/elastic_faces.hpp"
 #include "common/fv/elastic_nodes.hpp"
+#include "common/fv/elastic_rows.hpp"
 #include "common/fv/elastic_vertices.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -24,7 +24,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   void apply(std::span<const double> unknowns, std::span<const double> known,
              std::span<double> result) override;
   void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                      std::span<Tensor3> gradients) override;
+                      const ElasticKernel::TakeGradient& take) override;
   void point_values(std::span<const double> unknowns, std::span<const double> known,
                     std::span<double> points) override;
 
@@ -53,7 +53,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   const Mesh& mesh_;
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
-  ElasticFaces boundary_;
+  ElasticRows boundary_;
   ElasticVertices vertices_;
   CellGradients gradients_;
   std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include the ghosts
@@ -376,7 +376,7 @@ void CorrectedKernel<D>::apply(std::span<const double> unknowns, std::span<const
 
 template <int D>
 void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                                        std::span<Tensor3> gradients) {
+                                        const ElasticKernel::TakeGradient& take) {
   prepare(unknowns, known);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const Rows<D> grad = around(f);
@@ -388,9 +388,10 @@ void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::s
       g = lanes::dot<D>(n, at_symmetry(f, grad)) * n;
     else
       g = outer(f, grad);
-    gradients[f].setZero();
+    Tensor3 gradient = Tensor3::Zero();
     for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b) gradients[f](a, b) = grad.row[a][b] + n[a] * g[b];
+      for (int b = 0; b < D; ++b) gradient(a, b) = grad.row[a][b] + n[a] * g[b];
+    take(f, gradient);
   }
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // ElasticKernel with the thesis's face gradient: two passes, vertices then faces.
-#include "common/fv/elastic_faces.hpp"
+#include <array>
+
 #include "common/fv/elastic_nodes.hpp"
+#include "common/fv/elastic_rows.hpp"
 #include "common/fv/elastic_vertices.hpp"
 
 namespace couplet {
@@ -25,25 +27,24 @@ struct ThesisFace {
 
 template <int D>
 ThesisFace<D> make_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
-  const FaceGradient& faces = rows.faces();
   const LameConstants lame = face_lame(mesh, rows, f);
+  const FaceLine line = face_line(mesh, mesh.reference, f);
+  std::array<Vec3, 4> weights;
+  tangential_weights(mesh, mesh.reference_points, f, line, weights.data());
   ThesisFace<D> face;
-  const Index first = mesh.face_points.offset[f], count = mesh.face_points.offset[f + 1] - first;
-  const Index* point = mesh.face_points.index.data() + first;
-  const double area = mesh.reference.face_area[f].norm();
+  const auto point = mesh.face_points[f];
   for (int i = 0; i < D - 1; ++i) {
-    const bool diagonals = count == 4;
+    const bool diagonals = point.size() == 4;
     const int plus = diagonals ? i : i + 1;
     face.plus[i] = point[plus];
     face.minus[i] = point[diagonals ? i + 2 : 0];
-    const Vec3& c = faces.tangential[first + plus];
-    for (int a = 0; a < D; ++a) face.c[i][a] = c[a];
-    face.kc[i] = faces.skew[f].dot(c);
+    for (int a = 0; a < D; ++a) face.c[i][a] = weights[plus][a];
+    face.kc[i] = line.skew.dot(weights[plus]);
   }
-  for (int a = 0; a < D; ++a) face.n[a] = faces.normal[f][a];
-  face.inverse_dn = faces.inverse_dn[f];
-  face.mu = lame.mu * area;
-  face.lambda = lame.lambda * area;
+  for (int a = 0; a < D; ++a) face.n[a] = line.normal[a];
+  face.inverse_dn = line.inverse_dn;
+  face.mu = lame.mu * line.area;
+  face.lambda = lame.lambda * line.area;
   return face;
 }
 
@@ -98,7 +99,7 @@ class ThesisKernel final : public ElasticKernel::Implementation {
   void apply(std::span<const double> unknowns, std::span<const double> known,
              std::span<double> result) override;
   void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                      std::span<Tensor3> gradients) override;
+                      const ElasticKernel::TakeGradient& take) override;
   void point_values(std::span<const double> unknowns, std::span<const double> known,
                     std::span<double> points) override;
 
@@ -112,7 +113,7 @@ class ThesisKernel final : public ElasticKernel::Implementation {
   const Mesh& mesh_;
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
-  ElasticFaces boundary_;
+  ElasticRows boundary_;
   ElasticVertices vertices_;
   std::vector<ThesisFace<D>> faces_;
   std::vector<double> points_;  // padded displacements of the vertices
@@ -187,7 +188,7 @@ void ThesisKernel<D>::apply(std::span<const double> unknowns, std::span<const do
 
 template <int D>
 void ThesisKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                                     std::span<Tensor3> gradients) {
+                                     const ElasticKernel::TakeGradient& take) {
   fill(unknowns, known);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const ThesisFace<D>& face = faces_[f];
@@ -195,8 +196,7 @@ void ThesisKernel<D>::face_gradients(std::span<const double> unknowns, std::span
     Lane<D> g = (load<D>(f < mesh_.n_interior ? nodes_[mesh_.neighbour[f]] : nodes_.of_face(f)) -
                  load<D>(nodes_[mesh_.owner[f]])) *
                 face.inverse_dn;
-    Tensor3& gradient = gradients[f];
-    gradient.setZero();
+    Tensor3 gradient = Tensor3::Zero();
     for (int i = 0; i < D - 1; ++i) {
       const Lane<D> along = load<D>(points_.data() + std::size_t(face.plus[i]) * stride) -
                             load<D>(points_.data() + std::size_t(face.minus[i]) * stride);
@@ -208,6 +208,7 @@ void ThesisKernel<D>::face_gradients(std::span<const double> unknowns, std::span
     if (symmetric) g = lanes::dot<D>(n, g) * n;
     for (int a = 0; a < D; ++a)
       for (int b = 0; b < D; ++b) gradient(a, b) += face.n[a] * g[b];
+    take(f, gradient);
   }
 }
 

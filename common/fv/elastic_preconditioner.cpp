@@ -37,10 +37,11 @@ class CompactRows {
 
 Lanes CompactRows::coefficient(Index f) const {
   const LameConstants lame = face_lame(mesh_, rows_, f);
-  const double scale = mesh_.reference.face_area[f].norm() * rows_.faces().inverse_dn[f];
+  const FaceLine line = face_line(mesh_, mesh_.reference, f);
+  const double scale = line.area * line.inverse_dn;
   Lanes k{};
   for (int c = 0; c < mesh_.dim; ++c) {
-    const double nc = rows_.faces().normal[f][c];
+    const double nc = line.normal[c];
     k[c] = static_cast<float>(scale * (lame.mu + (lame.mu + lame.lambda) * nc * nc));
   }
   return k;
@@ -56,9 +57,9 @@ Lanes CompactRows::bond(Index f) const {
 
 Lanes CompactRows::boundary_diagonal(Index f) const {
   Lanes k = coefficient(f);
-  const double area = mesh_.reference.face_area[f].norm();
+  const FaceLine line = face_line(mesh_, mesh_.reference, f);
   for (int c = 0; c < mesh_.dim; ++c) {
-    const double nc = rows_.faces().normal[f][c], whole = boundary_factor_ * k[c];
+    const double nc = line.normal[c], whole = boundary_factor_ * k[c];
     double value = 0;
     switch (rows_.condition(f)) {
       case ElasticCondition::prescribed:
@@ -68,7 +69,7 @@ Lanes CompactRows::boundary_diagonal(Index f) const {
         value = k[c] * nc * nc;
         break;
       case ElasticCondition::support: {
-        const double known = rows_.support(f).known(c, c), spring = area * rows_.support(f).spring(c, c);
+        const double known = rows_.support(f).known(c, c), spring = line.area * rows_.support(f).spring(c, c);
         value = whole * (known + (1 - known) * spring / (whole + spring));  // spring and half cell in series
         break;
       }
@@ -146,14 +147,15 @@ void ElasticPreconditioner::find_face_rows(double boundary_factor) {
   const Mesh& mesh = *mesh_;
   const auto stiffness = [&](Index f) {
     const LameConstants lame = rows_->lame(mesh.owner[f]);
-    const Vec3& n = rows_->faces().normal[f];
-    const double scale = boundary_factor * mesh.reference.face_area[f].norm() * rows_->faces().inverse_dn[f];
+    const FaceLine line = face_line(mesh, mesh.reference, f);
+    const Vec3& n = line.normal;
+    const double scale = boundary_factor * line.area * line.inverse_dn;
     return Tensor3(scale * (lame.mu * Tensor3::Identity() + (lame.mu + lame.lambda) * n * n.transpose()));
   };
   for (const Index f : rows_->unknown_faces()) {
     const LameConstants lame = rows_->lame(mesh.owner[f]);
-    const double whole =
-        (2 * lame.mu + lame.lambda) * mesh.reference.face_area[f].norm() * rows_->faces().inverse_dn[f];
+    const FaceLine line = face_line(mesh, mesh.reference, f);
+    const double whole = (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
     Tensor3 own = stiffness(f), cell = own;
     FaceRow row{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero(), mesh.owner[f], -1};
     switch (rows_->condition(f)) {
@@ -164,7 +166,7 @@ void ElasticPreconditioner::find_face_rows(double boundary_factor) {
         const ElasticSupport& s = rows_->support(f);
         const Tensor3 open = Tensor3::Identity() - s.known;
         cell = open * own;
-        own = open * (own + mesh.reference.face_area[f].norm() * s.spring) + whole * s.known;
+        own = open * (own + line.area * s.spring) + whole * s.known;
         break;
       }
       case ElasticCondition::bonded: {

@@ -69,8 +69,7 @@ ElasticOperator::ElasticOperator(const Mesh& mesh, ElasticBoundary boundary, Ela
       boundary_(std::move(boundary)),
       body_(std::move(body)),
       vertices_(mesh, stencils_of(boundary_, body_)),
-      constraints_(mesh, boundary_, vertices_),
-      faces_(mesh) {
+      constraints_(mesh, boundary_, vertices_) {
   sort_boundary();
   number_unknowns();
 }
@@ -78,6 +77,11 @@ ElasticOperator::ElasticOperator(const Mesh& mesh, ElasticBoundary boundary, Ela
 ElasticOperator::ElasticOperator(const Mesh& mesh, std::span<const ElasticCondition> conditions,
                                  const LameConstants& lame)
     : ElasticOperator(mesh, boundary_of_patches(mesh, conditions), {{lame}, {}}) {}
+
+const FaceGradient& ElasticOperator::faces() const {
+  if (!faces_) faces_ = std::make_unique<FaceGradient>(*mesh_);
+  return *faces_;
+}
 
 void ElasticOperator::sort_boundary() {
   known_of_face_.assign(mesh_->boundary.n_local(), -1);
@@ -131,7 +135,7 @@ void ElasticOperator::add_cell(Index cell, std::span<const Index> faces, Row& ro
       case ElasticCondition::traction:
         break;
       case ElasticCondition::symmetry:
-        add_flux(f, out * faces_.normal[f] * faces_.normal[f].transpose(), row);
+        add_flux(f, out * this->faces().normal[f] * this->faces().normal[f].transpose(), row);
         break;
       case ElasticCondition::support: {
         const ElasticSupport& s = support(f);
@@ -157,18 +161,18 @@ void ElasticOperator::add_unknown_face(Index face, Row& row) const {
       const ElasticSupport& s = support(face);
       const Tensor3 open = Tensor3::Identity() - s.known;
       add_flux(face, size * open, row);
-      const Tensor3 held = size * open * s.spring + stiffness * faces_.inverse_dn[face] * s.known;
+      const Tensor3 held = size * open * s.spring + stiffness * faces().inverse_dn[face] * s.known;
       add_face_node(face, held, row);
       row.known.add(known_of_face(face), -held);
       break;
     }
     case ElasticCondition::zero_gradient: {
-      const Tensor3 across = stiffness * faces_.inverse_dn[face] * Tensor3::Identity();
+      const Tensor3 across = stiffness * faces().inverse_dn[face] * Tensor3::Identity();
       row.nodes.add(mesh_->owner[face], -across);
       add_face_node(face, across, row);
       for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e)
         add_vertex(mesh_->face_points.index[e],
-                   stiffness * faces_.skew[face].dot(faces_.tangential[e]) * Tensor3::Identity(), row);
+                   stiffness * faces().skew[face].dot(faces().tangential[e]) * Tensor3::Identity(), row);
       break;
     }
     case ElasticCondition::bonded: {
@@ -194,10 +198,10 @@ LameConstants ElasticOperator::lame_at(Index face) const {
 //   g = (u_N - u_P) / (d . n) + sum_V (k . c_V) u_V
 void ElasticOperator::add_flux(Index face, const Tensor3& scale, Row& row) const {
   const bool on_boundary = face >= mesh_->n_interior;
-  const Vec3& n = faces_.normal[face];
+  const Vec3& n = faces().normal[face];
   const Tensor3 nn = n * n.transpose(), identity = Tensor3::Identity();
   const auto [mu, lambda] = lame_at(face);
-  const Tensor3 across = scale * (mu * (identity + nn) + lambda * nn) * faces_.inverse_dn[face];
+  const Tensor3 across = scale * (mu * (identity + nn) + lambda * nn) * faces().inverse_dn[face];
   row.nodes.add(mesh_->owner[face], -across);
   if (!on_boundary)
     row.nodes.add(mesh_->neighbour[face], across);
@@ -206,8 +210,8 @@ void ElasticOperator::add_flux(Index face, const Tensor3& scale, Row& row) const
   else if (condition(face) != ElasticCondition::symmetry)
     add_face_node(face, across, row);
   for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e) {
-    const Vec3& c = faces_.tangential[e];
-    const double kc = faces_.skew[face].dot(c);
+    const Vec3& c = faces().tangential[e];
+    const double kc = faces().skew[face].dot(c);
     add_vertex(
         mesh_->face_points.index[e],
         scale * (mu * (kc * (identity + nn) + c * n.transpose()) + lambda * (kc * nn + n * c.transpose())),
@@ -291,14 +295,14 @@ Tensor3 ElasticOperator::gradient(Index face, std::span<const double> cells, std
   };
   Tensor3 tangential = Tensor3::Zero();
   for (Index e = mesh_->face_points.offset[face]; e < mesh_->face_points.offset[face + 1]; ++e)
-    tangential += faces_.tangential[e] * at(points, mesh_->face_points.index[e]).transpose();
-  const Vec3& n = faces_.normal[face];
+    tangential += faces().tangential[e] * at(points, mesh_->face_points.index[e]).transpose();
+  const Vec3& n = faces().normal[face];
   const Vec3 here = at(cells, mesh_->owner[face]);
   if (face >= mesh_->n_interior && condition(face) == ElasticCondition::symmetry)
-    return n * (-n.dot(here) * faces_.inverse_dn[face] * n).transpose() + tangential;
+    return n * (-n.dot(here) * faces().inverse_dn[face] * n).transpose() + tangential;
   const Vec3 there =
       face < mesh_->n_interior ? at(cells, mesh_->neighbour[face]) : at(boundary, face - mesh_->n_interior);
-  const Vec3 normal = (there - here) * faces_.inverse_dn[face] + tangential.transpose() * faces_.skew[face];
+  const Vec3 normal = (there - here) * faces().inverse_dn[face] + tangential.transpose() * faces().skew[face];
   return n * normal.transpose() + tangential;
 }
 

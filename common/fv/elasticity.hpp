@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -60,7 +61,10 @@ class ElasticOperator {
 
   const VertexInterpolation& vertices() const { return vertices_; }
   const VertexConstraints& constraints() const { return constraints_; }
-  const FaceGradient& faces() const { return faces_; }
+  /// Made when first asked for.
+  const FaceGradient& faces() const;
+  /// Gives the memory of faces() back, until it is asked for again.
+  void forget_faces() const { faces_.reset(); }
   const ElasticBoundary& boundary() const { return boundary_; }
   /// Faces of owned cells with an unknown of their own (face indices): unknown node n_owned cells + i is
   /// entry i.
@@ -126,7 +130,7 @@ class ElasticOperator {
   ElasticBody body_;
   VertexInterpolation vertices_;
   VertexConstraints constraints_;
-  FaceGradient faces_;
+  mutable std::unique_ptr<FaceGradient> faces_;
   std::vector<Index> unknown_faces_, known_faces_;
   std::vector<Index> known_of_face_;  // column, -1: none (or not needed) here
   std::vector<GlobalIndex> number_;   // of each local node as unknown, -1: none

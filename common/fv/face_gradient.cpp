@@ -14,34 +14,43 @@ FaceGradient::FaceGradient(const Mesh& mesh)
 }
 
 void FaceGradient::update(const Mesh& mesh, const Geometry& geometry, std::span<const Vec3> points) {
-  const auto& offset = mesh.face_points.offset;
-  const auto& index = mesh.face_points.index;
   for (Index f = 0; f < mesh.n_faces(); ++f) {
-    const double area = geometry.face_area[f].norm();
-    const Vec3 n = geometry.face_area[f] / area;
-    const Vec3 across = f < mesh.n_interior ? Vec3(geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f))
-                                            : geometry.face_centre[f];
-    const Vec3 d = across - geometry.cell_centre[mesh.owner[f]];
-    normal[f] = n;
-    inverse_dn[f] = 1 / d.dot(n);
-    skew[f] = n - d * inverse_dn[f];
-    const Index first = offset[f], count = offset[f + 1] - first;
-    if (mesh.dim == 2) {
-      // An edge a-b of unit depth: the derivative along it.
-      const Vec3 along = points[index[first + 1]] - points[index[first]];
-      tangential[first + 1] = along / (area * area);
-      tangential[first] = -tangential[first + 1];
-      continue;
-    }
-    // L_e m_e = (x_2 - x_1) x n, half of it to each end point (2.56).
-    for (Index i = 0; i < count; ++i) tangential[first + i].setZero();
-    for (Index i = 0; i < count; ++i) {
-      const Index j = (i + 1) % count;
-      const Vec3 edge = points[index[first + j]] - points[index[first + i]];
-      const Vec3 half = edge.cross(n) / (2 * area);
-      tangential[first + i] += half;
-      tangential[first + j] += half;
-    }
+    const FaceLine line = face_line(mesh, geometry, f);
+    normal[f] = line.normal;
+    inverse_dn[f] = line.inverse_dn;
+    skew[f] = line.skew;
+    tangential_weights(mesh, points, f, line, tangential.data() + mesh.face_points.offset[f]);
+  }
+}
+
+FaceLine face_line(const Mesh& mesh, const Geometry& geometry, Index f) {
+  FaceLine line;
+  line.area = geometry.face_area[f].norm();
+  line.normal = geometry.face_area[f] / line.area;
+  const Vec3 across = f < mesh.n_interior ? Vec3(geometry.cell_centre[mesh.neighbour[f]] + mesh.shift(f))
+                                          : geometry.face_centre[f];
+  const Vec3 d = across - geometry.cell_centre[mesh.owner[f]];
+  line.inverse_dn = 1 / d.dot(line.normal);
+  line.skew = line.normal - d * line.inverse_dn;
+  return line;
+}
+
+void tangential_weights(const Mesh& mesh, std::span<const Vec3> points, Index f, const FaceLine& line,
+                        Vec3* c) {
+  const auto index = mesh.face_points[f];
+  if (mesh.dim == 2) {
+    // An edge a-b of unit depth: the derivative along it.
+    c[1] = (points[index[1]] - points[index[0]]) / (line.area * line.area);
+    c[0] = -c[1];
+    return;
+  }
+  // L_e m_e = (x_2 - x_1) x n, half of it to each end point (2.56).
+  for (std::size_t i = 0; i < index.size(); ++i) c[i].setZero();
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    const std::size_t j = (i + 1) % index.size();
+    const Vec3 half = (points[index[j]] - points[index[i]]).cross(line.normal) / (2 * line.area);
+    c[i] += half;
+    c[j] += half;
   }
 }
 

@@ -9,6 +9,18 @@
 
 namespace couplet {
 
+/// What the gradient at one face takes from the geometry.
+struct FaceLine {
+  Vec3 normal;        ///< unit vector out of the owner
+  double area;        ///< [m^2]
+  double inverse_dn;  ///< 1 / (d . n) [1/m]
+  Vec3 skew;          ///< k = n - d / (d . n)
+};
+FaceLine face_line(const Mesh& mesh, const Geometry& geometry, Index face);
+/// c_V of the points around the face [1/m], see FaceGradient; at most four.
+void tangential_weights(const Mesh& mesh, std::span<const Vec3> points, Index face, const FaceLine& line,
+                        Vec3* c);
+
 /// Gradient at a face from the two nodes beside it and the vertices around it, thesis (2.53)-(2.58):
 ///   grad_t phi = sum_V c_V phi_V                    surface Gauss theorem, edge values = mean of their end
 ///   points n . grad phi = (phi_N - phi_P) / (d . n) + k . grad_t phi,   d = x_N - x_P,  k = n - d / (d . n)

@@ -125,14 +125,16 @@ struct RigidCoarseSpace::Assembly {
   void add_face(Index f) {
     const bool on_boundary = f >= mesh.n_interior;
     const ElasticCondition condition = on_boundary ? rows.condition(f) : ElasticCondition::bonded;
-    const FaceGradient& faces = rows.faces();
+    const FaceLine line = face_line(mesh, mesh.reference, f);
+    std::array<Vec3, 4> weights;
+    tangential_weights(mesh, mesh.reference_points, f, line, weights.data());
     const auto [mu, lambda] = face_lame(mesh, rows, f);
-    const Vec3& n = faces.normal[f];
+    const Vec3& n = line.normal;
     const Tensor3 nn = n * n.transpose(), identity = Tensor3::Identity();
-    Tensor3 scale = mesh.reference.face_area[f].norm() * identity;
+    Tensor3 scale = line.area * identity;
     if (condition == ElasticCondition::symmetry) scale = scale * nn;
     if (condition == ElasticCondition::support) scale = scale * rows.support(f).known;
-    const Tensor3 across = scale * (mu * (identity + nn) + lambda * nn) * faces.inverse_dn[f];
+    const Tensor3 across = scale * (mu * (identity + nn) + lambda * nn) * line.inverse_dn;
     found_.clear();
     add_node(mesh.owner[f], -across);
     if (!on_boundary)
@@ -142,8 +144,8 @@ struct RigidCoarseSpace::Assembly {
     for (Index e = mesh.face_points.offset[f]; e < mesh.face_points.offset[f + 1]; ++e) {
       const Index v = mesh.face_points.index[e];
       if (offset[v] == offset[v + 1]) continue;
-      const Vec3& c = faces.tangential[e];
-      const double kc = faces.skew[f].dot(c);
+      const Vec3& c = weights[e - mesh.face_points.offset[f]];
+      const double kc = line.skew.dot(c);
       Tensor3 block =
           scale * (mu * (kc * (identity + nn) + c * n.transpose()) + lambda * (kc * nn + n * c.transpose()));
       if (rows.constraints().is_constrained(v)) block = block * rows.constraints().free_part(v);

@@ -124,6 +124,7 @@ void VertexInterpolation::gather_rows(const Around& around, const ByFace& bounda
     }
     offset_.push_back(static_cast<std::int64_t>(node_.size()));
   }
+  node_.shrink_to_fit();
   weight_.assign(node_.size(), 0);
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <malloc.h>
+
 #include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/on_root.hpp"
@@ -37,7 +39,10 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
     raw.materials = materials;
   });
   try {
-    return distribute(comm, raw);
+    Mesh mesh = distribute(comm, raw);
+    raw = {};
+    malloc_trim(0);  // the whole mesh has left holes that nothing else fills
+    return mesh;
   } catch (const Error& e) {
     throw Error("The mesh '{}' cannot be used. {}", file.string(), e.what());
   }

@@ -393,21 +393,6 @@ TEST(SolidBoundaries, a_part_without_faces_is_refused) {
               ::testing::ThrowsMessage<Error>(HasSubstr("selects no face of patch 'xmax'")));
 }
 
-TEST(SolidMethods, a_solve_that_does_not_converge_names_method_iterations_residual_and_what_to_try) {
-  SolidParameters p = box_parameters(2);
-  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
-  p.boundaries["xmax"] = boundary(Type::traction, {"0", "1e6"});
-  p.method.type = MethodParameters::Type::block_coupled;
-  p.method.linear_solver = MethodParameters::LinearSolver::bicgstab_ilu;
-  p.method.max_iterations = 1;
-  const auto solid =
-      make_solid(make_box(BoxCells::quadrilaterals, {40, 4, 1}, Vec3::Zero(), Vec3(10, 1, 0)), p);
-  EXPECT_THAT([&] { step(*solid, 1); },
-              ::testing::ThrowsMessage<SolveFailure>(
-                  AllOf(HasSubstr("did not converge"), HasSubstr("after 1 iterations, residual "),
-                        HasSubstr("The method is block-coupled (BiCGStab, ILU)."), HasSubstr("'direct'"))));
-}
-
 class FreeMotions : public ::testing::Test {
  protected:
   static std::string message(const SolidParameters& p, const RawMesh& raw) {

@@ -125,9 +125,10 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
       stress_error = std::max(stress_error, (stress[c] - exact).topLeftCorner(dim, dim).norm());
       stress_size = std::max(stress_size, exact.norm());
     }
-    // Tractions of the two sides of each bonded face whose sides are both on this rank.
-    const std::vector<Tensor3> faces =
-        solid->face_stress(mesh.n_interior, mesh.n_faces() - mesh.n_interior, points);
+    // Tractions of the two sides of each bonded face.
+    std::vector<Tensor3> faces = solid->face_stress(mesh.n_interior, mesh.boundary.n_owned(), points);
+    faces.resize(mesh.boundary.n_local());
+    mesh.boundary.update_ghosts(std::span(faces.data()->data(), 9 * faces.size()), 9);
     double n_bonded = 0;
     for (const Index f : solid->elastic().unknown_faces()) {
       const Index b = f - mesh.n_interior;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // All solution methods give the same answer, and the same on any number of ranks.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,6 +17,8 @@ using FaceGradient = MethodParameters::FaceGradient;
 using Acceleration = MethodParameters::Acceleration;
 using Preconditioner = MethodParameters::Preconditioner;
 using Choice = MethodParameters::LinearSolver;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 /// A block 2 x 1 x 1 m clamped at xmin, sliding on ymin, sheared on top, its own weight.
 SolidParameters sheared_block() {
@@ -141,6 +144,42 @@ TEST(SolidMethods, ranks_do_not_change_the_answer) {
   RecordProperty("worst", fmt::format("{:.3e}", worst));
 }
 
+/// Iterations of 20 steps of a block that begins to move as a whole and is held on one side.
+int iterations_of_motion(MethodParameters::Predictor predictor, std::vector<double>& end) {
+  SolidParameters p = box_parameters(3);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["xmax"] = boundary(Type::traction, {"0", "1e6*sin(2000*t)", "0"});
+  p.method = method(MethodType::newton_krylov, FaceGradient::thesis, 1e-8);
+  p.method.preconditioner = Preconditioner::multigrid;
+  p.method.predictor = predictor;
+  const auto solid = make_solid(make_box(BoxCells::hexahedra, {10, 4, 4}, Vec3::Zero(), Vec3(2, 1, 1)), p);
+  int iterations = 0;
+  for (int i = 0; i < 20; ++i) {
+    step(*solid, 1e-5);
+    iterations += solid->effort().iterations;
+  }
+  end = whole(*solid);
+  return iterations;
+}
+
+TEST(SolidMethods, predictors_save_iterations_and_change_nothing) {
+  using Predictor = MethodParameters::Predictor;
+  std::vector<double> none_end, euler_end, adams_end;
+  const int none = iterations_of_motion(Predictor::none, none_end);
+  const int euler = iterations_of_motion(Predictor::euler, euler_end);
+  const int adams = iterations_of_motion(Predictor::adams, adams_end);
+  fmt::print("iterations: no predictor {}, Euler {}, Adams {}\n", none, euler, adams);
+  EXPECT_LT(euler, none);
+  EXPECT_LE(adams, euler);
+  double size = 0;
+  for (const double u : none_end) size = std::max(size, std::abs(u));
+  for (std::size_t i = 0; i < none_end.size(); ++i) {
+    ASSERT_NEAR(euler_end[i], none_end[i], 1e-5 * size);
+    ASSERT_NEAR(adams_end[i], none_end[i], 1e-5 * size);
+  }
+}
+
 TEST(SolidMethods, a_segregated_run_that_is_cut_short_says_so) {
   MethodParameters m = method(MethodType::segregated, FaceGradient::thesis);
   m.max_iterations = 3;
@@ -150,6 +189,22 @@ TEST(SolidMethods, a_segregated_run_that_is_cut_short_says_so) {
   } catch (const SolveFailure& e) {
     EXPECT_NE(std::string(e.what()).find("3 outer iterations"), std::string::npos) << e.what();
   }
+}
+
+TEST(SolidMethods, a_solve_that_does_not_converge_names_method_iterations_residual_and_what_to_try) {
+  SolidParameters p = box_parameters(2);
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmax"] = boundary(Type::traction, {"0", "1e6"});
+  p.method.type = MethodParameters::Type::block_coupled;
+  p.method.linear_solver = MethodParameters::LinearSolver::bicgstab_ilu;
+  p.method.max_iterations = 1;
+  const auto solid =
+      make_solid(make_box(BoxCells::quadrilaterals, {40, 4, 1}, Vec3::Zero(), Vec3(10, 1, 0)), p);
+  EXPECT_THAT([&] { step(*solid, 1); },
+              ::testing::ThrowsMessage<SolveFailure>(
+                  AllOf(HasSubstr("did not converge"), HasSubstr("after 1 iterations, residual "),
+                        HasSubstr("The method is block-coupled (BiCGStab, ILU), thesis's face gradient."),
+                        HasSubstr("'direct'"))));
 }
 
 }  // namespace

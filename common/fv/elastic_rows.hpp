@@ -11,18 +11,19 @@
 namespace couplet {
 
 /// What the boundary faces of owned cells do with the force on them: the rows that ElasticOperator defines.
-class ElasticFaces {
+class ElasticRows {
  public:
-  ElasticFaces(const Mesh& mesh, const ElasticOperator& rows) : mesh_(&mesh), rows_(&rows) {
+  ElasticRows(const Mesh& mesh, const ElasticOperator& rows) : mesh_(&mesh), rows_(&rows) {
     for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
       const ElasticCondition here = rows.condition(f);
-      if (here == ElasticCondition::symmetry) symmetry_.push_back({f, rows.faces().normal[f]});
+      if (here == ElasticCondition::symmetry)
+        symmetry_.push_back({f, mesh.reference.face_area[f].normalized()});
       if (here == ElasticCondition::prescribed || here == ElasticCondition::bonded) held_.push_back(f);
     }
     for (const Index f : rows.unknown_faces()) {
       const LameConstants lame = rows.lame(mesh.owner[f]);
-      stiffness_.push_back((2 * lame.mu + lame.lambda) * mesh.reference.face_area[f].norm() *
-                           rows.faces().inverse_dn[f]);
+      const FaceLine line = face_line(mesh, mesh.reference, f);
+      stiffness_.push_back((2 * lame.mu + lame.lambda) * line.area * line.inverse_dn);
     }
   }
 
