@@ -22,6 +22,9 @@ class SolidEffect {
   virtual ~SolidEffect() = default;
   /// A step from t^n is tried: an effect with equations of its own solves them here. Throws SolveFailure.
   virtual void begin_step(const Step& /*step*/) {}
+  /// Elastic constants that the operator must get for the step now tried, one a local cell; empty: its own
+  /// hold. The same answer on all ranks.
+  virtual std::span<const LameConstants> stiffness() const { return {}; }
   /// Adds its forces [N] at time t within the step to the rows of the operator (see ElasticOperator).
   virtual void add_loads(double t, std::span<double> rhs) = 0;
   virtual void accept_step() {}

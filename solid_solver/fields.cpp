@@ -217,6 +217,7 @@ void Solid::load(CheckpointReader& file) {
   largest_gradient_ = file.read_scalar("largest-gradient");
   inertia_over_load_ = file.read_scalar("inertia-over-load");
   for (const auto& effect : effects_) effect->load(file);
+  apply_stiffness();
 }
 
 }  // namespace couplet

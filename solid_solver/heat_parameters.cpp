@@ -52,6 +52,12 @@ void declare(config::Section& s, HeatMaterial& m) {
   declare_property(s, "expansion", m.expansion, "1/K", -1,
                    "instantaneous coefficient of thermal expansion: a number or a table of T, which is "
                    "integrated from the reference temperature on");
+  declare_property(s, "youngs-modulus-table", m.youngs_modulus, "Pa", 0,
+                   "table of T that holds in place of youngs-modulus where the temperature is known");
+  s.value("poissons-ratio-table", m.poissons_ratio)
+      .doc("table of T that holds in place of poissons-ratio where the temperature is known");
+  s.check([&m] { return m.poissons_ratio ? problem_of_property(*m.poissons_ratio, -1) : std::string(); },
+          "poissons-ratio-table");
 }
 
 void declare(config::Section& s, HeatParameters& h) {

@@ -11,9 +11,10 @@ namespace couplet {
 
 /// Thermal properties of a material; each is needed by the effects that use it only. Tables are of T [K].
 struct HeatMaterial {
-  std::optional<config::ExpressionText> conductivity;   // [W/(m K)]
-  std::optional<config::ExpressionText> specific_heat;  // [J/(kg K)]
-  std::optional<config::ExpressionText> expansion;      // instantaneous coefficient [1/K]
+  std::optional<config::ExpressionText> conductivity;                    // [W/(m K)]
+  std::optional<config::ExpressionText> specific_heat;                   // [J/(kg K)]
+  std::optional<config::ExpressionText> expansion;                       // instantaneous coefficient [1/K]
+  std::optional<config::ExpressionText> youngs_modulus, poissons_ratio;  // tables; none: they do not vary
 };
 
 /// What is known of the temperature on one patch.

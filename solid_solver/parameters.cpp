@@ -21,6 +21,11 @@ void declare_heat(config::Section& s, SolidParameters& p) {
   s.optional_section<InterfaceData>(
       "interface", p.interface_data, [](config::Section& i, InterfaceData& v) { declare(i, v); },
       "what the patches of type 'interface' take from the coupler; absent: forces");
+  s.value("stiffness-tolerance", p.stiffness_tolerance)
+      .range(0, 0.1)
+      .doc(
+          "relative change of youngs-modulus-table and poissons-ratio-table at which the matrix is made "
+          "anew");
   s.value("thermoelastic-coupling", p.thermoelastic_coupling)
       .doc("a solid that is stretched cools: heat of the strain rate, thesis (2.27), one step late");
   s.check(

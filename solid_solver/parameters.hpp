@@ -41,6 +41,7 @@ struct SolidParameters {
   std::optional<ThermalExpansion> expansion;
   bool thermoelastic_coupling = false;
   std::optional<TimeStepControl> step_control;
+  double stiffness_tolerance = 1e-3;  // change of elastic constants with the temperature that is let pass
   MethodParameters method;
   std::map<std::string, SolidProbe> probes;
   SolidOutputParameters output;

@@ -43,6 +43,7 @@ Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
     for (const auto& effect : effects_)
       if (effect->wants_temperature()) effect->set_interface(*interface_temperature_);
   }
+  apply_stiffness();
   start_from_rest();
   output_ = std::make_unique<SolidOutput>(*this, context_);
 }
@@ -90,6 +91,17 @@ void Solid::start_from_rest() {
 
 Interface Solid::initialise() { return description_; }
 
+// All that was made for the old constants goes.
+void Solid::apply_stiffness() {
+  for (const auto& effect : effects_) {
+    const auto lame = effect->stiffness();
+    if (lame.empty()) continue;
+    systems_.clear();
+    elastic_.set_lame({lame.begin(), lame.end()});
+    kernel_ = ElasticKernel(mesh_, elastic_, kernel_.scheme());
+  }
+}
+
 void Solid::begin_step(const Step& step) {
   step_ = step;
   effort_ = {};
@@ -111,6 +123,7 @@ void Solid::prepare_stages() {
   const std::vector<Stage> stages = stages_of(step_.dt);
   stages_.resize(stages.size());
   for (const auto& effect : effects_) effect->begin_step(step_);
+  apply_stiffness();
   for (std::size_t i = 0; i < stages.size(); ++i) {
     stages_[i].stage = stages[i];
     prepare_stage(stages_[i]);

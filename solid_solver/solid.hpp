@@ -152,6 +152,7 @@ class Solid final : public Participant {
   const PointTensors& point_tensors() const;
   void check_supports() const;
   void start_from_rest();
+  void apply_stiffness();
   std::vector<Stage> stages_of(double dt) const;
   System& system_for(double mass_factor);
   void announce(const System& system);

@@ -49,6 +49,7 @@ ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
                              const SolidParameters& parameters)
     : mesh_(&mesh),
       elastic_(&elastic),
+      parameters_(parameters),
       materials_(materials_of(parameters)),
       coupled_(parameters.thermoelastic_coupling) {
   if (parameters.heat) heat_ = make_heat(mesh, parameters);
@@ -59,8 +60,16 @@ ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
       expansion_.push_back(property(material.heat.expansion, "expansion", "'thermal-expansion'"));
     reference_ = parameters.expansion->reference_temperature;
   }
+  for (const SolidMaterial& m : materials_) {
+    youngs_modulus_.emplace_back();
+    poissons_ratio_.emplace_back();
+    if (m.heat.youngs_modulus) youngs_modulus_.back().emplace(*m.heat.youngs_modulus, "youngs-modulus-table");
+    if (m.heat.poissons_ratio) poissons_ratio_.back().emplace(*m.heat.poissons_ratio, "poissons-ratio-table");
+    varies_ = varies_ || m.heat.youngs_modulus || m.heat.poissons_ratio;
+  }
   plane_stress_ = mesh.dim == 2 && parameters.plane == SolidParameters::Plane::stress;
   if (coupled_) dilation_.assign(mesh.cells.n_owned(), 0), dilation_rate_ = dilation_;
+  if (varies_) lame_ = lame_trial_ = lame_at(cell_temperature(0, false));
   // What is given at the interface comes later: see set_interface().
   start_ = given_ ? std::vector<double>(mesh.n_flux_faces(), reference_) : face_temperature(0, false);
   lowest_ = *std::ranges::min_element(start_);
@@ -73,9 +82,61 @@ double ThermalStrain::modulus(Index cell) const {
   return (plane_stress_ ? 2 : 3) * lame.lambda + 2 * lame.mu;
 }
 
+// As the operator has its constants: the mean within a material.
+double ThermalStrain::face_modulus(Index face) const {
+  const double here = modulus(mesh_->owner[face]);
+  return face < mesh_->n_interior ? 0.5 * (here + modulus(mesh_->neighbour[face])) : here;
+}
+
 double ThermalStrain::three_bulk(Index cell) const {
-  const SolidMaterial& m = materials_[mesh_->material_of(cell)];
-  return m.youngs_modulus / (1 - 2 * m.poissons_ratio);
+  LameConstants lame = elastic_->lame(cell);
+  if (plane_stress_) lame.lambda = 2 * lame.lambda * lame.mu / (2 * lame.mu - lame.lambda);  // the true one
+  return 3 * lame.lambda + 2 * lame.mu;
+}
+
+std::vector<double> ThermalStrain::cell_temperature(double t, bool trial) const {
+  if (heat_) return trial ? heat_->trial().cells : heat_->accepted().cells;
+  if (given_ && !nearest_to_cells_.empty()) return given_at(nearest_to_cells_, trial);
+  std::vector<double> values(mesh_->cells.n_local(), reference_);
+  if (given_) return values;  // set_interface() comes later
+  prescribed_->evaluate(mesh_->reference.cell_centre, t, values);
+  return values;
+}
+
+std::vector<LameConstants> ThermalStrain::lame_at(std::span<const double> temperature) const {
+  std::vector<LameConstants> result;
+  for (Index c = 0; c < mesh_->cells.n_local(); ++c) {
+    const int i = mesh_->material_of(c);
+    SolidMaterial m = materials_[i];
+    if (youngs_modulus_[i]) m.youngs_modulus = (*youngs_modulus_[i])(temperature[c]);
+    if (poissons_ratio_[i]) m.poissons_ratio = (*poissons_ratio_[i])(temperature[c]);
+    result.push_back(lame_constants(parameters_, m));
+  }
+  return result;
+}
+
+// The constants of the accepted step hold as long as they are good enough: a new matrix costs more.
+void ThermalStrain::choose_stiffness(double t) {
+  lame_trial_ = lame_at(cell_temperature(t, true));
+  double change = 0;
+  for (std::size_t c = 0; c < lame_.size(); ++c) {
+    const double size = 2 * lame_[c].mu + std::abs(lame_[c].lambda);
+    change = std::max({change, 2 * std::abs(lame_trial_[c].mu - lame_[c].mu) / size,
+                       std::abs(lame_trial_[c].lambda - lame_[c].lambda) / size});
+  }
+  if (max(mesh_->comm, change) <= parameters_.stiffness_tolerance) lame_trial_ = lame_;
+}
+
+// All ranks answer alike: new matrices are made together.
+std::span<const LameConstants> ThermalStrain::stiffness() const {
+  if (!varies_) return {};
+  bool differs = false;
+  for (std::size_t c = 0; c < lame_trial_.size(); ++c) {
+    const LameConstants now = elastic_->lame(static_cast<Index>(c));
+    differs = differs || now.mu != lame_trial_[c].mu || now.lambda != lame_trial_[c].lambda;
+  }
+  return any(mesh_->comm, differs) ? std::span<const LameConstants>(lame_trial_)
+                                   : std::span<const LameConstants>();
 }
 
 std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const {
@@ -131,6 +192,7 @@ void ThermalStrain::begin_step(const Step& step) {
     heat_->solve(step, source);
   }
   end_ = face_temperature(step.time + step.dt, true);
+  if (varies_) choose_stiffness(step.time + step.dt);
 }
 
 void ThermalStrain::add_loads(double t, std::span<double> rhs) {
@@ -144,7 +206,7 @@ void ThermalStrain::add_loads(double t, std::span<double> rhs) {
     for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
   }
   std::vector<double> pressure = strain(temperature);
-  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) pressure[f] *= modulus(mesh_->owner[f]);
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) pressure[f] *= face_modulus(f);
   pressure.resize(mesh_->n_faces());
   mesh_->boundary.update_ghosts(std::span(pressure).subspan(mesh_->n_interior));
   elastic_->add_pressure(pressure, rhs);
@@ -155,6 +217,7 @@ void ThermalStrain::accept_step() {
   given_accepted_ = given_trial_;
   time_ = step_.time + step_.dt;
   std::swap(start_, end_);
+  lame_ = lame_trial_;
   for (const double t : start_) {
     lowest_ = std::min(lowest_, t);
     highest_ = std::max(highest_, t);
@@ -166,7 +229,7 @@ void ThermalStrain::add_face_stress(Index first, std::span<Tensor3> stress) cons
   if (!expands()) return;
   for (std::size_t i = 0; i < stress.size(); ++i) {
     const Index f = first + static_cast<Index>(i);
-    stress[i].diagonal().array() -= modulus(mesh_->owner[f]) * accepted_strain_[f];
+    stress[i].diagonal().array() -= face_modulus(f) * accepted_strain_[f];
   }
 }
 
@@ -252,6 +315,9 @@ void ThermalStrain::save(CheckpointWriter& file) const {
     file.write("dilation", dilation_);
     file.write("dilation-rate", dilation_rate_);
   }
+  std::vector<double> constants;
+  for (const LameConstants& lame : lame_) constants.insert(constants.end(), {lame.mu, lame.lambda});
+  if (varies_) file.write("elastic-constants", constants);
   file.write_scalar("temperature-time", time_);
   file.write_scalar("lowest-temperature", min(mesh_->comm, lowest_));
   file.write_scalar("highest-temperature", max(mesh_->comm, highest_));
@@ -263,6 +329,12 @@ void ThermalStrain::load(CheckpointReader& file) {
   if (coupled_) {
     file.read("dilation", dilation_);
     file.read("dilation-rate", dilation_rate_);
+  }
+  if (varies_) {
+    std::vector<double> constants(2 * lame_.size());
+    file.read("elastic-constants", constants);
+    for (std::size_t c = 0; c < lame_.size(); ++c) lame_[c] = {constants[2 * c], constants[2 * c + 1]};
+    lame_trial_ = lame_;
   }
   time_ = file.read_scalar("temperature-time");
   lowest_ = file.read_scalar("lowest-temperature");

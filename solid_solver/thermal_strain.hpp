@@ -30,6 +30,7 @@ class ThermalStrain final : public SolidEffect {
   ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic, const SolidParameters& parameters);
 
   void begin_step(const Step& step) override;
+  std::span<const LameConstants> stiffness() const override;
   void add_loads(double t, std::span<double> rhs) override;
   void accept_step() override;
   bool wants_temperature() const override { return given_; }
@@ -55,11 +56,15 @@ class ThermalStrain final : public SolidEffect {
   std::vector<double> face_temperature(double t, bool trial) const;
   std::vector<double> given_at(const std::vector<Index>& nearest, bool trial) const;
   std::vector<double> strain(std::span<const double> temperature) const;
-  double modulus(Index cell) const;         // B
+  double modulus(Index cell) const;  // B
+  double face_modulus(Index face) const;
   double three_bulk(Index cell) const;      // 3 K
   std::vector<double> cell_strain() const;  // thermal, of owned cells at the accepted time
   double coupling_number() const;
   void set_accepted();
+  std::vector<double> cell_temperature(double t, bool trial) const;  // of all local cells
+  std::vector<LameConstants> lame_at(std::span<const double> temperature) const;
+  void choose_stiffness(double t);
 
   const Mesh* mesh_;
   const ElasticOperator* elastic_;
@@ -71,6 +76,11 @@ class ThermalStrain final : public SolidEffect {
   std::vector<Property> expansion_;  // one a material; none: no thermal strain
   double reference_ = 0;             // [K]
   bool plane_stress_ = false;
+  SolidParameters parameters_;
+  std::vector<std::optional<Property>> youngs_modulus_, poissons_ratio_;  // one a material
+  bool varies_ = false;                                                   // some of them
+  std::vector<LameConstants> lame_,
+      lame_trial_;  // per local cell, of the accepted and the trial step; if varies_
   std::vector<SolidMaterial> materials_;
   bool coupled_ = false;
   std::vector<double> dilation_, dilation_rate_;  // tr(eps) and its rate, per owned cell; when coupled

@@ -12,6 +12,7 @@ ElasticKernel::ElasticKernel(const Mesh& mesh, const ElasticOperator& rows, Face
 
 ElasticKernel::~ElasticKernel() = default;
 ElasticKernel::ElasticKernel(ElasticKernel&&) noexcept = default;
+ElasticKernel& ElasticKernel::operator=(ElasticKernel&&) noexcept = default;
 
 void ElasticKernel::apply(std::span<const double> unknowns, std::span<const double> known,
                           std::span<double> result) const {

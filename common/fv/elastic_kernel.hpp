@@ -40,6 +40,7 @@ class ElasticKernel {
   ElasticKernel(const Mesh& mesh, const ElasticOperator& rows, FaceGradientScheme scheme);
   ~ElasticKernel();
   ElasticKernel(ElasticKernel&&) noexcept;
+  ElasticKernel& operator=(ElasticKernel&&) noexcept;
 
   /// Rows and columns as ElasticOperator has them; an empty `known` stands for zeros. Allocates nothing but
   /// what the halo exchange needs. Collective.

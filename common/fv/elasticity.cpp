@@ -186,6 +186,11 @@ void ElasticOperator::add_unknown_face(Index face, Row& row) const {
   }
 }
 
+void ElasticOperator::set_lame(std::vector<LameConstants> lame) {
+  body_.lame = std::move(lame);
+  assembled_ = {};
+}
+
 LameConstants ElasticOperator::lame_at(Index face) const {
   const LameConstants here = lame(mesh_->owner[face]);
   if (body_.lame.size() == 1 || face >= mesh_->n_interior) return here;

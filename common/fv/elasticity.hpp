@@ -81,6 +81,9 @@ class ElasticOperator {
   const ElasticSupport& support(Index face) const { return boundary_.support(face - mesh_->n_interior); }
   const LameConstants& lame(Index cell) const { return body_.lame[body_.lame.size() == 1 ? 0 : cell]; }
 
+  /// Other constants, one a local cell (ghosts included); what was assembled with the old ones is forgotten.
+  void set_lame(std::vector<LameConstants> lame);
+
   /// The matrix with `inertia[c]` added on the diagonal of owned cell c (empty: none). Collective.
   SparseMatrix matrix(std::span<const double> inertia) const;
   /// rhs -= K known; `known`: dim values a known column.
