@@ -15,15 +15,18 @@ double rankine_active(const Filler& filler) {
 }
 
 InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid& fluid, const Filler& filler,
-                             double ullage_gauge) {
+                             double ullage_gauge, std::span<const double> temperature) {
   InnerPressure p;
   p.fluid.assign(rings.size(), ullage_gauge);
   p.vertical.assign(rings.size(), 0.0);
   double below = 0;  // vertical pressure at the lower face of the cell above
+  double column = 0;
   for (int i = rings.in_bed - 1; i >= 0; --i) {
-    p.fluid[i] += fluid.density * gravity * (bed.height - bed.z[i]);
+    const double density = temperature.empty() ? fluid.density : fluid.density_at(temperature[i]);
+    column += density * gravity * bed.dz[i];
+    p.fluid[i] += column - density * gravity * bed.dz[i] / 2;
     const double porosity = bed.runs[bed.layer[i]].layer.porosity;
-    const double own = (1 - porosity) * (filler.density - fluid.density) * gravity * bed.dz[i];
+    const double own = (1 - porosity) * (filler.density - density) * gravity * bed.dz[i];
     p.vertical[i] = std::max(0.0, below + own / 2);  // mean of its faces; grains that float do not press
     below += own;
   }
@@ -33,19 +36,27 @@ InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid
 FillerMechanics::FillerMechanics(const Rings& rings, const Steel& steel, const Filler& filler,
                                  const InnerPressure& p, std::span<const double> wall,
                                  std::span<const double> grains)
-    : rings_(&rings), steel_(&steel), expansion_(filler.expansion), grains_(grains.begin(), grains.end()) {
+    : rings_(&rings),
+      steel_(&steel),
+      expansion_(filler.expansion),
+      active_ratio_(rankine_active(filler)),
+      grains_(grains.begin(), grains.end()) {
   const int n = rings.size();
-  const double ka = rankine_active(filler);
-  for (int i = 0; i < n; ++i) {
-    per_pressure_.push_back(rings.diameter / (2 * rings.thickness[i]));
-    fluid_.push_back(p.fluid[i]);
-    active_.push_back(p.fluid[i] + ka * p.vertical[i]);
-    passive_.push_back(p.fluid[i] + p.vertical[i] / ka);
-  }
+  for (int i = 0; i < n; ++i) per_pressure_.push_back(rings.diameter / (2 * rings.thickness[i]));
+  for (auto* v : {&fluid_, &active_, &passive_}) v->resize(n);
+  load(p);
   strain_.assign(rings.in_bed, -1e3);  // far inside: the first update finds every ring active
   hoop_.resize(n), lateral_.assign(n, 0.0), contact_.assign(rings.in_bed, Contact::active);
   slip_.assign(rings.in_bed, 0.0);
   update(wall, grains);
+}
+
+void FillerMechanics::load(const InnerPressure& p) {
+  for (std::size_t i = 0; i < fluid_.size(); ++i) {
+    fluid_[i] = p.fluid[i];
+    active_[i] = p.fluid[i] + active_ratio_ * p.vertical[i];
+    passive_[i] = p.fluid[i] + p.vertical[i] / active_ratio_;
+  }
 }
 
 void FillerMechanics::update(std::span<const double> wall, std::span<const double> grains) {

@@ -13,8 +13,9 @@ struct InnerPressure {
   std::vector<double> fluid;     ///< p_f = p_ullage + rho_f g depth (5.13); the ullage's above the bed
   std::vector<double> vertical;  ///< p_v of the buoyant grains (5.14-5.16)
 };
+/// `temperature`: of the fluid in each cell of the bed, for a fluid whose density follows it; else empty.
 InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid& fluid, const Filler& filler,
-                             double ullage_gauge);
+                             double ullage_gauge, std::span<const double> temperature = {});
 
 /// Stress in the wall of rings (thesis 5.4): sigma_rr = -p_f, sigma_zz = -(weight above)/(pi D e), sigma_tt =
 /// p D/(2 e) (5.23). Tension is positive.
@@ -38,6 +39,8 @@ class FillerMechanics {
                   std::span<const double> wall, std::span<const double> grains);
 
   void update(std::span<const double> wall, std::span<const double> grains);
+  /// Another weight of fluid and grains from the next update on.
+  void load(const InnerPressure& pressure);
   std::span<const double> hoop() const { return hoop_; }        ///< [Pa]
   std::span<const double> lateral() const { return lateral_; }  ///< p_s [Pa]
   const std::vector<Contact>& contact() const { return contact_; }
@@ -54,7 +57,7 @@ class FillerMechanics {
  private:
   const Rings* rings_;
   const Steel* steel_;
-  double expansion_;
+  double expansion_, active_ratio_;
   std::vector<double> per_pressure_;              // D/(2e) [1]
   std::vector<double> fluid_, active_, passive_;  // p_f, p_f + K_a p_v, p_f + p_v/K_a [Pa]
   std::vector<double> strain_, slip_, grains_;    // of the filler [1], its temperature [K]

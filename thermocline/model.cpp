@@ -53,12 +53,13 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource
       insulation_.emplace(*p.insulation, setup_->rings->dz, radius);
       insulation_->set_steady(wall, air.temperature);
     }
-    hoop_ = active_hoop(*setup_->rings, setup_->filler, setup_->pressure);
+    update_pressure();
+    hoop_ = active_hoop(*setup_->rings, setup_->filler, pressure());
     bed_.filler_temperature(filler_);
     if (p.external_wall)
-      contact_.emplace(*setup_->rings, *setup_->steel, setup_->filler, setup_->pressure, wall, filler_);
+      contact_.emplace(*setup_->rings, *setup_->steel, setup_->filler, pressure(), wall, filler_);
     else if (p.mechanics)
-      mechanics_.emplace(*setup_->rings, *setup_->steel, setup_->filler, setup_->pressure, wall, filler_);
+      mechanics_.emplace(*setup_->rings, *setup_->steel, setup_->filler, pressure(), wall, filler_);
     update_stress();
   }
   if (p.ullage) {
@@ -112,12 +113,22 @@ void TankModel::update_contact(std::span<const double> radial) {
   update_stress();
 }
 
+void TankModel::update_pressure() {
+  if (!bed_.has_real_density()) return;
+  const TankParameters& p = setup_->parameters;
+  pressure_ = inner_pressure(*setup_->rings, bed_.grid(), setup_->fluid, setup_->filler,
+                             p.ullage ? p.ullage->gas.gauge_pressure : 0, bed_.fluid());
+  if (mechanics_) mechanics_->load(*pressure_);
+  if (contact_) contact_->load(*pressure_);
+  if (!mechanics_ && !contact_) hoop_ = active_hoop(*setup_->rings, setup_->filler, *pressure_);
+}
+
 void TankModel::update_stress() {
   if (!shell_) return;
   const std::span<const double> hoop = mechanics_ ? mechanics_->hoop()
                                        : contact_ ? contact_->hoop()
                                                   : std::span<const double>(hoop_);
-  wall_stress(*setup_->rings, *setup_->steel, setup_->pressure, setup_->parameters.shell->roof_pressure, hoop,
+  wall_stress(*setup_->rings, *setup_->steel, pressure(), setup_->parameters.shell->roof_pressure, hoop,
               shell_->temperature(), stress_);
 }
 
@@ -126,6 +137,7 @@ void TankModel::watch(double t) {
   if (const auto now = bed_.inversion(); now.depth > inversion_.depth) inversion_ = {now.depth, now.z, t};
   const auto fluid = bed_.fluid();
   const auto [low, high] = std::minmax_element(fluid.begin(), fluid.end());
+  coldest_ = std::min(coldest_, *low), hottest_ = std::max(hottest_, *high);
   const auto place = [&](auto it) { return bed_.grid().z[it - fluid.begin()]; };
   const Fluid& f = setup_->fluid;
   if (!std::isfinite(*high) || !std::isfinite(*low))
@@ -142,9 +154,24 @@ void TankModel::watch(double t) {
                     "where it freezes. "
                     "Raise the inlet temperature, insulate the tank, or choose another fluid.",
                     t, f.name, *low - zero_celsius, place(low), f.lowest - zero_celsius));
-  if (!shell_) return;
+  if (shell_) watch_wall(t);
+}
+
+void TankModel::watch_wall(double t) {
   const auto wall = shell_->temperature();
-  const auto hottest = std::max_element(wall.begin(), wall.end());
+  const auto [coldest, hottest] = std::minmax_element(wall.begin(), wall.end());
+  const Steel& steel = *setup_->steel;
+  // A tenth of the table's width is left to the walls that cool a little below the coldest fluid.
+  const double low = steel.yield_strength.x.front(), high = steel.yield_strength.x.back();
+  const double slack = 0.1 * (high - low);
+  const auto outside = *coldest < low - slack ? coldest : hottest;
+  if (high > low && (*outside < low - slack || *outside > high + slack) &&
+      !std::exchange(warned_range_, true))
+    warnings_.push_back(
+        fmt::format("t = {:.6g} s: the wall of {} is at {:.1f} degC at z = {:.3f} m; its properties are "
+                    "known from {:.0f} to {:.0f} degC, beyond them those of the nearer end are used.",
+                    t, steel.name, celsius(*outside), setup_->rings->z[outside - wall.begin()], celsius(low),
+                    celsius(high)));
   if (*hottest > setup_->steel->highest && !std::exchange(warned_metal_, true))
     warnings_.push_back(
         fmt::format("t = {:.6g} s: the wall of {} is at {:.1f} degC at z = {:.3f} m, above the {:.1f} degC "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,7 +25,7 @@ struct TankSetup {
   BedGrid grid;
   std::optional<Steel> steel;
   std::optional<Rings> rings;
-  InnerPressure pressure;  ///< on the rings
+  InnerPressure pressure;  ///< on the rings, of a fluid of constant density
 };
 
 enum class Element { bed, preparation, shell, insulation, ullage, ground, mechanics };
@@ -81,6 +82,8 @@ class TankModel {
     double depth = 0, z = 0, time = 0;
   };
   const Worst& inversion() const { return inversion_; }
+  /// Coldest and hottest that the fluid has been [K].
+  std::pair<double, double> fluid_range() const { return {coldest_, hottest_}; }
   /// First time that the fluid left its limits: a sentence, or empty. Cleared by reading.
   std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
@@ -102,8 +105,11 @@ class TankModel {
   void step_shell(double h);
   void step_bed(double t, double end, FlowControl& control, const AmbientSource& ambient,
                 std::vector<BedStep>& steps, Speed& speed);
+  void update_pressure();
   void update_stress();
+  const InnerPressure& pressure() const { return pressure_ ? *pressure_ : setup_->pressure; }
   void watch(double t);
+  void watch_wall(double t);
   double upper_wall() const;
 
   std::shared_ptr<const TankSetup> setup_;
@@ -117,6 +123,7 @@ class TankModel {
   double deep_temperature_ = 0;
   Held side_, soil_;
   WallStress stress_;
+  std::optional<InnerPressure> pressure_;  // that of now, if the fluid's density follows its temperature
   std::vector<double> hoop_;
   // Heat flows during an exchange step [W].
   std::vector<double> into_blanket_, from_wall_, source_, filler_;
@@ -125,7 +132,8 @@ class TankModel {
   double reference_ = 0, start_energy_ = 0, start_bed_ = 0;
   Ledger ledger_;
   Worst inversion_;
-  bool warned_hot_ = false, warned_cold_ = false, warned_metal_ = false;
+  double coldest_ = std::numeric_limits<double>::infinity(), hottest_ = 0;
+  bool warned_hot_ = false, warned_cold_ = false, warned_metal_ = false, warned_range_ = false;
   std::vector<std::string> warnings_;
 };
 

@@ -76,6 +76,7 @@ double TankModel::exchange(double t, double h, FlowControl& control, const Ambie
   if (shell_) {
     const Stopwatch watch(speed, Element::shell);
     step_shell(h);
+    update_pressure();
   }
   ledger_.side += side_.out * h;
   ledger_.ground += soil_.out * h;
@@ -173,13 +174,17 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Ambie
                          std::vector<BedStep>& steps, Speed& speed) {
   const double tiny = 1e-9 * (end - t);
   bool prepared = false;
+  // With a density of temperature the capacities are renewed so often that none changes by a thousandth.
+  const double renewal = bed_.has_real_density() ? 60 : std::numeric_limits<double>::infinity();
+  double block = t + renewal;
   while (end - t > tiny) {
     BedStep s;
     s.t = t;
     s.ambient = ambient.at(t);
     s.flow = control.decide(t, bed_.top(), bed_.bottom(), s.ambient);
     const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared_flow();
-    const double until = s.flow.until > t + tiny ? std::min(end, s.flow.until) : end;
+    if (t > block - tiny) prepared = false, block = t + renewal;
+    const double until = std::min(block, s.flow.until > t + tiny ? std::min(end, s.flow.until) : end);
     // New closures when the flow has changed by a tenth, a new step when the old one has become too long or
     // would pass the time the control gave; a little over the limit is within the scheme's reserve.
     const bool other_flow = (m == 0) != (now == 0) || m * now < 0 || std::abs(m - now) > 0.1 * std::abs(now);
@@ -203,6 +208,7 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Ambie
     t += s.dt;
   }
   if (setup_->parameters.bed.mix_inversions) bed_.mix_inversions();
+  bed_.settle();
 }
 
 }  // namespace couplet::thermocline

@@ -38,15 +38,17 @@ std::vector<std::pair<std::string, std::vector<double>>> TankModel::state() cons
   all.emplace_back("closures",
                    std::vector<double>(bed_.wall_coefficient().begin(), bed_.wall_coefficient().end()));
   const Ledger& l = ledger_;
-  all.emplace_back(
-      "books", std::vector<double>{side_.until, side_.in, side_.out, soil_.until, soil_.in, soil_.out, l.flow,
-                                   l.side, l.roof, l.ground, l.bed, l.turnover, reference_, start_energy_,
-                                   start_bed_, inversion_.depth, inversion_.z, inversion_.time});
+  all.emplace_back("books", std::vector<double>{side_.until,  side_.in,        side_.out,  soil_.until,
+                                                soil_.in,     soil_.out,       l.flow,     l.side,
+                                                l.roof,       l.ground,        l.bed,      l.turnover,
+                                                reference_,   start_energy_,   start_bed_, inversion_.depth,
+                                                inversion_.z, inversion_.time, coldest_,   hottest_});
   return all;
 }
 
 void TankModel::restore(const std::function<std::vector<double>(const std::string&)>& read) {
   bed_.restore(read("bed"));
+  if (shell_) update_pressure();
   if (shell_) {
     std::vector<double> wall(shell_->temperature().begin(), shell_->temperature().end());
     replace("shell", read("shell"), wall);
@@ -73,6 +75,7 @@ void TankModel::restore(const std::function<std::vector<double>(const std::strin
   ledger_ = {b.at(6), b.at(7), b.at(8), b.at(9), b.at(10), b.at(11)};
   reference_ = b.at(12), start_energy_ = b.at(13), start_bed_ = b.at(14);
   inversion_ = {b.at(15), b.at(16), b.at(17)};
+  coldest_ = b.at(18), hottest_ = b.at(19);
   update_stress();
 }
 

@@ -50,12 +50,15 @@ void TankOutputFiles::profiles(const TankModel& model, double time) {
     bed_.row(std::vector<double>{time, grid.z[i], celsius(model.bed().fluid()[i]), celsius(filler[i])});
   if (wall_) {
     const WallStress& s = model.stress();
+    std::span<const double> lateral;
+    std::span<const Contact> contact;
+    if (model.mechanics()) lateral = model.mechanics()->lateral(), contact = model.mechanics()->contact();
+    if (model.contact()) lateral = model.contact()->lateral(), contact = model.contact()->contact();
     for (int i = 0; i < model.setup().rings->size(); ++i) {
-      const bool held = model.mechanics() && i < model.setup().rings->in_bed;
+      const bool held = i < int(contact.size());
       wall_->row(std::vector<double>{time, model.setup().rings->z[i],
                                      celsius(model.shell()->temperature()[i]), s.hoop[i], s.equivalent[i],
-                                     s.yield[i], held ? model.mechanics()->lateral()[i] : 0,
-                                     held ? double(model.mechanics()->contact()[i]) : 0});
+                                     s.yield[i], held ? lateral[i] : 0, held ? double(contact[i]) : 0});
     }
   }
   if (ground_)

@@ -27,7 +27,8 @@ PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& f
     for (int i = run.first; i < run.first + run.count; ++i) {
       capacity_[i] = run.layer.porosity * fluid.volumetric() * grid_.dz[i];
       heat_capacity_ += area_ * (capacity_[i] + grains_.back().capacity * shells_ * grid_.dz[i]);
-      limit_ = std::min(limit_, run.layer.porosity * fluid.density * grid_.dz[i]);
+      const double lightest = std::min(fluid.density, fluid.density_at(fluid.highest));
+      limit_ = std::min(limit_, run.layer.porosity * lightest * grid_.dz[i]);
     }
   }
   for (auto* v : {&fluid_, &extra_, &fluid1_, &fluid2_, &source_, &film_, &conductivity_, &wall_})
@@ -46,6 +47,27 @@ void PackedBed::set_temperature(std::span<const double> temperature) {
   std::copy(temperature.begin(), temperature.end(), fluid_.begin());
   for (int j = 0; j < shells_; ++j)
     std::copy(temperature.begin(), temperature.end(), shell_.begin() + std::size_t(j) * grid_.size());
+  follow_density();
+}
+
+/// Capacities of the fluid's temperatures as they are.
+void PackedBed::follow_density() {
+  if (!liquid_.real_density) return;
+  settled_ = fluid_;
+  for (const BedGrid::Run& run : grid_.runs)
+    for (int i = run.first; i < run.first + run.count; ++i)
+      capacity_[i] = run.layer.porosity * grid_.dz[i] * liquid_.specific_heat * liquid_.density_at(fluid_[i]);
+}
+
+void PackedBed::settle() {
+  if (!liquid_.real_density) return;
+  const DensityLaw& law = *liquid_.real;
+  for (int i = 0; i < grid_.size(); ++i) {
+    const double from = settled_[i], heat = law.at(from) * (fluid_[i] - from);
+    // Newton's method from a start that is right to first order: two steps reach rounding.
+    for (int k = 0; k < 3; ++k) fluid_[i] -= (law.between(from, fluid_[i]) - heat) / law.at(fluid_[i]);
+  }
+  follow_density();
 }
 
 double PackedBed::largest_step(double mass_flow) const {
@@ -54,6 +76,7 @@ double PackedBed::largest_step(double mass_flow) const {
 }
 
 void PackedBed::prepare(double dt, double mass_flow) {
+  settle();
   dt_ = dt;
   prepared_flow_ = mass_flow;
   const MassFlux flux(std::abs(mass_flow) / area_);
@@ -122,7 +145,22 @@ double PackedBed::energy(double reference) const {
   for (int i = 0; i < n; ++i) {
     double grain = 0;
     for (int j = 0; j < shells_; ++j) grain += shell_[std::size_t(j) * n + i] - reference;
-    sum += capacity_[i] * (fluid_[i] - reference) + grains_[grid_.layer[i]].capacity * grid_.dz[i] * grain;
+    double fluid = capacity_[i] * (fluid_[i] - reference);
+    if (liquid_.real_density)
+      fluid = capacity_[i] * (fluid_[i] - settled_[i] +
+                              liquid_.real->between(reference, settled_[i]) / liquid_.real->at(settled_[i]));
+    sum += fluid + grains_[grid_.layer[i]].capacity * grid_.dz[i] * grain;
+  }
+  return area_ * sum;
+}
+
+double PackedBed::heat_between(double cold, double hot) const {
+  if (!liquid_.real_density) return heat_capacity_ * (hot - cold);
+  double sum = 0;
+  for (const BedGrid::Run& run : grid_.runs) {
+    const double eps = run.layer.porosity, height = run.layer.height;
+    sum += height * eps * liquid_.specific_heat * liquid_.real->between(cold, hot);
+    sum += height * grains_[&run - grid_.runs.data()].capacity * shells_ * (hot - cold);
   }
   return area_ * sum;
 }
@@ -183,6 +221,7 @@ void PackedBed::restore(std::span<const double> state) {
                 state.size(), fluid_.size() + shell_.size());
   std::copy_n(state.begin(), fluid_.size(), fluid_.begin());
   std::copy(state.begin() + fluid_.size(), state.end(), shell_.begin());
+  follow_density();
 }
 
 }  // namespace couplet::thermocline

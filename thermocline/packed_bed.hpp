@@ -63,7 +63,14 @@ class PackedBed {
 
   /// Heat above a uniform temperature [J].
   double energy(double reference) const;
-  double heat_capacity() const { return heat_capacity_; }  ///< [J/K]
+  double heat_capacity() const { return heat_capacity_; }  ///< [J/K]; with the fluid's constant density
+  /// Heat from one temperature to another, of fluid and filler [J].
+  double heat_between(double cold, double hot) const;
+  /// With a density that follows the temperature: closes the steps since prepare(), during which each cell
+  /// kept the capacity it had at their begin. Its temperature becomes the one that belongs to the heat it
+  /// got, hence no heat is lost. Steps between should be short against the passage of the front.
+  void settle();
+  bool has_real_density() const { return liquid_.real_density; }
 
   std::span<const double> fluid() const { return fluid_; }
   double top() const { return fluid_.back(); }
@@ -122,6 +129,7 @@ class PackedBed {
   StepHeat first_order_step(const Operator& op, double flux, double inlet, bool second_order);
   bool second_order_step(double flux, double inlet, StepHeat& heat);
   double inlet_conductance(bool upward) const;
+  void follow_density();
 
   BedGrid grid_;
   Fluid liquid_;
@@ -140,6 +148,7 @@ class PackedBed {
   Operator main_, fallback_;
   bool fallback_is_built_ = false;
   std::vector<double> fluid_, shell_;  // state
+  std::vector<double> settled_;        // fluid that capacity_ belongs to; with a real density only
   std::vector<double> source_, film_, conductivity_, wall_;
   double source_rate_ = 0;  // largest |source|/capacity [K/s]
   // Work space.

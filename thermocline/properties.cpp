@@ -45,18 +45,20 @@ Fluid solar_salt() {
             return 2.2714e-2 + c * (-1.20e-4 + c * (2.281e-7 - c * 1.474e-10));
           },
           zero_celsius + 238,
-          zero_celsius + 600};
+          zero_celsius + 600,
+          DensityLaw{2090, -0.636, 0}};
 }
 
 Fluid caloria_ht43() {
-  // Table 5.1 prints the conductivity in kW/(m K).
+  // Table 5.1 prints the conductivity in kW/(m K); its density is that at 280 degC of the fit given with it.
   return {"Caloria HT-43",
           692.4,
           2700,
           [](double t) { return 0.125 - 1.4e-4 * celsius(t); },
           [](double t) { return 132.73 * std::pow(std::max(celsius(t), 20.0), -2.207); },
           zero_celsius - 10,
-          zero_celsius + 315};
+          zero_celsius + 315,
+          DensityLaw{885, -0.6617, -1.265e-4}};
 }
 
 Steel steel_a537() {
@@ -88,8 +90,11 @@ std::vector<std::string> foundation_materials() {
 }
 
 Fluid make_fluid(const FluidParameters& p) {
-  if (p.type == FluidParameters::Type::solar_salt) return solar_salt();
-  if (p.type == FluidParameters::Type::caloria_ht43) return caloria_ht43();
+  if (p.type != FluidParameters::Type::custom) {
+    Fluid known = p.type == FluidParameters::Type::solar_salt ? solar_salt() : caloria_ht43();
+    known.real_density = p.real_density;
+    return known;
+  }
   return {"fluid",
           p.density,
           p.specific_heat,

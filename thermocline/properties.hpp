@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,15 +16,33 @@ namespace couplet::thermocline {
 
 inline constexpr double gravity = 9.81;  // [m/s^2]
 
-/// A heat-transfer fluid. Density and specific heat are constants: the tank's energy and mass balances rest
-/// on them (thesis table 5.1); conductivity and viscosity follow the temperature.
+/// Density as a polynomial of the temperature in degC.
+struct DensityLaw {
+  double constant = 0, slope = 0, curve = 0;  // [kg/m^3], [kg/(m^3 K)], [kg/(m^3 K^2)]
+  double at(double kelvin) const {
+    const double c = celsius(kelvin);
+    return constant + c * (slope + c * curve);
+  }
+  /// Integral from one temperature to another [kg K/m^3].
+  double between(double from, double to) const {
+    const double a = celsius(from), b = celsius(to), d = b - a;
+    return d * (constant + 0.5 * slope * (a + b) + curve / 3 * (a * a + a * b + b * b));
+  }
+};
+
+/// A heat-transfer fluid. Specific heat is a constant, and so is the density unless it is asked to be real
+/// (thesis table 5.1): plant and tank count heat with them; conductivity and viscosity follow the
+/// temperature.
 struct Fluid {
   std::string name;
   double density = 0, specific_heat = 0;       // [kg/m^3], [J/(kg K)]
   std::function<double(double)> conductivity;  // [W/(m K)] of [K]
   std::function<double(double)> viscosity;     // [Pa s] of [K]
   double lowest = 0, highest = 1e4;            // it is a liquid that lasts between these [K]
+  std::optional<DensityLaw> real = {};         // what the density really does, where that is known
+  bool real_density = false;                   // the tank follows it
   double volumetric() const { return density * specific_heat; }
+  double density_at(double kelvin) const { return real_density ? real->at(kelvin) : density; }
 };
 
 /// Grains: sand and rock.
@@ -66,6 +85,7 @@ std::vector<std::string> foundation_materials();
 // -- as they stand in the YAML ------------------------------------------------------------------------------
 struct FluidParameters {
   enum class Type { solar_salt, caloria_ht43, custom } type = Type::solar_salt;
+  bool real_density = false;
   double density = 0, specific_heat = 0;
   std::vector<double> temperature, conductivity, viscosity;
   double lowest = 0, highest = 1e4;

@@ -41,9 +41,15 @@ void declare(config::Section& section, FluidParameters& p) {
     s.value("lowest", p.lowest).unit("K").doc("below it the fluid freezes: a warning");
     s.value("highest", p.highest).unit("K").doc("above it the fluid boils or decomposes: a warning");
   };
+  const auto known = [&p](config::Section& s) {
+    s.value("real-density", p.real_density)
+        .doc(
+            "the density falls with temperature: in the heat that the pores hold and in the pressure on the "
+            "wall; otherwise it is the constant of thesis table 5.1");
+  };
   section.variant<Type>("type", p.type,
-                        {{"solar-salt", Type::solar_salt, nothing},
-                         {"caloria-ht43", Type::caloria_ht43, nothing},
+                        {{"solar-salt", Type::solar_salt, known},
+                         {"caloria-ht43", Type::caloria_ht43, known},
                          {"custom", Type::custom, custom}},
                         "60 % NaNO3 + 40 % KNO3, the oil of Solar One, or the values given here", true);
 }

@@ -97,7 +97,10 @@ TankRecord Tank::record() const {
     r.yield_strength = m.stress().yield;
   }
   r.stored = stored_, r.loss_side = side_, r.loss_roof = roof_, r.loss_ground = ground_;
-  r.heat_capacity = m.bed().heat_capacity();
+  const PlantParameters& plant = m.setup().parameters.flow.plant;
+  r.heat_capacity = plant.hot > plant.cold
+                        ? m.bed().heat_between(plant.cold, plant.hot) / (plant.hot - plant.cold)
+                        : m.bed().heat_capacity();
   return r;
 }
 
@@ -122,71 +125,6 @@ void Tank::write_output(double time, int) {
 
 void Tank::write_monitors(double time) {
   if (files_ && !steps_.empty()) files_->monitor(accepted_, time, steps_.back());
-}
-
-std::vector<std::string> Tank::judge_left_out_effects() {
-  for (const auto& observer : observers_) observer->finish();
-  std::vector<std::string> lines;
-  const TankModel& m = accepted_;
-  const double t = step_.time + step_.dt, turnover = std::max(m.ledger().turnover, 1e-300);
-  lines.push_back(fmt::format(
-      "energy: {:.4g} MWh moved, {:.4g} MWh lost; the books of the bed are off by {:.1e}, those of "
-      "the tank by {:.1e} of what was moved",
-      turnover / 3.6e9, m.losses() / 3.6e9, std::abs(m.bed_imbalance()) / turnover,
-      std::abs(m.imbalance(t)) / turnover));
-  if (m.inversion().depth > 0.01)
-    lines.push_back(fmt::format(
-        "buoyancy: at t = {:.6g} s fluid at z = {:.3f} m was {:.2f} K colder than the fluid below it; {}",
-        m.inversion().time, m.inversion().z, m.inversion().depth,
-        m.setup().parameters.bed.mix_inversions ? "such fluid is mixed"
-                                                : "mixing it (bed.mix-inversions) was left out"));
-  if (peak_flow_ > 0) {
-    const auto& runs = m.bed().grid().runs;
-    std::string layers;
-    for (const auto& run : runs)
-      layers += fmt::format("{}{:.3g}", layers.empty() ? "" : ", ",
-                            m.bed().reynolds(run.first + run.count / 2, peak_flow_));
-    lines.push_back(
-        fmt::format("closures: Re of the layers at the largest flow {} from the bottom up; the film's "
-                    "correlation was fitted to Re from 15 to 8500",
-                    layers));
-  }
-  if (m.shell() && !m.mechanics() && !m.contact()) {
-    const auto wall = m.shell()->temperature();
-    const auto [low, high] = std::minmax_element(wall.begin(), wall.end());
-    const Steel& steel = *m.setup().steel;
-    const double strain = steel.thermal_strain(*high) - steel.thermal_strain(*low) -
-                          m.setup().filler.expansion * (*high - *low);
-    lines.push_back(fmt::format(
-        "filler mechanics were left out: cooling a ring from {:.0f} to {:.0f} degC against a filler "
-        "that does not yield would add {:.0f} MPa of hoop stress",
-        celsius(*high), celsius(*low), 1e-6 * steel.youngs_modulus(*low) * std::max(0.0, strain)));
-  }
-  if (m.bed().fallbacks() > 0)
-    lines.push_back(fmt::format("bed: {} of {} steps were taken at first order in time to stay within bounds",
-                                m.bed().fallbacks(), speed_.bed_steps));
-  if (m.mechanics()) {
-    const auto slip = m.mechanics()->slip();
-    const std::size_t i = std::max_element(slip.begin(), slip.end()) - slip.begin();
-    lines.push_back(
-        fmt::format("filler: {} of {} rings have reached the passive limit; over the run "
-                    "the wall has pushed the grains in by {:.2g} mm in all where that was most, z = {:.2f} m",
-                    m.mechanics()->ever_passive(), slip.size(), 500 * slip[i] * m.setup().parameters.diameter,
-                    m.setup().rings->z[i]));
-  }
-  double total = 0;
-  for (const double s : speed_.seconds) total += s;
-  if (speed_.cell_steps > 0) {
-    std::string shares;
-    for (std::size_t i = 0; i < element_names.size(); ++i)
-      if (speed_.seconds[i] > 0)
-        shares += fmt::format("{}{} {:.2f} ns ({:.0f} %)", shares.empty() ? "" : ", ", element_names[i],
-                              1e9 * speed_.seconds[i] / speed_.cell_steps, 100 * speed_.seconds[i] / total);
-    lines.push_back(fmt::format("speed: {:.2f} ns per cell-step of the bed in {} steps of {} cells: {}",
-                                1e9 * total / speed_.cell_steps, speed_.bed_steps, m.bed().grid().size(),
-                                shares));
-  }
-  return lines;
 }
 
 }  // namespace couplet::thermocline

@@ -74,19 +74,24 @@ ContactMechanics::ContactMechanics(const Rings& rings, const Steel& steel, const
     : rings_(&rings),
       steel_(&steel),
       expansion_(filler.expansion),
+      active_ratio_(rankine_active(filler)),
       grains_(grains.begin(), grains.end()),
       given_wall_(wall.begin(), wall.end()) {
-  const double ka = rankine_active(filler);
-  for (int i = 0; i < rings.size(); ++i) {
-    fluid_.push_back(p.fluid[i]);
-    active_.push_back(ka * p.vertical[i]);
-    passive_.push_back(p.vertical[i] / ka);
-  }
+  for (auto* v : {&fluid_, &active_, &passive_}) v->resize(rings.size());
+  load(p);
   lateral_ = active_;
-  strain_.assign(rings.in_bed, 0.0);
+  strain_.assign(rings.in_bed, 0.0), slip_.assign(rings.in_bed, 0.0);
   contact_.assign(rings.in_bed, Contact::active);
   total_.resize(rings.size()), hoop_.resize(rings.size());
   finish();
+}
+
+void ContactMechanics::load(const InnerPressure& p) {
+  for (std::size_t i = 0; i < fluid_.size(); ++i) {
+    fluid_[i] = p.fluid[i];
+    active_[i] = active_ratio_ * p.vertical[i];
+    passive_[i] = p.vertical[i] / active_ratio_;
+  }
 }
 
 void ContactMechanics::finish() {
@@ -115,6 +120,7 @@ void ContactMechanics::update(std::span<const double> radial, std::span<const do
                                           : Contact::rigid;
     // Where the bound cuts the pressure, the filler ends where the wall will be under the bound.
     strain_[i] -= (wanted - lateral_[i]) / stiffness;
+    slip_[i] += std::max(0.0, wanted - passive_[i]) / stiffness;
   }
   given_wall_.assign(wall.begin(), wall.end());
   begun_ = begun_ || !radial.empty();
@@ -123,18 +129,18 @@ void ContactMechanics::update(std::span<const double> radial, std::span<const do
 
 std::vector<double> ContactMechanics::state() const {
   std::vector<double> all{double(begun_)};
-  for (const auto* v : {&strain_, &grains_, &lateral_, &given_wall_})
+  for (const auto* v : {&strain_, &slip_, &grains_, &lateral_, &given_wall_})
     all.insert(all.end(), v->begin(), v->end());
   for (const Contact c : contact_) all.push_back(double(c));
   return all;
 }
 
 void ContactMechanics::restore(std::span<const double> state) {
-  if (state.size() != 1 + 2 * strain_.size() + grains_.size() + lateral_.size() + given_wall_.size())
+  if (state.size() != 1 + 3 * strain_.size() + grains_.size() + lateral_.size() + given_wall_.size())
     throw Error("external-wall: the checkpoint has another number of rings; run with the same cells.");
   const double* from = state.data();
   begun_ = *from++ != 0;
-  for (auto* v : {&strain_, &grains_, &lateral_, &given_wall_})
+  for (auto* v : {&strain_, &slip_, &grains_, &lateral_, &given_wall_})
     for (double& value : *v) value = *from++;
   for (Contact& c : contact_) c = Contact(int(*from++));
   finish();

@@ -55,10 +55,14 @@ class ContactMechanics {
   /// `radial`: the wall's displacement [m] at each ring under what was given last; empty: a membrane's.
   /// `wall`, `grains`: temperatures at the end of the step, those that are given next.
   void update(std::span<const double> radial, std::span<const double> wall, std::span<const double> grains);
+  /// Another weight of fluid and grains from the next update on.
+  void load(const InnerPressure& pressure);
   std::span<const double> pressure() const { return total_; }   ///< p_f + p_s [Pa]
   std::span<const double> hoop() const { return hoop_; }        ///< of the membrane under it [Pa]
   std::span<const double> lateral() const { return lateral_; }  ///< p_s [Pa]
   const std::vector<Contact>& contact() const { return contact_; }
+  /// What passive yielding has taken from the filler's diameter so far, relative [1].
+  std::span<const double> slip() const { return slip_; }
 
   std::vector<double> state() const;
   void restore(std::span<const double> state);
@@ -68,10 +72,10 @@ class ContactMechanics {
 
   const Rings* rings_;
   const Steel* steel_;
-  double expansion_;
+  double expansion_, active_ratio_;
   bool begun_ = false;  // has seen a displacement: strains are the wall's own from then on
   std::vector<double> fluid_, active_, passive_;  // p_f; K_a p_v; p_v/K_a [Pa]
-  std::vector<double> strain_, grains_, lateral_, total_, hoop_;
+  std::vector<double> strain_, slip_, grains_, lateral_, total_, hoop_;
   std::vector<double> given_wall_;  // temperatures under which the wall was last computed [K]
   std::vector<Contact> contact_;
 };

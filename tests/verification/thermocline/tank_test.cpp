@@ -106,6 +106,23 @@ TEST(Schedule, repeats_its_rows_and_stops_at_the_outlet) {
   EXPECT_EQ(s.decide(10 * 24 * hour + 12 * hour, hot, cold, air).mass_flow, 70);
 }
 
+TEST(Warnings, a_wall_outside_the_range_of_its_table_is_named_once_with_time_and_place) {
+  TankParameters p = solar_one_parameters();
+  p.bed.cells = 50;
+  p.bed.initial_temperature = 373.15;
+  TankRun run(p);
+  run.until(1800, 900);
+  const auto said = run.tank.take_warnings();
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("A537"), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("from 204 to 304 degC"), std::string::npos) << said[0];
+  run.until(3600, 900);
+  EXPECT_TRUE(run.tank.take_warnings().empty());
+  TankRun inside(solar_one_parameters());
+  inside.until(86400, 900);
+  EXPECT_TRUE(inside.tank.take_warnings().empty());
+}
+
 class Participation : public ::testing::Test {
  protected:
   void SetUp() override {
