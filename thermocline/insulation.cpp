@@ -10,6 +10,7 @@ Insulation::Insulation(const InsulationParameters& p, std::span<const double> dz
     : cells_(p.cells), rings_(dz.size()), dz_(dz.begin(), dz.end()) {
   const Insulator material = make_insulator(p.material);
   conductivity_ = material.conductivity;
+  ramps_ = Ramps(conductivity_);
   const double dr = p.thickness / cells_, pi = std::numbers::pi;
   for (int j = 0; j < cells_; ++j) {
     const double in = radius + j * dr, middle = in + dr / 2, out = in + dr;
@@ -19,32 +20,34 @@ Insulation::Insulation(const InsulationParameters& p, std::span<const double> dz
   }
   outer_circumference_ = 2 * pi * (radius + p.thickness);
   temperature_.assign(rings_ * cells_, 293.15);
-  k_.resize(rings_ * cells_), up_.resize(rings_ * cells_), inner_.resize(rings_);
+  k_.resize(rings_ * cells_), up_.resize(rings_ * cells_), inner_.resize(rings_), in_.resize(rings_);
 }
 
 double Insulation::step(double dt, std::span<const double> inside, const Film& outside,
                         std::vector<double>& from_rings) {
   const std::size_t n = rings_;
   const int last = cells_ - 1;
-  for (std::size_t i = 0; i < n * cells_; ++i) k_[i] = conductivity_(temperature_[i]);
+  ramps_.values(temperature_.data(), k_.data(), n * cells_);
   // Node j: (C/dt) (T - T^n) = g_{j-1} (T_{j-1} - T) + g_j (T_{j+1} - T), per height; from the inside out.
   // up_ holds g_j over the diagonal that is left when the nodes further in are eliminated.
-  for (std::size_t i = 0; i < n; ++i) inner_[i] = shape_[0] * k_[i];
+  double* in = in_.data();  // conductance inwards; outwards it is that of the next node inwards
+  for (std::size_t i = 0; i < n; ++i) in[i] = inner_[i] = shape_[0] * k_[i];
+  const std::vector<double> nothing(n, 0.0);
   for (int j = 0; j < cells_; ++j) {
     double *t = temperature_.data() + j * n, *up = up_.data() + j * n;
-    const double* k = k_.data() + j * n;
-    const double store = capacity_[j] / dt, own = shape_[2 * j + 1];
-    const double film = outer_circumference_ * outside.coefficient;
+    const double *k = k_.data() + j * n, *next = j < last ? k + n : k;
+    const double *before = j > 0 ? t - n : inside.data(), *eliminated = j > 0 ? up - n : nothing.data();
+    // Half a node and half the next one, or the film, in series: k k'/(a k' + b k).
+    const double store = capacity_[j] / dt, a = 1 / shape_[2 * j + 1];
+    const double b = j < last ? 1 / shape_[2 * j + 2] : 0;
+    const double film = j < last ? 0 : 1 / (outer_circumference_ * outside.coefficient);
+#pragma GCC ivdep
     for (std::size_t i = 0; i < n; ++i) {
-      const double out = j < last ? 1 / (1 / (own * k[i]) + 1 / (shape_[2 * j + 2] * k[i + n]))
-                                  : 1 / (1 / (own * k[i]) + 1 / film);
-      const double in =
-          j == 0 ? inner_[i] : 1 / (1 / (shape_[2 * j - 1] * *(k + i - n)) + 1 / (shape_[2 * j] * k[i]));
-      const double eliminated = j == 0 ? 0 : *(up + i - n);
-      const double diagonal = store + out + in * (1 - eliminated);
-      const double from_inside = j == 0 ? inside[i] : *(t + i - n);
-      t[i] = (store * t[i] + in * from_inside) / diagonal;
-      up[i] = out / diagonal;
+      const double out = k[i] * next[i] / (next[i] * (a + film * k[i]) + b * k[i]);
+      const double inverse = 1 / (store + out + in[i] * (1 - eliminated[i]));
+      t[i] = (store * t[i] + in[i] * before[i]) * inverse;
+      up[i] = out * inverse;
+      in[i] = out;
     }
   }
   double lost = 0;
@@ -54,10 +57,8 @@ double Insulation::step(double dt, std::span<const double> inside, const Film& o
     double* tj = temperature_.data() + j * n;
     for (std::size_t i = 0; i < n; ++i) tj[i] += up_[j * n + i] * tj[i + n];
   }
-  const double film = outer_circumference_ * outside.coefficient;
   for (std::size_t i = 0; i < n; ++i) {
-    const double out = 1 / (1 / (shape_[2 * last + 1] * k_[last * n + i]) + 1 / film);
-    lost += dt * dz_[i] * out * (t[i] - outside.reference);
+    lost += dt * dz_[i] * in[i] * (t[i] - outside.reference);  // in: outwards of the last node by now
     from_rings[i] = dz_[i] * inner_[i] * (inside[i] - temperature_[i]);
   }
   return lost;

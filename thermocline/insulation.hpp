@@ -37,6 +37,7 @@ class Insulation {
 
  private:
   Table conductivity_;
+  Ramps ramps_;  // the same
   int cells_;
   std::size_t rings_;
   std::vector<double> dz_;
@@ -44,7 +45,7 @@ class Insulation {
   std::vector<double> capacity_;  // per height of each node [J/(m K)]
   double outer_circumference_;
   std::vector<double> temperature_;  // node by node, the innermost first; rings within [K]
-  std::vector<double> k_, up_, inner_;
+  std::vector<double> k_, up_, inner_, in_;
 };
 
 void declare(config::Section& section, InsulationParameters& parameters);

@@ -31,8 +31,17 @@ Rings::Rings(const ShellParameters& p, const BedGrid& bed, double d, double abov
 
 double Rings::surface(int i) const { return std::numbers::pi * diameter * dz[i]; }
 
-Shell::Shell(const Rings& rings, const Steel& steel) : rings_(&rings), steel_(&steel) {
+Shell::Shell(const Rings& rings, const Steel& steel)
+    : rings_(&rings),
+      steel_(&steel),
+      specific_heat_of_(steel.specific_heat),
+      conductivity_of_(steel.conductivity) {
   const int n = rings.size();
+  const double around = std::numbers::pi * rings.diameter;
+  for (int i = 0; i < n; ++i) {
+    mass_.push_back(steel.density * around * rings.thickness[i] * rings.dz[i]);
+    bare_.push_back(rings.dz[i] / (2 * around * rings.thickness[i]));
+  }
   temperature_.assign(n, 293.15);
   for (auto* v : {&a_, &b_, &c_, &r_, &capacity_, &specific_heat_, &resistance_}) v->assign(n, 0.0);
   matrix_.resize(n);
@@ -47,43 +56,32 @@ void Shell::step(double dt, std::span<const double> fluid, std::span<const doubl
   const Rings& rings = *rings_;
   const int n = rings.size();
   const double around = std::numbers::pi * rings.diameter;
-  for (int i = 0; i < n; ++i) {
-    specific_heat_[i] = steel_->specific_heat(temperature_[i]);
-    resistance_[i] = rings.dz[i] / (2 * steel_->conductivity(temperature_[i]) * around *
-                                    rings.thickness[i]);  // half a ring
-  }
+  specific_heat_of_.values(temperature_.data(), specific_heat_.data(), n);
+  conductivity_of_.values(temperature_.data(), resistance_.data(), n);
+  for (int i = 0; i < n; ++i) resistance_[i] = bare_[i] / resistance_[i];  // half a ring
+  for (int i = 0; i + 1 < n; ++i) c_[i] = a_[i + 1] = -1 / (resistance_[i] + resistance_[i + 1]);
   // Twice, so that the specific heat is its mean over the step: what is stored is then exactly what came in.
   for (int pass = 0; pass < 2; ++pass) {
-    double below = 0;
     for (int i = 0; i < n; ++i) {
-      capacity_[i] = steel_->density * around * rings.thickness[i] * rings.dz[i] * specific_heat_[i] / dt;
-      b_[i] = capacity_[i] + below;
+      capacity_[i] = mass_[i] * specific_heat_[i] / dt;
+      b_[i] = capacity_[i] - a_[i] - c_[i];  // of the ends: 0
       r_[i] = capacity_[i] * temperature_[i] - lost[i];
-      if (i < rings.in_bed) {
-        const double g = film[i] * rings.surface(i);
-        b_[i] += g;
-        r_[i] += g * fluid[i];
-      }
-      if (i + 1 == n) break;
-      below = 1 / (resistance_[i] + resistance_[i + 1]);
-      c_[i] = a_[i + 1] = -below;
-      b_[i] += below;
+    }
+    for (int i = 0; i < rings.in_bed; ++i) {
+      const double g = film[i] * around * rings.dz[i];
+      b_[i] += g;
+      r_[i] += g * fluid[i];
     }
     matrix_.factorise(a_.data(), b_.data(), c_.data());
     matrix_.solve(r_.data());
     double largest = 0;
-    const Table& cp = steel_->specific_heat;
-    for (int i = 0; i < n && pass == 0; ++i) {
-      const double change = r_[i] - temperature_[i];
-      largest = std::max(largest, std::abs(change));
-      if (std::abs(change) > 1e-6)
-        specific_heat_[i] = (cp.integral(r_[i]) - cp.integral(temperature_[i])) / change;
-    }
-    if (largest < 0.01) break;  // then both agree to 1e-6
+    for (int i = 0; i < n; ++i) largest = std::max(largest, std::abs(r_[i] - temperature_[i]));
+    if (largest < 0.01 || pass == 1) break;  // then both agree to 1e-6
+    specific_heat_of_.means(temperature_.data(), r_.data(), specific_heat_.data(), n);
   }
   temperature_ = r_;
   for (int i = 0; i < rings.in_bed; ++i)
-    from_bed[i] = film[i] * rings.surface(i) * (fluid[i] - temperature_[i]);
+    from_bed[i] = film[i] * around * rings.dz[i] * (fluid[i] - temperature_[i]);
 }
 
 double Shell::energy(double reference) const {

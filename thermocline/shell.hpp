@@ -53,6 +53,8 @@ class Shell {
  private:
   const Rings* rings_;
   const Steel* steel_;
+  Ramps specific_heat_of_, conductivity_of_;
+  std::vector<double> mass_, bare_;  // of each ring [kg]; dz/(2 pi D e) [1/m]
   std::vector<double> temperature_, a_, b_, c_, r_, capacity_, specific_heat_, resistance_;
   Tridiagonal matrix_;
 };

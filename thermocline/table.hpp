@@ -33,4 +33,45 @@ struct Table {
   }
 };
 
+/// A table for many temperatures at once: y_0 + sum of bend_s max(0, T - x_s), loops without branches over
+/// the temperatures.
+class Ramps {
+ public:
+  Ramps() = default;
+  explicit Ramps(const Table& table) : first_(table.y.front()) {
+    double slope = 0;
+    for (std::size_t i = 0; i < table.x.size(); ++i) {
+      const bool last = i + 1 == table.x.size();
+      const double next = last ? 0 : (table.y[i + 1] - table.y[i]) / (table.x[i + 1] - table.x[i]);
+      if (next != slope) at_.push_back(table.x[i]), bend_.push_back(next - slope);
+      slope = next;
+    }
+  }
+  /// Values at n temperatures.
+  void values(const double* t, double* value, std::size_t n) const {
+    for (std::size_t i = 0; i < n; ++i) value[i] = first_;
+    for (std::size_t s = 0; s < at_.size(); ++s) {
+      const double at = at_[s], bend = bend_[s];
+      for (std::size_t i = 0; i < n; ++i) value[i] += bend * std::max(0.0, t[i] - at);
+    }
+  }
+  /// Means over the way from one temperature to another; the value where they are (nearly) the same.
+  void means(const double* from, const double* to, double* value, std::size_t n) const {
+    for (std::size_t i = 0; i < n; ++i) value[i] = first_;
+    for (std::size_t s = 0; s < at_.size(); ++s) {
+      const double at = at_[s], bend = bend_[s];
+      for (std::size_t i = 0; i < n; ++i) {
+        const double a = std::max(0.0, from[i] - at), b = std::max(0.0, to[i] - at), way = to[i] - from[i];
+        // Both beyond the bend: their mean; otherwise half the difference of the squares over the way.
+        const bool both = (a > 0) == (b > 0);
+        value[i] += bend * (both ? 0.5 * (a + b) : 0.5 * (b * b - a * a) / (way == 0 ? 1 : way));
+      }
+    }
+  }
+
+ private:
+  double first_ = 0;
+  std::vector<double> at_, bend_;
+};
+
 }  // namespace couplet::thermocline
