@@ -222,7 +222,9 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
       trial_.pressure = {};
       trial_.start = Start::flowing;
     }
-    if ((trial_.implicit || step_.oblique()) && !trial_.pressure[0]) start_pressure(sub_step, last_w_);
+    const bool needs_pressure =
+        trial_.implicit || step_.oblique() || parameters_.projection == Projection::incremental;
+    if (needs_pressure && !trial_.pressure[0]) start_pressure(sub_step, last_w_);
     step_.predict(trial_, std::move(sub_step), last_w_);
     ++statistics_.sub_steps;
     ++statistics_.all_sub_steps;

@@ -79,7 +79,9 @@ class FractionalStep {
   void solve_oblique_viscous(const Vectors<D>& w, double a);
   void add_back_old_pressure(const State<D>& from);
   void predict_flux(const State<D>& from);
+  void set_relaxation(const State<D>& from);
   void add_memory(const State<D>& from);
+  void add_increment(const State<D>& from);
   double pressure_excess(const State<D>& from, Index f) const;
 
   void extrapolate_pressure(const State<D>& from);
@@ -92,8 +94,13 @@ class FractionalStep {
   void set_forces(const State<D>& from);
   void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
                          const std::vector<double>& boundary, Vectors<D>& sum) const;
+  /// What a value linear between the cells lacks at a face of a skewed mesh.
+  double skew_part(const Placement<D>& at, const Vectors<D>& gradient, Index f) const {
+    const double w = at.weight[f];
+    return (w * gradient[mesh_.owner[f]] + (1 - w) * gradient[mesh_.neighbour[f]]).dot(at.skew[f]);
+  }
   void correct(State<D>& state);
-  void remember_flux(State<D>& state) const;
+  void remember_flux(State<D>& state);
   void check(const State<D>& state);
 
   const Mesh& mesh_;
@@ -115,7 +122,9 @@ class FractionalStep {
   Rates<D> rates_;
   Vectors<D> right_side_, u_p_, w_, u_boundary_, gradient_start_, gradient_guess_, shear_;
   Vectors<D> oblique_rate_, viscous_side_, u_before_;
-  std::vector<double> relaxation_;  // [1/s]
+  std::vector<Tensor<D>> velocity_gradient_;  // skewed meshes only
+  std::vector<double> relaxation_;            // [1/s]
+  std::vector<double> fading_;                // incremental: of the start's delta, at t^{n+1}
   struct Fit {
     Tensor<D> matrix = Tensor<D>::Zero();
     Vec<D> side = Vec<D>::Zero();

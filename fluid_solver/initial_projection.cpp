@@ -34,8 +34,7 @@ void FractionalStep<D>::project_initial(State<D>& s) {
   oblique_ = max(mesh_.comm, s.placement->obliqueness) > 1e-9 || !s.points.empty();
   const Placement<D>& at = *s.placement;
   phi_p_.assign(mesh_.n_flux_faces(), 0.0);
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    phi_p_[f] = 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(at.area[f]);
+  mean_flux<D>(mesh_, at, s.u, s.u_boundary, velocity_gradient_, phi_p_);
   for (std::size_t b = 0; b < s.w.size(); ++b)
     phi_p_[mesh_.n_interior + b] = s.u_boundary[b].dot(at.area[mesh_.n_interior + b]);
   step_ = {rho_, s.placement, {}, {}};  // dt/rho = 1

@@ -135,11 +135,20 @@ void declare(config::Section& s, FluidParameters& p) {
   s.value("body-force", p.body_force)
       .unit("m/s^2")
       .doc("force per mass, one expression of x, y, z [m] and t [s] a component; absent: none");
-  s.value("flux-memory", p.flux_memory)
+  s.choice("projection", p.projection,
+           {{"flux-memory", Projection::flux_memory},
+            {"incremental", Projection::incremental},
+            {"non-incremental", Projection::non_incremental}})
       .doc(
-          "keep the difference between face fluxes and averaged cell velocities from step to step, so that "
-          "small "
-          "steps do not smooth the pressure");
+          "what becomes of the difference between face fluxes and averaged cell velocities; flux-memory: "
+          "kept "
+          "from step to step and evened out by friction and convection, robust, steady loads do not depend "
+          "on "
+          "the step; incremental: only the change of the pressure makes it, second order in time and the "
+          "least "
+          "loss of kinetic energy, but pressure noise is not damped; non-incremental: new in each step, "
+          "first "
+          "order in time");
   s.map<BodyParameters>(
       "bodies", p.bodies,
       [](config::Section& b, BodyParameters& body) {

@@ -29,6 +29,8 @@ inline bool is_wall(BoundaryType type) {
 }
 enum class InletProfile { uniform, parabolic };
 enum class ViscousTreatment { automatic, explicit_, implicit };
+/// How the face fluxes follow the cells' velocities from step to step.
+enum class Projection { flux_memory, incremental, non_incremental };
 
 struct BoundaryParameters {
   BoundaryType type = BoundaryType::no_slip;
@@ -88,7 +90,7 @@ struct FluidParameters {
   std::optional<StatisticsParameters> statistics;
   FluidOutputParameters output;
   std::map<std::string, BodyParameters> bodies;
-  bool flux_memory = true;
+  Projection projection = Projection::flux_memory;
   std::map<std::string, ProbeParameters> probes;
 };
 

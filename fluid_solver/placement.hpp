@@ -35,8 +35,19 @@ struct Placement {
   Vectors<D> centre;           ///< per local cell [m]
   std::vector<Vec3> boundary_centre;  ///< per owned boundary face [m]
   double obliqueness = 0;             ///< largest |k|/|S| on this rank
+  Vectors<D>
+      skew;  ///< from where the weights lead to the face's centre, per interior face [m]; empty: nowhere
+  /// Per local cell, with `skew`: B that makes the Gauss gradient G of values at the weights' places exact
+  /// for linear fields: G B of vectors (du_i/dx_j), B^T G of scalars.
+  std::vector<Tensor<D>> gradient_cure;
+  bool skewed() const { return !skew.empty(); }
+  /// From the middle between the cells to the face's centre, skewed meshes only [m].
+  Vec<D> offset(Index f) const {
+    return skew[f] + (0.5 - weight[f]) / conductance[f] * (area[f] - oblique[f]);
+  }
 };
 
+/// Collective.
 template <int D>
 std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geometry& geometry);
 template <int D>

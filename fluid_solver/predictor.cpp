@@ -12,8 +12,6 @@ namespace {
 // Modified Crank-Nicolson a L u^{n+1} + b L u^n + c L u^{n-1}: second order for any step ratio, and it damps
 // stiff modes.
 constexpr double c_modified = 1.0 / 16;
-// Decay of the flux memory in one step for which its AB2 is stable and does not overshoot.
-constexpr double largest_decay = 2.0 / 3;
 constexpr int most_passes = 60;
 
 }  // namespace
@@ -119,7 +117,8 @@ void FractionalStep<D>::add_old_pressure(const State<D>& from, bool implicit) {
   const double keep = implicit ? 0 : 1;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const double value = now.weight[f] * level.p[p] + (1 - now.weight[f]) * level.p[n];
+    double value = now.weight[f] * level.p[p] + (1 - now.weight[f]) * level.p[n];
+    if (now.skewed()) value += skew_part(now, level.gradient, f);
     const Vec<D> part = factor * value * (0.5 * (old.area[f] + now.area[f]) - keep * now.area[f]);
     right_side_[p] -= part;
     right_side_[n] += part;
@@ -191,67 +190,6 @@ void FractionalStep<D>::add_back_old_pressure(const State<D>& from) {
   }
   pressure_gradient(*step_.to, level.p, level.boundary, right_side_);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) u_p_[c] += factor / step_.to->volume[c] * right_side_[c];
-}
-
-/// phi^p = (mean u^p).S^{n+1} + delta^n - (dt/rho) grad p~ . k. The memory delta^n = phi^n - (mean u^n).S^n,
-/// on interior faces only, keeps the flux free of an error that would grow as 1/dt.
-template <int D>
-void FractionalStep<D>::predict_flux(const State<D>& from) {
-  const Placement<D>& now = *step_.to;
-  phi_orthogonal_.resize(mesh_.n_flux_faces());
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    phi_orthogonal_[f] = 0.5 * (u_p_[mesh_.owner[f]] + u_p_[mesh_.neighbour[f]]).dot(now.area[f]);
-  if (parameters_.flux_memory && !from.memory.empty()) add_memory(from);
-  for (std::size_t b = 0; b < w_.size(); ++b) {
-    const Index f = mesh_.n_interior + static_cast<Index>(b);
-    if (boundary_.kind()[b] == FaceKind::pressure) phi_orthogonal_[f] = u_p_[mesh_.owner[f]].dot(now.area[f]);
-  }
-  if (!bodies_) return;
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    if (bodies_->blocked(f)) phi_orthogonal_[f] = bodies_->flux(f, now);
-}
-
-/// d delta/dt = e - a delta: e is what the pressure does to the flux and not to the mean velocity, O(h^2); a
-/// is the rate at which friction and convection would even it out, as in an implicit momentum interpolation.
-/// Without a the memory would grow for ever in a steady flow, without the memory the steady flow would depend
-/// on dt. The decay is AB2 while a dt is small. Where it is large the projection's own dt e is too much: with
-/// the e of the step before delta goes to (delta + dt e)/(1 + a dt), so that a steady flow keeps e/a whatever
-/// the step.
-template <int D>
-void FractionalStep<D>::add_memory(const State<D>& from) {
-  relaxation_.assign(mesh_.cells.n_local(), 0.0);
-  const Placement<D>& at = *from.placement;
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const double rate = nu_ * at.conductance[f] + 0.5 * std::abs(from.phi[f]);
-    relaxation_[mesh_.owner[f]] += rate / at.volume[mesh_.owner[f]];
-    if (f < mesh_.n_interior) relaxation_[mesh_.neighbour[f]] += rate / at.volume[mesh_.neighbour[f]];
-  }
-  mesh_.cells.update_ghosts(relaxation_);
-  const double ratio = from.dt_old > 0 ? step_.dt / from.dt_old : 0;
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const double rate = 0.5 * (relaxation_[mesh_.owner[f]] + relaxation_[mesh_.neighbour[f]]);
-    const double decay = rate * step_.dt;
-    if (decay > largest_decay && from.pressure[0]) {
-      const double share = decay / (1 + decay);
-      phi_orthogonal_[f] += from.memory[f] - share * (from.memory[f] + step_.dt * pressure_excess(from, f));
-      continue;
-    }
-    double mid = (1 + ratio / 2) * from.memory[f];
-    if (ratio > 0) mid -= ratio / 2 * from.memory_old[f];
-    phi_orthogonal_[f] += from.memory[f] - std::min(decay, largest_decay) * mid;
-  }
-}
-
-/// e of the last step: what its pressure does to the flux and not to the mean velocity [m^3/s^2].
-template <int D>
-double FractionalStep<D>::pressure_excess(const State<D>& from, Index f) const {
-  const Placement<D>& at = *from.placement;
-  const PressureLevel<D>& level = *from.pressure[0];
-  const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-  const double w = at.weight[f];
-  const double flux = at.conductance[f] * (level.p[n] - level.p[p]) +
-                      (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique[f]);
-  return (0.5 * (level.gradient[p] + level.gradient[n]).dot(at.area[f]) - flux) / rho_;
 }
 
 /// p~ at t^{n+1/2}, the guess of the pressure equation, through the levels at hand (three only where the

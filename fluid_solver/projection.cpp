@@ -217,7 +217,8 @@ void FractionalStep<D>::set_forces(const State<D>& from) {
   }
 }
 
-/// sum p_f S per local cell, p_f linear between the cells.
+/// sum p_f S per local cell, p_f linear between the cells; on skewed meshes carried on to the face's centre
+/// by the gradient of that: exact for linear p.
 template <int D>
 void FractionalStep<D>::pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
                                           const std::vector<double>& boundary, Vectors<D>& sum) const {
@@ -231,6 +232,16 @@ void FractionalStep<D>::pressure_gradient(const Placement<D>& at, const std::vec
   for (std::size_t b = 0; b < boundary.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
     sum[mesh_.owner[f]] += boundary[b] * at.area[f];
+  }
+  if (!at.skewed()) return;
+  Vectors<D> gradient(sum.size());
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    gradient[c] = at.gradient_cure[c].transpose() * sum[c] / at.volume[c];
+  mesh_.cells.update_ghosts(flat<D>(gradient), D);
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Vec<D> part = skew_part(at, gradient, f) * at.area[f];
+    sum[mesh_.owner[f]] += part;
+    sum[mesh_.neighbour[f]] -= part;
   }
 }
 
@@ -271,18 +282,6 @@ void FractionalStep<D>::correct(State<D>& s) {
   mesh_.cells.update_ghosts(flat<D>(s.u), D);
   if (bodies_) bodies_->force(now, s.u);
   s.pressure = {level, s.pressure[0], s.pressure[1]};
-}
-
-template <int D>
-void FractionalStep<D>::remember_flux(State<D>& s) const {
-  if (!parameters_.flux_memory) return;
-  s.memory_old.swap(s.memory);
-  s.memory.resize(mesh_.n_interior);
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    s.memory[f] = s.phi[f] - 0.5 * (s.u[mesh_.owner[f]] + s.u[mesh_.neighbour[f]]).dot(step_.to->area[f]);
-  if (!bodies_) return;
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    if (bodies_->blocked(f)) s.memory[f] = 0;
 }
 
 template <int D>

@@ -21,8 +21,21 @@ void velocity_gradient(const Mesh& mesh, const Placement<D>& at, const Vectors<D
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     gradient[mesh.owner[f]] += u_boundary[f - mesh.n_interior] * at.area[f].transpose();
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) gradient[c] /= at.volume[c];
+  if (at.skewed())
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) gradient[c] = (gradient[c] * at.gradient_cure[c]).eval();
   mesh.cells.update_ghosts({gradient.empty() ? nullptr : gradient.front().data(), gradient.size() * D * D},
                            D * D);
+}
+
+template <int D>
+void mean_flux(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
+               std::vector<Tensor<D>>& gradient, std::span<double> flux) {
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    flux[f] = 0.5 * (u[mesh.owner[f]] + u[mesh.neighbour[f]]).dot(at.area[f]);
+  if (!at.skewed()) return;
+  velocity_gradient<D>(mesh, at, u, u_boundary, gradient);
+  for (Index f = 0; f < mesh.n_interior; ++f)
+    flux[f] += 0.5 * ((gradient[mesh.owner[f]] + gradient[mesh.neighbour[f]]) * at.offset(f)).dot(at.area[f]);
 }
 
 template <int D>
@@ -114,6 +127,10 @@ template void velocity_gradient<2>(const Mesh&, const Placement<2>&, const Vecto
                                    std::vector<Tensor<2>>&);
 template void velocity_gradient<3>(const Mesh&, const Placement<3>&, const Vectors<3>&, const Vectors<3>&,
                                    std::vector<Tensor<3>>&);
+template void mean_flux<2>(const Mesh&, const Placement<2>&, const Vectors<2>&, const Vectors<2>&,
+                           std::vector<Tensor<2>>&, std::span<double>);
+template void mean_flux<3>(const Mesh&, const Placement<3>&, const Vectors<3>&, const Vectors<3>&,
+                           std::vector<Tensor<3>>&, std::span<double>);
 template class RateOperator<2>;
 template class RateOperator<3>;
 template void wall_shear<2>(const Mesh&, const Placement<2>&, double, const Vectors<2>&, const Vectors<2>&,

@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
+
 #include "fluid_solver/boundary.hpp"
 #include "fluid_solver/state.hpp"
 
 namespace couplet::fluid {
 
-/// Gauss gradient du_i/dx_j per local cell (ghosts updated): (1/V) sum u_f S, u_f linear between the cells.
-/// Collective.
+/// Gauss gradient du_i/dx_j per local cell (ghosts updated): (1/V) sum u_f S, u_f linear between the cells;
+/// on skewed meshes made exact for linear fields. Collective.
 template <int D>
 void velocity_gradient(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
                        const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient);
+
+/// u.S of the interior faces [m^3/s]: the mean of the cells, on skewed meshes carried on to the face's centre
+/// by the mean gradient (which is filled then; else left alone). Collective.
+template <int D>
+void mean_flux(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
+               std::vector<Tensor<D>>& gradient, std::span<double> flux);
 
 /// nu_t (grad u + grad u^T).S at an interior face between p and n [m^4/s^2], force per density.
 template <int D>

@@ -37,11 +37,12 @@ struct State {
   bool implicit = false;  ///< viscous term of the history (Rates::viscous is there)
   Start start = Start::flowing;
 
-  Vectors<D> u;                            ///< u^n per local cell, ghosts current [m/s]
-  Vectors<D> w;                            ///< given velocity per boundary face at t^n [m/s]
-  Vectors<D> u_boundary;                   ///< closed boundary velocity at t^n [m/s]
-  std::vector<double> phi;                 ///< absolute volume flux per flux face at t^n [m^3/s]
-  std::vector<double> memory, memory_old;  ///< delta^n per interior face [m^3/s]
+  Vectors<D> u;             ///< u^n per local cell, ghosts current [m/s]
+  Vectors<D> w;             ///< given velocity per boundary face at t^n [m/s]
+  Vectors<D> u_boundary;    ///< closed boundary velocity at t^n [m/s]
+  std::vector<double> phi;  ///< absolute volume flux per flux face at t^n [m^3/s]
+  std::vector<double> memory,
+      memory_old;  ///< delta^n per interior face [m^3/s] (incremental: what is left of delta^0)
   std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;  ///< latest first; null: not there yet
 
   std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty: no model

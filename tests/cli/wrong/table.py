@@ -318,8 +318,8 @@ case.yaml:12:29: participants.fluid.boundaries.right.velocity: this key does not
 case.yaml:10:5: participants.fluid.viscous: 'implizit' is not one of: auto, explicit, implicit. Did you mean 'implicit'?
 """, ("    boundaries", "    viscous: implizit\n    boundaries")),
     fluid("true or false", """
-case.yaml:10:5: participants.fluid.flux-memory: '2' is not one of: true, false.
-""", ("    boundaries", "    flux-memory: 2\n    boundaries")),
+case.yaml:10:14: participants.fluid.output.vorticity: '2' is not one of: true, false.
+""", ("    boundaries", "    output: {vorticity: 2}\n    boundaries")),
 ]
 
 COUPLING = [
