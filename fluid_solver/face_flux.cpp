@@ -99,7 +99,7 @@ double FractionalStep<D>::pressure_excess(const State<D>& from, Index f) const {
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
   const double w = at.weight[f];
   const double flux = at.conductance[f] * (level.p[n] - level.p[p]) +
-                      (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique[f]);
+                      (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique_of(f));
   return (0.5 * (level.gradient[p] + level.gradient[n]).dot(at.area[f]) - flux) / rho_;
 }
 

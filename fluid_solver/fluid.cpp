@@ -26,7 +26,7 @@ Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving
       parameters_(parameters),
       moving_(moving_mesh),
       boundary_(mesh, parameters_),
-      step_(mesh, boundary_, parameters_),
+      step_(mesh, boundary_, parameters_, moving_mesh),
       step_size_(mesh, boundary_, parameters.viscosity / parameters.density) {
   if (!parameters.bodies.empty()) check_bodies();
   start(start_time);
@@ -88,17 +88,31 @@ void Fluid<D>::start(double time) {
 template <int D>
 void Fluid<D>::restore(State<D> state) {
   accepted_ = std::move(state);
+  beginning_.reset();
+  split_ = false;
   step_.set_eddy_viscosity(accepted_);
+}
+
+/// The accepted state as it was before a step that was not accepted, or that is repeated.
+template <int D>
+void Fluid<D>::rewind() {
+  split_ = false;
+  if (!beginning_) return;
+  accepted_.dt_old = beginning_->dt_old;
+  accepted_.implicit = beginning_->implicit;
+  accepted_.start = beginning_->start;
+  accepted_.pressure = beginning_->pressure;
 }
 
 template <int D>
 void Fluid<D>::begin_step(double time, double dt) {
   time_ = time;
   dt_ = dt;
+  rewind();
   accepted_.time = time;
-  trial_ = accepted_;
+  beginning_ = Beginning{accepted_.dt_old, accepted_.implicit, accepted_.start, accepted_.pressure};
   if (!parameters_.time_step || parameters_.viscous == ViscousTreatment::automatic)
-    statistics_.limits = step_size_.limits(trial_);
+    statistics_.limits = step_size_.limits(accepted_);
   if (parameters_.viscous == ViscousTreatment::automatic) choose_viscous_treatment();
   statistics_.sub_steps = 0;
 }
@@ -108,7 +122,7 @@ void Fluid<D>::begin_step(double time, double dt) {
 template <int D>
 void Fluid<D>::choose_viscous_treatment() {
   const StepLimits& limits = statistics_.limits;
-  bool implicit = trial_.implicit;
+  bool implicit = accepted_.implicit;
   if (parameters_.time_step) {
     const double own = dt_ / parts(dt_, *parameters_.time_step);
     implicit = limits.explicit_viscous * parameters_.safety_factor < own * (implicit ? 1.3 : 1.0);
@@ -119,9 +133,9 @@ void Fluid<D>::choose_viscous_treatment() {
     if (implicit && with_explicit < 0.7 * with_implicit) implicit = false;
     if (!implicit && with_implicit < 0.9 * with_explicit) implicit = true;
   }
-  if (implicit == trial_.implicit) return;
-  trial_.implicit = implicit;
-  trial_.dt_old = 0;
+  if (implicit == accepted_.implicit) return;
+  accepted_.implicit = implicit;
+  accepted_.dt_old = 0;
 }
 
 /// Equal parts of what remains, each within the limit of the present flow.
@@ -131,8 +145,9 @@ double Fluid<D>::next_size(double remaining, bool& last) {
   if (parameters_.time_step) {
     limit = *parameters_.time_step;
   } else {
-    const StepLimits limits = statistics_.sub_steps == 0 ? statistics_.limits : step_size_.limits(trial_);
-    limit = parameters_.safety_factor * (trial_.implicit ? limits.implicit_viscous : limits.explicit_viscous);
+    const StepLimits limits = statistics_.sub_steps == 0 ? statistics_.limits : step_size_.limits(trial());
+    limit =
+        parameters_.safety_factor * (trial().implicit ? limits.implicit_viscous : limits.explicit_viscous);
   }
   const double n = parts(remaining, limit);
   if (!(n + statistics_.sub_steps <= most_sub_steps))
@@ -147,7 +162,7 @@ template <int D>
 SubStep<D> Fluid<D>::make_sub_step(double dt, double done, std::span<const Vec3> points) const {
   SubStep<D> step;
   step.dt = dt;
-  step.to = trial_.placement;
+  step.to = trial().placement;
   if (!moving_) return step;
   const double s = done / dt_;
   if (s == 1 || points.empty()) {
@@ -158,7 +173,7 @@ SubStep<D> Fluid<D>::make_sub_step(double dt, double done, std::span<const Vec3>
       step.points[i] = accepted_.points[i] + s * (points[i] - accepted_.points[i]);
   }
   step.to = make_placement<D>(mesh_, step.points);
-  step.swept = swept_volumes(mesh_, trial_.points, step.points);
+  step.swept = swept_volumes(mesh_, trial().points, step.points);
   step.swept.resize(mesh_.n_flux_faces());
   return step;
 }
@@ -172,7 +187,7 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
     for (std::size_t b = 0; b < w.size(); ++b)
       if (boundary_.is_interface(b)) w[b] = accepted_.w[b] + s * (interface_velocity[b] - accepted_.w[b]);
   boundary_.velocity_at(time_ + done, step.to->boundary_centre, w);
-  boundary_.convect(mesh_, *trial_.placement, trial_.u, trial_.w, step.dt, w);
+  boundary_.convect(mesh_, *trial().placement, trial().u, trial().w, step.dt, w);
   return w;
 }
 
@@ -180,13 +195,13 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
 // step it comes from a trial of the step.
 template <int D>
 void Fluid<D>::start_pressure(const SubStep<D>& step, const Vectors<D>& w) {
-  State<D> probe = trial_;
+  State<D> probe = trial();
   probe.implicit = false;  // an implicit predictor without a pressure would smear what the pressure balances
   step_.predict(probe, step, w);
   step_.project(probe, w);
-  auto level = std::make_shared<PressureLevel<D>>(*step_.pressure_level(trial_));
-  level->time = trial_.time;  // the step itself adds a level in its middle
-  trial_.pressure[0] = std::move(level);
+  auto level = std::make_shared<PressureLevel<D>>(*step_.pressure_level(trial()));
+  level->time = trial().time;  // the step itself adds a level in its middle
+  trial().pressure[0] = std::move(level);
 }
 
 template <int D>
@@ -202,11 +217,11 @@ void Fluid<D>::add_forces(double share) {
 template <int D>
 void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity) {
   if (statistics_.sub_steps > 0) {  // a repetition of the whole step
-    const bool implicit = trial_.implicit;
-    trial_ = accepted_;
-    if (trial_.implicit != implicit) {
-      trial_.implicit = implicit;
-      trial_.dt_old = 0;
+    const bool implicit = trial().implicit;
+    rewind();
+    if (accepted_.implicit != implicit) {
+      accepted_.implicit = implicit;
+      accepted_.dt_old = 0;
     }
     statistics_.sub_steps = 0;
   }
@@ -218,21 +233,23 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     const double end = last ? dt_ : done + dt;
     SubStep<D> sub_step = make_sub_step(dt, end, points);
     last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
-    if (trial_.start == Start::after_impulse) {
-      trial_.pressure = {};
-      trial_.start = Start::flowing;
+    if (trial().start == Start::after_impulse) {
+      trial().pressure = {};
+      trial().start = Start::flowing;
     }
     const bool needs_pressure =
-        trial_.implicit || step_.oblique() || parameters_.projection == Projection::incremental;
-    if (needs_pressure && !trial_.pressure[0]) start_pressure(sub_step, last_w_);
-    step_.predict(trial_, std::move(sub_step), last_w_);
+        trial().implicit || step_.oblique() || parameters_.projection == Projection::incremental;
+    if (needs_pressure && !trial().pressure[0]) start_pressure(sub_step, last_w_);
+    step_.predict(trial(), std::move(sub_step), last_w_);
     ++statistics_.sub_steps;
     ++statistics_.all_sub_steps;
     if (last) break;
-    step_.project(trial_, last_w_);
+    step_.project(trial(), last_w_);
     add_forces(dt / dt_);
     pressure_done_.swap(pressure_force_);
     viscous_done_.swap(viscous_force_);
+    if (!split_) trial_ = accepted_;
+    split_ = true;
     step_.finish(trial_);
     done = end;
   }
@@ -243,7 +260,7 @@ void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity) {
   if (!wall_velocity.empty())
     for (std::size_t b = 0; b < last_w_.size(); ++b)
       if (boundary_.is_interface(b)) last_w_[b] = wall_velocity[b];
-  step_.project(trial_, last_w_);
+  step_.project(trial(), last_w_);
   ++statistics_.pressure_solves;
   add_forces(step_.size() / dt_);
 }
@@ -256,9 +273,11 @@ void Fluid<D>::solve(std::span<const Vec3> points, const Vectors<D>& wall_veloci
 
 template <int D>
 void Fluid<D>::accept() {
-  step_.finish(trial_);
-  trial_.time = time_ + dt_;
-  std::swap(accepted_, trial_);
+  step_.finish(trial());
+  trial().time = time_ + dt_;
+  if (split_) std::swap(accepted_, trial_);
+  split_ = false;
+  beginning_.reset();
   statistics_.pressure_iterations = step_.statistics().pressure_iterations;
   statistics_.viscous_iterations = step_.statistics().viscous_iterations;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,7 +19,7 @@ struct FluidStatistics {
 };
 
 /// The fluid through whole coupling steps: cuts them into stable sub-steps, moves the mesh and the walls
-/// linearly within them, and keeps the accepted state apart from the trial.
+/// linearly within them. The accepted state changes when the step is accepted only.
 ///
 ///   begin_step; prepare(points, w); solve_pressure(w') ...; accept
 ///
@@ -61,6 +64,9 @@ class Fluid {
   const ImmersedBodies<D>* bodies() const { return step_.bodies(); }
 
  private:
+  State<D>& trial() { return split_ ? trial_ : accepted_; }
+  const State<D>& trial() const { return split_ ? trial_ : accepted_; }
+  void rewind();
   void check_bodies();
   void start(double time);
   void choose_viscous_treatment();
@@ -77,7 +83,16 @@ class Fluid {
   Boundary<D> boundary_;
   FractionalStep<D> step_;
   StepSize<D> step_size_;
+  /// What a step that is given up or repeated has to put back, besides the sub-steps it finished.
+  struct Beginning {
+    double dt_old;
+    bool implicit;
+    Start start;
+    std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;
+  };
+  std::optional<Beginning> beginning_;  // of the step under way
   State<D> accepted_, trial_;
+  bool split_ = false;  // a sub-step of the step under way is finished: it goes on from trial_
   double time_ = 0, dt_ = 0;
   Vectors<D> last_w_;                        // given velocities at the end of the last sub-step
   Vectors<D> pressure_done_, viscous_done_;  // time integrals over the finished sub-steps / dt_

@@ -35,13 +35,16 @@ struct StepStatistics {
 template <int D>
 class FractionalStep {
  public:
-  FractionalStep(const Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters);
+  /// `moving`: the mesh will move.
+  FractionalStep(const Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
+                 bool moving);
 
   /// `w`: given velocity per boundary face at t^{n+1}, as far as it is known. Collective.
   void predict(const State<D>& from, SubStep<D> step, const Vectors<D>& w);
   /// May be called again with another w after one predict(). Collective.
   void project(const State<D>& from, const Vectors<D>& w);
-  /// Turns level n into level n+1. Throws SolveFailure naming time and place if the velocity is not finite.
+  /// Turns level n into level n+1. Throws SolveFailure naming time and place if the velocity is not finite,
+  /// and leaves the state as it was then.
   /// Collective.
   void finish(State<D>& state);
   /// Makes the initial velocity divergence-free: state.u, w and u_boundary (u at the faces) are given, phi is
@@ -49,7 +52,7 @@ class FractionalStep {
   void project_initial(State<D>& state);
 
   /// The result of the last project() as a level of history of `from`. Collective.
-  std::shared_ptr<const PressureLevel<D>> pressure_level(const State<D>& from) const;
+  std::shared_ptr<PressureLevel<D>> pressure_level(const State<D>& from) const;
   /// Fills level.gradient from p and boundary. Collective.
   void set_gradient(const Placement<D>& at, PressureLevel<D>& level) const;
   /// Of the last project(), acting on what is outside the fluid [N]: +p_b S^{n+1/2} and the wall shear.
@@ -99,9 +102,9 @@ class FractionalStep {
     const double w = at.weight[f];
     return (w * gradient[mesh_.owner[f]] + (1 - w) * gradient[mesh_.neighbour[f]]).dot(at.skew[f]);
   }
-  void correct(State<D>& state);
+  std::shared_ptr<PressureLevel<D>> correct(const State<D>& from);
   void remember_flux(State<D>& state);
-  void check(const State<D>& state);
+  void check(const State<D>& from);
 
   const Mesh& mesh_;
   const Boundary<D>& boundary_;

@@ -11,7 +11,7 @@ void FractionalStep<D>::mark_bodies(double time) {
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     if (!bodies_->blocked(f)) continue;
     around->conductance[f] = 0;
-    around->oblique[f].setZero();
+    if (!around->oblique.empty()) around->oblique[f].setZero();
   }
   around_bodies_ = std::move(around);
   assembled_ = nullptr;

@@ -31,7 +31,7 @@ void FractionalStep<D>::solve_initial(const Placement<D>& at) {
 /// flow.
 template <int D>
 void FractionalStep<D>::project_initial(State<D>& s) {
-  oblique_ = max(mesh_.comm, s.placement->obliqueness) > 1e-9 || !s.points.empty();
+  oblique_ = max(mesh_.comm, s.placement->obliqueness) > orthogonal || !s.points.empty();
   const Placement<D>& at = *s.placement;
   phi_p_.assign(mesh_.n_flux_faces(), 0.0);
   mean_flux<D>(mesh_, at, s.u, s.u_boundary, velocity_gradient_, phi_p_);
@@ -60,6 +60,8 @@ void FractionalStep<D>::project_initial(State<D>& s) {
     p_boundary_[b] = p_[mesh_.owner[f]] - (s.w[b] - jump_from[b]).dot(at.area[f]) / at.conductance[f];
   }
   correct(s);
+  s.phi.swap(phi_p_);
+  s.u.swap(u_p_);
   s.w = w_;
   s.u_old.clear();
   s.pressure = {};

@@ -20,7 +20,10 @@ FluidParticipant<D>::FluidParticipant(Mesh mesh, const FluidParameters& paramete
       output_(*fluid_, std::move(context)) {
   if (link) motion_ = link(mesh_);
   if (parameters.statistics) statistics_.emplace(mesh_.cells.n_local());
-  if (fluid_->boundary().interface_patches().empty()) return;
+  if (fluid_->boundary().interface_patches().empty()) {
+    if (!link) mesh_.reference = {};  // only the set-up needed it
+    return;
+  }
   interface_ = std::make_unique<InterfaceMap>(mesh_, fluid_->boundary().interface_patches());
   const std::vector<Index>& points = interface_->points();
   std::vector<Index> row;

@@ -84,6 +84,7 @@ std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geome
     cure_gradients(mesh, geometry, p);
   else
     Vectors<D>().swap(p.skew);
+  if (p.obliqueness <= orthogonal) Vectors<D>().swap(p.oblique);
   return placement;
 }
 

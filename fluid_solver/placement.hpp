@@ -30,7 +30,7 @@ struct Placement {
   Vectors<D> area;             ///< S [m^2], out of the owner
   std::vector<double>
       conductance;     ///< g = |S|^2 / (S.d) [m], over-relaxed; d from owner to neighbour (or face) centre
-  Vectors<D> oblique;  ///< k = S - g d [m^2], tangential; zero on orthogonal meshes
+  Vectors<D> oblique;  ///< k = S - g d [m^2], tangential; empty on orthogonal meshes
   std::vector<double> weight;  ///< of the owner in the linear interpolation to the face, per interior face
   Vectors<D> centre;           ///< per local cell [m]
   std::vector<Vec3> boundary_centre;  ///< per owned boundary face [m]
@@ -43,9 +43,13 @@ struct Placement {
   bool skewed() const { return !skew.empty(); }
   /// From the middle between the cells to the face's centre, skewed meshes only [m].
   Vec<D> offset(Index f) const {
-    return skew[f] + (0.5 - weight[f]) / conductance[f] * (area[f] - oblique[f]);
+    return skew[f] + (0.5 - weight[f]) / conductance[f] * (area[f] - oblique_of(f));
   }
+  /// k of a face [m^2], whether or not there is the array.
+  Vec<D> oblique_of(Index face) const { return oblique.empty() ? Vec<D>(Vec<D>::Zero()) : oblique[face]; }
 };
+/// |k|/|S| up to which a mesh counts as orthogonal.
+constexpr double orthogonal = 1e-9;
 
 /// Collective.
 template <int D>

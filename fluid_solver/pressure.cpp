@@ -11,46 +11,60 @@ namespace couplet::fluid {
 // Up to here kept Cholesky factors beat multigrid in 2-D: thin cells cost them no iterations.
 constexpr GlobalIndex largest_direct = 120000;
 
+template <int D>
+PressureEquation<D>::PressureEquation(const Mesh& mesh, const Boundary<D>& boundary, bool fixed)
+    : mesh_(mesh),
+      boundary_(boundary),
+      fixed_(fixed),
+      direct_(D == 2 && mesh.cells.n_global() <= largest_direct) {
+  make_matrix();  // now, while there is memory
+}
+
 // Triplets: the diagonal of each owned cell first, then the neighbours face by face.
 template <int D>
-PressureEquation<D>::PressureEquation(const Mesh& mesh, const Boundary<D>& boundary)
-    : mesh_(mesh), boundary_(boundary), direct_(D == 2 && mesh.cells.n_global() <= largest_direct) {
-  const Index owned = mesh.cells.n_owned();
+void PressureEquation<D>::make_matrix() {
+  const Index owned = mesh_.cells.n_owned();
   std::vector<GlobalIndex> row(owned), column;
-  std::iota(row.begin(), row.end(), mesh.cells.first());
+  row.reserve(owned + 2 * std::size_t(mesh_.n_interior));
+  std::iota(row.begin(), row.end(), mesh_.cells.first());
+  column.reserve(row.capacity());
   column = row;
   const auto add = [&](Index from, Index to) {
     if (from >= owned) return;
-    row.push_back(mesh.cells.global(from));
-    column.push_back(mesh.cells.global(to));
+    row.push_back(mesh_.cells.global(from));
+    column.push_back(mesh_.cells.global(to));
   };
-  for (Index f = 0; f < mesh.n_interior; ++f) {
-    add(mesh.owner[f], mesh.neighbour[f]);
-    add(mesh.neighbour[f], mesh.owner[f]);
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    add(mesh_.owner[f], mesh_.neighbour[f]);
+    add(mesh_.neighbour[f], mesh_.owner[f]);
   }
-  values_.resize(row.size());
-  matrix_ = std::make_unique<SparseMatrix>(mesh.comm, owned, std::move(row), std::move(column));
+  solver_.reset();
+  matrix_ = std::make_unique<SparseMatrix>(mesh_.comm, owned, std::move(row), std::move(column));
 }
 
 template <int D>
 void PressureEquation<D>::set(const Placement<D>& at) {
+  if (fixed_ && solver_) make_matrix();
   const Index owned = mesh_.cells.n_owned();
-  std::fill_n(values_.begin(), owned, 0.0);
+  std::vector<double> values(owned + 2 * std::size_t(mesh_.n_interior));
   std::size_t next = owned;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]}) {
       if (cell >= owned) continue;
-      values_[cell] += at.conductance[f];
-      values_[next++] = -at.conductance[f];
+      values[cell] += at.conductance[f];
+      values[next++] = -at.conductance[f];
     }
   }
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
     if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::pressure)
-      values_[mesh_.owner[f]] += at.conductance[f];
+      values[mesh_.owner[f]] += at.conductance[f];
   for (Index c = 0; c < owned; ++c)
-    if (values_[c] == 0) values_[c] = 1;  // inside a body: p = 0 there
-  if (boundary_.closed() && owned > 0 && mesh_.cells.first() == 0) values_[0] *= 2;
-  matrix_->fill(values_);
+    if (values[c] == 0) values[c] = 1;  // inside a body: p = 0 there
+  if (boundary_.closed() && owned > 0 && mesh_.cells.first() == 0) values[0] *= 2;
+  values.resize(next);  // faces to ghost cells have one row here
+  matrix_->fill(values);
+  values = {};
+  if (fixed_) matrix_->freeze();
   if (solver_) {
     solver_->matrix_changed();
   } else {

@@ -16,7 +16,8 @@ namespace couplet::fluid {
 template <int D>
 class PressureEquation {
  public:
-  PressureEquation(const Mesh& mesh, const Boundary<D>& boundary);
+  /// `fixed`: set() is called once for a run; nothing is kept for a second time.
+  PressureEquation(const Mesh& mesh, const Boundary<D>& boundary, bool fixed);
   /// Collective.
   void set(const Placement<D>& at);
   /// A new preconditioner at the next solve.
@@ -30,13 +31,14 @@ class PressureEquation {
                         double relative, double absolute);
 
  private:
+  void make_matrix();
   void remove_mean(std::vector<double>& b) const;
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
+  bool fixed_;
   bool direct_;  // small 2-D meshes: kept Cholesky factors
   std::unique_ptr<SparseMatrix> matrix_;
   std::unique_ptr<LinearSolver> solver_;
-  std::vector<double> values_;
 };
 
 }  // namespace couplet::fluid

@@ -23,7 +23,7 @@ constexpr double explosion = 1e3;  // growth of the largest speed in one step th
 
 template <int D>
 FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
-                                  const FluidParameters& parameters)
+                                  const FluidParameters& parameters, bool moving)
     : mesh_(mesh),
       boundary_(boundary),
       parameters_(parameters),
@@ -31,7 +31,7 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       nu_(parameters.viscosity / parameters.density),
       rate_operator_(mesh, boundary, nu_),
       viscous_solver_(mesh, boundary),
-      pressure_(mesh, boundary) {
+      pressure_(mesh, boundary, !moving && parameters.bodies.empty()) {
   if (!parameters.bodies.empty()) bodies_ = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
   if (!parameters.body_force.empty()) body_force_ = make_expressions(parameters.body_force, D, "body-force");
   slot_.assign(mesh.cells.n_local(), -1);
@@ -98,12 +98,12 @@ void FractionalStep<D>::add_oblique_pressure() {
     const double w = now.weight[f];
     phi_p_[f] -=
         factor * (w * gradient_guess_[mesh_.owner[f]] + (1 - w) * gradient_guess_[mesh_.neighbour[f]])
-                     .dot(around.oblique[f]);
+                     .dot(around.oblique_of(f));
   }
   for (std::size_t b = 0; b < w_.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
     if (boundary_.kind()[b] == FaceKind::pressure)
-      phi_p_[f] -= factor * gradient_guess_[mesh_.owner[f]].dot(now.oblique[f]);
+      phi_p_[f] -= factor * gradient_guess_[mesh_.owner[f]].dot(now.oblique_of(f));
   }
 }
 
@@ -169,7 +169,7 @@ void FractionalStep<D>::set_boundary_pressure(const State<D>& from, const Vector
     const Vec<D> acceleration = (w_[b] - from.w[b]) / step_.dt;
     double normal = -rho_ * acceleration.dot(now.area[f]);
     if (!force_.empty()) normal += rho_ * force_[p].dot(now.area[f]);
-    if (!gradient_guess_.empty()) normal -= gradient_guess_[p].dot(now.oblique[f]);
+    if (!gradient_guess_.empty()) normal -= gradient_guess_[p].dot(now.oblique_of(f));
     p_boundary_[b] = p_[p] + normal / now.conductance[f];
   }
 }
@@ -253,7 +253,7 @@ void FractionalStep<D>::set_gradient(const Placement<D>& at, PressureLevel<D>& l
 }
 
 template <int D>
-std::shared_ptr<const PressureLevel<D>> FractionalStep<D>::pressure_level(const State<D>& from) const {
+std::shared_ptr<PressureLevel<D>> FractionalStep<D>::pressure_level(const State<D>& from) const {
   auto level = std::make_shared<PressureLevel<D>>();
   level->time = from.time + step_.dt / 2;
   level->p = p_;
@@ -262,31 +262,38 @@ std::shared_ptr<const PressureLevel<D>> FractionalStep<D>::pressure_level(const 
   return level;
 }
 
+/// phi and u at t^{n+1} in the place of phi^p and u^p.
 template <int D>
-void FractionalStep<D>::correct(State<D>& s) {
+std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct(const State<D>& from) {
   const Placement<D>& now = *step_.to;
   const std::vector<double>& conductance = pressure_placement().conductance;
   const double factor = step_.dt / rho_;
-  s.phi.swap(phi_p_);
   for (Index f = 0; f < mesh_.n_interior; ++f)
-    s.phi[f] -= factor * conductance[f] * (p_[mesh_.neighbour[f]] - p_[mesh_.owner[f]]);
+    phi_p_[f] -= factor * conductance[f] * (p_[mesh_.neighbour[f]] - p_[mesh_.owner[f]]);
   for (std::size_t b = 0; b < w_.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);
     if (boundary_.kind()[b] == FaceKind::pressure)
-      s.phi[f] -= factor * now.conductance[f] * (p_boundary_[b] - p_[mesh_.owner[f]]);
+      phi_p_[f] -= factor * now.conductance[f] * (p_boundary_[b] - p_[mesh_.owner[f]]);
   }
-  const auto level = pressure_level(s);
-  s.u_old.swap(s.u);
-  s.u.resize(u_p_.size());
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) s.u[c] = u_p_[c] - factor * level->gradient[c];
-  mesh_.cells.update_ghosts(flat<D>(s.u), D);
-  if (bodies_) bodies_->force(now, s.u);
-  s.pressure = {level, s.pressure[0], s.pressure[1]};
+  auto level = pressure_level(from);
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) u_p_[c] -= factor * level->gradient[c];
+  mesh_.cells.update_ghosts(flat<D>(u_p_), D);
+  if (bodies_) bodies_->force(now, u_p_);
+  return level;
 }
 
 template <int D>
 void FractionalStep<D>::finish(State<D>& s) {
-  correct(s);
+  auto level = correct(s);
+  check(s);
+  s.phi.swap(phi_p_);
+  s.u_old.swap(s.u);
+  s.u.swap(u_p_);
+  std::shared_ptr<PressureLevel<D>> before;  // its gradient is no longer needed
+  if (s.pressure[0])
+    before = std::make_shared<PressureLevel<D>>(
+        PressureLevel<D>{s.pressure[0]->time, s.pressure[0]->p, s.pressure[0]->boundary, {}});
+  s.pressure = {std::move(level), std::move(before), s.pressure[1]};
   s.u_boundary_old.swap(s.u_boundary);
   s.w = w_;
   boundary_.close(mesh_, *step_.to, s.u, s.w, s.u_boundary);
@@ -305,7 +312,6 @@ void FractionalStep<D>::finish(State<D>& s) {
     s.dt_old = 0;
   }
   set_eddy_viscosity(s);
-  check(s);
 }
 
 template <int D>
@@ -313,16 +319,16 @@ void FractionalStep<D>::set_eddy_viscosity(State<D>& state) {
   if (parameters_.turbulence) rate_operator_.set_eddy_viscosity(*parameters_.turbulence, state);
 }
 
-// One reduction: largest speed and where, and the mass defect.
+// One reduction: largest speed at t^{n+1} and where.
 template <int D>
-void FractionalStep<D>::check(const State<D>& s) {
+void FractionalStep<D>::check(const State<D>& from) {
   struct {
     double value;
     int rank;
   } fastest{-1, comm_rank(mesh_.comm)};
   Index where = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const double square = s.u[c].squaredNorm();
+    const double square = u_p_[c].squaredNorm();
     if (square <= fastest.value) continue;
     fastest.value = std::isfinite(square) ? square : std::numeric_limits<double>::infinity();
     where = c;
@@ -332,7 +338,7 @@ void FractionalStep<D>::check(const State<D>& s) {
   const bool too_fast = speed_scale_ > 0 && fastest.value > explosion * speed_scale_;
   if (!std::isfinite(fastest.value) || too_fast) {
     Vec3 place = Vec3::Zero();
-    place.template head<D>() = s.placement->centre[where];
+    place.template head<D>() = step_.to->centre[where];
     double data[4] = {place.x(), place.y(), place.z(), double(mesh_.cell_id[where])};
     MPI_Bcast(data, 4, MPI_DOUBLE, fastest.rank, mesh_.comm);
     throw SolveFailure(
@@ -340,7 +346,7 @@ void FractionalStep<D>::check(const State<D>& s) {
         "smaller "
         "time step.",
         std::isfinite(fastest.value) ? fmt::format("grew to {:.3g} m/s", fastest.value) : "is not finite",
-        s.time, GlobalIndex(data[3]), data[0], data[1], data[2]);
+        from.time + step_.dt, GlobalIndex(data[3]), data[0], data[1], data[2]);
   }
   speed_scale_ = std::max(speed_scale_, fastest.value);
 }

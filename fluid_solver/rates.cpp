@@ -74,13 +74,14 @@ void RateOperator<D>::add_oblique(const Placement<D>& at, const Vectors<D>& u, c
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
     const double w = at.weight[f];
-    const Vec<D> part = nu_ * (w * (gradient_[p] * at.oblique[f]) + (1 - w) * (gradient_[n] * at.oblique[f]));
+    const Vec<D> part =
+        nu_ * (w * (gradient_[p] * at.oblique_of(f)) + (1 - w) * (gradient_[n] * at.oblique_of(f)));
     rate[p] += part;
     rate[n] -= part;
   }
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
     if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity)
-      rate[mesh_.owner[f]] += nu_ * (gradient_[mesh_.owner[f]] * at.oblique[f]);
+      rate[mesh_.owner[f]] += nu_ * (gradient_[mesh_.owner[f]] * at.oblique_of(f));
 }
 
 template <int D>

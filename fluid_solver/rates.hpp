@@ -27,7 +27,7 @@ Vec<D> eddy_stress(const Placement<D>& at, const State<D>& s, const std::vector<
   const double w = at.weight[f];
   const Tensor<D> mean = w * gradient[p] + (1 - w) * gradient[n];
   return 0.5 * (s.eddy[p] + s.eddy[n]) *
-         (at.conductance[f] * (s.u[n] - s.u[p]) + mean * at.oblique[f] + mean.transpose() * at.area[f]);
+         (at.conductance[f] * (s.u[n] - s.u[p]) + mean * at.oblique_of(f) + mean.transpose() * at.area[f]);
 }
 
 /// R = -sum phi u_f + nu sum [g du + (grad u)_f . k], see reference [trias2014] for the skew-symmetric

@@ -35,7 +35,7 @@ void write_state(CheckpointWriter& file, const State<D>& s) {
     file.write_scalar(name + "-time", s.pressure[k]->time);
     file.write(name, s.pressure[k]->p);
     file.write(name + "-boundary", s.pressure[k]->boundary);
-    file.write(name + "-gradient", flat<D>(s.pressure[k]->gradient));
+    if (k == 0) file.write(name + "-gradient", flat<D>(s.pressure[k]->gradient));
   }
   if (s.dt_old > 0) {
     file.write("old-velocity", flat<D>(s.u_old));
@@ -77,7 +77,7 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, bool moving) {
     level->boundary.resize(faces);
     file.read(name, level->p);
     file.read(name + "-boundary", level->boundary);
-    read_vectors<D>(file, name + "-gradient", level->gradient, cells);
+    if (k == 0) read_vectors<D>(file, name + "-gradient", level->gradient, cells);
     s.pressure[k] = level;
   }
   if (s.dt_old > 0) {
@@ -95,7 +95,7 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, bool moving) {
     s.mesh_flux.resize(has_mesh_flux ? mesh.n_flux_faces() : 0);
     file.read("mesh-flux", s.mesh_flux);
   }
-  s.placement = moving ? make_placement<D>(mesh, s.points) : make_placement<D>(mesh, mesh.reference);
+  s.placement = make_placement<D>(mesh, moving ? s.points : mesh.reference_points);
   return s;
 }
 

@@ -18,7 +18,10 @@ SparseMatrix::SparseMatrix(MPI_Comm comm, GlobalIndex n_owned_rows, std::vector<
   petsc_check(MatSetSizes(matrix_, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
   petsc_check(MatSetType(matrix_, MATAIJ));
   petsc_check(MatSetBlockSize(matrix_, block_size));
-  std::vector<PetscInt> i(row.begin(), row.end()), j(column.begin(), column.end());
+  std::vector<PetscInt> i(row.begin(), row.end());
+  row = {};  // what follows needs much memory for a moment
+  std::vector<PetscInt> j(column.begin(), column.end());
+  column = {};
   petsc_check(MatSetPreallocationCOO(matrix_, static_cast<PetscCount>(i.size()), i.data(), j.data()));
   petsc_check(MatCreateVecs(matrix_, &x_, &y_));
 }
@@ -40,6 +43,13 @@ SparseMatrix::SparseMatrix(SparseMatrix&& other) noexcept
 
 void SparseMatrix::fill(std::span<const double> values) {
   petsc_check(MatSetValuesCOO(matrix_, values.data(), INSERT_VALUES));
+}
+
+void SparseMatrix::freeze() {
+  Mat copy = nullptr;
+  petsc_check(MatDuplicate(matrix_, MAT_COPY_VALUES, &copy));  // without the tables of MatSetValuesCOO
+  petsc_check(MatDestroy(&matrix_));
+  matrix_ = copy;
 }
 
 void SparseMatrix::multiply(std::span<const double> x, std::span<double> y) const {

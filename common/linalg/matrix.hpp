@@ -23,6 +23,8 @@ class SparseMatrix {
 
   /// One value per triplet, in the order of the constructor. Collective.
   void fill(std::span<const double> values);
+  /// The values stay as they are: gives back what fill() needs, and petsc() is another one. Collective.
+  void freeze();
   /// y = A x on the owned rows. Collective.
   void multiply(std::span<const double> x, std::span<double> y) const;
   Mat petsc() const { return matrix_; }

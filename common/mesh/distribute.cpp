@@ -98,6 +98,7 @@ class LocalPart {
     fill_cells();
     fill_interior_faces();
     fill_boundary_faces();
+    give_back();
     return std::move(mesh_);
   }
 
@@ -243,6 +244,15 @@ class LocalPart {
     for (Patch& p : mesh_.patches) at = (p.ghost_first = at) + p.ghost_count;
     mesh_.boundary = make_index_map(comm_, mesh_.boundary_id, n_owned, ghost_owner);
     if (faces_.first_bonded >= 0) find_twins();
+  }
+
+  /// Arrays that grew entry by entry have room for more.
+  void give_back() {
+    const auto shrink = [](auto&... arrays) { (arrays.shrink_to_fit(), ...); };
+    shrink(mesh_.cell_id, mesh_.point_id, mesh_.boundary_id, mesh_.cell_type, mesh_.cell_points.offset,
+           mesh_.cell_points.index, mesh_.cell_zone, mesh_.cell_material, mesh_.face_points.offset,
+           mesh_.face_points.index, mesh_.owner, mesh_.neighbour, mesh_.neighbour_shift,
+           mesh_.reference_points);
   }
 
   void find_twins() {
