@@ -16,18 +16,14 @@ PressureEquation<D>::PressureEquation(const Mesh& mesh, const Boundary<D>& bound
     : mesh_(mesh),
       boundary_(boundary),
       fixed_(fixed),
-      direct_(D == 2 && mesh.cells.n_global() <= largest_direct) {
-  make_matrix();  // now, while there is memory
-}
+      direct_(D == 2 && mesh.cells.n_global() <= largest_direct) {}
 
 // Triplets: the diagonal of each owned cell first, then the neighbours face by face.
 template <int D>
-void PressureEquation<D>::make_matrix() {
+void PressureEquation<D>::make_pattern() {
   const Index owned = mesh_.cells.n_owned();
   std::vector<GlobalIndex> row(owned), column;
-  row.reserve(owned + 2 * std::size_t(mesh_.n_interior));
   std::iota(row.begin(), row.end(), mesh_.cells.first());
-  column.reserve(row.capacity());
   column = row;
   const auto add = [&](Index from, Index to) {
     if (from >= owned) return;
@@ -38,40 +34,69 @@ void PressureEquation<D>::make_matrix() {
     add(mesh_.owner[f], mesh_.neighbour[f]);
     add(mesh_.neighbour[f], mesh_.owner[f]);
   }
-  solver_.reset();
+  values_.resize(row.size());
   matrix_ = std::make_unique<SparseMatrix>(mesh_.comm, owned, std::move(row), std::move(column));
 }
 
 template <int D>
-void PressureEquation<D>::set(const Placement<D>& at) {
-  if (fixed_ && solver_) make_matrix();
+std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at) const {
   const Index owned = mesh_.cells.n_owned();
-  std::vector<double> values(owned + 2 * std::size_t(mesh_.n_interior));
-  std::size_t next = owned;
-  for (Index f = 0; f < mesh_.n_interior; ++f) {
-    for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]}) {
-      if (cell >= owned) continue;
-      values[cell] += at.conductance[f];
-      values[next++] = -at.conductance[f];
-    }
-  }
+  std::vector<double> sum(owned, 0.0);
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
+      if (cell < owned) sum[cell] += at.conductance[f];
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
     if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::pressure)
-      values[mesh_.owner[f]] += at.conductance[f];
-  for (Index c = 0; c < owned; ++c)
-    if (values[c] == 0) values[c] = 1;  // inside a body: p = 0 there
-  if (boundary_.closed() && owned > 0 && mesh_.cells.first() == 0) values[0] *= 2;
-  values.resize(next);  // faces to ghost cells have one row here
-  matrix_->fill(values);
-  values = {};
-  if (fixed_) matrix_->freeze();
-  if (solver_) {
-    solver_->matrix_changed();
-  } else {
-    LinearOptions options;
-    options.method = direct_ ? LinearMethod::cg_direct : LinearMethod::cg_multigrid;
-    solver_ = std::make_unique<LinearSolver>("pressure", *matrix_, options);
+      sum[mesh_.owner[f]] += at.conductance[f];
+  for (double& value : sum)
+    if (value == 0) value = 1;  // inside a body: p = 0 there
+  if (boundary_.closed() && owned > 0 && mesh_.cells.first() == 0) sum[0] *= 2;
+  return sum;
+}
+
+// Entry by entry, so that nothing but the matrix itself takes memory.
+template <int D>
+void PressureEquation<D>::make_fixed(const Placement<D>& at) {
+  const Index owned = mesh_.cells.n_owned();
+  std::vector<int> own(owned, 1), other(owned, 0);
+  const auto count = [&](Index from, Index to) {
+    if (from < owned) ++(to < owned ? own : other)[from];
+  };
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    count(mesh_.owner[f], mesh_.neighbour[f]);
+    count(mesh_.neighbour[f], mesh_.owner[f]);
   }
+  matrix_ = std::make_unique<SparseMatrix>(mesh_.comm, own, other);
+  const auto set = [&](Index from, Index to, double value) {
+    if (from < owned) matrix_->set(mesh_.cells.global(from), mesh_.cells.global(to), value);
+  };
+  const std::vector<double> middle = diagonal(at);
+  for (Index c = 0; c < owned; ++c) set(c, c, middle[c]);
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    set(mesh_.owner[f], mesh_.neighbour[f], -at.conductance[f]);
+    set(mesh_.neighbour[f], mesh_.owner[f], -at.conductance[f]);
+  }
+  matrix_->complete();
+}
+
+template <int D>
+void PressureEquation<D>::set(const Placement<D>& at) {
+  if (fixed_) {
+    solver_.reset();
+    make_fixed(at);
+  } else {
+    if (!matrix_) make_pattern();
+    const std::vector<double> middle = diagonal(at);
+    std::size_t next = std::copy(middle.begin(), middle.end(), values_.begin()) - values_.begin();
+    for (Index f = 0; f < mesh_.n_interior; ++f)
+      for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
+        if (cell < mesh_.cells.n_owned()) values_[next++] = -at.conductance[f];
+    matrix_->fill(values_);
+  }
+  if (solver_) return solver_->matrix_changed();
+  LinearOptions options;
+  options.method = direct_ ? LinearMethod::cg_direct : LinearMethod::cg_multigrid;
+  solver_ = std::make_unique<LinearSolver>("pressure", *matrix_, options);
 }
 
 // A closed domain has a pressure up to a constant only if the fluxes add up to nothing.

@@ -16,7 +16,7 @@ namespace couplet::fluid {
 template <int D>
 class PressureEquation {
  public:
-  /// `fixed`: set() is called once for a run; nothing is kept for a second time.
+  /// `fixed`: the mesh rests; nothing is kept for a second set().
   PressureEquation(const Mesh& mesh, const Boundary<D>& boundary, bool fixed);
   /// Collective.
   void set(const Placement<D>& at);
@@ -31,7 +31,9 @@ class PressureEquation {
                         double relative, double absolute);
 
  private:
-  void make_matrix();
+  void make_pattern();
+  void make_fixed(const Placement<D>& at);
+  std::vector<double> diagonal(const Placement<D>& at) const;
   void remove_mean(std::vector<double>& b) const;
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
@@ -39,6 +41,7 @@ class PressureEquation {
   bool direct_;  // small 2-D meshes: kept Cholesky factors
   std::unique_ptr<SparseMatrix> matrix_;
   std::unique_ptr<LinearSolver> solver_;
+  std::vector<double> values_;  // of a moving mesh
 };
 
 }  // namespace couplet::fluid
