@@ -30,10 +30,10 @@ def diameters(study, axes, reference):
     x = [pair[0] for pair in found]
     for name, label, style in (("Q_C/Q_excess", "stored / excess energy", "o-"), ("eta_th", "thermal efficiency", "s-")):
         axes.plot(x, [values[name] for _, values in found], style, label=label)
-    axes.set(xlabel="diameter / diameter of the hot tank of two", ylabel="%", ylim=(0, 105))
+    axes.set(xlabel="diameter / that of the hot tank of the two it replaces", ylabel="%", ylim=(0, 105))
     other = axes.twinx()
     other.plot(x, [values["FoS_static"] for _, values in found], "^--", color="tab:red", label="factor of safety")
-    other.set(ylabel="static factor of safety", ylim=(0, None))
+    other.set(ylabel="static factor of safety", ylim=(0, 1.1 * max(values["FoS_static"] for _, values in found)))
     handles = [*axes.get_legend_handles_labels()[0], *other.get_legend_handles_labels()[0]]
     axes.legend(handles, [h.get_label() for h in handles], fontsize=7, loc="lower left")
     axes.set_title("diameter (figure 5.9)", fontsize=9)
@@ -48,7 +48,9 @@ def stresses(study, axes):
         data = couplet.read_csv(file)
         axes.plot(data["mean daily highest share [-]"], data["z [m]"], color=colour, label=f"{name}, discharged")
         axes.plot(data["mean daily lowest share [-]"], data["z [m]"], "--", color=colour, label=f"{name}, charged")
-    axes.set(xlabel="equivalent stress / yield strength", ylabel="height [m]", xlim=(0, None), ylim=(0, None))
+    axes.axvline(1, color="0.6", lw=0.8)
+    axes.set(xlabel="equivalent stress / yield strength (daily extremes, mean)", ylabel="height [m]", xlim=(0, None),
+             ylim=(0, None))
     axes.legend(fontsize=7)
     axes.set_title("wall stress (figure 5.11)", fontsize=9)
 
@@ -68,7 +70,7 @@ def charge(study, axes):
             at = data["time [s]"] == time
             axes.plot(data["wall [degC]"][at], data["z [m]"][at], style, color=plt.cm.viridis(k / max(len(shown) - 1, 1)),
                       label=f"{name} {time % DAY / HOUR:.0f} h" if style == "-" else (name if k == 0 else None))
-    axes.set(xlabel="wall [°C]", ylabel="height [m]", ylim=(0, None))
+    axes.set(xlabel="wall temperature [°C]", ylabel="height [m]", ylim=(0, None))
     axes.legend(fontsize=7)
     axes.set_title("charge of 9 July (figure 5.12)", fontsize=9)
 

@@ -44,25 +44,6 @@ std::vector<Tensor3> Solid::face_strain(Index first, Index count, std::span<cons
   return strain;
 }
 
-std::vector<Tensor3> Solid::cell_gradient(std::span<const double> points) const {
-  const Index n_owned = mesh_.cells.n_owned();
-  std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
-  std::vector<double> weight(n_owned, 0);
-  visit_gradients(state_.cell_u, state_.face_u, points, [&](Index f, const Tensor3& here) {
-    const auto add = [&](Index c) {
-      if (c >= n_owned) return;
-      const Vec3 arm = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[c];
-      const double pyramid = std::abs(arm.dot(mesh_.reference.face_area[f]));
-      gradient[c] += pyramid * here;
-      weight[c] += pyramid;
-    };
-    add(mesh_.owner[f]);
-    if (f < mesh_.n_interior) add(mesh_.neighbour[f]);
-  });
-  for (Index c = 0; c < n_owned; ++c) gradient[c] /= weight[c];
-  return gradient;
-}
-
 std::vector<Tensor3> Solid::cell_strain(std::span<const double> points) const {
   std::vector<Tensor3> strain = cell_gradient(points);
   for (Tensor3& e : strain) e = symmetric(e);

@@ -109,8 +109,7 @@ class Solid final : public Participant {
   /// Stress of the local faces first, first + 1, ... (`count` of them) [Pa]. `points`: as
   /// point_displacement() gives them.
   std::vector<Tensor3> face_stress(Index first, Index count, std::span<const double> points) const;
-  /// Stress of the local owned cells [Pa], mean of the face values by the pyramids over the faces; exact for
-  /// linear displacements.
+  /// Stress of the local owned cells [Pa] by cell_gradient(); exact for linear displacements.
   std::vector<Tensor3> cell_stress(std::span<const double> points) const;
   /// The same for strains, of faces and of cells.
   std::vector<Tensor3> face_strain(Index first, Index count, std::span<const double> points) const;

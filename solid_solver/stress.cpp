@@ -17,14 +17,18 @@ VertexInterpolation::ByFace stencils_of(const Mesh& mesh, const std::vector<bool
   return stencils;
 }
 
-/// Packed tensors with ghosts up to date.
-std::vector<double> with_ghosts(const IndexMap& map, std::span<const Tensor3> owned) {
-  std::vector<double> values(std::size_t(map.n_local()) * tensor_size, 0);
+/// Tensors as `size` numbers each, by `numbers(tensor)`, with ghosts up to date.
+template <class Numbers>
+std::vector<double> with_ghosts(const IndexMap& map, std::span<const Tensor3> owned, int size,
+                                const Numbers& numbers) {
+  std::vector<double> values(std::size_t(map.n_local()) * size, 0);
   for (std::size_t i = 0; i < owned.size(); ++i)
-    std::ranges::copy(pack(owned[i]), values.begin() + std::ptrdiff_t(i * tensor_size));
-  map.update_ghosts(values, tensor_size);
+    std::ranges::copy(numbers(owned[i]), values.begin() + std::ptrdiff_t(i) * size);
+  map.update_ghosts(values, size);
   return values;
 }
+
+std::span<const double> all_of(const Tensor3& tensor) { return {tensor.data(), 9}; }
 
 }  // namespace
 
@@ -69,23 +73,43 @@ PointTensors::PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetr
   }
 }
 
-std::vector<double> PointTensors::interpolate(std::span<const Tensor3> cells,
-                                              std::span<const Tensor3> faces) const {
-  const std::vector<double> in_cells = with_ghosts(mesh_->cells, cells);
-  const std::vector<double> on_faces = with_ghosts(mesh_->boundary, faces);
-  std::vector<double> values(std::size_t(mesh_->points.n_local()) * tensor_size);
-  for (Index v = 0; v < mesh_->points.n_local(); ++v) {
-    const Vec<tensor_size> value = vertices_.scalar_at<tensor_size>(v, in_cells, on_faces);
-    std::copy_n(value.data(), tensor_size, values.begin() + std::ptrdiff_t(v) * tensor_size);
-  }
+/// Means of the tensors at the points of symmetry planes and their mirror images.
+template <class Get, class Set>
+void PointTensors::mirror(const Get& get, const Set& set) const {
   for (const Mirror& mirror : mirrors_)
     for (const Index v : mirror.points) {
-      double* here = values.data() + std::size_t(v) * tensor_size;
-      const Tensor3 tensor = unpack({here, tensor_size});
-      std::ranges::copy(pack(0.5 * (tensor + mirror.reflection * tensor * mirror.reflection)), here);
+      const Tensor3 tensor = get(v);
+      set(v, Tensor3(0.5 * (tensor + mirror.reflection * tensor * mirror.reflection)));
     }
+}
+
+std::vector<double> PointTensors::interpolate(std::span<const Tensor3> cells,
+                                              std::span<const Tensor3> faces) const {
+  const std::vector<double> in_cells = with_ghosts(mesh_->cells, cells, tensor_size, pack);
+  const std::vector<double> on_faces = with_ghosts(mesh_->boundary, faces, tensor_size, pack);
+  std::vector<double> values(std::size_t(mesh_->points.n_local()) * tensor_size);
+  const auto at = [&](Index v) { return values.data() + std::size_t(v) * tensor_size; };
+  for (Index v = 0; v < mesh_->points.n_local(); ++v)
+    Eigen::Map<Vec<tensor_size>>(at(v)) = vertices_.scalar_at<tensor_size>(v, in_cells, on_faces);
+  mirror(
+      [&](Index v) {
+        return unpack({at(v), tensor_size});
+      },
+      [&](Index v, const Tensor3& tensor) { std::ranges::copy(pack(tensor), at(v)); });
   mesh_->points.update_ghosts(values, tensor_size);
   return values;
+}
+
+std::vector<Tensor3> PointTensors::interpolate_full(std::span<const Tensor3> cells,
+                                                    std::span<const Tensor3> faces) const {
+  const std::vector<double> in_cells = with_ghosts(mesh_->cells, cells, 9, all_of);
+  const std::vector<double> on_faces = with_ghosts(mesh_->boundary, faces, 9, all_of);
+  std::vector<Tensor3> tensors(mesh_->points.n_local());
+  for (Index v = 0; v < mesh_->points.n_local(); ++v)
+    Eigen::Map<Vec<9>>(tensors[v].data()) = vertices_.scalar_at<9>(v, in_cells, on_faces);
+  mirror([&](Index v) { return tensors[v]; }, [&](Index v, const Tensor3& tensor) { tensors[v] = tensor; });
+  mesh_->points.update_ghosts({tensors.front().data(), tensors.size() * 9}, 9);
+  return tensors;
 }
 
 }  // namespace couplet

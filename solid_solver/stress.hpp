@@ -32,8 +32,13 @@ class PointTensors {
   /// `cells`: of owned cells; `faces`: of boundary faces of owned cells. Packed, all local points.
   /// Collective.
   std::vector<double> interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
+  /// The same for tensors that are not symmetric.
+  std::vector<Tensor3> interpolate_full(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
 
  private:
+  /// `get(i)`, `set(i, tensor)` of the points of symmetry planes.
+  template <class Get, class Set>
+  void mirror(const Get& get, const Set& set) const;
   struct Mirror {
     Tensor3 reflection;  // I - 2 n n
     std::vector<Index> points;

@@ -140,8 +140,8 @@ void TankModel::watch(double t) {
   coldest_ = std::min(coldest_, *low), hottest_ = std::max(hottest_, *high);
   const auto place = [&](auto it) { return bed_.grid().z[it - fluid.begin()]; };
   const Fluid& f = setup_->fluid;
-  if (!std::isfinite(*high) || !std::isfinite(*low))
-    throw SolveFailure("The bed's temperatures are not finite.");
+  if (!std::isfinite(*high) || !std::isfinite(*low) || *low < 0)
+    throw SolveFailure("A temperature of the bed is not finite or below absolute zero.");
   if (*high > f.highest && !std::exchange(warned_hot_, true))
     warnings_.push_back(
         fmt::format("t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m, above its limit of {:.1f} degC, "

@@ -98,6 +98,8 @@ class TankModel {
   double exchange(double t, double longest, FlowControl& control, const AmbientSource& ambient,
                   std::vector<BedStep>& steps, Speed& speed);
   double stable_exchange() const;
+  double stable_ground() const;
+  double cell_capacity(int cell) const;
   double plate_coefficient() const;
   void step_insulation(double t, double h, const Ambient& air);
   void step_ground(double t, double h);

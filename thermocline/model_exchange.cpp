@@ -26,20 +26,26 @@ class Stopwatch final {
 
 }  // namespace
 
+/// Fluid and filler of a cell of the bed [J/(m^2 K)].
+double TankModel::cell_capacity(int i) const {
+  const BedGrid& grid = bed_.grid();
+  const double eps = grid.runs[grid.layer[i]].layer.porosity;
+  return (eps * setup_->fluid.volumetric() + (1 - eps) * setup_->filler.volumetric()) * grid.dz[i];
+}
+
+/// The bed's lowest cell against the flux that the ground computes from it: half its capacity over the
+/// coefficient. A plate under a thin cell holds more heat than that cell.
+double TankModel::stable_ground() const {
+  return 0.5 * cell_capacity(0) / std::max(1e-30, plate_coefficient());
+}
+
 double TankModel::stable_exchange() const {
-  // The bed's end cells against the fluxes that ullage and ground compute from them: half their capacity over
-  // the coefficient. Elsewhere the flux is computed by the lighter side.
-  if (!ground_ && !ullage_) return std::numeric_limits<double>::infinity();
-  const auto& grid = bed_.grid();
-  const auto capacity = [&](int i) {
-    const double eps = grid.runs[grid.layer[i]].layer.porosity;
-    return (eps * setup_->fluid.volumetric() + (1 - eps) * setup_->filler.volumetric()) * grid.dz[i];
-  };
-  double step = std::numeric_limits<double>::infinity();
-  if (ground_) step = std::min(step, 0.5 * capacity(0) / std::max(1e-30, plate_coefficient()));
+  // The bed's end cells against the fluxes that ullage and ground compute from them. Elsewhere the flux is
+  // computed by the lighter side.
+  double step = ground_ ? stable_ground() : std::numeric_limits<double>::infinity();
   if (!ullage_) return step;
   const double strongest = 100;  // of gas and radiation together at any temperature of interest [W/(m^2 K)]
-  step = std::min(step, 0.5 * capacity(grid.size() - 1) / strongest);
+  step = std::min(step, 0.5 * cell_capacity(bed_.grid().size() - 1) / strongest);
   if (!shell_) return step;
   const Steel& steel = *setup_->steel;
   for (int i = setup_->rings->in_bed; i < setup_->rings->size(); ++i)
@@ -113,7 +119,7 @@ double TankModel::plate_coefficient() const {
 }
 
 void TankModel::step_ground(double t, double h) {
-  const double step = std::max(h, setup_->parameters.ground->step);
+  const double step = std::max(h, std::min(setup_->parameters.ground->step, stable_ground()));
   const Film plate{plate_coefficient(), bed_.bottom()};
   const Film deep{std::numeric_limits<double>::infinity(), deep_temperature_};
   const Column::Heat heat = ground_->step(step, plate, deep);

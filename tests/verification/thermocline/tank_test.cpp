@@ -90,6 +90,26 @@ TEST(Elements, shorter_exchange_steps_change_little) {
   EXPECT_LT(stress, 3e6);
 }
 
+/// A plate under thin cells holds more heat than the lowest of them, and the ground takes long steps of its
+/// own.
+TEST(Elements, thin_cells_on_a_heavy_plate_cool_without_swings) {
+  TankParameters p = solar_one_parameters();
+  p.bed.cells = 2000;
+  p.ground->layers.insert(p.ground->layers.begin(), {"steel-plate", 0.02});
+  p.ground->step = 3600;
+  p.insulation.reset(), p.ullage.reset();
+  p.flow = {};
+  TankRun run(p);
+  double before = run.model().bed().bottom();
+  for (double t = 7200; t <= 2 * 86400; t += 7200) {
+    run.until(t, 900);
+    ASSERT_LE(run.model().bed().bottom(), before + 1e-6) << "t = " << t;
+    before = run.model().bed().bottom();
+  }
+  EXPECT_LT(before, 203.9 + zero_celsius);
+  EXPECT_GT(before, 150 + zero_celsius);
+}
+
 TEST(Schedule, repeats_its_rows_and_stops_at_the_outlet) {
   Schedule s(solar_one_parameters().flow);
   const double hot = 304 + zero_celsius, cold = 204 + zero_celsius, hour = 3600;
