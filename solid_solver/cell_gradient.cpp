@@ -32,12 +32,10 @@ std::vector<bool> uniform_surroundings(const Mesh& mesh) {
 /// along a line of cells where the mean of the faces' differences errs by h^2/6.
 std::vector<Tensor3> Solid::cell_gradient(std::span<const double> points) const {
   const Index n_owned = mesh_.cells.n_owned();
-  std::vector<Tensor3> gradient(n_owned, Tensor3::Zero());
+  std::vector<Tensor3> gradient(n_owned, Tensor3::Zero()), on_boundary;
   std::vector<double> weight(n_owned, 0);
-  const std::vector<Tensor3> on_faces =
-      face_gradients(0, mesh_.n_flux_faces(), state_.cell_u, state_.face_u, points);
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const Tensor3& here = on_faces[f];
+  if (is_corrected()) on_boundary.resize(mesh_.boundary.n_owned());
+  visit_gradients(state_.cell_u, state_.face_u, points, [&](Index f, const Tensor3& here) {
     const auto add = [&](Index c) {
       if (c >= n_owned) return;
       const Vec3 arm = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[c];
@@ -46,12 +44,15 @@ std::vector<Tensor3> Solid::cell_gradient(std::span<const double> points) const 
       weight[c] += pyramid;
     };
     add(mesh_.owner[f]);
-    if (f < mesh_.n_interior) add(mesh_.neighbour[f]);
-  }
+    if (f < mesh_.n_interior)
+      add(mesh_.neighbour[f]);
+    else if (is_corrected())
+      on_boundary[f - mesh_.n_interior] = here;
+  });
   for (Index c = 0; c < n_owned; ++c) gradient[c] /= weight[c];
+  weight = std::vector<double>();
   if (!is_corrected()) return gradient;
 
-  const std::span<const Tensor3> on_boundary(on_faces.data() + mesh_.n_interior, mesh_.boundary.n_owned());
   const std::vector<Tensor3> at_points = point_tensors().interpolate_full(gradient, on_boundary);
   const std::vector<Tensor3> better = gradients_from_points(mesh_, points, at_points);
   const std::vector<bool> uniform = uniform_surroundings(mesh_);

@@ -107,7 +107,9 @@ void NewtonKrylov::choose_factors() {
 
 SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double> u) {
   try {
-    return krylov_->solve(b, u, options_);
+    const SolveStatistics statistics = krylov_->solve(b, u, options_);
+    if (problem_.inertia.empty()) krylov_->forget_vectors();  // static: what is written next needs room
+    return statistics;
   } catch (const SolveFailure& e) {
     throw SolveFailure(
         "{} Is the solid held everywhere, is nu below 0.5, are the cells sound? If the loads and supports "

@@ -88,7 +88,8 @@ void SolidOutput::write_fields(double time, std::span<const double> points) {
     for (int a = 0; a < dim; ++a) places[v][a] += points[v * dim + a];
   Fields fields;
   fields.list.push_back({"displacement", "m", Place::points, dim, points});
-  fields.add("velocity", "m/s", Place::points, dim, solid_.point_velocity());
+  if (solid_.parameters().analysis == SolidParameters::Analysis::dynamic)
+    fields.add("velocity", "m/s", Place::points, dim, solid_.point_velocity());
   fields.list.push_back({"cell-displacement", "m", Place::cells, dim, state.cell_u});
   if (chosen.acceleration && !state.acceleration.empty()) {
     fields.add("acceleration", "m/s^2", Place::points, dim, solid_.point_acceleration());

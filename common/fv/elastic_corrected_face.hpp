@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
-#include <iterator>
+#include <cstdint>
 #include <span>
 
 #include "common/fv/elastic_nodes.hpp"
@@ -16,14 +15,11 @@ using lanes::store;
 
 /// What a face needs beyond the mesh: its vectors are made from the places of points and cells when they are
 /// wanted, which costs less than to keep and read them.
-template <int D>
 struct CorrectedFace {
-  double n[D];                   // out of the owner
-  double inverse_dn;             // [1/m]
-  double inverse_area;           // [1/m^2]
-  double mu, lambda;             // times the area [N]
-  Index around[D == 2 ? 2 : 4];  // edges (3-D) or points (2-D) whose values its gradient is made of
-  Index curved;                  // whether the cells' gradients tell the second derivative across it
+  double inverse_dn;     // [1/m]
+  double inverse_area;   // [1/m^2], in 2-D [1/m]
+  std::uint32_t edges;   // two bits an edge: its EdgeKind
+  std::uint32_t curved;  // whether the cells' gradients tell the second derivative across it
 };
 
 // The gradients of a pyramid, or of two cells of different kind, err too differently for their difference to
@@ -33,19 +29,9 @@ inline bool alike(const Mesh& mesh, Index f) {
   return here == mesh.cell_type[mesh.neighbour[f]] && here != CellType::pyramid;
 }
 
-template <int D>
-CorrectedFace<D> make_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
-  const LameConstants lame = face_lame(mesh, rows, f);
-  CorrectedFace<D> face{};
+inline CorrectedFace make_face(const Mesh& mesh, Index f) {
   const FaceLine line = face_line(mesh, mesh.reference, f);
-  std::copy_n(line.normal.data(), D, face.n);
-  if constexpr (D == 2) std::copy_n(mesh.face_points[f].data(), 2, face.around);
-  face.inverse_dn = line.inverse_dn;
-  face.inverse_area = 1 / line.area;
-  face.mu = lame.mu * line.area;
-  face.lambda = lame.lambda * line.area;
-  face.curved = f < mesh.n_interior && alike(mesh, f);
-  return face;
+  return {line.inverse_dn, 1 / line.area, 0, f < mesh.n_interior && alike(mesh, f)};
 }
 
 /// Rows i of a gradient: d u / d x_i.
@@ -61,10 +47,23 @@ template <int D>
   return sum;
 }
 
+/// The tangential part of a gradient at a face, and where the face looks.
+template <int D>
+struct Surface {
+  Rows<D> grad;
+  Lane<D> n = {};  // out of the owner
+  double area;
+};
+
+template <int D>
+[[gnu::always_inline]] inline Lane<D> between(const Vec3& from, const Vec3& to) {
+  Lane<D> d = {};
+  for (int a = 0; a < D; ++a) d[a] = to[a] - from[a];
+  return d;
+}
+
 /// T x n / |S| of the rows T_i = sum_e L_e,i w_e: the surface Gauss theorem with the edges' L_e.
-[[gnu::always_inline]] inline Rows<3> turn(const Rows<3>& t, const CorrectedFace<3>& face) {
-  const double n[3] = {face.n[0] * face.inverse_area, face.n[1] * face.inverse_area,
-                       face.n[2] * face.inverse_area};
+[[gnu::always_inline]] inline Rows<3> turn(const Rows<3>& t, const Lane<3>& n) {
   Rows<3> result;
   result.row[0] = n[2] * t.row[1] - n[1] * t.row[2];
   result.row[1] = n[0] * t.row[2] - n[2] * t.row[0];
@@ -72,31 +71,44 @@ template <int D>
   return result;
 }
 
-/// grad_t u from `value(i)`: on edge i of the face's `corners` (a triangle repeats its first as its fourth,
-/// its last edge is then 2), in 2-D at its two points. Edge 3 needs no vector: the edges add up to nothing.
+/// grad_t u from `value(i, L)`: on edge i (of vector L) of the face's `corners`; in 2-D at its two points.
+/// The edges add up to nothing, so the last one needs no vector; a triangle's third one stands for the
+/// fourth.
 template <int D, class Value>
-[[gnu::always_inline]] inline Rows<D> tangential(const CorrectedFace<D>& face, std::span<const Index> corners,
+[[gnu::always_inline]] inline Surface<D> surface(const CorrectedFace& face, std::span<const Index> corners,
                                                  const Vec3* x, const Value& value) {
-  Rows<D> result;
+  Surface<D> result;
   if constexpr (D == 2) {
-    const Lane<D> along = (value(1) - value(0)) * (face.inverse_area * face.inverse_area);
-    for (int i = 0; i < D; ++i) result.row[i] = (x[corners[1]][i] - x[corners[0]][i]) * along;
-    return result;
+    const Lane<2> tangent = between<2>(x[corners[0]], x[corners[1]]) * face.inverse_area;
+    const Lane<2> along = (value(1, tangent) - value(0, tangent)) * face.inverse_area;
+    for (int i = 0; i < 2; ++i) result.grad.row[i] = tangent[i] * along;
+    result.n = Lane<2>{tangent[1], -tangent[0]};
+    result.area = 1 / face.inverse_area;
   } else {
-    const Lane<D> last = value(3);
+    const bool is_triangle = corners.size() == 3;
+    Lane<3> edge[4];
+    for (int e = 0; e < 3; ++e)
+      edge[e] = between<3>(x[corners[e]], x[corners[e == 2 && is_triangle ? 0 : e + 1]]);
+    edge[3] = -(edge[0] + edge[1] + edge[2]);
+    // Half the product of the diagonals; of a triangle, of two sides.
+    const Lane<3> vector = 0.5 * lanes::cross(edge[0] + edge[1], edge[1] + edge[2]);
+    const Lane<3> last = is_triangle ? value(2, edge[2]) : value(3, edge[3]);
+    Rows<3> t;
     for (int e = 0; e < 3; ++e) {
-      const Vec3 &from = x[corners[e]], &to = x[corners[e + 1 < std::ssize(corners) ? e + 1 : 0]];
-      const Lane<D> w = value(e) - last;
-      for (int i = 0; i < D; ++i) result.row[i] += (to[i] - from[i]) * w;
+      const Lane<3> w = value(e, edge[e]) - last;
+      for (int i = 0; i < 3; ++i) t.row[i] += edge[e][i] * w;
     }
-    return turn(result, face);
+    result.n = vector * face.inverse_area;
+    result.area = lanes::dot<3>(vector, result.n);
+    result.grad = turn(t, result.n * face.inverse_area);
   }
+  return result;
 }
 
 /// n . grad u from `along` = d . grad u at the face centre: with k = n - d / (d . n) and grad_t across n,
 /// g = along / (d . n) + k . grad_t u = (along - d . grad_t u) / (d . n).
 template <int D>
-[[gnu::always_inline]] inline Lane<D> normal_derivative(const CorrectedFace<D>& face, const Vec3& d,
+[[gnu::always_inline]] inline Lane<D> normal_derivative(const CorrectedFace& face, const Vec3& d,
                                                         const Lane<D>& along, const Rows<D>& grad) {
   Lane<D> rest = along;
   for (int i = 0; i < D; ++i) rest -= d[i] * grad.row[i];
@@ -105,17 +117,17 @@ template <int D>
 
 /// sigma . S for grad u = n g + grad_t u, as in the thesis's kernel.
 template <int D>
-[[gnu::always_inline]] inline Lane<D> force_on(const CorrectedFace<D>& face, const Lane<D>& g,
-                                               const Rows<D>& grad) {
-  const Lane<D> n = load<D>(face.n);
+[[gnu::always_inline]] inline Lane<D> force_on(const LameConstants& lame, const Lane<D>& g,
+                                               const Surface<D>& surface) {
+  const Lane<D>& n = surface.n;
   Lane<D> turned = {};
   double trace = 0;
   for (int i = 0; i < D; ++i) {
-    turned[i] = lanes::dot<D>(n, grad.row[i]);
-    trace += grad.row[i][i];
+    turned[i] = lanes::dot<D>(n, surface.grad.row[i]);
+    trace += surface.grad.row[i][i];
   }
   const double normal = lanes::dot<D>(n, g);
-  return face.mu * (g + normal * n + turned) + (face.lambda * (normal + trace)) * n;
+  return surface.area * (lame.mu * (g + normal * n + turned) + (lame.lambda * (normal + trace)) * n);
 }
 
 }  // namespace couplet::corrected

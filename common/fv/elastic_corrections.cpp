@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/fv/elastic_nodes.hpp"
 
@@ -40,91 +41,65 @@ CellGradients::CellGradients(const Mesh& mesh, const ElasticOperator& rows) {
   offset.reserve(faces.offset.size());
   node.reserve(faces.index.size());
   weight.reserve(faces.index.size());
+  inverse.reserve(mesh.cells.n_owned());
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    Tensor3 m = Tensor3::Zero();
-    if (mesh.dim == 2) m(2, 2) = 1;
-    const std::size_t first = node.size(), first_mirror = mirrors.size();
-    const auto add = [&](const Vec3& d) {
-      const double w = std::pow(d.squaredNorm(), -1.5);
-      // Scaled to numbers of order one, so that the zz entry of a plane mesh does not matter.
-      m += w * d * d.transpose();
-      return Vec3(w * d);
+    const std::size_t first_mirror = mirrors.size();
+    std::vector<Vec3> line;
+    double shortest = std::numeric_limits<double>::max();
+    const auto mirrored = [&](Index f) {
+      const Vec3 n = g.face_area[f].normalized();
+      return Vec3(2 * n.dot(g.face_centre[f] - g.cell_centre[c]) * n);
     };
-    double scale = 0;
     for (const Index f : faces[c]) {
-      if (f < mesh.n_interior) {
-        const Index other = mesh.owner[f] == c ? mesh.neighbour[f] : mesh.owner[f];
-        node.push_back(other);
-        weight.push_back(add(g.cell_centre[other] - g.cell_centre[c]));
-      } else if (rows.condition(f) == ElasticCondition::symmetry) {
-        const Vec3 n = g.face_area[f].normalized();
-        mirrors.push_back({c, add(2 * n.dot(g.face_centre[f] - g.cell_centre[c]) * n), n});
-      } else {
-        node.push_back(mesh.cells.n_local() + f - mesh.n_interior);
-        weight.push_back(add(g.face_centre[f] - g.cell_centre[c]));
-      }
-      scale = m.trace();
+      if (f < mesh.n_interior)
+        line.push_back(g.cell_centre[mesh.owner[f] == c ? mesh.neighbour[f] : mesh.owner[f]] -
+                       g.cell_centre[c]);
+      else if (rows.condition(f) == ElasticCondition::symmetry)
+        line.push_back(mirrored(f));
+      else
+        line.push_back(g.face_centre[f] - g.cell_centre[c]);
+      shortest = std::min(shortest, line.back().norm());
     }
-    if (mesh.dim == 2) m(2, 2) = scale;
-    const Tensor3 inverse = m.inverse();
-    for (std::size_t i = first; i < weight.size(); ++i) weight[i] = inverse * weight[i];
-    for (std::size_t i = first_mirror; i < mirrors.size(); ++i)
-      mirrors[i].weight = inverse * mirrors[i].weight;
+    Tensor3 m = Tensor3::Zero();
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      const Index f = faces[c][i];
+      const auto w = static_cast<float>(std::pow(shortest / line[i].norm(), 3));
+      m += w * line[i] * line[i].transpose();
+      if (f >= mesh.n_interior && rows.condition(f) == ElasticCondition::symmetry) {
+        mirrors.push_back({c, w * line[i], g.face_area[f].normalized()});
+        continue;
+      }
+      node.push_back(f >= mesh.n_interior ? mesh.cells.n_local() + f - mesh.n_interior
+                     : mesh.owner[f] == c ? mesh.neighbour[f]
+                                          : mesh.owner[f]);
+      weight.push_back(w);
+    }
+    // The zz entry of a plane mesh does not matter.
+    if (mesh.dim == 2) m(2, 2) = m.trace();
+    const Tensor3 back = m.inverse();
+    inverse.push_back({back(0, 0), back(0, 1), back(0, 2), back(1, 1), back(1, 2), back(2, 2)});
+    for (std::size_t i = first_mirror; i < mirrors.size(); ++i) mirrors[i].weight = back * mirrors[i].weight;
     offset.push_back(static_cast<Index>(node.size()));
   }
 }
 
-FaceEdges::FaceEdges(const Mesh& mesh, const ElasticOperator& rows) {
-  struct Slot {
-    Index to, face, place;
-    bool triangle;
-  };
-  // Edges in the rows of their smaller point, so that neighbours in space are neighbours in memory.
-  const Index n_points = mesh.points.n_local(), n_faces = n_faces_with_force(mesh);
-  std::vector<Index> offset(n_points + 1, 0);
-  const auto visit = [&](auto&& take) {
-    for (Index f = 0; f < n_faces; ++f) {
-      const auto p = mesh.face_points[f];
-      for (std::size_t i = 0; i < p.size(); ++i) {
-        const Index a = p[i], b = p[(i + 1) % p.size()];
-        take(std::min(a, b), Slot{std::max(a, b), f, static_cast<Index>(i), p.size() == 3});
-      }
-    }
-  };
-  visit([&](Index from, const Slot&) { ++offset[from + 1]; });
-  for (Index v = 0; v < n_points; ++v) offset[v + 1] += offset[v];
-  std::vector<Slot> slots(offset.back());
-  std::vector<Index> next(offset.begin(), offset.end() - 1);
-  visit([&](Index from, const Slot& slot) { slots[next[from]++] = slot; });
-
+std::vector<std::uint32_t> edge_kinds(const Mesh& mesh, const ElasticOperator& rows) {
   // Known vertices have no gradient, those between materials several.
-  std::vector<std::uint8_t> uncorrected(n_points, 0);
-  for (Index v = 0; v < n_points; ++v) uncorrected[v] = rows.constraints().is_fixed(v);
+  std::vector<std::uint8_t> uncorrected(mesh.points.n_local(), 0);
+  for (Index v = 0; v < mesh.points.n_local(); ++v) uncorrected[v] = rows.constraints().is_fixed(v);
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f)
     if (rows.condition(f) == ElasticCondition::bonded)
       for (const Index v : mesh.face_points[f]) uncorrected[v] = 1;
-
-  of_face.assign(n_faces, {});
-  const auto kind_of = [&](Index from, const Slot& slot) {
-    if (uncorrected[from] || uncorrected[slot.to]) return plain;
-    return slot.triangle ? mean : middle;
-  };
-  for (const int kind : {middle, mean, plain}) {
-    for (Index v = 0; v < n_points; ++v) {
-      const auto first_edge = static_cast<Index>(points.size());
-      for (Index s = offset[v]; s < offset[v + 1]; ++s) {
-        const Slot& slot = slots[s];
-        if (kind_of(v, slot) != kind) continue;
-        Index edge = first_edge;
-        while (edge < std::ssize(points) && points[edge][1] != slot.to) ++edge;
-        if (edge == std::ssize(points)) points.push_back({v, slot.to});
-        of_face[slot.face][slot.place] = edge;
-      }
+  std::vector<std::uint32_t> kinds(n_faces_with_force(mesh), 0);
+  for (std::size_t f = 0; f < kinds.size(); ++f) {
+    const auto p = mesh.face_points[static_cast<Index>(f)];
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (uncorrected[p[i]] || uncorrected[p[(i + 1) % p.size()]]) continue;
+      const EdgeKind kind = p.size() == 3 ? EdgeKind::mean : EdgeKind::middle;
+      kinds[f] |= static_cast<std::uint32_t>(kind) << (2 * i);
     }
-    if (kind != plain) end[kind] = static_cast<Index>(points.size());
   }
-  for (Index f = 0; f < n_faces; ++f)
-    if (mesh.face_points[f].size() == 3) of_face[f][3] = of_face[f][2];
+  return kinds;
 }
 
 std::vector<MirrorVertex> mirror_vertices(const Mesh& mesh, const ElasticOperator& rows,

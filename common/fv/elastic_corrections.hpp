@@ -2,39 +2,35 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "common/fv/elasticity.hpp"
 
 namespace couplet {
 
-/// Least-squares gradients of the owned cells: G_P = sum_i c_i (u_i - u_P) over the nodes across the cell's
-/// faces, weight 1/d^3; a symmetry plane gives the mirrored cell, u_mirror - u_P = -2 n (n . u_P).
+/// Least-squares gradients of the owned cells over the nodes across the cell's faces,
+///   G_P = M^-1 sum_i w_i d_i (u_i - u_P),   M = sum_i w_i d_i d_i^T,   w_i = 1 / |d_i|^3;
+/// a symmetry plane gives the mirrored cell, u_mirror - u_P = -2 n (n . u_P).
 struct CellGradients {
   std::vector<Index> offset{0}, node;  ///< nodes as in VertexInterpolation
-  std::vector<Vec3> weight;            ///< c_i [1/m]
+  std::vector<float> weight;           ///< w_i over the largest of the cell; M holds these very numbers
+  std::vector<std::array<double, 6>> inverse;  ///< M^-1: xx, xy, xz, yy, yz, zz
   struct Mirror {
     Index cell;
-    Vec3 weight, normal;
+    Vec3 weight, normal;  ///< M^-1 w d
   };
   std::vector<Mirror> mirrors;
 
   CellGradients(const Mesh& mesh, const ElasticOperator& rows);
 };
 
-/// The edges of the faces that carry a force (3-D) by what is asked of them, an edge between both kinds of
-/// faces being there twice: first those of quadrilaterals, whose middle value is wanted, then those of
-/// triangles, whose mean is (for a quadratic field the mean gradient of a triangle is that at its centre),
-/// then those with a vertex that is known or stands between materials, which get no correction.
-struct FaceEdges {
-  enum Kind { middle, mean, plain };
-  std::vector<std::array<Index, 2>> points;
-  std::array<Index, 2> end{};  ///< of `middle` and of `mean`
-  std::vector<std::array<Index, 4>>
-      of_face;  ///< edge i joins points i and i + 1; a triangle repeats its last
-
-  FaceEdges(const Mesh& mesh, const ElasticOperator& rows);
-};
+/// What is asked of an edge of a face (3-D): its middle value on a quadrilateral; its mean on a triangle (for
+/// a quadratic field the mean gradient of a triangle is that at its centre); no correction where a vertex is
+/// known or stands between materials.
+enum class EdgeKind : std::uint8_t { plain, middle, mean };
+/// Of the faces that carry a force, two bits an edge; edge i joins points i and i + 1.
+std::vector<std::uint32_t> edge_kinds(const Mesh& mesh, const ElasticOperator& rows);
 
 /// Of these points those on symmetry planes, with the normals that differ.
 struct MirrorVertex {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ElasticKernel with the corrected face gradient. Passes: gradients of the cells; vertices of open boundaries
-// and from them the gradients of the boundary nodes; all vertices; middles of edges; faces.
+// and from them the gradients of the boundary nodes; all vertices; faces, which find the middles of their
+// edges.
 #include <algorithm>
 #include <limits>
 
@@ -31,19 +32,17 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   [[gnu::always_inline]] inline void find_cell_gradients();
   [[gnu::always_inline]] inline void find_boundary_gradients();
   [[gnu::always_inline]] inline void find_vertices(std::span<const Index> points);
-  [[gnu::always_inline]] inline void find_edges();
   [[gnu::always_inline]] inline void collect_forces(std::span<const double> known, std::span<double> result);
 
  private:
   static constexpr int width = lanes::width<D>;
   static constexpr int record = (D + 1) * width;  // u (or q), then the rows of the gradient
-  static constexpr int value_stride = D == 2 ? record : width;
 
   void prepare(std::span<const double> unknowns, std::span<const double> known);
   void mirror_vertex_gradients();
   double* cell(Index node) { return records_.data() + std::size_t(node) * record; }
   double* vertex(Index point) { return points_.data() + std::size_t(point) * record; }
-  [[gnu::always_inline]] inline Rows<D> around(Index f);
+  [[gnu::always_inline]] inline Surface<D> around(Index f);
   [[gnu::always_inline]] inline Lane<D> inner(Index f, const Rows<D>& grad);
   [[gnu::always_inline]] inline Lane<D> outer(Index f, const Rows<D>& grad);
   [[gnu::always_inline]] inline Lane<D> at_symmetry(Index f, const Rows<D>& grad);
@@ -58,13 +57,12 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   CellGradients gradients_;
   std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include the ghosts
   std::vector<MirrorVertex> mirrors_;
-  std::vector<std::array<Index, 2>> edges_;
-  std::array<Index, 2> edges_end_{};  // as in FaceEdges
-  std::vector<CorrectedFace<D>> faces_;
+  FaceLames lame_;
+  std::vector<CorrectedFace> faces_;
   Vec3 origin_ = Vec3::Zero();
   // q = u - 1/2 x . G and G of the nodes; u and G of the vertices: sum w (u_i + 1/2 r_i . G_i) is then
   // sum w q_i + 1/2 x_V . sum w G_i.
-  std::vector<double> records_, points_, edge_values_;
+  std::vector<double> records_, points_;
 };
 
 template <int D>
@@ -76,17 +74,14 @@ CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& row
       vertices_(mesh, rows),
       gradients_(mesh, rows),
       mirrors_(mirror_vertices(mesh, rows, vertices_.free)),
+      lame_(mesh, rows),
       records_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * record, 0.0),
       points_(std::size_t(mesh.points.n_local()) * record, 0.0) {
   faces_.reserve(n_faces_with_force(mesh));
-  for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face<D>(mesh, rows, f));
+  for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face(mesh, f));
   if constexpr (D == 3) {
-    const FaceEdges edges(mesh, rows);
-    edges_ = edges.points;
-    edges_end_ = edges.end;
-    edge_values_.assign(edges_.size() * width, 0.0);
-    for (Index f = 0; f < n_faces_with_force(mesh); ++f)
-      std::copy_n(edges.of_face[f].data(), 4, faces_[f].around);
+    const std::vector<std::uint32_t> kinds = edge_kinds(mesh, rows);
+    for (std::size_t f = 0; f < kinds.size(); ++f) faces_[f].edges = kinds[f];
   }
   std::vector<std::uint8_t> open(mesh.points.n_local(), 0);
   for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
@@ -123,16 +118,30 @@ template <int D>
 inline void CorrectedKernel<D>::find_cell_gradients() {
   const Index* offset = gradients_.offset.data();
   const Index* node = gradients_.node.data();
-  const Vec3* weight = gradients_.weight.data();
+  const float* weight = gradients_.weight.data();
+  const Vec3* centre = mesh_.reference.cell_centre.data();
+  const Index n_cells = mesh_.cells.n_local();
+  const Vec3* outside = mesh_.reference.face_centre.data() + mesh_.n_interior;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     const Lane<D> here = load<D>(nodes_[c]);
-    Rows<D> g;
+    Rows<D> sum;
     for (Index i = offset[c]; i < offset[c + 1]; ++i) {
-      const Lane<D> difference = load<D>(nodes_[node[i]]) - here;
-      for (int a = 0; a < D; ++a) g.row[a] += weight[i][a] * difference;
+      const Lane<D> difference = weight[i] * (load<D>(nodes_[node[i]]) - here);
+      const Vec3& there = node[i] < n_cells ? centre[node[i]] : outside[node[i] - n_cells];
+      for (int a = 0; a < D; ++a) sum.row[a] += (there[a] - centre[c][a]) * difference;
+    }
+    const auto& m = gradients_.inverse[c];
+    Rows<D> g;
+    if constexpr (D == 2) {
+      g.row[0] = m[0] * sum.row[0] + m[1] * sum.row[1];
+      g.row[1] = m[1] * sum.row[0] + m[3] * sum.row[1];
+    } else {
+      g.row[0] = m[0] * sum.row[0] + m[1] * sum.row[1] + m[2] * sum.row[2];
+      g.row[1] = m[1] * sum.row[0] + m[3] * sum.row[1] + m[4] * sum.row[2];
+      g.row[2] = m[2] * sum.row[0] + m[4] * sum.row[1] + m[5] * sum.row[2];
     }
     set_record(
-        c, mesh_.reference.cell_centre[c], [&](int a) __attribute__((always_inline)) { return g.row[a]; });
+        c, centre[c], [&](int a) __attribute__((always_inline)) { return g.row[a]; });
   }
   for (const auto& mirror : gradients_.mirrors) {
     double* here = cell(mirror.cell);
@@ -191,19 +200,31 @@ void CorrectedKernel<D>::mirror_vertex_gradients() {
   }
 }
 
+// The middle value lies L^2/8 u'' below the trapezoid, the mean L^2/12 u''.
 template <int D>
-inline Rows<D> CorrectedKernel<D>::around(Index f) {
-  const CorrectedFace<D>& face = faces_[f];
-  const double* values = D == 2 ? points_.data() : edge_values_.data();
-  return tangential<D>(
-      face, mesh_.face_points[f], mesh_.reference_points.data(), [&](int i) __attribute__((always_inline)) {
-        return load<D>(values + std::size_t(face.around[i]) * value_stride);
-      });
+inline Surface<D> CorrectedKernel<D>::around(Index f) {
+  const CorrectedFace& face = faces_[f];
+  const auto corners = mesh_.face_points[f];
+  const auto value = [&](int e, const Lane<D>& edge) __attribute__((always_inline)) {
+    const double* first = vertex(corners[e]);
+    if constexpr (D == 2) {
+      return load<D>(first);
+    } else {
+      constexpr double below[]{0, 1.0 / 8, 1.0 / 12};
+      const double* second = vertex(corners[e + 1 < std::ssize(corners) ? e + 1 : 0]);
+      Lane<D> here = 0.5 * (load<D>(first) + load<D>(second));
+      const Lane<D> part = below[(face.edges >> (2 * e)) & 3U] * edge;
+      for (int a = 0; a < D; ++a)
+        here -= part[a] * (load<D>(second + (a + 1) * width) - load<D>(first + (a + 1) * width));
+      return here;
+    }
+  };
+  return surface<D>(face, corners, mesh_.reference_points.data(), value);
 }
 
 template <int D>
 inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
-  const CorrectedFace<D>& face = faces_[f];
+  const CorrectedFace& face = faces_[f];
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
   const Vec3 &from = mesh_.reference.cell_centre[p], &to = mesh_.reference.cell_centre[n];
   Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
@@ -238,46 +259,23 @@ template <int D>
 inline void CorrectedKernel<D>::find_boundary_gradients() {
   for (const Index f : open_faces_) {
     if (f >= mesh_.n_flux_faces()) break;
-    const CorrectedFace<D>& face = faces_[f];
+    const CorrectedFace& face = faces_[f];
     const auto point = mesh_.face_points[f];
     const auto n_points = static_cast<int>(point.size());
     // In 3-D means of the edges' end points.
-    const Rows<D> grad = tangential<D>(
-        face, point, mesh_.reference_points.data(), [&](int i) __attribute__((always_inline)) {
-          const int e = std::min(i, n_points - 1);
+    const Surface<D> here = surface<D>(
+        face, point,
+        mesh_.reference_points.data(), [&](int e, const Lane<D>&) __attribute__((always_inline)) {
           const Lane<D> first = load<D>(vertex(point[e]));
           if (D == 2) return first;
-          return 0.5 * (first + load<D>(vertex(point[(e + 1) % n_points])));
+          return 0.5 * (first + load<D>(vertex(point[e + 1 < n_points ? e + 1 : 0])));
         });
-    const Lane<D> g = outer(f, grad);
+    const Lane<D> g = outer(f, here.grad);
     set_record(
         mesh_.cells.n_local() + f - mesh_.n_interior,
         mesh_.reference.face_centre[f], [&](int a) __attribute__((always_inline)) {
-          return grad.row[a] + face.n[a] * g;
+          return here.grad.row[a] + here.n[a] * g;
         });
-  }
-}
-
-// The middle value lies L^2/8 u'' below the trapezoid, the mean L^2/12 u''.
-template <int D>
-inline void CorrectedKernel<D>::find_edges() {
-  if constexpr (D == 3) {
-    const std::array<double, 3> below{1.0 / 8, 1.0 / 12, 0};
-    double* value = edge_values_.data();
-    Index e = 0;
-    for (int kind = 0; kind < 3; ++kind) {
-      const Index end = kind < 2 ? edges_end_[kind] : static_cast<Index>(edges_.size());
-      for (; e < end; ++e, value += width) {
-        const auto [p, q] = edges_[e];
-        const double *first = vertex(p), *second = vertex(q);
-        Lane<D> here = 0.5 * (load<D>(first) + load<D>(second));
-        const Vec3 &from = mesh_.reference_points[p], &to = mesh_.reference_points[q];
-        for (int a = 0; a < D && kind < 2; ++a)
-          here -= below[kind] * (to[a] - from[a]) *
-                  (load<D>(second + (a + 1) * width) - load<D>(first + (a + 1) * width));
-        store<D>(value, here);
-      }
-    }
   }
 }
 
@@ -285,8 +283,8 @@ template <int D>
 inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
   nodes_.clear_forces();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const Rows<D> grad = around(f);
-    const Lane<D> force = force_on<D>(faces_[f], inner(f, grad), grad);
+    const Surface<D> here = around(f);
+    const Lane<D> force = force_on<D>(lame_[f], inner(f, here.grad), here);
     lanes::add<D>(nodes_.force(mesh_.owner[f]), -force);
     lanes::add<D>(nodes_.force(mesh_.neighbour[f]), force);
   }
@@ -296,10 +294,10 @@ inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, st
   boundary_.add_rows<D>(
       nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
       [&](Index f) __attribute__((always_inline)) {
-        const Rows<D> grad = around(f);
-        return force_on<D>(faces_[f], slope(f, grad), grad);
+        const Surface<D> here = around(f);
+        return force_on<D>(lame_[f], slope(f, here.grad), here);
       },
-      [&](Index f) __attribute__((always_inline)) { return slope(f, around(f)); });
+      [&](Index f) __attribute__((always_inline)) { return slope(f, around(f).grad); });
   nodes_.take_forces(result);
 }
 
@@ -337,13 +335,7 @@ inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, st
     CorrectedKernel<2>& kernel, std::span<const double> known, std::span<double> result) {
   kernel.collect_forces(known, result);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void edges_pass(
-    CorrectedKernel<3>& kernel) {
-  kernel.find_edges();
-}
-void edges_pass(CorrectedKernel<2>&) {}
-
-/// All that stands before the faces: node records, vertices, edges.
+/// All that stands before the faces: node records, vertices.
 template <int D>
 void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<const double> known) {
   nodes_.fill(unknowns, known);
@@ -364,7 +356,6 @@ void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<con
   vertices_pass(*this, vertices_.free);
   vertices_.constrain<D>(points_, record, known);
   mirror_vertex_gradients();
-  edges_pass(*this);
 }
 
 template <int D>
@@ -379,8 +370,9 @@ void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::s
                                         const ElasticKernel::TakeGradient& take) {
   prepare(unknowns, known);
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const Rows<D> grad = around(f);
-    const Lane<D> n = load<D>(faces_[f].n);
+    const Surface<D> here = around(f);
+    const Rows<D>& grad = here.grad;
+    const Lane<D>& n = here.n;
     Lane<D> g;
     if (f < mesh_.n_interior)
       g = inner(f, grad);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ElasticKernel with the thesis's face gradient: two passes, vertices then faces.
+#include <algorithm>
 #include <array>
 
 #include "common/fv/elastic_nodes.hpp"
@@ -14,20 +15,58 @@ using lanes::load;
 
 /// What the force on one face takes. Since the c_V of (2.56) add up to nothing, grad_t u = sum_i c_i (u_plus
 /// - u_minus) with one difference of vertices in 2-D and two in 3-D: the diagonals of a quadrilateral, two
-/// sides of a triangle.
+/// sides of a triangle. In 3-D the vectors are made from those when they are wanted: d_0 x d_1 is twice the
+/// face vector.
 template <int D>
-struct ThesisFace {
-  double n[D];         // out of the owner
-  double c[D - 1][D];  // [1/m]
-  double kc[D - 1];    // k . c_i [1/m]
-  double inverse_dn;   // [1/m]
-  double mu, lambda;   // times the area [N]
-  Index plus[D - 1], minus[D - 1];
+struct ThesisFace;
+template <>
+struct ThesisFace<2> {
+  double n[2];        // out of the owner
+  double c[2];        // [1/m]
+  double kc[1];       // k . c_i [1/m]
+  double inverse_dn;  // [1/m]
+  double area;        // [m]
+  Index plus[1], minus[1];
+};
+template <>
+struct ThesisFace<3> {
+  double kc[2];           // k . c_i [1/m]
+  double inverse_dn;      // [1/m]
+  double inverse_double;  // 1 / (2 |S|) [1/m^2]
+  Index plus[2], minus[2];
 };
 
 template <int D>
-ThesisFace<D> make_face(const Mesh& mesh, const ElasticOperator& rows, Index f) {
-  const LameConstants lame = face_lame(mesh, rows, f);
+struct FaceVectors {
+  Lane<D> n, c[D - 1];
+  double area;
+};
+
+/// A vertex: its displacement, in 3-D then its place.
+template <int D>
+constexpr int record = D == 2 ? lanes::width<D> : 2 * lanes::width<D>;
+
+[[gnu::always_inline]] inline FaceVectors<2> vectors_of(const ThesisFace<2>& face, const double*) {
+  return {load<2>(face.n), {load<2>(face.c)}, face.area};
+}
+
+[[gnu::always_inline]] inline FaceVectors<3> vectors_of(const ThesisFace<3>& face, const double* points) {
+  const double* places = points + lanes::width<3>;
+  Lane<3> d[2];
+  for (int i = 0; i < 2; ++i)
+    d[i] = load<3>(places + std::size_t(face.plus[i]) * record<3>) -
+           load<3>(places + std::size_t(face.minus[i]) * record<3>);
+  const Lane<3> twice = lanes::cross(d[0], d[1]);
+  FaceVectors<3> v;
+  v.n = twice * face.inverse_double;
+  v.c[0] = lanes::cross(d[1], v.n) * face.inverse_double;
+  v.c[1] = lanes::cross(v.n, d[0]) * face.inverse_double;
+  v.area = 0.5 * lanes::dot<3>(twice, v.n);
+  return v;
+}
+
+template <int D>
+ThesisFace<D> make_face(const Mesh& mesh, Index f) {
   const FaceLine line = face_line(mesh, mesh.reference, f);
   std::array<Vec3, 4> weights;
   tangential_weights(mesh, mesh.reference_points, f, line, weights.data());
@@ -38,47 +77,50 @@ ThesisFace<D> make_face(const Mesh& mesh, const ElasticOperator& rows, Index f) 
     const int plus = diagonals ? i : i + 1;
     face.plus[i] = point[plus];
     face.minus[i] = point[diagonals ? i + 2 : 0];
-    for (int a = 0; a < D; ++a) face.c[i][a] = weights[plus][a];
     face.kc[i] = line.skew.dot(weights[plus]);
   }
-  for (int a = 0; a < D; ++a) face.n[a] = line.normal[a];
   face.inverse_dn = line.inverse_dn;
-  face.mu = lame.mu * line.area;
-  face.lambda = lame.lambda * line.area;
+  if constexpr (D == 2) {
+    for (int a = 0; a < D; ++a) face.n[a] = line.normal[a], face.c[a] = weights[1][a];
+    face.area = line.area;
+  } else {
+    face.inverse_double = 0.5 / line.area;
+  }
   return face;
+}
+
+template <int D>
+[[gnu::always_inline]] inline Lane<D> along(const ThesisFace<D>& face, int i, const double* points) {
+  return load<D>(points + std::size_t(face.plus[i]) * record<D>) -
+         load<D>(points + std::size_t(face.minus[i]) * record<D>);
 }
 
 //   sigma . S = mu |S| (g + n (n . g) + grad_t(n . u)) + lambda |S| n (n . g + tr grad_t u)
 //   g = n . grad u = (u_N - u_P) / (d . n) + k . grad_t u                                        (2.57),
 //   (2.77)
 template <int D>
-[[gnu::always_inline]] inline Lane<D> force_on(const ThesisFace<D>& face, const Lane<D>& across,
-                                               const double* points) {
-  constexpr int stride = lanes::width<D>;
-  const Lane<D> n = load<D>(face.n);
+[[gnu::always_inline]] inline Lane<D> force_on(const ThesisFace<D>& face, const LameConstants& lame,
+                                               const Lane<D>& across, const double* points) {
+  const FaceVectors<D> vectors = vectors_of(face, points);
+  const Lane<D>& n = vectors.n;
   Lane<D> g = across * face.inverse_dn, turned = {};
   double trace = 0;
   for (int i = 0; i < D - 1; ++i) {
-    const Lane<D> along = load<D>(points + std::size_t(face.plus[i]) * stride) -
-                          load<D>(points + std::size_t(face.minus[i]) * stride);
-    const Lane<D> c = load<D>(face.c[i]);
-    g += face.kc[i] * along;
-    turned += lanes::dot<D>(n, along) * c;
-    trace += lanes::dot<D>(c, along);
+    const Lane<D> u = along(face, i, points);
+    g += face.kc[i] * u;
+    turned += lanes::dot<D>(n, u) * vectors.c[i];
+    trace += lanes::dot<D>(vectors.c[i], u);
   }
   const double normal = lanes::dot<D>(n, g);
-  return face.mu * (g + normal * n + turned) + (face.lambda * (normal + trace)) * n;
+  return vectors.area * (lame.mu * (g + normal * n + turned) + (lame.lambda * (normal + trace)) * n);
 }
 
 /// n . grad u, the g above.
 template <int D>
 [[gnu::always_inline]] inline Lane<D> slope_at(const ThesisFace<D>& face, const Lane<D>& across,
                                                const double* points) {
-  constexpr int stride = lanes::width<D>;
   Lane<D> g = across * face.inverse_dn;
-  for (int i = 0; i < D - 1; ++i)
-    g += face.kc[i] * (load<D>(points + std::size_t(face.plus[i]) * stride) -
-                       load<D>(points + std::size_t(face.minus[i]) * stride));
+  for (int i = 0; i < D - 1; ++i) g += face.kc[i] * along(face, i, points);
   return g;
 }
 
@@ -91,9 +133,14 @@ class ThesisKernel final : public ElasticKernel::Implementation {
         nodes_(mesh, rows),
         boundary_(mesh, rows),
         vertices_(mesh, rows),
-        points_(std::size_t(mesh.points.n_local()) * stride, 0.0) {
+        lame_(mesh, rows),
+        points_(std::size_t(mesh.points.n_local()) * record<D>, 0.0) {
     faces_.reserve(n_faces_with_force(mesh));
-    for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face<D>(mesh, rows, f));
+    for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face<D>(mesh, f));
+    if constexpr (D == 3)
+      for (Index v = 0; v < mesh.points.n_local(); ++v)
+        std::copy_n(mesh.reference_points[v].data(), 3,
+                    points_.begin() + std::ptrdiff_t(v) * record<3> + lanes::width<3>);
   }
 
   void apply(std::span<const double> unknowns, std::span<const double> known,
@@ -115,8 +162,9 @@ class ThesisKernel final : public ElasticKernel::Implementation {
   ElasticNodes<D> nodes_;
   ElasticRows boundary_;
   ElasticVertices vertices_;
+  FaceLames lame_;
   std::vector<ThesisFace<D>> faces_;
-  std::vector<double> points_;  // padded displacements of the vertices
+  std::vector<double> points_;  // records of the vertices
 };
 
 template <int D>
@@ -129,7 +177,7 @@ inline void ThesisKernel<D>::interpolate_free() {
     Lane<D> sum = {};
     for (std::size_t i = 0; i < index.size(); ++i)
       sum += weight[i] * load<D>(nodes + std::size_t(index[i]) * stride);
-    lanes::store<D>(points + std::size_t(v) * stride, sum);
+    lanes::store<D>(points + std::size_t(v) * record<D>, sum);
   }
 }
 
@@ -139,7 +187,7 @@ inline void ThesisKernel<D>::collect_forces(std::span<const double> known, std::
   const double* points = points_.data();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const Lane<D> force = force_on<D>(faces_[f], load<D>(nodes_[n]) - load<D>(nodes_[p]), points);
+    const Lane<D> force = force_on<D>(faces_[f], lame_[f], load<D>(nodes_[n]) - load<D>(nodes_[p]), points);
     lanes::add<D>(nodes_.force(p), -force);
     lanes::add<D>(nodes_.force(n), force);
   }
@@ -148,7 +196,8 @@ inline void ThesisKernel<D>::collect_forces(std::span<const double> known, std::
   };
   boundary_.add_rows<D>(
       nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
-      [&](Index f) __attribute__((always_inline)) { return force_on<D>(faces_[f], across(f), points); },
+      [&](Index f)
+          __attribute__((always_inline)) { return force_on<D>(faces_[f], lame_[f], across(f), points); },
       [&](Index f) __attribute__((always_inline)) { return slope_at<D>(faces_[f], across(f), points); });
   nodes_.take_forces(result);
 }
@@ -176,7 +225,7 @@ template <int D>
 void ThesisKernel<D>::fill(std::span<const double> unknowns, std::span<const double> known) {
   nodes_.fill(unknowns, known);
   vertices_pass(*this);
-  vertices_.constrain<D>(points_, stride, known);
+  vertices_.constrain<D>(points_, record<D>, known);
 }
 
 template <int D>
@@ -196,18 +245,17 @@ void ThesisKernel<D>::face_gradients(std::span<const double> unknowns, std::span
     Lane<D> g = (load<D>(f < mesh_.n_interior ? nodes_[mesh_.neighbour[f]] : nodes_.of_face(f)) -
                  load<D>(nodes_[mesh_.owner[f]])) *
                 face.inverse_dn;
+    const FaceVectors<D> vectors = vectors_of(face, points_.data());
     Tensor3 gradient = Tensor3::Zero();
     for (int i = 0; i < D - 1; ++i) {
-      const Lane<D> along = load<D>(points_.data() + std::size_t(face.plus[i]) * stride) -
-                            load<D>(points_.data() + std::size_t(face.minus[i]) * stride);
-      g += face.kc[i] * along;
+      const Lane<D> u = along(face, i, points_.data());
+      g += face.kc[i] * u;
       for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) gradient(a, b) += face.c[i][a] * along[b];
+        for (int b = 0; b < D; ++b) gradient(a, b) += vectors.c[i][a] * u[b];
     }
-    const Lane<D> n = load<D>(face.n);
-    if (symmetric) g = lanes::dot<D>(n, g) * n;
+    if (symmetric) g = lanes::dot<D>(vectors.n, g) * vectors.n;
     for (int a = 0; a < D; ++a)
-      for (int b = 0; b < D; ++b) gradient(a, b) += face.n[a] * g[b];
+      for (int b = 0; b < D; ++b) gradient(a, b) += vectors.n[a] * g[b];
     take(f, gradient);
   }
 }
@@ -217,7 +265,7 @@ void ThesisKernel<D>::point_values(std::span<const double> unknowns, std::span<c
                                    std::span<double> points) {
   fill(unknowns, known);
   const auto take = [&](Index v) {
-    for (int a = 0; a < D; ++a) points[std::size_t(v) * D + a] = points_[std::size_t(v) * stride + a];
+    for (int a = 0; a < D; ++a) points[std::size_t(v) * D + a] = points_[std::size_t(v) * record<D> + a];
   };
   for (const Index v : vertices_.free) take(v);
   for (const Index v : vertices_.constrained) take(v);

@@ -42,6 +42,20 @@ inline Index n_faces_with_force(const Mesh& mesh) {
   return mesh.twin.empty() ? mesh.n_flux_faces() : mesh.n_faces();
 }
 
+/// face_lame() of all faces with a force; one pair where all are alike.
+class FaceLames {
+ public:
+  FaceLames(const Mesh& mesh, const ElasticOperator& rows) : varies_(rows.is_uniform() ? 0 : 1) {
+    const Index n = varies_ ? n_faces_with_force(mesh) : 1;
+    for (Index f = 0; f < n; ++f) value_.push_back(varies_ ? face_lame(mesh, rows, f) : rows.lame(0));
+  }
+  const LameConstants& operator[](Index f) const { return value_[std::size_t(f) * varies_]; }
+
+ private:
+  std::size_t varies_;
+  std::vector<LameConstants> value_;
+};
+
 /// Displacements of all nodes (local cells, then boundary faces) padded to whole lanes, and the forces on the
 /// cells. A symmetry face is a node of value zero.
 template <int D>

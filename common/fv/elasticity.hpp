@@ -79,6 +79,8 @@ class ElasticOperator {
   std::size_t n_unknowns() const { return (mesh_->cells.n_owned() + unknown_faces_.size()) * mesh_->dim; }
   ElasticCondition condition(Index face) const { return boundary_.condition[face - mesh_->n_interior]; }
   const ElasticSupport& support(Index face) const { return boundary_.support(face - mesh_->n_interior); }
+  /// One pair of constants for all cells.
+  bool is_uniform() const { return body_.lame.size() == 1; }
   const LameConstants& lame(Index cell) const { return body_.lame[body_.lame.size() == 1 ? 0 : cell]; }
 
   /// Other constants, one a local cell (ghosts included); what was assembled with the old ones is forgotten.

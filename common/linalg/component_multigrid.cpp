@@ -87,6 +87,8 @@ ComponentMultigrid::ComponentMultigrid(Rows rows) {
   }
   residual_.resize(levels_.front().a.size());
   factor_coarsest();
+  // What the sweeps use is the inverse.
+  for (Level& level : levels_) level.a.diagonal = std::vector<Lanes>();
 }
 
 // P = (I - omega D^-1 A) P_0, weak neighbours lumped on the diagonal of A so that constants stay constants.
@@ -115,6 +117,8 @@ void ComponentMultigrid::prolong(Level& fine, const std::vector<Index>& of,
       if (is_strong[e]) add(of[a.index[e]], -omega * a.value[e] / diagonal);
     fine.p_offset.push_back(static_cast<Index>(fine.p_index.size()));
   }
+  fine.p_index.shrink_to_fit();
+  fine.p_value.shrink_to_fit();
 }
 
 // P^T A P, one coarse row after the other.
@@ -165,6 +169,8 @@ ComponentMultigrid::Rows ComponentMultigrid::galerkin(const Level& fine, Index n
     coarse.diagonal.push_back(diagonal);
     coarse.offset.push_back(static_cast<Index>(coarse.index.size()));
   }
+  coarse.index.shrink_to_fit();
+  coarse.value.shrink_to_fit();
   return coarse;
 }
 

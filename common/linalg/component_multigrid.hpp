@@ -25,7 +25,7 @@ class ComponentMultigrid {
     std::vector<Index> offset{0}, index;
     std::vector<Lanes> value;
     std::vector<Lanes> diagonal;  ///< positive, in unused lanes too
-    Index size() const { return static_cast<Index>(diagonal.size()); }
+    Index size() const { return static_cast<Index>(offset.size()) - 1; }
   };
 
   explicit ComponentMultigrid(Rows rows);

@@ -33,14 +33,13 @@ std::array<double, N> over_ranks(MPI_Comm comm, std::array<double, N> local) {
 BiCgStab::BiCgStab(std::string what, MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap precondition)
     : what_(std::move(what)),
       comm_(comm),
+      n_(n),
       apply_(std::move(apply)),
-      precondition_(std::move(precondition)),
-      r_(n),
-      shadow_(n),
-      p_(n),
-      v_(n),
-      t_(n),
-      z_(n) {}
+      precondition_(std::move(precondition)) {}
+
+void BiCgStab::forget_vectors() {
+  for (auto* v : {&r_, &shadow_, &p_, &v_, &t_, &z_}) *v = std::vector<double>();
+}
 
 /// r = b - A x and its norm.
 double BiCgStab::true_residual(std::span<const double> b, std::span<const double> x) {
@@ -53,6 +52,7 @@ SolveStatistics BiCgStab::solve(std::span<const double> b, std::span<double> x,
                                 const KrylovOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   SolveStatistics statistics;
+  for (auto* v : {&r_, &shadow_, &p_, &v_, &t_, &z_}) v->resize(n_);
   const double size = std::sqrt(over_ranks<1>(comm_, {dot_here(b, b)})[0]);
   const double wanted = options.relative_tolerance * size;
   statistics.residual = true_residual(b, x);

@@ -31,6 +31,8 @@ class BiCgStab {
 
   /// `x` holds the guess on entry. Throws SolveFailure if the tolerance was not reached. Collective.
   SolveStatistics solve(std::span<const double> b, std::span<double> x, const KrylovOptions& options);
+  /// Gives the memory of its vectors back until the next solve.
+  void forget_vectors();
 
  private:
   enum class Outcome { converged, restart, exhausted };
@@ -39,6 +41,7 @@ class BiCgStab {
 
   std::string what_;
   MPI_Comm comm_;
+  std::size_t n_;
   LinearMap apply_, precondition_;
   std::vector<double> r_, shadow_, p_, v_, t_, z_;
 };
