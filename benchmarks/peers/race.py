@@ -26,7 +26,6 @@ METHODS = {  # keys of solution-method as in the thesis's table 3.1, and ours; i
     "newton-krylov": "type: newton-krylov, preconditioner: multigrid, face-gradient: thesis",
     "newton-krylov, corrected": "type: newton-krylov, preconditioner: multigrid, face-gradient: corrected",
 }
-EMPTY = 44e6  # bytes of a process that has read its case and nothing else
 
 
 @dataclasses.dataclass
