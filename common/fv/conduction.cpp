@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/parallel/collective.hpp"
+#include "common/fv/nodes.hpp"
 
 namespace couplet {
 namespace {
@@ -49,7 +49,7 @@ struct Sums {
 ConductionOperator::ConductionOperator(const Mesh& mesh, std::span<const HeatCondition> conditions)
     : mesh_(&mesh), vertices_(mesh, stencils_of(mesh, conditions)), faces_(mesh) {
   sort_boundary(conditions);
-  number_unknowns();
+  number_ = number_nodes(mesh, flux_faces_);
   build_stencils();
   build_rows();
 }
@@ -83,21 +83,6 @@ void ConductionOperator::sort_boundary(std::span<const HeatCondition> conditions
       }
     }
   }
-}
-
-void ConductionOperator::number_unknowns() {
-  const Index n_owned = mesh_->cells.n_owned();
-  const GlobalIndex first = exclusive_scan(mesh_->comm, GlobalIndex(n_unknowns()));
-  std::vector<GlobalIndex> cells(mesh_->cells.n_local(), -1), boundary(mesh_->boundary.n_local(), -1);
-  for (Index c = 0; c < n_owned; ++c) cells[c] = first + c;
-  for (std::size_t i = 0; i < flux_faces_.size(); ++i)
-    boundary[flux_faces_[i] - mesh_->n_interior] = first + n_owned + static_cast<GlobalIndex>(i);
-  mesh_->cells.update_ghosts(std::span<GlobalIndex>(cells));
-  mesh_->boundary.update_ghosts(std::span<GlobalIndex>(boundary));
-  for (std::size_t b = 0; b < mesh_->twin.size(); ++b)
-    if (mesh_->twin[b] >= 0 && boundary[b] < 0) boundary[b] = boundary[mesh_->twin[b]];
-  number_ = std::move(cells);
-  number_.insert(number_.end(), boundary.begin(), boundary.end());
 }
 
 /// Fluxes of this rank's rows: faces of its own, and the far sides of its bonded faces.

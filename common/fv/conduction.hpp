@@ -92,7 +92,6 @@ class ConductionOperator {
     Index index;  // face, entry of flux_faces_ or cell
   };
   void sort_boundary(std::span<const HeatCondition> conditions);
-  void number_unknowns();
   void build_stencils();
   bool is_second_side(Index entry) const {
     return mesh_->boundary_id[mesh_->twin[entry]] < mesh_->boundary_id[entry];

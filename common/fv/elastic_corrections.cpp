@@ -7,31 +7,13 @@
 #include <limits>
 
 #include "common/fv/elastic_nodes.hpp"
+#include "common/fv/nodes.hpp"
 
 namespace couplet {
 namespace {
 
 // Normals of a symmetry patch closer than about 2 degrees are one plane.
 constexpr double same_plane = 0.9994;
-
-/// Flux faces of each owned cell.
-Csr flux_faces_of_cells(const Mesh& mesh) {
-  const Index n = mesh.cells.n_owned();
-  Csr result;
-  result.offset.assign(n + 1, 0);
-  const auto visit = [&](auto&& take) {
-    for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-      if (mesh.owner[f] < n) take(mesh.owner[f], f);
-      if (f < mesh.n_interior && mesh.neighbour[f] < n) take(mesh.neighbour[f], f);
-    }
-  };
-  visit([&](Index c, Index) { ++result.offset[c + 1]; });
-  for (Index c = 0; c < n; ++c) result.offset[c + 1] += result.offset[c];
-  result.index.resize(result.offset.back());
-  std::vector<Index> next(result.offset.begin(), result.offset.end() - 1);
-  visit([&](Index c, Index f) { result.index[next[c]++] = f; });
-  return result;
-}
 
 }  // namespace
 

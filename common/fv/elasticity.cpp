@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 
-#include "common/parallel/collective.hpp"
+#include "common/fv/nodes.hpp"
 
 namespace couplet {
 namespace {
@@ -16,25 +16,6 @@ VertexInterpolation::ByFace stencils_of(const ElasticBoundary& boundary, const E
                                : condition == ElasticCondition::symmetry ? PatchStencil::symmetry
                                                                          : PatchStencil::open);
   return stencils;
-}
-
-/// Flux faces of each owned cell.
-Csr faces_of_cells(const Mesh& mesh) {
-  const Index n = mesh.cells.n_owned();
-  Csr result;
-  result.offset.assign(n + 1, 0);
-  const auto visit = [&](auto&& take) {
-    for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-      if (mesh.owner[f] < n) take(mesh.owner[f], f);
-      if (f < mesh.n_interior && mesh.neighbour[f] < n) take(mesh.neighbour[f], f);
-    }
-  };
-  visit([&](Index c, Index) { ++result.offset[c + 1]; });
-  for (Index c = 0; c < n; ++c) result.offset[c + 1] += result.offset[c];
-  result.index.resize(result.offset.back());
-  std::vector<Index> next(result.offset.begin(), result.offset.end() - 1);
-  visit([&](Index c, Index f) { result.index[next[c]++] = f; });
-  return result;
 }
 
 }  // namespace
@@ -71,7 +52,7 @@ ElasticOperator::ElasticOperator(const Mesh& mesh, ElasticBoundary boundary, Ela
       vertices_(mesh, stencils_of(boundary_, body_)),
       constraints_(mesh, boundary_, vertices_) {
   sort_boundary();
-  number_unknowns();
+  number_ = number_nodes(mesh, unknown_faces_);
 }
 
 ElasticOperator::ElasticOperator(const Mesh& mesh, std::span<const ElasticCondition> conditions,
@@ -98,24 +79,9 @@ void ElasticOperator::sort_boundary() {
   }
 }
 
-void ElasticOperator::number_unknowns() {
-  const Index n_owned = mesh_->cells.n_owned(), n_cells = mesh_->cells.n_local();
-  const GlobalIndex first = exclusive_scan(mesh_->comm, GlobalIndex(n_owned) + std::ssize(unknown_faces_));
-  std::vector<GlobalIndex> cells(n_cells, -1), boundary(mesh_->boundary.n_local(), -1);
-  for (Index c = 0; c < n_owned; ++c) cells[c] = first + c;
-  for (std::size_t i = 0; i < unknown_faces_.size(); ++i)
-    boundary[unknown_faces_[i] - mesh_->n_interior] = first + n_owned + static_cast<GlobalIndex>(i);
-  mesh_->cells.update_ghosts(std::span<GlobalIndex>(cells));
-  mesh_->boundary.update_ghosts(std::span<GlobalIndex>(boundary));
-  for (std::size_t b = 0; b < mesh_->twin.size(); ++b)
-    if (mesh_->twin[b] >= 0 && boundary[b] < 0) boundary[b] = boundary[mesh_->twin[b]];
-  number_ = std::move(cells);
-  number_.insert(number_.end(), boundary.begin(), boundary.end());
-}
-
 void ElasticOperator::assemble() const {
   Row row{Row::Part(number_.size()), Row::Part(n_known())};
-  const Csr cell_faces = faces_of_cells(*mesh_);
+  const Csr cell_faces = flux_faces_of_cells(*mesh_);
   const Index n_owned = mesh_->cells.n_owned();
   for (Index c = 0; c < n_owned; ++c) {
     add_cell(c, cell_faces[c], row);

@@ -119,7 +119,6 @@ class ElasticOperator {
  private:
   struct Row;
   void sort_boundary();
-  void number_unknowns();
   void assemble() const;
   void add_cell(Index cell, std::span<const Index> faces, Row& row) const;
   void add_unknown_face(Index face, Row& row) const;
