@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
-#include "thermocline/tank.hpp"
+#include "thermocline/elsewhere.hpp"
 
 int main(int argc, char** argv) {
-  couplet::thermocline::TankParameters parameters;
+  couplet::thermocline::ElementParameters parameters;
   couplet::Program program{
       .name = "thermocline",
       .description =
@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
       .declare = [&](couplet::config::Section& s) { couplet::thermocline::declare(s, parameters); },
       .make =
           [&](const couplet::ParticipantContext& context) {
-            return std::make_unique<couplet::thermocline::Tank>(parameters, context);
+            return couplet::thermocline::make_element(parameters, context);
           }};
   return couplet::run_program(argc, argv, program);
 }

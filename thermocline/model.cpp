@@ -7,8 +7,6 @@
 #include "common/base/error.hpp"
 
 namespace couplet::thermocline {
-namespace {
-
 std::vector<ColumnLayer> ground_layers(const GroundParameters& p) {
   std::vector<ColumnLayer> layers;
   double depth = 0;
@@ -21,8 +19,6 @@ std::vector<ColumnLayer> ground_layers(const GroundParameters& p) {
   }
   return layers;
 }
-
-}  // namespace
 
 TankSetup::TankSetup(const TankParameters& p)
     : parameters(p), fluid(make_fluid(p.fluid)), filler(p.filler), grid(p.bed.layers, p.bed.cells) {
@@ -111,6 +107,13 @@ void TankModel::update_contact(std::span<const double> radial) {
   bed_.filler_temperature(filler_);
   contact_->update(radial, shell_->temperature(), filler_);
   update_stress();
+}
+
+void TankModel::hold_side(std::span<const double> from_rings) {
+  if (from_rings.empty()) return;
+  side_ = {};
+  for (std::size_t i = 0; i < into_blanket_.size(); ++i) side_.in += into_blanket_[i] = from_rings[i];
+  side_.out = side_.in;
 }
 
 void TankModel::update_pressure() {

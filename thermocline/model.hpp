@@ -28,6 +28,9 @@ struct TankSetup {
   InnerPressure pressure;  ///< on the rings, of a fluid of constant density
 };
 
+/// Foundation and soil as layers of a column.
+std::vector<ColumnLayer> ground_layers(const GroundParameters& parameters);
+
 enum class Element { bed, preparation, shell, insulation, ullage, ground, mechanics };
 inline constexpr std::array<const char*, 7> element_names{
     "bed", "closures", "shell", "insulation", "ullage", "ground", "filler mechanics"};
@@ -67,6 +70,14 @@ class TankModel {
   /// With an external wall: the filler's pressure at the end of a step from the wall's radial displacement
   /// [m] at its begin, a value a ring; empty if the wall has not answered yet.
   void update_contact(std::span<const double> radial);
+  /// With elements elsewhere: the heat that they take from now on [W], of each ring and of the bottom. An
+  /// empty list leaves what was.
+  void hold_side(std::span<const double> from_rings);
+  void hold_bottom(double heat) { soil_.in = soil_.out = heat; }
+  /// Of the lowest cell against what lies below it [W/(m^2 K)], and the longest time [s] for which a flux
+  /// made from it may be held.
+  double plate_coefficient() const;
+  double stable_ground() const;
   const WallStress& stress() const { return stress_; }
   const std::optional<Column>& ground() const { return ground_; }
   const std::optional<Ullage>& ullage() const { return ullage_; }
@@ -98,9 +109,7 @@ class TankModel {
   double exchange(double t, double longest, FlowControl& control, const AmbientSource& ambient,
                   std::vector<BedStep>& steps, Speed& speed);
   double stable_exchange() const;
-  double stable_ground() const;
   double cell_capacity(int cell) const;
-  double plate_coefficient() const;
   void step_insulation(double t, double h, const Ambient& air);
   void step_ground(double t, double h);
   void step_ullage(double h, const Ambient& air);

@@ -27,7 +27,8 @@ std::vector<std::pair<std::string, std::vector<double>>> TankModel::state() cons
   if (mechanics_) all.emplace_back("filler-mechanics", mechanics_->state());
   if (contact_) all.emplace_back("contact", contact_->state());
   if (insulation_) all.emplace_back("insulation", insulation_->temperature());
-  if (insulation_) all.emplace_back("into-blanket", into_blanket_);
+  const bool blanket = insulation_ || (setup_->parameters.elsewhere && shell_);
+  if (blanket) all.emplace_back("into-blanket", into_blanket_);
   if (roof_) all.emplace_back("roof", roof_->temperature());
   if (ground_) all.emplace_back("ground", ground_->temperature());
   if (ullage_) {
@@ -58,7 +59,8 @@ void TankModel::restore(const std::function<std::vector<double>(const std::strin
   if (mechanics_) mechanics_->restore(read("filler-mechanics"));
   if (contact_) contact_->restore(read("contact"));
   if (insulation_) replace("insulation", read("insulation"), insulation_->temperature());
-  if (insulation_) replace("into-blanket", read("into-blanket"), into_blanket_);
+  if (insulation_ || (setup_->parameters.elsewhere && shell_))
+    replace("into-blanket", read("into-blanket"), into_blanket_);
   if (roof_) replace("roof", read("roof"), roof_->temperature());
   if (ground_) replace("ground", read("ground"), ground_->temperature());
   if (ullage_) {

@@ -39,31 +39,6 @@ std::string problem_of_profile(const BedParameters& p) {
   return "";
 }
 
-void declare_ground(config::Section& section, GroundParameters& p) {
-  section.list<GroundLayer>(
-      "layers", p.layers,
-      [](config::Section& s, GroundLayer& l) {
-        s.value("material", l.material).required().doc(join(foundation_materials()));
-        s.value("thickness", l.thickness).unit("m").positive().required().doc("thickness");
-        s.check(
-            [&l] {
-              const auto known = foundation_materials();
-              return std::find(known.begin(), known.end(), l.material) != known.end()
-                         ? std::string()
-                         : "'" + l.material + "' is none of: " + join(known);
-            },
-            "material");
-      },
-      "from the tank downwards");
-  section.value("cell", p.cell).unit("m").positive().doc("largest height of a cell next to the tank");
-  section.value("step", p.step).unit("s").positive().doc("its own step");
-  section.value("deep-temperature", p.deep_temperature)
-      .unit("K")
-      .positive()
-      .doc("below; else the air's annual mean");
-  section.check([&p] { return p.layers.empty() ? "needs one layer at least" : ""; }, "layers");
-}
-
 void check_together(config::Section& s, TankParameters& p) {
   s.check([&p] { return p.mechanics && !p.shell ? "presses on a shell; add one" : ""; }, "filler-mechanics");
   s.check(
@@ -76,6 +51,15 @@ void check_together(config::Section& s, TankParameters& p) {
                    : "";
       },
       "report");
+  s.check(
+      [&p]() -> std::string {
+        if (!p.elsewhere) return "";
+        if (p.elsewhere->ground && p.ground) return "says that the ground is elsewhere; remove 'ground' here";
+        if (p.elsewhere->insulation && p.insulation)
+          return "says that the insulation is elsewhere; remove 'insulation' here";
+        return p.elsewhere->insulation && !p.shell ? "needs a shell for the insulation to lie around" : "";
+      },
+      "elsewhere");
   s.check([&p] { return p.insulation && !p.shell ? "lies around a shell; add one" : ""; }, "insulation");
 }
 
@@ -164,6 +148,31 @@ void declare(config::Section& section, InsulationParameters& p) {
       .doc("of the cover; 0: without the sun");
 }
 
+void declare(config::Section& section, GroundParameters& p) {
+  section.list<GroundLayer>(
+      "layers", p.layers,
+      [](config::Section& s, GroundLayer& l) {
+        s.value("material", l.material).required().doc(join(foundation_materials()));
+        s.value("thickness", l.thickness).unit("m").positive().required().doc("thickness");
+        s.check(
+            [&l] {
+              const auto known = foundation_materials();
+              return std::find(known.begin(), known.end(), l.material) != known.end()
+                         ? std::string()
+                         : "'" + l.material + "' is none of: " + join(known);
+            },
+            "material");
+      },
+      "from the tank downwards");
+  section.value("cell", p.cell).unit("m").positive().doc("largest height of a cell next to the tank");
+  section.value("step", p.step).unit("s").positive().doc("its own step");
+  section.value("deep-temperature", p.deep_temperature)
+      .unit("K")
+      .positive()
+      .doc("below; else the air's annual mean");
+  section.check([&p] { return p.layers.empty() ? "needs one layer at least" : ""; }, "layers");
+}
+
 void declare(config::Section& section, UllageParameters& p) {
   section.value("gauge-pressure", p.gauge_pressure).unit("Pa").doc("of the gas above that of the air");
   section.value("emissivity-liquid", p.emissivity_liquid).range(0.01, 1).doc("of the liquid's surface");
@@ -204,8 +213,15 @@ void declare(config::Section& section, TankParameters& p) {
       },
       "gas and radiation between the bed and the roof");
   section.optional_section<GroundParameters>(
-      "ground", p.ground, [](config::Section& s, GroundParameters& v) { declare_ground(s, v); },
+      "ground", p.ground, [](config::Section& s, GroundParameters& v) { declare(s, v); },
       "foundation and soil under the tank");
+  section.optional_section<ElsewhereParameters>(
+      "elsewhere", p.elsewhere,
+      [](config::Section& s, ElsewhereParameters& v) {
+        s.value("ground", v.ground).doc("a participant with element: ground");
+        s.value("insulation", v.insulation).doc("a participant with element: insulation");
+      },
+      "elements of this tank that participants of their own compute");
   section.section(
       "ambient", [&p](config::Section& s) { declare(s, p.ambient); }, "weather");
   section.section(

@@ -34,6 +34,11 @@ struct GroundParameters {
 
 struct FillerMechanicsParameters {};
 
+/// Elements of this tank that participants of their own compute.
+struct ElsewhereParameters {
+  bool ground = false, insulation = false;
+};
+
 struct TankOutput {
   double monitor_interval = 0;  ///< [s]; 0: each step
 };
@@ -52,11 +57,13 @@ struct TankParameters {
   std::optional<InsulationParameters> insulation;
   std::optional<UllageSpace> ullage;
   std::optional<GroundParameters> ground;
+  std::optional<ElsewhereParameters> elsewhere;
   WeatherParameters ambient;
   FlowParameters flow;
   std::optional<ReportParameters> report;
   TankOutput output;
 };
+void declare(config::Section& section, GroundParameters& parameters);
 void declare(config::Section& section, TankParameters& parameters);
 
 }  // namespace couplet::thermocline

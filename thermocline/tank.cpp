@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
@@ -19,15 +21,16 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
       next_(accepted_),
       control_state_(control_->state()),
       comm_(context.comm) {
-  if (p.external_wall) {
-    if (!context.coupled)
-      throw Error(
-          "participants.{}.external-wall: nobody computes the wall in a run of the tank alone. Start it "
-          "together with a "
-          "coupler and a solid_solver, or remove this section.",
-          context.name);
+  if ((p.external_wall || p.elsewhere) && !context.coupled)
+    throw Error(
+        "participants.{}.{}: nobody computes {} in a run of the tank alone. Start it together with a "
+        "coupler and {}, or remove this section.",
+        context.name, p.external_wall ? "external-wall" : "elsewhere", p.external_wall ? "the wall" : "them",
+        p.external_wall ? "a solid_solver" : "a thermocline for each of these elements");
+  if (p.external_wall)
     wall_.emplace(*p.external_wall, *accepted_.setup().rings);
-  }
+  else if (p.elsewhere && p.elsewhere->insulation)
+    wall_.emplace(ExternalWallParameters{accepted_.setup().rings->size(), 0.01}, *accepted_.setup().rings);
   if (comm_rank(context.comm) == 0)
     files_ = std::make_unique<TankOutputFiles>(accepted_, context.output_folder, context.restart_time);
   if (files_)
@@ -38,28 +41,84 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
         files_ ? context.output_folder : std::filesystem::path(), context.restart_time));
 }
 
-Interface Tank::initialise() { return wall_ && comm_rank(comm_) == 0 ? wall_->describe() : Interface{}; }
+Interface Tank::initialise() {
+  const TankParameters& p = accepted_.setup().parameters;
+  if (comm_rank(comm_) != 0 || (!p.external_wall && !p.elsewhere)) return {};
+  constexpr auto faces = Interface::Place::faces;
+  Interface interface;
+  if (wall_) {
+    interface = wall_->describe();
+  } else {
+    interface.face_centres = {{0, 0, 0}};
+    interface.face_areas = {{0, 0, -accepted_.bed().area()}};
+  }
+  if (p.external_wall) {
+    interface.takes = {{"displacement", "m", Interface::Place::vertices}};
+    interface.gives = {{"temperature", "K", faces, 1}, {"pressure", "Pa", faces, 1}};
+  }
+  if (p.elsewhere && p.elsewhere->insulation) {
+    interface.takes.push_back({"wall-heat", "W", faces, 1});
+    interface.gives.push_back({"wall-temperature", "K", faces, 1});
+  }
+  if (p.elsewhere && p.elsewhere->ground) {
+    interface.takes.push_back({"bottom-heat", "W", faces, 1});
+    interface.gives.push_back({"bottom-temperature", "K", faces, 1});
+    interface.gives.push_back({"bottom-coefficient", "W/(m^2 K)", faces, 1});
+  }
+  return interface;
+}
 
-/// Temperature and pressure at the end of the step, on rank 0.
+double Tank::suggest_dt() {
+  const auto& elsewhere = accepted_.setup().parameters.elsewhere;
+  return elsewhere && elsewhere->ground ? accepted_.stable_ground() : std::numeric_limits<double>::infinity();
+}
+
+/// What others take, at the end of the step, on rank 0.
 Exchange Tank::given() const {
-  if (!wall_ || comm_rank(comm_) != 0) return {};
-  return {{"temperature", wall_->to_sections(next_.shell()->temperature())},
-          {"pressure", wall_->to_sections(next_.contact()->pressure())}};
+  const TankParameters& p = accepted_.setup().parameters;
+  Exchange out;
+  if (comm_rank(comm_) != 0) return out;
+  if (p.external_wall) {
+    out["temperature"] = wall_->to_sections(next_.shell()->temperature());
+    out["pressure"] = wall_->to_sections(next_.contact()->pressure());
+  }
+  if (!p.elsewhere) return out;
+  const std::size_t faces = wall_ ? wall_->sections() : 1;
+  if (p.elsewhere->insulation) out["wall-temperature"] = wall_->to_sections(next_.shell()->temperature());
+  if (p.elsewhere->ground) {
+    out["bottom-temperature"].assign(faces, next_.bed().bottom());
+    out["bottom-coefficient"].assign(faces, next_.plate_coefficient());
+  }
+  return out;
+}
+
+/// Every rank computes the tank, so every rank needs what rank 0 got.
+std::vector<double> Tank::received(const Exchange& in, const char* name) const {
+  std::vector<double> values;
+  if (const auto found = in.find(name); found != in.end()) values = found->second;
+  int n = int(values.size());
+  MPI_Bcast(&n, 1, MPI_INT, 0, comm_);
+  values.resize(n);
+  MPI_Bcast(values.data(), n, MPI_DOUBLE, 0, comm_);
+  return values;
 }
 
 Exchange Tank::solve(const Exchange& in) {
+  const TankParameters& p = accepted_.setup().parameters;
   next_ = accepted_;
+  if (p.elsewhere) {
+    if (p.elsewhere->insulation)
+      if (const auto heat = received(in, "wall-heat"); !heat.empty()) next_.hold_side(wall_->to_rings(heat));
+    if (p.elsewhere->ground)
+      if (const auto heat = received(in, "bottom-heat"); !heat.empty())
+        next_.hold_bottom(std::accumulate(heat.begin(), heat.end(), 0.0));
+  }
   control_->restore(control_state_);
   steps_.clear();
   next_.advance(step_.time, step_.dt, *control_, *weather_, steps_, speed_);
-  if (wall_) {
-    // Every rank computes the tank, so every rank needs the wall's answer.
+  if (p.external_wall) {
     std::vector<double> radial;
-    if (const auto found = in.find("displacement"); found != in.end()) radial = wall_->radial(found->second);
-    int n = int(radial.size());
-    MPI_Bcast(&n, 1, MPI_INT, 0, comm_);
-    radial.resize(n);
-    MPI_Bcast(radial.data(), n, MPI_DOUBLE, 0, comm_);
+    if (const auto u = received(in, "displacement"); !u.empty()) radial = wall_->radial(u);
     next_.update_contact(radial);
   }
   return given();

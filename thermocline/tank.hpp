@@ -18,6 +18,8 @@ class Tank final : public Participant {
   Tank(const TankParameters& parameters, const ParticipantContext& context);
 
   Interface initialise() override;
+  /// A flux of the ground elsewhere is held for a step: no longer than the lowest cell allows.
+  double suggest_dt() override;
   void begin_step(const Step& step) override { step_ = step; }
   Exchange solve(const Exchange& in) override;
   void accept_step() override;
@@ -35,6 +37,7 @@ class Tank final : public Participant {
  private:
   TankRecord record() const;
   Exchange given() const;
+  std::vector<double> received(const Exchange& in, const char* name) const;
 
   std::string name_;
   std::unique_ptr<Weather> weather_;

@@ -48,12 +48,13 @@ void fluid(const TankModel& m, double peak_flow, Lines& lines) {
 void surroundings(const TankModel& m, const Ambient& air, Lines& lines) {
   const TankParameters& p = m.setup().parameters;
   std::string tight;
-  for (const auto& [there, name] : {std::pair{p.insulation.has_value(), "side (insulation)"},
+  const ElsewhereParameters elsewhere = p.elsewhere.value_or(ElsewhereParameters{});
+  for (const auto& [there, name] : {std::pair{p.insulation || elsewhere.insulation, "side (insulation)"},
                                     {p.insulation && p.ullage, "roof (insulation and ullage)"},
-                                    {p.ground.has_value(), "bottom (ground)"}})
+                                    {p.ground || elsewhere.ground, "bottom (ground)"}})
     if (!there) tight += fmt::format("{}{}", tight.empty() ? "" : ", ", name);
   if (!tight.empty()) lines.push_back(fmt::format("no heat leaves through what was left out: {}", tight));
-  if (!m.shell() || p.insulation) return;
+  if (!m.shell() || p.insulation || elsewhere.insulation) return;
   const auto& rings = *m.setup().rings;
   double area = 0, sum = 0;
   for (int i = 0; i < rings.size(); ++i)

@@ -20,7 +20,8 @@ WallInterface::WallInterface(const ExternalWallParameters& p, const Rings& rings
       angle_(p.angle),
       height_(rings.z.back() + rings.dz.back() / 2),
       sections_(p.sections),
-      ring_z_(rings.z) {}
+      ring_z_(rings.z),
+      ring_dz_(rings.dz) {}
 
 Interface WallInterface::describe() const {
   Interface interface;
@@ -33,9 +34,6 @@ Interface WallInterface::describe() const {
     interface.face_centres.emplace_back(radius_ * std::cos(half), 0, (k + 0.5) * dz);
     interface.face_areas.emplace_back(width * dz, 0, 0);
   }
-  interface.takes = {{"displacement", "m", Interface::Place::vertices}};
-  interface.gives = {{"temperature", "K", Interface::Place::faces, 1},
-                     {"pressure", "Pa", Interface::Place::faces, 1}};
   return interface;
 }
 
@@ -47,6 +45,18 @@ std::vector<double> WallInterface::to_sections(std::span<const double> rings) co
     // The table is constant below its first ring; its integral counts from there.
     const double low = k * dz, high = low + dz;
     values[k] = high <= from ? profile(low) : (profile.integral(high) - profile.integral(low)) / dz;
+  }
+  return values;
+}
+
+std::vector<double> WallInterface::to_rings(std::span<const double> amounts) const {
+  std::vector<double> values(ring_z_.size());
+  const double dz = height_ / sections_;
+  for (std::size_t i = 0; i < ring_z_.size(); ++i) {
+    const double low = ring_z_[i] - ring_dz_[i] / 2, high = low + ring_dz_[i];
+    const int last = std::min(sections_ - 1, int(high / dz));
+    for (int k = std::max(0, int(low / dz)); k <= last; ++k)
+      values[i] += amounts[k] * std::max(0.0, std::min(high, (k + 1) * dz) - std::max(low, k * dz)) / dz;
   }
   return values;
 }

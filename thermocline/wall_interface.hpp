@@ -25,17 +25,20 @@ void declare(config::Section& section, ExternalWallParameters& parameters);
 class WallInterface {
  public:
   WallInterface(const ExternalWallParameters& parameters, const Rings& rings);
-  Interface describe() const;
+  int sections() const { return sections_; }
+  Interface describe() const;  ///< places only
 
   /// Mean of a ring quantity over each section.
   std::vector<double> to_sections(std::span<const double> rings) const;
   /// Radial displacement [m] of each ring from the displacement of the vertices (3 components each).
   std::vector<double> radial(std::span<const double> displacement) const;
+  /// Amounts of the sections, shared out to the rings by height.
+  std::vector<double> to_rings(std::span<const double> amounts) const;
 
  private:
   double radius_, angle_, height_;
   int sections_;
-  std::vector<double> ring_z_;
+  std::vector<double> ring_z_, ring_dz_;
 };
 
 /// The filler against a wall whose radius somebody else computes. Its radial strain e_w was computed at t^n

@@ -98,7 +98,7 @@ TYPED_TEST_P(ParticipantContract, output_is_what_the_interface_announced) {
     const auto entries = datum.place == Interface::Place::vertices ? subject.interface.vertices.size()
                                                                    : subject.interface.face_centres.size();
     ASSERT_TRUE(out.contains(datum.name)) << datum.name;
-    EXPECT_EQ(out.at(datum.name).size(), entries * subject.interface.dim) << datum.name;
+    EXPECT_EQ(out.at(datum.name).size(), entries * datum.size(subject.interface.dim)) << datum.name;
     double largest = 0;
     for (const double v : out.at(datum.name)) largest = std::max(largest, std::abs(v));
     EXPECT_TRUE(std::isfinite(largest));

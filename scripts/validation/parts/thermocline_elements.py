@@ -73,6 +73,13 @@ def coupled_wall(job):
             f"maxima {100 * found['maximum']:.1f} %", found["mean"] < 0.07 and found["at 3.4 m"] < 0.03)
 
 
+def in_parts(job):
+    """Ground and blanket in processes of their own against the tank that has them itself."""
+    passed, total, _, output = job.ctest("^coupled_tank_in_parts$")
+    line = re.search(r"fluid [\d.]+ K, stress.*", output)
+    return line.group(0) if line else "no line", total == 1 and passed == 1 and bool(line)
+
+
 BARS = [
     Bar("thermocline: Schumann on a fine tvd grid, largest error", "<= 0.5 %", at_most(BED, "fine_tvd_grid", "error", 0.005)),
     Bar("thermocline: Schumann, order of tvd", "2", between(BED, r"Schumann\.tvd_is_second", "slope", 1.8, 2.6)),
@@ -101,6 +108,8 @@ BARS = [
         all_of(HARD, "HardCase")),
     Bar("hard cases: steps 10x the advective limit, implicit", "bounded, conservative", all_of(HARD, "ten_times")),
     Bar("thermocline: elements of any subset, books closed", "32 subsets", all_of(TANK, "any_subset")),
+    Bar("thermocline: ground and insulation as programs of their own, against the tank that has them", "0.2 K, 1 MPa, 1 %, amounts kept",
+        in_parts),
     Bar("thermocline: exponent of the cost in cells, 500 to 8000 (upwind, tvd, implicit)", "<= 1.05",
         at_most(SPEED, "linear", "exponent_upwind exponent_tvd exponent_implicit", 1.05, "{:.3f}"), long=True),
     Bar("thermocline: bed alone, ns per cell-step (upwind, tvd, implicit)", "reported",

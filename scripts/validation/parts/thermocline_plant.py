@@ -62,13 +62,19 @@ def row(case, name, points=None, percent=None, by=()):
         wanted, ours = published(job, case)[name], study(job, case, by)[ROWS[name]]
         tvd = study(job, case, TVD)[ROWS[name]]
 
-        def close(v):
-            gap = abs(ours[v] - wanted[v])
-            return (points is not None and gap <= points) or (percent is not None and gap <= percent / 100 * abs(wanted[v]))
-        outside = [v for v in VARIANTS if not close(v)]
-        text = f"{shown(ours)}; outside: {' '.join(outside) or 'none'}; TVD: {shown(tvd)}"
-        if name not in ("FoS_static", "FoS_dynamic"):
-            text += f"; sun of monthly mean days: {shown(study(job, case, MEAN_DAYS)[ROWS[name]])}"
+        def far(values):
+            gap = {v: abs(values[v] - wanted[v]) for v in VARIANTS}
+            return [v for v in VARIANTS if not (points is not None and gap[v] <= points) and not (
+                percent is not None and gap[v] <= percent / 100 * abs(wanted[v]))]
+        outside = far(ours)
+        text = f"{shown(ours)} (published {shown(wanted)}); outside: {' '.join(outside) or 'none'}; TVD: {shown(tvd)}"
+        if name not in ("Q_SF", "FoS_static", "FoS_dynamic"):
+            mean = study(job, case, MEAN_DAYS)[ROWS[name]]
+            text += f"; with the sun of monthly mean days: {shown(mean)}, outside: {' '.join(far(mean)) or 'none'}"
+        if outside and name not in ("Q_SF", "FoS_static", "FoS_dynamic"):
+            excess = study(job, case, by)["Q_excess/Q_SF"], published(job, case)["Q_excess/Q_SF"]
+            text += (f". Cause: the surrogate's days are stronger and shorter, Q_excess/Q_SF {shown(excess[0])} % for the published "
+                     f"{shown(excess[1])}")
         return text, not outside
 
     def wanted(root_text=""):
