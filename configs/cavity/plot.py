@@ -21,7 +21,8 @@ import couplet_series as couplet  # noqa: E402
 def reference(file, reynolds):
     rows = [line.split(",") for line in (here / "reference" / file).read_text().splitlines() if line[0] != "#"]
     column = next(i for i, name in enumerate(rows[0]) if name.endswith(f"_Re{reynolds}"))
-    return np.array([[float(r[0]), float(r[column])] for r in rows[1:]]).T
+    misprint = "0.9063" if reynolds == 400 else ""  # of v in the printed table: far off its neighbours
+    return np.array([[float(r[0]), float(r[column])] for r in rows[1:] if r[0] != misprint]).T
 
 
 def centre_lines(series):
@@ -39,12 +40,12 @@ def centre_lines(series):
     return s, np.asarray(u(0 * s + 0.5, s)), np.asarray(v(s, 0 * s + 0.5))
 
 
-def gaps(folder):
+def gaps(folder, reynolds=100):
     """Largest differences of u and v to Ghia on the two centre lines, in speeds of the lid."""
     s, u, v = centre_lines(couplet.find_series(folder))
     found = {}
     for name, line, file in (("u", u, "ghia_u_x0.5.csv"), ("v", v, "ghia_v_y0.5.csv")):
-        place, wanted = reference(file)
+        place, wanted = reference(file, reynolds)
         inside = (place > 0.001) & (place < 0.999)
         found[name] = np.abs(np.interp(place[inside], s, line) - wanted[inside]).max()
     return found
@@ -69,7 +70,7 @@ def main():
         ax.plot(place, wanted, "ok", fillstyle="none", label=f"Ghia, Ghia, Shin 1982, Re = {arguments.re}")
         ax.set(xlabel=names[0], ylabel=names[1])
         ax.grid(alpha=0.3)
-    for name, gap in gaps(out / "fluid").items():
+    for name, gap in gaps(out / "fluid", arguments.re).items():
         print(f"{name}: largest difference to Ghia {gap:.4f} of the lid's speed")
     axes[0].legend(fontsize=8)
     figure.savefig(picture)

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channel 2.5 x 0.41 m, cylinder of diameter 0.1 m at (0.2, 0.2) with a plate 0.02 m thick behind it up to x = 0.6 m:
 // blocks of quadrilaterals, rings around the cylinder, rows along the plate.
-DefineConstant[ n = 44 ];          // cells on a quarter of the cylinder
-n_ring = Round(0.7 * n);           // from the cylinder to the square
-n_plate = Round(2.2 * n);          // along the plate behind the square
-n_wake = Round(4 * n);
-n_left = Round(0.6 * n);
-n_side = Round(0.7 * n);
-n_tip = Round(0.4 * n);
-n_half = Round(0.7 * n);           // from the plate to the upper (lower) end of the square
+// What counts are the layers that leave the cylinder and the plate: many cells across them, few along them.
+DefineConstant[ n = 36 ];
+n_arc = Round(0.8 * n);            // on a quarter of the cylinder
+n_ring = Round(1.5 * n);           // from the cylinder to the square
+n_plate = Round(1.6 * n);          // along the plate behind the square
+n_wake = Round(2.4 * n);
+n_left = Round(0.45 * n);
+n_side = Round(0.5 * n);
+n_tip = Round(0.5 * n);
+n_half = Round(1.8 * n);           // from the plate to the upper (lower) end of the square
 g = 5 ^ (1 / n_ring);
 
 r = 0.05; c = 0.2; s = 0.085; q = r / Sqrt(2); h = 0.01;
@@ -33,7 +35,7 @@ For k In {0 : 4}
   Circle(200 + k) = {101 + k, 107, 102 + k};
 EndFor
 Transfinite Curve {200, 204} = n_half + 1 Using Progression 1;
-Transfinite Curve {201 : 203} = n + 1;
+Transfinite Curve {201 : 203} = n_arc + 1;
 Line(210) = {101, 33}; Line(211) = {102, 43}; Line(212) = {103, 42};
 Line(213) = {104, 12}; Line(214) = {105, 13}; Line(215) = {106, 23};
 Transfinite Curve {210 : 215} = n_ring + 1 Using Progression g;
@@ -62,15 +64,15 @@ For j In {0 : 4}
   EndFor
 EndFor
 Line(450) = {11, 41}; Line(451) = {12, 42}; // left of the square the middle is one block
-Transfinite Curve {450, 451} = n + 1;
+Transfinite Curve {450, 451} = n_arc + 1;
 Transfinite Curve {300, 310, 340, 350} = n_left + 1 Using Progression 1 / 1.01;
-Transfinite Curve {301, 311, 341, 351} = n + 1;
+Transfinite Curve {301, 311, 341, 351} = n_arc + 1;
 Transfinite Curve {302, 312, 322, 332, 342, 352} = n_plate + 1 Using Bump 0.5;
-Transfinite Curve {303, 313, 323, 333, 343, 353} = n_wake + 1 Using Progression 1.014 ^ (40 / n);
+Transfinite Curve {303, 313, 323, 333, 343, 353} = n_wake + 1 Using Progression 1.025 ^ (40 / n);
 Transfinite Curve {400 : 404, 440 : 444} = n_side + 1 Using Bump 0.4;
-Transfinite Curve {412 : 414} = n_half + 1 Using Progression 1 / 1.05;
+Transfinite Curve {412 : 414} = n_half + 1 Using Progression 1 / 1.025 ^ (32 / n);
 Transfinite Curve {423, 424} = n_tip + 1;
-Transfinite Curve {432 : 434} = n_half + 1 Using Progression 1.05;
+Transfinite Curve {432 : 434} = n_half + 1 Using Progression 1.025 ^ (32 / n);
 
 Curve Loop(500) = {210, 432, -211, -200};
 Curve Loop(501) = {211, -341, -212, -201};

@@ -18,7 +18,7 @@ import coefficients  # noqa: E402
 PATCHES = ["cylinder", "plate"]
 
 
-def summary(folder, last=2):
+def summary(folder, last=1):
     """Mean and amplitude (half of largest plus and minus least) of drag and lift [N], frequency of the lift [1/s]."""
     rows = coefficients.couplet.read_csv(folder / "forces.csv")
     t = rows["time [s]"]
