@@ -52,6 +52,7 @@ BARS = [
     Bar("cylinder 2D-2: St", "0.3018 +- 1 %", cylinder("St", 0.3018 * 0.99, 0.3018 * 1.01), long=True),
     Bar("cylinder 2D-2: cl_max", "0.99-1.01 +- 2 %", cylinder("cl_max", 0.99 * 0.98, 1.01 * 1.02), long=True),
     Bar("CFD3: drag, mean", "439.45 N +- 3 %", cfd3("drag_mean", 0.03), long=True),
+    Bar("CFD3: drag amplitude", "5.6183 N +- 3 %", cfd3("drag_amp", 0.03), long=True),
     Bar("CFD3: lift amplitude", "437.81 N +- 3 %", cfd3("lift_amp", 0.03), long=True),
     Bar("CFD3: frequency", "4.3956 1/s +- 1 %", cfd3("lift_f", 0.01), long=True),
 ]

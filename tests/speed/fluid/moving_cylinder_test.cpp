@@ -24,7 +24,6 @@ FluidParameters channel() {
   p.density = 1;
   p.viscosity = 1e-3;
   p.time_step = dt;
-  p.viscous = ViscousTreatment::explicit_;
   p.initial_velocity = {{"1"}, {"0"}};
   BoundaryParameters inlet, outlet, wall, cylinder;
   inlet.type = BoundaryType::inlet;
@@ -42,6 +41,8 @@ mesh_mover::Parameters motion() {
   for (const char* patch : {"inlet", "outlet", "walls"})
     p.boundaries[patch].motion = mesh_mover::BoundaryMotion::fixed;
   p.boundaries["cylinder"].motion = mesh_mover::BoundaryMotion::interface;
+  p.linear.method = LinearMethod::cg_direct;
+  p.linear.relative_tolerance = 1e-8;
   return p;
 }
 
