@@ -41,8 +41,8 @@ mesh_mover::Parameters motion() {
   for (const char* patch : {"inlet", "outlet", "walls"})
     p.boundaries[patch].motion = mesh_mover::BoundaryMotion::fixed;
   p.boundaries["cylinder"].motion = mesh_mover::BoundaryMotion::interface;
-  p.linear.method = LinearMethod::cg_direct;
-  p.linear.relative_tolerance = 1e-8;
+  p.linear.method = LinearMethod::cg_multigrid;
+  p.linear.relative_tolerance = 1e-6;
   return p;
 }
 
