@@ -27,8 +27,9 @@ Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving
       moving_(moving_mesh),
       boundary_(mesh, parameters_),
       step_(mesh, boundary_, parameters_, moving_mesh),
-      step_size_(mesh, boundary_, parameters.viscosity / parameters.density) {
+      step_size_(mesh, boundary_, parameters.viscosity / parameters.density, parameters.scheme) {
   if (!parameters.bodies.empty()) check_bodies();
+  if (parameters.scheme == ExplicitScheme::runge_kutta) check_scheme();
   start(start_time);
 }
 
@@ -41,6 +42,42 @@ void Fluid<D>::check_bodies() {
   if (parameters_.viscous == ViscousTreatment::implicit)
     throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
   parameters_.viscous = ViscousTreatment::explicit_;
+}
+
+template <int D>
+void Fluid<D>::check_scheme() {
+  if (moving_)
+    throw Error("scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover.");
+  if (parameters_.viscous == ViscousTreatment::implicit)
+    throw Error(
+        "scheme: runge-kutta takes the viscous term explicitly; use 'viscous: explicit' or adams-bashforth.");
+  parameters_.viscous = ViscousTreatment::explicit_;
+}
+
+/// The first two stages of Heun's scheme, each a step from level n with its own pressure,
+///   u' = P(u^n + dt/3 R(u^n)),  u'' = P(u^n + 2/3 dt R(u')),  u^{n+1} = P(u^n + dt [R(u^n) + 3 R(u'')]/4),
+/// and what the last one needs. `done`: time into the coupling step at the begin of the sub-step.
+template <int D>
+void Fluid<D>::run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity) {
+  Vectors<D> rate, shear;
+  step_.rates(trial(), rate, shear);
+  step.rate = rate;
+  step.shear = shear;
+  for (const double share : {1.0 / 3, 2.0 / 3}) {
+    SubStep<D> part;
+    part.dt = share * step.dt;
+    part.to = step.to;
+    part.rate = rate;
+    part.shear = shear;
+    State<D> stage = trial();
+    const Vectors<D> w = wall_velocity_at(done + part.dt, wall_velocity, part);
+    step_.predict(stage, std::move(part), w);
+    step_.project(stage, w);
+    step_.finish(stage);
+    step_.rates(stage, rate, shear);
+  }
+  for (std::size_t c = 0; c < rate.size(); ++c) step.rate[c] = 0.25 * step.rate[c] + 0.75 * rate[c];
+  for (std::size_t b = 0; b < shear.size(); ++b) step.shear[b] = 0.25 * step.shear[b] + 0.75 * shear[b];
 }
 
 template <int D>
@@ -240,6 +277,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     const bool needs_pressure =
         trial().implicit || step_.oblique() || parameters_.projection == Projection::incremental;
     if (needs_pressure && !trial().pressure[0]) start_pressure(sub_step, last_w_);
+    if (parameters_.scheme == ExplicitScheme::runge_kutta) run_stages(sub_step, end - dt, wall_velocity);
     step_.predict(trial(), std::move(sub_step), last_w_);
     ++statistics_.sub_steps;
     ++statistics_.all_sub_steps;

@@ -68,6 +68,8 @@ class Fluid {
   const State<D>& trial() const { return split_ ? trial_ : accepted_; }
   void rewind();
   void check_bodies();
+  void check_scheme();
+  void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(double time);
   void choose_viscous_treatment();
   double next_size(double remaining, bool& last);

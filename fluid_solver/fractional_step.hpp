@@ -19,6 +19,8 @@ struct SubStep {
   std::shared_ptr<const Placement<D>> to;  ///< of the points at t^{n+1}
   std::vector<double> swept;               ///< dV_f per flux face [m^3]; empty: the mesh rests
   std::vector<Vec3> points;                ///< at t^{n+1}; empty: the mesh rests
+  Vectors<D> rate{};                       ///< mean of R over the step; empty: by Adams-Bashforth
+  Vectors<D> shear{};  ///< with `rate`: mean of the viscous force on the boundary faces [N]
 };
 
 struct StepStatistics {
@@ -41,6 +43,8 @@ class FractionalStep {
 
   /// `w`: given velocity per boundary face at t^{n+1}, as far as it is known. Collective.
   void predict(const State<D>& from, SubStep<D> step, const Vectors<D>& w);
+  /// R of a state, explicit, and its viscous force on the boundary faces. Collective.
+  void rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& shear);
   /// May be called again with another w after one predict(). Collective.
   void project(const State<D>& from, const Vectors<D>& w);
   /// Turns level n into level n+1. Throws SolveFailure naming time and place if the velocity is not finite,
@@ -75,6 +79,7 @@ class FractionalStep {
   const Placement<D>& pressure_placement() const { return bodies_ ? *around_bodies_ : *step_.to; }
   void fill_pressure_in_bodies();
   void clear_bodies(std::vector<double>& values) const;
+  void set_rates(const State<D>& from, bool implicit);
   void add_body_force(const State<D>& from);
   void add_swept(const State<D>& from, double e0, double e1);
   void add_old_pressure(const State<D>& from, bool implicit);

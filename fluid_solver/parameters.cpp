@@ -135,6 +135,13 @@ void declare(config::Section& s, FluidParameters& p) {
   s.value("body-force", p.body_force)
       .unit("m/s^2")
       .doc("force per mass, one expression of x, y, z [m] and t [s] a component; absent: none");
+  s.choice(
+       "scheme", p.scheme,
+       {{"adams-bashforth", ExplicitScheme::adams_bashforth}, {"runge-kutta", ExplicitScheme::runge_kutta}})
+      .doc(
+          "time scheme of the explicit terms; runge-kutta: three stages with a projection each, steps 2.5 "
+          "times as "
+          "long for three times the work, explicit viscous term, mesh at rest");
   s.choice("projection", p.projection,
            {{"flux-memory", Projection::flux_memory},
             {"incremental", Projection::incremental},

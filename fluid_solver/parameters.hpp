@@ -29,6 +29,8 @@ inline bool is_wall(BoundaryType type) {
 }
 enum class InletProfile { uniform, parabolic };
 enum class ViscousTreatment { automatic, explicit_, implicit };
+/// Of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
+enum class ExplicitScheme { adams_bashforth, runge_kutta };
 /// How the face fluxes follow the cells' velocities from step to step.
 enum class Projection { flux_memory, incremental, non_incremental };
 
@@ -90,6 +92,7 @@ struct FluidParameters {
   std::optional<StatisticsParameters> statistics;
   FluidOutputParameters output;
   std::map<std::string, BodyParameters> bodies;
+  ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   Projection projection = Projection::flux_memory;
   std::map<std::string, ProbeParameters> probes;
 };

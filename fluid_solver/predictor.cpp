@@ -32,22 +32,19 @@ void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vec
   const double dt = step_.dt, ratio = from.dt_old > 0 ? dt / from.dt_old : 0;
   const double e0 = 1 + ratio / 2, e1 = -ratio / 2;
 
-  rate_operator_.apply(from, implicit, oblique_, rates_);
-  wall_shear<D>(mesh_, *from.placement, parameters_.viscosity, from.u, from.u_boundary, shear_);
-  if (bodies_)
-    for (Index c = 0; c < mesh_.cells.n_local(); ++c)
-      if (bodies_->is_solid(c)) rates_.rate[c].setZero();
+  const bool given = !step_.rate.empty();
+  if (!given) set_rates(from, implicit);
   right_side_.resize(from.u.size());
   const std::vector<double>& volume = from.placement->volume;
   for (Index c = 0; c < mesh_.cells.n_local(); ++c)
-    right_side_[c] = volume[c] * from.u[c] + dt * e0 * rates_.rate[c];
-  if (ratio > 0)
+    right_side_[c] = volume[c] * from.u[c] + (given ? dt * step_.rate[c] : dt * e0 * rates_.rate[c]);
+  if (ratio > 0 && !given)
     for (Index c = 0; c < mesh_.cells.n_local(); ++c) right_side_[c] += dt * e1 * from.rates_old.rate[c];
   if (!body_force_.empty()) add_body_force(from);
   if (moving) add_swept(from, e0, e1);
   if (moving || implicit) add_old_pressure(from, implicit);
   u_p_.resize(from.u.size());
-  viscous_force_.resize(shear_.size());
+  viscous_force_.resize(w_.size());
   if (implicit) {
     const double c = ratio > 0 ? c_modified : 0, a = ratio > 0 ? 0.5 + c / ratio : 1, b = 1 - a - c;
     for (Index i = 0; i < mesh_.cells.n_owned(); ++i) right_side_[i] += dt * b * rates_.viscous[i];
@@ -56,7 +53,8 @@ void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vec
     solve_viscous(from, w_, a);
   } else {
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c) u_p_[c] = right_side_[c] / step_.to->volume[c];
-    for (std::size_t b = 0; b < shear_.size(); ++b)
+    if (given) viscous_force_ = step_.shear;
+    for (std::size_t b = 0; b < shear_.size() && !given; ++b)
       viscous_force_[b] = ratio > 0 ? Vec<D>(e0 * shear_[b] + e1 * from.shear_old[b]) : shear_[b];
   }
   mesh_.cells.update_ghosts(flat<D>(u_p_), D);
@@ -67,6 +65,22 @@ void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vec
     pressure_.set(pressure_placement());
     assembled_ = step_.to;
   }
+}
+
+template <int D>
+void FractionalStep<D>::set_rates(const State<D>& from, bool implicit) {
+  rate_operator_.apply(from, implicit, oblique_, rates_);
+  wall_shear<D>(mesh_, *from.placement, parameters_.viscosity, from.u, from.u_boundary, shear_);
+  if (bodies_)
+    for (Index c = 0; c < mesh_.cells.n_local(); ++c)
+      if (bodies_->is_solid(c)) rates_.rate[c].setZero();
+}
+
+template <int D>
+void FractionalStep<D>::rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& shear) {
+  set_rates(of, false);
+  rate = rates_.rate;
+  shear = shear_;
 }
 
 // Volume-integrated at t^{n+1/2}, where the pressure lives that may balance it.
@@ -215,5 +229,7 @@ void FractionalStep<D>::extrapolate_pressure(const State<D>& from) {
 
 template void FractionalStep<2>::predict(const State<2>&, SubStep<2>, const Vectors<2>&);
 template void FractionalStep<3>::predict(const State<3>&, SubStep<3>, const Vectors<3>&);
+template void FractionalStep<2>::rates(const State<2>&, Vectors<2>&, Vectors<2>&);
+template void FractionalStep<3>::rates(const State<3>&, Vectors<3>&, Vectors<3>&);
 
 }  // namespace couplet::fluid

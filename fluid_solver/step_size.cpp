@@ -77,13 +77,16 @@ const LimitTable& implicit_table() {
   static const LimitTable table;
   return table;
 }
-constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90}, limit{1, 0.96, 0.91, 0.81, 0.63, 0.25};
+constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90},
+    adams_bashforth{1, 0.96, 0.91, 0.81, 0.63, 0.25}, runge_kutta{2.51, 2.37, 2.5, 2.4, 2.1, 1.73};
+constexpr double lowest_runge_kutta = 1.73;
 
 }  // namespace
 
 double implicit_convective_limit(double q) { return implicit_table()(q); }
 
-double explicit_limit(double angle) {
+double explicit_limit(double angle, ExplicitScheme scheme) {
+  const auto& limit = scheme == ExplicitScheme::runge_kutta ? runge_kutta : adams_bashforth;
   const double a = angle * 180 / std::numbers::pi;
   for (std::size_t i = 1; i < degrees.size(); ++i)
     if (a <= degrees[i])
@@ -92,8 +95,9 @@ double explicit_limit(double angle) {
 }
 
 template <int D>
-StepSize<D>::StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity)
-    : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity) {}
+StepSize<D>::StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
+                      ExplicitScheme scheme)
+    : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), scheme_(scheme) {}
 
 // The stress nu_t (grad u + grad u^T) has at most twice the rate of nu_t grad u.
 template <int D>
@@ -132,7 +136,9 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
   eddy_.assign(s.eddy.size(), 0.0);
   if (!s.eddy.empty()) add_eddies(s);
   // Few cells can be the one that decides: most are passed over with the lowest value the limits can take.
-  const double lowest_explicit = limit.back(), lowest_implicit = implicit_table().least();
+  const double lowest_explicit =
+                   scheme_ == ExplicitScheme::runge_kutta ? lowest_runge_kutta : adams_bashforth.back(),
+               lowest_implicit = implicit_table().least();
   double least[3] = {infinity, infinity, -peclet};
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     const double convection = convection_[c] / at.volume[c];
@@ -140,7 +146,7 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
     const double diffusion = diffusion_[c] / at.volume[c] + eddy;
     const double size = std::sqrt(convection * convection + diffusion * diffusion);
     if (lowest_explicit < least[0] * size)
-      least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion)) / size);
+      least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion), scheme_) / size);
     if (lowest_implicit < least[1] * convection)
       least[1] = std::min(least[1], implicit_convective_limit(least_ratio_[c]) / convection);
     if (eddy > 0)  // the eddy part stays explicit

@@ -16,12 +16,13 @@ struct StepLimits {
 };
 
 /// Eigenvalue bounds (Gershgorin) per cell, c = sum |phi - dV/dt| / (2 V) of convection and d = 2 nu sum g /
-/// V of diffusion, against the stability regions of AB2 (all explicit) and of the modified Crank-Nicolson /
-/// AB2 pair. The same on any number of ranks: rounded to six digits. Collective.
+/// V of diffusion, against the stability regions of AB2 or RK3 (all explicit) and of the modified
+/// Crank-Nicolson / AB2 pair. The same on any number of ranks: rounded to six digits. Collective.
 template <int D>
 class StepSize {
  public:
-  StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity);
+  StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
+           ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
   StepLimits limits(const State<D>& state);
   /// Largest cell Peclet number |phi| / (nu g) of the last limits(), all ranks.
   double largest_peclet() const { return peclet_; }
@@ -31,6 +32,7 @@ class StepSize {
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
   double nu_;
+  ExplicitScheme scheme_;
   std::vector<double> convection_, diffusion_, eddy_, least_ratio_;
   double peclet_ = 0;
 };
@@ -38,7 +40,7 @@ class StepSize {
 /// Largest c dt of AB2 with implicit diffusion when a wave exp(i theta) meets c sin(theta) and q c (1 -
 /// cos(theta))/2.
 double implicit_convective_limit(double q);
-/// Largest |lambda| dt of AB2 at this angle of lambda from the negative real axis [rad].
-double explicit_limit(double angle);
+/// Largest |lambda| dt of the scheme at this angle of lambda from the negative real axis [rad].
+double explicit_limit(double angle, ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
 
 }  // namespace couplet::fluid

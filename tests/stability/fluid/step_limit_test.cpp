@@ -16,7 +16,7 @@ double largest_speed(const FluidCase<2>& c) {
 
 /// Growth of noise in a viscous fluid at rest over 400 steps of a share of the limit. The fastest decay of
 /// even squares, 8 nu/h^2, is the bound itself.
-double growth_of_noise(double share_of_limit) {
+double growth_of_noise(double share_of_limit, ExplicitScheme scheme = ExplicitScheme::adams_bashforth) {
   RawMesh raw = make_box(BoxCells::quadrilaterals, {24, 24, 1}, Vec3::Zero(), Vec3::Ones());
   raw.periodic = {{"xmin", "xmax"}, {"ymin", "ymax"}};
   const double noise = 1e-3;
@@ -24,29 +24,38 @@ double growth_of_noise(double share_of_limit) {
   p.density = 1;
   p.viscosity = 0.1;
   p.viscous = ViscousTreatment::explicit_;
+  p.scheme = scheme;
   p.time_step = 1;  // the steps below are shorter: they are not cut
   p.pressure_tolerance = 1e-10;
   p.initial_velocity = {{"1e-3*sin(300*x+170*y)*cos(430*y)"}, {"1e-3*cos(290*x-410*y)"}};
   all_sides(p, 2, boundary(BoundaryType::periodic));
   FluidCase<2> c(MPI_COMM_WORLD, raw, p);
-  StepSize<2> sizes(c.mesh(), c.fluid().boundary(), p.viscosity / p.density);
+  StepSize<2> sizes(c.mesh(), c.fluid().boundary(), p.viscosity / p.density, scheme);
   const double dt = share_of_limit * sizes.limits(c.state()).explicit_viscous;
-  for (int i = 0; i < 400; ++i) c.step(dt);
+  try {
+    for (int i = 0; i < 400; ++i) c.step(dt);
+  } catch (const SolveFailure&) {
+    return std::numeric_limits<double>::infinity();
+  }
   return largest_speed(c) / noise;
 }
 
 TEST(StepLimit, of_explicit_diffusion_is_the_longest_stable_step) {
   EXPECT_LT(growth_of_noise(1), 1);
   EXPECT_GT(growth_of_noise(1.02), 10);
+  EXPECT_LT(growth_of_noise(1, ExplicitScheme::runge_kutta), 1);
+  EXPECT_GT(growth_of_noise(1.05, ExplicitScheme::runge_kutta), 10);
 }
 
 /// Lid-driven cavity, Re = 1000, that chooses its steps itself, first cautiously until the flow has developed
 /// near the lid: largest speed in the cells. The steady flow in them is slower than the lid.
-double speed_in_cavity(double safety_factor, ViscousTreatment viscous) {
+double speed_in_cavity(double safety_factor, ViscousTreatment viscous,
+                       ExplicitScheme scheme = ExplicitScheme::adams_bashforth) {
   FluidParameters p;
   p.density = 1;
   p.viscosity = 1e-3;
   p.viscous = viscous;
+  p.scheme = scheme;
   p.safety_factor = safety_factor;
   p.pressure_tolerance = 1e-5;
   all_sides(p, 2, boundary(BoundaryType::no_slip));
@@ -59,7 +68,7 @@ double speed_in_cavity(double safety_factor, ViscousTreatment viscous) {
   } catch (const SolveFailure&) {
     return std::numeric_limits<double>::infinity();
   }
-  EXPECT_GT(c.fluid().statistics().all_sub_steps, 400);
+  EXPECT_GT(c.fluid().statistics().all_sub_steps, 200);
   return largest_speed(c);
 }
 
@@ -68,6 +77,8 @@ TEST(StepLimit, of_a_cavity_keeps_it_steady_and_leaves_less_than_a_third_unused)
   EXPECT_LT(steady, 0.9);
   EXPECT_NEAR(speed_in_cavity(1, ViscousTreatment::explicit_), steady, 0.01 * steady);
   EXPECT_NEAR(speed_in_cavity(1, ViscousTreatment::implicit), steady, 0.01 * steady);
+  EXPECT_NEAR(speed_in_cavity(1, ViscousTreatment::explicit_, ExplicitScheme::runge_kutta), steady,
+              0.01 * steady);
   EXPECT_GT(speed_in_cavity(1.3, ViscousTreatment::explicit_), 1.05);
 }
 
