@@ -135,9 +135,10 @@ std::vector<std::string> Solid::judge_left_out_effects() {
         inertia_over_load_ < 0.01 ? "leaving it out was sound" : "use 'analysis: dynamic'"));
   if (is_dynamic() && !parameters_.damping)
     sentences.push_back(
-        "structural damping left out: free vibration does not decay, and on distorted meshes the highest "
-        "modes may grow "
-        "at small time steps; 'damping: {stiffness: 2e-5 s}' would stop that.");
+        "structural damping left out: free vibration does not decay, and modes that the time step resolves "
+        "may "
+        "grow; a little 'damping: {stiffness: ...}' or 'time-scheme: {type: bathe}' would stop that, "
+        "'output: {spectrum: true}' tells the rate on a coarse mesh of the same kind.");
   for (const auto& effect : effects_) effect->judge(sentences);
   return sentences;
 }

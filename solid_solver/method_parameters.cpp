@@ -27,8 +27,9 @@ void declare(config::Section& s, MethodParameters& m) {
             {"corrected", FaceGradient::corrected}})
       .doc(
           "displacement gradient at the faces; thesis: locks in bending with few or long cells; corrected: "
-          "does not, at "
-          "two to three times the work; auto: by the cells of the mesh");
+          "does not, at two to three times the work, but undamped motion grows sooner with short steps; "
+          "auto: "
+          "corrected in static analyses, thesis in dynamic ones");
   s.choice("linear-solver", m.linear_solver,
            {{"auto", LinearSolver::automatic},
             {"direct", LinearSolver::direct},

@@ -22,7 +22,7 @@ Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
       materials_(materials_of(parameters_)),
       boundaries_(mesh_, parameters_),
       elastic_(mesh_, boundaries_.elastic(), elastic_body(parameters_, mesh_)),
-      kernel_(mesh_, elastic_, face_gradient_scheme(parameters_.method)),
+      kernel_(mesh_, elastic_, face_gradient_scheme(parameters_.method, !is_dynamic())),
       prescribed_(mesh_, boundaries_, elastic_) {
   check_supports();
   if (!boundaries_.interface_patches().empty()) {

@@ -64,14 +64,19 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
     default:
       method = std::make_unique<BlockCoupled>(problem, parameters);
   }
-  method->name_ += problem.is_corrected() ? ", corrected face gradient" : ", thesis's face gradient";
   if (!why.empty()) method->name_ += fmt::format(" (auto: {})", why);
+  method->name_ += problem.is_corrected() ? ", corrected face gradient" : ", thesis's face gradient";
+  if (asked.face_gradient == MethodParameters::FaceGradient::automatic)
+    method->name_ += problem.is_static() ? " (auto: static, where it errs less)"
+                                         : " (auto: dynamic, where the corrected one's growth is faster)";
   return method;
 }
 
-FaceGradientScheme face_gradient_scheme(const MethodParameters& parameters) {
-  return parameters.face_gradient == MethodParameters::FaceGradient::corrected ? FaceGradientScheme::corrected
-                                                                               : FaceGradientScheme::thesis;
+FaceGradientScheme face_gradient_scheme(const MethodParameters& parameters, bool is_static) {
+  using FaceGradient = MethodParameters::FaceGradient;
+  const bool corrected = parameters.face_gradient == FaceGradient::corrected ||
+                         (parameters.face_gradient == FaceGradient::automatic && is_static);
+  return corrected ? FaceGradientScheme::corrected : FaceGradientScheme::thesis;
 }
 
 double norm(MPI_Comm comm, std::span<const double> values) {

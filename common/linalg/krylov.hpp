@@ -23,7 +23,7 @@ struct KrylovOptions {
 /// BiCGStab [vandervorst1992] preconditioned from the right, for operators that are only applied. The
 /// residual that is judged is the true one, b - A x: the recurrence drifts away from it on long runs, so that
 /// it is computed anew when the recurrence has reached the tolerance, and the iteration begins again from
-/// there if it has not.
+/// there if it has not. A residual that is only what rounding leaves in A x counts as reached.
 class BiCgStab {
  public:
   /// `what` names the unknown in messages. `n`: rows of this rank.
@@ -37,6 +37,7 @@ class BiCgStab {
  private:
   enum class Outcome { converged, restart, exhausted };
   double true_residual(std::span<const double> b, std::span<const double> x);
+  double rounding(std::span<const double> x);
   Outcome run(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
 
   std::string what_;

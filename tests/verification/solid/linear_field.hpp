@@ -41,6 +41,26 @@ inline std::vector<std::string> traction_text(const SolidParameters& p, const Li
   return result;
 }
 
+/// A mesh and a face gradient; names such as "prisms_corrected".
+using CellsAndGradient = std::tuple<BoxCells, FaceGradient>;
+inline const auto all_cells_and_gradients =
+    ::testing::Combine(::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                                         BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed),
+                       ::testing::Values(FaceGradient::thesis, FaceGradient::corrected));
+inline std::string name_of(const ::testing::TestParamInfo<CellsAndGradient>& info) {
+  constexpr std::array names{"quadrilaterals", "triangles", "hexahedra", "tetrahedra", "prisms", "mixed"};
+  const auto& [cells, gradient] = info.param;
+  return fmt::format("{}_{}", names.at(std::size_t(cells)),
+                     gradient == FaceGradient::thesis ? "thesis" : "corrected");
+}
+
+/// With this gradient, solved to round-off.
+inline SolidParameters to_round_off(SolidParameters p, FaceGradient gradient) {
+  p.method.face_gradient = gradient;
+  p.method.relative_tolerance = 1e-13;
+  return p;
+}
+
 inline RawMesh distorted_box(BoxCells cells) {
   RawMesh raw = make_box(cells, {5, 4, 3}, Vec3::Zero(), Vec3(1, 0.8, 0.6));
   perturb_interior(raw, 0.25, 11);

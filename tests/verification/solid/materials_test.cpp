@@ -36,7 +36,7 @@ RawMesh two_zones(BoxCells cells, double slant) {
   return raw;
 }
 
-SolidParameters two_materials(int dim) {
+SolidParameters box_of_two_materials(int dim) {
   SolidParameters p = box_parameters(dim);
   p.materials["hard"] = {{7800, 200e9, 0.3, {}}, {}};
   p.materials["rubber"] = {{1100, 17e6, 0.45, {}}, {"soft"}};
@@ -82,15 +82,19 @@ std::vector<std::string> text_of(const BondedField& field, int dim) {
   return result;
 }
 
-class Materials : public ::testing::TestWithParam<BoxCells> {};
-INSTANTIATE_TEST_SUITE_P(Solid, Materials,
-                         ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
-                                           BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));
+class Materials : public ::testing::TestWithParam<CellsAndGradient> {
+ protected:
+  const BoxCells cells = std::get<0>(GetParam());
+  const int dim = dimension_of(cells);
+  SolidParameters two_materials() const {
+    return to_round_off(box_of_two_materials(dim), std::get<1>(GetParam()));
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Solid, Materials, all_cells_and_gradients, name_of);
 
 TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface) {
-  const int dim = dimension_of(GetParam());
   for (const double slant : {0.0, 0.3}) {
-    SolidParameters p = two_materials(dim);
+    SolidParameters p = two_materials();
     const Vec3 normal = Vec3(1, -slant, dim == 3 ? -0.5 * slant : 0).normalized();
     const BondedField field = bonded_field(p, normal, Vec3(0.6, 0, 0));
     for (auto& [name, b] : p.boundaries) b = boundary(Type::fixed_displacement, text_of(field, dim));
@@ -106,7 +110,7 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
     };
     pull("xmax", field.hard, normal, "hard");
     pull("xmin", field.soft, -normal, "rubber");
-    const auto solid = make_solid(two_zones(GetParam(), slant), p);
+    const auto solid = make_solid(two_zones(cells, slant), p);
     const Mesh& mesh = solid->mesh();
     ASSERT_FALSE(mesh.cell_material.empty());
     step(*solid, 1);
@@ -151,13 +155,12 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
 // A bar of two materials in series, free to contract: not linear near the interface, but its ends must
 // balance.
 TEST_P(Materials, both_ends_of_a_bar_in_series_carry_the_same_force) {
-  const int dim = dimension_of(GetParam());
-  SolidParameters p = two_materials(dim);
+  SolidParameters p = two_materials();
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
   p.boundaries["xmax"] =
       boundary(Type::fixed_displacement,
                dim == 3 ? std::vector<std::string>{"1e-3", "0", "0"} : std::vector<std::string>{"1e-3", "0"});
-  const auto solid = make_solid(two_zones(GetParam(), 0), p);
+  const auto solid = make_solid(two_zones(cells, 0), p);
   step(*solid, 1);
   const auto forces = solid->reactions(solid->point_displacement());
   ASSERT_EQ(forces.size(), 2U);
@@ -167,8 +170,7 @@ TEST_P(Materials, both_ends_of_a_bar_in_series_carry_the_same_force) {
 
 // Uniformly heated between walls that let it slide: one pushes the other, u_x linear in each.
 TEST_P(Materials, unequal_thermal_expansion_of_bonded_materials_is_exact) {
-  const int dim = dimension_of(GetParam());
-  SolidParameters p = two_materials(dim);
+  SolidParameters p = two_materials();
   p.materials["rubber"].heat.expansion = {"2e-4"};
   p.materials["hard"].heat.expansion = {"1.2e-5"};
   p.temperature = {"60"};
@@ -183,7 +185,7 @@ TEST_P(Materials, unequal_thermal_expansion_of_bonded_materials_is_exact) {
   };
   const double e_soft = (thermal(soft, 2e-4) - thermal(hard, 1.2e-5)) / (axial(soft) + 1.5 * axial(hard));
   const double stress = axial(soft) * e_soft - thermal(soft, 2e-4);
-  const auto solid = make_solid(two_zones(GetParam(), 0), p);
+  const auto solid = make_solid(two_zones(cells, 0), p);
   step(*solid, 1);
   const Mesh& mesh = solid->mesh();
   double error = 0, stress_error = 0;
@@ -201,10 +203,9 @@ TEST_P(Materials, unequal_thermal_expansion_of_bonded_materials_is_exact) {
 }
 
 TEST_P(Materials, zones_of_equal_material_give_the_answer_of_one_material) {
-  const int dim = dimension_of(GetParam());
   SolidParameters p = box_parameters(dim);
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, general_field(dim).text(dim));
-  const auto solid = make_solid(two_zones(GetParam(), 0.3), p);
+  const auto solid = make_solid(two_zones(cells, 0.3), p);
   EXPECT_TRUE(solid->mesh().cell_material.empty());
   EXPECT_TRUE(solid->mesh().twin.empty());
 }
@@ -212,7 +213,7 @@ TEST_P(Materials, zones_of_equal_material_give_the_answer_of_one_material) {
 // Two layers under inner pressure, plane strain: u_r = A_i r + B_i / r (Lame), a quarter of the ring.
 double layered_ring_error(int n, double& stress_error) {
   constexpr double r0 = 1, r1 = 1.5, r2 = 2, pressure = 1e6;
-  SolidParameters p = two_materials(2);
+  SolidParameters p = box_of_two_materials(2);
   p.materials["rubber"] = {{1000, 20e9, 0.2, {}}, {"soft"}};
   RawMesh raw = make_box(BoxCells::quadrilaterals, {2 * n, 2 * n, 1}, Vec3(r0, 0, 0), Vec3(r2, M_PI / 2, 0));
   raw.zones = {"soft", "hard"};
@@ -287,7 +288,7 @@ TEST(SolidMaterials, each_zone_needs_one_material) {
     }
     return "";
   };
-  SolidParameters p = two_materials(2);
+  SolidParameters p = box_of_two_materials(2);
   p.materials["rubber"].zones = {"sof"};
   EXPECT_THAT(message(p), HasSubstr("no zone 'sof' for a material. Did you mean 'soft'?"));
   p.materials["rubber"].zones = {"hard"};

@@ -196,6 +196,7 @@ TEST(SolidMethods, a_solve_that_does_not_converge_names_method_iterations_residu
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "1e6"});
   p.method.type = MethodParameters::Type::block_coupled;
+  p.method.face_gradient = FaceGradient::thesis;
   p.method.linear_solver = MethodParameters::LinearSolver::bicgstab_ilu;
   p.method.max_iterations = 1;
   const auto solid =

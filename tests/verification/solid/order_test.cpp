@@ -11,8 +11,6 @@
 namespace couplet::testing {
 namespace {
 
-using FaceGradient = MethodParameters::FaceGradient;
-
 constexpr std::array<double, 3> amplitude{2e-6, 4e-6, 6e-6};
 constexpr std::array<double, 3> wave{4 * M_PI, 2 * M_PI, M_PI};
 

@@ -13,25 +13,26 @@
 namespace couplet::testing {
 namespace {
 
-class Patch : public ::testing::TestWithParam<BoxCells> {};
-INSTANTIATE_TEST_SUITE_P(Solid, Patch,
-                         ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
-                                           BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));
+class Patch : public ::testing::TestWithParam<CellsAndGradient> {
+ protected:
+  const BoxCells cells = std::get<0>(GetParam());
+  const int dim = dimension_of(cells);
+  SolidParameters parameters() const { return to_round_off(box_parameters(dim), std::get<1>(GetParam())); }
+};
+INSTANTIATE_TEST_SUITE_P(Solid, Patch, all_cells_and_gradients, name_of);
 
 TEST_P(Patch, linear_field_is_exact_with_prescribed_displacement_all_around) {
-  const int dim = dimension_of(GetParam());
   const LinearField field = general_field(dim);
-  SolidParameters p = box_parameters(dim);
+  SolidParameters p = parameters();
   for (auto& [name, b] : p.boundaries) b = boundary(Type::fixed_displacement, field.text(dim));
-  const auto solid = make_solid(distorted_box(GetParam()), p);
+  const auto solid = make_solid(distorted_box(cells), p);
   step(*solid, 1);
   expect_exact(*solid, field);
 }
 
 TEST_P(Patch, linear_field_is_exact_with_tractions) {
-  const int dim = dimension_of(GetParam());
   const LinearField field = general_field(dim);
-  SolidParameters p = box_parameters(dim);
+  SolidParameters p = parameters();
   const std::vector<std::pair<std::string, Vec3>> loaded{{"xmax", Vec3(1, 0, 0)},
                                                          {"ymin", Vec3(0, -1, 0)},
                                                          {"ymax", Vec3(0, 1, 0)},
@@ -41,15 +42,14 @@ TEST_P(Patch, linear_field_is_exact_with_tractions) {
     if (p.boundaries.contains(name))
       p.boundaries[name] = boundary(Type::traction, traction_text(p, field, normal));
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, field.text(dim));
-  const auto solid = make_solid(distorted_box(GetParam()), p);
+  const auto solid = make_solid(distorted_box(cells), p);
   step(*solid, 1);
   expect_exact(*solid, field);
 }
 
 // Uniaxial stretch: xmin, ymin, zmin are symmetry planes, xmax is pulled, the others are free.
 TEST_P(Patch, uniaxial_tension_on_symmetry_planes_is_exact) {
-  const int dim = dimension_of(GetParam());
-  SolidParameters p = box_parameters(dim);
+  SolidParameters p = parameters();
   if (dim == 2) p.plane = SolidParameters::Plane::stress;
   for (const char* name : {"xmin", "ymin", "zmin"})
     if (p.boundaries.contains(name)) p.boundaries[name] = boundary(Type::symmetry);
@@ -60,14 +60,13 @@ TEST_P(Patch, uniaxial_tension_on_symmetry_planes_is_exact) {
   LinearField field{Tensor3::Zero()};
   const double strain = 1e8 / p.material.youngs_modulus;
   field.slope.diagonal() = Vec3(strain, -0.3 * strain, dim == 3 ? -0.3 * strain : 0);
-  const auto solid = make_solid(distorted_box(GetParam()), p);
+  const auto solid = make_solid(distorted_box(cells), p);
   step(*solid, 1);
   expect_exact(*solid, field);
 }
 
 TEST_P(Patch, small_rigid_rotation_and_translation_give_no_stress) {
-  const int dim = dimension_of(GetParam());
-  SolidParameters p = box_parameters(dim);
+  SolidParameters p = parameters();
   LinearField field{Tensor3::Zero()};
   field.slope(0, 1) = 1e-3;
   field.slope(1, 0) = -1e-3;
@@ -75,7 +74,7 @@ TEST_P(Patch, small_rigid_rotation_and_translation_give_no_stress) {
   std::vector<std::string> value = field.text(dim);
   for (std::string& text : value) text += " + 0.25";
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, value);
-  const auto solid = make_solid(distorted_box(GetParam()), p);
+  const auto solid = make_solid(distorted_box(cells), p);
   step(*solid, 1);
   double largest = 0;
   for (const Tensor3& s : solid->cell_stress(solid->point_displacement()))
@@ -87,8 +86,7 @@ TEST_P(Patch, small_rigid_rotation_and_translation_give_no_stress) {
 }
 
 TEST_P(Patch, reactions_balance_tractions_pressure_and_body_forces) {
-  const int dim = dimension_of(GetParam());
-  SolidParameters p = box_parameters(dim);
+  SolidParameters p = parameters();
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
   p.boundaries["ymin"] = boundary(Type::symmetry);
   p.boundaries["xmax"] = boundary(Type::traction, {"1e6*y", "-3e5", "2e5*z"});
@@ -98,7 +96,7 @@ TEST_P(Patch, reactions_balance_tractions_pressure_and_body_forces) {
   p.body_force = {{"1e5*sin(x)"}, {"-2e5*y"}, {"3e4"}};
   p.body_force.resize(dim);
   p.gravity = std::vector<double>(dim, -9.81);
-  const auto solid = make_solid(distorted_box(GetParam()), p);
+  const auto solid = make_solid(distorted_box(cells), p);
   step(*solid, 1);
   Vec3 total = solid->total_load();
   const double size = total.norm();

@@ -15,6 +15,7 @@
 namespace couplet::testing {
 
 using Type = SolidBoundary::Type;
+using FaceGradient = MethodParameters::FaceGradient;
 
 inline SolidBoundary boundary(Type type, const std::vector<std::string>& value = {}) {
   SolidBoundary b;
