@@ -139,7 +139,8 @@ class Solid final : public Participant {
   void judge_step();
   std::vector<double> known_acceleration() const;
   void visit_gradients(std::span<const double> cells, std::span<const double> faces,
-                       std::span<const double> points, const ElasticKernel::TakeGradient& take) const;
+                       std::span<const double> points, const ElasticKernel::TakeGradient& take,
+                       Index first = 0) const;
   std::vector<Tensor3> face_gradients(Index first, Index count, std::span<const double> cells,
                                       std::span<const double> faces, std::span<const double> points) const;
   double stress_work(const Placed& stressed, std::span<const double> cell_change,
