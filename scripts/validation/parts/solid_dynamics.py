@@ -17,7 +17,7 @@ CONVERGED = 20.03  # s, three-dimensional continuum
 def beam(job, scheme, dt, *more, gradient="thesis"):
     """Output folder of a run of case C."""
     sets = [f"simulation.time-step={dt}", "simulation.output.interval=100",
-            f"participants.solid.solution-method.face-gradient={gradient}",
+            "participants.solid.solution-method={face-gradient: %s}" % gradient,
             f"participants.solid.time-scheme.type={scheme}", *more]
     folder, _ = job.solve("solid_solver", "vibrating-cantilever", sets)
     return folder / "solid"
