@@ -391,9 +391,7 @@ template <int D>
 void CorrectedKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
                                       std::span<double> points) {
   prepare(unknowns, known);
-  const auto take = [&](Index v) { std::copy_n(vertex(v), D, points.data() + std::size_t(v) * D); };
-  for (const Index v : vertices_.free) take(v);
-  for (const Index v : vertices_.constrained) take(v);
+  vertices_.visit([&](Index v) { std::copy_n(vertex(v), D, points.data() + std::size_t(v) * D); });
 }
 
 }  // namespace

@@ -264,11 +264,9 @@ template <int D>
 void ThesisKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
                                    std::span<double> points) {
   fill(unknowns, known);
-  const auto take = [&](Index v) {
-    for (int a = 0; a < D; ++a) points[std::size_t(v) * D + a] = points_[std::size_t(v) * record<D> + a];
-  };
-  for (const Index v : vertices_.free) take(v);
-  for (const Index v : vertices_.constrained) take(v);
+  vertices_.visit([&](Index v) {
+    std::copy_n(points_.data() + std::size_t(v) * record<D>, D, points.data() + std::size_t(v) * D);
+  });
 }
 
 }  // namespace

@@ -22,6 +22,13 @@ class ElasticVertices {
     }
   }
 
+  /// take(point) for all points that have a value.
+  template <class Take>
+  void visit(const Take& take) const {
+    for (const Index v : free) take(v);
+    for (const Index v : constrained) take(v);
+  }
+
   /// Applies F_V and g_V to the values, `stride` doubles a point, whose first D are the displacement.
   template <int D>
   void constrain(std::span<double> values, int stride, std::span<const double> known) const {

@@ -26,10 +26,7 @@ def exact(r):
 
 
 def main():
-    out = HERE / "out"
-    if not (out / "solid").exists():
-        sys.exit(f"There is no result in {out}. Run the case first; the README says how.")
-    picture = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else out / "lame-cylinder.png"
+    out, picture = couplet.result_of(HERE, "solid")
     series = couplet.find_series(out / "solid")
     last = len(series.times) - 1
     centres = series.centres()

@@ -28,10 +28,7 @@ def to_camera(x):
 
 
 def main():
-    out = HERE / "out"
-    if not (out / "solid").exists():
-        sys.exit(f"There is no result in {out}. Run the case first; the README says how.")
-    picture = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else out / "porous-body.png"
+    out, picture = couplet.result_of(HERE, "solid")
     series = couplet.find_series(out / "solid")
     last = len(series.times) - 1
     tets, stress = np.array(series.cells), series.field(last, "equivalent-stress") / 1e6

@@ -32,10 +32,7 @@ def peaks(folder):
 
 
 def main():
-    out = HERE / "out"
-    if not (out / "solid").exists():
-        sys.exit(f"There is no result in {out}. Run the case first; the README says how.")
-    picture = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else out / "thick-plate.png"
+    out, picture = couplet.result_of(HERE, "solid")
     probes = couplet.read_csv(out / "solid" / "probes.csv")
     wanted = np.loadtxt(HERE / "reference/rayleigh.csv", delimiter=",").T
     figure, axes = plt.subplots(1, 2, figsize=(11, 4), dpi=130, constrained_layout=True)

@@ -3,40 +3,7 @@
 import re
 
 from validation.job import Bar
-
-
-def largest(executable, pattern, key, limit):
-    """The largest recorded value over the matching tests."""
-    def measure(job):
-        values, passed = job.recorded(executable, pattern, key)
-        return f"{max(values):.1e} at most in {len(values)} cases", passed and max(values) <= limit
-    return measure
-
-
-def smallest(executable, pattern, key, limit, also=()):
-    """All recorded slopes; `also`: further keys to be shown."""
-    def measure(job):
-        values, passed = job.recorded(executable, pattern, key)
-        text = ", ".join(f"{v:.2f}" for v in values)
-        for more in also:
-            text += f" ({more.replace('_', ' ')} {', '.join(f'{v:.2f}' for v in job.recorded(executable, pattern, more)[0])})"
-        return text, passed and min(values) >= limit
-    return measure
-
-
-def all_pass(executable, pattern, at_least):
-    def measure(job):
-        tests, _ = job.gtest(executable)
-        chosen = [v["passed"] for k, v in tests.items() if re.search(pattern, k)]
-        return f"{sum(chosen)} of {len(chosen)} tests passed", len(chosen) >= at_least and all(chosen)
-    return measure
-
-
-def on_ranks(pattern, at_least):
-    def measure(job):
-        passed, total, skipped, _ = job.ctest(pattern)
-        return f"{passed} of {total} test programs passed", total >= at_least and passed == total and not skipped
-    return measure
+from validation.parts.measures import all_pass, at_least, at_most, programs_pass
 
 
 def wrong_input(job):
@@ -55,34 +22,34 @@ CONDITIONS_EXACT = ("by_component|springs_with_displaced|zero_normal_gradient|so
 BARS = [
     *(bar for name in MESHES for bar in (
         Bar(f"MMS {name.replace('_', ' ')}: slope of the displacement, thesis's and corrected gradient", ">= 1.9",
-            smallest(ORDER, f"/{name}_", "displacement_slope", 1.9)),
+            at_least(ORDER, f"/{name}_", "displacement_slope", 1.9)),
         Bar(f"MMS {name.replace('_', ' ')}: slope of the stress (all cells), thesis's and corrected gradient", ">= 0.95",
-            smallest(ORDER, f"/{name}_", "stress_slope", 0.95, also=("inner_stress_slope",))))),
+            at_least(ORDER, f"/{name}_", "stress_slope", 0.95, also="inner_stress_slope")))),
     Bar("Lame cylinder, plane strain and stress, quadrilaterals and triangles: slope of the displacement", ">= 1.9",
-        smallest(CLOSED, "lame_cylinder_converges", "displacement_slope", 1.9, also=("stress_slope",))),
+        at_least(CLOSED, "lame_cylinder_converges", "displacement_slope", 1.9, also="stress_slope")),
     Bar("Lame cylinder in a frictionless rigid wall: slope of the displacement", ">= 1.9",
-        smallest(CLOSED, "rigid_wall", "displacement_slope", 1.9, also=("stress_slope",))),
-    Bar("Kirsch hole, analytic tractions: slope of the stress", ">= 0.95", smallest(CLOSED, "kirsch", "stress_slope", 0.95)),
+        at_least(CLOSED, "rigid_wall", "displacement_slope", 1.9, also="stress_slope")),
+    Bar("Kirsch hole, analytic tractions: slope of the stress", ">= 0.95", at_least(CLOSED, "kirsch", "stress_slope", 0.95)),
     Bar("Kirsch hole: hoop stress on the faces of the hole, part of 3 T", "<= 2 %",
-        largest(CLOSED, "kirsch", "hoop_stress_error_at_hole", 0.02)),
+        at_most(CLOSED, "kirsch", "hoop_stress_error_at_hole", 0.02)),
     Bar("Two materials, oblique interface, piecewise linear field: displacement", "exact to 1e-10",
-        largest(MATERIALS, "piecewise_linear", "relative_error", 1e-10)),
+        at_most(MATERIALS, "piecewise_linear", "relative_error", 1e-10)),
     Bar("Two materials: jump of the traction at the bonded faces", "<= 1e-10 of the stress",
-        largest(MATERIALS, "piecewise_linear", "relative_traction_jump", 1e-10)),
+        at_most(MATERIALS, "piecewise_linear", "relative_traction_jump", 1e-10)),
     Bar("Two materials in series: forces at both ends, thesis's gradient", "equal to 1e-9",
         all_pass(MATERIALS, "both_ends.*thesis", 6)),
     Bar("Two materials in series: forces at both ends, corrected gradient", "equal to 1e-8",
         all_pass(MATERIALS, "both_ends.*corrected", 6)),
     Bar("Layered cylinder (Lame): slope of the displacement", ">= 1.9",
-        smallest(MATERIALS, "layered_cylinder", "displacement_slope", 1.9, also=("stress_slope",))),
+        at_least(MATERIALS, "layered_cylinder", "displacement_slope", 1.9, also="stress_slope")),
     Bar("Rigid motion without stress, all cell types", "stress <= 1e-8 of that of an equal strain",
-        largest(PATCH, "small_rigid_rotation", "relative_stress", 1e-8)),
+        at_most(PATCH, "small_rigid_rotation", "relative_stress", 1e-8)),
     Bar("Linear fields under every condition, all cell types", "exact to 1e-10",
-        largest(CONDITIONS, CONDITIONS_EXACT, "relative_error", 1e-10)),
+        at_most(CONDITIONS, CONDITIONS_EXACT, "relative_error", 1e-10)),
     Bar("Symmetry planes of any orientation: turned box against straight one", "equal to 1e-10",
-        largest(CONDITIONS, "any_orientation", "symmetry", 1e-10)),
+        at_most(CONDITIONS, "any_orientation", "symmetry", 1e-10)),
     Bar("Patches, conditions and materials on 1, 2 and 3 ranks", "all pass",
-        on_ranks("^verification_solid_(patch|conditions|materials)(_[23])?$", 9)),
+        programs_pass("^verification_solid_(patch|conditions|materials)(_[23])?$", 9)),
     Bar("Floating static bodies: free rigid motions named", "all pass", all_pass(CONDITIONS, "FreeMotions", 5)),
     Bar("Wrong configurations and meshes", "clear errors, exit code 2", wrong_input),
 ]

@@ -1,23 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of heat conduction and thermal strain."""
 from validation.job import Bar
-
-
-def slopes(executable, pattern, key, least):
-    def measure(job):
-        values, passed = job.recorded(executable, pattern, key)
-        return ", ".join(f"{v:.2f}" for v in values), passed and min(values) >= least
-    return measure
-
-
-def largest(executable, pattern, keys, most):
-    def measure(job):
-        values, passed = [], True
-        for key in keys:
-            found, good = job.recorded(executable, pattern, key)
-            values, passed = values + found, passed and good
-        return f"{max(values):.2e} at most in {len(values)} cases", passed and max(values) <= most
-    return measure
+from validation.parts.measures import at_least, at_most, programs_pass
 
 
 def wedge_stress(job):
@@ -27,43 +11,36 @@ def wedge_stress(job):
             passed and max(errors) <= 0.01 and min(slope) >= 0.95)
 
 
-def shared_tests(pattern, count):
-    def measure(job):
-        passed, total, skipped, _ = job.ctest(pattern)
-        return f"{passed} of {total} tests passed", total >= count and passed == total and not skipped
-    return measure
-
-
 EXACT, ORDER, SERIES, STRAIN, STRESS = (f"verification_heat_{n}" for n in
                                         ("exactness", "order", "series", "strain", "stress"))
 BARS = [
     Bar("heat: linear temperature under temperature, flux, convection, 6 cell types", "exact to 1e-10",
-        largest(EXACT, "linear_temperature_is_exact", ["relative_error"], 1e-10)),
-    Bar("heat: order in space, hex, tet, prism, mixed, perturbed, 2-D", ">= 1.9", slopes(ORDER, "OrderInSpace", "slope", 1.9)),
-    Bar("heat: order in time, Euler", ">= 0.95", slopes(ORDER, r"OrderInTime.*/euler", "slope", 0.95)),
+        at_most(EXACT, "linear_temperature_is_exact", "relative_error", 1e-10)),
+    Bar("heat: order in space, hex, tet, prism, mixed, perturbed, 2-D", ">= 1.9", at_least(ORDER, "OrderInSpace", "slope", 1.9)),
+    Bar("heat: order in time, Euler", ">= 0.95", at_least(ORDER, r"OrderInTime.*/euler", "slope", 0.95)),
     Bar("heat: order in time, three-point and trapezoidal, constant and varying steps", ">= 1.9",
-        slopes(ORDER, r"OrderInTime.*/(three|trap)", "slope", 1.9)),
-    Bar("heat: slab heated suddenly against erfc", "<= 1e-3 of the jump", largest(SERIES, "error_function", ["error"], 1e-3)),
+        at_least(ORDER, r"OrderInTime.*/(three|trap)", "slope", 1.9)),
+    Bar("heat: slab heated suddenly against erfc", "<= 1e-3 of the jump", at_most(SERIES, "error_function", "error", 1e-3)),
     Bar("heat: slab cooled by convection against its series", "<= 1e-3, second order",
-        largest(SERIES, "Slab.cooled", ["error_1", "error_2"], 1e-3)),
+        at_most(SERIES, "Slab.cooled", "error_1 error_2", 1e-3)),
     Bar("heat: sphere cooled by convection (Bi = 1) against its series", "<= 2e-3, second order",
-        largest(SERIES, "Sphere", ["error"], 2e-3)),
+        at_most(SERIES, "Sphere", "error", 2e-3)),
     Bar("heat: flux through layers of three materials", "exact to 1e-10",
-        largest(EXACT, "flux_through_layers", ["relative_error_0", "relative_error_2"], 1e-10)),
-    Bar("heat: 1, 2, 3 ranks", "agree to 1e-8", shared_tests("^verification_heat_(exactness|strain)", 6)),
+        at_most(EXACT, "flux_through_layers", "relative_error_0 relative_error_2", 1e-10)),
+    Bar("heat: 1, 2, 3 ranks", "agree to 1e-8", programs_pass("^verification_heat_(exactness|strain)", 6)),
     Bar("thermal strain: free body at uniform temperature, 6 cell types", "no stress to 1e-10",
-        largest(STRAIN, "grows_without_stress", ["relative_error"], 1e-10)),
+        at_most(STRAIN, "grows_without_stress", "relative_error", 1e-10)),
     Bar("thermal strain: bar held at both ends", "- E alpha dT to 1e-10",
-        largest(STRAIN, "held_at_both_ends", ["relative_error"], 1e-10)),
+        at_most(STRAIN, "held_at_both_ends", "relative_error", 1e-10)),
     Bar("thermal strain: two materials held all around, 6 cell types", "one traction to 1e-10",
-        largest(STRAIN, "two_materials", ["relative_error"], 1e-10)),
+        at_most(STRAIN, "two_materials", "relative_error", 1e-10)),
     Bar("thermal strain: alpha(T) integrated", "exact to 1e-10",
-        largest(STRAIN, "coefficient_is_integrated", ["relative_error"], 1e-10)),
+        at_most(STRAIN, "coefficient_is_integrated", "relative_error", 1e-10)),
     Bar("temperature-dependent E and nu: pulled bar that gets warmer, 6 cell types", "exact to 1e-9",
-        largest(STRAIN, "constants_follow", ["relative_error"], 1e-9)),
+        at_most(STRAIN, "constants_follow", "relative_error", 1e-9)),
     Bar("thermoelastic coupling: temperature of an isolated stretched or compressed bar", "closed form to 1e-3",
-        largest(STRAIN, "ThermoelasticCoupling", ["relative_error"], 1e-3)),
+        at_most(STRAIN, "ThermoelasticCoupling", "relative_error", 1e-3)),
     Bar("thermal stress: hollow cylinder as a wedge, temperature prescribed and solved", "<= 1 %, slope >= 0.95",
         wedge_stress),
-    Bar("thermal stress: its displacement", "slope >= 1.9", slopes(STRESS, "Wedge", "displacement_slope", 1.9)),
+    Bar("thermal stress: its displacement", "slope >= 1.9", at_least(STRESS, "Wedge", "displacement_slope", 1.9)),
 ]

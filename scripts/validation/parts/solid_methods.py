@@ -1,29 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the solution methods: they agree, whatever the number of ranks; the matrix-free rows are the assembled ones;
 the slender beam."""
-import re
-
 from validation.job import Bar
+from validation.parts.measures import all_pass, at_most, programs_pass
 
 METHODS, KERNEL = "verification_solid_methods", "unit_fv_elastic_kernel"
-
-
-def worst(pattern, limit):
-    def measure(job):
-        values, passed = job.recorded(METHODS, pattern, "worst")
-        return f"{max(values):.1e}", passed and max(values) <= limit
-    return measure
-
-
-def on_ranks(job):
-    passed, total, _, output = job.ctest("^verification_solid_methods(_2|_3)?$")
-    return f"{passed} of {total} runs (1, 2, 3 ranks) passed", total == 3 and passed == 3
-
-
-def rows(job):
-    tests, _ = job.gtest(KERNEL)
-    chosen = {t: v["passed"] for t, v in tests.items() if re.search("rows", t)}
-    return f"{sum(chosen.values())} of {len(chosen)} tests passed", bool(chosen) and all(chosen.values())
 
 
 def slender(gradient):
@@ -40,9 +21,9 @@ def slender(gradient):
 
 
 BARS = [
-    Bar("all solution methods, both gradients, at 1e-10: largest difference of u", "<= 1e-6", worst("same_answer", 1e-6)),
-    Bar("1, 2, 3 ranks at 1e-12: difference of u from one rank", "<= 1e-8", on_ranks),
-    Bar("matrix-free rows of the thesis's operator beside the assembled ones, all conditions, materials", "round-off", rows),
+    Bar("all solution methods, both gradients, at 1e-10: largest difference of u", "<= 1e-6", at_most(METHODS, "same_answer", "worst", 1e-6)),
+    Bar("1, 2, 3 ranks at 1e-12: difference of u from one rank", "<= 1e-8", programs_pass("^verification_solid_methods(_2|_3)?$", 3)),
+    Bar("matrix-free rows of the thesis's operator beside the assembled ones, all conditions, materials", "round-off", all_pass(KERNEL, "rows")),
     Bar("slender beam 10:1, 40 960 cells, nu 0.3: iterations of newton-krylov, thesis's gradient", "<= 40", slender("thesis")),
     Bar("slender beam: iterations, corrected gradient", "<= 40", slender("corrected")),
 ]

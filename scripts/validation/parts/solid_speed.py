@@ -13,7 +13,7 @@ def race(job):
 
 def cells_per_second(method, wanted):
     def measure(job):
-        foam = race(job).foam_plate(job, FINE)
+        foam = race(job).foam_plate(job, FINE, times=3)
         mine = race(job).our_plate(job, FINE, method, times=3)
         rate = mine["cells"] / mine["seconds"]
         if foam is None:
@@ -69,7 +69,7 @@ def beside(error, mesh, rivals):
 def beam(job):
     """10^4 steps of 0.01 s, shortened to a sample; three-point backward as the thesis's table 3.4."""
     mine, iterations = race(job).beam(job, "type: auto", steps=300)
-    other, others = race(job).beam(job, race(job).METHODS["C"])
+    other, others = race(job).beam(job, race(job).METHODS["C"], steps=300)
     ratio = other / mine
     return f"{ratio:.1f} times: {1e3 * mine:.1f} ms a step ({iterations:.1f} iterations) beside {1e3 * other:.1f} ms ({others:.1f})", ratio >= 8
 

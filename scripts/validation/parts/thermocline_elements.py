@@ -3,34 +3,17 @@
 import re
 
 from validation.job import Bar
+from validation.parts.measures import all_pass, at_most
 
 BED, GRAINS, CONDUCTION, HARD, MECHANICS, TANK, EXPERIMENTS, SPEED = (
     *(f"verification_thermocline_{name}" for name in
       ("bed", "grains", "conduction", "hard_cases", "mechanics", "tank", "solar_one")), "thermocline_speed")
 
 
-def at_most(executable, pattern, keys, limit, text="{:.4f}"):
-    def measure(job):
-        found = [job.recorded(executable, pattern, key) for key in keys.split()]
-        values = [v for values, _ in found for v in values]
-        shown = ", ".join(text.format(v) for v in values) if len(values) < 8 else f"{text.format(max(values))} at most of {len(values)}"
-        return shown, all(passed for _, passed in found) and max(values) <= limit
-    return measure
-
-
 def between(executable, pattern, key, low, high, text="{:.3f}"):
     def measure(job):
         values, passed = job.recorded(executable, pattern, key)
         return ", ".join(text.format(v) for v in values), passed and all(low <= v <= high for v in values)
-    return measure
-
-
-def all_of(executable, pattern):
-    """Every test whose name matches has passed."""
-    def measure(job):
-        tests, _ = job.gtest(executable)
-        chosen = {t: v["passed"] for t, v in tests.items() if re.search(pattern, t)}
-        return f"{sum(chosen.values())} of {len(chosen)} cases passed", bool(chosen) and all(chosen.values())
     return measure
 
 
@@ -105,9 +88,9 @@ BARS = [
     Bar("Pacheco: front speed over theory (upwind, tvd, implicit)", "1 +- 0.02", between(EXPERIMENTS, "front_travels", "ratio", 0.98, 1.02, "{:.4f}")),
     Bar("Pacheco: energy closure", "<= 1e-10", at_most(EXPERIMENTS, "front_travels", "closure", 1e-10, "{:.1e}")),
     Bar("hard cases, three schemes: sharp front, reversal every step, rest, 1e-6 m grains, Biot 1e3", "bounded, conservative",
-        all_of(HARD, "HardCase")),
-    Bar("hard cases: steps 10x the advective limit, implicit", "bounded, conservative", all_of(HARD, "ten_times")),
-    Bar("thermocline: elements of any subset, books closed", "32 subsets", all_of(TANK, "any_subset")),
+        all_pass(HARD, "HardCase")),
+    Bar("hard cases: steps 10x the advective limit, implicit", "bounded, conservative", all_pass(HARD, "ten_times")),
+    Bar("thermocline: elements of any subset, books closed", "32 subsets", all_pass(TANK, "any_subset")),
     Bar("thermocline: ground and insulation as programs of their own, against the tank that has them", "0.2 K, 1 MPa, 1 %, amounts kept",
         in_parts),
     Bar("thermocline: exponent of the cost in cells, 500 to 8000 (upwind, tvd, implicit)", "<= 1.05",

@@ -5,6 +5,7 @@ import csv
 import re
 
 from validation.job import Bar
+from validation.parts.measures import all_pass
 
 TESTS = "unit_thermocline_plant"
 CASES = {"A": ("thermocline-andasol", "table5_5.csv"), "G": ("thermocline-gemasolar", "table5_6.csv")}
@@ -104,14 +105,6 @@ def solar_field(job):
     return got, len(chosen) == 8 and all(v["passed"] for v in chosen.values())
 
 
-def passed(pattern, at_least=1):
-    def measure(job):
-        tests, _ = job.gtest(TESTS)
-        chosen = {k: v["passed"] for k, v in tests.items() if re.search(pattern, k)}
-        return f"{sum(chosen.values())} of {len(chosen)} tests passed", len(chosen) >= at_least and all(chosen.values())
-    return measure
-
-
 def table_5_3(job):
     tests, _ = job.gtest(TESTS)
     chosen = [v for k, v in tests.items() if "Table53" in k]
@@ -145,12 +138,12 @@ def base_speed(job):
 BARS = [
     Bar("solar field, 8 entries of Q_SF (tables 5.5, 5.6)", "published [MWh/day] to rounding", solar_field),
     Bar("plant: power block heat 3158 and 1194 MWh/day; balances 5.3 to 5.6; mixing; cut-off; restart", "to rounding",
-        passed(r"Plant", 12)),
-    Bar("exergy factors 0.480 and 0.540, kelvin in the logarithm", "to rounding", passed("exergy")),
-    Bar("day report: every row by hand, factors of safety with place and time, checkpoint bit for bit", "exact", passed("DayReport", 5)),
+        all_pass(TESTS, r"Plant", 12)),
+    Bar("exergy factors 0.480 and 0.540, kelvin in the logarithm", "to rounding", all_pass(TESTS, "exergy")),
+    Bar("day report: every row by hand, factors of safety with place and time, checkpoint bit for bit", "exact", all_pass(TESTS, "DayReport", 5)),
     Bar("table 5.3: masses and capacities", "0.5 %", table_5_3),
-    Bar("weather files: gaps, columns, hours, ranges, damage, EPW codes", "each said with file and line", passed("WeatherFile", 8)),
-    Bar("clear sky: worked example of Duffie and Beckman, day length, seasons", "830 W/m^2 within 5", passed("ClearSky", 5)),
+    Bar("weather files: gaps, columns, hours, ranges, damage, EPW codes", "each said with file and line", all_pass(TESTS, "WeatherFile", 8)),
+    Bar("clear sky: worked example of Duffie and Beckman, day length, seasons", "830 W/m^2 within 5", all_pass(TESTS, "ClearSky", 5)),
     *(bar for case in CASES for bar in (
         row(case, "Q_SF", points=0.5),
         row(case, "Q_C/Q_excess", points=6, percent=10),

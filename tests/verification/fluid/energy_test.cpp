@@ -2,6 +2,7 @@
 // What the discrete operators do to the kinetic energy, and the orders of the vortex array in a moving frame.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numbers>
 #include <random>
 
@@ -236,23 +237,27 @@ TEST(TravellingVortices, are_second_order_in_space_on_perturbed_prisms) {
   EXPECT_GE(u, 1.8);
 }
 
+/// Differences between runs to t = 0.5 s with steps halved three times, the first run taking `steps`.
+std::array<double, 3> differences_of_halved_steps(Projection projection, ExplicitScheme scheme, int steps) {
+  std::vector<std::unique_ptr<FluidCase<2>>> runs;
+  for (int i = 0; i < 4; ++i) {
+    RawMesh raw = box<2>(BoxCells::quadrilaterals, 48);
+    FluidParameters p = periodic_box<2>(raw, 0.05);
+    p.pressure_tolerance = 1e-11;
+    p.scheme = scheme;
+    p.projection = projection;
+    p.initial_velocity = {{"0.6+sin(x)*cos(y)"}, {"0.3-cos(x)*sin(y)"}};
+    runs.push_back(std::make_unique<FluidCase<2>>(MPI_COMM_WORLD, raw, p));
+    runs.back()->run(0.5, steps << i);
+  }
+  return {difference(*runs[0], *runs[1]), difference(*runs[1], *runs[2]), difference(*runs[2], *runs[3])};
+}
+
 /// Runge-Kutta: of a higher order in convection and diffusion, so that the incremental pressure's second
 /// order is what is left.
 TEST(TravellingVortices, are_second_order_in_time_with_runge_kutta) {
   for (const auto& [projection, name] : projections) {
-    std::vector<std::unique_ptr<FluidCase<2>>> runs;
-    for (int i = 0; i < 4; ++i) {
-      RawMesh raw = box<2>(BoxCells::quadrilaterals, 48);
-      FluidParameters p = periodic_box<2>(raw, 0.05);
-      p.pressure_tolerance = 1e-11;
-      p.scheme = ExplicitScheme::runge_kutta;
-      p.projection = projection;
-      p.initial_velocity = {{"0.6+sin(x)*cos(y)"}, {"0.3-cos(x)*sin(y)"}};
-      runs.push_back(std::make_unique<FluidCase<2>>(MPI_COMM_WORLD, raw, p));
-      runs.back()->run(0.5, 10 << i);
-    }
-    const double d0 = difference(*runs[0], *runs[1]), d1 = difference(*runs[1], *runs[2]),
-                 d2 = difference(*runs[2], *runs[3]);
+    const auto [d0, d1, d2] = differences_of_halved_steps(projection, ExplicitScheme::runge_kutta, 10);
     printf("time, runge-kutta, %s: %.2e %.2e %.2e slopes %.2f %.2f\n", name, d0, d1, d2, slope(d0, d1),
            slope(d1, d2));
     RecordProperty(std::string("time_slope_") + name, std::to_string(slope(d1, d2)));
@@ -267,18 +272,7 @@ TEST(TravellingVortices, are_second_order_in_time_with_runge_kutta) {
 /// Differences between runs with halved steps.
 TEST(TravellingVortices, are_second_order_in_time) {
   for (const auto& [projection, name] : projections) {
-    std::vector<std::unique_ptr<FluidCase<2>>> runs;
-    for (int i = 0; i < 4; ++i) {
-      RawMesh raw = box<2>(BoxCells::quadrilaterals, 48);
-      FluidParameters p = periodic_box<2>(raw, 0.05);
-      p.pressure_tolerance = 1e-11;
-      p.projection = projection;
-      p.initial_velocity = {{"0.6+sin(x)*cos(y)"}, {"0.3-cos(x)*sin(y)"}};
-      runs.push_back(std::make_unique<FluidCase<2>>(MPI_COMM_WORLD, raw, p));
-      runs.back()->run(0.5, 20 << i);
-    }
-    const double d0 = difference(*runs[0], *runs[1]), d1 = difference(*runs[1], *runs[2]),
-                 d2 = difference(*runs[2], *runs[3]);
+    const auto [d0, d1, d2] = differences_of_halved_steps(projection, ExplicitScheme::adams_bashforth, 20);
     printf("time, %s: %.2e %.2e %.2e slopes %.2f %.2f\n", name, d0, d1, d2, slope(d0, d1), slope(d1, d2));
     RecordProperty(std::string("time_slope_") + name, std::to_string(slope(d1, d2)));
     EXPECT_GE(slope(d1, d2), projection == Projection::non_incremental ? 0.9 : 1.9) << name;
