@@ -94,7 +94,7 @@ class FractionalStep {
 
   void extrapolate_pressure(const State<D>& from);
   void add_oblique_pressure();
-  void solve_pressure(const State<D>& from, const Vectors<D>& w);
+  void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance);
   void set_boundary_flux(const Vectors<D>& w);
   void balance_closed_domain();
   void set_boundary_pressure(const State<D>& from, const Vectors<D>& w);

@@ -20,11 +20,14 @@ constexpr double least_determinant = 0.1;
 template <int D>
 void set_face(Placement<D>& p, Index f, const Vec<D>& d) {
   const Vec<D>& s = p.area[f];
-  const double size = s.norm();
-  const double projected = std::max(s.dot(d), least_cosine * size * d.norm());
-  p.conductance[f] = size * size / projected;
+  const double square = s.squaredNorm(), lengths = square * d.squaredNorm();
+  double projected = s.dot(d);
+  if (projected <= 0 || projected * projected < least_cosine * least_cosine * lengths)
+    projected = least_cosine * std::sqrt(lengths);
+  p.conductance[f] = square / projected;
   p.oblique[f] = s - p.conductance[f] * d;
-  p.obliqueness = std::max(p.obliqueness, p.oblique[f].norm() / size);
+  const double oblique = p.oblique[f].squaredNorm();
+  if (oblique > p.obliqueness * p.obliqueness * square) p.obliqueness = std::sqrt(oblique / square);
 }
 
 template <int D>
@@ -76,7 +79,8 @@ std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geome
                  after = std::abs(p.area[f].dot(to - centre));
     p.weight[f] = after / (before + after);
     p.skew[f] = centre - p.weight[f] * from - (1 - p.weight[f]) * to;
-    skewness = std::max(skewness, p.skew[f].squaredNorm() / (to - from).squaredNorm());
+    const double off = p.skew[f].squaredNorm(), apart = (to - from).squaredNorm();
+    if (off > skewness * apart) skewness = off / apart;
   }
   for (Index f = mesh.n_interior; f < n_faces; ++f)
     set_face<D>(p, f, geometry.face_centre[f].template head<D>() - p.centre[mesh.owner[f]]);

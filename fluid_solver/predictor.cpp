@@ -166,7 +166,7 @@ void FractionalStep<D>::solve_viscous(const State<D>& from, const Vectors<D>& w,
 /// 1/16), which a mesh sheared by 14 degrees reaches. The passes contract by that share.
 template <int D>
 void FractionalStep<D>::solve_oblique_viscous(const Vectors<D>& w, double a) {
-  const double enough = std::clamp(10 * parameters_.pressure_tolerance, 1e-11, 1e-5),
+  const double enough = std::clamp(10 * parameters_.pressure_tolerance, 1e-11, 1e-4),
                tolerance = 0.1 * enough;
   for (int pass = 1;; ++pass) {
     boundary_.close(mesh_, *step_.to, u_p_, w, u_boundary_);

@@ -17,6 +17,9 @@ namespace {
 constexpr double flux_floor = 3e-15;
 constexpr double least_span = 1e-3;
 constexpr int oblique_passes = 2;
+// The first pass only gives the second one the gradient of its non-orthogonal part: what that share of the
+// operator leaves of a looser tolerance.
+constexpr double first_pass_tolerance = 10;
 constexpr double explosion = 1e3;  // growth of the largest speed in one step that is called divergence
 
 }  // namespace
@@ -118,7 +121,7 @@ void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w) {
       phi_p_ = phi_orthogonal_;
     else
       add_oblique_pressure();
-    solve_pressure(from, w);
+    solve_pressure(from, w, (pass < passes ? first_pass_tolerance : 1) * parameters_.pressure_tolerance);
     if (pass == passes) break;
     pressure_gradient(*step_.to, p_, p_boundary_, gradient_guess_);
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c) gradient_guess_[c] /= step_.to->volume[c];
@@ -128,7 +131,7 @@ void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w) {
 }
 
 template <int D>
-void FractionalStep<D>::solve_pressure(const State<D>& from, const Vectors<D>& w) {
+void FractionalStep<D>::solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance) {
   const Placement<D>& now = *step_.to;
   const double factor = rho_ / step_.dt;
   set_boundary_flux(w);
@@ -151,8 +154,8 @@ void FractionalStep<D>::solve_pressure(const State<D>& from, const Vectors<D>& w
   clear_bodies(p_);
   b_.resize(mesh_.cells.n_owned());
   const double floor = flux_floor * factor * std::sqrt(sum(mesh_.comm, size));
-  const SolveStatistics solved = pressure_.solve(now, b_, p_, parameters_.pressure_tolerance,
-                                                 std::max(floor, std::numeric_limits<double>::min()));
+  const SolveStatistics solved =
+      pressure_.solve(now, b_, p_, tolerance, std::max(floor, std::numeric_limits<double>::min()));
   statistics_.pressure_iterations += solved.iterations;
   if (bodies_) fill_pressure_in_bodies();
   set_boundary_pressure(from, w);

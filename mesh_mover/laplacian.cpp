@@ -74,8 +74,10 @@ Laplacian::Laplacian(const Mesh& mesh, const Parameters& parameters)
       if (held_[patch_of_[f - mesh_.n_interior]][c]) add(mesh_.owner[f], mesh_.owner[f], coefficient_[f]);
     equation->matrix = std::make_unique<SparseMatrix>(mesh_.comm, mesh_.cells.n_owned(), row, column);
     equation->matrix->fill(value);
-    equation->solver =
-        std::make_unique<LinearSolver>("the mesh displacement", *equation->matrix, parameters.linear);
+    LinearOptions options = parameters.linear;
+    if (dim_ == 2 && options.method == LinearMethod::direct_symmetric)
+      options.method = LinearMethod::direct_planar;
+    equation->solver = std::make_unique<LinearSolver>("the mesh displacement", *equation->matrix, options);
     equation_[c] = equation;
   }
 }
@@ -170,12 +172,20 @@ std::vector<double> Laplacian::solve(std::span<const double> prescribed) {
         b[mesh_.owner[f]] += coefficient_[f] * boundary_value(f, c, prescribed);
     for (Index i = 0; i < n; ++i) x[i] = cell_displacement_[std::size_t(i) * dim_ + c];
     // A wall that passes through rest leaves b at round-off: the residual cannot fall below that of A x0.
-    double scale = 0;
-    for (Index i = 0; i < n; ++i) scale += std::pow(equation_[c]->diagonal[i] * x[i], 2);
-    const double floor = 1e-15 * std::sqrt(sum(mesh_.comm, scale)) + 1e-300;
-    const SolveStatistics s = equation_[c]->solver->solve(b, x, relative_tolerance_, floor);
-    last_.iterations += s.iterations;
-    last_.seconds += s.seconds;
+    double scale[2] = {0, 0};
+    for (Index i = 0; i < n; ++i) {
+      scale[0] += std::pow(equation_[c]->diagonal[i] * x[i], 2);
+      scale[1] += std::abs(b[i]);
+    }
+    MPI_Allreduce(MPI_IN_PLACE, scale, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+    if (scale[1] == 0) {  // nothing moves this way
+      std::fill(x.begin(), x.end(), 0.0);
+    } else {
+      const double floor = 1e-15 * std::sqrt(scale[0]) + 1e-300;
+      const SolveStatistics s = equation_[c]->solver->solve(b, x, relative_tolerance_, floor);
+      last_.iterations += s.iterations;
+      last_.seconds += s.seconds;
+    }
     for (Index i = 0; i < n; ++i) cell_displacement_[std::size_t(i) * dim_ + c] = x[i];
   }
   mesh_.cells.update_ghosts(cell_displacement_, dim_);

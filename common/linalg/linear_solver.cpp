@@ -14,7 +14,8 @@ namespace couplet {
 namespace {
 
 bool is_direct(LinearMethod method) {
-  return method == LinearMethod::direct || method == LinearMethod::direct_symmetric;
+  return method == LinearMethod::direct || method == LinearMethod::direct_symmetric ||
+         method == LinearMethod::direct_planar;
 }
 
 // PETSc's own factorisation has no dense kernels: it wins on small matrices (low overhead), MUMPS on large
@@ -77,6 +78,9 @@ void choose_method(KSP ksp, PC pc, const SparseMatrix& matrix, LinearMethod meth
     case LinearMethod::direct_symmetric:
       petsc_check(KSPSetType(ksp, KSPPREONLY));
       return choose_factors(pc, matrix, method == LinearMethod::direct_symmetric);
+    case LinearMethod::direct_planar:
+      petsc_check(KSPSetType(ksp, KSPPREONLY));
+      return comm_size(matrix.comm()) == 1 ? choose_cholmod(pc) : choose_factors(pc, matrix, true);
     case LinearMethod::cg_direct:
       petsc_check(KSPSetType(ksp, KSPCG));
       petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));

@@ -13,6 +13,7 @@ namespace couplet {
 enum class LinearMethod {
   direct,            ///< LU: PETSc's own for small matrices (whole on every rank), else MUMPS
   direct_symmetric,  ///< Cholesky: the same
+  direct_planar,     ///< Cholesky of a 2-D mesh's matrix, positive definite: on one rank by CHOLMOD
   cg_direct,         ///< CG with kept Cholesky factors: moving 2-D meshes, symmetric positive definite
   cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
   gmres_multigrid,   ///< GMRES with BoomerAMG

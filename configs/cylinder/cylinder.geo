@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channel 2.2 x 0.41 m with a cylinder of diameter 0.1 m at (0.2, 0.2): rings of quadrilaterals around the cylinder
-// inside a square, rows and columns elsewhere.
-DefineConstant[ n = 52 ];            // cells on a quarter of the cylinder
-n_ring = Round(0.8 * n);             // from the cylinder to the square
-n_left = Round(0.6 * n);
-n_wake = Round(3.4 * n);
-n_side = Round(0.7 * n);             // between the square and the walls of the channel
+// inside a square, rows and columns elsewhere. What counts are the cells around the cylinder, where the layers leave it.
+DefineConstant[ n = 68 ];            // cells on a quarter of the cylinder
+n_ring = Round(0.6 * n);             // from the cylinder to the square
+n_left = Round(0.45 * n);
+n_wake = Round(2.6 * n);
+n_side = Round(0.5 * n);             // between the square and the walls of the channel
 growth_ring = 5 ^ (1 / n_ring);      // the last cell of a ring is about 5 times the first
 
 r = 0.05; c = 0.2; s = 0.085; q = r / Sqrt(2);

@@ -41,8 +41,6 @@ mesh_mover::Parameters motion() {
   for (const char* patch : {"inlet", "outlet", "walls"})
     p.boundaries[patch].motion = mesh_mover::BoundaryMotion::fixed;
   p.boundaries["cylinder"].motion = mesh_mover::BoundaryMotion::interface;
-  p.linear.method = LinearMethod::cg_multigrid;
-  p.linear.relative_tolerance = 1e-6;
   return p;
 }
 
@@ -83,7 +81,7 @@ double mean_divergence(const Fluid<2>& fluid) {
 class MovingCylinder : public testing::TestWithParam<double> {};
 
 TEST_P(MovingCylinder, keeps_its_mass_while_it_is_timed) {
-  Mesh mesh = load_mesh(MPI_COMM_SELF, COUPLET_CYLINDER, 2, {{"n", 41}});
+  Mesh mesh = load_mesh(MPI_COMM_SELF, COUPLET_CYLINDER, 2, {{"n", 50}});
   FluidParameters parameters = channel();
   parameters.pressure_tolerance = GetParam();
   Fluid<2> fluid(mesh, parameters, true);
@@ -106,7 +104,7 @@ TEST_P(MovingCylinder, keeps_its_mass_while_it_is_timed) {
   EXPECT_LT(largest, 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Tolerances, MovingCylinder, testing::Values(1e-6, 1e-4));
+INSTANTIATE_TEST_SUITE_P(Tolerances, MovingCylinder, testing::Values(1e-6, 1e-5, 1e-4));
 
 }  // namespace
 }  // namespace couplet::fluid
