@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Channel flow past a cylinder that swings across the stream for OpenFOAM's pimpleFoam (version 1912): blocks of
-hexahedra around the cylinder, mesh motion by displacementLaplacian. 24 330 cells, Re = 100."""
+"""Channel flow past a cylinder for OpenFOAM (version 1912), Re = 100: blocks of hexahedra around the cylinder, 24 330
+cells. At rest for icoFoam; swinging across the stream, with mesh motion by displacementLaplacian, for pimpleFoam."""
 from math import pi, sqrt
 
 RADIAL, QUARTER = 48, 40  # cells from the cylinder to the square around it, on a quarter of the cylinder
@@ -52,17 +52,42 @@ def block_mesh():
             "defaultPatch{name frontAndBack;type empty;}\nmergePatchPairs ();"), cells, speeds
 
 
-def write(case, foam_file, dt, steps, tolerance):
-    """All files of the case; gives the number of cells."""
+def flow(case, foam_file, start, cylinder):
+    """Mesh, velocity and pressure at t = 0; gives the number of cells."""
     mesh, cells, speeds = block_mesh()
     foam_file(case, "system/blockMeshDict", "dictionary", mesh)
     inlet = f"nonuniform List<vector> {len(speeds)}({' '.join(f'({s:.9g} 0 0)' for s in speeds)})"
-    foam_file(case, "0/U", "volVectorField", f"""dimensions [0 1 -1 0 0 0 0]; internalField uniform (1 0 0);
+    foam_file(case, "0/U", "volVectorField", f"""dimensions [0 1 -1 0 0 0 0]; internalField uniform ({start} 0);
 boundaryField{{inlet{{type fixedValue;value {inlet};}} outlet{{type zeroGradient;}} walls{{type noSlip;}}
-cylinder{{type movingWallVelocity;value uniform (0 0 0);}} frontAndBack{{type empty;}}}}""")
+cylinder{{{cylinder}}} frontAndBack{{type empty;}}}}""")
     foam_file(case, "0/p", "volScalarField", """dimensions [0 2 -2 0 0 0 0]; internalField uniform 0;
 boundaryField{inlet{type zeroGradient;} outlet{type fixedValue;value uniform 0;} walls{type zeroGradient;}
 cylinder{type zeroGradient;} frontAndBack{type empty;}}""")
+    return cells
+
+
+def write_resting(case, foam_file, dt, end, tolerance):
+    """All files of the case at rest (2D-2 of Schaefer and Turek) for icoFoam, forces in every step; gives the number of
+    cells."""
+    cells = flow(case, foam_file, "1 0.2", "type noSlip;")
+    foam_file(case, "constant/transportProperties", "dictionary", "nu [0 2 -1 0 0 0 0] 0.001;")
+    foam_file(case, "system/fvSolution", "dictionary", f"""solvers{{p{{solver GAMG;smoother GaussSeidel;tolerance {tolerance};relTol 0.05;}}
+pFinal{{$p;relTol 0;}} U{{solver smoothSolver;smoother symGaussSeidel;tolerance 1e-6;relTol 0;}}}}
+PISO{{nCorrectors 2;nNonOrthogonalCorrectors 0;}}""")
+    foam_file(case, "system/fvSchemes", "dictionary", """ddtSchemes{default backward;} gradSchemes{default Gauss linear;}
+divSchemes{default none;div(phi,U) Gauss linear;} laplacianSchemes{default Gauss linear corrected;}
+interpolationSchemes{default linear;} snGradSchemes{default corrected;}""")
+    foam_file(case, "system/controlDict", "dictionary", f"""application icoFoam; startFrom startTime; startTime 0;
+stopAt endTime; endTime {end}; deltaT {dt}; writeControl runTime; writeInterval {end}; writeFormat binary;
+timeFormat general; timePrecision 8; runTimeModifiable false;
+functions{{forces{{type forces;libs (forces);patches (cylinder);rho rhoInf;rhoInf 1;CofR (0 0 0);log false;
+writeControl timeStep;writeInterval 1;}}}}""")
+    return cells
+
+
+def write(case, foam_file, dt, steps, tolerance):
+    """All files of the case; gives the number of cells."""
+    cells = flow(case, foam_file, "1 0", "type movingWallVelocity;value uniform (0 0 0);")
     still = "type fixedValue;value uniform (0 0 0);"
     foam_file(case, "0/pointDisplacement", "pointVectorField", f"""dimensions [0 1 0 0 0 0 0]; internalField uniform (0 0 0);
 boundaryField{{inlet{{{still}}} outlet{{{still}}} walls{{{still}}} frontAndBack{{type empty;}}
