@@ -83,6 +83,7 @@ class FractionalStep {
   void add_body_force(const State<D>& from);
   void add_swept(const State<D>& from, double e0, double e1);
   void add_old_pressure(const State<D>& from, bool implicit);
+  double viscous_tolerance() const;
   void solve_viscous(const State<D>& from, const Vectors<D>& w, double a);
   void solve_oblique_viscous(const Vectors<D>& w, double a);
   void add_back_old_pressure(const State<D>& from);
