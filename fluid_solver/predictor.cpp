@@ -144,11 +144,10 @@ void FractionalStep<D>::add_old_pressure(const State<D>& from, bool implicit) {
   }
 }
 
-/// The residual is that of whole cells, so that the thin ones at walls hardly count in it, and what is left
-/// of it adds up over the steps: much tighter than the change in a step.
+/// What is left of the residual adds up over the steps: much tighter than the change of u in one of them.
 template <int D>
 double FractionalStep<D>::viscous_tolerance() const {
-  return std::min(1e-8, 1e-2 * parameters_.pressure_tolerance);
+  return std::min(1e-7, 0.1 * parameters_.pressure_tolerance);
 }
 
 template <int D>
