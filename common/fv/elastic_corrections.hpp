@@ -32,6 +32,12 @@ enum class EdgeKind : std::uint8_t { plain, middle, mean };
 /// Of the faces that carry a force, two bits an edge; edge i joins points i and i + 1.
 std::vector<std::uint32_t> edge_kinds(const Mesh& mesh, const ElasticOperator& rows);
 
+/// Of these points those that the nodes around reach from too far for gradients to be carried over: the
+/// weights that extrapolate magnify what the gradients err by, and the operator loses its positive
+/// eigenvalues.
+std::vector<Index> plain_points(const Mesh& mesh, const ElasticOperator& rows,
+                                const std::vector<Index>& points);
+
 /// Of these points those on symmetry planes, with the normals that differ.
 struct MirrorVertex {
   Index point;

@@ -39,6 +39,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   static constexpr int record = (D + 1) * width;  // u (or q), then the rows of the gradient
 
   void prepare(std::span<const double> unknowns, std::span<const double> known);
+  void plain_vertices();
   void mirror_vertex_gradients();
   double* cell(Index node) { return records_.data() + std::size_t(node) * record; }
   double* vertex(Index point) { return points_.data() + std::size_t(point) * record; }
@@ -56,6 +57,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   ElasticVertices vertices_;
   CellGradients gradients_;
   std::vector<Index> open_points_, open_faces_;  // of traction faces; faces include the ghosts
+  std::vector<Index> plain_points_;              // whose value takes nothing from the gradients
   std::vector<MirrorVertex> mirrors_;
   FaceLames lame_;
   std::vector<CorrectedFace> faces_;
@@ -73,6 +75,7 @@ CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& row
       boundary_(mesh, rows),
       vertices_(mesh, rows),
       gradients_(mesh, rows),
+      plain_points_(plain_points(mesh, rows, vertices_.free)),
       mirrors_(mirror_vertices(mesh, rows, vertices_.free)),
       lame_(mesh, rows),
       records_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * record, 0.0),
@@ -178,6 +181,18 @@ inline void CorrectedKernel<D>::find_vertices(std::span<const Index> points) {
       store<D>(here + (a + 1) * width, g.row[a]);
     }
     store<D>(here, u);
+  }
+}
+
+// u = sum w u_i, exact for linear fields.
+template <int D>
+void CorrectedKernel<D>::plain_vertices() {
+  for (const Index v : plain_points_) {
+    const auto index = rows_.vertices().nodes(v);
+    const auto weight = rows_.vertices().weights(v);
+    Lane<D> u = {};
+    for (std::size_t i = 0; i < index.size(); ++i) u += weight[i] * load<D>(nodes_[index[i]]);
+    store<D>(vertex(v), u);
   }
 }
 
@@ -350,10 +365,12 @@ void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<con
                [&](int a) { return load<D>(owner + a * width); });
   }
   vertices_pass(*this, open_points_);
+  plain_vertices();
   vertices_.constrain<D>(points_, record, known);
   boundary_pass(*this);
   mesh_.boundary.update_ghosts(all.subspan(n_cells * record), record);
   vertices_pass(*this, vertices_.free);
+  plain_vertices();
   vertices_.constrain<D>(points_, record, known);
   mirror_vertex_gradients();
 }

@@ -19,6 +19,9 @@ constexpr double reachable = 1e-8;
 // The weighted mean of the nodes misses the point by this part of their distance: linear fields are not
 // exact.
 constexpr double exact = 1e-6;
+// n sum w^2 from which on the weights of unit vectors, which may cancel, give way to the least weights; 28 at
+// the corner of a hexahedron, where both are the same.
+constexpr double magnified = 40;
 // Ratio of the eigenvalues of the mean of n n^T over the symmetry faces of a patch around a vertex, tan^2 of
 // half the angle between two normals: below the first (1 degree) the faces are one plane, above the second
 // (40 degrees) two.
@@ -113,19 +116,45 @@ void VertexInterpolation::gather_rows(const Around& around, const ByFace& bounda
   if (!boundary.material_of_cell.empty()) ends_first_.assign(n_points, -1);
   for (Index v = 0; v < n_points; ++v) {
     if (around.complete[v]) {
+      const bool wide = std::ranges::binary_search(mesh_->wide_points, v);
       const auto faces = around.faces[v];
       fixed_[v] = std::any_of(faces.begin(), faces.end(),
                               [&](Index b) { return boundary.stencil[b] == PatchStencil::fixed; });
       const PatchStencil wanted = fixed_[v] ? PatchStencil::fixed : PatchStencil::open;
-      if (!fixed_[v]) node_.insert(node_.end(), around.cells[v].begin(), around.cells[v].end());
-      for (const Index b : faces)
-        if (boundary.stencil[b] == wanted) node_.push_back(n_cells_ + b);
+      if (wide && !fixed_[v]) {
+        gather_wide_row(v, around, boundary);
+      } else {
+        if (!fixed_[v]) node_.insert(node_.end(), around.cells[v].begin(), around.cells[v].end());
+        for (const Index b : faces)
+          if (boundary.stencil[b] == wanted) node_.push_back(n_cells_ + b);
+      }
       if (!boundary.material_of_cell.empty() && !fixed_[v]) group_by_material(v, boundary.material_of_cell);
     }
     offset_.push_back(static_cast<std::int64_t>(node_.size()));
   }
   node_.shrink_to_fit();
   weight_.assign(node_.size(), 0);
+}
+
+/// The nodes around all points of the cells at this point, of the materials that meet here.
+void VertexInterpolation::gather_wide_row(Index point, const Around& around, const ByFace& boundary) {
+  const std::span<const int> material = boundary.material_of_cell;
+  const auto cells = around.cells[point];
+  const auto take = [&](Index node, Index cell) {
+    if (material.empty() ||
+        std::ranges::any_of(cells, [&](Index c) { return material[c] == material[cell]; }))
+      node_.push_back(node);
+  };
+  for (const Index c : cells)
+    for (const Index p : mesh_->cell_points[c]) {
+      for (const Index other : around.cells[p]) take(other, other);
+      for (const Index b : around.faces[p])
+        if (boundary.stencil[b] == PatchStencil::open)
+          take(n_cells_ + b, mesh_->owner[mesh_->n_interior + b]);
+    }
+  const auto first = node_.begin() + offset_.back();
+  std::sort(first, node_.end());
+  node_.erase(std::unique(first, node_.end()), node_.end());
 }
 
 /// Sorts the nodes of the point whose row is being made, and notes where those of each material end.
@@ -190,6 +219,19 @@ void VertexInterpolation::update(const Geometry& geometry, std::span<const Vec3>
 /// Weights of the nodes [first, last) of a row, of sum 1; says whether they are exact for linear fields.
 bool VertexInterpolation::find_weights(Index point, std::int64_t first, std::int64_t last,
                                        const Geometry& geometry, const Vec3& at) {
+  if (!std::ranges::binary_search(mesh_->wide_points, point)) {
+    const bool is_exact = fill_weights(point, first, last, geometry, at, false);
+    double squares = 0;
+    for (auto i = first; i < last; ++i) squares += weight_[i] * weight_[i];
+    if (double(last - first) * squares <= magnified) return is_exact;
+  }
+  return fill_weights(point, first, last, geometry, at, true);
+}
+
+/// `least_squares`: lambda times the nodes' distances instead of their directions, the least weights there
+/// are.
+bool VertexInterpolation::fill_weights(Index point, std::int64_t first, std::int64_t last,
+                                       const Geometry& geometry, const Vec3& at, bool least_squares) {
   const bool symmetric = on_symmetry(point);
   const Tensor3& projector = projectors_[projector_of_[point]];
   const auto place = [&](std::int64_t i) -> const Vec3& {
@@ -206,7 +248,7 @@ bool VertexInterpolation::find_weights(Index point, std::int64_t first, std::int
     sum_inverse += 1 / d;
     r /= d;
     if (symmetric) r = projector * r;
-    m += r * r.transpose();
+    m += (least_squares ? d : 1) * r * r.transpose();
     s += r;
   }
   // Across symmetry planes M is filled up with a diagonal: s has no part there, so lambda gets none.
@@ -217,7 +259,8 @@ bool VertexInterpolation::find_weights(Index point, std::int64_t first, std::int
   for (auto i = first; i < last; ++i) {
     const Vec3 r = at - place(i);
     const double d = r.norm();
-    weight_[i] = (1 + lambda.dot(r) / d) / d;  // (2.50) with its erratum; lambda lies within the planes
+    // (2.50) with its erratum; lambda lies within the planes.
+    weight_[i] = (1 + lambda.dot(r) / (least_squares ? 1 : d)) / d;
     sum += weight_[i];
     miss += weight_[i] * r;
   }

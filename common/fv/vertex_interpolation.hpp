@@ -91,8 +91,11 @@ class VertexInterpolation {
  private:
   struct Around;
   void gather_rows(const Around& around, const ByFace& boundary);
+  void gather_wide_row(Index point, const Around& around, const ByFace& boundary);
   void group_by_material(Index point, std::span<const int> material_of_cell);
   void find_projectors(const Around& around, std::span<const PatchStencil> stencil);
+  bool fill_weights(Index point, std::int64_t first, std::int64_t last, const Geometry& geometry,
+                    const Vec3& at, bool least_squares);
   bool find_weights(Index point, std::int64_t first, std::int64_t last, const Geometry& geometry,
                     const Vec3& at);
 

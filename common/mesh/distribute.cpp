@@ -16,6 +16,7 @@ struct WholeMesh {
   Faces faces;
   std::vector<int> part;           // rank of each cell
   std::vector<int> cell_material;  // empty: one material
+  std::vector<Index> wide_points;
 };
 
 WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
@@ -36,6 +37,7 @@ WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
     const CellPairs pairs = connected_cells(whole.faces);
     whole.part = partition(make_graph(n, pairs.first, pairs.second), comm_size(comm));
     whole.raw.boundary_points = {};  // now in `faces`
+    whole.wide_points = wide_points(whole.raw, whole.faces, whole.cell_material);
   });
   if (comm_size(comm) == 1) return whole;
   MPI_Bcast(&whole.raw.dim, 1, MPI_INT, 0, comm);
@@ -54,6 +56,7 @@ WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
   MPI_Bcast(&whole.faces.first_bonded, 1, MPI_INT32_T, 0, comm);
   broadcast(comm, whole.cell_material);
   broadcast(comm, whole.part);
+  broadcast(comm, whole.wide_points);
   return whole;
 }
 
@@ -87,7 +90,8 @@ class LocalPart {
         raw_(whole.raw),
         faces_(whole.faces),
         part_(whole.part),
-        cell_material_(whole.cell_material) {}
+        cell_material_(whole.cell_material),
+        wide_points_(whole.wide_points) {}
 
   Mesh build() {
     mesh_.comm = comm_;
@@ -126,6 +130,7 @@ class LocalPart {
       mesh_.cell_id.push_back(mine[i]);
     const auto n_owned = static_cast<Index>(mesh_.cell_id.size());
 
+    touch_around_wide_points(touched);
     std::vector<char> across(faces_.shift.empty() ? 0 : n, 0);  // beyond a periodic face
     for (std::size_t f = 0; f < faces_.shift.size(); ++f) {
       if (faces_.shift[f].isZero()) continue;
@@ -153,6 +158,19 @@ class LocalPart {
     mesh_.cells = make_index_map(comm_, mesh_.cell_id, n_owned, ghost_owner);
   }
 
+  /// Two rings around a wide point: the points of all its cells count as touched.
+  void touch_around_wide_points(std::vector<char>& touched) const {
+    std::vector<char> wide(raw_.points.size(), 0);
+    for (const Index p : wide_points_) wide[p] = touched[p];
+    std::vector<Index> more;
+    for (Index c = 0; c < raw_.cell_points.size(); ++c) {
+      const auto points = raw_.cell_points[c];
+      if (std::any_of(points.begin(), points.end(), [&](Index p) { return wide[p] != 0; }))
+        more.insert(more.end(), points.begin(), points.end());
+    }
+    for (const Index p : more) touched[p] = 1;
+  }
+
   /// The owner of a point is the smallest rank that owns a cell touching it.
   void choose_points() {
     std::vector<int> point_owner(raw_.points.size(), comm_size(comm_));
@@ -178,6 +196,9 @@ class LocalPart {
       point_local_[mesh_.point_id[i]] = static_cast<Index>(i);
       mesh_.reference_points.push_back(raw_.points[mesh_.point_id[i]]);
     }
+    for (const Index p : wide_points_)
+      if (point_local_[p] >= 0) mesh_.wide_points.push_back(point_local_[p]);
+    std::ranges::sort(mesh_.wide_points);
   }
 
   void push_points(Csr& rows, std::span<const Index> whole) {
@@ -252,7 +273,7 @@ class LocalPart {
     shrink(mesh_.cell_id, mesh_.point_id, mesh_.boundary_id, mesh_.cell_type, mesh_.cell_points.offset,
            mesh_.cell_points.index, mesh_.cell_zone, mesh_.cell_material, mesh_.face_points.offset,
            mesh_.face_points.index, mesh_.owner, mesh_.neighbour, mesh_.neighbour_shift,
-           mesh_.reference_points);
+           mesh_.reference_points, mesh_.wide_points);
   }
 
   void find_twins() {
@@ -272,6 +293,7 @@ class LocalPart {
   const Faces& faces_;
   const std::vector<int>& part_;
   const std::vector<int>& cell_material_;
+  const std::vector<Index>& wide_points_;
   std::vector<Index> cell_local_, point_local_;  // -1: not on this rank
   Mesh mesh_;
 };

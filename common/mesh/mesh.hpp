@@ -89,7 +89,10 @@ struct Mesh {
   std::vector<Index> twin;
 
   std::vector<Vec3> reference_points;  ///< per local point, as read [m]
-  Geometry reference;                  ///< geometry of the reference points
+  /// Local points of a boundary or between materials whose surroundings reach too short a way into the body
+  /// to tell a value there. Around those of owned cells two rings of cells are on this rank. Ascending.
+  std::vector<Index> wide_points;
+  Geometry reference;  ///< geometry of the reference points
 
   Vec3 shift(Index interior_face) const {
     return neighbour_shift.empty() ? Vec3(Vec3::Zero()) : neighbour_shift[interior_face];

@@ -45,6 +45,9 @@ struct CellPairs {
 };
 CellPairs connected_cells(const Faces& faces);
 
+/// See Mesh::wide_points; ascending.
+std::vector<Index> wide_points(const RawMesh& raw, const Faces& faces, const std::vector<int>& cell_material);
+
 /// Faces of cells that no other cell shares, as boundary elements (for generators, which then name the
 /// patches).
 Csr outer_faces(const RawMesh& raw);

@@ -56,6 +56,34 @@ TEST_P(OnEveryCellType, linear_fields_stay_exact_where_cells_are_a_thousand_time
                 field(mesh.reference_points[v])[0], 1e-8);
 }
 
+// The corners of these boxes belong to one or two cells, whose nodes alone would be magnified 9 to 17 times.
+TEST_P(OnEveryCellType, corners_in_few_cells_take_a_wider_row_that_does_not_magnify) {
+  const Mesh mesh = distorted(GetParam()), whole = [] {
+    RawMesh raw = make_box(GetParam(), {4, 3, 3}, Vec3::Zero(), Vec3(1, 0.7, 0.4));
+    perturb_interior(raw, 0.25, 7);
+    return distribute(MPI_COMM_SELF, raw);
+  }();
+  const auto magnified = [](const Mesh& m, std::int64_t& nodes) {
+    const VertexInterpolation interpolation(m, std::vector(m.patches.size(), PatchStencil::open));
+    double most = 0;
+    for (Index v = 0; v < m.points.n_owned(); ++v) {
+      double size = 0;
+      for (const double w : interpolation.weights(v)) size += std::abs(w);
+      most = std::max(most, size);
+      nodes += std::ssize(interpolation.nodes(v));
+    }
+    return most;
+  };
+  std::int64_t here = 0, in_all = 0;
+  EXPECT_LT(max(mesh.comm, magnified(mesh, here)), 6);
+  magnified(whole, in_all);
+  EXPECT_EQ(sum(mesh.comm, here), in_all);
+  const bool has_small_corners = GetParam() == BoxCells::tetrahedra || GetParam() == BoxCells::prisms;
+  if (has_small_corners || GetParam() == BoxCells::hexahedra) {
+    EXPECT_EQ(whole.wide_points.empty(), !has_small_corners);
+  }
+}
+
 // On x = 0 and y = 0 the field is symmetric: u_n vanishes and u_t does not change across.
 TEST_P(OnEveryCellType, symmetric_linear_fields_are_exact_at_symmetry_planes_and_their_edge) {
   const Mesh mesh = distorted(GetParam());

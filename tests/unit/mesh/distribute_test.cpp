@@ -50,12 +50,20 @@ TEST_P(Distribute, ghosts_carry_the_ids_of_their_owners) {
   check(mesh.boundary, mesh.boundary_id);
 }
 
-TEST_P(Distribute, ghosts_are_all_cells_that_share_a_vertex_with_an_owned_cell) {
+TEST_P(Distribute,
+       ghosts_are_all_cells_that_share_a_vertex_with_an_owned_cell_and_a_second_ring_at_wide_points) {
   std::set<GlobalIndex> owned(mesh.cell_id.begin(), mesh.cell_id.begin() + mesh.cells.n_owned());
   std::set<GlobalIndex> ghosts(mesh.cell_id.begin() + mesh.cells.n_owned(), mesh.cell_id.end());
   std::set<Index> touched;
   for (const GlobalIndex c : owned)
     for (const Index p : raw.cell_points[Index(c)]) touched.insert(p);
+  std::set<Index> wide, around_wide;
+  for (const Index p : mesh.wide_points) wide.insert(Index(mesh.point_id[p]));
+  for (Index c = 0; c < raw.cell_points.size(); ++c)
+    for (const Index p : raw.cell_points[c])
+      if (wide.count(p) && touched.count(p))
+        around_wide.insert(raw.cell_points[c].begin(), raw.cell_points[c].end());
+  touched.insert(around_wide.begin(), around_wide.end());
   std::set<GlobalIndex> expected;
   for (Index c = 0; c < raw.cell_points.size(); ++c) {
     const auto points = raw.cell_points[c];

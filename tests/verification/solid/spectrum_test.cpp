@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
+#include "common/mesh/topology.hpp"
 #include "common/time/amplification.hpp"
 #include "tests/verification/solid/support.hpp"
 
@@ -104,6 +106,90 @@ INSTANTIATE_TEST_SUITE_P(Gradients, Growth, ::testing::Values(FaceGradient::thes
                          [](const auto& info) {
                            return info.param == FaceGradient::thesis ? "thesis" : "corrected";
                          });
+
+/// These cells of a mesh, with patches "held" (x = 0) and "free".
+RawMesh part_of(const RawMesh& raw, const std::vector<char>& wanted) {
+  RawMesh part = raw;
+  part.cell_points = {};
+  part.cell_type.clear();
+  part.cell_zone.clear();
+  for (Index c = 0; c < raw.cell_points.size(); ++c) {
+    if (!wanted[c]) continue;
+    const auto points = raw.cell_points[c];
+    part.cell_type.push_back(raw.cell_type[c]);
+    part.cell_zone.push_back(raw.cell_zone[c]);
+    part.cell_points.index.insert(part.cell_points.index.end(), points.begin(), points.end());
+    part.cell_points.offset.push_back(Index(part.cell_points.index.size()));
+  }
+  part.boundary_points = outer_faces(part);
+  part.boundary_patch.clear();
+  part.patches = {"held", "free"};
+  for (Index b = 0; b < part.boundary_points.size(); ++b) {
+    const auto points = part.boundary_points[b];
+    const bool held = std::ranges::all_of(points, [&](Index p) { return raw.points[p][0] == 0; });
+    part.boundary_patch.push_back(held ? 0 : 1);
+  }
+  return part;
+}
+
+/// What is left of a box of tetrahedra inside a wavy surface: a strut with ears of one and two cells.
+RawMesh strut_with_ears() {
+  RawMesh raw = make_box(BoxCells::tetrahedra, {7, 4, 4}, Vec3::Zero(), Vec3(7, 4, 4));
+  perturb_interior(raw, 0.3, 11);
+  std::vector<char> inside(raw.cell_points.size());
+  for (Index c = 0; c < raw.cell_points.size(); ++c) {
+    Vec3 x = Vec3::Zero();
+    for (const Index p : raw.cell_points[c]) x += raw.points[p] / 4;
+    const double y = x[1] - 2 - 0.4 * std::sin(2 * x[0]), z = x[2] - 2 - 0.4 * std::cos(3 * x[0]);
+    inside[c] = x[0] < 1 || std::hypot(y, z) < 1.2;
+  }
+  const RawMesh body = part_of(raw, inside);
+  const CellPairs pairs = connected_cells(build_faces(body));
+  std::vector<char> reached(body.cell_points.size(), 0);
+  reached[0] = 1;
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (std::size_t i = 0; i < pairs.first.size(); ++i) {
+      char &a = reached[pairs.first[i]], &b = reached[pairs.second[i]];
+      if (a != b) a = b = 1, grows = true;
+    }
+  }
+  return part_of(body, reached);
+}
+
+// Extrapolation from few nodes to the vertices of ears would make eigenvalues negative: nothing converges
+// then.
+TEST_P(Growth, has_no_negative_eigenvalues_on_a_body_full_of_ears) {
+  SolidParameters p = box_parameters(3);
+  p.boundaries.clear();
+  p.method.face_gradient = GetParam();
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.material = {1, 1, 0.3};
+  p.boundaries["held"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["free"] = boundary(Type::free);
+  const auto solid = make_solid(strut_with_ears(), p);
+  EXPECT_GT(solid->mesh().wide_points.size(), 20u);
+  double least = std::numeric_limits<double>::max();
+  for (const auto& value : solid->eigenvalues()) least = std::min(least, value.real());
+  RecordProperty("least_eigenvalue", fmt::format("{:.3e}", least));
+  EXPECT_GT(least, 0);
+}
+
+TEST_P(Growth, has_no_negative_eigenvalues_on_beams_of_stretched_cells) {
+  SolidParameters p = box_parameters(3);
+  p.method.face_gradient = GetParam();
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.material = {1, 1, 0.3};
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  for (const auto cells : {BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed, BoxCells::hexahedra})
+    for (const double stretch : {1.0, 2.5, 4.0, 10.0}) {
+      if (GetParam() == FaceGradient::corrected && stretch > 2.5) continue;  // two cells across: too coarse
+      const auto solid = make_solid(make_box(cells, {6, 2, 2}, Vec3::Zero(), Vec3(6 * stretch, 2, 2)), p);
+      double least = std::numeric_limits<double>::max();
+      for (const auto& value : solid->eigenvalues()) least = std::min(least, value.real());
+      EXPECT_GT(least, 0) << int(cells) << " stretched " << stretch;
+    }
+}
 
 TEST_P(Growth, of_the_trapezoidal_rule_is_predicted) {
   constexpr double dt = 0.01;
