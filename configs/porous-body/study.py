@@ -9,10 +9,11 @@ sys.path[:0] = [str(HERE.parents[1] / "scripts"), str(HERE)]
 import couplet_series as couplet  # noqa: E402
 import generate  # noqa: E402
 
-METHODS = {  # keys of solution-method; the thesis's tolerance
-    "segregated": "type: segregated, relative-tolerance: 1e-7",
+METHODS = {  # keys of solution-method; the thesis's operator and tolerance
+    "segregated": "type: segregated, face-gradient: thesis, relative-tolerance: 1e-7",
     "block-coupled": "type: block-coupled, linear-solver: bicgstab-ilu, face-gradient: thesis, relative-tolerance: 1e-7",
-    "newton-krylov": "type: newton-krylov, relative-tolerance: 1e-7",
+    "newton-krylov": "type: newton-krylov, face-gradient: thesis, relative-tolerance: 1e-7",
+    "newton-krylov, corrected": "type: newton-krylov, face-gradient: corrected, relative-tolerance: 1e-7",
 }
 
 

@@ -182,7 +182,7 @@ TEST_P(Growth, has_no_negative_eigenvalues_on_beams_of_stretched_cells) {
   p.material = {1, 1, 0.3};
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
   for (const auto cells : {BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed, BoxCells::hexahedra})
-    for (const double stretch : {1.0, 2.5, 4.0, 10.0}) {
+    for (const double stretch : {1.0, 2.5, 4.0, 6.0}) {
       if (GetParam() == FaceGradient::corrected && stretch > 2.5) continue;  // two cells across: too coarse
       const auto solid = make_solid(make_box(cells, {6, 2, 2}, Vec3::Zero(), Vec3(6 * stretch, 2, 2)), p);
       double least = std::numeric_limits<double>::max();
