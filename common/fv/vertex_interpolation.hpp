@@ -23,7 +23,9 @@ enum class PatchStencil {
 /// d_i, where r_i = (x_V - x_i) / d_i and sum_i r_i r_i^T lambda = - sum_i r_i; exact for linear fields
 /// whenever the nodes span the space. Where they do not, lambda is the least-norm solution (exact along the
 /// directions that are spanned), and where no weighted mean of the nodes can reach the point at all, the
-/// plain inverse distance is taken.
+/// plain inverse distance is taken. Where these weights magnify, n sum w^2 > 40, lambda . r_i d_i takes the
+/// place of lambda . r_i: weighted least squares, whose weights are the least there are; at Mesh::wide_points
+/// over the nodes around all points of the point's cells.
 ///
 /// At symmetry planes the mirrored nodes are not stored: their weight equals that of the node itself, so that
 /// it is enough to look for lambda within the planes, and to remove a vector's component across them (see

@@ -49,7 +49,8 @@ struct Geometry {
   std::vector<Vec3> cell_centre, face_centre, face_area;
 };
 
-/// The part of a mesh that lives on one rank, with one ring of ghost cells (neighbours by vertex).
+/// The part of a mesh that lives on one rank, with one ring of ghost cells (neighbours by vertex; two
+/// rings at `wide_points`).
 ///
 /// Faces: [0, n_interior) lie between two local cells at least one of which is owned; then the boundary faces
 /// of owned cells, patch by patch; then the boundary faces of ghost cells, patch by patch. The face vector
