@@ -64,7 +64,7 @@ def weak(small, large):
 SAME = "reported; the force is the same on all"
 BARS = [
     Bar("porous body: force over four meshes up to 100 000 cells", "converging, last change below 1 %", force(SHORT)),
-    Bar("porous body: the same, corrected gradient", "converging, last change below 1 %", force(SHORT, "newton-krylov, corrected")),
+    Bar("porous body: force over four meshes, corrected gradient", "converging, last change below 1 %", force(SHORT, "newton-krylov, corrected")),
     Bar("porous body: force over four meshes up to 1.3 million cells", "converging, last change below 1 %", force(LONG), long=True),
     Bar("porous body: iterations, newton-krylov, 96 000 cells", SAME, iterations("newton-krylov", 28, RANKS)),
     Bar("porous body: outer iterations, segregated (thesis: 111, 89, 82, 117, 86)", SAME, iterations("segregated", 28, RANKS), long=True),
