@@ -14,8 +14,8 @@ namespace {
 
 // Normals of a symmetry patch closer than about 2 degrees are one plane.
 constexpr double same_plane = 0.9994;
-// n sum w^2: 1 in the midst of n nodes, 9 at the edge of hexahedra.
-constexpr double longest_reach = 10;
+// Above the edge of hexahedra (9), see VertexInterpolation::magnification.
+constexpr double most_magnified = 10;
 
 }  // namespace
 
@@ -89,12 +89,9 @@ std::vector<std::uint32_t> edge_kinds(const Mesh& mesh, const ElasticOperator& r
 std::vector<Index> plain_points(const Mesh& mesh, const ElasticOperator& rows,
                                 const std::vector<Index>& points) {
   std::vector<Index> result;
-  for (const Index v : points) {
-    double reach = 0;
-    const auto weights = rows.vertices().weights(v);
-    for (const double w : weights) reach += double(weights.size()) * w * w;
-    if (reach > longest_reach || std::ranges::binary_search(mesh.wide_points, v)) result.push_back(v);
-  }
+  for (const Index v : points)
+    if (mesh.is_wide(v) || VertexInterpolation::magnification(rows.vertices().weights(v)) > most_magnified)
+      result.push_back(v);
   return result;
 }
 

@@ -19,9 +19,6 @@ constexpr double reachable = 1e-8;
 // The weighted mean of the nodes misses the point by this part of their distance: linear fields are not
 // exact.
 constexpr double exact = 1e-6;
-// n sum w^2 from which on the weights of unit vectors, which may cancel, give way to the least weights; 28 at
-// the corner of a hexahedron, where both are the same.
-constexpr double magnified = 40;
 // Ratio of the eigenvalues of the mean of n n^T over the symmetry faces of a patch around a vertex, tan^2 of
 // half the angle between two normals: below the first (1 degree) the faces are one plane, above the second
 // (40 degrees) two.
@@ -116,7 +113,7 @@ void VertexInterpolation::gather_rows(const Around& around, const ByFace& bounda
   if (!boundary.material_of_cell.empty()) ends_first_.assign(n_points, -1);
   for (Index v = 0; v < n_points; ++v) {
     if (around.complete[v]) {
-      const bool wide = std::ranges::binary_search(mesh_->wide_points, v);
+      const bool wide = mesh_->is_wide(v);
       const auto faces = around.faces[v];
       fixed_[v] = std::any_of(faces.begin(), faces.end(),
                               [&](Index b) { return boundary.stencil[b] == PatchStencil::fixed; });
@@ -219,11 +216,10 @@ void VertexInterpolation::update(const Geometry& geometry, std::span<const Vec3>
 /// Weights of the nodes [first, last) of a row, of sum 1; says whether they are exact for linear fields.
 bool VertexInterpolation::find_weights(Index point, std::int64_t first, std::int64_t last,
                                        const Geometry& geometry, const Vec3& at) {
-  if (!std::ranges::binary_search(mesh_->wide_points, point)) {
+  // Weights of unit vectors may cancel; those of least squares are the least there are.
+  if (!mesh_->is_wide(point)) {
     const bool is_exact = fill_weights(point, first, last, geometry, at, false);
-    double squares = 0;
-    for (auto i = first; i < last; ++i) squares += weight_[i] * weight_[i];
-    if (double(last - first) * squares <= magnified) return is_exact;
+    if (magnification({weight_.data() + first, std::size_t(last - first)}) <= longest_reach) return is_exact;
   }
   return fill_weights(point, first, last, geometry, at, true);
 }

@@ -40,6 +40,14 @@ enum class PatchStencil {
 /// this rank); others are empty.
 class VertexInterpolation {
  public:
+  /// n sum w^2 of the weights of a point: 1 in the midst of n nodes, 9 at the edge of hexahedra, 28 at a
+  /// corner.
+  static double magnification(std::span<const double> weights) {
+    double squares = 0;
+    for (const double w : weights) squares += w * w;
+    return double(weights.size()) * squares;
+  }
+
   /// `stencils`: one a patch. The weights are those of the reference geometry.
   VertexInterpolation(const Mesh& mesh, std::span<const PatchStencil> stencils);
   /// One stencil a local boundary face; `material_of_cell`: per local cell, empty: one material.

@@ -37,7 +37,8 @@ WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
     const CellPairs pairs = connected_cells(whole.faces);
     whole.part = partition(make_graph(n, pairs.first, pairs.second), comm_size(comm));
     whole.raw.boundary_points = {};  // now in `faces`
-    whole.wide_points = wide_points(whole.raw, whole.faces, whole.cell_material);
+    if (whole.raw.find_wide_points)
+      whole.wide_points = wide_points(whole.raw, whole.faces, whole.cell_material);
   });
   if (comm_size(comm) == 1) return whole;
   MPI_Bcast(&whole.raw.dim, 1, MPI_INT, 0, comm);
@@ -160,6 +161,7 @@ class LocalPart {
 
   /// Two rings around a wide point: the points of all its cells count as touched.
   void touch_around_wide_points(std::vector<char>& touched) const {
+    if (wide_points_.empty()) return;
     std::vector<char> wide(raw_.points.size(), 0);
     for (const Index p : wide_points_) wide[p] = touched[p];
     std::vector<Index> more;

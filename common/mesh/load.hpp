@@ -29,6 +29,8 @@ struct RawMesh {
   /// Names of the zones that each material fills. With two or more materials the faces between them become
   /// bonded faces, see Mesh::twin; empty: no face is split.
   std::vector<std::vector<std::string>> materials;
+  /// Whether Mesh::wide_points are found: where values are extrapolated to the surface.
+  bool find_wide_points = true;
 };
 
 /// Numbers for the names that a .geo defines by DefineConstant.
@@ -50,12 +52,12 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,
 /// exactly one patch; errors name the place. Collective.
 Mesh distribute(MPI_Comm comm, const RawMesh& raw);
 
-/// File (.msh or .geo) to distributed mesh, `periodic` and `materials` as in RawMesh. Collective; an error on
-/// rank 0 is thrown on every rank.
+/// File (.msh or .geo) to distributed mesh, `periodic`, `materials` and `find_wide_points` as in RawMesh.
+/// Collective; an error on rank 0 is thrown on every rank.
 Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,
                const MeshParameters& parameters = {},
                const std::vector<std::array<std::string, 2>>& periodic = {},
-               const std::vector<std::vector<std::string>>& materials = {});
+               const std::vector<std::vector<std::string>>& materials = {}, bool find_wide_points = false);
 
 /// Boxes for tests: n cells a side on [lower, upper], patches "xmin" "xmax" "ymin" "ymax" (and "zmin" "zmax"
 /// in 3-D).

@@ -9,7 +9,7 @@ namespace couplet {
 
 Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const MeshParameters& parameters,
                const std::vector<std::array<std::string, 2>>& periodic,
-               const std::vector<std::vector<std::string>>& materials) {
+               const std::vector<std::vector<std::string>>& materials, bool find_wide_points) {
   RawMesh raw;
   on_root(comm, [&] {
     if (!std::filesystem::is_regular_file(file))
@@ -37,6 +37,7 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
           dim == 3 ? " Put the volume into a physical group, else gmsh does not save its cells." : "");
     raw.periodic = periodic;
     raw.materials = materials;
+    raw.find_wide_points = find_wide_points;
   });
   try {
     Mesh mesh = distribute(comm, raw);

@@ -49,6 +49,11 @@ struct Geometry {
   std::vector<Vec3> cell_centre, face_centre, face_area;
 };
 
+/// n sum w_i^2 of the least weights that carry linear fields from n nodes to a point: 1 in their midst, 28 at
+/// the corner of a hexahedron, which still serves, 100 at that of a prism, 364 at that of a single
+/// tetrahedron.
+inline constexpr double longest_reach = 40;
+
 /// The part of a mesh that lives on one rank, with one ring of ghost cells (neighbours by vertex; two
 /// rings at `wide_points`).
 ///
@@ -93,6 +98,7 @@ struct Mesh {
   /// Local points of a boundary or between materials whose surroundings reach too short a way into the body
   /// to tell a value there. Around those of owned cells two rings of cells are on this rank. Ascending.
   std::vector<Index> wide_points;
+  bool is_wide(Index point) const { return std::ranges::binary_search(wide_points, point); }
   Geometry reference;  ///< geometry of the reference points
 
   Vec3 shift(Index interior_face) const {

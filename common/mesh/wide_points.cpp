@@ -8,11 +8,6 @@
 namespace couplet {
 namespace {
 
-// n sum w_i^2 of the least weights that carry linear fields from n nodes to a point: 1 in their midst, 28 at
-// the corner of a hexahedron, which still serves, 100 at that of a prism, 364 at that of a single
-// tetrahedron.
-constexpr double longest_reach = 40;
-
 Vec3 mean(const RawMesh& raw, std::span<const Index> points) {
   Vec3 x = Vec3::Zero();
   for (const Index p : points) x += raw.points[p];
