@@ -211,9 +211,8 @@ void FractionalStep<D>::add_back_old_pressure(const State<D>& from) {
 }
 
 /// p~ at t^{n+1/2}, the guess of the pressure equation, through the levels at hand (three only where the
-/// solver's noise is small), and the gradient to start the non-orthogonal part with, linear in time through
-/// the last two. With q < 1 its share of the operator, two passes make that z^2 = q^2 (2 z - 1), |z| = q: no
-/// step amplifies it. A parabola would need q < 0.7, a single pass q < 1/3.
+/// solver's noise is small), and the latest gradient to start the non-orthogonal part with: extrapolated in
+/// time it would grow as soon as its share of the operator exceeds 1/3.
 template <int D>
 void FractionalStep<D>::extrapolate_pressure(const State<D>& from) {
   const std::size_t order = parameters_.pressure_tolerance >= 1e-3 ? 2 : 3;
@@ -230,10 +229,6 @@ void FractionalStep<D>::extrapolate_pressure(const State<D>& from) {
   gradient_start_.clear();
   if (!oblique_ || levels.empty()) return;
   gradient_start_ = levels[0]->gradient;
-  if (levels.size() < 2 || levels[1]->gradient.empty()) return;
-  const double ahead = (t - levels[0]->time) / (levels[0]->time - levels[1]->time);
-  for (std::size_t c = 0; c < gradient_start_.size(); ++c)
-    gradient_start_[c] += ahead * (levels[0]->gradient[c] - levels[1]->gradient[c]);
 }
 
 template void FractionalStep<2>::predict(const State<2>&, SubStep<2>, const Vectors<2>&);

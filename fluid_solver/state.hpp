@@ -23,7 +23,7 @@ struct PressureLevel {
   double time = 0;               ///< t^{n-1/2} [s]
   std::vector<double> p;         ///< per local cell [Pa]
   std::vector<double> boundary;  ///< p_b per boundary face [Pa]
-  Vectors<D> gradient;           ///< (1/V) sum p_f S per local cell [Pa/m]; the latest level only, on oblique meshes the latest two
+  Vectors<D> gradient;           ///< (1/V) sum p_f S per local cell [Pa/m]; the latest level only
 };
 
 /// A fluid at rest is set going by the impulse of its first step, whose pressure says nothing of what comes.

@@ -35,8 +35,7 @@ void write_state(CheckpointWriter& file, const State<D>& s) {
     file.write_scalar(name + "-time", s.pressure[k]->time);
     file.write(name, s.pressure[k]->p);
     file.write(name + "-boundary", s.pressure[k]->boundary);
-    file.write_scalar(name + "-has-gradient", s.pressure[k]->gradient.empty() ? 0 : 1);
-    file.write(name + "-gradient", flat<D>(s.pressure[k]->gradient));
+    if (k == 0) file.write(name + "-gradient", flat<D>(s.pressure[k]->gradient));
   }
   if (s.dt_old > 0) {
     file.write("old-velocity", flat<D>(s.u_old));
@@ -78,8 +77,7 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, bool moving) {
     level->boundary.resize(faces);
     file.read(name, level->p);
     file.read(name + "-boundary", level->boundary);
-    const bool has_gradient = file.read_scalar(name + "-has-gradient") != 0;
-    read_vectors<D>(file, name + "-gradient", level->gradient, has_gradient ? cells : 0);
+    if (k == 0) read_vectors<D>(file, name + "-gradient", level->gradient, cells);
     s.pressure[k] = level;
   }
   if (s.dt_old > 0) {

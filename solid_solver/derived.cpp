@@ -79,7 +79,7 @@ const PointTensors& Solid::point_tensors() const {
       is_symmetry.push_back(found != parameters_.boundaries.end() && found->second.parts.empty() &&
                             found->second.type == SolidBoundary::Type::symmetry);
     }
-    point_tensors_ = std::make_unique<PointTensors>(mesh_, is_symmetry);
+    point_tensors_ = std::make_unique<PointTensors>(mesh_, is_symmetry, elastic_.vertices());
   }
   return *point_tensors_;
 }

@@ -177,6 +177,7 @@ void Solid::accept_step() {
   std::swap(state_, trial_);
   std::swap(known_accepted_, known_);
   std::swap(known_rate_accepted_, known_rate_);
+  if (step_.is_last) systems_.clear();  // what is written next needs room
   for (const auto& effect : effects_)
     if (effect->wants_stress()) effect->take_stress(cell_stress(point_displacement()));
 }

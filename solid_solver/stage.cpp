@@ -88,7 +88,9 @@ void Solid::prepare_stage(StageWork& work) {
   work.end_time = work.start_time + stage.dt;
   work.damping_scale = 1 + damping.stiffness * stage.rate.x;
   work.system = &system_for((stage.acceleration.x + damping.mass * stage.rate.x) / work.damping_scale);
-  work.rhs.assign(elastic_.n_unknowns(), 0);
+  const bool is_loaded = !body_force_.empty() || !parameters_.gravity.empty() || !effects_.empty() ||
+                         !prescribed_.is_zero() || parameters_.output.energies;
+  work.rhs.assign(is_loaded ? elastic_.n_unknowns() : 0, 0);
   work.face_force.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
   add_body_forces(work.place_time, work.rhs);
   for (const auto& effect : effects_) effect->add_loads(work.place_time, work.rhs);
@@ -163,7 +165,10 @@ std::vector<double> Solid::interface_load(const Exchange& in) const {
 
 void Solid::solve_stage(const StageWork& work, std::span<const double> interface_load, bool first) {
   const SolidState& now = first ? state_ : trial_;
-  rhs_ = work.rhs;
+  if (work.rhs.empty())
+    std::ranges::fill(rhs_, 0.0);
+  else
+    rhs_ = work.rhs;
   if (work.system->mass_factor > 0) add_inertia(work, now);
   add_face_forces(work, interface_load);
   guess(work, now);

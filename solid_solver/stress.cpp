@@ -11,7 +11,7 @@ namespace couplet {
 namespace {
 
 VertexInterpolation::ByFace stencils_of(const Mesh& mesh, const std::vector<bool>& is_symmetry) {
-  VertexInterpolation::ByFace stencils{{}, mesh.cell_material};
+  VertexInterpolation::ByFace stencils{{}, mesh.cell_material, true};
   for (const Index p : mesh.patch_of_boundary())
     stencils.stencil.push_back(is_symmetry[p] ? PatchStencil::symmetry : PatchStencil::open);
   return stencils;
@@ -50,8 +50,9 @@ std::array<double, 3> principal_stresses(const Tensor3& stress) {
   return {values[2], values[1], values[0]};
 }
 
-PointTensors::PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetry)
-    : mesh_(&mesh), vertices_(mesh, stencils_of(mesh, is_symmetry)) {
+PointTensors::PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetry,
+                           const VertexInterpolation& inside)
+    : mesh_(&mesh), inside_(&inside), surface_(mesh, stencils_of(mesh, is_symmetry)) {
   for (std::size_t p = 0; p < mesh.patches.size(); ++p) {
     if (!is_symmetry[p]) continue;
     const Patch& patch = mesh.patches[p];
@@ -90,7 +91,7 @@ std::vector<double> PointTensors::interpolate(std::span<const Tensor3> cells,
   std::vector<double> values(std::size_t(mesh_->points.n_local()) * tensor_size);
   const auto at = [&](Index v) { return values.data() + std::size_t(v) * tensor_size; };
   for (Index v = 0; v < mesh_->points.n_local(); ++v)
-    Eigen::Map<Vec<tensor_size>>(at(v)) = vertices_.scalar_at<tensor_size>(v, in_cells, on_faces);
+    Eigen::Map<Vec<tensor_size>>(at(v)) = row_of(v).scalar_at<tensor_size>(v, in_cells, on_faces);
   mirror(
       [&](Index v) {
         return unpack({at(v), tensor_size});
@@ -106,7 +107,7 @@ std::vector<Tensor3> PointTensors::interpolate_full(std::span<const Tensor3> cel
   const std::vector<double> on_faces = with_ghosts(mesh_->boundary, faces, 9, all_of);
   std::vector<Tensor3> tensors(mesh_->points.n_local());
   for (Index v = 0; v < mesh_->points.n_local(); ++v)
-    Eigen::Map<Vec<9>>(tensors[v].data()) = vertices_.scalar_at<9>(v, in_cells, on_faces);
+    Eigen::Map<Vec<9>>(tensors[v].data()) = row_of(v).scalar_at<9>(v, in_cells, on_faces);
   mirror([&](Index v) { return tensors[v]; }, [&](Index v, const Tensor3& tensor) { tensors[v] = tensor; });
   mesh_->points.update_ghosts({tensors.front().data(), tensors.size() * 9}, 9);
   return tensors;

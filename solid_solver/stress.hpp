@@ -27,8 +27,8 @@ std::array<double, 3> principal_stresses(const Tensor3& stress);
 /// tensor is averaged in: no shear there. Where materials meet it is the mean of theirs.
 class PointTensors {
  public:
-  /// `is_symmetry`: one a patch. Collective.
-  PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetry);
+  /// `is_symmetry`: one a patch; `inside`: any interpolation on the mesh, kept by reference. Collective.
+  PointTensors(const Mesh& mesh, const std::vector<bool>& is_symmetry, const VertexInterpolation& inside);
   /// `cells`: of owned cells; `faces`: of boundary faces of owned cells. Packed, all local points.
   /// Collective.
   std::vector<double> interpolate(std::span<const Tensor3> cells, std::span<const Tensor3> faces) const;
@@ -44,7 +44,11 @@ class PointTensors {
     std::vector<Index> points;
   };
   const Mesh* mesh_;
-  VertexInterpolation vertices_;
+  const VertexInterpolation& row_of(Index point) const {
+    return surface_.nodes(point).empty() ? *inside_ : surface_;
+  }
+  const VertexInterpolation* inside_;
+  VertexInterpolation surface_;
   std::vector<Mirror> mirrors_;
 };
 

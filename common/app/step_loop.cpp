@@ -117,7 +117,7 @@ std::string StepLoop::run(const StepActions& actions) {
   if (!restarted_) actions.write_start(outputs_++);
   while (!plan_.finished()) {
     plan_.limit(actions.advised_dt());
-    const Step step{plan_.time(), plan_.dt(), scheme_, plan_.steps_accepted()};
+    const Step step{plan_.time(), plan_.dt(), scheme_, plan_.steps_accepted(), plan_.is_last()};
     if (const auto reason = actions.attempt(step)) {
       log::warn("t = {:g} s: step {} with dt = {:g} s failed: {}", step.time, step.number + 1, step.dt,
                 *reason);

@@ -48,6 +48,7 @@ struct Step {
   double dt = 0;
   Scheme scheme = Scheme::standalone;
   int number = 0;
+  bool is_last = false;  ///< accepted, it ends the run; false in a coupled job
 };
 
 /// A physics program seen from outside. All calls are collective over its ranks.

@@ -49,6 +49,10 @@ int StepPlan::level() const {
 
 double StepPlan::dt() const { return std::ldexp(nominal_length(), -level()); }
 
+bool StepPlan::is_last() const {
+  return nominal_ + 1 == n_nominal_ && tick_ + (1L << (max_halvings_ - level())) == 1L << max_halvings_;
+}
+
 void StepPlan::accepted() {
   const int used = level();
   tick_ += 1L << (max_halvings_ - used);

@@ -15,8 +15,9 @@ class StepPlan {
   StepPlan(double end_time, double nominal_dt, int max_halvings);
 
   bool finished() const { return nominal_ >= n_nominal_; }
-  double time() const;  ///< t^n [s]
-  double dt() const;    ///< of the step to try next; never beyond the next nominal time
+  double time() const;   ///< t^n [s]
+  double dt() const;     ///< of the step to try next; never beyond the next nominal time
+  bool is_last() const;  ///< whether the step to try next ends the run
   /// Advice of the participants: the next steps are not longer than this if max_halvings allows.
   void limit(double largest_dt) { largest_dt_ = largest_dt; }
   void accepted();

@@ -53,8 +53,28 @@ struct Rows {
 template <int D>
 [[gnu::always_inline]] inline Lane<D> contract(const Vec3& v, const double* rows) {
   Lane<D> sum = v[0] * load<D>(rows);
-  for (int i = 1; i < D; ++i) sum += v[i] * load<D>(rows + i * lanes::width<D>);
+  for (int i = 1; i < D; ++i) sum += v[i] * load<D>(rows + i * D);
   return sum;
+}
+
+/// A displacement (or q), then the rows of the gradient, without padding: the last lane that is read or
+/// written reaches into the next record.
+template <int D>
+constexpr int record = (D + 1) * D;
+/// So many doubles hold n of them.
+template <int D>
+constexpr std::size_t record_space(std::size_t n) {
+  return n * record<D> + lanes::width<D> - D;
+}
+template <int D>
+[[gnu::always_inline]] inline Lane<D> row_of(const double* record, int i) {
+  return load<D>(record + (i + 1) * D);
+}
+template <int D>
+[[gnu::always_inline]] inline void store_record(double* to, const Lane<D>& u, const Rows<D>& gradient) {
+  store<D>(to, u);
+  for (int i = 0; i + 1 < D; ++i) store<D>(to + (i + 1) * D, gradient.row[i]);
+  lanes::store_components<D>(to + D * D, gradient.row[D - 1]);
 }
 
 /// The tangential part of a gradient at a face, and where the face looks.

@@ -35,14 +35,11 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   [[gnu::always_inline]] inline void collect_forces(std::span<const double> known, std::span<double> result);
 
  private:
-  static constexpr int width = lanes::width<D>;
-  static constexpr int record = (D + 1) * width;  // u (or q), then the rows of the gradient
-
   void prepare(std::span<const double> unknowns, std::span<const double> known);
   void plain_vertices();
   void mirror_vertex_gradients();
-  double* cell(Index node) { return records_.data() + std::size_t(node) * record; }
-  double* vertex(Index point) { return points_.data() + std::size_t(point) * record; }
+  double* cell(Index node) { return records_.data() + std::size_t(node) * record<D>; }
+  double* vertex(Index point) { return points_.data() + std::size_t(point) * record<D>; }
   [[gnu::always_inline]] inline Surface<D> around(Index f);
   [[gnu::always_inline]] inline Lane<D> inner(Index f, const Rows<D>& grad);
   [[gnu::always_inline]] inline Lane<D> outer(Index f, const Rows<D>& grad);
@@ -78,8 +75,8 @@ CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& row
       plain_points_(plain_points(mesh, rows, vertices_.free)),
       mirrors_(mirror_vertices(mesh, rows, vertices_.free)),
       lame_(mesh, rows),
-      records_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * record, 0.0),
-      points_(std::size_t(mesh.points.n_local()) * record, 0.0) {
+      records_(record_space<D>(mesh.cells.n_local() + mesh.boundary.n_local()), 0.0),
+      points_(record_space<D>(mesh.points.n_local()), 0.0) {
   faces_.reserve(n_faces_with_force(mesh));
   for (Index f = 0; f < n_faces_with_force(mesh); ++f) faces_.push_back(make_face(mesh, f));
   if constexpr (D == 3) {
@@ -107,14 +104,13 @@ CorrectedKernel<D>::CorrectedKernel(const Mesh& mesh, const ElasticOperator& row
 template <int D>
 template <class Take>
 inline void CorrectedKernel<D>::set_record(Index node, const Vec3& place, const Take& row) {
-  double* here = cell(node);
   Lane<D> q = load<D>(nodes_[node]);
+  Rows<D> gradient;
   for (int i = 0; i < D; ++i) {
-    const Lane<D> g = row(i);
-    store<D>(here + (i + 1) * width, g);
-    q -= 0.5 * (place[i] - origin_[i]) * g;
+    gradient.row[i] = row(i);
+    q -= 0.5 * (place[i] - origin_[i]) * gradient.row[i];
   }
-  store<D>(here, q);
+  store_record<D>(cell(node), q, gradient);
 }
 
 template <int D>
@@ -149,15 +145,16 @@ inline void CorrectedKernel<D>::find_cell_gradients() {
   for (const auto& mirror : gradients_.mirrors) {
     double* here = cell(mirror.cell);
     const Lane<D> u = load<D>(nodes_[mirror.cell]);
-    Lane<D> difference = {};
     double normal = 0, reach = 0;
     for (int a = 0; a < D; ++a) {
       normal += mirror.normal[a] * u[a];
       reach += mirror.weight[a] * (mesh_.reference.cell_centre[mirror.cell][a] - origin_[a]);
     }
-    for (int a = 0; a < D; ++a) difference[a] = -2 * normal * mirror.normal[a];
-    for (int a = 0; a < D; ++a) lanes::add<D>(here + (a + 1) * width, mirror.weight[a] * difference);
-    lanes::add<D>(here, -0.5 * reach * difference);
+    for (int b = 0; b < D; ++b) {
+      const double difference = -2 * normal * mirror.normal[b];
+      here[b] -= 0.5 * reach * difference;
+      for (int a = 0; a < D; ++a) here[(a + 1) * D + b] += mirror.weight[a] * difference;
+    }
   }
 }
 
@@ -169,18 +166,14 @@ inline void CorrectedKernel<D>::find_vertices(std::span<const Index> points) {
     Lane<D> u = {};
     Rows<D> g;
     for (std::size_t i = 0; i < index.size(); ++i) {
-      const double* node = records_.data() + std::size_t(index[i]) * record;
+      const double* node = cell(index[i]);
       const double w = weight[i];
       u += w * load<D>(node);
-      for (int a = 0; a < D; ++a) g.row[a] += w * load<D>(node + (a + 1) * width);
+      for (int a = 0; a < D; ++a) g.row[a] += w * row_of<D>(node, a);
     }
     const Vec3& x = mesh_.reference_points[v];
-    double* here = vertex(v);
-    for (int a = 0; a < D; ++a) {
-      u += 0.5 * (x[a] - origin_[a]) * g.row[a];
-      store<D>(here + (a + 1) * width, g.row[a]);
-    }
-    store<D>(here, u);
+    for (int a = 0; a < D; ++a) u += 0.5 * (x[a] - origin_[a]) * g.row[a];
+    store_record<D>(vertex(v), u, g);
   }
 }
 
@@ -192,7 +185,7 @@ void CorrectedKernel<D>::plain_vertices() {
     const auto weight = rows_.vertices().weights(v);
     Lane<D> u = {};
     for (std::size_t i = 0; i < index.size(); ++i) u += weight[i] * load<D>(nodes_[index[i]]);
-    store<D>(vertex(v), u);
+    lanes::store_components<D>(vertex(v), u);
   }
 }
 
@@ -206,11 +199,11 @@ void CorrectedKernel<D>::mirror_vertex_gradients() {
       const Vec<D> n = normal.head<D>();
       Tensor<D> g;
       for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) g(a, b) = here[(a + 1) * width + b];
+        for (int b = 0; b < D; ++b) g(a, b) = here[(a + 1) * D + b];
       const Vec<D> right = g * n, left = g.transpose() * n;
       g += n * (2 * n.dot(right) * n - left).transpose() - right * n.transpose();
       for (int a = 0; a < D; ++a)
-        for (int b = 0; b < D; ++b) here[(a + 1) * width + b] = g(a, b);
+        for (int b = 0; b < D; ++b) here[(a + 1) * D + b] = g(a, b);
     }
   }
 }
@@ -229,8 +222,7 @@ inline Surface<D> CorrectedKernel<D>::around(Index f) {
       const double* second = vertex(corners[e + 1 < std::ssize(corners) ? e + 1 : 0]);
       Lane<D> here = 0.5 * (load<D>(first) + load<D>(second));
       const Lane<D> part = below[(face.edges >> (2 * e)) & 3U] * edge;
-      for (int a = 0; a < D; ++a)
-        here -= part[a] * (load<D>(second + (a + 1) * width) - load<D>(first + (a + 1) * width));
+      for (int a = 0; a < D; ++a) here -= part[a] * (row_of<D>(second, a) - row_of<D>(first, a));
       return here;
     }
   };
@@ -244,11 +236,10 @@ inline Lane<D> CorrectedKernel<D>::inner(Index f, const Rows<D>& grad) {
   const Vec3 &from = mesh_.reference.cell_centre[p], &to = mesh_.reference.cell_centre[n];
   Lane<D> along = load<D>(nodes_[n]) - load<D>(nodes_[p]);
   if (face.curved != 0) {
-    const double *here = cell(p) + width, *there = cell(n) + width;
+    const double *here = cell(p), *there = cell(n);
     const Vec3& centre = mesh_.reference.face_centre[f];
     for (int i = 0; i < D; ++i)
-      along +=
-          (centre[i] - 0.5 * (from[i] + to[i])) * (load<D>(there + i * width) - load<D>(here + i * width));
+      along += (centre[i] - 0.5 * (from[i] + to[i])) * (row_of<D>(there, i) - row_of<D>(here, i));
   }
   return normal_derivative<D>(face, to - from, along, grad);
 }
@@ -259,7 +250,7 @@ inline Lane<D> CorrectedKernel<D>::outer(Index f, const Rows<D>& grad) {
   const Index p = mesh_.owner[f];
   const Vec3 d = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[p];
   const Lane<D> across = load<D>(nodes_.of_face(f)) - load<D>(nodes_[p]);
-  return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + width), grad);
+  return normal_derivative<D>(faces_[f], d, 2 * across - contract<D>(d, cell(p) + D), grad);
 }
 
 // The mirrored difference is central already.
@@ -357,21 +348,22 @@ void CorrectedKernel<D>::prepare(std::span<const double> unknowns, std::span<con
   cells_pass(*this);
   const std::span<double> all(records_);
   const std::size_t n_cells = mesh_.cells.n_local();
-  mesh_.cells.update_ghosts(all.first(n_cells * record), record);
+  mesh_.cells.update_ghosts(all.first(n_cells * record<D>), record<D>);
   // Boundary nodes begin with their cell's gradient; its error is the same for neighbours where cells are.
   for (const Index f : open_faces_) {
-    const double* owner = cell(mesh_.owner[f]) + width;
+    const double* owner = cell(mesh_.owner[f]);
     set_record(static_cast<Index>(n_cells) + f - mesh_.n_interior, mesh_.reference.face_centre[f],
-               [&](int a) { return load<D>(owner + a * width); });
+               [&](int a) { return row_of<D>(owner, a); });
   }
   vertices_pass(*this, open_points_);
   plain_vertices();
-  vertices_.constrain<D>(points_, record, known);
+  vertices_.constrain<D>(points_, record<D>, known);
   boundary_pass(*this);
-  mesh_.boundary.update_ghosts(all.subspan(n_cells * record), record);
+  mesh_.boundary.update_ghosts(
+      all.subspan(n_cells * record<D>, std::size_t(mesh_.boundary.n_local()) * record<D>), record<D>);
   vertices_pass(*this, vertices_.free);
   plain_vertices();
-  vertices_.constrain<D>(points_, record, known);
+  vertices_.constrain<D>(points_, record<D>, known);
   mirror_vertex_gradients();
 }
 

@@ -20,6 +20,7 @@ class ElasticVertices {
       if (rows.constraints().is_constrained(v)) constrained.push_back(v);
       if (!rows.constraints().is_fixed(v) && !rows.vertices().nodes(v).empty()) free.push_back(v);
     }
+    free.shrink_to_fit();
   }
 
   /// take(point) for all points that have a value.

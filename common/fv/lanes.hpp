@@ -32,6 +32,12 @@ template <int D>
   std::memcpy(to, &value, sizeof value);
 }
 
+/// The D components alone: what follows in memory stays as it is.
+template <int D>
+[[gnu::always_inline]] inline void store_components(double* to, const Lane<D>& value) {
+  std::memcpy(to, &value, sizeof(double) * D);
+}
+
 template <int D>
 [[gnu::always_inline]] inline void add(double* to, const Lane<D>& value) {
   store<D>(to, load<D>(to) + value);

@@ -109,10 +109,11 @@ VertexInterpolation::VertexInterpolation(const Mesh& mesh, const ByFace& boundar
 void VertexInterpolation::gather_rows(const Around& around, const ByFace& boundary) {
   const Index n_points = mesh_->points.n_local();
   fixed_.assign(n_points, 0);
+  offset_.reserve(n_points + 1);
   offset_.assign(1, 0);
   if (!boundary.material_of_cell.empty()) ends_first_.assign(n_points, -1);
   for (Index v = 0; v < n_points; ++v) {
-    if (around.complete[v]) {
+    if (around.complete[v] && (!boundary.surface_only || !around.faces[v].empty())) {
       const bool wide = mesh_->is_wide(v);
       const auto faces = around.faces[v];
       fixed_[v] = std::any_of(faces.begin(), faces.end(),

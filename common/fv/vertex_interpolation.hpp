@@ -54,6 +54,8 @@ class VertexInterpolation {
   struct ByFace {
     std::vector<PatchStencil> stencil;
     std::span<const int> material_of_cell;
+    /// Rows of the points of boundary faces (bonded ones, too) alone; those of others depend on no stencil.
+    bool surface_only = false;
   };
   VertexInterpolation(const Mesh& mesh, const ByFace& boundary);
 

@@ -85,7 +85,6 @@ ComponentMultigrid::ComponentMultigrid(Rows rows) {
     Rows coarse = galerkin(fine, n_coarse);
     add_level(std::move(coarse));
   }
-  residual_.resize(levels_.front().a.size());
   factor_coarsest();
   // What the sweeps use is the inverse.
   for (Level& level : levels_) level.a.diagonal = std::vector<Lanes>();
@@ -231,14 +230,16 @@ void ComponentMultigrid::smooth_forward(Level& level) {
   }
 }
 
-/// b - A x = - U x after smooth_forward().
-void ComponentMultigrid::residual_after_forward(const Level& level, std::vector<Lanes>& residual) {
-  const Index *offset = level.a.offset.data(), *middle = level.middle.data(), *index = level.a.index.data();
-  const Lanes *value = level.a.value.data(), *x = level.x.data();
-  for (Index i = 0, n = level.a.size(); i < n; ++i) {
-    Lanes sum{};
-    for (Index e = middle[i]; e < offset[i + 1]; ++e) sum -= value[e] * x[index[e]];
-    residual[i] = sum;
+/// P^T (b - A x) = - P^T U x after smooth_forward().
+void ComponentMultigrid::restrict_residual(const Level& fine, std::vector<Lanes>& coarse) {
+  const Index *offset = fine.a.offset.data(), *middle = fine.middle.data(), *index = fine.a.index.data();
+  const Lanes *value = fine.a.value.data(), *x = fine.x.data();
+  std::fill(coarse.begin(), coarse.end(), Lanes{});
+  for (Index i = 0, n = fine.a.size(); i < n; ++i) {
+    Lanes residual{};
+    for (Index e = middle[i]; e < offset[i + 1]; ++e) residual -= value[e] * x[index[e]];
+    for (Index k = fine.p_offset[i]; k < fine.p_offset[i + 1]; ++k)
+      coarse[fine.p_index[k]] += fine.p_value[k] * residual;
   }
 }
 
@@ -257,13 +258,8 @@ void ComponentMultigrid::smooth_backward(Level& level) {
 void ComponentMultigrid::cycle() {
   const std::size_t last = levels_.size() - 1;
   for (std::size_t l = 0; l < last; ++l) {
-    Level &fine = levels_[l], &coarse = levels_[l + 1];
-    smooth_forward(fine);
-    residual_after_forward(fine, residual_);
-    std::fill(coarse.b.begin(), coarse.b.end(), Lanes{});
-    for (Index i = 0; i < fine.a.size(); ++i)
-      for (Index k = fine.p_offset[i]; k < fine.p_offset[i + 1]; ++k)
-        coarse.b[fine.p_index[k]] += fine.p_value[k] * residual_[i];
+    smooth_forward(levels_[l]);
+    restrict_residual(levels_[l], levels_[l + 1].b);
   }
   solve_coarsest(levels_[last]);
   for (std::size_t l = last; l-- > 0;) {

@@ -49,12 +49,11 @@ class ComponentMultigrid {
   void factor_coarsest();
   void solve_coarsest(Level& level) const;
   static void smooth_forward(Level& level);
-  static void residual_after_forward(const Level& level, std::vector<Lanes>& residual);
+  static void restrict_residual(const Level& fine, std::vector<Lanes>& coarse);
   static void smooth_backward(Level& level);
   void cycle();
 
   std::vector<Level> levels_;
-  std::vector<Lanes> residual_;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one a component
 };
 

@@ -28,10 +28,24 @@ TEST(StepPlan, nominal_steps_end_at_the_end) {
 TEST(StepPlan, last_step_is_shortened_to_the_end_time) {
   StepPlan plan(0.25, 0.1, 6);
   std::vector<double> dt;
-  for (; !plan.finished(); plan.accepted()) dt.push_back(plan.dt());
+  for (; !plan.finished(); plan.accepted()) {
+    dt.push_back(plan.dt());
+    EXPECT_EQ(plan.is_last(), dt.size() == 3);
+  }
   ASSERT_EQ(dt.size(), 3u);
   EXPECT_NEAR(dt[2], 0.05, 1e-15);
   EXPECT_EQ(plan.time(), 0.25);
+}
+
+TEST(StepPlan, last_step_is_known_when_steps_are_halved) {
+  StepPlan plan(0.2, 0.1, 6);
+  plan.accepted();
+  ASSERT_TRUE(plan.halve());
+  EXPECT_FALSE(plan.is_last()) << "two halves are left";
+  plan.accepted();
+  EXPECT_TRUE(plan.is_last());
+  plan.accepted();
+  EXPECT_TRUE(plan.finished());
 }
 
 TEST(StepPlan, halves_grow_back_and_meet_the_nominal_times) {

@@ -180,7 +180,8 @@ TEST(SolidOutput, point_tensors_are_exact_for_linear_fields_up_to_the_boundary) 
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) cells.push_back(field(mesh.reference.cell_centre[c]));
   for (Index b = 0; b < mesh.boundary.n_owned(); ++b)
     faces.push_back(field(mesh.reference.face_centre[mesh.n_interior + b]));
-  const std::vector<double> at_points = PointTensors(mesh, is_symmetry).interpolate(cells, faces);
+  const VertexInterpolation inside(mesh, std::vector(mesh.patches.size(), PatchStencil::fixed));
+  const std::vector<double> at_points = PointTensors(mesh, is_symmetry, inside).interpolate(cells, faces);
   for (Index v = 0; v < mesh.points.n_local(); ++v) {
     const PackedTensor expected = pack(field(mesh.reference_points[v]));
     const Vec3& x = mesh.reference_points[v];
