@@ -118,6 +118,12 @@ void Laplacian::set_kinds(const Parameters& parameters) {
         interface_points_.push_back(v);
         break;
       }
+  for (int c = 0; c < dim_; ++c) {
+    std::vector<Index> moved;
+    for (const Index v : interface_points_)
+      if (kind_[v][c] == PointKind::interface) moved.push_back(v);
+    fit_[c] = std::make_unique<AffineFit>(mesh_, std::move(moved));
+  }
 }
 
 // Thesis (2.49): inverse distance, so every weight is positive.
@@ -161,44 +167,90 @@ double Laplacian::boundary_value(Index face, int component, std::span<const doub
   return total / static_cast<double>(points.size());
 }
 
-std::vector<double> Laplacian::solve(std::span<const double> prescribed) {
+void Laplacian::solve_cells(int c, std::span<const double> prescribed, std::vector<double>& cells) {
   const Index n = mesh_.cells.n_owned();
-  std::vector<double> b(n), x(n);
+  std::vector<double> b(n, 0.0), x(n);
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+    if (held_[patch_of_[f - mesh_.n_interior]][c])
+      b[mesh_.owner[f]] += coefficient_[f] * boundary_value(f, c, prescribed);
+  for (Index i = 0; i < n; ++i) x[i] = cells[std::size_t(i) * dim_ + c];
+  // A wall that passes through rest leaves b at round-off: the residual cannot fall below that of A x0.
+  double scale[2] = {0, 0};
+  for (Index i = 0; i < n; ++i) {
+    scale[0] += std::pow(equation_[c]->diagonal[i] * x[i], 2);
+    scale[1] += std::abs(b[i]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, scale, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  if (scale[1] == 0) {  // nothing moves this way
+    std::fill(x.begin(), x.end(), 0.0);
+  } else {
+    const double floor = 1e-15 * std::sqrt(scale[0]) + 1e-300;
+    const SolveStatistics s = equation_[c]->solver->solve(b, x, relative_tolerance_, floor);
+    last_.iterations += s.iterations;
+    last_.seconds += s.seconds;
+  }
+  for (Index i = 0; i < n; ++i) cells[std::size_t(i) * dim_ + c] = x[i];
+}
+
+void Laplacian::interpolate(int c, std::span<const double> prescribed, const std::vector<double>& cells,
+                            std::vector<double>& points) const {
+  for (Index v = 0; v < mesh_.points.n_local(); ++v) {
+    double& d = points[std::size_t(v) * dim_ + c];
+    d = kind_[v][c] == PointKind::interface ? prescribed[std::size_t(v) * dim_ + c] : 0.0;
+    if (kind_[v][c] != PointKind::interior) continue;
+    for (Index i = around_.offset[v]; i < around_.offset[v + 1]; ++i)
+      d += weight_[i] * cells[std::size_t(around_.index[i]) * dim_ + c];
+  }
+}
+
+void Laplacian::make_shapes(int c) {
+  for (int k = 0; k < fit_[c]->count(); ++k) {
+    std::vector<double> prescribed(std::size_t(mesh_.points.n_local()) * dim_, 0.0), points(prescribed),
+        cells(cell_displacement_.size(), 0.0);
+    for (Index v = 0; v < mesh_.points.n_local(); ++v)
+      prescribed[std::size_t(v) * dim_ + c] = fit_[c]->shape(k, mesh_.reference_points[v]);
+    solve_cells(c, prescribed, cells);
+    mesh_.cells.update_ghosts(cells, dim_);
+    interpolate(c, prescribed, cells, points);
+    mesh_.points.update_ghosts(points, dim_);
+    Shape& shape = shapes_[c].emplace_back();
+    for (std::size_t i = c; i < cells.size(); i += dim_) shape.cells.push_back(cells[i]);
+    for (std::size_t i = c; i < points.size(); i += dim_) shape.points.push_back(points[i]);
+  }
+}
+
+void Laplacian::combine(int c, const AffineFit::Coefficients& coefficients, std::vector<double>& points) {
+  for (std::size_t i = c; i < cell_displacement_.size(); i += dim_) cell_displacement_[i] = 0;
+  if (coefficients == AffineFit::Coefficients{}) return;  // nothing moves this way
+  if (shapes_[c].empty()) make_shapes(c);
+  const auto add = [&](double factor, const std::vector<double>& shape, std::vector<double>& sum) {
+    for (std::size_t i = 0; i < shape.size(); ++i) sum[i * dim_ + c] += factor * shape[i];
+  };
+  for (std::size_t k = 0; k < shapes_[c].size(); ++k) {
+    if (coefficients[k] == 0) continue;
+    add(coefficients[k], shapes_[c][k].points, points);
+    add(coefficients[k], shapes_[c][k].cells, cell_displacement_);
+  }
+}
+
+std::vector<double> Laplacian::solve(std::span<const double> prescribed) {
   last_ = {};
+  std::vector<double> displacement(std::size_t(mesh_.points.n_local()) * dim_, 0.0);
+  std::array<std::optional<AffineFit::Coefficients>, 3> affine;
   for (int c = 0; c < dim_; ++c) {
-    std::fill(b.begin(), b.end(), 0.0);
-    for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
-      if (held_[patch_of_[f - mesh_.n_interior]][c])
-        b[mesh_.owner[f]] += coefficient_[f] * boundary_value(f, c, prescribed);
-    for (Index i = 0; i < n; ++i) x[i] = cell_displacement_[std::size_t(i) * dim_ + c];
-    // A wall that passes through rest leaves b at round-off: the residual cannot fall below that of A x0.
-    double scale[2] = {0, 0};
-    for (Index i = 0; i < n; ++i) {
-      scale[0] += std::pow(equation_[c]->diagonal[i] * x[i], 2);
-      scale[1] += std::abs(b[i]);
-    }
-    MPI_Allreduce(MPI_IN_PLACE, scale, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-    if (scale[1] == 0) {  // nothing moves this way
-      std::fill(x.begin(), x.end(), 0.0);
-    } else {
-      const double floor = 1e-15 * std::sqrt(scale[0]) + 1e-300;
-      const SolveStatistics s = equation_[c]->solver->solve(b, x, relative_tolerance_, floor);
-      last_.iterations += s.iterations;
-      last_.seconds += s.seconds;
-    }
-    for (Index i = 0; i < n; ++i) cell_displacement_[std::size_t(i) * dim_ + c] = x[i];
+    affine[c] = (*fit_[c])(prescribed, c);
+    if (!affine[c])
+      solve_cells(c, prescribed, cell_displacement_);
+    else
+      combine(c, *affine[c], displacement);
   }
   mesh_.cells.update_ghosts(cell_displacement_, dim_);
-
-  std::vector<double> displacement(std::size_t(mesh_.points.n_local()) * dim_, 0.0);
-  for (Index v = 0; v < mesh_.points.n_local(); ++v)
-    for (int c = 0; c < dim_; ++c) {
-      double& d = displacement[std::size_t(v) * dim_ + c];
-      if (kind_[v][c] == PointKind::interface) d = prescribed[std::size_t(v) * dim_ + c];
-      if (kind_[v][c] != PointKind::interior) continue;
-      for (Index i = around_.offset[v]; i < around_.offset[v + 1]; ++i)
-        d += weight_[i] * cell_displacement_[std::size_t(around_.index[i]) * dim_ + c];
-    }
+  for (int c = 0; c < dim_; ++c)
+    if (!affine[c]) interpolate(c, prescribed, cell_displacement_, displacement);
+  for (const Index v : interface_points_)
+    for (int c = 0; c < dim_; ++c)
+      if (kind_[v][c] == PointKind::interface)
+        displacement[std::size_t(v) * dim_ + c] = prescribed[std::size_t(v) * dim_ + c];
   mesh_.points.update_ghosts(displacement, dim_);
   return displacement;
 }

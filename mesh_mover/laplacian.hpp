@@ -9,6 +9,7 @@
 
 #include "common/linalg/linear_solver.hpp"
 #include "common/mesh/mesh.hpp"
+#include "mesh_mover/affine.hpp"
 #include "mesh_mover/parameters.hpp"
 
 namespace couplet::mesh_mover {
@@ -21,6 +22,9 @@ namespace couplet::mesh_mover {
 /// one, makes the motion independent of the path (no drift over cycles) and the matrix constant: it is
 /// factorised once a run. The flux is the two-point part of (2.57) alone: an M-matrix, so that no point
 /// overshoots its surroundings, which serves a mesh better than second order would.
+///
+/// Where all that moves moves like one rigid body the displacement is a sum of dim + 1 fields a component,
+/// solved for once, when the first such motion is met.
 class Laplacian {
  public:
   /// Throws Error if no patch holds the mesh or a slip patch is not normal to an axis.
@@ -43,6 +47,12 @@ class Laplacian {
   void set_weights();
   void set_coefficients(double stiffening);
   double boundary_value(Index face, int component, std::span<const double> prescribed) const;
+  /// One component in the cells / at the points / both, for prescribed values that an AffineFit explains.
+  void solve_cells(int component, std::span<const double> prescribed, std::vector<double>& cells);
+  void interpolate(int component, std::span<const double> prescribed, const std::vector<double>& cells,
+                   std::vector<double>& points) const;
+  void combine(int component, const AffineFit::Coefficients& coefficients, std::vector<double>& points);
+  void make_shapes(int component);
 
   const Mesh& mesh_;
   int dim_;
@@ -56,6 +66,11 @@ class Laplacian {
   std::vector<double> weight_;       // with around_.index
   std::array<std::shared_ptr<Equation>, 3> equation_;
   std::vector<double> cell_displacement_;  // dim per local cell; also the next initial guess
+  struct Shape {
+    std::vector<double> cells, points;  // per local cell and point
+  };
+  std::array<std::unique_ptr<AffineFit>, 3> fit_;  // of the moved points, per component
+  std::array<std::vector<Shape>, 3> shapes_;       // per component, empty: not needed so far
   SolveStatistics last_;
 };
 

@@ -56,6 +56,36 @@ TEST(Laplacian, a_rigid_translation_of_the_boundary_translates_every_point) {
   }
 }
 
+// The equation is linear: what a rigid motion adds to another one is what it does alone.
+TEST(Laplacian, a_rigid_motion_of_the_interface_needs_no_further_solve_and_moves_the_mesh_alike) {
+  for (const BoxCells cells : {BoxCells::triangles, BoxCells::prisms}) {
+    const Mesh mesh = perturbed_box(cells, 6);
+    Parameters p = all_patches(mesh, BoundaryMotion::fixed);
+    p.boundaries["xmax"].motion = BoundaryMotion::interface;
+    p.boundaries["ymax"].motion = BoundaryMotion::slip;
+    Laplacian laplacian(mesh, p);
+    const auto turn = [&](double angle, double shift) {
+      return at_points(mesh, [&](const Vec3& x) {
+        return Vec3((std::cos(angle) - 1) * x.x() - std::sin(angle) * x.y() + shift,
+                    std::sin(angle) * x.x() + (std::cos(angle) - 1) * x.y(), 0.5 * shift);
+      });
+    };
+    const auto bend = at_points(mesh, [](const Vec3& x) { return Vec3(0.1 * x.y() * x.y(), 0, 0); });
+    const std::vector<double> rigid = turn(0.1, 0.02);
+    std::vector<double> both = rigid;
+    for (std::size_t i = 0; i < both.size(); ++i) both[i] += bend[i];
+    laplacian.solve(turn(0.05, -0.01));
+    const std::vector<double> alone = laplacian.solve(rigid);
+    EXPECT_EQ(laplacian.last().iterations, 0);
+    std::vector<double> added = laplacian.solve(both);
+    EXPECT_GT(laplacian.last().iterations, 0);
+    const std::vector<double> bent = laplacian.solve(bend);
+    for (std::size_t i = 0; i < added.size(); ++i) added[i] -= bent[i];
+    EXPECT_LT(largest_difference(mesh, added, alone), 1e-12);
+    EXPECT_GT(largest_difference(mesh, alone, std::vector<double>(alone.size())), 0.02);
+  }
+}
+
 TEST(Laplacian, a_slipping_wall_lets_points_slide_and_keeps_them_on_its_plane) {
   const Mesh mesh =
       distribute(MPI_COMM_WORLD, make_box(BoxCells::hexahedra, {6, 5, 4}, Vec3::Zero(), Vec3::Ones()));
