@@ -20,6 +20,7 @@ void FractionalStep<D>::predict_flux(const State<D>& from) {
   phi_orthogonal_.resize(mesh_.n_flux_faces());
   // Without the pressure the velocity at a wall is still that of level n: its change comes with grad p.
   if (now.skewed()) boundary_.close(mesh_, now, u_p_, from.w, u_boundary_);
+  gradient_of_ = 0;
   mean_flux<D>(mesh_, now, u_p_, u_boundary_, velocity_gradient_, phi_orthogonal_);
   if (parameters_.projection == Projection::incremental)
     add_increment(from);
@@ -112,6 +113,7 @@ void FractionalStep<D>::remember_flux(State<D>& s) {
   } else {
     s.memory.resize(mesh_.n_interior);
     mean_flux<D>(mesh_, *step_.to, s.u, s.u_boundary, velocity_gradient_, s.memory);
+    if (step_.to->skewed()) gradient_of_ = s.number;
     for (Index f = 0; f < mesh_.n_interior; ++f) s.memory[f] = s.phi[f] - s.memory[f];
   }
   if (!bodies_) return;

@@ -84,8 +84,8 @@ template <int D>
 void Fluid<D>::start(double time) {
   State<D>& s = accepted_;
   s.time = time;
-  s.placement = make_placement<D>(mesh_, mesh_.reference);
   if (moving_) s.points = mesh_.reference_points;
+  s.placement = moving_ ? make_placement<D>(mesh_, s.points) : make_placement<D>(mesh_, mesh_.reference);
   const Placement<D>& at = *s.placement;
   s.u.assign(mesh_.cells.n_local(), Vec<D>::Zero());
   s.w.assign(mesh_.boundary.n_owned(), Vec<D>::Zero());
@@ -125,6 +125,7 @@ void Fluid<D>::start(double time) {
 template <int D>
 void Fluid<D>::restore(State<D> state) {
   accepted_ = std::move(state);
+  accepted_.number = 0;
   beginning_.reset();
   split_ = false;
   step_.set_eddy_viscosity(accepted_);

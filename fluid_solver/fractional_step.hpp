@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -84,6 +85,7 @@ class FractionalStep {
   void add_swept(const State<D>& from, double e0, double e1);
   void add_old_pressure(const State<D>& from, bool implicit);
   double viscous_tolerance() const;
+  void guess_velocity(const State<D>& from, double a);
   void solve_viscous(const State<D>& from, const Vectors<D>& w, double a);
   void solve_oblique_viscous(const Vectors<D>& w, double a);
   void add_back_old_pressure(const State<D>& from);
@@ -130,8 +132,11 @@ class FractionalStep {
   SubStep<D> step_;
   Rates<D> rates_;
   Vectors<D> right_side_, u_p_, w_, u_boundary_, gradient_start_, gradient_guess_, shear_;
+  Vectors<D> old_pressure_;  // dt/rho sum p^{n-1/2} S^{n+1}, of an implicit predictor on a moving mesh
   Vectors<D> oblique_rate_, viscous_side_, u_before_;
   std::vector<Tensor<D>> velocity_gradient_;  // skewed meshes only
+  std::uint64_t gradient_of_ = 0;             // State::number whose gradient that is; 0: none's
+  std::uint64_t states_ = 0;                  // numbered so far
   std::vector<double> relaxation_;            // [1/s]
   std::vector<double> fading_;                // incremental: of the start's delta, at t^{n+1}
   struct Fit {

@@ -55,8 +55,6 @@ constexpr double orthogonal = 1e-9;
 template <int D>
 std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geometry& geometry);
 template <int D>
-std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<const Vec3> points) {
-  return make_placement<D>(mesh, compute_geometry(mesh, points));
-}
+std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<const Vec3> points);
 
 }  // namespace couplet::fluid

@@ -292,11 +292,11 @@ void FractionalStep<D>::finish(State<D>& s) {
   s.phi.swap(phi_p_);
   s.u_old.swap(s.u);
   s.u.swap(u_p_);
-  std::shared_ptr<PressureLevel<D>> before;  // its gradient is no longer needed
-  if (s.pressure[0])
-    before = std::make_shared<PressureLevel<D>>(
-        PressureLevel<D>{s.pressure[0]->time, s.pressure[0]->p, s.pressure[0]->boundary, {}});
-  s.pressure = {std::move(level), std::move(before), s.pressure[1]};
+  s.number = ++states_;
+  s.pressure = {std::move(level), s.pressure[0], s.pressure[1]};
+  const std::size_t with_gradient = oblique_ ? 2 : 1;
+  if (auto& last = s.pressure[with_gradient]; last && !last->gradient.empty())
+    last = std::make_shared<PressureLevel<D>>(PressureLevel<D>{last->time, last->p, last->boundary, {}});
   s.u_boundary_old.swap(s.u_boundary);
   s.w = w_;
   boundary_.close(mesh_, *step_.to, s.u, s.w, s.u_boundary);

@@ -71,17 +71,24 @@ template <int D>
 void RateOperator<D>::add_oblique(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
                                   Vectors<D>& rate) {
   velocity_gradient<D>(mesh_, at, u, u_boundary, gradient_);
+  add_oblique(at, gradient_, rate);
+}
+
+template <int D>
+void RateOperator<D>::add_oblique(const Placement<D>& at, const std::vector<Tensor<D>>& gradient,
+                                  Vectors<D>& rate) const {
+  if (at.oblique.empty()) return;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
     const double w = at.weight[f];
-    const Vec<D> part =
-        nu_ * (w * (gradient_[p] * at.oblique_of(f)) + (1 - w) * (gradient_[n] * at.oblique_of(f)));
+    const Tensor<D> mean = w * gradient[p] + (1 - w) * gradient[n];
+    const Vec<D> part = nu_ * (mean * at.oblique[f]);
     rate[p] += part;
     rate[n] -= part;
   }
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
     if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity)
-      rate[mesh_.owner[f]] += nu_ * (gradient_[mesh_.owner[f]] * at.oblique_of(f));
+      rate[mesh_.owner[f]] += nu_ * (gradient[mesh_.owner[f]] * at.oblique[f]);
 }
 
 template <int D>
@@ -91,25 +98,30 @@ void RateOperator<D>::set_eddy_viscosity(const TurbulenceParameters& model, Stat
 }
 
 template <int D>
-void RateOperator<D>::add_eddies(const State<D>& s, Vectors<D>& rate) {
+void RateOperator<D>::add_eddies(const State<D>& s, const std::vector<Tensor<D>>& gradient,
+                                 Vectors<D>& rate) const {
   const Placement<D>& at = *s.placement;
-  velocity_gradient<D>(mesh_, at, s.u, s.u_boundary, gradient_);
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const Vec<D> part = eddy_stress<D>(at, s, gradient_, f, p, n);
+    const Vec<D> part = eddy_stress<D>(at, s, gradient, f, p, n);
     rate[p] += part;
     rate[n] -= part;
   }
 }
 
 template <int D>
-void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates) {
+void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates,
+                            const std::vector<Tensor<D>>* gradient) {
   rates.rate.assign(mesh_.cells.n_local(), Vec<D>::Zero());
   rates.viscous.assign(split ? mesh_.cells.n_local() : 0, Vec<D>::Zero());
   split ? face_loop<true>(state, rates) : face_loop<false>(state, rates);
-  if (correct_oblique)
-    add_oblique(*state.placement, state.u, state.u_boundary, split ? rates.viscous : rates.rate);
-  if (!state.eddy.empty()) add_eddies(state, rates.rate);
+  if (!correct_oblique && state.eddy.empty()) return;
+  if (!gradient) {
+    velocity_gradient<D>(mesh_, *state.placement, state.u, state.u_boundary, gradient_);
+    gradient = &gradient_;
+  }
+  if (correct_oblique) add_oblique(*state.placement, *gradient, split ? rates.viscous : rates.rate);
+  if (!state.eddy.empty()) add_eddies(state, *gradient, rates.rate);
 }
 
 template <int D>

@@ -39,7 +39,9 @@ class RateOperator {
  public:
   RateOperator(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity)
       : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity) {}
-  void apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates);
+  /// `gradient`: that of the state's velocity, if it is at hand.
+  void apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates,
+             const std::vector<Tensor<D>>* gradient = nullptr);
   /// Adds the non-orthogonal viscous part nu sum (grad u)_f . k of any velocity field (ghosts current).
   /// Collective.
   void add_oblique(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
@@ -48,7 +50,8 @@ class RateOperator {
   void set_eddy_viscosity(const TurbulenceParameters& model, State<D>& state);
 
  private:
-  void add_eddies(const State<D>& state, Vectors<D>& rate);
+  void add_eddies(const State<D>& state, const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
+  void add_oblique(const Placement<D>& at, const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
   template <bool Split>
   void face_loop(const State<D>& state, Rates<D>& rates) const;
   const Mesh& mesh_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct PressureLevel {
   double time = 0;               ///< t^{n-1/2} [s]
   std::vector<double> p;         ///< per local cell [Pa]
   std::vector<double> boundary;  ///< p_b per boundary face [Pa]
-  Vectors<D> gradient;           ///< (1/V) sum p_f S per local cell [Pa/m]; the latest level only
+  Vectors<D> gradient;  ///< (1/V) sum p_f S per local cell [Pa/m]; the latest level only, on oblique meshes
+                        ///< the latest two
 };
 
 /// A fluid at rest is set going by the impulse of its first step, whose pressure says nothing of what comes.
@@ -36,6 +38,8 @@ struct State {
   double dt_old = 0;      ///< size of the last step [s]; 0: no history, the next step is an Euler step
   bool implicit = false;  ///< viscous term of the history (Rates::viscous is there)
   Start start = Start::flowing;
+  std::uint64_t number = 0;  ///< of u among all that a solver computed, so that what follows from it is not
+                             ///< computed again; 0: not computed
 
   Vectors<D> u;             ///< u^n per local cell, ghosts current [m/s]
   Vectors<D> w;             ///< given velocity per boundary face at t^n [m/s]

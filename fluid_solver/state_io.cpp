@@ -35,7 +35,8 @@ void write_state(CheckpointWriter& file, const State<D>& s) {
     file.write_scalar(name + "-time", s.pressure[k]->time);
     file.write(name, s.pressure[k]->p);
     file.write(name + "-boundary", s.pressure[k]->boundary);
-    if (k == 0) file.write(name + "-gradient", flat<D>(s.pressure[k]->gradient));
+    file.write_scalar(name + "-has-gradient", s.pressure[k]->gradient.empty() ? 0 : 1);
+    file.write(name + "-gradient", flat<D>(s.pressure[k]->gradient));
   }
   if (s.dt_old > 0) {
     file.write("old-velocity", flat<D>(s.u_old));
@@ -77,7 +78,8 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, bool moving) {
     level->boundary.resize(faces);
     file.read(name, level->p);
     file.read(name + "-boundary", level->boundary);
-    if (k == 0) read_vectors<D>(file, name + "-gradient", level->gradient, cells);
+    const bool has_gradient = file.read_scalar(name + "-has-gradient") != 0;
+    read_vectors<D>(file, name + "-gradient", level->gradient, has_gradient ? cells : 0);
     s.pressure[k] = level;
   }
   if (s.dt_old > 0) {
@@ -95,7 +97,7 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, bool moving) {
     s.mesh_flux.resize(has_mesh_flux ? mesh.n_flux_faces() : 0);
     file.read("mesh-flux", s.mesh_flux);
   }
-  s.placement = make_placement<D>(mesh, moving ? s.points : mesh.reference_points);
+  s.placement = moving ? make_placement<D>(mesh, s.points) : make_placement<D>(mesh, mesh.reference);
   return s;
 }
 

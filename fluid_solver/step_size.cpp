@@ -115,23 +115,24 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
   const Placement<D>& at = *s.placement;
   convection_.assign(mesh_.cells.n_local(), 0.0);
   diffusion_.assign(mesh_.cells.n_local(), 0.0);
-  least_ratio_.assign(mesh_.cells.n_local(), infinity);
+  peclet_of_.assign(mesh_.cells.n_local(), 0.0);
   const bool moving = !s.mesh_flux.empty();
-  double peclet = 0;
-  const auto add = [&](Index cell, double flux, double g, double ratio) {
+  const auto add = [&](Index cell, double flux, double g, double peclet) {
     convection_[cell] += 0.5 * flux;
     diffusion_[cell] += 2 * nu_ * g;
-    least_ratio_[cell] = std::min(least_ratio_[cell], ratio);
+    peclet_of_[cell] = std::max(peclet_of_[cell], peclet);
   };
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    const double flux = std::abs(s.phi[f] - (moving ? s.mesh_flux[f] : 0.0));
-    const bool inside = f < mesh_.n_interior;
-    const bool given = inside || boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity;
-    const double g = given ? at.conductance[f] : 0;
-    const double ratio = inside && flux > 0 ? 4 * nu_ * g / flux : infinity;
-    if (inside) peclet = std::max(peclet, nu_ > 0 ? flux / (nu_ * g) : infinity);
-    add(mesh_.owner[f], flux, g, ratio);
-    if (inside) add(mesh_.neighbour[f], flux, g, ratio);
+  const auto flux_of = [&](Index f) { return std::abs(s.phi[f] - (moving ? s.mesh_flux[f] : 0.0)); };
+  double largest = 0;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const double flux = flux_of(f), g = at.conductance[f], peclet = nu_ > 0 ? flux / (nu_ * g) : infinity;
+    largest = std::max(largest, peclet);
+    add(mesh_.owner[f], flux, g, peclet);
+    add(mesh_.neighbour[f], flux, g, peclet);
+  }
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
+    const bool given = boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity;
+    add(mesh_.owner[f], flux_of(f), given ? at.conductance[f] : 0, 0);
   }
   eddy_.assign(s.eddy.size(), 0.0);
   if (!s.eddy.empty()) add_eddies(s);
@@ -139,7 +140,7 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
   const double lowest_explicit =
                    scheme_ == ExplicitScheme::runge_kutta ? lowest_runge_kutta : adams_bashforth.back(),
                lowest_implicit = implicit_table().least();
-  double least[3] = {infinity, infinity, -peclet};
+  double least[3] = {infinity, infinity, -largest};
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     const double convection = convection_[c] / at.volume[c];
     const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
@@ -148,7 +149,7 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
     if (lowest_explicit < least[0] * size)
       least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion), scheme_) / size);
     if (lowest_implicit < least[1] * convection)
-      least[1] = std::min(least[1], implicit_convective_limit(least_ratio_[c]) / convection);
+      least[1] = std::min(least[1], implicit_convective_limit(4 / peclet_of_[c]) / convection);
     if (eddy > 0)  // the eddy part stays explicit
       least[1] =
           std::min(least[1], explicit_limit(std::atan2(convection, eddy)) / std::hypot(convection, eddy));

@@ -33,7 +33,7 @@ class StepSize {
   const Boundary<D>& boundary_;
   double nu_;
   ExplicitScheme scheme_;
-  std::vector<double> convection_, diffusion_, eddy_, least_ratio_;
+  std::vector<double> convection_, diffusion_, eddy_, peclet_of_;
   double peclet_ = 0;
 };
 

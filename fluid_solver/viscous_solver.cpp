@@ -19,7 +19,9 @@ void sum_all(MPI_Comm comm, std::array<double, N>& values) {
 }  // namespace
 
 template <int D>
-void ViscousSolver<D>::multiply(const Placement<D>& at, double beta, Vectors<D>& x, Vectors<D>& y) const {
+void ViscousSolver<D>::multiply(Vectors<D>& x, Vectors<D>& y) const {
+  const Placement<D>& at = *at_;
+  const double beta = beta_;
   mesh_.cells.update_ghosts(flat<D>(x), D);
   for (Index c = 0; c < mesh_.cells.n_local(); ++c) y[c] = at.volume[c] * x[c];
   for (Index f = 0; f < mesh_.n_interior; ++f) {
@@ -40,20 +42,25 @@ void ViscousSolver<D>::multiply(const Placement<D>& at, double beta, Vectors<D>&
 }
 
 template <int D>
-int ViscousSolver<D>::solve(const Placement<D>& at, double beta, const Vectors<D>& w, double tolerance,
-                            Vectors<D>& b, Vectors<D>& u) {
-  const Index owned = mesh_.cells.n_owned();
-  r_.resize(u.size());
-  q_.resize(u.size());
-  search_.assign(u.size(), Vec<D>::Zero());
+void ViscousSolver<D>::prepare(const Placement<D>& at, double beta) {
+  at_ = &at;
+  beta_ = beta;
   inverse_diagonal_.assign(at.volume.begin(), at.volume.end());
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
     const double a = beta * at.conductance[f];
     inverse_diagonal_[mesh_.owner[f]] += a;
-    if (f < mesh_.n_interior) {
-      inverse_diagonal_[mesh_.neighbour[f]] += a;
-      continue;
-    }
+    inverse_diagonal_[mesh_.neighbour[f]] += a;
+  }
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+    inverse_diagonal_[mesh_.owner[f]] += beta * at.conductance[f];
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) inverse_diagonal_[c] = 1 / inverse_diagonal_[c];
+}
+
+template <int D>
+void ViscousSolver<D>::add_boundary(const Vectors<D>& w, Vectors<D>& b) const {
+  const Placement<D>& at = *at_;
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
+    const double a = beta_ * at.conductance[f];
     const std::size_t face = f - mesh_.n_interior;
     if (boundary_.kind()[face] == FaceKind::velocity) b[mesh_.owner[f]] += a * w[face];
     if (boundary_.kind()[face] == FaceKind::slip) {
@@ -61,9 +68,16 @@ int ViscousSolver<D>::solve(const Placement<D>& at, double beta, const Vectors<D
       b[mesh_.owner[f]] += a * w[face].dot(n) * n;
     }
   }
-  for (Index c = 0; c < owned; ++c) inverse_diagonal_[c] = 1 / inverse_diagonal_[c];
+}
 
-  multiply(at, beta, u, q_);
+template <int D>
+int ViscousSolver<D>::solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u) {
+  const Index owned = mesh_.cells.n_owned();
+  r_.resize(u.size());
+  q_.resize(u.size());
+  search_.assign(u.size(), Vec<D>::Zero());
+  add_boundary(w, b);
+  multiply(u, q_);
   std::array<double, 2> sums{};  // b.D^-1 b, r.D^-1 r
   for (Index c = 0; c < owned; ++c) {
     r_[c] = b[c] - q_[c];
@@ -77,7 +91,7 @@ int ViscousSolver<D>::solve(const Placement<D>& at, double beta, const Vectors<D
   int iterations = 0;
   while (rz > goal && iterations < most_iterations) {
     ++iterations;
-    multiply(at, beta, search_, q_);
+    multiply(search_, q_);
     std::array<double, 1> curvature{};
     for (Index c = 0; c < owned; ++c) curvature[0] += search_[c].dot(q_[c]);
     sum_all(mesh_.comm, curvature);

@@ -13,16 +13,22 @@ template <int D>
 class ViscousSolver {
  public:
   ViscousSolver(const Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
+  /// The system of the solves that follow. `at` has to stay.
+  void prepare(const Placement<D>& at, double beta);
+  /// Of its diagonal, per owned cell.
+  const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
   /// `b`: per local cell (owned ones count) without boundary parts; `w`: given velocity per boundary face;
   /// `u`: guess on entry, with ghosts current on exit. Returns the iterations; throws SolveFailure.
   /// Collective.
-  int solve(const Placement<D>& at, double beta, const Vectors<D>& w, double tolerance, Vectors<D>& b,
-            Vectors<D>& u);
+  int solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u);
 
  private:
-  void multiply(const Placement<D>& at, double beta, Vectors<D>& x, Vectors<D>& y) const;
+  void add_boundary(const Vectors<D>& w, Vectors<D>& b) const;
+  void multiply(Vectors<D>& x, Vectors<D>& y) const;
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
+  const Placement<D>* at_ = nullptr;
+  double beta_ = 0;
   Vectors<D> r_, q_, search_;
   std::vector<double> inverse_diagonal_;
 };
