@@ -15,8 +15,8 @@ using lanes::load;
 
 /// What the force on one face takes. Since the c_V of (2.56) add up to nothing, grad_t u = sum_i c_i (u_plus
 /// - u_minus) with one difference of vertices in 2-D and two in 3-D: the diagonals of a quadrilateral, two
-/// sides of a triangle. In 3-D the vectors are made from those when they are wanted: d_0 x d_1 is twice the
-/// face vector.
+/// sides of a triangle. In 3-D the vectors are made from those when they are wanted, unless all of them fit
+/// the cache: d_0 x d_1 is twice the face vector.
 template <int D>
 struct ThesisFace;
 template <>
@@ -42,6 +42,11 @@ struct FaceVectors {
   double area;
 };
 
+/// Faces, in 3-D, up to which the vectors are kept: 80 bytes each. Beyond, to read them costs more than to
+/// make them.
+constexpr Index most_kept = 40'000;
+constexpr int kept_size = 10;
+
 /// A vertex: its displacement, in 3-D then its place.
 template <int D>
 constexpr int record = D == 2 ? lanes::width<D> : 2 * lanes::width<D>;
@@ -63,6 +68,10 @@ constexpr int record = D == 2 ? lanes::width<D> : 2 * lanes::width<D>;
   v.c[1] = lanes::cross(v.n, d[0]) * face.inverse_double;
   v.area = 0.5 * lanes::dot<3>(twice, v.n);
   return v;
+}
+
+[[gnu::always_inline]] inline FaceVectors<3> kept_vectors(const double* kept) {
+  return {load<3>(kept), {load<3>(kept + 3), load<3>(kept + 6)}, kept[9]};
 }
 
 template <int D>
@@ -100,8 +109,8 @@ template <int D>
 //   (2.77)
 template <int D>
 [[gnu::always_inline]] inline Lane<D> force_on(const ThesisFace<D>& face, const LameConstants& lame,
-                                               const Lane<D>& across, const double* points) {
-  const FaceVectors<D> vectors = vectors_of(face, points);
+                                               const Lane<D>& across, const FaceVectors<D>& vectors,
+                                               const double* points) {
   const Lane<D>& n = vectors.n;
   Lane<D> g = across * face.inverse_dn, turned = {};
   double trace = 0;
@@ -141,6 +150,7 @@ class ThesisKernel final : public ElasticKernel::Implementation {
       for (Index v = 0; v < mesh.points.n_local(); ++v)
         std::copy_n(mesh.reference_points[v].data(), 3,
                     points_.begin() + std::ptrdiff_t(v) * record<3> + lanes::width<3>);
+    if (D == 3 && n_faces_with_force(mesh) <= most_kept) keep_vectors();
   }
 
   void apply(std::span<const double> unknowns, std::span<const double> known,
@@ -155,6 +165,11 @@ class ThesisKernel final : public ElasticKernel::Implementation {
 
  private:
   static constexpr int stride = lanes::width<D>;
+  void keep_vectors();
+  template <class Vectors>
+  [[gnu::always_inline]] inline void collect_forces_with(const Vectors& vectors,
+                                                         std::span<const double> known,
+                                                         std::span<double> result);
   void fill(std::span<const double> unknowns, std::span<const double> known);
 
   const Mesh& mesh_;
@@ -164,6 +179,7 @@ class ThesisKernel final : public ElasticKernel::Implementation {
   ElasticVertices vertices_;
   FaceLames lame_;
   std::vector<ThesisFace<D>> faces_;
+  std::vector<double> kept_;    // vectors of the faces, kept_size numbers each, if there are few
   std::vector<double> points_;  // records of the vertices
 };
 
@@ -182,12 +198,41 @@ inline void ThesisKernel<D>::interpolate_free() {
 }
 
 template <int D>
+void ThesisKernel<D>::keep_vectors() {
+  for (const ThesisFace<D>& face : faces_) {
+    const FaceVectors<D> vectors = vectors_of(face, points_.data());
+    for (int a = 0; a < D; ++a) kept_.push_back(vectors.n[a]);
+    for (int i = 0; i < D - 1; ++i)
+      for (int a = 0; a < D; ++a) kept_.push_back(vectors.c[i][a]);
+    kept_.push_back(vectors.area);
+  }
+}
+
+template <int D>
 inline void ThesisKernel<D>::collect_forces(std::span<const double> known, std::span<double> result) {
+  if constexpr (D == 3) {
+    if (!kept_.empty())
+      return collect_forces_with(
+          [this](Index f) __attribute__((always_inline)) {
+            return kept_vectors(kept_.data() + std::size_t(f) * kept_size);
+          },
+          known, result);
+  }
+  collect_forces_with(
+      [this](Index f) __attribute__((always_inline)) { return vectors_of(faces_[f], points_.data()); }, known,
+      result);
+}
+
+template <int D>
+template <class Vectors>
+inline void ThesisKernel<D>::collect_forces_with(const Vectors& vectors, std::span<const double> known,
+                                                 std::span<double> result) {
   nodes_.clear_forces();
   const double* points = points_.data();
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
-    const Lane<D> force = force_on<D>(faces_[f], lame_[f], load<D>(nodes_[n]) - load<D>(nodes_[p]), points);
+    const Lane<D> force =
+        force_on<D>(faces_[f], lame_[f], load<D>(nodes_[n]) - load<D>(nodes_[p]), vectors(f), points);
     lanes::add<D>(nodes_.force(p), -force);
     lanes::add<D>(nodes_.force(n), force);
   }
@@ -196,8 +241,9 @@ inline void ThesisKernel<D>::collect_forces(std::span<const double> known, std::
   };
   boundary_.add_rows<D>(
       nodes_, known, result.data() + std::size_t(mesh_.cells.n_owned()) * D,
-      [&](Index f)
-          __attribute__((always_inline)) { return force_on<D>(faces_[f], lame_[f], across(f), points); },
+      [&](Index f) __attribute__((always_inline)) {
+        return force_on<D>(faces_[f], lame_[f], across(f), vectors(f), points);
+      },
       [&](Index f) __attribute__((always_inline)) { return slope_at<D>(faces_[f], across(f), points); });
   nodes_.take_forces(result);
 }
