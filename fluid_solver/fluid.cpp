@@ -149,8 +149,10 @@ void Fluid<D>::begin_step(double time, double dt) {
   rewind();
   accepted_.time = time;
   beginning_ = Beginning{accepted_.dt_old, accepted_.implicit, accepted_.start, accepted_.pressure};
-  if (!parameters_.time_step || parameters_.viscous == ViscousTreatment::automatic)
+  if (!parameters_.time_step)
     statistics_.limits = step_size_.limits(accepted_);
+  else if (parameters_.viscous == ViscousTreatment::automatic)
+    statistics_.limits.explicit_viscous = step_size_.explicit_viscous_limit(accepted_);
   if (parameters_.viscous == ViscousTreatment::automatic) choose_viscous_treatment();
   statistics_.sub_steps = 0;
 }

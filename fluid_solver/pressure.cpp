@@ -95,7 +95,9 @@ void PressureEquation<D>::set(const Placement<D>& at) {
   }
   if (solver_) return solver_->matrix_changed();
   LinearOptions options;
-  options.method = direct_ ? LinearMethod::cg_direct : LinearMethod::cg_multigrid;
+  options.method = !direct_ ? LinearMethod::cg_multigrid
+                   : fixed_ ? LinearMethod::cg_direct
+                            : LinearMethod::cg_single;
   solver_ = std::make_unique<LinearSolver>("pressure", *matrix_, options);
 }
 

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "common/parallel/collective.hpp"
+
 namespace couplet::fluid {
 namespace {
 
@@ -79,7 +81,14 @@ const LimitTable& implicit_table() {
 }
 constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90},
     adams_bashforth{1, 0.96, 0.91, 0.81, 0.63, 0.25}, runge_kutta{2.51, 2.37, 2.5, 2.4, 2.1, 1.73};
-constexpr double lowest_runge_kutta = 1.73;
+
+/// What the limit is at least: cells that this keeps from deciding are passed over, which spares most of them
+/// the angle.
+double lowest_limit(double convection, double diffusion, ExplicitScheme scheme) {
+  const bool rk = scheme == ExplicitScheme::runge_kutta;
+  if (convection <= diffusion) return rk ? 2.37 : 0.96;
+  return rk ? 1.73 : 0.25;
+}
 
 }  // namespace
 
@@ -110,43 +119,62 @@ void StepSize<D>::add_eddies(const State<D>& s) {
   }
 }
 
+/// sum |phi - dV/dt| / 2 and 2 nu sum g of each cell; with `peclet` also the largest |phi - dV/dt| / (nu g)
+/// of its faces. Gives the largest of all on this rank.
 template <int D>
-StepLimits StepSize<D>::limits(const State<D>& s) {
+double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
   const Placement<D>& at = *s.placement;
-  convection_.assign(mesh_.cells.n_local(), 0.0);
-  diffusion_.assign(mesh_.cells.n_local(), 0.0);
-  peclet_of_.assign(mesh_.cells.n_local(), 0.0);
+  rates_.assign(mesh_.cells.n_local(), Vec<2>::Zero());
+  peclet_of_.assign(peclet ? mesh_.cells.n_local() : 0, 0.0);
   const bool moving = !s.mesh_flux.empty();
-  const auto add = [&](Index cell, double flux, double g, double peclet) {
-    convection_[cell] += 0.5 * flux;
-    diffusion_[cell] += 2 * nu_ * g;
-    peclet_of_[cell] = std::max(peclet_of_[cell], peclet);
-  };
   const auto flux_of = [&](Index f) { return std::abs(s.phi[f] - (moving ? s.mesh_flux[f] : 0.0)); };
   double largest = 0;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
-    const double flux = flux_of(f), g = at.conductance[f], peclet = nu_ > 0 ? flux / (nu_ * g) : infinity;
-    largest = std::max(largest, peclet);
-    add(mesh_.owner[f], flux, g, peclet);
-    add(mesh_.neighbour[f], flux, g, peclet);
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const double flux = flux_of(f), g = at.conductance[f];
+    const Vec<2> part(0.5 * flux, 2 * nu_ * g);
+    rates_[p] += part;
+    rates_[n] += part;
+    if (!peclet) continue;
+    const double number = nu_ > 0 ? flux / (nu_ * g) : infinity;
+    largest = std::max(largest, number);
+    peclet_of_[p] = std::max(peclet_of_[p], number);
+    peclet_of_[n] = std::max(peclet_of_[n], number);
   }
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
     const bool given = boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity;
-    add(mesh_.owner[f], flux_of(f), given ? at.conductance[f] : 0, 0);
+    rates_[mesh_.owner[f]] += Vec<2>(0.5 * flux_of(f), given ? 2 * nu_ * at.conductance[f] : 0);
   }
   eddy_.assign(s.eddy.size(), 0.0);
   if (!s.eddy.empty()) add_eddies(s);
-  // Few cells can be the one that decides: most are passed over with the lowest value the limits can take.
-  const double lowest_explicit =
-                   scheme_ == ExplicitScheme::runge_kutta ? lowest_runge_kutta : adams_bashforth.back(),
-               lowest_implicit = implicit_table().least();
+  return largest;
+}
+
+template <int D>
+double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
+  add_rates(s, false);
+  double least = infinity;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const Vec<2> rate = (rates_[c] + Vec<2>(0, eddy_.empty() ? 0 : eddy_[c])) / s.placement->volume[c];
+    const double lowest = lowest_limit(rate[0], rate[1], scheme_);
+    if (lowest * lowest < least * least * rate.squaredNorm())
+      least = std::min(least, explicit_limit(std::atan2(rate[0], rate[1]), scheme_) / rate.norm());
+  }
+  return round_down(min(mesh_.comm, least));
+}
+
+template <int D>
+StepLimits StepSize<D>::limits(const State<D>& s) {
+  const Placement<D>& at = *s.placement;
+  const double largest = add_rates(s, true);
+  const double lowest_implicit = implicit_table().least();
   double least[3] = {infinity, infinity, -largest};
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const double convection = convection_[c] / at.volume[c];
+    const double convection = rates_[c][0] / at.volume[c];
     const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
-    const double diffusion = diffusion_[c] / at.volume[c] + eddy;
+    const double diffusion = rates_[c][1] / at.volume[c] + eddy;
     const double size = std::sqrt(convection * convection + diffusion * diffusion);
-    if (lowest_explicit < least[0] * size)
+    if (lowest_limit(convection, diffusion, scheme_) < least[0] * size)
       least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion), scheme_) / size);
     if (lowest_implicit < least[1] * convection)
       least[1] = std::min(least[1], implicit_convective_limit(4 / peclet_of_[c]) / convection);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/linalg/petsc_check.hpp"
+#include "common/linalg/single_factors.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -24,6 +25,10 @@ constexpr GlobalIndex largest_for_petsc = 12000;
 
 // Fresh factors cost about as much as this many iterations save over a few dozen solves.
 constexpr int most_with_old_factors = 8;
+
+// Fresh factors in double precision need one iteration, two at very tight tolerances: more than this many
+// with factors in single precision mean that cells are too thin for them.
+constexpr int most_with_fresh_single_factors = 6;
 
 // Of BiCGStab from its true residual.
 constexpr int most_restarts = 20;
@@ -82,6 +87,7 @@ void choose_method(KSP ksp, PC pc, const SparseMatrix& matrix, LinearMethod meth
       petsc_check(KSPSetType(ksp, KSPPREONLY));
       return comm_size(matrix.comm()) == 1 ? choose_cholmod(pc) : choose_factors(pc, matrix, true);
     case LinearMethod::cg_direct:
+    case LinearMethod::cg_single:
       petsc_check(KSPSetType(ksp, KSPCG));
       petsc_check(KSPSetNormType(ksp, KSP_NORM_UNPRECONDITIONED));
       return comm_size(matrix.comm()) == 1 ? choose_cholmod(pc) : choose_factors(pc, matrix, true);
@@ -111,6 +117,20 @@ void choose_method(KSP ksp, PC pc, const SparseMatrix& matrix, LinearMethod meth
   }
 }
 
+PetscErrorCode apply_single(PC pc, ::Vec b, ::Vec x) {
+  void* factors = nullptr;
+  PetscCall(PCShellGetContext(pc, &factors));
+  const PetscScalar* from = nullptr;
+  PetscScalar* to = nullptr;
+  PetscInt n = 0;
+  PetscCall(VecGetLocalSize(b, &n));
+  PetscCall(VecGetArrayRead(b, &from));
+  PetscCall(VecGetArrayWrite(x, &to));
+  static_cast<SingleFactors*>(factors)->apply({from, std::size_t(n)}, {to, std::size_t(n)});
+  PetscCall(VecRestoreArrayWrite(x, &to));
+  return VecRestoreArrayRead(b, &from);
+}
+
 }  // namespace
 
 LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const LinearOptions& options)
@@ -120,6 +140,12 @@ LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const L
   PC pc = nullptr;
   petsc_check(KSPGetPC(ksp_, &pc));
   choose_method(ksp_, pc, matrix, options.method);
+  if (options.method == LinearMethod::cg_single && comm_size(matrix.comm()) == 1) {
+    single_ = std::make_unique<SingleFactors>();
+    petsc_check(PCSetType(pc, PCSHELL));
+    petsc_check(PCShellSetContext(pc, single_.get()));
+    petsc_check(PCShellSetApply(pc, apply_single));
+  }
   if (!is_direct(options.method)) petsc_check(KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE));
   petsc_check(MatCreateVecs(matrix.petsc(), &x_, &b_));
 }
@@ -135,6 +161,34 @@ void LinearSolver::matrix_changed() {
   if (is_direct(options_.method)) rebuild_ = true;
 }
 
+void LinearSolver::make_single_factors() {
+  PetscInt n = 0;
+  const PetscInt *offset = nullptr, *index = nullptr;
+  const PetscScalar* value = nullptr;
+  PetscBool done = PETSC_FALSE;
+  petsc_check(MatGetRowIJ(matrix_->petsc(), 0, PETSC_FALSE, PETSC_FALSE, &n, &offset, &index, &done));
+  petsc_check(MatSeqAIJGetArrayRead(matrix_->petsc(), &value));
+  const std::vector<int> offsets(offset, offset + n + 1), indices(index, index + offset[n]);
+  const auto release = [&] {
+    petsc_check(MatSeqAIJRestoreArrayRead(matrix_->petsc(), &value));
+    petsc_check(MatRestoreRowIJ(matrix_->petsc(), 0, PETSC_FALSE, PETSC_FALSE, &n, &offset, &index, &done));
+  };
+  try {
+    single_->factorise(offsets, indices, {value, indices.size()});
+  } catch (...) {
+    release();
+    throw;
+  }
+  release();
+}
+
+void LinearSolver::leave_single_precision() {
+  PC pc = nullptr;
+  petsc_check(KSPGetPC(ksp_, &pc));
+  choose_cholmod(pc);
+  single_.reset();
+}
+
 void LinearSolver::refresh() { rebuild_ = true; }
 
 SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double> x) {
@@ -148,8 +202,9 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
       KSPSetTolerances(ksp_, relative_tolerance, absolute_tolerance, PETSC_DEFAULT, options_.max_iterations));
   SolveStatistics statistics;
   KSPConvergedReason reason = attempt(b, x, statistics);
-  if (reason < 0 && !rebuild_) {
+  if (reason < 0 && (!rebuild_ || single_)) {
     // The kept preconditioner no longer fits the matrix: one more try with a fresh one.
+    if (rebuild_) leave_single_precision();
     rebuild_ = true;
     std::fill(x.begin(), x.end(), 0.0);
     reason = attempt(b, x, statistics);
@@ -166,8 +221,13 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
   if (rebuild_) {
     rebuild_ = false;
     ++built_;
-    most_iterations_ =
-        options_.method == LinearMethod::cg_direct ? most_with_old_factors : 2 * statistics.iterations + 2;
+    const bool factors =
+        options_.method == LinearMethod::cg_direct || options_.method == LinearMethod::cg_single;
+    most_iterations_ = factors ? most_with_old_factors : 2 * statistics.iterations + 2;
+    if (single_ && statistics.iterations > most_with_fresh_single_factors) {
+      leave_single_precision();
+      rebuild_ = true;
+    }
   } else if (!is_direct(options_.method) && statistics.iterations > most_iterations_) {
     rebuild_ = true;
   }
@@ -191,6 +251,7 @@ double LinearSolver::true_residual(std::span<const double> b, std::span<const do
 /// One KSPSolve; a result that is not finite counts as not converged.
 KSPConvergedReason LinearSolver::attempt(std::span<const double> b, std::span<double> x,
                                          SolveStatistics& statistics) {
+  if (rebuild_ && single_) make_single_factors();
   petsc_check(KSPSetReusePreconditioner(ksp_, rebuild_ ? PETSC_FALSE : PETSC_TRUE));
   if (rebuild_) petsc_check(KSPSetOperators(ksp_, matrix_->petsc(), matrix_->petsc()));
   petsc_check(VecPlaceArray(b_, b.data()));

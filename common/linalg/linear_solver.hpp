@@ -3,6 +3,7 @@
 
 #include <petscksp.h>
 
+#include <memory>
 #include <span>
 #include <string>
 
@@ -15,11 +16,14 @@ enum class LinearMethod {
   direct_symmetric,  ///< Cholesky: the same
   direct_planar,     ///< Cholesky of a 2-D mesh's matrix, positive definite: on one rank by CHOLMOD
   cg_direct,         ///< CG with kept Cholesky factors: moving 2-D meshes, symmetric positive definite
+  cg_single,         ///< the same, the factors in single precision where that is enough (one rank)
   cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
   gmres_multigrid,   ///< GMRES with BoomerAMG
   bicgstab_ilu,      ///< BiCGStab with ILU(0), block Jacobi over the ranks
   cg_icc,            ///< CG with incomplete Cholesky factors, block Jacobi over the ranks
 };
+
+class SingleFactors;
 
 struct LinearOptions {
   LinearMethod method = LinearMethod::cg_multigrid;
@@ -61,11 +65,14 @@ class LinearSolver {
  private:
   double norm(std::span<const double> values) const;
   double true_residual(std::span<const double> b, std::span<const double> x) const;
+  void make_single_factors();
+  void leave_single_precision();
   KSPConvergedReason attempt(std::span<const double> b, std::span<double> x, SolveStatistics& statistics);
 
   std::string what_;
   LinearOptions options_;
   const SparseMatrix* matrix_;
+  std::unique_ptr<SingleFactors> single_;  // null: PETSc has its own preconditioner
   KSP ksp_ = nullptr;
   ::Vec b_ = nullptr, x_ = nullptr;
   bool rebuild_ = true;

@@ -86,17 +86,21 @@ TEST_P(MovingCylinder, keeps_its_mass_while_it_is_timed) {
   parameters.pressure_tolerance = GetParam();
   Fluid<2> fluid(mesh, parameters, true);
   mesh_mover::Laplacian laplacian(mesh, motion());
-  std::clock_t start = std::clock();
+  std::clock_t ticks = 0;
+  double divergence = 0;  // mean over the timed steps
   for (int i = 0; i < steps; ++i) {
-    if (i == warm_up) start = std::clock();
+    const std::clock_t start = std::clock();
     step(fluid, laplacian, mesh, i * dt);
+    if (i < warm_up) continue;
+    ticks += std::clock() - start;
+    divergence += mean_divergence(fluid) / (steps - warm_up);
   }
-  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  const double seconds = static_cast<double>(ticks) / CLOCKS_PER_SEC;
   RecordProperty("cells", std::to_string(mesh.cells.n_owned()));
   RecordProperty("cells_steps_per_second",
                  std::to_string(double(mesh.cells.n_owned()) * (steps - warm_up) / seconds));
-  RecordProperty("mean_divergence", std::to_string(1e9 * mean_divergence(fluid)));  // [1e-9/s]
-  EXPECT_LT(mean_divergence(fluid), 1e-2 * GetParam() / dt);
+  RecordProperty("mean_divergence", std::to_string(1e9 * divergence));  // [1e-9/s]
+  EXPECT_LT(divergence, 1e-2 * GetParam() / dt);
   double largest = 0;
   for (const Index point : laplacian.interface_points())
     largest = std::max(largest, std::abs(fluid.state().points[point].y() - mesh.reference_points[point].y() -
@@ -104,7 +108,7 @@ TEST_P(MovingCylinder, keeps_its_mass_while_it_is_timed) {
   EXPECT_LT(largest, 1e-12);
 }
 
-INSTANTIATE_TEST_SUITE_P(Tolerances, MovingCylinder, testing::Values(1e-6, 4e-6, 1e-5));
+INSTANTIATE_TEST_SUITE_P(Tolerances, MovingCylinder, testing::Values(1e-6, 3e-6, 1e-5));
 
 }  // namespace
 }  // namespace couplet::fluid
