@@ -101,7 +101,8 @@ TEST(SingleFactors, serve_a_solver_in_few_iterations_or_are_given_up_where_cells
     EXPECT_EQ(solver.preconditioners_built(), thin ? 2 : 1) << first;
     EXPECT_LE(second, thin ? 2 : 4) << aspect;
     std::vector<double> residual = grid.multiply(again);
-    EXPECT_LT(relative_error(residual, b), 2e-10);
+    // On the thin cells A x is itself rounded by a part in 1e5.
+    EXPECT_LT(relative_error(residual, b), thin ? 1e-4 : 2e-10);
   }
 }
 
