@@ -99,7 +99,7 @@ displacementLaplacianCoeffs{diffusivity inverseDistance (cylinder);}""")
     foam_file(case, "constant/turbulenceProperties", "dictionary", "simulationType laminar;")
     foam_file(case, "system/fvSolution", "dictionary", f"""solvers{{"(p|pcorr)"{{solver GAMG;smoother GaussSeidel;tolerance {tolerance};relTol 0.05;}}
 "(pFinal|pcorrFinal)"{{$p;relTol 0;}} "U.*"{{solver smoothSolver;smoother symGaussSeidel;tolerance 1e-6;relTol 0;}}
-"cellDisplacement.*"{{solver GAMG;smoother GaussSeidel;tolerance 1e-7;relTol 1e-3;}}}}
+"cellDisplacement.*"{{solver PCG;preconditioner DIC;tolerance 1e-7;relTol 1e-3;}}}}
 PIMPLE{{nOuterCorrectors 1;nCorrectors 2;nNonOrthogonalCorrectors 0;correctPhi no;checkMeshCourantNo no;}}""")
     foam_file(case, "system/fvSchemes", "dictionary", """ddtSchemes{default backward;} gradSchemes{default Gauss linear;}
 divSchemes{default none;div(phi,U) Gauss linear;div((nuEff*dev2(T(grad(U))))) Gauss linear;}
