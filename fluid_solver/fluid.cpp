@@ -149,10 +149,7 @@ void Fluid<D>::begin_step(double time, double dt) {
   rewind();
   accepted_.time = time;
   beginning_ = Beginning{accepted_.dt_old, accepted_.implicit, accepted_.start, accepted_.pressure};
-  if (!parameters_.time_step)
-    statistics_.limits = step_size_.limits(accepted_);
-  else if (parameters_.viscous == ViscousTreatment::automatic)
-    statistics_.limits.explicit_viscous = step_size_.explicit_viscous_limit(accepted_);
+  if (!parameters_.time_step) statistics_.limits = step_size_.limits(accepted_);
   if (parameters_.viscous == ViscousTreatment::automatic) choose_viscous_treatment();
   statistics_.sub_steps = 0;
 }
@@ -165,7 +162,8 @@ void Fluid<D>::choose_viscous_treatment() {
   bool implicit = accepted_.implicit;
   if (parameters_.time_step) {
     const double own = dt_ / parts(dt_, *parameters_.time_step);
-    implicit = limits.explicit_viscous * parameters_.safety_factor < own * (implicit ? 1.3 : 1.0);
+    implicit = step_size_.explicit_viscous_limit_is_below(
+        own * (implicit ? 1.3 : 1.0) / parameters_.safety_factor, accepted_);
   } else {
     const double with_explicit = parts(dt_, parameters_.safety_factor * limits.explicit_viscous);
     const double with_implicit =

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The predictor of FractionalStep: everything before the pressure equation.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/base/error.hpp"
@@ -241,12 +242,18 @@ void FractionalStep<D>::extrapolate_pressure(const State<D>& from) {
   const double t = from.time + step_.dt / 2;
   std::vector<const PressureLevel<D>*> levels;
   for (std::size_t k = 0; k < order && from.pressure[k]; ++k) levels.push_back(from.pressure[k].get());
-  p_.assign(mesh_.cells.n_local(), 0.0);
-  for (std::size_t k = 0; k < levels.size(); ++k) {
-    double weight = 1;
+  std::array<double, 3> weight{1, 1, 1};
+  for (std::size_t k = 0; k < levels.size(); ++k)
     for (std::size_t j = 0; j < levels.size(); ++j)
-      if (j != k) weight *= (t - levels[j]->time) / (levels[k]->time - levels[j]->time);
-    for (std::size_t c = 0; c < p_.size(); ++c) p_[c] += weight * levels[k]->p[c];
+      if (j != k) weight[k] *= (t - levels[j]->time) / (levels[k]->time - levels[j]->time);
+  if (levels.size() == 3) {
+    p_.resize(mesh_.cells.n_local());
+    for (std::size_t c = 0; c < p_.size(); ++c)
+      p_[c] = weight[0] * levels[0]->p[c] + weight[1] * levels[1]->p[c] + weight[2] * levels[2]->p[c];
+  } else {
+    p_.assign(mesh_.cells.n_local(), 0.0);
+    for (std::size_t k = 0; k < levels.size(); ++k)
+      for (std::size_t c = 0; c < p_.size(); ++c) p_[c] += weight[k] * levels[k]->p[c];
   }
   gradient_start_.clear();
   if (!oblique_ || levels.empty()) return;

@@ -163,6 +163,21 @@ double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
   return round_down(min(mesh_.comm, least));
 }
 
+/// The limit is at most that of the negative real axis, and a cell's diffusion at least that of one of its
+/// faces.
+template <int D>
+bool StepSize<D>::explicit_viscous_limit_is_below(double size, const State<D>& s) {
+  const Placement<D>& at = *s.placement;
+  const auto stiffness = [&](Index f) { return 2 * nu_ * at.conductance[f] / at.volume[mesh_.owner[f]]; };
+  const double highest = explicit_limit(0, scheme_);
+  if (any(mesh_.comm, stiff_face_ >= 0 && highest < 0.999 * size * stiffness(stiff_face_))) return true;
+  stiff_face_ = -1;
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    if (mesh_.owner[f] < mesh_.cells.n_owned() && (stiff_face_ < 0 || stiffness(f) > stiffness(stiff_face_)))
+      stiff_face_ = f;
+  return explicit_viscous_limit(s) < size;
+}
+
 template <int D>
 StepLimits StepSize<D>::limits(const State<D>& s) {
   const Placement<D>& at = *s.placement;

@@ -24,12 +24,14 @@ class StepSize {
   StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
            ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
   StepLimits limits(const State<D>& state);
-  /// StepLimits::explicit_viscous alone, at half the cost.
-  double explicit_viscous_limit(const State<D>& state);
+  /// StepLimits::explicit_viscous < `size`? Where one face is stiff enough to say so nothing else is looked
+  /// at. Collective.
+  bool explicit_viscous_limit_is_below(double size, const State<D>& state);
   /// Largest cell Peclet number |phi| / (nu g) of the last limits(), all ranks.
   double largest_peclet() const { return peclet_; }
 
  private:
+  double explicit_viscous_limit(const State<D>& state);
   double add_rates(const State<D>& state, bool peclet);
   void add_eddies(const State<D>& state);
   const Mesh& mesh_;
@@ -38,6 +40,7 @@ class StepSize {
   ExplicitScheme scheme_;
   Vectors<2> rates_;  // of convection and diffusion
   std::vector<double> eddy_, peclet_of_;
+  Index stiff_face_ = -1;  // with the largest g/V of those looked at last
   double peclet_ = 0;
 };
 

@@ -112,8 +112,10 @@ std::vector<double> swept_volumes(const Mesh& mesh, std::span<const Vec3> from, 
     // constant.
     for (Index f = 0; f < mesh.n_faces(); ++f) {
       const Index a = mesh.face_points[f][0], b = mesh.face_points[f][1];
-      const Vec3 e = 0.5 * (from[b] - from[a] + to[b] - to[a]);
-      const Vec3 d = 0.5 * (to[a] - from[a] + to[b] - from[b]);
+      const auto old_a = from[a].head<2>(), old_b = from[b].head<2>(), new_a = to[a].head<2>(),
+                 new_b = to[b].head<2>();
+      const Vec<2> e = 0.5 * (old_b - old_a + new_b - new_a);
+      const Vec<2> d = 0.5 * (new_a - old_a + new_b - old_b);
       swept[f] = d[0] * e[1] - d[1] * e[0];
     }
     return swept;
