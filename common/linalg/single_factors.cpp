@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/linalg/single_factors.hpp"
 
-#include <cholmod.h>
-
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -10,25 +9,24 @@
 
 namespace couplet {
 
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+// Supernodes that are a little too wide read zeros, those that are too thin little at once: up to so many
+// columns they take any zeros, up to so many this part, beyond that.
+constexpr Index always = 2, narrow = 16;
+constexpr double zeros_of_narrow = 0.3, zeros_of_wide = 0.05;
+
+bool worth_its_zeros(Index columns, double zeros, double entries) {
+  return columns <= always || zeros <= (columns <= narrow ? zeros_of_narrow : zeros_of_wide) * entries;
+}
+
+}  // namespace
+
 struct SingleFactors::Analysis {
-  cholmod_common common;
-  cholmod_factor* symbolic = nullptr;
-  Analysis() {
-    cholmod_start(&common);
-    common.supernodal = CHOLMOD_SUPERNODAL;
-    common.final_ll = 1;
-    common.print = 0;
-    // Supernodes that are a little too wide read zeros, those that are too thin little at once.
-    common.nrelax[0] = 2;
-    common.zrelax[0] = 0.3;
-    common.zrelax[1] = common.zrelax[2] = 0.05;
-  }
-  ~Analysis() {
-    cholmod_free_factor(&symbolic, &common);
-    cholmod_finish(&common);
-  }
-  Analysis(const Analysis&) = delete;
-  Analysis& operator=(const Analysis&) = delete;
+  Eigen::SimplicialLLT<Matrix, Eigen::Upper, Eigen::AMDOrdering<int>> solver;
+  const Matrix& factor() const { return solver.matrixL().nestedExpression(); }
 };
 
 SingleFactors::SingleFactors() = default;
@@ -36,56 +34,80 @@ SingleFactors::~SingleFactors() = default;
 
 void SingleFactors::factorise(std::span<const int> offset, std::span<const int> index,
                               std::span<const double> value) {
-  const std::size_t n = offset.size() - 1;
-  cholmod_sparse a{};
-  a.nrow = a.ncol = n;
-  a.nzmax = index.size();
-  a.p = const_cast<int*>(offset.data());
-  a.i = const_cast<int*>(index.data());
-  a.x = const_cast<double*>(value.data());
-  a.stype = 1;  // only the upper triangle is read
-  a.itype = CHOLMOD_INT;
-  a.xtype = CHOLMOD_REAL;
-  a.dtype = CHOLMOD_DOUBLE;
-  a.sorted = 1;
-  a.packed = 1;
-  if (!analysis_) {
+  const int n = static_cast<int>(offset.size()) - 1;
+  const Eigen::Map<const Matrix> a(n, n, static_cast<int>(index.size()), offset.data(), index.data(),
+                                   value.data());
+  const bool first = !analysis_;
+  if (first) {
     analysis_ = std::make_unique<Analysis>();
-    analysis_->symbolic = cholmod_analyze(&a, &analysis_->common);
+    analysis_->solver.analyzePattern(a);
   }
-  cholmod_common& common = analysis_->common;
-  cholmod_factor* factor = analysis_->symbolic ? cholmod_copy_factor(analysis_->symbolic, &common) : nullptr;
-  const bool done = factor && cholmod_factorize(&a, factor, &common) && common.status == CHOLMOD_OK &&
-                    factor->minor >= n && factor->is_super;
-  if (done) keep(*factor);
-  cholmod_free_factor(&factor, &common);
-  if (!done)
+  analysis_->solver.factorize(a);
+  if (analysis_->solver.info() != Eigen::Success)
     throw SolveFailure("A matrix of {} rows that should be positive definite has no Cholesky factors.", n);
+  if (first) find_supernodes();
+  keep_values();
 }
 
-void SingleFactors::keep(const cholmod_factor& factor) {
-  const auto* first = static_cast<const int*>(factor.super);
-  const auto* first_row = static_cast<const int*>(factor.pi);
-  const auto* first_value = static_cast<const int*>(factor.px);
-  const auto* rows = static_cast<const int*>(factor.s);
-  const auto* permutation = static_cast<const int*>(factor.Perm);
-  order_.assign(permutation, permutation + factor.n);
-  work_.assign(factor.n + 1, 0.0F);
-  nodes_.clear();
-  row_.clear();
-  triangle_.clear();
-  below_.clear();
+/// A column joins the ones before it if it is their parent in the elimination tree: their rows are then among
+/// its own.
+void SingleFactors::find_supernodes() {
+  const Matrix& l = analysis_->factor();
+  const int *start = l.outerIndexPtr(), *row = l.innerIndexPtr();
+  const auto n = static_cast<Index>(l.cols());
+  order_.resize(n);
+  const auto& place = analysis_->solver.permutationP().indices();
+  for (Index i = 0; i < n; ++i) order_[place[i]] = i;
+  work_.assign(std::size_t(n) + 1, 0.0F);
   Index most = 0;
-  for (std::size_t s = 0; s < factor.nsuper; ++s) {
-    const Index columns = first[s + 1] - first[s], all = first_row[s + 1] - first_row[s];
-    const Index groups = (all - columns + lanes - 1) / lanes;
-    nodes_.push_back({first[s], columns, groups, triangle_.size(), row_.size(), below_.size()});
-    row_.insert(row_.end(), rows + first_row[s] + columns, rows + first_row[s] + all);
-    row_.resize(nodes_.back().rows + std::size_t(groups) * lanes, static_cast<Index>(factor.n));
-    keep(nodes_.back(), static_cast<const double*>(factor.x) + first_value[s], all);
+  std::size_t n_below = 0, n_triangle = 0;
+  for (Index first = 0, next = 0; first < n; first = next) {
+    double entries = start[first + 1] - start[first];
+    for (next = first + 1; next < n; ++next) {
+      if (start[next] - start[next - 1] < 2 || row[start[next - 1] + 1] != next) break;
+      const double columns = next + 1 - first, below = start[next + 1] - start[next] - 1;
+      const double filled = columns * (columns + 1) / 2 + columns * below;
+      entries += below + 1;
+      if (!worth_its_zeros(next + 1 - first, filled - entries, filled)) break;
+    }
+    const Index columns = next - first, below = start[next] - start[next - 1] - 1;
+    const Index groups = (below + lanes - 1) / lanes;
+    nodes_.push_back({first, columns, groups, n_triangle, row_.size(), n_below});
+    row_.insert(row_.end(), row + start[next] - below, row + start[next]);
+    row_.resize(nodes_.back().rows + std::size_t(groups) * lanes, n);
+    n_triangle += std::size_t(columns) * (columns + 1) / 2;
+    n_below += std::size_t(groups) * columns;
     most = std::max(most, columns);
   }
   sum_.resize(most);
+  triangle_.reserve(n_triangle);
+  below_.reserve(n_below);
+}
+
+void SingleFactors::keep_values() {
+  const Matrix& l = analysis_->factor();
+  const int *start = l.outerIndexPtr(), *row = l.innerIndexPtr();
+  std::vector<double> block;
+  triangle_.clear();
+  below_.clear();
+  for (const Supernode& node : nodes_) {
+    const Index last = node.first + node.columns - 1;
+    const std::size_t stride = node.columns + start[last + 1] - start[last] - 1;
+    block.assign(stride * node.columns, 0.0);
+    for (Index j = 0; j < node.columns; ++j) {
+      double* column = block.data() + std::size_t(j) * stride;
+      const Index* below = row_.data() + node.rows;
+      for (int k = start[node.first + j]; k < start[node.first + j + 1]; ++k) {
+        if (row[k] <= last) {
+          column[row[k] - node.first] = l.valuePtr()[k];
+          continue;
+        }
+        while (*below != row[k]) ++below;
+        column[node.columns + (below - row_.data() - std::ptrdiff_t(node.rows))] = l.valuePtr()[k];
+      }
+    }
+    keep(node, block.data(), stride);
+  }
 }
 
 /// `block`: the columns of a supernode one after another, `stride` rows each.

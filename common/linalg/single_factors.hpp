@@ -8,14 +8,12 @@
 
 #include "common/base/types.hpp"
 
-struct cholmod_factor_struct;
-
 namespace couplet {
 
 /// Cholesky factors P A P^T = L L^T of one rank's symmetric positive definite matrix, as a preconditioner.
-/// CHOLMOD orders and factorises in double precision; L is kept in single precision, by supernodes (columns
-/// with the same rows), so that solving reads a third of what a column-by-column factor in double precision
-/// has to and runs four rows at a time.
+/// Eigen orders (AMD) and factorises in double precision; L is kept in single precision, by supernodes
+/// (columns with nearly the same rows), so that solving reads a third of what a column-by-column factor in
+/// double precision has to and runs four rows at a time.
 class SingleFactors {
  public:
   SingleFactors();
@@ -41,7 +39,8 @@ class SingleFactors {
     std::size_t below;     // its entries of below_: group by group, in each column by column
   };
   struct Analysis;
-  void keep(const cholmod_factor_struct& factor);
+  void find_supernodes();
+  void keep_values();
   void keep(const Supernode& node, const double* block, std::size_t stride);
   void multiply_inverse(const Supernode& node);
   void multiply_transposed(const Supernode& node);
