@@ -199,6 +199,7 @@ inline void ThesisKernel<D>::interpolate_free() {
 
 template <int D>
 void ThesisKernel<D>::keep_vectors() {
+  kept_.reserve(faces_.size() * kept_size);
   for (const ThesisFace<D>& face : faces_) {
     const FaceVectors<D> vectors = vectors_of(face, points_.data());
     for (int a = 0; a < D; ++a) kept_.push_back(vectors.n[a]);

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/base/error.hpp"
 
@@ -17,6 +18,8 @@ using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 // columns they take any zeros, up to so many this part, beyond that.
 constexpr Index always = 2, narrow = 16;
 constexpr double zeros_of_narrow = 0.3, zeros_of_wide = 0.05;
+// Loops over up to so many columns are unrolled.
+constexpr int most_unrolled = 6;
 
 bool worth_its_zeros(Index columns, double zeros, double entries) {
   return columns <= always || zeros <= (columns <= narrow ? zeros_of_narrow : zeros_of_wide) * entries;
@@ -187,49 +190,22 @@ void SingleFactors::collect(const Supernode& node) {
   for (Index j = 0; j < columns; ++j) x[j] -= (sum[j][0] + sum[j][1]) + (sum[j][2] + sum[j][3]);
 }
 
+/// visit.operator()<n>() with n the number of columns, 0 if there are too many to unroll.
+template <class Visit>
+void SingleFactors::with_columns(const Supernode& node, const Visit& visit) {
+  const auto unrolled = [&]<int... Counts>(std::integer_sequence<int, Counts...>) {
+    return ((node.columns == Counts + 1 && (visit.template operator()<Counts + 1>(), true)) || ...);
+  };
+  if (!unrolled(std::make_integer_sequence<int, most_unrolled>())) visit.template operator()<0>();
+}
+
 void SingleFactors::forward(const Supernode& node) {
   multiply_inverse(node);
-  switch (node.columns) {
-    case 1:
-      return spread<1>(node);
-    case 2:
-      return spread<2>(node);
-    case 3:
-      return spread<3>(node);
-    case 4:
-      return spread<4>(node);
-    case 5:
-      return spread<5>(node);
-    case 6:
-      return spread<6>(node);
-    default:
-      return spread<0>(node);
-  }
+  with_columns(node, [&]<int Columns>() { spread<Columns>(node); });
 }
 
 void SingleFactors::backward(const Supernode& node) {
-  switch (node.columns) {
-    case 1:
-      collect<1>(node);
-      break;
-    case 2:
-      collect<2>(node);
-      break;
-    case 3:
-      collect<3>(node);
-      break;
-    case 4:
-      collect<4>(node);
-      break;
-    case 5:
-      collect<5>(node);
-      break;
-    case 6:
-      collect<6>(node);
-      break;
-    default:
-      collect<0>(node);
-  }
+  with_columns(node, [&]<int Columns>() { collect<Columns>(node); });
   multiply_transposed(node);
 }
 

@@ -48,6 +48,8 @@ class SingleFactors {
   void spread(const Supernode& node);
   template <int Columns>
   void collect(const Supernode& node);
+  template <class Visit>
+  static void with_columns(const Supernode& node, const Visit& visit);
   void forward(const Supernode& node);
   void backward(const Supernode& node);
 
