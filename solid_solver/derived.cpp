@@ -14,11 +14,10 @@ Tensor3 symmetric(const Tensor3& gradient) { return 0.5 * (gradient + gradient.t
 
 }  // namespace
 
-/// All gradients of displacements pass here. `cells`, `faces`, `points`: of all local ones. Collective.
+/// Those of all flux faces. `cells`, `faces`, `points`: of all local ones. Collective.
 void Solid::visit_gradients(std::span<const double> cells, std::span<const double> faces,
-                            std::span<const double> points, const ElasticKernel::TakeGradient& take,
-                            Index first) const {
-  kernel_.face_gradients(unknowns_of(cells, faces), known_of(faces, points), take, first);
+                            std::span<const double> points, const ElasticKernel::TakeGradient& take) const {
+  kernel_.face_gradients(unknowns_of(cells, faces), known_of(faces, points), take, 0, mesh_.n_flux_faces());
 }
 
 /// Those of the flux faces first, first + 1, ... Collective.
@@ -26,10 +25,8 @@ std::vector<Tensor3> Solid::face_gradients(Index first, Index count, std::span<c
                                            std::span<const double> faces,
                                            std::span<const double> points) const {
   std::vector<Tensor3> gradients(count);
-  const auto take = [&](Index f, const Tensor3& gradient) {
-    if (f < first + count) gradients[f - first] = gradient;
-  };
-  visit_gradients(cells, faces, points, take, first);
+  const auto take = [&](Index f, const Tensor3& gradient) { gradients[f - first] = gradient; };
+  kernel_.face_gradients(unknowns_of(cells, faces), known_of(faces, points), take, first, first + count);
   return gradients;
 }
 

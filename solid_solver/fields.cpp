@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What can be derived from the accepted state: point values, stresses, forces, and the state itself on file.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +10,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/output.hpp"
 #include "solid_solver/solid.hpp"
+#include "solid_solver/system.hpp"
 
 namespace couplet {
 namespace {
@@ -77,13 +80,21 @@ std::vector<double> Solid::point_acceleration() const {
 
 std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
   std::vector<PatchForce> forces;
-  const std::vector<Tensor3> stress = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
+  // One pass over the faces between the first and the last that is held, often few of the boundary's.
+  Index first = mesh_.n_flux_faces(), end = mesh_.n_interior;
+  for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+    const Patch& patch = mesh_.patches[p];
+    if (!boundaries_.holds(p) || patch.count == 0) continue;
+    first = std::min(first, patch.first);
+    end = std::max(end, patch.first + patch.count);
+  }
+  const std::vector<Tensor3> stress = face_stress(first, std::max<Index>(end - first, 0), points);
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     if (!boundaries_.holds(p)) continue;
     const Patch& patch = mesh_.patches[p];
     Vec3 force = Vec3::Zero();
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
-      force += elastic_.holding_force(f, stress[f - mesh_.n_interior], state_.face_u, known_accepted_);
+      force += elastic_.holding_force(f, stress[f - first], state_.face_u, known_accepted_);
     for (int a = 0; a < 3; ++a) force[a] = sum(mesh_.comm, force[a]);
     forces.push_back({mesh_.patches[p].name, force});
   }
@@ -184,6 +195,31 @@ void Solid::save(CheckpointWriter& file) const {
   file.write_scalar("largest-gradient", largest_gradient_);
   file.write_scalar("inertia-over-load", inertia_over_load_);
   for (const auto& effect : effects_) effect->save(file);
+  save_projections(file);
+}
+
+/// First guesses decide what is left below the tolerance: a run that continues makes the same ones.
+void Solid::save_projections(CheckpointWriter& file) const {
+  std::vector<double> factors;
+  for (const auto& system : systems_) {
+    const ResidualProjection* projection = system->method->projection();
+    if (!projection) continue;
+    file.write(fmt::format("projection-{}", factors.size()), projection->values());
+    factors.push_back(system->mass_factor);
+  }
+  file.write_scalar("projections", double(factors.size()));
+  for (std::size_t i = 0; i < factors.size(); ++i)
+    file.write_scalar(fmt::format("projection-{}-mass-factor", i), factors[i]);
+}
+
+void Solid::load_projections(CheckpointReader& file) {
+  for (int i = static_cast<int>(file.read_scalar("projections")); i-- > 0;) {
+    System& system = system_for(file.read_scalar(fmt::format("projection-{}-mass-factor", i)));
+    const SolidProblem problem{mesh_, elastic_, system.inertia, kernel_};
+    const auto apply = [&](std::span<const double> x, std::span<double> y) { problem.apply(x, y); };
+    if (ResidualProjection* projection = system.method->projection())
+      projection->set_values(file.read(fmt::format("projection-{}", i)), apply);
+  }
 }
 
 void Solid::load(CheckpointReader& file) {
@@ -219,6 +255,7 @@ void Solid::load(CheckpointReader& file) {
   inertia_over_load_ = file.read_scalar("inertia-over-load");
   for (const auto& effect : effects_) effect->load(file);
   apply_stiffness();
+  load_projections(file);
 }
 
 }  // namespace couplet

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/method_parameters.hpp"
 
+#include "common/linalg/residual_projection.hpp"
+
 namespace couplet {
 
 void declare(config::Section& s, MethodParameters& m) {
@@ -59,6 +61,11 @@ void declare(config::Section& s, MethodParameters& m) {
       .doc(
           "first guess of a dynamic step: the last displacement; moved on with the velocity (2.73); with two "
           "velocities (2.74)");
+  s.value("corrections-kept", m.corrections_kept)
+      .range(0, ResidualProjection::most)
+      .doc(
+          "of newton-krylov in dynamic analyses: of the corrections that the last so many steps made to the "
+          "predictor, the combination that leaves the least residual is added to the guess; 0: none");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc("residual over right-hand side at which the iteration stops");

@@ -21,6 +21,7 @@ struct MethodParameters {
   int aitken_interval = 5;
   int anderson_history = 10;
   Predictor predictor = Predictor::euler;
+  int corrections_kept = 4;
   double relative_tolerance = 1e-10;
   int max_iterations = 2000;
 };

@@ -69,6 +69,8 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
     factors_->solve(r, z);
   };
   krylov_ = std::make_unique<BiCgStab>("displacement", problem.mesh.comm, n, apply, precondition);
+  if (!problem.is_static() && parameters.corrections_kept > 0)
+    projection_ = std::make_unique<ResidualProjection>(problem.mesh.comm, parameters.corrections_kept);
 }
 
 void NewtonKrylov::choose_multigrid(const MethodParameters&) {
@@ -107,7 +109,7 @@ void NewtonKrylov::choose_factors() {
 
 SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double> u) {
   try {
-    const SolveStatistics statistics = krylov_->solve(b, u, options_);
+    const SolveStatistics statistics = krylov_->solve(b, u, options_, projection_.get());
     if (problem_.inertia.empty()) krylov_->forget_vectors();  // static: what is written next needs room
     return statistics;
   } catch (const SolveFailure& e) {

@@ -174,6 +174,8 @@ void Solid::update_trial_ghosts() {
 void Solid::accept_step() {
   if (!is_dynamic()) judge_inertia();
   for (const auto& effect : effects_) effect->accept_step();
+  for (const StageWork& work : stages_)
+    if (ResidualProjection* projection = work.system->method->projection()) projection->accept();
   std::swap(state_, trial_);
   std::swap(known_accepted_, known_);
   std::swap(known_rate_accepted_, known_rate_);

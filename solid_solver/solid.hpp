@@ -139,8 +139,7 @@ class Solid final : public Participant {
   void judge_step();
   std::vector<double> known_acceleration() const;
   void visit_gradients(std::span<const double> cells, std::span<const double> faces,
-                       std::span<const double> points, const ElasticKernel::TakeGradient& take,
-                       Index first = 0) const;
+                       std::span<const double> points, const ElasticKernel::TakeGradient& take) const;
   std::vector<Tensor3> face_gradients(Index first, Index count, std::span<const double> cells,
                                       std::span<const double> faces, std::span<const double> points) const;
   double stress_work(const Placed& stressed, std::span<const double> cell_change,
@@ -178,6 +177,8 @@ class Solid final : public Participant {
   std::vector<double> corrected_points(std::span<const double> cells, std::span<const double> faces,
                                        std::span<const double> known) const;
   void judge_inertia();
+  void save_projections(CheckpointWriter& file) const;
+  void load_projections(CheckpointReader& file);
 
   const Mesh mesh_;
   const SolidParameters parameters_;

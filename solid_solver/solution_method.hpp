@@ -8,6 +8,7 @@
 #include "common/fv/elastic_kernel.hpp"
 #include "common/fv/elasticity.hpp"
 #include "common/linalg/linear_solver.hpp"
+#include "common/linalg/residual_projection.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/method_parameters.hpp"
 
@@ -35,11 +36,14 @@ class SolutionMethod {
   /// `b`, `u`: packed rows of this rank (owned cells, then unknown faces); `u` holds the guess. Throws
   /// SolveFailure if the tolerance was not reached.
   virtual SolveStatistics solve(std::span<const double> b, std::span<double> u) = 0;
+  /// What the next first guess learns from accepted steps; none: nothing.
+  ResidualProjection* projection() const { return projection_.get(); }
   /// "block-coupled (direct), thesis's face gradient": for the log, with the reason if the program chose.
   const std::string& name() const { return name_; }
 
  protected:
   std::string name_;
+  std::unique_ptr<ResidualProjection> projection_;
 
  private:
   friend std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem&, const MethodParameters&);

@@ -20,8 +20,8 @@ void ElasticKernel::apply(std::span<const double> unknowns, std::span<const doub
 }
 
 void ElasticKernel::face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                                   const TakeGradient& take, Index first) const {
-  implementation_->face_gradients(unknowns, known, take, first);
+                                   const TakeGradient& take, Index first, Index end) const {
+  implementation_->face_gradients(unknowns, known, take, first, end);
 }
 
 void ElasticKernel::point_values(std::span<const double> unknowns, std::span<const double> known,

@@ -47,9 +47,9 @@ class ElasticKernel {
   void apply(std::span<const double> unknowns, std::span<const double> known, std::span<double> result) const;
   /// Takes (face, gradient) for each flux face, entry (i, j) = d u_j / d x_i; zeros across the plane in 2-D.
   using TakeGradient = std::function<void(Index, const Tensor3&)>;
-  /// From the flux face `first` on. Collective.
+  /// Of the flux faces from `first` to the one before `end`. Collective.
   void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                      const TakeGradient& take, Index first = 0) const;
+                      const TakeGradient& take, Index first, Index end) const;
   /// dim values a local point; those of points that belong to no owned cell are left as they are. Collective.
   void point_values(std::span<const double> unknowns, std::span<const double> known,
                     std::span<double> points) const;

@@ -25,7 +25,7 @@ class CorrectedKernel final : public ElasticKernel::Implementation {
   void apply(std::span<const double> unknowns, std::span<const double> known,
              std::span<double> result) override;
   void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                      const ElasticKernel::TakeGradient& take, Index first) override;
+                      const ElasticKernel::TakeGradient& take, Index first, Index end) override;
   void point_values(std::span<const double> unknowns, std::span<const double> known,
                     std::span<double> points) override;
 
@@ -376,9 +376,9 @@ void CorrectedKernel<D>::apply(std::span<const double> unknowns, std::span<const
 
 template <int D>
 void CorrectedKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                                        const ElasticKernel::TakeGradient& take, Index first) {
+                                        const ElasticKernel::TakeGradient& take, Index first, Index end) {
   prepare(unknowns, known);
-  for (Index f = first; f < mesh_.n_flux_faces(); ++f) {
+  for (Index f = first; f < end; ++f) {
     const Surface<D> here = around(f);
     const Rows<D>& grad = here.grad;
     const Lane<D>& n = here.n;

@@ -156,7 +156,7 @@ class ThesisKernel final : public ElasticKernel::Implementation {
   void apply(std::span<const double> unknowns, std::span<const double> known,
              std::span<double> result) override;
   void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                      const ElasticKernel::TakeGradient& take, Index first) override;
+                      const ElasticKernel::TakeGradient& take, Index first, Index end) override;
   void point_values(std::span<const double> unknowns, std::span<const double> known,
                     std::span<double> points) override;
 
@@ -284,9 +284,9 @@ void ThesisKernel<D>::apply(std::span<const double> unknowns, std::span<const do
 
 template <int D>
 void ThesisKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                                     const ElasticKernel::TakeGradient& take, Index first) {
+                                     const ElasticKernel::TakeGradient& take, Index first, Index end) {
   fill(unknowns, known);
-  for (Index f = first; f < mesh_.n_flux_faces(); ++f) {
+  for (Index f = first; f < end; ++f) {
     const ThesisFace<D>& face = faces_[f];
     const bool symmetric = f >= mesh_.n_interior && rows_.condition(f) == ElasticCondition::symmetry;
     Lane<D> g = (load<D>(f < mesh_.n_interior ? nodes_[mesh_.neighbour[f]] : nodes_.of_face(f)) -

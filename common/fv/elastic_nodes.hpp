@@ -17,7 +17,7 @@ class ElasticKernel::Implementation {
   virtual void apply(std::span<const double> unknowns, std::span<const double> known,
                      std::span<double> result) = 0;
   virtual void face_gradients(std::span<const double> unknowns, std::span<const double> known,
-                              const TakeGradient& take, Index first) = 0;
+                              const TakeGradient& take, Index first, Index end) = 0;
   virtual void point_values(std::span<const double> unknowns, std::span<const double> known,
                             std::span<double> points) = 0;
 };

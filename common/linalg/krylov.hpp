@@ -3,17 +3,16 @@
 
 #include <mpi.h>
 
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "common/linalg/linear_map.hpp"
 #include "common/linalg/linear_solver.hpp"
 
 namespace couplet {
 
-/// y = F(x) on the rows of this rank. Collective.
-using LinearMap = std::function<void(std::span<const double> x, std::span<double> y)>;
+class ResidualProjection;
 
 struct KrylovOptions {
   double relative_tolerance = 1e-8;  ///< of |b - A x| / |b|
@@ -29,8 +28,10 @@ class BiCgStab {
   /// `what` names the unknown in messages. `n`: rows of this rank.
   BiCgStab(std::string what, MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap precondition);
 
-  /// `x` holds the guess on entry. Throws SolveFailure if the tolerance was not reached. Collective.
-  SolveStatistics solve(std::span<const double> b, std::span<double> x, const KrylovOptions& options);
+  /// `x` holds the guess on entry, which `projection`, if there is one, moves on. Throws SolveFailure if the
+  /// tolerance was not reached. Collective.
+  SolveStatistics solve(std::span<const double> b, std::span<double> x, const KrylovOptions& options,
+                        ResidualProjection* projection = nullptr);
   /// Gives the memory of its vectors back until the next solve.
   void forget_vectors();
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Holds the table of docs/architecture.md: who may include whom, which folder sees which third-party headers, an SPDX
-line in every source file, file lengths, and clang-format where it is installed. Usage: check_sources.py PROJECT_ROOT"""
+line in every source file, file lengths, the papers cited, and clang-format where it is installed. Usage: check_sources.py PROJECT_ROOT"""
 import pathlib
 import re
 import shutil
@@ -111,9 +111,25 @@ def check_format(root, files):
             dict.fromkeys(places)]
 
 
+def check_references(bib, texts):
+    """`bib` must hold each paper once and all that `texts`, pairs of name and text, cite by name and year in brackets; no
+    text may be left half merged."""
+    keys = re.findall(r"^@\w+\{([\w-]+),$", bib, flags=re.M)
+    trouble = [f"docs/references.bib: {key} stands there twice" for key in sorted({k for k in keys if keys.count(k) > 1})]
+    if bib.count("{") != bib.count("}") or len(keys) != bib.count("@"):
+        trouble.append("docs/references.bib: braces or entries are not whole")
+    for name, text in [*texts, ("docs/references.bib", bib)]:
+        if re.search(r"^(<{7} |={7}$|>{7} )", text, flags=re.M):
+            trouble.append(f"{name}: a conflict of a merge is left in it")
+        trouble += [f"{name}: [{key}] is not in docs/references.bib" for key in
+                    dict.fromkeys(re.findall(r"\[([a-z]+(?:1[89]|20)\d\d)\]", text)) if key not in keys]
+    return trouble
+
+
 def main(root):
     files = project_files(root)
-    trouble = check_format(root, files)
+    texts = [(f.relative_to(root), f.read_text()) for f in [*files, *(root / "docs").rglob("*.md")]]
+    trouble = check_format(root, files) + check_references((root / "docs/references.bib").read_text(), texts)
     for file in files:
         trouble += check_text(file.relative_to(root), file.read_text())
     print("\n".join(trouble) or f"{len(files)} files: in order")

@@ -4,7 +4,7 @@
 import pathlib
 import sys
 
-from check_sources import check_text
+from check_sources import check_references, check_text
 
 HEAD = "// SPDX-License-Identifier: Apache-2.0\n"
 WRONG = {
@@ -36,5 +36,20 @@ for path, text in RIGHT:
     if found:
         print(f"{path}: nothing is wrong, found {found}")
         failed += 1
-print(f"{len(WRONG) + len(RIGHT)} samples, {failed} judged wrongly")
+BIB = "@article{stone1968,\n  year = {1968}\n}\n"
+CITES = "see [sto" + "ne1968]"
+REFERENCES = {
+    (BIB, CITES): None,
+    (BIB + BIB, CITES): "twice",
+    (BIB[:-2], CITES): "not whole",
+    (BIB.replace("1968,", "1969,"), CITES): "[sto" + "ne1968] is not in",
+    (BIB, "=" * 7 + "\n"): "conflict",
+    (BIB + "<" * 7 + " HEAD\n", ""): "conflict",
+}
+for (bib, text), reason in REFERENCES.items():
+    found = check_references(bib, [("a.md", text)])
+    if len(found) != (reason is not None) or reason and reason not in found[0]:
+        print(f"references: wanted '{reason}', found {found}")
+        failed += 1
+print(f"{len(WRONG) + len(RIGHT) + len(REFERENCES)} samples, {failed} judged wrongly")
 sys.exit(1 if failed else 0)

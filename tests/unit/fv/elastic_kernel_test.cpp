@@ -180,7 +180,8 @@ TEST(ElasticKernel, linear_fields_have_their_exact_constant_stress_in_both_schem
       s.sample([&](const Vec3& x) { return Vec3(gradient.transpose() * x + Vec3(0.3, -0.2, 0.1)); }, u,
                known);
       std::vector<Tensor3> found(s.mesh.n_flux_faces());
-      s.kernel.face_gradients(u, known, [&](Index f, const Tensor3& g) { found[f] = g; });
+      s.kernel.face_gradients(
+          u, known, [&](Index f, const Tensor3& g) { found[f] = g; }, 0, s.mesh.n_flux_faces());
       for (const Tensor3& g : found)
         ASSERT_LT((g - gradient).topLeftCorner(s.mesh.dim, s.mesh.dim).norm(), 1e-11);
       std::vector<double> points(std::size_t(s.mesh.points.n_local()) * s.mesh.dim), force(u.size());
@@ -208,7 +209,8 @@ TEST(ElasticKernel, a_symmetry_plane_keeps_a_symmetric_linear_field_exact) {
           },
           u, known);
       std::vector<Tensor3> found(s.mesh.n_flux_faces());
-      s.kernel.face_gradients(u, known, [&](Index f, const Tensor3& g) { found[f] = g; });
+      s.kernel.face_gradients(
+          u, known, [&](Index f, const Tensor3& g) { found[f] = g; }, 0, s.mesh.n_flux_faces());
       Tensor3 exact = slope.asDiagonal();
       if (s.mesh.dim == 3) exact(2, 0) = 0.4;
       for (const Tensor3& g : found)
@@ -232,7 +234,8 @@ TEST(ElasticKernel, corrected_gradients_are_exact_for_quadratic_fields_on_even_b
     std::vector<double> u, known;
     s.sample(field, u, known);
     std::vector<Tensor3> found(s.mesh.n_flux_faces());
-    s.kernel.face_gradients(u, known, [&](Index f, const Tensor3& g) { found[f] = g; });
+    s.kernel.face_gradients(
+        u, known, [&](Index f, const Tensor3& g) { found[f] = g; }, 0, s.mesh.n_flux_faces());
     const int dim = s.mesh.dim;
     // Edges of the body excepted (in 2-D its corners): there vertices differ from their neighbours in kind.
     const Vec3 lower(0.1, 0.2, 0.3), upper(1.1, 1.0, 1.4),

@@ -11,6 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/linalg/acceleration.hpp"
 #include "common/linalg/component_multigrid.hpp"
+#include "common/linalg/residual_projection.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -56,6 +57,69 @@ TEST(BiCgStab, a_good_guess_costs_no_iteration) {
   const std::vector<double> before = x;
   EXPECT_EQ(solver.solve(b, x, {1e-10, 10}).iterations, 0);
   EXPECT_EQ(x, before);
+}
+
+/// Right-hand side number k: a combination of three shapes whose shares move smoothly.
+std::vector<double> moving_load(std::size_t n, int k) {
+  std::vector<double> b(n);
+  for (std::size_t i = 0; i < n; ++i)
+    b[i] = std::sin(0.3 * double(i)) + 0.1 * k * std::cos(0.2 * double(i)) +
+           0.03 * k * k * std::sin(0.05 * double(i));
+  return b;
+}
+
+TEST(ResidualProjection, a_load_made_of_earlier_ones_costs_no_iteration) {
+  const std::size_t n = 200;
+  BiCgStab solver("u", MPI_COMM_WORLD, n, convect, identity);
+  ResidualProjection projection(MPI_COMM_WORLD, 3);
+  for (int k = 0; k < 8; ++k) {
+    std::vector<double> x(n, 0.0);
+    const std::vector<double> b = moving_load(n, k);
+    // The corrections that are kept are good to 1e-12; what they leave is larger, but far below 1e-8.
+    const double tolerance = k < 3 ? 1e-12 : 1e-8;
+    const SolveStatistics s = solver.solve(b, x, {tolerance, 500}, &projection);
+    EXPECT_LE(true_residual(b, x), tolerance);
+    if (k < 3) {
+      EXPECT_GT(s.iterations, 3) << k;
+      projection.accept();
+    } else {
+      EXPECT_EQ(s.iterations, 0) << k;
+    }
+  }
+}
+
+TEST(ResidualProjection, a_solve_that_is_not_accepted_leaves_no_trace) {
+  const std::size_t n = 200;
+  BiCgStab solver("u", MPI_COMM_WORLD, n, convect, identity);
+  ResidualProjection projection(MPI_COMM_WORLD, 4);
+  std::vector<double> x(n, 0.0), first(n, 0.0), again(n, 0.0);
+  solver.solve(moving_load(n, 0), x, {1e-9, 500}, &projection);
+  projection.accept();
+  solver.solve(moving_load(n, 1), first, {1e-9, 500}, &projection);
+  solver.solve(moving_load(n, 5), x, {1e-9, 500}, &projection);
+  solver.solve(moving_load(n, 1), again, {1e-9, 500}, &projection);
+  EXPECT_EQ(first, again);
+}
+
+TEST(ResidualProjection, continues_from_its_values_and_forgets_those_of_another_operator) {
+  const std::size_t n = 200;
+  BiCgStab solver("u", MPI_COMM_WORLD, n, convect, identity);
+  ResidualProjection one(MPI_COMM_WORLD, 3), other(MPI_COMM_WORLD, 3), foreign(MPI_COMM_WORLD, 3);
+  for (int k = 0; k < 5; ++k) {
+    std::vector<double> x(n, 0.0);
+    solver.solve(moving_load(n, k), x, {1e-9, 500}, &one);
+    one.accept();
+  }
+  other.set_values(one.values(), convect);
+  std::vector<double> x(n, 0.0), y(n, 0.0), z(n, 0.0), fresh(n, 0.0);
+  const std::vector<double> b = moving_load(n, 5);
+  solver.solve(b, x, {1e-9, 500}, &one);
+  solver.solve(b, y, {1e-9, 500}, &other);
+  EXPECT_EQ(x, y);
+  foreign.set_values(one.values(), identity);
+  solver.solve(b, z, {1e-9, 500}, &foreign);
+  solver.solve(b, fresh, {1e-9, 500});
+  EXPECT_EQ(z, fresh);
 }
 
 TEST(BiCgStab, says_what_was_reached_when_it_fails) {

@@ -145,7 +145,8 @@ TEST(SolidMethods, ranks_do_not_change_the_answer) {
 }
 
 /// Iterations of 20 steps of a block that begins to move as a whole and is held on one side.
-int iterations_of_motion(MethodParameters::Predictor predictor, std::vector<double>& end) {
+int iterations_of_motion(MethodParameters::Predictor predictor, int corrections_kept,
+                         std::vector<double>& end) {
   SolidParameters p = box_parameters(3);
   p.analysis = SolidParameters::Analysis::dynamic;
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
@@ -153,6 +154,7 @@ int iterations_of_motion(MethodParameters::Predictor predictor, std::vector<doub
   p.method = method(MethodType::newton_krylov, FaceGradient::thesis, 1e-8);
   p.method.preconditioner = Preconditioner::multigrid;
   p.method.predictor = predictor;
+  p.method.corrections_kept = corrections_kept;
   const auto solid = make_solid(make_box(BoxCells::hexahedra, {10, 4, 4}, Vec3::Zero(), Vec3(2, 1, 1)), p);
   int iterations = 0;
   for (int i = 0; i < 20; ++i) {
@@ -165,18 +167,22 @@ int iterations_of_motion(MethodParameters::Predictor predictor, std::vector<doub
 
 TEST(SolidMethods, predictors_save_iterations_and_change_nothing) {
   using Predictor = MethodParameters::Predictor;
-  std::vector<double> none_end, euler_end, adams_end;
-  const int none = iterations_of_motion(Predictor::none, none_end);
-  const int euler = iterations_of_motion(Predictor::euler, euler_end);
-  const int adams = iterations_of_motion(Predictor::adams, adams_end);
-  fmt::print("iterations: no predictor {}, Euler {}, Adams {}\n", none, euler, adams);
+  std::vector<double> none_end, euler_end, adams_end, kept_end;
+  const int none = iterations_of_motion(Predictor::none, 0, none_end);
+  const int euler = iterations_of_motion(Predictor::euler, 0, euler_end);
+  const int adams = iterations_of_motion(Predictor::adams, 0, adams_end);
+  const int kept = iterations_of_motion(Predictor::euler, 4, kept_end);
+  fmt::print("iterations: no predictor {}, Euler {}, Adams {}, with earlier corrections {}\n", none, euler,
+             adams, kept);
   EXPECT_LT(euler, none);
   EXPECT_LE(adams, euler);
+  EXPECT_LT(kept, 0.75 * euler);
   double size = 0;
   for (const double u : none_end) size = std::max(size, std::abs(u));
   for (std::size_t i = 0; i < none_end.size(); ++i) {
     ASSERT_NEAR(euler_end[i], none_end[i], 1e-5 * size);
     ASSERT_NEAR(adams_end[i], none_end[i], 1e-5 * size);
+    ASSERT_NEAR(kept_end[i], none_end[i], 1e-5 * size);
   }
 }
 

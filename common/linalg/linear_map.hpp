@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <span>
+
+namespace couplet {
+
+/// y = F(x) on the rows of this rank. Collective.
+using LinearMap = std::function<void(std::span<const double> x, std::span<double> y)>;
+
+}  // namespace couplet

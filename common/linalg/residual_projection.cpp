@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/linalg/residual_projection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/linalg/dot.hpp"
+
+namespace couplet {
+namespace {
+
+// Combinations whose image is below this share of the largest are noise of earlier tolerances (squared).
+constexpr double noise = 1e-12;
+// Relative difference of images that rounding may make.
+constexpr double same_operator = 1e-6;
+
+using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, ResidualProjection::most,
+                            ResidualProjection::most>;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, ResidualProjection::most, 1>;
+
+}  // namespace
+
+bool ResidualProjection::project(std::span<double> r, std::span<double> x) {
+  pending_.x.assign(x.begin(), x.end());
+  pending_.image.assign(r.begin(), r.end());
+  is_pending_ = false;
+  const int n = static_cast<int>(kept_.size());
+  if (n == 0) return false;
+  std::array<double, most> along{};
+  for (int k = 0; k < n; ++k) along[k] = dot_here(kept_[k].image, r);
+  MPI_Allreduce(MPI_IN_PLACE, along.data(), n, MPI_DOUBLE, MPI_SUM, comm_);
+  // Images of unit length: the newest corrections may be much smaller than the oldest.
+  SmallVector scale(n), b(n);
+  for (int k = 0; k < n; ++k) {
+    scale[k] = gram_(k, k) > 0 ? 1 / std::sqrt(gram_(k, k)) : 0;
+    b[k] = along[k] * scale[k];
+  }
+  const Small scaled = scale.asDiagonal() * gram_.topLeftCorner(n, n) * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Small> eigen(scaled);
+  const SmallVector& values = eigen.eigenvalues();
+  SmallVector y = eigen.eigenvectors().transpose() * b;
+  for (int k = 0; k < n; ++k) y[k] = values[k] > noise * values[n - 1] ? y[k] / values[k] : 0;
+  y = scale.cwiseProduct(eigen.eigenvectors() * y);
+  for (int k = 0; k < n; ++k) {
+    const Correction& c = kept_[k];
+    for (std::size_t i = 0; i < r.size(); ++i) {
+      x[i] += y[k] * c.x[i];
+      r[i] -= y[k] * c.image[i];
+    }
+  }
+  return true;
+}
+
+void ResidualProjection::finish(std::span<const double> r, std::span<const double> x) {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    pending_.x[i] = x[i] - pending_.x[i];
+    pending_.image[i] -= r[i];
+  }
+  is_pending_ = true;
+}
+
+void ResidualProjection::accept() {
+  if (!is_pending_) return;
+  is_pending_ = false;
+  const auto depth = static_cast<std::size_t>(depth_);
+  const std::size_t place = kept_.size() < depth ? kept_.size() : oldest_;
+  if (place == kept_.size())
+    kept_.emplace_back();
+  else
+    oldest_ = (oldest_ + 1) % depth;
+  std::swap(kept_[place], pending_);
+  std::array<double, most> with{};
+  const int n = static_cast<int>(kept_.size());
+  for (int k = 0; k < n; ++k) with[k] = dot_here(kept_[k].image, kept_[place].image);
+  MPI_Allreduce(MPI_IN_PLACE, with.data(), n, MPI_DOUBLE, MPI_SUM, comm_);
+  for (int k = 0; k < n; ++k) gram_(k, place) = gram_(place, k) = with[k];
+}
+
+std::vector<double> ResidualProjection::values() const {
+  std::vector<double> values = {double(kept_.size()), double(oldest_)};
+  values.insert(values.end(), gram_.data(), gram_.data() + gram_.size());
+  for (const Correction& c : kept_) {
+    values.insert(values.end(), c.x.begin(), c.x.end());
+    values.insert(values.end(), c.image.begin(), c.image.end());
+  }
+  return values;
+}
+
+void ResidualProjection::set_values(std::span<const double> values, const LinearMap& apply) {
+  const std::size_t head = 2 + most * most;
+  kept_.assign(static_cast<std::size_t>(values[0]), {});
+  oldest_ = static_cast<std::size_t>(values[1]);
+  std::copy_n(values.data() + 2, most * most, gram_.data());
+  is_pending_ = false;
+  const double* from = values.data() + head;
+  const std::size_t n = kept_.empty() ? 0 : (values.size() - head) / (2 * kept_.size());
+  for (Correction& c : kept_)
+    for (std::vector<double>* v : {&c.x, &c.image}) {
+      v->assign(from, from + n);
+      from += n;
+    }
+  bool fits = kept_.size() <= std::size_t(depth_);
+  std::vector<double> image(n);
+  for (const Correction& c : kept_) {
+    apply(c.x, image);
+    for (std::size_t i = 0; i < n; ++i) image[i] -= c.image[i];
+    std::array<double, 2> square = {dot_here(image, image), dot_here(c.image, c.image)};
+    MPI_Allreduce(MPI_IN_PLACE, square.data(), 2, MPI_DOUBLE, MPI_SUM, comm_);
+    fits = fits && square[0] <= same_operator * same_operator * square[1];
+  }
+  if (!fits) kept_.clear(), oldest_ = 0;
+}
+
+}  // namespace couplet
