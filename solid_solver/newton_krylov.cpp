@@ -68,7 +68,7 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
     if (multigrid_) return multigrid_->apply(r, z);
     factors_->solve(r, z);
   };
-  krylov_ = std::make_unique<BiCgStab>("displacement", problem.mesh.comm, n, apply, precondition);
+  krylov_ = std::make_unique<KrylovSolver>("displacement", problem.mesh.comm, n, apply, precondition);
   if (!problem.is_static() && parameters.corrections_kept > 0)
     projection_ = std::make_unique<ResidualProjection>(problem.mesh.comm, parameters.corrections_kept);
 }

@@ -31,7 +31,7 @@ class NewtonKrylov final : public SolutionMethod {
   std::unique_ptr<ElasticPreconditioner> multigrid_;
   std::unique_ptr<SparseMatrix> matrix_;
   std::unique_ptr<LinearSolver> factors_;
-  std::unique_ptr<BiCgStab> krylov_;
+  std::unique_ptr<KrylovSolver> krylov_;
 };
 
 }  // namespace couplet

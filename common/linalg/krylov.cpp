@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/linalg/krylov.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -9,13 +10,17 @@
 
 #include "common/base/error.hpp"
 #include "common/linalg/dot.hpp"
+#include "common/linalg/idr.hpp"
 #include "common/linalg/residual_projection.hpp"
+#include "common/log/log.hpp"
 
 namespace couplet {
 namespace {
 
 // A residual below so many times the difference that rounding makes in A x is as small as it gets.
 constexpr double at_rounding = 10;
+// Iterations of BiCGStab after which the spectrum is taken to be one that it is slow on.
+constexpr int patience = 50;
 
 template <std::size_t N>
 std::array<double, N> over_ranks(MPI_Comm comm, std::array<double, N> local) {
@@ -25,38 +30,43 @@ std::array<double, N> over_ranks(MPI_Comm comm, std::array<double, N> local) {
 
 }  // namespace
 
-BiCgStab::BiCgStab(std::string what, MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap precondition)
+KrylovSolver::KrylovSolver(std::string what, MPI_Comm comm, std::size_t n, LinearMap apply,
+                           LinearMap precondition)
     : what_(std::move(what)),
       comm_(comm),
       n_(n),
       apply_(std::move(apply)),
       precondition_(std::move(precondition)) {}
 
-void BiCgStab::forget_vectors() {
+KrylovSolver::~KrylovSolver() = default;
+
+void KrylovSolver::forget_vectors() {
   for (auto* v : {&r_, &shadow_, &p_, &v_, &t_, &z_}) *v = std::vector<double>();
+  idr_.reset();
 }
 
 /// r = b - A x and its norm.
-double BiCgStab::true_residual(std::span<const double> b, std::span<const double> x) {
+double KrylovSolver::true_residual(std::span<const double> b, std::span<const double> x) {
   apply_(x, r_);
   for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = b[i] - r_[i];
   return std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]);
 }
 
-/// Norm of A (3 x) / 3 - A x: nothing else than what rounding leaves undetermined. Overwrites work vectors.
-double BiCgStab::rounding(std::span<const double> x) {
-  for (std::size_t i = 0; i < p_.size(); ++i) p_[i] = 3 * x[i];
-  apply_(p_, v_);
-  apply_(x, t_);
-  for (std::size_t i = 0; i < v_.size(); ++i) v_[i] = v_[i] / 3 - t_[i];
-  return std::sqrt(over_ranks<1>(comm_, {dot_here(v_, v_)})[0]);
+/// Norm of A (3 x) / 3 - A x: nothing else than what rounding leaves undetermined.
+double KrylovSolver::rounding(std::span<const double> x) {
+  std::vector<double> thrice(n_), of_thrice(n_), once(n_);
+  for (std::size_t i = 0; i < n_; ++i) thrice[i] = 3 * x[i];
+  apply_(thrice, of_thrice);
+  apply_(x, once);
+  for (std::size_t i = 0; i < n_; ++i) once[i] -= of_thrice[i] / 3;
+  return std::sqrt(over_ranks<1>(comm_, {dot_here(once, once)})[0]);
 }
 
-SolveStatistics BiCgStab::solve(std::span<const double> b, std::span<double> x, const KrylovOptions& options,
-                                ResidualProjection* projection) {
+SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double> x,
+                                    const KrylovOptions& options, ResidualProjection* projection) {
   const auto start = std::chrono::steady_clock::now();
   SolveStatistics statistics;
-  for (auto* v : {&r_, &shadow_, &p_, &v_, &t_, &z_}) v->resize(n_);
+  r_.resize(n_);
   const double size = std::sqrt(over_ranks<1>(comm_, {dot_here(b, b)})[0]);
   const double wanted = options.relative_tolerance * size;
   statistics.residual = true_residual(b, x);
@@ -66,18 +76,26 @@ SolveStatistics BiCgStab::solve(std::span<const double> b, std::span<double> x, 
   }
   // A restart that gains nothing means that rounding, not the method, sets the limit.
   double before = std::numeric_limits<double>::infinity();
+  bool is_hard = false;
   while (statistics.residual > wanted) {
-    const bool stuck = statistics.residual > 0.9 * before;
+    bool stuck = statistics.residual > 0.9 * before;
     if (stuck && statistics.residual < at_rounding * rounding(x)) break;
+    if (!is_hard && (stuck || statistics.iterations >= patience)) {
+      is_hard = true;
+      stuck = false;
+    }
     if (stuck || statistics.iterations >= options.max_iterations || !std::isfinite(statistics.residual))
       throw SolveFailure(
-          "The Krylov solver for {} did not converge: BiCGStab reached a residual of {:.3e} of the "
-          "right-hand side "
+          "The Krylov solver for {} did not converge: {} reached a residual of {:.3e} of the right-hand side "
           "({:.3e} wanted) in {} of at most {} iterations{}.",
-          what_, statistics.residual / size, options.relative_tolerance, statistics.iterations,
-          options.max_iterations, stuck ? " and a restart gains nothing" : "");
+          what_, is_hard ? "IDR(4) after BiCGStab" : "BiCGStab", statistics.residual / size,
+          options.relative_tolerance, statistics.iterations, options.max_iterations,
+          stuck ? " and a restart gains nothing" : "");
     before = statistics.residual;
-    run(x, wanted, options.max_iterations, statistics);
+    if (is_hard)
+      run_idr(x, wanted, options.max_iterations, statistics);
+    else
+      run_bicgstab(x, wanted, std::min(options.max_iterations, patience), statistics);
     statistics.residual = true_residual(b, x);
   }
   if (projection) projection->finish(r_, x);
@@ -85,9 +103,23 @@ SolveStatistics BiCgStab::solve(std::span<const double> b, std::span<double> x, 
   return statistics;
 }
 
-BiCgStab::Outcome BiCgStab::run(std::span<double> x, double wanted, int max_iterations,
+void KrylovSolver::run_idr(std::span<double> x, double wanted, int max_iterations,
+                           SolveStatistics& statistics) {
+  if (!is_announced_)
+    log::info("{}: {} iterations of BiCGStab were not enough, IDR(4) goes on", what_, statistics.iterations);
+  is_announced_ = true;
+  for (auto* v : {&shadow_, &p_, &v_, &t_, &z_}) *v = std::vector<double>();
+  if (!idr_) idr_ = std::make_unique<Idr>(comm_, n_);
+  // An iteration of BiCGStab preconditions and applies twice.
+  int applications = 0;
+  idr_->run(apply_, precondition_, r_, x, wanted, 2 * (max_iterations - statistics.iterations), applications);
+  statistics.iterations += (applications + 1) / 2;
+}
+
+void KrylovSolver::run_bicgstab(std::span<double> x, double wanted, int max_iterations,
                                 SolveStatistics& statistics) {
   const std::size_t n = r_.size();
+  for (auto* v : {&shadow_, &p_, &v_, &t_, &z_}) v->resize(n);
   shadow_ = r_;
   p_ = r_;
   double rho = over_ranks<1>(comm_, {dot_here(r_, r_)})[0];
@@ -96,29 +128,28 @@ BiCgStab::Outcome BiCgStab::run(std::span<double> x, double wanted, int max_iter
     precondition_(p_, z_);
     apply_(z_, v_);
     const double alpha = rho / over_ranks<1>(comm_, {dot_here(shadow_, v_)})[0];
-    if (!std::isfinite(alpha)) return Outcome::restart;
+    if (!std::isfinite(alpha)) return;
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += alpha * z_[i];
       r_[i] -= alpha * v_[i];
     }
-    if (std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) <= wanted) return Outcome::converged;
+    if (std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]) <= wanted) return;
     precondition_(r_, z_);
     apply_(z_, t_);
     const auto [tr, tt] = over_ranks<2>(comm_, {dot_here(t_, r_), dot_here(t_, t_)});
-    if (tt == 0) return Outcome::restart;
+    if (tt == 0) return;
     const double omega = tr / tt;
     for (std::size_t i = 0; i < n; ++i) {
       x[i] += omega * z_[i];
       r_[i] -= omega * t_[i];
     }
     const auto [next, rr] = over_ranks<2>(comm_, {dot_here(shadow_, r_), dot_here(r_, r_)});
-    if (std::sqrt(rr) <= wanted) return Outcome::converged;
+    if (std::sqrt(rr) <= wanted) return;
     const double beta = next / rho * (alpha / omega);
-    if (!std::isfinite(beta) || beta == 0) return Outcome::restart;
+    if (!std::isfinite(beta) || beta == 0) return;
     rho = next;
     for (std::size_t i = 0; i < n; ++i) p_[i] = r_[i] + beta * (p_[i] - omega * v_[i]);
   }
-  return Outcome::exhausted;
 }
 
 }  // namespace couplet

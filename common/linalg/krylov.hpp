@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 
 namespace couplet {
 
+class Idr;
 class ResidualProjection;
 
 struct KrylovOptions {
@@ -19,14 +21,16 @@ struct KrylovOptions {
   int max_iterations = 500;
 };
 
-/// BiCGStab [vandervorst1992] preconditioned from the right, for operators that are only applied. The
+/// BiCGStab [vandervorst1992] preconditioned from the right, for operators that are only applied; where it
+/// has not converged after 50 iterations, IDR(4) goes on, which needs more memory and bears more. The
 /// residual that is judged is the true one, b - A x: the recurrence drifts away from it on long runs, so that
 /// it is computed anew when the recurrence has reached the tolerance, and the iteration begins again from
 /// there if it has not. A residual that is only what rounding leaves in A x counts as reached.
-class BiCgStab {
+class KrylovSolver {
  public:
   /// `what` names the unknown in messages. `n`: rows of this rank.
-  BiCgStab(std::string what, MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap precondition);
+  KrylovSolver(std::string what, MPI_Comm comm, std::size_t n, LinearMap apply, LinearMap precondition);
+  ~KrylovSolver();
 
   /// `x` holds the guess on entry, which `projection`, if there is one, moves on. Throws SolveFailure if the
   /// tolerance was not reached. Collective.
@@ -36,16 +40,18 @@ class BiCgStab {
   void forget_vectors();
 
  private:
-  enum class Outcome { converged, restart, exhausted };
   double true_residual(std::span<const double> b, std::span<const double> x);
   double rounding(std::span<const double> x);
-  Outcome run(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
+  void run_bicgstab(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
+  void run_idr(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
 
   std::string what_;
   MPI_Comm comm_;
   std::size_t n_;
   LinearMap apply_, precondition_;
   std::vector<double> r_, shadow_, p_, v_, t_, z_;
+  std::unique_ptr<Idr> idr_;  // while it is needed
+  bool is_announced_ = false;
 };
 
 }  // namespace couplet

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/linalg/idr.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "common/linalg/dot.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// The step that lessens the residual most makes the recurrence inexact where it turns it by nearly 90 degrees
+// (van Gijzen and Sonneveld's value for the cosine).
+constexpr double least_cosine = 0.7;
+
+template <class Shadow>
+double shadow_dot(const Shadow& p, std::span<const double> v) {
+  std::array<double, 8> sum{};
+  std::size_t i = 0;
+  for (; i + 8 <= v.size(); i += 8)
+    for (std::size_t k = 0; k < 8; ++k) sum[k] += double(p[i + k]) * v[i + k];
+  for (; i < v.size(); ++i) sum[0] += double(p[i]) * v[i];
+  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+}
+
+void add(double factor, std::span<const double> v, std::span<double> to) {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * v[i];
+}
+
+}  // namespace
+
+Idr::Idr(MPI_Comm comm, std::size_t n) : comm_(comm), v_(n), z_(n) {
+  std::mt19937 random(static_cast<unsigned>(comm_rank(comm)));
+  for (auto& p : shadow_) {
+    p.resize(n);
+    for (float& value : p)
+      value = static_cast<float>(random()) / static_cast<float>(std::mt19937::max()) - 0.5F;
+  }
+}
+
+void Idr::run(const LinearMap& apply, const LinearMap& precondition, std::span<double> r, std::span<double> x,
+              double wanted, int most, int& applications) {
+  const auto over_ranks = [&](double* values, int count) {
+    MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, comm_);
+  };
+  const auto norm = [&](std::span<const double> v) {
+    double square = dot_here(v, v);
+    over_ranks(&square, 1);
+    return std::sqrt(square);
+  };
+  for (int k = 0; k < s; ++k) {
+    images_[k].assign(r.size(), 0);
+    directions_[k].assign(r.size(), 0);
+  }
+  Eigen::Matrix<double, s, s> m = Eigen::Matrix<double, s, s>::Identity();  // shadow^T images, lower triangle
+  double omega = 1;
+  while (applications < most) {
+    Eigen::Matrix<double, s, 1> f;
+    for (int i = 0; i < s; ++i) f[i] = shadow_dot(shadow_[i], r);
+    over_ranks(f.data(), s);
+    for (int k = 0; k < s; ++k) {
+      Eigen::Matrix<double, s, 1> c = Eigen::Matrix<double, s, 1>::Zero();
+      c.tail(s - k) = m.bottomRightCorner(s - k, s - k).triangularView<Eigen::Lower>().solve(f.tail(s - k));
+      if (!c.allFinite()) return;
+      std::copy(r.begin(), r.end(), v_.begin());
+      for (int i = k; i < s; ++i) add(-c[i], images_[i], v_);
+      precondition(v_, z_);
+      for (double& value : z_) value *= omega;
+      for (int i = k; i < s; ++i) add(c[i], directions_[i], z_);
+      std::swap(directions_[k], z_);
+      apply(directions_[k], images_[k]);
+      ++applications;
+      for (int i = 0; i < k; ++i) {
+        double along = shadow_dot(shadow_[i], images_[k]);
+        over_ranks(&along, 1);
+        add(-along / m(i, i), images_[i], images_[k]);
+        add(-along / m(i, i), directions_[i], directions_[k]);
+      }
+      for (int i = k; i < s; ++i) m(i, k) = shadow_dot(shadow_[i], images_[k]);
+      over_ranks(&m(k, k), s - k);
+      const double beta = f[k] / m(k, k);
+      if (!std::isfinite(beta)) return;
+      add(-beta, images_[k], r);
+      add(beta, directions_[k], x);
+      if (norm(r) <= wanted) return;
+      for (int i = k + 1; i < s; ++i) f[i] -= beta * m(i, k);
+    }
+    precondition(r, z_);
+    apply(z_, v_);
+    ++applications;
+    std::array<double, 3> products = {dot_here(v_, r), dot_here(v_, v_), dot_here(r, r)};
+    over_ranks(products.data(), 3);
+    const auto [tr, tt, rr] = products;
+    const double cosine = std::abs(tr) / std::sqrt(tt * rr);
+    omega = tr / tt;
+    if (cosine < least_cosine) omega *= least_cosine / cosine;
+    if (!std::isfinite(omega) || omega == 0) return;
+    add(-omega, v_, r);
+    add(omega, z_, x);
+    if (norm(r) <= wanted) return;
+  }
+}
+
+}  // namespace couplet
