@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Holds the table of docs/architecture.md: who may include whom, which folder sees which third-party headers, an SPDX
-line in every source file, file lengths, the papers cited, and clang-format where it is installed. Usage: check_sources.py PROJECT_ROOT"""
+line in every source file, file lengths, the papers cited, links, and clang-format where it is installed.
+Usage: check_sources.py PROJECT_ROOT"""
 import pathlib
 import re
 import shutil
@@ -126,12 +127,25 @@ def check_references(bib, texts):
     return trouble
 
 
+def check_links(texts, exists):
+    """Links within the project lead somewhere. `texts`: (path, text) of Markdown files; `exists`: path -> bool."""
+    trouble = []
+    for path, text in texts:
+        prose = re.sub(r"^```.*?^```", "", text, flags=re.M | re.S)
+        for link in re.findall(r"\]\(([^)#\s]+)[^)]*\)", prose):
+            if "://" not in link and not exists(path.parent / link):
+                trouble.append(f"{path}: there is no {link}")
+    return trouble
+
+
 def main(root):
     files = project_files(root)
     texts = [(f.relative_to(root), f.read_text()) for f in [*files, *(root / "docs").rglob("*.md")]]
     trouble = check_format(root, files) + check_references((root / "docs/references.bib").read_text(), texts)
     for file in files:
         trouble += check_text(file.relative_to(root), file.read_text())
+    notes = [f for f in root.rglob("*.md") if not any(p.startswith((".", "build")) for p in f.relative_to(root).parts)]
+    trouble += check_links([(f.relative_to(root), f.read_text()) for f in notes], lambda link: (root / link).exists())
     print("\n".join(trouble) or f"{len(files)} files: in order")
     return 1 if trouble else 0
 

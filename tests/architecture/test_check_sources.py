@@ -4,7 +4,7 @@
 import pathlib
 import sys
 
-from check_sources import check_references, check_text
+from check_sources import check_links, check_references, check_text
 
 HEAD = "// SPDX-License-Identifier: Apache-2.0\n"
 WRONG = {
@@ -51,5 +51,11 @@ for (bib, text), reason in REFERENCES.items():
     if len(found) != (reason is not None) or reason and reason not in found[0]:
         print(f"references: wanted '{reason}', found {found}")
         failed += 1
-print(f"{len(WRONG) + len(RIGHT) + len(REFERENCES)} samples, {failed} judged wrongly")
+LINKS = {"[a](b.md)": 0, "![a](c.png) and [d](https://e.org/f)": 1, "[g](b.md#h) [i](#j)": 0}
+for text, broken in LINKS.items():
+    found = check_links([(pathlib.PurePosixPath("docs/a.md"), text)], lambda link: link.name == "b.md")
+    if len(found) != broken:
+        print(f"links: {text}: {broken} lead nowhere, found {found}")
+        failed += 1
+print(f"{len(WRONG) + len(RIGHT) + len(REFERENCES) + len(LINKS)} samples, {failed} judged wrongly")
 sys.exit(1 if failed else 0)
