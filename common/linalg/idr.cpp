@@ -17,16 +17,6 @@ namespace {
 // (van Gijzen and Sonneveld's value for the cosine).
 constexpr double least_cosine = 0.7;
 
-template <class Shadow>
-double shadow_dot(const Shadow& p, std::span<const double> v) {
-  std::array<double, 8> sum{};
-  std::size_t i = 0;
-  for (; i + 8 <= v.size(); i += 8)
-    for (std::size_t k = 0; k < 8; ++k) sum[k] += double(p[i + k]) * v[i + k];
-  for (; i < v.size(); ++i) sum[0] += double(p[i]) * v[i];
-  return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
-}
-
 void add(double factor, std::span<const double> v, std::span<double> to) {
   for (std::size_t i = 0; i < to.size(); ++i) to[i] += factor * v[i];
 }
@@ -60,7 +50,7 @@ void Idr::run(const LinearMap& apply, const LinearMap& precondition, std::span<d
   double omega = 1;
   while (applications < most) {
     Eigen::Matrix<double, s, 1> f;
-    for (int i = 0; i < s; ++i) f[i] = shadow_dot(shadow_[i], r);
+    for (int i = 0; i < s; ++i) f[i] = dot_here(shadow_[i], r);
     over_ranks(f.data(), s);
     for (int k = 0; k < s; ++k) {
       Eigen::Matrix<double, s, 1> c = Eigen::Matrix<double, s, 1>::Zero();
@@ -75,12 +65,12 @@ void Idr::run(const LinearMap& apply, const LinearMap& precondition, std::span<d
       apply(directions_[k], images_[k]);
       ++applications;
       for (int i = 0; i < k; ++i) {
-        double along = shadow_dot(shadow_[i], images_[k]);
+        double along = dot_here(shadow_[i], images_[k]);
         over_ranks(&along, 1);
         add(-along / m(i, i), images_[i], images_[k]);
         add(-along / m(i, i), directions_[i], directions_[k]);
       }
-      for (int i = k; i < s; ++i) m(i, k) = shadow_dot(shadow_[i], images_[k]);
+      for (int i = k; i < s; ++i) m(i, k) = dot_here(shadow_[i], images_[k]);
       over_ranks(&m(k, k), s - k);
       const double beta = f[k] / m(k, k);
       if (!std::isfinite(beta)) return;
