@@ -179,7 +179,8 @@ void Solid::accept_step() {
   std::swap(state_, trial_);
   std::swap(known_accepted_, known_);
   std::swap(known_rate_accepted_, known_rate_);
-  if (step_.is_last) systems_.clear();  // what is written next needs room
+  // What is written next needs room; a dynamic run may be continued from it, with the same first guesses.
+  if (step_.is_last && !is_dynamic()) systems_.clear();
   for (const auto& effect : effects_)
     if (effect->wants_stress()) effect->take_stress(cell_stress(point_displacement()));
 }
