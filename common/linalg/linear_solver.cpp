@@ -7,8 +7,10 @@
 #include <exception>
 #include <utility>
 
+#include "common/linalg/idr.hpp"
 #include "common/linalg/petsc_check.hpp"
 #include "common/linalg/single_factors.hpp"
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -215,6 +217,8 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
     for (int restart = 0; reason > 0 && (statistics.residual = true_residual(b, x)) > 2 * wanted; ++restart)
       reason = restart < most_restarts ? attempt(b, x, statistics) : KSP_DIVERGED_BREAKDOWN;
   }
+  if (reason < 0 && options_.method == LinearMethod::bicgstab_ilu)
+    reason = continue_by_idr(b, x, std::max(relative_tolerance * norm(b), absolute_tolerance), statistics);
   if (reason < 0)
     throw SolveFailure("The linear solver for {} did not converge: {} after {} iterations, residual {:.3e}.",
                        what_, KSPConvergedReasons[reason], statistics.iterations, statistics.residual);
@@ -246,6 +250,39 @@ double LinearSolver::true_residual(std::span<const double> b, std::span<const do
   matrix_->multiply(x, residual);
   for (std::size_t i = 0; i < b.size(); ++i) residual[i] = b[i] - residual[i];
   return norm(residual);
+}
+
+/// Where BiCGStab has broken down: from its guess if that is nearer, with the same preconditioner. As long
+/// again.
+KSPConvergedReason LinearSolver::continue_by_idr(std::span<const double> b, std::span<double> x,
+                                                 double wanted, SolveStatistics& statistics) {
+  log::info("{}: BiCGStab stopped after {} iterations, IDR(4) goes on", what_, statistics.iterations);
+  const auto apply = [&](std::span<const double> from, std::span<double> to) { matrix_->multiply(from, to); };
+  const auto precondition = [&](std::span<const double> from, std::span<double> to) {
+    petsc_check(VecPlaceArray(b_, from.data()));
+    petsc_check(VecPlaceArray(x_, to.data()));
+    PC pc = nullptr;
+    petsc_check(KSPGetPC(ksp_, &pc));
+    petsc_check(PCApply(pc, b_, x_));
+    petsc_check(VecResetArray(b_));
+    petsc_check(VecResetArray(x_));
+  };
+  if (!(true_residual(b, x) < norm(b))) std::fill(x.begin(), x.end(), 0.0);
+  std::vector<double> r(b.size());
+  Idr idr(matrix_->comm(), b.size());
+  int applications = 0, before = -1;
+  while (applications < 2 * options_.max_iterations && applications > before) {
+    before = applications;
+    matrix_->multiply(x, r);
+    for (std::size_t i = 0; i < r.size(); ++i) r[i] = b[i] - r[i];
+    statistics.residual = norm(r);
+    if (statistics.residual <= wanted) break;
+    idr.run(apply, precondition, r, x, wanted, 2 * options_.max_iterations, applications);
+  }
+  statistics.residual = true_residual(b, x);
+  statistics.iterations += (applications + 1) / 2;
+  total_iterations_ += (applications + 1) / 2;
+  return statistics.residual <= 2 * wanted ? KSP_CONVERGED_RTOL : KSP_DIVERGED_BREAKDOWN;
 }
 
 /// One KSPSolve; a result that is not finite counts as not converged.

@@ -19,7 +19,7 @@ enum class LinearMethod {
   cg_single,         ///< the same, the factors in single precision where that is enough (one rank)
   cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
   gmres_multigrid,   ///< GMRES with BoomerAMG
-  bicgstab_ilu,      ///< BiCGStab with ILU(0), block Jacobi over the ranks
+  bicgstab_ilu,      ///< BiCGStab with ILU(0), block Jacobi over the ranks; IDR(4) where that breaks down
   cg_icc,            ///< CG with incomplete Cholesky factors, block Jacobi over the ranks
 };
 
@@ -67,6 +67,8 @@ class LinearSolver {
   double true_residual(std::span<const double> b, std::span<const double> x) const;
   void make_single_factors();
   void leave_single_precision();
+  KSPConvergedReason continue_by_idr(std::span<const double> b, std::span<double> x, double wanted,
+                                     SolveStatistics& statistics);
   KSPConvergedReason attempt(std::span<const double> b, std::span<double> x, SolveStatistics& statistics);
 
   std::string what_;
