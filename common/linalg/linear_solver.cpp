@@ -200,8 +200,10 @@ SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double>
 SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double> x, double relative_tolerance,
                                     double absolute_tolerance) {
   const auto start = std::chrono::steady_clock::now();
-  petsc_check(
-      KSPSetTolerances(ksp_, relative_tolerance, absolute_tolerance, PETSC_DEFAULT, options_.max_iterations));
+  // BiCGStab leaves half of the iterations to IDR(4).
+  const int most = options_.method == LinearMethod::bicgstab_ilu ? (options_.max_iterations + 1) / 2
+                                                                 : options_.max_iterations;
+  petsc_check(KSPSetTolerances(ksp_, relative_tolerance, absolute_tolerance, PETSC_DEFAULT, most));
   SolveStatistics statistics;
   KSPConvergedReason reason = attempt(b, x, statistics);
   if (reason < 0 && (!rebuild_ || single_)) {
@@ -252,11 +254,9 @@ double LinearSolver::true_residual(std::span<const double> b, std::span<const do
   return norm(residual);
 }
 
-/// Where BiCGStab has broken down: from its guess if that is nearer, with the same preconditioner. As long
-/// again.
+/// Where BiCGStab has broken down or is slow: from its guess if that is nearer, with the same preconditioner.
 KSPConvergedReason LinearSolver::continue_by_idr(std::span<const double> b, std::span<double> x,
                                                  double wanted, SolveStatistics& statistics) {
-  log::info("{}: BiCGStab stopped after {} iterations, IDR(4) goes on", what_, statistics.iterations);
   const auto apply = [&](std::span<const double> from, std::span<double> to) { matrix_->multiply(from, to); };
   const auto precondition = [&](std::span<const double> from, std::span<double> to) {
     petsc_check(VecPlaceArray(b_, from.data()));
@@ -270,19 +270,23 @@ KSPConvergedReason LinearSolver::continue_by_idr(std::span<const double> b, std:
   if (!(true_residual(b, x) < norm(b))) std::fill(x.begin(), x.end(), 0.0);
   std::vector<double> r(b.size());
   Idr idr(matrix_->comm(), b.size());
+  const int most = 2 * (options_.max_iterations - statistics.iterations);
+  if (most > 0)
+    log::info("{}: BiCGStab stopped after {} iterations, IDR(4) goes on", what_, statistics.iterations);
   int applications = 0, before = -1;
-  while (applications < 2 * options_.max_iterations && applications > before) {
+  while (applications < most && applications > before) {
     before = applications;
     matrix_->multiply(x, r);
     for (std::size_t i = 0; i < r.size(); ++i) r[i] = b[i] - r[i];
     statistics.residual = norm(r);
     if (statistics.residual <= wanted) break;
-    idr.run(apply, precondition, r, x, wanted, 2 * options_.max_iterations, applications);
+    idr.run(apply, precondition, r, x, wanted, most, applications);
   }
   statistics.residual = true_residual(b, x);
   statistics.iterations += (applications + 1) / 2;
   total_iterations_ += (applications + 1) / 2;
-  return statistics.residual <= 2 * wanted ? KSP_CONVERGED_RTOL : KSP_DIVERGED_BREAKDOWN;
+  if (statistics.residual <= 2 * wanted) return KSP_CONVERGED_RTOL;
+  return applications >= most ? KSP_DIVERGED_ITS : KSP_DIVERGED_BREAKDOWN;
 }
 
 /// One KSPSolve; a result that is not finite counts as not converged.

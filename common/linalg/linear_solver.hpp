@@ -19,8 +19,9 @@ enum class LinearMethod {
   cg_single,         ///< the same, the factors in single precision where that is enough (one rank)
   cg_multigrid,      ///< CG with smoothed aggregation (ML), symmetric SOR
   gmres_multigrid,   ///< GMRES with BoomerAMG
-  bicgstab_ilu,      ///< BiCGStab with ILU(0), block Jacobi over the ranks; IDR(4) where that breaks down
-  cg_icc,            ///< CG with incomplete Cholesky factors, block Jacobi over the ranks
+  bicgstab_ilu,  ///< BiCGStab with ILU(0), block Jacobi over the ranks; IDR(4) where that breaks down or is
+                 ///< slow
+  cg_icc,        ///< CG with incomplete Cholesky factors, block Jacobi over the ranks
 };
 
 class SingleFactors;

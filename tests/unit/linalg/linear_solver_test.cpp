@@ -132,7 +132,7 @@ TEST(LinearSolver, a_preconditioner_that_no_longer_fits_is_made_anew) {
   EXPECT_LT(relative_residual(matrix, first, b), 2e-8);
 }
 
-TEST(LinearSolver, goes_on_where_bicgstab_breaks_down) {
+TEST(LinearSolver, goes_on_where_bicgstab_is_slow_or_breaks_down) {
   // Hardly more than a skew-symmetric matrix: eigenvalues 0.2 +- b i.
   Poisson turning(20, false);
   for (std::size_t k = 0; k < turning.value.size(); ++k)
@@ -143,7 +143,7 @@ TEST(LinearSolver, goes_on_where_bicgstab_breaks_down) {
   std::vector<double> b(turning.last - turning.first), x(b.size(), 0.0);
   for (std::size_t i = 0; i < b.size(); ++i) b[i] = std::sin(double(turning.first + i));
   LinearSolver solver(
-      "u", matrix, {.method = LinearMethod::bicgstab_ilu, .relative_tolerance = 1e-9, .max_iterations = 400});
+      "u", matrix, {.method = LinearMethod::bicgstab_ilu, .relative_tolerance = 1e-9, .max_iterations = 800});
   const SolveStatistics s = solver.solve(b, x);
   EXPECT_LE(relative_residual(matrix, x, b), 2e-9);
   EXPECT_GT(s.iterations, 400) << "BiCGStab did it alone";
