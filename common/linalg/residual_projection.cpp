@@ -12,8 +12,8 @@ namespace {
 
 // Combinations whose image is below this share of the largest are noise of earlier tolerances (squared).
 constexpr double noise = 1e-12;
-// Relative difference of images that rounding may make.
-constexpr double same_operator = 1e-6;
+// Relative difference of images that rounding may make where corrections are small beside the solution.
+constexpr double same_operator = 1e-3;
 
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, ResidualProjection::most,
                             ResidualProjection::most>;
