@@ -37,11 +37,7 @@ void Idr::run(const LinearMap& apply, const LinearMap& precondition, std::span<d
   const auto over_ranks = [&](double* values, int count) {
     MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_SUM, comm_);
   };
-  const auto norm = [&](std::span<const double> v) {
-    double square = dot_here(v, v);
-    over_ranks(&square, 1);
-    return std::sqrt(square);
-  };
+  const auto norm = [&](std::span<const double> v) { return std::sqrt(sum(comm_, dot_here(v, v))); };
   for (int k = 0; k < s; ++k) {
     images_[k].assign(r.size(), 0);
     directions_[k].assign(r.size(), 0);
@@ -65,8 +61,7 @@ void Idr::run(const LinearMap& apply, const LinearMap& precondition, std::span<d
       apply(directions_[k], images_[k]);
       ++applications;
       for (int i = 0; i < k; ++i) {
-        double along = dot_here(shadow_[i], images_[k]);
-        over_ranks(&along, 1);
+        const double along = sum(comm_, dot_here(shadow_[i], images_[k]));
         add(-along / m(i, i), images_[i], images_[k]);
         add(-along / m(i, i), directions_[i], directions_[k]);
       }

@@ -140,12 +140,14 @@ def check_links(texts, exists):
 
 def main(root):
     files = project_files(root)
-    texts = [(f.relative_to(root), f.read_text()) for f in [*files, *(root / "docs").rglob("*.md")]]
-    trouble = check_format(root, files) + check_references((root / "docs/references.bib").read_text(), texts)
+    trouble = check_format(root, files)
     for file in files:
         trouble += check_text(file.relative_to(root), file.read_text())
-    notes = [f for f in root.rglob("*.md") if not any(p.startswith((".", "build")) for p in f.relative_to(root).parts)]
-    trouble += check_links([(f.relative_to(root), f.read_text()) for f in notes], lambda link: (root / link).exists())
+    paths = [f.relative_to(root) for f in root.rglob("*.md")]
+    notes = [(f, (root / f).read_text()) for f in paths if not any(p.startswith((".", "build")) for p in f.parts)]
+    sources = [(f.relative_to(root), f.read_text()) for f in files]
+    trouble += check_references((root / "docs/references.bib").read_text(), sources + notes)
+    trouble += check_links(notes, lambda link: (root / link).exists())
     print("\n".join(trouble) or f"{len(files)} files: in order")
     return 1 if trouble else 0
 

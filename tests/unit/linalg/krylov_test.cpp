@@ -148,6 +148,12 @@ TEST(KrylovSolver, a_few_eigenvalues_far_from_the_others_do_not_stop_it) {
     size += b[i] * b[i];
   }
   EXPECT_LE(sum(MPI_COMM_WORLD, square), 1e-18 * sum(MPI_COMM_WORLD, size));
+  std::vector<double> cut_short(n, 0.0);
+  EXPECT_THAT(
+      [&] {
+        solver.solve(b, cut_short, {1e-9, 55});
+      },
+      ::testing::ThrowsMessage<SolveFailure>(::testing::HasSubstr("IDR(4) after BiCGStab reached")));
   // Again from there, and from the start: the same.
   std::vector<double> again(n, 0.0);
   EXPECT_EQ(solver.solve(b, x, {1e-8, 150}).iterations, 0);
