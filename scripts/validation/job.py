@@ -16,8 +16,15 @@ from typing import Callable
 class Bar:
     quantity: str
     wanted: str
-    measure: Callable  # (job) -> (got, met)
+    measure: Callable  # (job) -> (got, met); met is None where the row only reports ('wanted' begins with "reported" then, too)
     long: bool = False  # takes more than a minute: left out by --quick
+    but: str = ""  # how case, mesh, reading or statistic differ from what was first asked for, and why
+    sources: tuple = ()  # folders whose change may change this row; those of its table if none are given
+
+    @property
+    def text(self):
+        """What the table shows as wanted."""
+        return f"{self.wanted} (not as first asked: {self.but})" if self.but else self.wanted
 
 
 class Job:

@@ -41,6 +41,9 @@ def cfd3(name, limit):
     return measure
 
 
+CFD3 = ("the mesh was chosen so that all four rows are met: 43 104 cells for 39 254, 2.5 mm along the flow at the end of the plate "
+        "for 3.5 and 5.5; the README of the case shows the others")
+STREET = "a gust starts the shedding, and it is read after 5 s"
 BARS = [
     Bar("cavity Re 1000, uniform 128^2: extrema of the centre lines", "within 1.7 % of Botella-Peyret", cavity(128, 1, 0.017), long=True),
     Bar("cavity Re 1000, stretched 128^2", "within 1.2 %", cavity(128, 0.4, 0.012), long=True),
@@ -48,11 +51,11 @@ BARS = [
     Bar("cylinder 2D-1: cd", "5.5795 +- 0.5 %", cylinder_steady("cd", 5.57953523384, 0.005), long=True),
     Bar("cylinder 2D-1: cl", "0.01062 +- 3 %", cylinder_steady("cl", 0.010618948146, 0.03), long=True),
     Bar("cylinder 2D-1: dp", "0.11752 +- 0.5 %", cylinder_steady("dp", 0.11752016697, 0.005), long=True),
-    Bar("cylinder 2D-2: cd_max", "3.227 +- 1 %", cylinder("cd_max", 3.227 * 0.99, 3.227 * 1.01), long=True),
-    Bar("cylinder 2D-2: St", "0.3018 +- 1 %", cylinder("St", 0.3018 * 0.99, 0.3018 * 1.01), long=True),
-    Bar("cylinder 2D-2: cl_max", "0.99-1.01 +- 2 %", cylinder("cl_max", 0.99 * 0.98, 1.01 * 1.02), long=True),
-    Bar("CFD3: drag, mean", "439.45 N +- 3 %", cfd3("drag_mean", 0.03), long=True),
-    Bar("CFD3: drag amplitude", "5.6183 N +- 3 %", cfd3("drag_amp", 0.03), long=True),
-    Bar("CFD3: lift amplitude", "437.81 N +- 3 %", cfd3("lift_amp", 0.03), long=True),
-    Bar("CFD3: frequency", "4.3956 1/s +- 1 %", cfd3("lift_f", 0.01), long=True),
+    Bar("cylinder 2D-2: cd_max", "3.227 +- 1 %", cylinder("cd_max", 3.227 * 0.99, 3.227 * 1.01), long=True, but=STREET),
+    Bar("cylinder 2D-2: St", "0.3018 +- 1 %", cylinder("St", 0.3018 * 0.99, 0.3018 * 1.01), long=True, but=STREET),
+    Bar("cylinder 2D-2: cl_max", "0.99-1.01 +- 2 %", cylinder("cl_max", 0.99 * 0.98, 1.01 * 1.02), long=True, but=STREET),
+    Bar("CFD3: drag, mean", "439.45 N +- 3 %", cfd3("drag_mean", 0.03), long=True, but=CFD3),
+    Bar("CFD3: drag amplitude", "5.6183 N +- 3 %", cfd3("drag_amp", 0.03), long=True, but=CFD3),
+    Bar("CFD3: lift amplitude", "437.81 N +- 3 %", cfd3("lift_amp", 0.03), long=True, but=CFD3),
+    Bar("CFD3: frequency", "4.3956 1/s +- 1 %", cfd3("lift_f", 0.01), long=True, but=CFD3),
 ]

@@ -152,5 +152,7 @@ BARS = [
     Bar("D: peak, Rayleigh damping, the thesis's finest mesh 120x120x23", "reported (p-FEM 4.601 mm at 0.01064 s, 61.04 MPa)",
         thick_peak(RAYLEIGH, "thesis", (120, 23), 2e-5, (4.60, 0.0106, 61.0), math.inf), long=True),
     Bar("LE10: stress yy at D, 16x24x24 to 64x96x48, corrected gradient", "-5.38 MPa within 1 % on the finest",
-        le10("corrected", -5.38, 0.01)),
+        le10("corrected", -5.38, 0.01),
+        but="the mid-line support is a strip 0.05 m wide, and the result hangs on it: 0.025 m is 1.05 % off, 0.05 m 0.4 %, 0.1 m "
+            "0.06 %"),
 ]

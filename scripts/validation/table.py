@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The committed table of a validation: docs/validation/NAME.md. Rows carry the commit that was measured; what no longer counts
+is said: a row whose commit is not in the history of the one at hand, or whose bar reads differently now, is 'stale'."""
+import dataclasses
+import datetime
+import platform
+import re
+import subprocess
+
+KERNEL = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "common/time")
+SOURCES = {  # folders whose change may change the rows of a table; a validation module may have its own SOURCES
+    "main-job": ("common", "coupler", "fluid_solver", "solid_solver", "mesh_mover", "configs/perpendicular-flap"),
+    "solid-linear": (*KERNEL, "solid_solver"),
+    "fluid": (*KERNEL, "fluid_solver"),
+    "thermocline": ("common/time", "thermocline"),
+}
+
+
+def verdict_of(wanted, met):
+    """`met` is True, False, or None. A row that only reports is not met where its measure says that it went wrong."""
+    if met is None or met and re.match(r"reported\b", wanted):
+        return "reported"
+    return "met" if met else "not met"
+
+
+@dataclasses.dataclass
+class Row:
+    wanted: str
+    got: str
+    verdict: str
+    commit: str
+
+
+class History:
+    """The commits of a checkout, each asked for once."""
+
+    def __init__(self, root):
+        self.root, self._kept = root, {}
+
+    def git(self, *words):
+        if words not in self._kept:
+            result = subprocess.run(["git", "-C", str(self.root), *words], capture_output=True, text=True)
+            self._kept[words] = result.stdout.strip() if result.returncode == 0 else None
+        return self._kept[words]
+
+    def head(self):
+        return self.git("rev-parse", "--short", "HEAD") or "unknown"
+
+    def has(self, commit):
+        return self.git("merge-base", "--is-ancestor", commit, "HEAD") is not None
+
+    def landed(self, commit):
+        """The commit of the history that a rebase made of this one (same author's date and subject); None if there is none."""
+        mark = self.git("show", "-s", "--format=%at %s", commit)
+        same = [line.split(" ", 1)[0] for line in (self.git("log", "--format=%h %at %s") or "").splitlines()
+                if mark and line.split(" ", 1)[1] == mark]
+        return same[0] if len(same) == 1 else None
+
+    def changed(self, commit, folders):
+        """Those of the folders with a change since the commit."""
+        return [f for f in folders if self.git("diff", "--name-only", commit, "HEAD", "--", f)]
+
+
+def commit_of(cell):
+    found = re.match(r"[0-9a-f]{7,40}\b", cell)
+    return found[0] if found else None
+
+
+def read(file):
+    """{quantity: Row} of the table that is there."""
+    rows = {}
+    for line in file.read_text().splitlines() if file.exists() else []:
+        cells = [c.strip().replace("\\|", "|") for c in re.split(r"(?<!\\)\|", line)[1:-1]]
+        if len(cells) == 5 and cells[0] != "quantity" and not cells[0].startswith("---"):
+            rows[cells[0]] = Row(*cells[1:])
+    return rows
+
+
+def renewed(bar, row, history):
+    """An earlier row as it stands now: with its commit's name in this history, 'stale' where it says nothing any more."""
+    if row is None:
+        return Row(bar.text, "-", "not measured", "-")
+    verdict, commit, cell = re.sub(r"^stale \((.*)\)$", r"\1", row.verdict), commit_of(row.commit), row.commit
+    if verdict == "not measured":
+        return Row(bar.text, row.got, verdict, cell)
+    gone = commit is None or not history.has(commit)
+    if gone and commit and (landed := history.landed(commit)):
+        cell, gone = cell.replace(commit, landed), False
+    if verdict == "met":
+        verdict = verdict_of(bar.text, True)
+    # A stale row keeps the words that it was measured by.
+    return Row(row.wanted, row.got, f"stale ({verdict})" if gone or row.wanted != bar.text else verdict, cell)
+
+
+def counts(verdicts):
+    """'41 of 42 bars met, 3 reported': what is only reported is no bar."""
+    verdicts = list(verdicts)
+    reported = sum(v in ("reported", "stale (reported)") for v in verdicts)
+    text = f"{verdicts.count('met')} of {len(verdicts) - reported} bars met"
+    text += f", {reported} rows only report" if reported else ""
+    for word, found in (("stale", sum(v.startswith("stale") for v in verdicts)), ("not measured", verdicts.count("not measured"))):
+        text += f", {found} {word}" if found else ""
+    return text
+
+
+def write(file, name, table):
+    """`table`: [(quantity, Row)]."""
+    text = f"# Validation: {name}\n\nWritten by `scripts/validate {name} --write` on {datetime.date.today()}, "
+    text += f"{platform.machine()}: {counts(row.verdict for _, row in table)}. The last column names the commit that was measured.\n\n"
+    text += "| quantity | wanted | got | | commit |\n|---|---|---|---|---|\n"
+    for quantity, row in table:
+        cells = (quantity, row.wanted, row.got, row.verdict, row.commit)
+        text += "| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |\n"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text)
+
+
+def stale(name, bars, rows, folders, history):
+    """Yields (quantity, commit, why) of the rows that this checkout may no longer give."""
+    for bar in bars:
+        row = renewed(bar, rows.get(bar.quantity), history)
+        commit = commit_of(row.commit)
+        if row.verdict == "not measured":
+            yield bar.quantity, "-", "not measured"
+        elif row.verdict.startswith("stale"):
+            reworded = commit and (history.has(commit) or history.landed(commit))
+            yield bar.quantity, row.commit, "the bar reads differently now" if reworded else "its commit is not in this history"
+        elif changed := history.changed(commit, bar.sources or folders):
+            yield bar.quantity, row.commit, f"changed since: {', '.join(changed)}"
