@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "common/base/error.hpp"
 
@@ -11,6 +12,7 @@ namespace couplet {
 Reply Partner::receive() {
   Reply reply = channel->receive();
   seconds += reply.seconds;
+  seconds_since_accepted += reply.seconds;
   if (reply.status == Reply::Status::failure)
     throw SolveFailure(fmt::format("'{}' says: {}", name(), reply.text));
   return reply;
@@ -23,6 +25,9 @@ void ask_all(const std::vector<Partner*>& partners, const Command& command) {
     try {
       const Reply reply = p->receive();
       if (command.op == Op::accept_step || command.op == Op::load) p->advised_dt = reply.suggested_dt;
+      if (command.op != Op::accept_step) continue;
+      p->report = reply.report;
+      p->report.seconds = std::exchange(p->seconds_since_accepted, 0.0);
     } catch (const SolveFailure& failure) {
       failures += (failures.empty() ? "" : " ") + std::string(failure.what());
     }

@@ -14,6 +14,8 @@ namespace couplet {
 struct Partner {
   std::unique_ptr<Channel> channel;
   double seconds = 0;  ///< it has spent in the step under way
+  double seconds_since_accepted = 0;
+  StepReport report{};  ///< of the last accepted step
   double advised_dt = 0;
 
   const std::string& name() const { return channel->name(); }

@@ -111,10 +111,15 @@ Exchange FluidParticipant<D>::solve(const Exchange& in) {
 }
 
 template <int D>
-void FluidParticipant<D>::accept_step() {
+StepReport FluidParticipant<D>::accept_step() {
+  const auto effort = [&] {
+    return fluid_->statistics().pressure_iterations + fluid_->statistics().viscous_iterations;
+  };
+  const long before = effort();
   fluid_->accept();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), step_.dt);
+  return {.dt = step_.dt, .iterations = effort() - before};
 }
 
 template <int D>

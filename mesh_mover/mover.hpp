@@ -24,7 +24,7 @@ class Mover final : public Participant {
   Interface initialise() override;
   void begin_step(const Step& step) override;
   Exchange solve(const Exchange& in) override;
-  void accept_step() override {}
+  StepReport accept_step() override { return {.dt = step_.dt, .iterations = laplacian_.last().iterations}; }
   void save(CheckpointWriter& file) const override;
   void load(CheckpointReader& file) override;
   void write_output(double, int) override {}

@@ -171,7 +171,7 @@ void Solid::update_trial_ghosts() {
   elastic_.join_twins(trial_.face_v);
 }
 
-void Solid::accept_step() {
+StepReport Solid::accept_step() {
   if (!is_dynamic()) judge_inertia();
   for (const auto& effect : effects_) effect->accept_step();
   for (const StageWork& work : stages_)
@@ -183,6 +183,7 @@ void Solid::accept_step() {
   if (step_.is_last && !is_dynamic()) systems_.clear();
   for (const auto& effect : effects_)
     if (effect->wants_stress()) effect->take_stress(cell_stress(point_displacement()));
+  return {.dt = step_.dt, .iterations = effort_.iterations};
 }
 
 }  // namespace couplet

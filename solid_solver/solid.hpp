@@ -82,7 +82,7 @@ class Solid final : public Participant {
   double suggest_dt() override;
   void begin_step(const Step& step) override;
   Exchange solve(const Exchange& in) override;
-  void accept_step() override;
+  StepReport accept_step() override;
   void save(CheckpointWriter& file) const override;
   void load(CheckpointReader& file) override;
   void write_output(double time, int number) override;

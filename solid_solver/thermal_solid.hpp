@@ -28,7 +28,10 @@ class ThermalSolid final : public Participant {
   Interface initialise() override;
   void begin_step(const Step& step) override;
   Exchange solve(const Exchange& in) override;
-  void accept_step() override { heat_->accept_step(); }
+  StepReport accept_step() override {
+    heat_->accept_step();
+    return {.dt = step_.dt};
+  }
   void save(CheckpointWriter& file) const override { heat_->save(file); }
   void load(CheckpointReader& file) override { heat_->load(file); }
   void write_output(double time, int number) override;

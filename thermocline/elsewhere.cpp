@@ -156,7 +156,10 @@ class ElementParticipant final : public Participant {
     next_ = accepted_;
     return comm_rank(comm_) == 0 ? next_.advance(step_, in, *weather_) : Exchange{};
   }
-  void accept_step() override { std::swap(accepted_, next_); }
+  StepReport accept_step() override {
+    std::swap(accepted_, next_);
+    return {.dt = step_.dt};
+  }
   void save(CheckpointWriter& file) const override { file.write("element", accepted_.state()); }
   void load(CheckpointReader& file) override { accepted_.restore(file.read("element")); }
   void write_output(double, int) override {}

@@ -124,7 +124,7 @@ Exchange Tank::solve(const Exchange& in) {
   return given();
 }
 
-void Tank::accept_step() {
+StepReport Tank::accept_step() {
   const Ledger &before = accepted_.ledger(), &now = next_.ledger();
   stored_ = now.bed - before.bed;
   side_ = now.side - before.side, roof_ = now.roof - before.roof, ground_ = now.ground - before.ground;
@@ -133,10 +133,12 @@ void Tank::accept_step() {
   for (const BedStep& s : steps_) peak_flow_ = std::max(peak_flow_, std::abs(s.flow.mass_flow));
   for (const std::string& sentence : accepted_.take_warnings())
     if (files_) log::warn("{}", sentence);
-  if (observers_.empty()) return;
-  accepted_.bed().filler_temperature(filler_);
-  const TankRecord r = record();
-  for (const auto& observer : observers_) observer->record(r);
+  if (!observers_.empty()) {
+    accepted_.bed().filler_temperature(filler_);
+    const TankRecord r = record();
+    for (const auto& observer : observers_) observer->record(r);
+  }
+  return {.dt = step_.dt};
 }
 
 TankRecord Tank::record() const {

@@ -22,7 +22,7 @@ class Tank final : public Participant {
   double suggest_dt() override;
   void begin_step(const Step& step) override { step_ = step; }
   Exchange solve(const Exchange& in) override;
-  void accept_step() override;
+  StepReport accept_step() override;
   void save(CheckpointWriter& file) const override;
   void load(CheckpointReader& file) override;
   void write_output(double time, int number) override;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <fstream>
 #include <limits>
+#include <utility>
 
 #include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
@@ -97,6 +98,11 @@ class OwnCommands {
     const Reply reply = carry_out(command, participant_, job_.name, job_.comm);
     books_.done(command);
     if (reply.status == Reply::Status::ok) advised_dt_ = std::min(reply.suggested_dt, advised_dt_);
+    seconds_ += reply.seconds;
+    if (command.op == Op::accept_step) {
+      report_ = reply.report;
+      report_.seconds = std::exchange(seconds_, 0.0);
+    }
     return reply;
   }
   std::optional<std::string> attempt(const Step& step) {
@@ -117,11 +123,15 @@ class OwnCommands {
     if (reply.status == Reply::Status::failure) throw SolveFailure(reply.text);
   }
   double advised_dt() const { return advised_dt_; }
+  /// Of the last accepted step.
+  const StepReport& report() const { return report_; }
 
  private:
   const Job& job_;
   Participant& participant_;
   Bookkeeping books_;
+  StepReport report_;
+  double seconds_ = 0;  // since the last accepted step
   double advised_dt_ = std::numeric_limits<double>::infinity();
 };
 

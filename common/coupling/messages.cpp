@@ -199,6 +199,10 @@ std::vector<char> pack(const Reply& r) {
   out.put(r.interface.face_areas);
   out.put(r.interface.takes);
   out.put(r.interface.gives);
+  out.put(r.report.dt);
+  out.put(std::int64_t(r.report.iterations));
+  out.put(r.report.error);
+  out.put(r.report.energy);
   return out.take();
 }
 
@@ -216,6 +220,10 @@ Reply unpack_reply(std::span<const char> bytes) {
   r.interface.face_areas = in.points();
   r.interface.takes = in.data();
   r.interface.gives = in.data();
+  r.report.dt = in.real();
+  r.report.iterations = long(in.integer());
+  r.report.error = in.real();
+  r.report.energy = in.real();
   in.finish();
   return r;
 }

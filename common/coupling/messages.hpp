@@ -46,6 +46,7 @@ struct Reply {
   double suggested_dt = std::numeric_limits<double>::infinity();  ///< initialise, accept_step, load
   Exchange data;                                                  ///< solve: the output
   Interface interface;                                            ///< initialise
+  StepReport report;                                              ///< accept_step; its seconds are not sent
 };
 
 std::vector<char> pack(const Command& command);
@@ -54,7 +55,7 @@ std::vector<char> pack(const Reply& reply);
 Command unpack_command(std::span<const char> bytes);
 Reply unpack_reply(std::span<const char> bytes);
 
-inline constexpr std::int64_t protocol_version = 2;
+inline constexpr std::int64_t protocol_version = 3;
 inline constexpr int command_tag = 101, reply_tag = 102;
 
 }  // namespace couplet

@@ -51,6 +51,18 @@ struct Step {
   bool is_last = false;  ///< accepted, it ends the run; false in a coupled job
 };
 
+/// What an accepted step was like: what guards, studies and monitors read, of every participant alike. A
+/// number that was not computed is NaN; none is computed for the report's sake alone.
+struct StepReport {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double dt = 0;            ///< [s]
+  long iterations = 0;      ///< of linear solvers in the solve() that was accepted
+  double error = unknown;   ///< estimated time error of the step, over the size of the solution [1]
+  double energy = unknown;  ///< of the accepted state [J]
+  double seconds =
+      0;  ///< since the last accepted step, failed attempts included; filled in by who drives the run
+};
+
 /// A physics program seen from outside. All calls are collective over its ranks.
 ///
 /// Contract (tests/contract holds every implementation to it): solve() starts from the accepted state n, so
@@ -66,7 +78,8 @@ class Participant {
   virtual double suggest_dt() { return std::numeric_limits<double>::infinity(); }
   virtual void begin_step(const Step& step) = 0;
   virtual Exchange solve(const Exchange& in) = 0;
-  virtual void accept_step() = 0;
+  /// Cannot fail: what can, fails in solve().
+  virtual StepReport accept_step() = 0;
   virtual void save(CheckpointWriter& file) const = 0;
   virtual void load(CheckpointReader& file) = 0;
   /// Writes fields for this accepted time (called when output is due). `number` counts outputs from 0.

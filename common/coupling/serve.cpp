@@ -27,7 +27,7 @@ void dispatch(const Command& command, Participant& participant, const std::strin
       reply.data = participant.solve(command.data);
       return;
     case Op::accept_step:
-      participant.accept_step();
+      reply.report = participant.accept_step();
       participant.write_monitors(command.time);
       if (command.output >= 0) participant.write_output(command.time, command.output);
       reply.suggested_dt = participant.suggest_dt();

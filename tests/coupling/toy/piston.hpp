@@ -74,7 +74,10 @@ class Piston final : public Participant {
     const std::vector<double> force = all_gather(comm_, mine);
     return rank == 0 ? Exchange{{"pressure-force", force}} : Exchange{};
   }
-  void accept_step() override { now_ = next_; }
+  StepReport accept_step() override {
+    now_ = next_;
+    return {.dt = step_.dt};
+  }
   void save(CheckpointWriter& file) const override { file.write("velocity", now_); }
   void load(CheckpointReader& file) override { file.read("velocity", now_); }
   void write_output(double, int) override {}

@@ -56,7 +56,10 @@ class Spring final : public Participant {
     }
     return out;
   }
-  void accept_step() override { now_ = next_; }
+  StepReport accept_step() override {
+    now_ = next_;
+    return {.dt = dt_};
+  }
   void save(CheckpointWriter& file) const override { file.write("state", now_); }
   void load(CheckpointReader& file) override { file.read("state", now_); }
   void write_output(double, int) override {}

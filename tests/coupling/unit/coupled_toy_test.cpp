@@ -36,7 +36,10 @@ class RecordingMover final : public Participant {
     log_.push_back("solve");
     return {};
   }
-  void accept_step() override { log_.push_back("accept_step"); }
+  StepReport accept_step() override {
+    log_.push_back("accept_step");
+    return {};
+  }
   void save(CheckpointWriter& file) const override { file.write_scalar("nothing", 0); }
   void load(CheckpointReader&) override {}
   void write_output(double, int) override {}

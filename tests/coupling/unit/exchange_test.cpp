@@ -46,7 +46,10 @@ class Lump final : public Participant {
     next_ = now_ + dt_ / capacity_ * heat;
     return {{"temperature", {next_}}};
   }
-  void accept_step() override { now_ = next_; }
+  StepReport accept_step() override {
+    now_ = next_;
+    return {.dt = dt_};
+  }
   void save(CheckpointWriter& file) const override { file.write_scalar("temperature", now_); }
   void load(CheckpointReader& file) override { now_ = file.read_scalar("temperature"); }
   void write_output(double, int) override {}

@@ -33,6 +33,7 @@ Reply some_reply() {
   r.interface.face_areas = {{0, 1, 0}};
   r.interface.takes = {{"displacement", "m", Interface::Place::vertices}};
   r.interface.gives = {{"pressure-force", "N", Interface::Place::faces}};
+  r.report = {.dt = 0.25, .iterations = 17, .energy = 3e-9};
   return r;
 }
 
@@ -67,6 +68,10 @@ TEST(Messages, replies_arrive_as_they_were_sent) {
   EXPECT_EQ(got.interface.gives[0].name, "pressure-force");
   EXPECT_EQ(got.interface.gives[0].unit, "N");
   EXPECT_EQ(got.interface.gives[0].place, Interface::Place::faces);
+  EXPECT_EQ(got.report.dt, 0.25);
+  EXPECT_EQ(got.report.iterations, 17);
+  EXPECT_TRUE(std::isnan(got.report.error));
+  EXPECT_EQ(got.report.energy, 3e-9);
 }
 
 TEST(Messages, a_message_cut_anywhere_is_refused) {
@@ -87,7 +92,7 @@ TEST(Messages, another_kind_or_version_is_refused) {
   } catch (const Error& error) {
     EXPECT_STREQ(
         error.what(),
-        "A reply has protocol version 99, this program speaks version 2: use programs of one version.");
+        "A reply has protocol version 99, this program speaks version 3: use programs of one version.");
   }
 }
 
