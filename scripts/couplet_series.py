@@ -47,6 +47,18 @@ class FieldSeries:
         points = self.file["mesh/coordinates"][...]
         return np.array([points[cell].mean(axis=0) for cell in self.cells])
 
+    def volumes(self):
+        """Areas (2-D) of the cells in the undeformed mesh; in 3-D those of hulls, which for planar faces are the volumes."""
+        points = self.file["mesh/coordinates"][...]
+        if len(points[0]) == 2 or np.ptp(points[:, 2]) == 0:
+            found = []
+            for cell in self.cells:
+                x, y = points[cell, 0], points[cell, 1]
+                found.append(0.5 * abs(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))))
+            return np.array(found)
+        from scipy.spatial import ConvexHull
+        return np.array([ConvexHull(points[cell]).volume for cell in self.cells])
+
     def names(self, i):
         step = self.file["steps"][self.steps[i]]
         return [name for place in ("cells", "points") if place in step for name in step[place]]

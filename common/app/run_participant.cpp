@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <limits>
 #include <utility>
 
+#include "common/app/run_report.hpp"
 #include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
 #include "common/coupling/serve.hpp"
@@ -49,7 +49,7 @@ Phase phase_of(Op op) {
 /// What each command does to the watch over the job and to the timers.
 class Bookkeeping {
  public:
-  explicit Bookkeeping(const Job& job) : job_(job) {}
+  Bookkeeping(const Job& job, RunReport& report) : job_(job), report_(report) {}
   void waiting() {
     since_ = Clock::now();
     job_.enter(Phase::waiting);
@@ -61,27 +61,22 @@ class Bookkeeping {
     job_.enter(phase_of(command.op));
   }
   void done(const Command& command) {
-    log::timers().add(couplet::name(command.op), seconds_since(since_));
+    const double seconds = seconds_since(since_);
+    log::timers().add(couplet::name(command.op), seconds);
+    report_.spent(seconds);
     if (command.op == Op::accept_step) job_.watch->set_time(command.time);
   }
 
  private:
   const Job& job_;
+  RunReport& report_;
   Clock::time_point since_ = Clock::now();
 };
 
-/// Most memory this process has had in use [MB]; 0 where the system does not tell. (getrusage would count
-/// what the process that started this one had in use before.)
-double peak_memory() {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;)
-    if (double kilobytes = 0; word == "VmHWM:" && status >> kilobytes) return kilobytes / 1024;
-  return 0;
-}
-
 void closing_words(const Job& job, Participant& participant, double seconds) {
   const std::vector<std::string> sentences = participant.judge_left_out_effects();
-  const double most = max(job.comm, peak_memory()), all = sum(job.comm, peak_memory());
+  const double mine = RunReport::peak_memory();
+  const double most = max(job.comm, mine), all = sum(job.comm, mine);
   if (job.rank != 0) return;
   for (const std::string& sentence : sentences) log::info("{}", sentence);
   log::info("{}", log::timers().table("time of '" + job.name + "'", seconds));
@@ -92,7 +87,8 @@ void closing_words(const Job& job, Participant& participant, double seconds) {
 /// Commands to the participant from its own loop, with the same bookkeeping as in a coupled run.
 class OwnCommands {
  public:
-  OwnCommands(const Job& job, Participant& participant) : job_(job), participant_(participant), books_(job) {}
+  OwnCommands(const Job& job, Participant& participant, RunReport& run)
+      : job_(job), participant_(participant), run_(run), books_(job, run) {}
   Reply operator()(const Command& command) {
     books_.received(command);
     const Reply reply = carry_out(command, participant_, job_.name, job_.comm);
@@ -102,6 +98,7 @@ class OwnCommands {
     if (command.op == Op::accept_step) {
       report_ = reply.report;
       report_.seconds = std::exchange(seconds_, 0.0);
+      run_.accepted(command.time, reply.report);
     }
     return reply;
   }
@@ -129,6 +126,7 @@ class OwnCommands {
  private:
   const Job& job_;
   Participant& participant_;
+  RunReport& run_;
   Bookkeeping books_;
   StepReport report_;
   double seconds_ = 0;  // since the last accepted step
@@ -155,7 +153,8 @@ class Console {
 }  // namespace
 
 int run_alone(const Job& job, Participant& participant) {
-  OwnCommands command(job, participant);
+  RunReport run(job);
+  OwnCommands command(job, participant, run);
   StepLoop loop(job.comm, job.simulation, Scheme::standalone, job.checkpoints);
   Console console(job.simulation);
   command.must({Op::initialise, {}, {}, 0, -1, ""});
@@ -178,6 +177,7 @@ int run_alone(const Job& job, Participant& participant) {
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);
   closing_words(job, participant, console.seconds());
+  run.finish(console.seconds(), problem);
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
   return 1;
@@ -185,15 +185,21 @@ int run_alone(const Job& job, Participant& participant) {
 
 int run_coupled(const Job& job, MPI_Comm coupler, Participant& participant) {
   const auto start = Clock::now();
-  Bookkeeping books(job);
+  RunReport run(job);
+  Bookkeeping books(job, run);
   ServeObserver observer;
   observer.waiting = [&] { books.waiting(); };
   observer.received = [&](const Command& command) {
     books.waited();
     books.received(command);
-    if (command.op == Op::finalise) closing_words(job, participant, seconds_since(start));
+    if (command.op != Op::finalise) return;
+    closing_words(job, participant, seconds_since(start));
+    run.finish(seconds_since(start), "");
   };
   observer.done = [&](const Command& command) { books.done(command); };
+  observer.accepted = [&](const Command& command, const StepReport& report) {
+    run.accepted(command.time, report);
+  };
   serve(coupler, job.comm, job.name, participant, observer);
   return 0;
 }

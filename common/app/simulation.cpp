@@ -23,6 +23,8 @@ void declare(config::Section& section, SimulationParameters& p) {
             .unit("s")
             .not_negative()
             .doc("time between outputs of fields; 0: only the start and the end");
+        s.value("steps", p.output_steps)
+            .doc("steps.csv: step, iterations, error, energy and seconds of each accepted step");
       },
       "fields for pictures");
   section.section(

@@ -14,6 +14,7 @@ struct SimulationParameters {
   int max_step_halvings = 6;           // of a step that fails
   std::string output_folder = "out";   // relative to the YAML's folder unless absolute
   double output_interval = 0;          // [s]; 0: only the start and the end
+  bool output_steps = true;            // steps.csv
   double checkpoint_interval = 0;      // [s]; 0: only at the end
   int checkpoints_kept = 2;
 };

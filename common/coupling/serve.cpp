@@ -82,6 +82,7 @@ void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant
     observer.received(command);
     const Reply reply = carry_out(command, participant, name, comm);
     observer.done(command);
+    if (command.op == Op::accept_step) observer.accepted(command, reply.report);
     if (root) send_bytes(coupler, 0, reply_tag, pack(reply), "the coupler to take a reply");
     if (command.op == Op::finalise) return;
   }

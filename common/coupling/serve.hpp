@@ -20,6 +20,8 @@ struct ServeObserver {
   std::function<void()> waiting = [] {};                                 ///< before each wait for a command
   std::function<void(const Command&)> received = [](const Command&) {};  ///< before it is carried out
   std::function<void(const Command&)> done = [](const Command&) {};      ///< after that, before the reply
+  /// After each accepted step; its seconds are not filled in.
+  std::function<void(const Command&, const StepReport&)> accepted = [](const Command&, const StepReport&) {};
 };
 
 /// The participant's side of a coupled run: receives commands on rank 0, hands them to all ranks, carries

@@ -57,6 +57,16 @@ def periodic(folder, mean_speed, last=1.5):
             "St": DIAMETER / (mean_speed * (z[-1] - z[0]) / (len(z) - 1))}
 
 
+def mean_02(folder):
+    """For scripts/study: the steady flow of mean speed 0.2 m/s."""
+    return steady(folder, 0.2)
+
+
+def street(folder):
+    """For scripts/study: the vortex street of mean speed 1 m/s."""
+    return periodic(folder, 1)
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", nargs="?", type=pathlib.Path, default=here / "out" / "fluid")

@@ -54,4 +54,5 @@ def main():
     print(f"picture: {picture}")
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channel around the flap, quadrilaterals only. Those of solid.geo along the flap halve these.
-n_side = 80;        // cells along each side of the flap
-n_tip = 8;          // cells across its tip
-growth = 1.12;      // of neighbouring cells, away from the flap
-wall_growth = 1.12; // towards the upper wall
-wall_cells = 10;    // in the part that narrows towards the upper wall
+DefineConstant [
+  n_side = 80,        // cells along each side of the flap
+  n_tip = 8,          // cells across its tip
+  growth = 1.12,      // of neighbouring cells, away from the flap
+  wall_growth = 1.12, // towards the upper wall
+  wall_cells = 10    // in the part that narrows towards the upper wall
+];
 
 left = -3; right = 3; top = 4; mid = 2.8; // m; below mid the rows widen, above it they narrow
 half = 0.05; height = 1;                  // m; the flap

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The flap. Its cells along the sides and the tip halve those of fluid.geo, because
 // the operator needs short cells along a beam to bend it right; every vertex of the fluid has its twin here.
-n_side = 160; // cells along each side
-n_tip = 16;   // cells across the tip
+DefineConstant [
+  n_side = 160, // cells along each side
+  n_tip = 16    // cells across the tip
+];
 
 half = 0.05; height = 1; // m
 

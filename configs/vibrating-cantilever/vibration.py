@@ -44,6 +44,11 @@ def history(folder):
     return probes["time [s]"], probes["tip y [m]"]
 
 
+def numbers(folder):
+    """For scripts/study: period [s], decay of the amplitude a period [1], amplitude [m]."""
+    return dict(zip(("period", "decay", "amplitude"), fit(*history(folder))))
+
+
 def reference():
     rows = [r for r in (here / "reference" / "tip_finite_elements.csv").read_text().splitlines() if r[0] not in "#t"]
     return np.array([[float(v) for v in r.split(",")] for r in rows]).T

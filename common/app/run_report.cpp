@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/run_report.hpp"
+
+#include <sys/resource.h>
+
+#include <array>
+#include <fstream>
+#include <utility>
+
+#include "common/app/command_line.hpp"
+#include "common/app/job.hpp"
+#include "common/base/error.hpp"
+#include "common/log/timer.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+const char* const summary_file = "run.json";
+
+/// User and system seconds of this process.
+double processor_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// As a JSON string.
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20)
+      out += fmt::format("\\u{:04x}", int(c));
+    else
+      out += c;
+  }
+  return out + '"';
+}
+
+std::string phases() {
+  std::string out;
+  for (const auto& [name, entry] : log::timers().entries())
+    out += fmt::format("{}\n    {}: {:.6g}", out.empty() ? "" : ",", quoted(name), entry.seconds);
+  return "{" + out + (out.empty() ? "}" : "\n  }");
+}
+
+}  // namespace
+
+// getrusage would count what the process that started this one had in use before.
+double RunReport::peak_memory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (double kilobytes = 0; word == "VmHWM:" && status >> kilobytes) return kilobytes / 1024;
+  return 0;
+}
+
+RunReport::RunReport(const Job& job) : job_(job) {
+  if (job.rank != 0) return;
+  std::error_code ignored;
+  std::filesystem::remove(job.output_folder / summary_file, ignored);
+  if (job.simulation.output_steps)
+    steps_.emplace(
+        job.output_folder / "steps.csv",
+        std::vector<std::string>{"time [s]", "dt [s]", "iterations", "error", "energy [J]", "seconds [s]"},
+        job.restart_time);
+}
+
+void RunReport::accepted(double time, StepReport report) {
+  report.seconds = std::exchange(since_accepted_, 0.0);
+  time_ = time;
+  ++count_;
+  iterations_ += report.iterations;
+  if (!steps_) return;
+  steps_->row(
+      std::array{time, report.dt, double(report.iterations), report.error, report.energy, report.seconds});
+}
+
+void RunReport::finish(double wall, const std::string& problem) {
+  const double cpu = sum(job_.comm, processor_seconds());
+  const double most = max(job_.comm, peak_memory()), all = sum(job_.comm, peak_memory());
+  if (job_.rank != 0) return;
+  std::ofstream file(job_.output_folder / summary_file);
+  file << fmt::format(
+      "{{\n  \"participant\": {},\n  \"version\": {},\n  \"ranks\": {},\n"
+      "  \"state\": \"{}\",\n  \"reason\": {},\n  \"time\": {:.17g},\n  \"steps\": {},\n"
+      "  \"iterations\": {},\n  \"wall\": {:.6g},\n  \"processor\": {:.6g},\n  \"memory-most\": {:.6g},\n"
+      "  \"memory-all\": {:.6g},\n  \"phases\": {}\n}}\n",
+      quoted(job_.name), quoted(version_text()), comm_size(job_.comm), problem.empty() ? "ended" : "failed",
+      quoted(problem), time_, count_, iterations_, wall, cpu, most, all, phases());
+}
+
+}  // namespace couplet

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "common/coupling/participant.hpp"
+#include "common/io/series.hpp"
+
+namespace couplet {
+
+struct Job;
+
+/// What a run leaves for scripts and studies, beside its results:
+///   steps.csv  a row an accepted step: time and dt [s], iterations of linear solvers, estimated time error
+///   of
+///              the step [1], energy [J], seconds; what was not computed is nan. Off with output.steps.
+///   run.json   at the end: how it ended, wall and processor seconds, memory, steps, iterations, phases.
+/// Written by rank 0. The file of an earlier run is removed at the start: a run.json speaks of this run.
+class RunReport {
+ public:
+  explicit RunReport(const Job& job);
+  /// Adds seconds spent on the step under way, failed attempts included.
+  void spent(double seconds) { since_accepted_ += seconds; }
+  /// `time`: the end of the step [s]; report.seconds is replaced by those spent since the last call.
+  void accepted(double time, StepReport report);
+  /// Collective over job.comm. `wall` [s]; `problem`: why the run ended early, empty if it did not.
+  void finish(double wall, const std::string& problem);
+
+  /// Most memory this process has had in use [MB]; 0 where the system does not tell.
+  static double peak_memory();
+
+ private:
+  const Job& job_;
+  std::optional<Series> steps_;
+  double since_accepted_ = 0, time_ = 0;
+  long count_ = 0, iterations_ = 0;
+};
+
+}  // namespace couplet

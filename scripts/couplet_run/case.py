@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A case file as the runner sees it: who takes part, what changes become on a command line, what a result depends on."""
+import functools
+import hashlib
+import json
+import pathlib
+import re
+
+import yaml
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+COUPLER = "coupler"
+
+
+class Wrong(Exception):
+    """Something the user can mend."""
+
+
+def expect(condition, text):
+    if not condition:
+        raise Wrong(text)
+
+
+def text_of(value):
+    """As it would stand in the YAML."""
+    return value if isinstance(value, str) else json.dumps(value)
+
+
+@functools.lru_cache(maxsize=256)
+def content_of(file, time, size):
+    """Digest of a file as it was at that time."""
+    return hashlib.sha256(file.read_bytes()).digest()
+
+
+class Case:
+    """`file`: the YAML, or one that names a case beside it and holds another study of it ({case: case.yaml, study: ...});
+    `build`: the folder with bin/."""
+
+    def __init__(self, file, build=ROOT / "build"):
+        self.file, self.build = pathlib.Path(file), pathlib.Path(build)
+        expect(self.file.is_file(), f"{self.file}: this file does not exist.")
+        self.data = yaml.safe_load(self.file.read_text()) or {}
+        expect(isinstance(self.data, dict), f"{self.file}: expected a mapping of sections.")
+        self.asked, study = self.file, self.data.get("study")
+        if "case" in self.data:
+            unknown = set(self.data) - {"case", "study"}
+            expect(not unknown, f"{self.file}: unknown key '{next(iter(unknown), '')}'; beside 'case' there is only 'study'.")
+            self.file = self.file.parent / str(self.data["case"])
+            expect(self.file.is_file(), f"{self.asked}: case: {self.file} does not exist.")
+            self.data = {**(yaml.safe_load(self.file.read_text()) or {}), "study": study}
+        self.participants = self.data.get("participants") or {}
+
+    @property
+    def study(self):
+        section = self.data.get("study")
+        expect(isinstance(section, dict), f"{self.asked}: there is no section 'study'.")
+        return section
+
+    @property
+    def coupled(self):
+        return bool(self.data.get("coupling")) and len(self.participants) > 1
+
+    def absolute(self, key, participant):
+        """Keys start at a participant unless they start with a section."""
+        return key if re.match(r"(simulation|participants|coupling)\.", key) else f"participants.{participant}.{key}"
+
+    def assignments(self, changes):
+        """Arguments of --set. A key below a mapping that the case does not have is given with that mapping."""
+        added, plain = {}, []
+        for key, value in changes.items():
+            parts, node = key.split("."), self.data
+            for depth, part in enumerate(parts[:-1]):
+                if isinstance(node, dict) and part not in node:
+                    place = added.setdefault(".".join(parts[:depth + 1]), {})
+                    for inner in parts[depth + 1:-1]:
+                        place = place.setdefault(inner, {})
+                    place[parts[-1]] = value
+                    break
+                node = node[part] if isinstance(node, dict) else None
+            else:
+                plain.append(f"{key}={text_of(value)}")
+        return plain + [f"{key}={json.dumps(value)}" for key, value in added.items()]
+
+    def program(self, participant):
+        entry = self.participants.get(participant)
+        expect(isinstance(entry, dict), f"{self.file}: there is no participant '{participant}'.")
+        return self.build / "bin" / str(entry.get("program", "?"))
+
+    def command(self, changes, alone=None, ranks=None):
+        """The command line. `alone`: this participant by itself; `ranks`: {participant or coupler: number}."""
+        sets = [word for a in self.assignments(changes) for word in ("--set", a)]
+        ranks = ranks or {}
+        if alone is not None or not self.coupled:
+            name = alone or next(iter(self.participants))
+            line = [self.program(name), self.file, "--participant", name, *sets]
+            return line if ranks.get(name, 1) == 1 else ["mpirun", "--oversubscribe", "-n", ranks[name], *line]
+        line = ["mpirun", "--oversubscribe", "-n", ranks.get(COUPLER, 1), self.build / "bin" / COUPLER, self.file, *sets]
+        for name in self.participants:
+            line += [":", "-n", ranks.get(name, 1), self.program(name), self.file, "--participant", name, *sets]
+        return line
+
+    def named(self, node):
+        """Files that the case names, such as a mesh or a weather file in another folder."""
+        if isinstance(node, dict) or isinstance(node, list):
+            for child in node.values() if isinstance(node, dict) else node:
+                yield from self.named(child)
+        elif isinstance(node, str) and 0 < len(node) < 200 and "\n" not in node and (self.file.parent / node).is_file():
+            yield self.file.parent / node
+
+    def digest(self, changes=None):
+        """Of all that a result depends on besides its settings: the files that case and changes name, and the programs."""
+        mark = hashlib.sha256()
+        inputs = {f.resolve() for f in self.named([self.data, list((changes or {}).values())])} | {
+            f.resolve() for f in self.file.parent.glob("*.geo")}
+        programs = {self.program(name) for name in self.participants} | ({self.build / "bin" / COUPLER} if self.coupled else set())
+        sections = {k: v for k, v in self.data.items() if k != "study"}  # a study may grow without its runs being made again
+        mark.update(json.dumps(sections, sort_keys=True, default=str).encode())
+        for file in (*sorted(inputs), *sorted(programs)):
+            if file.exists():
+                status = file.stat()
+                mark.update(str(file.name).encode() + content_of(file, status.st_mtime_ns, status.st_size))
+        return mark.hexdigest()

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs many tasks, some at a time; what is done is skipped, what another process is making is waited for."""
+import collections
+import concurrent.futures
+import threading
+import time
+
+
+def run_all(tasks, jobs=1, again=False, say=print):
+    """{task: Record} of all tasks, in their order. `again`: made again although there. `say` gets a line a task."""
+    queue, records, mutex, start = collections.deque(tasks), {}, threading.Lock(), time.monotonic()
+    made = set()
+
+    def tell(task, record, word):
+        with mutex:
+            records[task] = record
+            left = len(tasks) - len(records)
+            rest = (time.monotonic() - start) / max(len(made), 1) * left / max(jobs, 1) * min(len(made), jobs) if made and left else 0
+            say(f"[{len(records)}/{len(tasks)}] {task.name}: {record.reason or word}" + (f" (about {rest:.0f} s to go)" if rest > 10 else ""))
+
+    def worker():
+        busy = 0  # tasks seen in a row that others are making
+        while True:
+            with mutex:
+                if not queue:
+                    return
+                task = queue.popleft()
+                wait = busy > len(queue)
+            record = None if again else task.record()
+            if record:
+                tell(task, record, "done before")
+                continue
+            with task.lock(wait) as mine:
+                if not mine:
+                    busy += 1
+                    with mutex:
+                        queue.append(task)
+                    continue
+                busy = 0
+                record = None if again else task.record()
+                if record:
+                    tell(task, record, "done by another")
+                    continue
+                record = task.make()
+                with mutex:
+                    made.add(task)
+            tell(task, record, f"{record.wall:.1f} s, processor {record.cpu:.1f} s")
+
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        for future in [pool.submit(worker) for _ in range(jobs)]:
+            future.result()
+    return {task: records[task] for task in tasks}

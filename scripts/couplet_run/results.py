@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run left in its output folder: series, probes, monitors, reports of steps, and the summary of each participant."""
+import csv
+import json
+import pathlib
+
+import numpy as np
+
+
+def read_table(file):
+    """Columns of a CSV by their heads; text stays text."""
+    with open(file, newline="") as lines:
+        rows = list(csv.reader(line for line in lines if not line.startswith("#")))
+    head, body = [h.strip() for h in rows[0]], [r for r in rows[1:] if len(r) == len(rows[0])]
+    columns = {}
+    for i, name in enumerate(head):
+        try:
+            columns[name] = np.array([float(r[i]) for r in body])
+        except ValueError:
+            columns[name] = np.array([r[i] for r in body])
+    return columns
+
+
+class Results:
+    """The output folder of a run: <folder>/<participant>/..."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+
+    def participants(self):
+        return sorted(f.name for f in self.folder.iterdir() if f.is_dir() and f.name not in ("checkpoints", "meshes")
+                      and any(f.glob("*.log")))
+
+    def table(self, participant, file):
+        """Columns of <participant>/<file>; files are read once they are asked for."""
+        path = self.folder / participant / file
+        if not path.exists():
+            raise LookupError(f"there is no {participant}/{file}")
+        return read_table(path)
+
+    def column(self, participant, file, name):
+        table = self.table(participant, file)
+        if name not in table:
+            raise LookupError(f"{participant}/{file} has no column '{name}'; it has: {', '.join(table)}")
+        return table[name]
+
+    def fields(self, participant):
+        import couplet_series
+        return couplet_series.find_series(self.folder / participant)
+
+    def report(self, participant):
+        """run.json, which every program writes at its end."""
+        path = self.folder / participant / "run.json"
+        return json.loads(path.read_text()) if path.exists() else {}
+
+    def steps(self, participant):
+        """steps.csv: time, dt, iterations, error, energy, seconds of each accepted step."""
+        return self.table(participant, "steps.csv")
+
+    def costs(self):
+        """Over all participants: steps, iterations, memory [MB], phases {name: seconds}, waiting [s]."""
+        found = {"steps": 0, "iterations": 0, "memory": 0.0, "work": 0.0, "phases": {}}
+        for name in self.participants():
+            report = self.report(name)
+            found["steps"] = max(found["steps"], int(report.get("steps", 0)))
+            found["iterations"] += int(report.get("iterations", 0))
+            found["memory"] += float(report.get("memory-all", 0))
+            for phase, seconds in report.get("phases", {}).items():
+                if phase.startswith("waiting") or ":" in phase:  # with a colon: a part of another
+                    continue
+                label = phase if len(self.participants()) == 1 else f"{name}: {phase}"
+                found["phases"][label] = found["phases"].get(label, 0) + seconds
+                found["work"] += seconds
+        return found

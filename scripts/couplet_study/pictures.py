@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pictures of a study: error against time with the Pareto front, error against size with the observed order, growth of the
+cost with its exponent, cost by phase."""
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator
+
+from couplet_study import convergence
+from couplet_study.table import series_of
+
+CLOCKS = {"cpu": "processor time of the run [s]", "wall": "wall time of the run [s]", "work": "time in the phases, without waiting [s]"}
+MARKS = "osD^vP*Xh<>"
+
+
+def figure(title):
+    made, axes = plt.subplots(figsize=(6.6, 4.4), dpi=130, constrained_layout=True)
+    axes.set_title(title, fontsize=10)
+    return made, axes
+
+
+def plain(axis):
+    """Numbers where a logarithmic axis spans little."""
+    low, high = axis.get_view_interval()
+    if high / max(low, 1e-300) < 30:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_minor_formatter(FuncFormatter(lambda v, _: ""))
+        axis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
+
+
+def finish(made, axes, file):
+    axes.grid(which="both", alpha=0.25)
+    plain(axes.xaxis), plain(axes.yaxis)
+    handles, labels = axes.get_legend_handles_labels()
+    if 1 < len(labels) <= 14:
+        axes.legend(fontsize=7)
+    made.savefig(file)
+    plt.close(made)
+    return file
+
+
+def error_against_time(title, rows, quantity, clock, file, others=()):
+    """`others`: (name, [(cost, error)]) of other programs."""
+    made, axes = figure(title)
+    points = []
+    for k, (name, some) in enumerate(series_of(rows).items()):
+        xy = [(getattr(r.record, clock), r.errors[quantity.name], r) for r in some if r.errors.get(quantity.name, 0) > 0]
+        if not xy:
+            continue
+        line, = axes.loglog([p[0] for p in xy], [p[1] for p in xy], f"{MARKS[k % len(MARKS)]}-", markersize=4, lw=1, label=name)
+        points += [p[:2] for p in xy]
+        if len(points) <= 24 or k == 0:
+            for x, y, row in xy:
+                size = next((v for a, v in row.point.labels.items() if row.point.size and a not in name and v not in name.split(", ")), "")
+                axes.annotate(size, (x, y), fontsize=6, color=line.get_color(), xytext=(4, 3), textcoords="offset points")
+    for name, xy in others:
+        axes.loglog(*zip(*xy), "k" + MARKS[len(name) % len(MARKS)] + "--", markersize=4, lw=0.8, label=name)
+    front = convergence.pareto(points)
+    if len(front) > 1:
+        axes.step(*zip(*front), where="post", color="0.6", lw=4, alpha=0.4, zorder=0, label="Pareto front")
+    axes.set(xlabel=CLOCKS[clock], ylabel=f"error of {quantity.name}" + ("" if not quantity.given.get("absolute") else f" [{quantity.given.get('unit', '')}]"))
+    return finish(made, axes, file) if points else plt.close(made)
+
+
+def order(title, rows, quantity, refinement, file):
+    made, axes = figure(title)
+    drawn = False
+    for k, (name, some) in enumerate(series_of(rows).items()):
+        xy = [(r.point.size, r.errors[quantity.name]) for r in some if r.errors.get(quantity.name, 0) > 0]
+        if len(xy) < 2:
+            continue
+        steep, last = convergence.slope(*zip(*xy)), convergence.slope(*zip(*xy[-2:]))
+        if steep is None or last is None:
+            continue
+        drawn = True
+        axes.loglog(*zip(*xy), f"{MARKS[k % len(MARKS)]}-", markersize=4, lw=1, label=f"{name}: order {-steep:.2f}, of the last two {-last:.2f}")
+    axes.set(xlabel=f"{refinement} (size n, cells or steps a length)", ylabel=f"error of {quantity.name}")
+    if not drawn:
+        return plt.close(made)
+    low, high = axes.get_xlim()
+    top = max(max(line.get_ydata()) for line in axes.get_lines())
+    for p, style in ((1, ":"), (2, "--")):
+        axes.plot([low, high], [top, top * (high / low)**-p], style, color="0.7", lw=0.8, label=f"order {p}")
+    axes.legend(fontsize=7)
+    return finish(made, axes, file)
+
+
+def growth(title, rows, clock, refinement, file):
+    made, axes = figure(title)
+    drawn = False
+    for k, (name, some) in enumerate(series_of(rows).items()):
+        xy = [(r.point.size, getattr(r.record, clock)) for r in some]
+        if len(xy) < 2:
+            continue
+        exponent = convergence.slope(*zip(*xy[-3:]))
+        if exponent is None:
+            continue
+        drawn = True
+        axes.loglog(*zip(*xy), f"{MARKS[k % len(MARKS)]}-", markersize=4, lw=1, label=f"{name}: n^{exponent:.2f}")
+    axes.set(xlabel=f"{refinement} (size n)", ylabel=CLOCKS[clock])
+    return finish(made, axes, file) if drawn else plt.close(made)
+
+
+def phases(title, rows, file, most=24):
+    """Shares of the phases of each run; beyond `most` runs the dearest of each series."""
+    good = [r for r in rows if r.good and r.record.phases]
+    if len(good) > most:
+        good = [some[-1] for some in series_of(good).values()][:most]
+    if not good:
+        return None
+    names = sorted({p for r in good for p in r.record.phases}, key=lambda p: -sum(r.record.phases.get(p, 0) for r in good))
+    shown = names[:8]
+    made, axes = plt.subplots(figsize=(7.2, 1.2 + 0.24 * len(good)), dpi=130, constrained_layout=True)
+    left, at = np.zeros(len(good)), np.arange(len(good))
+    total = np.array([max(sum(r.record.phases.values()), 1e-12) for r in good])
+    for p in [*shown, *(["the rest"] if len(names) > len(shown) else [])]:
+        part = np.array([r.record.phases.get(p, 0) if p != "the rest" else sum(r.record.phases.get(o, 0) for o in names[8:]) for r in good])
+        axes.barh(at, 100 * part / total, left=left, label=p)
+        left += 100 * part / total
+    axes.set_yticks(at, [f"{r.point.name} ({t:.2g} s)" for r, t in zip(good, total)], fontsize=6)
+    axes.set(xlabel="share of the run [%]", xlim=(0, 100))
+    axes.invert_yaxis()
+    axes.set_title(title, fontsize=10)
+    axes.legend(fontsize=6, ncols=4, loc="upper center", bbox_to_anchor=(0.45, -0.5 / (0.24 * len(good) + 0.6)))
+    made.savefig(file)
+    plt.close(made)
+    return file

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The cheapest setting for an error that is asked for, predicted from few cheap runs, then run.
+
+Of each series (combination of all axes but the refinement) the smallest sizes are run; value(n) = limit + C n^-p gives the size
+that meets the target (for quantities that are errors themselves: error(n) = C n^-p), seconds(n) = a + b n^q its cost. The
+series of the least predicted cost goes on with larger sizes until the answer is near enough to be trusted."""
+import json
+import math
+import re
+
+import numpy as np
+
+from couplet_run import expect
+from couplet_study import table
+from couplet_study.convergence import Limit, limit_of
+
+AIM = 0.75      # of the target: the prediction may be off both ways
+NEAR = 1.6      # the final size over the largest that was tried, at most, before it is run
+GROWTH = 1.4    # of the sizes tried
+PATIENCE = 9    # runs of one series
+BUDGET = 1.3    # seconds spent before the final run over its own, where that takes longer than CHEAP
+CHEAP = 10.0    # [s]
+
+
+def target_of(text):
+    number = re.fullmatch(r"\s*([0-9.eE+-]+)\s*(%?)\s*", text)
+    expect(number, f"--for-error {text}: expected a number, or per cent such as 1%.")
+    value = float(number.group(1)) / (100 if number.group(2) else 1)
+    expect(0 < value < math.inf, f"--for-error {text}: expected a number above 0.")
+    return value
+
+
+def power_cost(sizes, seconds):
+    """(a, b, q) of a + b n^q, both parts positive, least squares of the relative misfit."""
+    n, t = np.array(sizes, float), np.array(seconds, float)
+    best = None
+    for q in np.arange(0.5, 5.01, 0.05):
+        basis = np.column_stack([np.ones_like(n), n**q]) / t[:, None]
+        # the latest runs say most
+        weight = (n / n[-1])[:, None]
+        ab = np.linalg.lstsq(basis * weight, weight[:, 0], rcond=None)[0]
+        ab = np.maximum(ab, 0)
+        if ab[1] == 0:
+            continue
+        misfit = float((((basis @ ab - 1) * weight[:, 0]) ** 2).sum()) + 1e-4 * (q - 3) ** 2  # undecided: as a solver in space
+        if best is None or misfit < best[0]:
+            best = (misfit, ab[0], ab[1], q)
+    return best[1:] if best else (float(t[-1]), 0.0, 1.0)
+
+
+class Series:
+    """One curve: the runs of growing size of one combination."""
+
+    def __init__(self, study, quantity, labels):
+        self.study, self.quantity, self.labels, self.rows = study, quantity, labels, []
+        self.name = ", ".join(v for k, v in labels.items() if k != study.axes.refining.name) or "the case"
+
+    def sizes(self):
+        return [r.point.size for r in self.rows]
+
+    def add(self, size, say):
+        label = f"{size:g}"
+        point = self.study.axes.point({**self.labels, self.study.axes.refining.name: label}, size)
+        row, = self.study.run([point], 1, False, say)
+        if row.good:
+            self.rows = sorted([*self.rows, row], key=lambda r: r.point.size)
+        return row
+
+    def model(self):
+        """Limit by which errors fall; None while there is none. Relative errors have a limit of size 1."""
+        values = [r.values[self.quantity.name] for r in self.rows]
+        if not self.quantity.is_error:
+            found = limit_of(self.sizes(), values)
+            if found is None:
+                return None
+            scale = 1 if self.quantity.given.get("absolute") else abs(found.value)
+            return Limit(found.value, found.order, found.constant / scale, found.gci / scale) if scale else None
+        (n1, n2), (e1, e2) = self.sizes()[-2:], values[-2:]
+        if not 0 < abs(e2) < abs(e1):
+            return None
+        order = math.log(abs(e1 / e2)) / math.log(n2 / n1)
+        return Limit(0.0, order, abs(e2) * n2**order, 0.0)
+
+    def seconds(self, size):
+        a, b, q = power_cost(self.sizes(), [getattr(r.record, self.study.clock) for r in self.rows])
+        last = self.rows[-1]
+        # through the latest run: its misfit is that of the next one, too
+        scale = getattr(last.record, self.study.clock) / (a + b * last.point.size**q)
+        return scale * (a + b * size**q)
+
+    def spent(self):
+        return sum(getattr(r.record, self.study.clock) for r in self.rows)
+
+    def predict(self, target):
+        """(size, error, seconds) that meets the target; None while there is no model."""
+        model = self.model()
+        if model is None:
+            return None
+        size = self.study.axes.refining.round(max(model.size_for(AIM * target), self.sizes()[0]), up=True)
+        return size, model.error(size), self.seconds(size)
+
+
+def started(study, quantity, say):
+    """All series with the three smallest sizes each."""
+    refining, found = study.axes.refining, {}
+    for point in study.axes.points():
+        labels = {k: v for k, v in point.labels.items() if k != refining.name}
+        found.setdefault(tuple(labels.items()), Series(study, quantity, labels))
+    for series in found.values():
+        for size in sorted(refining.sizes.values())[:3]:
+            row = series.add(size, say)
+            if not row.good:
+                say(f"{series.name}: left out, as its run of size {size:g} failed: {row.reason}")
+                break
+    return [s for s in found.values() if len(s.rows) >= 3]
+
+
+def for_error(study, text, name, say):
+    target = target_of(text)
+    expect(study.axes.refining, f"{study.case.file}: --for-error needs an axis with 'sizes'.")
+    names = [q.name for q in study.quantities]
+    quantity = next((q for q in study.quantities if q.name == (name or names[0])), None)
+    expect(quantity, f"--quantity {name}: there is no such quantity; there are: {', '.join(names)}.")
+    every = started(study, quantity, say)
+    expect(every, "no series could be run on its three smallest sizes.")
+    best, final, predicted = approach(every, target, say)
+    result = said(study, quantity, best, every, target, final, predicted)
+    (study.out / f"for-error-{quantity.name.replace(' ', '-')}-{text.strip().replace('%', 'pc')}.json").write_text(json.dumps(result, indent=1))
+    for line in result["lines"]:
+        say(line)
+    return 0 if result["met"] else 1
+
+
+def cheapest(every, target):
+    """The series of the least predicted seconds, with its prediction; (first series, None) while none has a model."""
+    known = [(p[2], i, p) for i, s in enumerate(every) if (p := s.predict(target))]
+    return (every[min(known)[1]], min(known)[2]) if known else (every[0], None)
+
+
+def approach(every, target, say):
+    """Larger and larger runs of whichever series looks cheapest, until one meets the target; (series, row or None, what was
+    predicted for it)."""
+    for _ in range(PATIENCE + 2 * len(every)):
+        series, predicted = cheapest(every, target)
+        largest, refining = series.sizes()[-1], series.study.axes.refining
+        if predicted and predicted[0] <= largest:  # a run that is there meets it
+            row = next(r for r in series.rows if r.point.size >= predicted[0])
+            return series, row, (row.point.size, series.model().error(row.point.size), getattr(row.record, series.study.clock))
+        following = refining.round(GROWTH * largest, up=True)
+        spent = sum(s.spent() for s in every)
+        dear = predicted and predicted[2] > CHEAP and spent + series.seconds(following) > BUDGET * predicted[2]
+        last = predicted and (predicted[0] <= NEAR * largest or following >= predicted[0] or dear)
+        if predicted:
+            say(f"{series.name}: size {predicted[0]:g} should leave an error of {predicted[1]:.2g} and take {predicted[2]:.3g} s")
+        row = series.add(predicted[0] if last else following, say)
+        if not row.good:
+            say(f"the run failed, its series is left out: {row.reason}")
+            every = [s for s in every if s is not series]
+            if not every:
+                return series, None, predicted
+            continue
+        if last:
+            after = series.model()
+            if after is None or after.error(row.point.size) <= 1.1 * target:
+                return series, row, predicted
+            say(f"it leaves {after.error(row.point.size):.2g}, more than predicted: on")
+    return series, None, predicted
+
+
+def said(study, quantity, best, every, target, final, predicted):
+    """The result as numbers and as lines."""
+    spent = sum(s.spent() for s in every)
+    if final is None:
+        return {"met": False, "target": target, "lines": [f"No setting was found for an error of {target:.3g}: after {len(best.rows)} runs the values "
+                                                          "do not approach a limit, or a run failed. A finer start may help."]}
+    table.set_errors([final], [quantity]) if quantity.is_error or isinstance(quantity.reference, (int, float)) else None
+    true, model = final.errors.get(quantity.name), best.model()
+    seconds = getattr(final.record, study.clock)
+    estimate = model.error(final.point.size) if model else None
+    reached = true if true is not None else estimate
+    settings = ", ".join(f"{k}={v}" for k, v in final.point.changes.items())
+    lines = [f"Cheapest for {quantity.name} to {target:.3g}: {best.name}, size {final.point.size:g} ({settings})",
+             f"error: {reached:.3g} {'against the reference' if true is not None else 'by extrapolation'} (predicted {predicted[1]:.3g}"
+             + (f", estimated afterwards {estimate:.3g})" if estimate is not None else ")"),
+             f"time: {seconds:.3g} s (predicted {predicted[2]:.3g} s); the runs before it took {spent - seconds:.3g} s"]
+    return {"met": reached is not None and reached <= 1.1 * target, "target": target, "quantity": quantity.name, "series": best.name,
+            "size": final.point.size, "predicted error": predicted[1], "predicted seconds": predicted[2], "error": reached, "estimate": estimate,
+            "seconds": seconds, "before": spent - seconds, "lines": lines}

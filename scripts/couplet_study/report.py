@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The report of a study: Markdown beside its pictures, and one HTML page that holds everything (no network, no other file)."""
+import base64
+import html
+import pathlib
+import re
+
+STYLE = """body{font:15px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#1c2430;background:#fff}
+h1{font-size:1.5rem;margin-bottom:.2rem}h2{font-size:1.15rem;margin-top:2rem;border-bottom:1px solid #d8dee6;padding-bottom:.2rem}
+table{border-collapse:collapse;font-size:.82rem;display:block;overflow-x:auto}th,td{padding:.25rem .6rem;border-bottom:1px solid #e6eaef;text-align:right;white-space:nowrap}
+th{background:#f3f5f8;text-align:right}td:first-child,th:first-child{text-align:left}tr:hover td{background:#f8fafc}
+img{max-width:100%;height:auto;border:1px solid #e6eaef;border-radius:4px}code{background:#f3f5f8;padding:0 .25rem;border-radius:3px}
+figure{margin:1rem 0}figcaption{font-size:.85rem;color:#566}p.failed{color:#a3341f}
+@media(prefers-color-scheme:dark){body{background:#14181d;color:#dde3ea}th,code{background:#20262e}td,th,h2{border-color:#2d3540}tr:hover td{background:#1b2128}img{background:#fff}}"""
+
+
+def number(value):
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+class Report:
+    """Blocks in order: ("text", sentence), ("head", text), ("table", head, rows), ("picture", file, caption)."""
+
+    def __init__(self, title):
+        self.title, self.blocks = title, []
+
+    def text(self, sentence):
+        self.blocks.append(("text", sentence))
+
+    def head(self, text):
+        self.blocks.append(("head", text))
+
+    def table(self, head, rows):
+        self.blocks.append(("table", head, [[number(c) for c in row] for row in rows]))
+
+    def picture(self, file, caption):
+        if file:
+            self.blocks.append(("picture", pathlib.Path(file), caption))
+
+    def markdown(self, folder):
+        lines = [f"# {self.title}", ""]
+        for kind, *what in self.blocks:
+            if kind == "text":
+                lines += [what[0], ""]
+            elif kind == "head":
+                lines += [f"## {what[0]}", ""]
+            elif kind == "table":
+                head, rows = what
+                escaped = [[str(c).replace("|", "\\|") for c in row] for row in (head, *rows)]
+                lines += ["| " + " | ".join(escaped[0]) + " |", "|" + "---|" * len(head), *("| " + " | ".join(r) + " |" for r in escaped[1:]), ""]
+            else:
+                lines += [f"![{what[1]}]({what[0].resolve().relative_to(pathlib.Path(folder).resolve())})", ""]
+        return "\n".join(lines).rstrip() + "\n"
+
+    def html(self):
+        def inline(text):
+            text = re.sub(r"`([^`]+)`", r"<code>\1</code>", html.escape(text, quote=False))
+            return re.sub(r"\*\*([^*]+)\*\*", r"<b>\1</b>", text)
+        parts = [f"<!doctype html><html lang=en><head><meta charset=utf-8><meta name=viewport content='width=device-width,initial-scale=1'>"
+                 f"<title>{html.escape(self.title)}</title><style>{STYLE}</style></head><body><h1>{html.escape(self.title)}</h1>"]
+        for kind, *what in self.blocks:
+            if kind == "text":
+                parts.append(f"<p>{inline(what[0])}</p>")
+            elif kind == "head":
+                parts.append(f"<h2>{inline(what[0])}</h2>")
+            elif kind == "table":
+                head, rows = what
+                parts.append("<table><thead><tr>" + "".join(f"<th>{inline(str(c))}</th>" for c in head) + "</tr></thead><tbody>" + "".join(
+                    "<tr>" + "".join(f"<td>{inline(c)}</td>" for c in row) + "</tr>" for row in rows) + "</tbody></table>")
+            else:
+                data = base64.b64encode(what[0].read_bytes()).decode()
+                parts.append(f"<figure><img alt=\"{html.escape(what[1])}\" src=\"data:image/png;base64,{data}\"><figcaption>{inline(what[1])}</figcaption></figure>")
+        return "\n".join([*parts, "</body></html>\n"])
+
+    def write(self, folder, stem="report"):
+        folder = pathlib.Path(folder)
+        (folder / f"{stem}.md").write_text(self.markdown(folder))
+        (folder / f"{stem}.html").write_text(self.html())
+        return folder / f"{stem}.html"

@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""scripts/study by axes: every run is made once, whether the study is killed, started again or twice at once; a failed run is
+a row with its reason; orders and extrapolations come out; the page needs nothing but itself. usage: axes.py BUILD"""
+import base64
+import csv
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+STUDY = """
+study:
+  axes:
+    mesh: {sizes: [2, 4, 8], set: {mesh-parameters: "{n_length: <10*n>, n_side: <n>}"}}
+    method: {values: {direct: {solution-method.type: block-coupled, solution-method.linear-solver: direct},
+                      iterative: {solution-method.type: newton-krylov}, broken: {material.poissons-ratio: 0.7}}}
+  leave-out: [{mesh: [4, 8], method: broken}]
+  quantities:
+    tip: {probe: "tip y [m]", reference: 0.10008}
+    again: {probe: "tip y [m]", reference: richardson}
+"""
+
+
+def check(claim, condition, detail=""):
+    print("ok    " if condition else "FAILED", claim, "" if condition else detail, flush=True)
+    return not condition
+
+
+def command(build, folder, *options):
+    return [ROOT / "scripts/study", folder / "case.yaml", f"--build={build}", *options]
+
+
+def study(build, folder, *options):
+    return subprocess.run(command(build, folder, *options), capture_output=True, text=True)
+
+
+def rows_of(folder):
+    with open(folder / "out/study/runs.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def made(text):
+    """Names of the runs that a study made itself."""
+    return re.findall(r"^\[\d+/\d+\] (\S+): [\d.]+ s,", text, flags=re.M)
+
+
+def restartable(build, folder):
+    """Killed after its first run, then two at once: each of the seven runs is made exactly once in all."""
+    process = subprocess.Popen(command(build, folder), stdout=subprocess.PIPE, text=True)
+    first = process.stdout.readline()
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    time.sleep(3)  # what it had under way ends for itself
+    both = [subprocess.Popen(command(build, folder), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) for _ in range(2)]
+    texts = [p.communicate()[0] for p in both]
+    names = made(first) + [name for text in texts for name in made(text)]
+    wanted = {f"{n}-{m}" for n in (2, 4, 8) for m in ("direct", "iterative")}
+    failed = check("killed and started twice at once: every run made once", sorted(names) == sorted(wanted), first + "\n--\n".join(texts))
+    before = (folder / "out/study/runs.csv").read_text()
+    result = study(build, folder)
+    failed += check("started again nothing is repeated", made(result.stdout) == [] and "done before" in result.stdout, result.stdout)
+    return failed + check("and the table is the same", (folder / "out/study/runs.csv").read_text() == before)
+
+
+def content(folder):
+    rows = {row["mesh"] + row["method"]: row for row in rows_of(folder)}
+    errors = [float(rows[f"{n}iterative"]["error of tip"]) for n in (2, 4, 8)]
+    failed = check("errors fall with the mesh", errors[0] > errors[1] > errors[2] > 0, str(errors))
+    broken = rows["2broken"]
+    failed += check("a failed run is a row with its reason", "poissons-ratio" in broken["reason"] and broken["tip"] == "", str(broken))
+    failed += check("costs are there", all(float(r["processor [s]"]) > 0 and float(r["memory [MB]"]) > 10 and float(r["steps"]) == 1
+                                           for r in rows.values() if not r["reason"]), str(rows))
+    report = (folder / "out/study/report.md").read_text()
+    limits = re.findall(r"\| (?:direct|iterative) \| 0\.09\d+ \| (0\.1\d+|0\.09\d+) \| (\d\.\d+) \|", report)
+    failed += check("Richardson's limit lies at the reference, at first order or more", len(limits) >= 2 and all(
+        abs(float(v) / 0.10008 - 1) < 0.02 and 0.8 < float(p) < 3 for v, p in limits), report)
+    page = (folder / "out/study/report.html").read_text()
+    pictures = re.findall(r'src="data:image/png;base64,([^"]+)"', page)
+    failed += check("the page holds its pictures and asks for nothing else", len(pictures) >= 5 and not re.search(
+        r'(src|href)="(?!data:)|url\(|@import|<script', page) and all(base64.b64decode(p)[:4] == b"\x89PNG" for p in pictures))
+    return failed
+
+
+def looked_at(folder):
+    """A screenshot in a real browser."""
+    browser = next((b for b in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if b), None)
+    if not browser:
+        print("skipped: the page is not looked at, as no browser is installed (apt-get install chromium)")
+        return 0
+    shot = folder / "page.png"
+    subprocess.run([browser, "--headless", "--no-sandbox", "--disable-gpu", "--host-resolver-rules=MAP * ~NOTFOUND", f"--screenshot={shot}",
+                    "--window-size=1000,3000", f"--user-data-dir={folder / 'profile'}", f"file://{folder / 'out/study/report.html'}"],
+                   capture_output=True, timeout=120)
+    if not shot.exists():
+        return check("the browser draws the page", False)
+    import matplotlib.image
+    picture = matplotlib.image.imread(shot)
+    ink = (picture[..., :3].min(axis=2) < 0.6).mean(axis=1) > 0.002  # rows of the screen with text or lines
+    return check("the browser draws the page from top to bottom", ink[:200].any() and ink[1000:2500].mean() > 0.1, str(ink.mean()))
+
+
+def wrong(build, folder):
+    failed = 0
+    for text, word in (("axes: {}", "expected axes by name"), ("axes: {a: {sizes: [1], set: {x: <m>}}}\n  quantities: {q: {probe: x}}", "not arithmetic in n"),
+                       ("axes: {a: {key: b}}\n  quantities: {q: {probe: x}}", "values: [...]"),
+                       ("axes: {a: {key: b, values: [1]}}", "quantities of interest by name"),
+                       ("axes: {a: {key: b, values: [1]}}\n  quantities: {q: {prob: x}}", "unknown key 'prob'"),
+                       ("axes: {a: {key: b, values: [1]}}\n  quantities: {q: {probe: x, reference: best}}", "expected a number, finest or richardson")):
+        (folder / "wrong.yaml").write_text(f"case: case.yaml\nstudy:\n  {text}\n")
+        result = subprocess.run([ROOT / "scripts/study", folder / "wrong.yaml", f"--build={build}"], capture_output=True, text=True)
+        failed += check(f"said: {word}", result.returncode != 0 and word in result.stderr and "Traceback" not in result.stderr, result.stderr)
+    return failed
+
+
+def main(build):
+    with tempfile.TemporaryDirectory(prefix="couplet-axes-") as name:
+        folder = pathlib.Path(name)
+        shutil.copy(ROOT / "configs/cantilever/cantilever.geo", folder)
+        (folder / "case.yaml").write_text((ROOT / "configs/cantilever/case.yaml").read_text().split("\nstudy:")[0] + STUDY)
+        failed = restartable(build, folder)
+        failed += content(folder)
+        failed += looked_at(folder)
+        failed += wrong(build, folder)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(pathlib.Path(sys.argv[1]).resolve()))
