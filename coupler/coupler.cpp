@@ -35,12 +35,28 @@ void Coupler::initialise() {
   std::vector<Side> sides;
   for (std::size_t i = 0; i < partners.size(); ++i)
     sides.push_back({partners[i]->name(), std::move(interfaces[i])});
+  check_places(sides);
   std::optional<Side> mesh;
   if (mesh_.channel) mesh = sides.front();
   wiring_.emplace(sides[sides.size() - 2], sides.back(), mesh, parameters_.mapping);
   for (const std::string& note : wiring_->notes()) log::info("{}", note);
   history_.now.displacement.assign(wiring_->n_unknowns(), 0.);
   history_.now.velocity.assign(wiring_->n_unknowns(), 0.);
+  fluid_wall_ = history_.now.displacement;
+}
+
+void Coupler::check_places(const std::vector<Side>& sides) {
+  const Side &fluid = sides[sides.size() - 2], &structure = sides.back();
+  const bool nearest = parameters_.mapping.type != MappingParameters::Type::matched;
+  if (const std::string text = problem_of_closed_fluid(fluid.interface, fluid.name); !text.empty())
+    throw Error("{}", text);
+  for (const Side& side : sides) {
+    if (&side == &structure) continue;
+    const PlaceReport report =
+        judge_places(structure.interface, structure.name, side.interface, side.name, nearest);
+    if (!report.problem.empty()) throw Error("{}", report.problem);
+    for (const std::string& note : report.notes) log::warn("{}", note);
+  }
 }
 
 InterfaceState Coupler::pass(const InterfaceState& x, bool move_mesh) {
@@ -62,41 +78,52 @@ InterfaceState Coupler::pass(const InterfaceState& x, bool move_mesh) {
     if (!mover_failed) throw;
   }
   if (mover_failed) throw SolveFailure(*mover_failed);
+  require_finite(last_given_, wiring_->fluid().interface, wiring_->fluid().interface.gives, fluid_.name());
   last_load_ = wiring_->to_structure(last_given_);
   structure_.send({Op::solve, {}, last_load_, 0, -1, ""});
   return wiring_->from_structure(structure_.receive().data);
 }
 
-std::optional<std::string> Coupler::attempt(const Step& step) {
+std::optional<StepFailure> Coupler::attempt(const Step& step) {
+  if (!diverged_.empty()) return StepFailure(diverged_, false);
   enter_(Phase::begin_step, step.time);
   for (Partner* p : everyone()) p->seconds = 0;
   try {
-    ask_all(everyone(), {Op::begin_step, step, {}, 0, -1, ""});
-    enter_(Phase::solve, step.time);
-    InterfaceState guess = predict(history_, step.dt, parameters_.predictor_order);
-    const bool move_always = parameters_.scheme != Scheme::semi_implicit;
-    bool first = true;
-    const FixedPointMap map = [&](const InterfaceState& x) {
-      ++iterations_;
-      const bool move_mesh = mesh_.channel && (first || move_always);
-      first = false;
-      return pass(x, move_mesh);
-    };
-    const IterationObserver observer = [&](int k, const Residual& residual, double omega) {
-      monitor_->iteration(step, k, residual, omega);
-    };
-    ConvergenceParameters convergence = parameters_.convergence;
-    if (parameters_.scheme == Scheme::explicit_) {
-      // One pass, whatever its residual.
-      convergence.max_iterations = 1;
-      convergence.relative = std::numeric_limits<double>::infinity();
-    }
-    last_ = solve_fixed_point(std::move(guess), wiring_->dim(), map, convergence, acceleration_, observer);
-    last_dt_ = step.dt;
+    solve(step);
+  } catch (const SchemeFailure& failure) {
+    return StepFailure(failure.what(), false);
   } catch (const SolveFailure& failure) {
     return failure.what();
   }
   return {};
+}
+
+void Coupler::solve(const Step& step) {
+  ask_all(everyone(), {Op::begin_step, step, {}, 0, -1, ""});
+  enter_(Phase::solve, step.time);
+  InterfaceState guess = predict(history_, step.dt, parameters_.predictor_order);
+  const bool move_always = parameters_.scheme != Scheme::semi_implicit;
+  const bool constant = parameters_.acceleration.type == AccelerationParameters::Type::constant;
+  iteration_guard_.start_step();
+  bool first = true;
+  const FixedPointMap map = [&](const InterfaceState& x) {
+    ++iterations_;
+    const bool move_mesh = mesh_.channel && (first || move_always);
+    first = false;
+    return pass(x, move_mesh);
+  };
+  const IterationObserver observer = [&](int k, const Residual& residual, double omega) {
+    monitor_->iteration(step, k, residual, omega);
+    iteration_guard_.pass(residual.absolute, omega, constant);
+  };
+  ConvergenceParameters convergence = parameters_.convergence;
+  if (parameters_.scheme == Scheme::explicit_) {
+    // One pass, whatever its residual.
+    convergence.max_iterations = 1;
+    convergence.relative = std::numeric_limits<double>::infinity();
+  }
+  last_ = solve_fixed_point(std::move(guess), wiring_->dim(), map, convergence, acceleration_, observer);
+  last_dt_ = step.dt;
 }
 
 void Coupler::accept(double time, int output) {
@@ -104,17 +131,31 @@ void Coupler::accept(double time, int output) {
   const std::vector<double> before = history_.now.displacement;
   ask_all(everyone(), {Op::accept_step, {}, {}, time, output, ""});
   enter_(Phase::accept, time);
-  const auto increment = [&](const std::vector<double>& displacement) {
-    std::vector<double> result(displacement.size());
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = displacement[i] - before[i];
+  // Each side's work is its load times the way of its own wall: the fluid's is where its last pass put it,
+  // which in the explicit scheme is the guess.
+  const auto increment = [&](const std::vector<double>& now, const std::vector<double>& old) {
+    std::vector<double> result(now.size());
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = now[i] - old[i];
     return result;
   };
-  monitor_->balance(time,
-                    wiring_->fluid_balance(last_given_, wiring_->at_fluid(increment(last_.x.displacement))),
-                    wiring_->structure_balance(last_load_, increment(last_.image.displacement)));
+  const Balance fluid =
+      wiring_->fluid_balance(last_given_, wiring_->at_fluid(increment(last_.x.displacement, fluid_wall_)));
+  const Balance structure =
+      wiring_->structure_balance(last_load_, increment(last_.image.displacement, before));
+  monitor_->balance(time, fluid, structure);
+  fluid_wall_ = last_.x.displacement;
   history_.old_velocity = std::move(history_.now.velocity);
   history_.now = last_.image;
   history_.old_dt = last_dt_;
+  const auto parted = work_guard_.accepted(fluid.work, structure.work, parameters_.scheme);
+  auto reason = oscillation_guard_.accepted(history_.now.displacement, last_dt_, parameters_.scheme);
+  if (!reason) reason = parted;
+  if (!reason || !diverged_.empty()) return;
+  if (parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
+    diverged_ = *reason;
+  else if (!warned_)
+    log::warn("t = {:g} s: {}", time, *reason);
+  warned_ = true;
 }
 
 void Coupler::save(const std::filesystem::path& folder) {
@@ -125,6 +166,8 @@ void Coupler::save(const std::filesystem::path& folder) {
   file.write("velocity", history_.now.velocity);
   file.write("old-velocity", history_.old_velocity);
   file.write_scalar("old-dt", history_.old_dt);
+  file.write("fluid-wall", fluid_wall_);
+  file.write("work", work_guard_.totals());
   file.write_scalar("omega", acceleration_.omega());
   file.close();
 }
@@ -136,6 +179,10 @@ void Coupler::load() {
   file.read("velocity", history_.now.velocity);
   history_.old_velocity = file.read("old-velocity");
   history_.old_dt = file.read_scalar("old-dt");
+  file.read("fluid-wall", fluid_wall_);
+  std::array<double, 4> work{};
+  file.read("work", work);
+  work_guard_.restore(work);
   acceleration_.restore(file.read_scalar("omega"));
   const RunState state = read_run_state(folders_.restart);
   loop_.restart(state);
@@ -146,6 +193,8 @@ void Coupler::load() {
 void Coupler::finalise() {
   enter_(Phase::finalise, {});
   log::info("{}", monitor_->summary(loop_.halvings()));
+  if (const WorkGuard::Verdict v = work_guard_.verdict(); !v.text.empty())
+    v.sound ? log::info("{}", v.text) : log::warn("{}", v.text);
   finalise_all(everyone());
 }
 

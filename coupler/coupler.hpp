@@ -13,6 +13,7 @@
 #include "common/app/watch.hpp"
 #include "coupler/acceleration.hpp"
 #include "coupler/fixed_point.hpp"
+#include "coupler/guards.hpp"
 #include "coupler/monitor.hpp"
 #include "coupler/parameters.hpp"
 #include "coupler/partners.hpp"
@@ -51,7 +52,9 @@ class Coupler {
   void initialise();
   void load();
   void save(const std::filesystem::path& folder);
-  std::optional<std::string> attempt(const Step& step);
+  std::optional<StepFailure> attempt(const Step& step);
+  void solve(const Step& step);
+  void check_places(const std::vector<Side>& sides);
   /// One pass: motion to mesh mover and fluid, load to the structure, its motion back.
   InterfaceState pass(const InterfaceState& x, bool move_mesh);
   void accept(double time, int output);
@@ -69,6 +72,12 @@ class Coupler {
   InterfaceHistory history_;
   FixedPointResult last_;            // of the step just solved
   Exchange last_load_, last_given_;  // to the structure and from the fluid in its last pass
+  std::vector<double> fluid_wall_;   // displacement that the fluid had in the last accepted step
+  IterationGuard iteration_guard_;
+  OscillationGuard oscillation_guard_;
+  WorkGuard work_guard_;
+  std::string diverged_;  // empty: no guard has fired
+  bool warned_ = false;
   double last_dt_ = 0;
   long iterations_ = 0;
   std::function<void(Phase, std::optional<double>)> enter_ = [](Phase, std::optional<double>) {};

@@ -126,6 +126,13 @@ void declare(config::Section& section, CouplingParameters& p) {
   section.section(
       "mapping", [&](config::Section& s) { declare(s, p.mapping); },
       "between the two sides of the interface");
+  using OnDivergence = CouplingParameters::OnDivergence;
+  section
+      .choice("on-divergence", p.on_divergence, {{"stop", OnDivergence::stop}, {"warn", OnDivergence::warn}})
+      .doc(
+          "when the motion swings from step to step and grows, or the work on the two sides parts: stop: the "
+          "run "
+          "ends with the reason; warn: it is said once");
   section.check([&] { return problem_of_roles(p); }, p.exchange ? "exchange" : "structure");
 }
 

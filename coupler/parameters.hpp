@@ -44,6 +44,8 @@ struct CouplingParameters {
   ConvergenceParameters convergence;
   int predictor_order = 2;
   MappingParameters mapping;
+  /// What follows when a guard finds that the coupling itself makes the motion.
+  enum class OnDivergence { stop, warn } on_divergence = OnDivergence::stop;
 };
 void declare(config::Section& section, CouplingParameters& parameters);
 

@@ -33,6 +33,7 @@ class Wiring {
          const MappingParameters& mapping);
 
   int dim() const { return dim_; }
+  const Side& fluid() const { return fluid_; }
   std::size_t n_unknowns() const { return structure_.interface.vertices.size() * std::size_t(dim_); }
   Exchange to_fluid(const InterfaceState& x) const { return motion(x, fluid_, *to_fluid_); }
   Exchange to_mesh(const InterfaceState& x) const { return motion(x, *mesh_, *to_mesh_); }

@@ -104,13 +104,16 @@ void StepLoop::checkpoint(const StepActions& actions) {
   for (std::size_t i = 0; i + simulation_.checkpoints_kept < all.size(); ++i) fs::remove_all(all[i], failed);
 }
 
-std::string StepLoop::give_up(const StepActions& actions, const Step& step, const std::string& reason) {
+std::string StepLoop::give_up(const StepActions& actions, const Step& step, const StepFailure& failure) {
   checkpoint(actions);
+  if (!failure.halving_helps)
+    return fmt::format("The run ends at t = {:g} s: {} The state at t = {:g} s was saved in {}.", step.time,
+                       failure.reason, step.time, checkpoints_.string());
   return fmt::format(
       "The step from t = {:g} s could not be solved, also not with dt = {:g} s after {} halvings: {} The "
       "state at t = "
       "{:g} s was saved in {}.",
-      step.time, step.dt, plan_.halvings(), reason, step.time, checkpoints_.string());
+      step.time, step.dt, plan_.halvings(), failure.reason, step.time, checkpoints_.string());
 }
 
 std::string StepLoop::run(const StepActions& actions) {
@@ -118,11 +121,12 @@ std::string StepLoop::run(const StepActions& actions) {
   while (!plan_.finished()) {
     plan_.limit(actions.advised_dt());
     const Step step{plan_.time(), plan_.dt(), scheme_, plan_.steps_accepted(), plan_.is_last()};
-    if (const auto reason = actions.attempt(step)) {
+    if (const auto failure = actions.attempt(step)) {
       log::warn("t = {:g} s: step {} with dt = {:g} s failed: {}", step.time, step.number + 1, step.dt,
-                *reason);
+                failure->reason);
+      if (!failure->halving_helps) return give_up(actions, step, *failure);
       ++halvings_;
-      if (!plan_.halve()) return give_up(actions, step, *reason);
+      if (!plan_.halve()) return give_up(actions, step, *failure);
       continue;
     }
     plan_.accepted();

@@ -31,10 +31,19 @@ RunState read_run_state(const std::filesystem::path& folder);
 /// is none.
 std::filesystem::path find_checkpoint(const std::filesystem::path& folder);
 
+/// Why a step was not solved, and whether a smaller one may be.
+struct StepFailure {
+  std::string reason;
+  bool halving_helps = true;
+  StepFailure(std::string why, bool helps = true)  // NOLINT: a plain reason is a failure
+      : reason(std::move(why)), halving_helps(helps) {}
+  StepFailure(const char* why) : reason(why) {}  // NOLINT
+};
+
 /// What a run does with a step: all calls collective over its communicator.
 struct StepActions {
   /// Begins and solves the step; the reason if that failed, nothing if it was solved. State n stays as it is.
-  std::function<std::optional<std::string>(const Step&)> attempt;
+  std::function<std::optional<StepFailure>(const Step&)> attempt;
   /// The step becomes state n. `time`: its end; `output`: number of the output that is due, -1 for none.
   std::function<void(double time, int output)> accept;
   std::function<void(int output)> write_start;
@@ -63,7 +72,7 @@ class StepLoop {
  private:
   bool due(double interval) const;
   void checkpoint(const StepActions& actions);
-  std::string give_up(const StepActions& actions, const Step& step, const std::string& reason);
+  std::string give_up(const StepActions& actions, const Step& step, const StepFailure& failure);
 
   MPI_Comm comm_;
   SimulationParameters simulation_;

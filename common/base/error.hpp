@@ -23,4 +23,10 @@ class SolveFailure : public Error {
   using Error::Error;
 };
 
+/// A step that the scheme cannot solve whatever its length: nothing is gained by a smaller one.
+class SchemeFailure final : public SolveFailure {
+ public:
+  using SolveFailure::SolveFailure;
+};
+
 }  // namespace couplet

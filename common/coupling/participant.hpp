@@ -32,6 +32,8 @@ struct Interface {
   std::vector<Vec3> face_centres;  ///< reference configuration [m]
   std::vector<Vec3> face_areas;    ///< out of this participant [m^2]
   std::vector<Datum> takes, gives;
+  /// A fluid that nothing can leave: it has no room for an interface that displaces volume.
+  bool closed = false;
   bool empty() const { return vertices.empty() && face_centres.empty(); }
 };
 

@@ -140,14 +140,41 @@ TEST(CoupledToy, explicit_scheme_blows_up_above_the_mass_ratio_of_theory) {
       run.simulation.end_time = 50;
       run.mass_ratio(factor * limit);
       run();
-      EXPECT_EQ(run.problem, "");
-      EXPECT_EQ(run.iterations_a_step, 1);
       const double still = run.fluid.driving_force / (2 * run.solid.stiffness);
-      if (factor < 1)
+      if (factor < 1) {
+        EXPECT_EQ(run.problem, "");
+        EXPECT_EQ(run.iterations_a_step, 1);
         EXPECT_LT(std::abs(run.position), 3 * still) << order;
-      else
-        EXPECT_GT(std::abs(run.position), 1e3 * still) << order;
+        continue;
+      }
+      // It is named while it is still small, and the step is not halved for it.
+      EXPECT_THAT(run.problem, testing::HasSubstr("explicit coupling's added-mass instability")) << order;
+      EXPECT_EQ(run.halvings, 0);
+      EXPECT_LT(run.steps, 60);
+      EXPECT_LT(std::abs(run.position), 3 * still) << order;
+      run.coupling.on_divergence = CouplingParameters::OnDivergence::warn;
+      run();
+      EXPECT_EQ(run.problem, "");
+      EXPECT_GT(std::abs(run.position), 1e3 * still) << order;
     }
+}
+
+TEST(CoupledToy, constant_relaxation_beyond_its_limit_is_named_within_a_few_passes_and_never_halved) {
+  for (const double relaxation : {0.6, 0.75}) {  // the limit at a mass ratio of 2 is 2/3
+    ToyRun run;
+    run.mass_ratio(2);
+    run.coupling.acceleration = {AccelerationParameters::Type::constant, relaxation, 1};
+    run.coupling.convergence.max_iterations = 400;
+    run();
+    if (relaxation < 2. / 3) {
+      EXPECT_EQ(run.problem, "");
+      EXPECT_NEAR(run.position, run.monolithic_position(), 1e-8);
+      continue;
+    }
+    EXPECT_THAT(run.problem, testing::HasSubstr("only relaxations below 0.66"));
+    EXPECT_EQ(run.halvings, 0);
+    EXPECT_EQ(run.steps, 0);
+  }
 }
 
 TEST(CoupledToy, many_modes_converge_for_heavy_fluids) {

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/coupling/participant.hpp"
+
+namespace couplet {
+
+/// Watches the residuals of one step: a coupling that runs away is named within a few passes instead of when
+/// the allowed passes are used up.
+class IterationGuard {
+ public:
+  void start_step() { *this = {}; }
+  /// After each pass: |r| (any norm, the same in all passes) and the factor that led to its x. Throws
+  /// SchemeFailure where constant relaxation meets too much added mass (each mode's error has the factor
+  /// 1 - omega (1 + r), Causin, Gerbeau and Nobile 2005: no smaller step helps), SolveFailure where an
+  /// accelerated residual has grown over `patience` passes or by `too_far` in all.
+  void pass(double residual, double omega, bool constant);
+
+  static constexpr int patience = 5;
+  static constexpr double too_far = 1e6;
+
+ private:
+  double first_ = 0, last_ = 0;
+  int passes_ = 0, growing_ = 0;
+  double at_turn_ = 0;  // residual at which the growth began
+};
+
+/// Watches the accepted motion for the two-step oscillation of loosely coupled schemes: second differences
+/// d_n = x^{n+1} - 2 x^n + x^{n-1} that turn round in every step, are as large as the motion itself and grow.
+/// The added mass taken explicitly has the factor -r a step (r: added mass over the structure's), whatever
+/// the step; the semi-implicit scheme does the same with what viscosity adds (it takes the wall shear at the
+/// guessed velocity).
+class OscillationGuard {
+ public:
+  /// The motion x of an accepted step of length dt. A reason if it oscillates, else nothing.
+  std::optional<std::string> accepted(const std::vector<double>& x, double dt, Scheme scheme);
+  /// Growth of the oscillation a step; 0 without one.
+  double growth() const { return growth_; }
+  /// Steps in a row in which it has turned round.
+  int turns() const { return turns_; }
+
+ private:
+  std::vector<double> x_, old_x_, difference_;
+  double dt_ = 0, growth_ = 0;
+  int turns_ = 0;
+  std::vector<double> sizes_;  // of the differences since the turning began
+  std::deque<double> motion_;  // |x^{n+1} - x^n| of the last steps
+};
+
+/// Watches the work on both sides of the interface. What the fluid gives and the structure takes are the same
+/// but for the error of the coupling; work that parts for long is made by the scheme.
+class WorkGuard {
+ public:
+  /// Work of a step on both sides [J]. A reason if the two have parted, else nothing.
+  std::optional<std::string> accepted(double fluid, double structure, Scheme scheme);
+  /// For the end of the run: a sentence with numbers, and whether the balance is sound.
+  struct Verdict {
+    bool sound = true;
+    std::string text;
+  };
+  Verdict verdict() const;
+
+  /// For checkpoints.
+  std::array<double, 4> totals() const { return {fluid_, structure_, exchanged_, double(steps_)}; }
+  void restore(const std::array<double, 4>& totals);
+
+  static constexpr int window = 12;
+
+ private:
+  double fluid_ = 0, structure_ = 0, exchanged_ = 0;  // sums over the run; exchanged: of the larger |work|
+  long steps_ = 0;
+  std::deque<std::array<double, 2>> last_;
+};
+
+/// Throws SolveFailure naming datum, entry and place if one of the values is not finite.
+void require_finite(const Exchange& data, const Interface& interface, const std::vector<Interface::Datum>& of,
+                    const std::string& who);
+
+/// What is wrong with two coupled surfaces that need not match, as far as their places tell.
+struct PlaceReport {
+  std::string problem;             ///< empty: none
+  std::vector<std::string> notes;  ///< what the user should know
+};
+/// `from` gives motion or loads to `to`: distances are judged against the local face size of both sides, the
+/// extents against each other; several vertices that follow one (a staircase) are said.
+PlaceReport judge_places(const Interface& from, const std::string& from_name, const Interface& to,
+                         const std::string& to_name, bool nearest);
+
+/// A fluid without outlet can take no net volume: empty if `fluid` has an outlet or its interface is closed
+/// in itself (a body that moves through it), else why the run cannot start and what helps.
+std::string problem_of_closed_fluid(const Interface& fluid, const std::string& name);
+
+}  // namespace couplet

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each guard fires on what it is for and keeps still beside it.
+#include "coupler/guards.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+namespace {
+
+using testing::HasSubstr;
+using Place = Interface::Place;
+
+// -- residuals of one step --------------------------------------------------------------------------------
+/// Passes until the guard throws; 0 if it never does.
+int thrown_at(const std::function<double(int)>& residual, bool constant, std::string* text = nullptr) {
+  IterationGuard guard;
+  guard.start_step();
+  for (int k = 1; k <= 60; ++k) try {
+      guard.pass(residual(k), 1, constant);
+    } catch (const SolveFailure& failure) {
+      if (text) *text = failure.what();
+      EXPECT_EQ(dynamic_cast<const SchemeFailure*>(&failure) != nullptr, constant);
+      return k;
+    }
+  return 0;
+}
+
+TEST(IterationGuard, growth_is_named_within_a_few_passes_with_the_added_mass_behind_it) {
+  std::string text;
+  EXPECT_EQ(thrown_at([](int k) { return std::pow(2., k); }, true, &text), IterationGuard::patience + 1);
+  // |1 - (1 + r)| = 2
+  EXPECT_THAT(text, HasSubstr("an added mass of about 2 times the structure's"));
+  EXPECT_THAT(text, HasSubstr("only relaxations below 0.667 converge"));
+}
+
+TEST(IterationGuard, a_run_away_is_named_before_patience_ends) {
+  EXPECT_EQ(thrown_at([](int k) { return k == 1 ? 1. : std::pow(1e4, k); }, false), 2);
+}
+
+TEST(IterationGuard, an_accelerated_iteration_that_grows_may_still_be_halved) {
+  EXPECT_GT(thrown_at([](int k) { return std::pow(1.5, k); }, false), 0);
+}
+
+TEST(IterationGuard, aitkens_first_overshoots_and_slow_convergence_pass) {
+  // From relaxation 1 at a mass ratio of 50: one jump, then down with bumps.
+  const double bumpy[] = {1, 50, 3, 4, 5, 2, 2.5, 1, 0.2, 0.3, 0.31, 0.32, 0.05};
+  EXPECT_EQ(thrown_at([&](int k) { return k <= 13 ? bumpy[k - 1] : 0.05 * std::pow(0.9, k); }, false), 0);
+  EXPECT_EQ(thrown_at([](int k) { return std::pow(0.99, k); }, true), 0);
+  EXPECT_EQ(thrown_at([](int) { return 1.; }, true), 0) << "a plateau is for max-iterations";
+}
+
+// -- motion from step to step -----------------------------------------------------------------------------
+/// Steps until the guard speaks; 0: never in 400.
+int spoken_at(const std::function<double(double)>& motion, Scheme scheme = Scheme::explicit_,
+              std::string* text = nullptr) {
+  OscillationGuard guard;
+  for (int n = 1; n <= 400; ++n)
+    if (const auto reason = guard.accepted({motion(n), 0.5 * motion(n)}, 0.01, scheme)) {
+      if (text) *text = *reason;
+      return n;
+    }
+  return 0;
+}
+
+TEST(OscillationGuard, added_mass_growth_is_named_with_a_scheme_that_holds) {
+  std::string text;
+  EXPECT_LE(spoken_at([](double n) { return std::pow(-2., n); }, Scheme::explicit_, &text), 9);
+  EXPECT_GT(spoken_at([](double n) { return std::pow(-2., n); }), 0);
+  EXPECT_THAT(text, HasSubstr("explicit coupling's added-mass instability"));
+  EXPECT_THAT(text, HasSubstr("scheme: semi-implicit"));
+  const int slow = spoken_at([](double n) { return std::pow(-1.02, n); });
+  EXPECT_GT(slow, 0);
+  EXPECT_LT(slow, 60);
+}
+
+// The flap at rho_s = 1, mu = 1, whose every step converges.
+TEST(OscillationGuard, the_viscous_swing_of_the_semi_implicit_scheme_is_named) {
+  std::string text;
+  const auto swing = [](double n) { return 1e-4 * n + 2e-4 * std::pow(-1.6, n) * (1 + 0.3 * std::cos(n)); };
+  EXPECT_GT(spoken_at(swing, Scheme::semi_implicit, &text), 0);
+  EXPECT_THAT(text, HasSubstr("wall shear at the guessed velocity"));
+  EXPECT_THAT(text, HasSubstr("scheme: implicit"));
+}
+
+TEST(OscillationGuard, smooth_motion_decaying_swings_rounding_and_steady_swings_pass) {
+  const double pi = 3.14159265358979;
+  EXPECT_EQ(spoken_at([](double n) { return std::sin(0.1 * n); }), 0);
+  EXPECT_EQ(spoken_at([](double n) { return std::exp(0.05 * n) * std::sin(0.5 * n); }), 0) << "flutter";
+  EXPECT_EQ(spoken_at([](double n) { return std::pow(-0.9, n); }), 0);
+  EXPECT_EQ(spoken_at([](double n) { return std::pow(-1., n); }), 0) << "an undamped trapezoidal rule";
+  EXPECT_EQ(spoken_at([&](double n) { return 0.02 * n + 1e-6 * std::pow(-1.02, n / 4) * std::cos(pi * n); }),
+            0)
+      << "small beside the motion";
+  EXPECT_EQ(spoken_at([](double) { return 0.; }), 0);
+  EXPECT_EQ(spoken_at([](double n) { return n < 3 ? 0. : 1.; }), 0) << "a kick";
+}
+
+TEST(OscillationGuard, steps_of_another_length_begin_anew) {
+  OscillationGuard guard;
+  for (int n = 0; n < 40; ++n) EXPECT_FALSE(guard.accepted({std::pow(-2., n)}, n % 3 ? 0.01 : 0.005, {}));
+}
+
+// -- work -------------------------------------------------------------------------------------------------
+TEST(WorkGuard, work_that_parts_is_named_and_convicted_at_the_end) {
+  WorkGuard guard;
+  std::string text;
+  for (int n = 0; n < 60 && text.empty(); ++n) {
+    const double work = std::sin(0.3 * n);
+    text = guard.accepted(work, work + 0.02 * std::exp(0.15 * n), Scheme::explicit_).value_or("");
+  }
+  EXPECT_THAT(text, HasSubstr("the work on the two sides of the interface has parted"));
+  EXPECT_FALSE(guard.verdict().sound);
+  EXPECT_THAT(guard.verdict().text, HasSubstr("NOT SOUND"));
+}
+
+TEST(WorkGuard, work_of_small_steps_and_turning_points_pass) {
+  WorkGuard guard;
+  for (int n = 0; n < 400; ++n) {
+    const double work = std::sin(0.02 * n);
+    EXPECT_FALSE(guard.accepted(work, work * 1.01 + 0.005, Scheme::explicit_)) << n;
+  }
+  EXPECT_TRUE(guard.verdict().sound);
+}
+
+TEST(WorkGuard, its_sums_go_through_a_checkpoint) {
+  WorkGuard guard, other;
+  for (int n = 0; n < 5; ++n) guard.accepted(n, 1.5 * n, Scheme::implicit);
+  other.restore(guard.totals());
+  EXPECT_EQ(other.verdict().text, guard.verdict().text);
+}
+
+// -- data and places --------------------------------------------------------------------------------------
+/// n faces of a line from (x, 0) to (x + length, 0).
+Interface line(int n, double length, double x = 0, double y = 0) {
+  Interface i;
+  i.dim = 2;
+  const double h = length / n;
+  for (int k = 0; k <= n; ++k) i.vertices.emplace_back(x + k * h, y, 0);
+  for (int k = 0; k < n; ++k) {
+    i.face_centres.emplace_back(x + (k + 0.5) * h, y, 0);
+    i.face_areas.emplace_back(0, h, 0);
+  }
+  i.gives = {{"pressure-force", "N", Place::faces}};
+  return i;
+}
+
+std::string problem(const Interface& solid, const Interface& fluid) {
+  return judge_places(solid, "solid", fluid, "fluid", true).problem;
+}
+
+TEST(Places, surfaces_elsewhere_or_of_another_size_are_refused) {
+  EXPECT_THAT(problem(line(10, 1, 0, 2), line(10, 1)), HasSubstr("are not in the same place"));
+  EXPECT_THAT(problem(line(10, 1000), line(10, 1)), HasSubstr("one is 1e+03 times as large as the other"));
+  EXPECT_THAT(problem(line(100, 1, 0.3), line(100, 1)), HasSubstr("not in the same place"));
+  // A bulge in the middle that no box shows.
+  Interface bulged = line(100, 1), box = line(100, 1);
+  for (auto* i : {&bulged, &box}) i->vertices.emplace_back(0, 1, 0);
+  bulged.vertices[50].y() = 0.1;
+  EXPECT_THAT(problem(box, bulged), HasSubstr("is 0.1 m away from the nearest of 'solid'"));
+}
+
+TEST(Places, equal_refined_coarser_and_shifted_surfaces_pass_and_stairs_are_said) {
+  EXPECT_EQ(problem(line(10, 1), line(10, 1)), "");
+  EXPECT_EQ(problem(line(20, 1), line(10, 1)), "");
+  EXPECT_EQ(problem(line(10, 1, 0.03), line(13, 1)), "");
+  EXPECT_EQ(problem(line(3, 1), line(60, 1)), "");
+  EXPECT_TRUE(judge_places(line(20, 1), "solid", line(10, 1), "fluid", true).notes.empty());
+  const auto notes = judge_places(line(3, 1), "solid", line(60, 1), "fluid", true).notes;
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_THAT(notes[0], HasSubstr("'solid' is much coarser than 'fluid'"));
+}
+
+TEST(Places, a_load_that_is_not_finite_is_named_with_its_place) {
+  const Interface fluid = line(4, 1);
+  Exchange data{{"pressure-force", std::vector<double>(8, 1.)}};
+  EXPECT_NO_THROW(require_finite(data, fluid, fluid.gives, "fluid"));
+  data["pressure-force"][5] = NAN;
+  try {
+    require_finite(data, fluid, fluid.gives, "fluid");
+    FAIL();
+  } catch (const SolveFailure& failure) {
+    EXPECT_STREQ(failure.what(),
+                 "'fluid' gave a 'pressure-force' that is not finite at face 2, (0.625, 0, 0).");
+  }
+}
+
+TEST(Places, a_closed_fluid_is_refused_unless_its_interface_is_closed_in_itself) {
+  Interface fluid = line(4, 1);
+  EXPECT_EQ(problem_of_closed_fluid(fluid, "fluid"), "");
+  fluid.closed = true;
+  EXPECT_THAT(problem_of_closed_fluid(fluid, "fluid"), HasSubstr("Give it an outlet"));
+  fluid.face_areas[2] *= -1, fluid.face_areas[3] *= -1;
+  EXPECT_EQ(problem_of_closed_fluid(fluid, "fluid"), "") << "a body within the fluid";
+}
+
+}  // namespace
+}  // namespace couplet
