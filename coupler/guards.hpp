@@ -32,30 +32,30 @@ class IterationGuard {
   double at_turn_ = 0;  // residual at which the growth began
 };
 
-/// Watches the accepted motion for the two-step oscillation of loosely coupled schemes: second differences
-/// d_n = x^{n+1} - 2 x^n + x^{n-1} that turn round in every step, are as large as the motion itself and grow.
-/// The added mass taken explicitly has the factor -r a step (r: added mass over the structure's), whatever
-/// the step; the semi-implicit scheme does the same with what viscosity adds (it takes the wall shear at the
-/// guessed velocity).
+/// Watches the accepted motion for the two-step oscillation of loosely coupled schemes: jumps of the
+/// velocity, d_n = (x^{n+1} - x^n) / dt_n - (x^n - x^{n-1}) / dt_{n-1}, that turn round in every step, are as
+/// large as the velocity itself and grow; steps of other lengths do not hide it. The added mass taken
+/// explicitly has the factor -r a step (r: added mass over the structure's), whatever the step; the
+/// semi-implicit scheme does the same with what viscosity adds (it takes the wall shear at the guessed
+/// velocity).
 class OscillationGuard {
  public:
   /// The motion x of an accepted step of length dt. A reason if it oscillates, else nothing.
   std::optional<std::string> accepted(const std::vector<double>& x, double dt, Scheme scheme);
-  /// Growth of the oscillation a step; 0 without one.
-  double growth() const { return growth_; }
+  /// After a step that failed: a reason if the accepted steps before it had begun to swing, else nothing.
+  std::optional<std::string> suspects(Scheme scheme) const;
   /// Steps in a row in which it has turned round.
   int turns() const { return turns_; }
 
  private:
-  std::vector<double> x_, old_x_, difference_;
-  double dt_ = 0, growth_ = 0;
-  int turns_ = 0;
-  std::vector<double> sizes_;  // of the differences since the turning began
-  std::deque<double> motion_;  // |x^{n+1} - x^n| of the last steps
+  std::vector<double> x_, velocity_, jump_;
+  int turns_ = 0, levels_ = 0;  // levels: accepted states that are known
+  std::vector<double> sizes_;   // of the differences since the turning began
+  std::deque<double> speed_;    // of the last steps
 };
 
 /// Watches the work on both sides of the interface. What the fluid gives and the structure takes are the same
-/// but for the error of the coupling; work that parts for long is made by the scheme.
+/// but for the error of the coupling; work that parts more and more is made by the scheme.
 class WorkGuard {
  public:
   /// Work of a step on both sides [J]. A reason if the two have parted, else nothing.
@@ -71,12 +71,17 @@ class WorkGuard {
   std::array<double, 4> totals() const { return {fluid_, structure_, exchanged_, double(steps_)}; }
   void restore(const std::array<double, 4>& totals);
 
-  static constexpr int window = 12;
+  static constexpr int window = 12;  ///< steps; it fires after three of them at the earliest
 
  private:
   double fluid_ = 0, structure_ = 0, exchanged_ = 0;  // sums over the run; exchanged: of the larger |work|
   long steps_ = 0;
-  std::deque<std::array<double, 2>> last_;
+  struct Window {
+    double given = 0, taken = 0, size = 0;
+    int steps = 0;
+    double apart() const;
+  };
+  std::vector<Window> windows_;  // the last three
 };
 
 /// Throws SolveFailure naming datum, entry and place if one of the values is not finite.
