@@ -16,7 +16,7 @@ Coupler::Coupler(const CouplingParameters& parameters, const SimulationParameter
       simulation_(simulation),
       folders_(std::move(folders)),
       loop_(MPI_COMM_SELF, simulation, parameters.scheme, folders_.checkpoints),
-      acceleration_(parameters.acceleration) {
+      accelerator_(make_accelerator(parameters.acceleration, MPI_COMM_SELF)) {
   fluid_.channel = std::move(channels.fluid);
   structure_.channel = std::move(channels.structure);
   mesh_.channel = std::move(channels.mesh);
@@ -126,7 +126,7 @@ void Coupler::solve(const Step& step) {
     convergence.max_iterations = 1;
     convergence.relative = std::numeric_limits<double>::infinity();
   }
-  last_ = solve_fixed_point(std::move(guess), wiring_->dim(), map, convergence, acceleration_, observer);
+  last_ = solve_fixed_point(std::move(guess), wiring_->dim(), map, convergence, *accelerator_, observer);
   last_dt_ = step.dt;
 }
 
@@ -172,7 +172,7 @@ void Coupler::save(const std::filesystem::path& folder) {
   file.write_scalar("old-dt", history_.old_dt);
   file.write("fluid-wall", fluid_wall_);
   file.write("work", work_guard_.totals());
-  file.write_scalar("omega", acceleration_.omega());
+  accelerator_->save(file);
   file.close();
 }
 
@@ -187,7 +187,7 @@ void Coupler::load() {
   std::array<double, 4> work{};
   file.read("work", work);
   work_guard_.restore(work);
-  acceleration_.restore(file.read_scalar("omega"));
+  accelerator_->load(file);
   const RunState state = read_run_state(folders_.restart);
   loop_.restart(state);
   ask_all(everyone(), {Op::load, {}, {}, state.time, -1, folders_.restart.string()});

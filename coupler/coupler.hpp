@@ -11,7 +11,7 @@
 
 #include "common/app/step_loop.hpp"
 #include "common/app/watch.hpp"
-#include "coupler/acceleration.hpp"
+#include "coupler/accelerator.hpp"
 #include "coupler/fixed_point.hpp"
 #include "coupler/guards.hpp"
 #include "coupler/monitor.hpp"
@@ -68,7 +68,7 @@ class Coupler {
   std::optional<Wiring> wiring_;
   std::optional<Monitor> monitor_;
   StepLoop loop_;
-  Acceleration acceleration_;
+  std::unique_ptr<Accelerator> accelerator_;
   InterfaceHistory history_;
   FixedPointResult last_;            // of the step just solved
   Exchange last_load_, last_given_;  // to the structure and from the fluid in its last pass

@@ -14,9 +14,7 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
   return result;
 }
 
-void advance(std::vector<double>& x, double omega, const std::vector<double>& image) {
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += omega * (image[i] - x[i]);
-}
+Iterate iterate(const InterfaceState& x) { return {x.displacement, x.velocity}; }
 
 }  // namespace
 
@@ -35,26 +33,26 @@ bool converged(const Residual& residual, const ConvergenceParameters& parameters
 }
 
 FixedPointResult solve_fixed_point(InterfaceState x, int dim, const FixedPointMap& map,
-                                   const ConvergenceParameters& parameters, Acceleration& acceleration,
+                                   const ConvergenceParameters& parameters, Accelerator& accelerator,
                                    const IterationObserver& observer) {
   FixedPointResult result;
-  acceleration.start_step();
+  accelerator.start_step();
   for (int k = 1; k <= parameters.max_iterations; ++k) {
     InterfaceState image = map(x);
     const std::vector<double> r = difference(image.displacement, x.displacement);
     result.residual = measure(r, image.displacement, dim);
     result.iterations = k;
-    observer(k, result.residual, acceleration.omega());
+    observer(k, result.residual, accelerator.relaxation());
     if (!std::isfinite(result.residual.absolute))
       throw SolveFailure("the interface displacement is not finite after {} coupling iterations.", k);
     if (converged(result.residual, parameters)) {
+      accelerator.accept(iterate(x), iterate(image));
       result.x = std::move(x);
       result.image = std::move(image);
       return result;
     }
-    const double omega = acceleration.factor(r);
-    advance(x.displacement, omega, image.displacement);
-    advance(x.velocity, omega, image.velocity);
+    Iterate next = accelerator.next(iterate(x), iterate(image));
+    x = {std::move(next.unknown), std::move(next.rider)};
   }
   throw SolveFailure(
       "the coupling did not converge in {} iterations: the relative residual is {:.2e} ({:.1e} is asked "

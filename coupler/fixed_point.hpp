@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "coupler/acceleration.hpp"
+#include "coupler/accelerator.hpp"
 #include "coupler/parameters.hpp"
 #include "coupler/predictor.hpp"
 
@@ -19,7 +19,7 @@ bool converged(const Residual& residual, const ConvergenceParameters& parameters
 
 /// One pass through all participants: x to H(x). Throws SolveFailure if one of them fails.
 using FixedPointMap = std::function<InterfaceState(const InterfaceState&)>;
-/// After each pass: its number from 1, its residual, and the relaxation that led to its x.
+/// After each pass: its number from 1, its residual, and the share of the residual before that led to its x.
 using IterationObserver = std::function<void(int, const Residual&, double)>;
 
 struct FixedPointResult {
@@ -28,10 +28,10 @@ struct FixedPointResult {
   int iterations = 0;
 };
 
-/// x = H(x) by passes and relaxed updates x += omega r from the guess x. Throws SolveFailure if it does not
-/// converge within the allowed iterations or a residual is not finite.
+/// x = H(x) by passes and accelerated updates from the guess x. Throws SolveFailure if it does not converge
+/// within the allowed iterations or a residual is not finite.
 FixedPointResult solve_fixed_point(InterfaceState x, int dim, const FixedPointMap& map,
-                                   const ConvergenceParameters& parameters, Acceleration& acceleration,
+                                   const ConvergenceParameters& parameters, Accelerator& accelerator,
                                    const IterationObserver& observer);
 
 }  // namespace couplet

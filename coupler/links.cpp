@@ -5,6 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "coupler/map_projection.hpp"
 
 namespace couplet {
 namespace {
@@ -18,7 +19,8 @@ PointSet places(const Side& side, Place place) {
   const Interface& i = side.interface;
   PointSet set{(place == Place::vertices ? "vertices of '" : "faces of '") + side.name + "'",
                place == Place::vertices ? i.vertices : i.face_centres,
-               {}};
+               {},
+               place == Place::vertices || !i.face_areas.empty() ? &i : nullptr};
   if (place == Place::faces)
     for (const Vec3& area : i.face_areas) set.sizes.push_back(area.norm());
   return set;
@@ -70,7 +72,10 @@ double sum(const std::vector<double>& values, int components, int component) {
 }  // namespace
 
 Links::Links(const std::vector<Side>& sides, const MappingParameters& mapping) {
-  for (const Side& side : sides) names_.push_back(side.name);
+  for (const Side& side : sides) {
+    names_.push_back(side.name);
+    check_corners(side.interface, side.name);
+  }
   for (std::size_t t = 0; t < sides.size(); ++t)
     for (const Datum& wanted : sides[t].interface.takes) {
       const auto [g, given] = source_of(wanted, t, sides);

@@ -5,24 +5,13 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <nanoflann.hpp>
 
 #include "common/base/error.hpp"
+#include "coupler/map_projection.hpp"
+#include "coupler/point_tree.hpp"
 
 namespace couplet {
 namespace {
-
-struct Cloud {
-  const std::vector<Vec3>& points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t d) const { return points[i][Eigen::Index(d)]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, Index>;
 
 struct Neighbours {
   std::vector<Index> index;
@@ -32,15 +21,11 @@ struct Neighbours {
 /// For each of `points` the nearest of `among`.
 Neighbours nearest(const std::vector<Vec3>& points, const std::vector<Vec3>& among) {
   Neighbours result;
-  const Cloud cloud{among};
-  Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
-  tree.buildIndex();
+  const PointTree tree(among);
   for (const Vec3& p : points) {
-    Index index = 0;
-    double square = 0;
-    tree.knnSearch(p.data(), 1, &index, &square);
-    result.index.push_back(index);
-    result.distance.push_back(std::sqrt(square));
+    const PointTree::Found found = tree.nearest(p);
+    result.index.push_back(found.index);
+    result.distance.push_back(found.distance);
   }
   return result;
 }
@@ -92,6 +77,50 @@ void require_twins(const PointSet& from, const PointSet& to, const MappingParame
       to.what, tolerance, from.what, p.x(), p.y(), p.z());
 }
 
+SparseMap take_nearest(const Neighbours& found, std::size_t n_from) {
+  SparseMap map;
+  map.n_from = n_from;
+  const double one = 1;
+  for (const Index i : found.index) map.push_row({&i, 1}, {&one, 1});
+  return map;
+}
+
+/// Shares of the targets that a source is nearest to, by their size; a source that is nearest to no target
+/// gives all to its own nearest one. So a finer target takes smooth loads and a coarser one takes all of
+/// them.
+SparseMap share_out_nearest(const PointSet& from, const PointSet& to, const Neighbours& forth) {
+  const Neighbours back = nearest(from.points, to.points);
+  const auto size = [&](Index target) { return to.sizes.empty() ? 1.0 : to.sizes[target]; };
+  std::vector<std::vector<Index>> targets(from.points.size());
+  for (std::size_t t = 0; t < to.points.size(); ++t) targets[forth.index[t]].push_back(Index(t));
+  SparseMap gather;
+  gather.n_from = to.points.size();
+  for (std::size_t s = 0; s < targets.size(); ++s) {
+    if (targets[s].empty()) targets[s] = {back.index[s]};
+    double total = 0;
+    for (const Index t : targets[s]) total += size(t);
+    std::vector<double> shares;
+    for (const Index t : targets[s]) shares.push_back(size(t) / total);
+    gather.push_row(targets[s], shares);
+  }
+  return gather.transposed();
+}
+
+/// Projection and radial functions.
+SparseMap second_order(Mapping::Kind kind, const PointSet& from, const PointSet& to,
+                       MappingParameters::Type type) {
+  const bool projection = type == MappingParameters::Type::projection;
+  const int dim = from.surface != nullptr ? from.surface->dim : 3;
+  const std::size_t k = dim == 2 ? (projection ? 3 : 5) : (projection ? 5 : 10);
+  if (kind == Mapping::Kind::conservative && from.surface != nullptr && to.surface != nullptr)
+    return shared_out(*from.surface, *to.surface, k);
+  const bool at_vertices = from.surface != nullptr && from.points.size() == from.surface->vertices.size();
+  if (projection && at_vertices && kind == Mapping::Kind::consistent)
+    return nearest_projection(*from.surface, to.points);
+  return kind == Mapping::Kind::consistent ? local_interpolation(from.points, to.points, k)
+                                           : local_interpolation(to.points, from.points, k).transposed();
+}
+
 }  // namespace
 
 Mapping::Mapping(Kind kind, const PointSet& from, const PointSet& to, const MappingParameters& parameters)
@@ -103,37 +132,20 @@ Mapping::Mapping(Kind kind, const PointSet& from, const PointSet& to, const Mapp
         n_from_, from.what, n_to_, to.what);
   if (parameters.type == MappingParameters::Type::matched) require_twins(from, to, parameters);
   const Neighbours found = nearest(to.points, from.points);
-  for (std::size_t i = 0; i < n_to_; ++i) links_.push_back({found.index[i], Index(i), 1});
-  if (kind == Kind::conservative) share_out(from, to);
-  for (const Link& link : links_) {
-    const double d = (from.points[link.source] - to.points[link.target]).norm();
+  const bool nearest_only = parameters.type == MappingParameters::Type::matched ||
+                            parameters.type == MappingParameters::Type::nearest;
+  if (!nearest_only)
+    map_ = second_order(kind, from, to, parameters.type);
+  else if (kind == Kind::consistent)
+    map_ = take_nearest(found, n_from_);
+  else
+    map_ = share_out_nearest(from, to, found);
+  for (const double d : found.distance) {
     max_distance_ = std::max(max_distance_, d);
-    mean_distance_ += d / double(links_.size());
+    mean_distance_ += d / double(n_to_);
   }
   summary_ = fmt::format("{} {} to {} {}, distance at most {:.3g} m, mean {:.3g} m", n_from_, from.what,
                          n_to_, to.what, max_distance_, mean_distance_);
-}
-
-/// Shares of the targets that a source is nearest to, by their size; a source that is nearest to no target
-/// gives all to its own nearest one. So a finer target takes smooth loads and a coarser one takes all of
-/// them.
-void Mapping::share_out(const PointSet& from, const PointSet& to) {
-  const auto size = [&](Index target) { return to.sizes.empty() ? 1.0 : to.sizes[target]; };
-  std::vector<double> total(n_from_, 0.);
-  for (const Link& link : links_) total[link.source] += size(link.target);
-  for (Link& link : links_) link.share = size(link.target) / total[link.source];
-  const Neighbours back = nearest(from.points, to.points);
-  for (std::size_t i = 0; i < n_from_; ++i)
-    if (total[i] == 0) links_.push_back({Index(i), back.index[i], 1});
-}
-
-std::vector<double> Mapping::apply(const std::vector<double>& values, int components) const {
-  assert(values.size() == n_from_ * std::size_t(components));
-  std::vector<double> result(n_to_ * components, 0.);
-  for (const auto& [source, target, share] : links_)
-    for (int c = 0; c < components; ++c)
-      result[std::size_t(target) * components + c] += share * values[std::size_t(source) * components + c];
-  return result;
 }
 
 }  // namespace couplet

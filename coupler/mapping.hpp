@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "common/base/types.hpp"
+#include "common/coupling/participant.hpp"
 #include "coupler/parameters.hpp"
+#include "coupler/sparse_map.hpp"
 
 namespace couplet {
 
@@ -13,22 +14,34 @@ namespace couplet {
 struct PointSet {
   std::string what;
   std::vector<Vec3> points;
-  std::vector<double> sizes{};  ///< areas of faces [m^2], for shares; empty: all alike
+  std::vector<double> sizes{};         ///< areas of faces [m^2], for shares; empty: all alike
+  const Interface* surface = nullptr;  ///< that these are the vertices or the face centres of; for projection
 };
 
-/// How values go from one set of points to another. Built once, on the reference configuration.
+/// How values go from one set of points to another, as a sparse matrix built once on the reference
+/// configuration. By type of `coupling.mapping`:
+///   matched     twins, weight 1
+///   nearest     as below
+///   projection  at vertices: the value at the nearest point of the other surface; at faces: local
+///   interpolants
+///               through few neighbours
+///   rbf         local interpolants by compact radial functions through more neighbours
+/// Both of the latter carry linear fields exactly; their forces are cut over each face and shared out with
+/// the transposed weights, so that force and moment are kept.
 class Mapping {
  public:
   enum class Kind {
-    consistent,    ///< every target takes the value of its nearest source: displacements, velocities
-    conservative,  ///< every source is shared out, by size, among the targets nearest to it (or goes to its
-                   ///< own nearest target if it is nearest to none): forces; the sum is kept
+    consistent,    ///< nearest: every target takes the value of its nearest source: displacements, velocities
+    conservative,  ///< nearest: every source is shared out, by size, among the targets nearest to it (or goes
+                   ///< to its own nearest target if it is nearest to none): forces; the sum is kept
   };
   /// matched: throws Error naming points without a twin, with place and distance; nearest: any distance is
   /// good.
   Mapping(Kind kind, const PointSet& from, const PointSet& to, const MappingParameters& parameters);
 
-  std::vector<double> apply(const std::vector<double>& values, int components) const;
+  std::vector<double> apply(const std::vector<double>& values, int components) const {
+    return map_.apply(values, components);
+  }
 
   std::size_t n_from() const { return n_from_; }
   std::size_t n_to() const { return n_to_; }
@@ -38,14 +51,8 @@ class Mapping {
   std::string summary() const { return summary_; }
 
  private:
-  void share_out(const PointSet& from, const PointSet& to);
-
   std::size_t n_from_, n_to_;
-  struct Link {
-    Index source, target;
-    double share;
-  };
-  std::vector<Link> links_;
+  SparseMap map_;
   double max_distance_ = 0, mean_distance_ = 0;
   std::string summary_;
 };

@@ -48,16 +48,36 @@ std::string problem_of_roles(const CouplingParameters& p) {
 
 void declare(config::Section& section, AccelerationParameters& p) {
   using Type = AccelerationParameters::Type;
-  section.choice("type", p.type, {{"constant", Type::constant}, {"aitken", Type::aitken}})
+  section
+      .choice("type", p.type,
+              {{"constant", Type::constant},
+               {"aitken", Type::aitken},
+               {"iqn-ils", Type::iqn_ils},
+               {"iqn-mvj", Type::iqn_mvj}})
       .doc(
           "constant: always the initial relaxation; aitken: adapted in each iteration from the last two "
-          "residuals");
+          "residuals; iqn-ils: quasi-Newton from the differences of this and earlier steps by least squares; "
+          "iqn-mvj: the same, each step's differences correcting the Jacobian of those before it");
   section.value("initial-relaxation", p.initial_relaxation)
       .range(1e-6, 2)
-      .doc("relaxation of the very first iteration, or of all if constant");
+      .doc(
+          "relaxation of the very first iteration, or of all if constant; good is 1 / (1 + r) for added mass "
+          "over structural mass r");
   section.value("maximum-relaxation", p.maximum_relaxation)
       .range(1e-6, 2)
-      .doc("upper bound of the relaxation that a step inherits from the step before");
+      .doc("aitken: upper bound of the relaxation that a step begins with");
+  section.value("reused-steps", p.reused_steps)
+      .range(0, 1000)
+      .doc("iqn: earlier steps whose differences are used, too");
+  section.value("maximum-columns", p.maximum_columns)
+      .range(1, 10000)
+      .doc("iqn: most differences kept; each takes as much memory as three interface vectors");
+  section.value("filter", p.filter)
+      .range(0, 1)
+      .doc(
+          "iqn: a difference of which less than this share is independent of newer ones is given up; noise "
+          "of "
+          "the participants over the convergence tolerance is a lower bound of what makes sense");
 }
 
 void declare(config::Section& section, ConvergenceParameters& p) {
@@ -77,11 +97,21 @@ void declare(config::Section& section, ConvergenceParameters& p) {
 
 void declare(config::Section& section, MappingParameters& p) {
   using Type = MappingParameters::Type;
-  section.choice("type", p.type, {{"matched", Type::matched}, {"nearest", Type::nearest}})
+  section
+      .choice("type", p.type,
+              {{"matched", Type::matched},
+               {"nearest", Type::nearest},
+               {"projection", Type::projection},
+               {"rbf", Type::rbf}})
       .doc(
           "matched: every vertex and face of one side has its twin on the other, all else is an error; "
           "nearest: "
-          "displacements from the nearest vertex (consistent), forces to the nearest face (conservative)");
+          "displacements from the nearest vertex (consistent), forces to the nearest face (conservative); "
+          "projection: displacements from the nearest point of the other surface, linear over its faces; "
+          "rbf: "
+          "from a local interpolant by compact radial functions; with both, forces are cut over each face "
+          "and "
+          "shared out so that their sum and their moment are kept");
   section.value("tolerance", p.tolerance)
       .unit("m")
       .positive()

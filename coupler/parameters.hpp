@@ -11,9 +11,12 @@
 namespace couplet {
 
 struct AccelerationParameters {
-  enum class Type { constant, aitken } type = Type::aitken;
+  enum class Type { constant, aitken, iqn_ils, iqn_mvj } type = Type::aitken;
   double initial_relaxation = 0.5;
   double maximum_relaxation = 1.0;
+  int reused_steps = 8;       // quasi-Newton: earlier steps whose differences are kept
+  int maximum_columns = 100;  // of these differences
+  double filter = 1e-3;       // of what is independent in a column
 };
 
 struct ConvergenceParameters {
@@ -23,7 +26,7 @@ struct ConvergenceParameters {
 };
 
 struct MappingParameters {
-  enum class Type { matched, nearest } type = Type::matched;
+  enum class Type { matched, nearest, projection, rbf } type = Type::matched;
   std::optional<double> tolerance;  // [m]
 };
 

@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "coupler/map_projection.hpp"
 
 namespace couplet {
 namespace {
@@ -37,51 +38,28 @@ void check_link(const Side& from, const Side& to, Place place) {
 }
 
 PointSet vertices(const Side& side) {
-  return {"vertices of '" + side.name + "'", side.interface.vertices, {}};
+  return {"vertices of '" + side.name + "'", side.interface.vertices, {}, &side.interface};
 }
 
 PointSet faces(const Side& side) {
-  PointSet set{"faces of '" + side.name + "'", side.interface.face_centres, {}};
+  PointSet set{"faces of '" + side.name + "'", side.interface.face_centres, {}, &side.interface};
   for (const Vec3& area : side.interface.face_areas) set.sizes.push_back(area.norm());
   return set;
 }
 
-/// The vertices around each face, which an Interface does not list: the `dim` nearest to its centre and all
-/// that are hardly further (a quadrilateral's four). Exact for edges, rectangles and regular triangles; used
-/// for the balance only.
-std::vector<std::vector<Index>> corners(const Interface& interface) {
-  std::vector<std::vector<Index>> result;
-  std::vector<std::pair<double, Index>> by_distance(interface.vertices.size());
-  const auto least = std::min(std::size_t(interface.dim), by_distance.size());
-  const auto kept = std::min<std::size_t>(8, by_distance.size());
-  for (const Vec3& centre : interface.face_centres) {
-    for (std::size_t v = 0; v < by_distance.size(); ++v)
-      by_distance[v] = {(interface.vertices[v] - centre).norm(), Index(v)};
-    std::partial_sort(by_distance.begin(), by_distance.begin() + kept, by_distance.end());
-    std::vector<Index>& face = result.emplace_back();
-    for (std::size_t i = 0; i < kept; ++i)
-      if (i < least || by_distance[i].first < 1.01 * by_distance[least - 1].first)
-        face.push_back(by_distance[i].second);
-  }
-  return result;
-}
-
 Balance balance(const Interface& interface, const std::vector<Interface::Datum>& data,
-                const std::vector<std::vector<Index>>& corners, const Exchange& values,
-                const std::vector<double>& increment) {
+                const SparseMap& to_faces, const Exchange& values, const std::vector<double>& increment) {
   Balance result;
   const int dim = interface.dim;
+  const std::vector<double> moved = to_faces.apply(increment, dim);
   for (const auto& datum : data) {
     const auto found = values.find(datum.name);
     if (found == values.end() || datum.place != Place::faces || datum.unit != "N") continue;
-    for (std::size_t f = 0; f < corners.size(); ++f)
+    for (std::size_t f = 0; f < interface.face_centres.size(); ++f)
       for (int c = 0; c < dim; ++c) {
-        double moved = 0;
-        for (const Index v : corners[f])
-          moved += increment[std::size_t(v) * dim + c] / double(corners[f].size());
         const double force = found->second[f * dim + c];
         result.force[c] += force;
-        result.work += force * moved;
+        result.work += force * moved[f * dim + c];
       }
   }
   return result;
@@ -92,6 +70,8 @@ Balance balance(const Interface& interface, const std::vector<Interface::Datum>&
 Wiring::Wiring(const Side& fluid, const Side& structure, const std::optional<Side>& mesh,
                const MappingParameters& mapping)
     : fluid_(fluid), structure_(structure), mesh_(mesh), dim_(structure.interface.dim) {
+  for (const Side* side : {&fluid_, &structure_, mesh_ ? &*mesh_ : &fluid_})
+    check_corners(side->interface, side->name);
   for (const Side* side : {&fluid_, mesh_ ? &*mesh_ : &fluid_})
     if (side->interface.dim != dim_)
       throw Error("'{}' has {} dimensions and '{}' has {}: both must have the same.", side->name,
@@ -115,8 +95,8 @@ Wiring::Wiring(const Side& fluid, const Side& structure, const std::optional<Sid
   for (const auto& datum : fluid_.interface.gives)
     if (find(structure_.interface.takes, datum.name) == nullptr)
       notes_.push_back(fmt::format("note: nobody takes '{}' of '{}'", datum.name, fluid_.name));
-  fluid_corners_ = corners(fluid_.interface);
-  structure_corners_ = corners(structure_.interface);
+  fluid_faces_ = vertices_to_faces(fluid_.interface);
+  structure_faces_ = vertices_to_faces(structure_.interface);
 }
 
 Exchange Wiring::motion(const InterfaceState& x, const Side& to, const Mapping& mapping) const {
@@ -149,11 +129,11 @@ InterfaceState Wiring::from_structure(Exchange data) const {
 }
 
 Balance Wiring::fluid_balance(const Exchange& data, const std::vector<double>& increment) const {
-  return balance(fluid_.interface, structure_.interface.takes, fluid_corners_, data, increment);
+  return balance(fluid_.interface, structure_.interface.takes, fluid_faces_, data, increment);
 }
 
 Balance Wiring::structure_balance(const Exchange& data, const std::vector<double>& increment) const {
-  return balance(structure_.interface, structure_.interface.takes, structure_corners_, data, increment);
+  return balance(structure_.interface, structure_.interface.takes, structure_faces_, data, increment);
 }
 
 }  // namespace couplet

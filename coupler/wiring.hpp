@@ -58,7 +58,7 @@ class Wiring {
   std::optional<Side> mesh_;
   int dim_;
   std::optional<Mapping> to_fluid_, to_mesh_, to_structure_;
-  std::vector<std::vector<Index>> fluid_corners_, structure_corners_;  // vertices of each face
+  SparseMap fluid_faces_, structure_faces_;  // from values at vertices to those at face centres
   std::vector<std::string> notes_;
 };
 

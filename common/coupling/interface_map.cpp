@@ -81,7 +81,8 @@ InterfaceMap::InterfaceMap(const Mesh& mesh, const std::vector<std::string>& pat
   std::sort(all_faces.begin(), all_faces.end());
   n_vertices_ = all_points.size();
   n_faces_ = all_faces.size();
-  point_layout_ = Layout(mesh.comm, positions_of(point_ids, all_points));
+  vertex_of_ = positions_of(point_ids, all_points);
+  point_layout_ = Layout(mesh.comm, vertex_of_);
   owned_point_layout_ = Layout(mesh.comm, positions_of(owned_ids, all_points));
   face_layout_ = Layout(mesh.comm, positions_of(face_ids, all_faces));
 }
@@ -145,6 +146,29 @@ std::vector<double> InterfaceMap::gather_faces(std::span<const double> local, in
   return gather(face_layout_, n_faces_, local, components);
 }
 
+/// As many values a face as the largest face has corners; -1 where a face has fewer.
+void InterfaceMap::describe_corners(Interface& interface) const {
+  double most = 0;
+  for (const Index f : faces_) most = std::max(most, double(mesh_->face_points[f].size()));
+  const auto width = static_cast<std::size_t>(max(mesh_->comm, most));
+  std::vector<double> local(faces_.size() * width, -1);
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const auto points = mesh_->face_points[faces_[i]];
+    for (std::size_t c = 0; c < points.size(); ++c)
+      local[i * width + c] =
+          vertex_of_[std::lower_bound(points_.begin(), points_.end(), points[c]) - points_.begin()];
+  }
+  const std::vector<double> corners = gather_faces(local, static_cast<int>(width));
+  if (comm_rank(mesh_->comm) != 0) return;
+  interface.face_offset.push_back(0);
+  for (std::size_t f = 0; f < n_faces_; ++f) {
+    for (std::size_t c = 0; c < width; ++c)
+      if (corners[f * width + c] >= 0)
+        interface.face_vertices.push_back(static_cast<Index>(corners[f * width + c]));
+    interface.face_offset.push_back(static_cast<Index>(interface.face_vertices.size()));
+  }
+}
+
 Interface InterfaceMap::describe() const {
   const auto flat = [](const std::vector<Index>& entries, const std::vector<Vec3>& values) {
     std::vector<double> result;
@@ -162,6 +186,7 @@ Interface InterfaceMap::describe() const {
   interface.vertices = vectors(gather_vertices(flat(points_, mesh_->reference_points), 3));
   interface.face_centres = vectors(gather_faces(flat(faces_, mesh_->reference.face_centre), 3));
   interface.face_areas = vectors(gather_faces(flat(faces_, mesh_->reference.face_area), 3));
+  describe_corners(interface);
   return interface;
 }
 

@@ -22,8 +22,8 @@ class InterfaceMap {
   /// Boundary faces (face indices) of owned cells on these patches, ascending.
   const std::vector<Index>& faces() const { return faces_; }
 
-  /// dim, vertices, face_centres, face_areas of the reference configuration on rank 0; takes and gives stay
-  /// empty.
+  /// dim, vertices, face_centres, face_areas of the reference configuration and the faces' corners on rank 0;
+  /// takes and gives stay empty.
   Interface describe() const;
   /// Rank 0's vector (vertices x components) to values at points(), in that order, on every rank.
   /// An empty vector on rank 0 (nothing was given) stands for zeros; any other wrong size is an Error.
@@ -47,8 +47,11 @@ class InterfaceMap {
   std::vector<double> gather(const Layout& layout, std::size_t n_all, std::span<const double> local,
                              int components) const;
 
+  void describe_corners(Interface& interface) const;
+
   const Mesh* mesh_;
   std::vector<Index> points_, faces_;
+  std::vector<Index> vertex_of_;     // of each of points_: its place in the interface vector
   std::vector<Index> owned_points_;  // positions in points_ of those that this rank owns
   Layout point_layout_, owned_point_layout_, face_layout_;
   std::size_t n_vertices_ = 0, n_faces_ = 0;  // over all ranks

@@ -28,6 +28,10 @@ class Packer {
     put(std::int64_t(points.size()));
     for (const Vec3& p : points) raw(p.data(), 3 * sizeof(double));
   }
+  void put(const std::vector<Index>& values) {
+    put(std::int64_t(values.size()));
+    for (const Index value : values) put(std::int64_t(value));
+  }
   void put(const Exchange& data) {
     put(std::int64_t(data.size()));
     for (const auto& [name, values] : data) {
@@ -79,6 +83,11 @@ class Unpacker {
   std::vector<Vec3> points() {
     std::vector<Vec3> values(length(3 * sizeof(double)));
     for (Vec3& p : values) raw(p.data(), 3 * sizeof(double));
+    return values;
+  }
+  std::vector<Index> indices() {
+    std::vector<Index> values(length(sizeof(std::int64_t)));
+    for (Index& value : values) value = static_cast<Index>(integer());
     return values;
   }
   Exchange exchange() {
@@ -197,6 +206,8 @@ std::vector<char> pack(const Reply& r) {
   out.put(r.interface.vertices);
   out.put(r.interface.face_centres);
   out.put(r.interface.face_areas);
+  out.put(r.interface.face_offset);
+  out.put(r.interface.face_vertices);
   out.put(r.interface.takes);
   out.put(r.interface.gives);
   out.put(r.report.dt);
@@ -218,6 +229,8 @@ Reply unpack_reply(std::span<const char> bytes) {
   r.interface.vertices = in.points();
   r.interface.face_centres = in.points();
   r.interface.face_areas = in.points();
+  r.interface.face_offset = in.indices();
+  r.interface.face_vertices = in.indices();
   r.interface.takes = in.data();
   r.interface.gives = in.data();
   r.report.dt = in.real();

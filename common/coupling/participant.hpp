@@ -34,6 +34,9 @@ struct Interface {
   std::vector<Datum> takes, gives;
   /// A fluid that nothing can leave: it has no room for an interface that displaces volume.
   bool closed = false;
+  /// Corners of face f, in their order around it: face_vertices[face_offset[f]] .. [face_offset[f + 1] - 1].
+  /// Both empty if they are not known.
+  std::vector<Index> face_offset, face_vertices;
   bool empty() const { return vertices.empty() && face_centres.empty(); }
 };
 

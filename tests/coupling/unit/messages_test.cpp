@@ -31,6 +31,8 @@ Reply some_reply() {
   r.interface.vertices = {{1, 2, 0}, {3, 4, 0}};
   r.interface.face_centres = {{2, 3, 0}};
   r.interface.face_areas = {{0, 1, 0}};
+  r.interface.face_offset = {0, 2};
+  r.interface.face_vertices = {1, 0};
   r.interface.takes = {{"displacement", "m", Interface::Place::vertices}};
   r.interface.gives = {{"pressure-force", "N", Interface::Place::faces}};
   r.report = {.dt = 0.25, .iterations = 17, .energy = 3e-9};
@@ -64,6 +66,8 @@ TEST(Messages, replies_arrive_as_they_were_sent) {
   EXPECT_EQ(got.interface.vertices, sent.interface.vertices);
   EXPECT_EQ(got.interface.face_centres, sent.interface.face_centres);
   EXPECT_EQ(got.interface.face_areas, sent.interface.face_areas);
+  EXPECT_EQ(got.interface.face_offset, r.interface.face_offset);
+  EXPECT_EQ(got.interface.face_vertices, r.interface.face_vertices);
   ASSERT_EQ(got.interface.gives.size(), 1u);
   EXPECT_EQ(got.interface.gives[0].name, "pressure-force");
   EXPECT_EQ(got.interface.gives[0].unit, "N");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/coupling/interface_map.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,6 +66,11 @@ TEST_P(InterfaceMapOf, description_holds_every_vertex_and_face_once_in_the_order
     const auto points = raw.boundary_points[elements[i]];
     for (const Index p : points) centre += raw.points[p] / double(points.size());
     EXPECT_LT((interface.face_centres[i] - centre).norm(), 1e-14);
+    std::vector<Vec3> corners, wanted;
+    for (Index c = interface.face_offset[i]; c < interface.face_offset[i + 1]; ++c)
+      corners.push_back(interface.vertices[interface.face_vertices[c]]);
+    for (const Index p : points) wanted.push_back(raw.points[p]);
+    EXPECT_THAT(corners, ::testing::UnorderedElementsAreArray(wanted));
     area += interface.face_areas[i];
   }
   EXPECT_LT((area - Vec3(1, -2, 0)).norm(), 1e-13) << "out of the participant, on both sides";

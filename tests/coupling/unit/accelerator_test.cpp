@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/acceleration.hpp"
+#include "coupler/accelerator.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <random>
 
 #include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
 #include "coupler/fixed_point.hpp"
+#include "coupler/growing_qr.hpp"
+#include "coupler/relaxation.hpp"
 
 namespace couplet {
 namespace {
@@ -28,7 +33,20 @@ FixedPointMap linear_map(const Vector& slopes, const Vector& b) {
 
 const IterationObserver nobody = [](int, const Residual&, double) {};
 
-FixedPointResult solve(const FixedPointMap& map, std::size_t n, Acceleration& acceleration,
+using Type = AccelerationParameters::Type;
+
+AccelerationParameters of_type(Type type, double initial = 0.5) {
+  AccelerationParameters parameters;
+  parameters.type = type;
+  parameters.initial_relaxation = initial;
+  return parameters;
+}
+
+std::unique_ptr<Accelerator> make(Type type, double initial = 0.5) {
+  return make_accelerator(of_type(type, initial), MPI_COMM_SELF);
+}
+
+FixedPointResult solve(const FixedPointMap& map, std::size_t n, Accelerator& acceleration,
                        double tolerance = 1e-10, int most = 200) {
   ConvergenceParameters parameters;
   parameters.relative = tolerance;
@@ -56,62 +74,63 @@ TEST(Aitken, keeps_its_factor_if_the_residual_does_not_change) {
 
 TEST(Aitken, solves_a_scalar_linear_map_in_three_passes_even_if_plain_iteration_blows_up) {
   for (const double slope : {-20., -3., -0.5, 0.5, 3.}) {
-    Acceleration acceleration({});
-    const auto result = solve(linear_map({slope}, {2.}), 1, acceleration);
+    const auto result = solve(linear_map({slope}, {2.}), 1, *make(Type::aitken));
     EXPECT_LE(result.iterations, 3) << slope;
     EXPECT_NEAR(result.image.displacement[0], 2 / (1 - slope), 1e-9) << slope;
   }
 }
 
 TEST(Aitken, solves_a_map_of_several_modes) {
-  Acceleration acceleration({});
-  const auto result = solve(linear_map({-9, -2, -0.3, 0.1}, {1, 2, 3, 4}), 4, acceleration);
+  const auto result = solve(linear_map({-9, -2, -0.3, 0.1}, {1, 2, 3, 4}), 4, *make(Type::aitken));
   EXPECT_LE(result.iterations, 60);
   EXPECT_NEAR(result.image.displacement[0], 0.1, 1e-8);
   EXPECT_NEAR(result.image.displacement[2], 3 / 1.3, 1e-8);
 }
 
 TEST(ConstantRelaxation, converges_at_the_rate_of_theory) {
-  AccelerationParameters parameters;
-  parameters.type = AccelerationParameters::Type::constant;
-  parameters.initial_relaxation = 0.25;
-  Acceleration acceleration(parameters);
   // x' = x + w (b - (1 - a) x): the error shrinks by 1 - w (1 - a) = 0.5 a pass.
-  const auto result = solve(linear_map({-1.}, {1.}), 1, acceleration, 1e-6);
+  const auto result = solve(linear_map({-1.}, {1.}), 1, *make(Type::constant, 0.25), 1e-6);
   EXPECT_NEAR(result.iterations, 1 + std::log2(1e6), 3);
 }
 
-TEST(Acceleration, a_step_starts_with_the_last_factor_within_bounds) {
-  AccelerationParameters parameters;
-  parameters.initial_relaxation = 0.5;
+TEST(Aitken, a_step_starts_with_the_factor_of_the_second_pass_before) {
+  // Two modes; the first factor that the second pass finds is close to the best for the strong one, the last
+  // factor of the step belongs to the weak one.
+  const auto accelerator = make(Type::aitken);
+  solve(linear_map({-20, -0.1}, {1, 0.01}), 2, *accelerator);
+  accelerator->start_step();
+  EXPECT_NEAR(accelerator->relaxation(), 1. / 21, 1e-4);
+}
+
+TEST(Aitken, the_first_factor_of_a_step_is_bounded) {
+  AccelerationParameters parameters = of_type(Type::aitken);
   parameters.maximum_relaxation = 0.8;
-  Acceleration acceleration(parameters);
-  acceleration.start_step();
-  EXPECT_EQ(acceleration.omega(), 0.5);
-  acceleration.restore(-0.3);
-  acceleration.start_step();
-  EXPECT_EQ(acceleration.omega(), 0.3) << "the sign is an accident";
-  acceleration.restore(7);
-  acceleration.start_step();
-  EXPECT_EQ(acceleration.omega(), 0.8);
-  acceleration.restore(1e-9);
-  acceleration.start_step();
-  EXPECT_EQ(acceleration.omega(), 0.01);
+  for (const auto& [slope, wanted] : {std::pair{0.5, 0.8}, std::pair{-1e6, 1e-3}, std::pair{3., 0.5}}) {
+    const auto accelerator = make_accelerator(parameters, MPI_COMM_SELF);
+    solve(linear_map({slope}, {1}), 1, *accelerator);
+    accelerator->start_step();
+    EXPECT_NEAR(accelerator->relaxation(), wanted, 1e-12) << slope;
+  }
+}
+
+TEST(Aitken, a_factor_is_never_far_above_the_maximum) {
+  const auto accelerator = make(Type::aitken);
+  accelerator->start_step();
+  accelerator->next({{0}, {}}, {{1}, {}});
+  accelerator->next({{0.5}, {}}, {{1.5 - 1e-9}, {}});
+  EXPECT_EQ(accelerator->relaxation(), 10) << "unbounded it is 5e8";
 }
 
 TEST(FixedPoint, velocity_follows_the_combinations_of_the_displacement) {
-  Acceleration acceleration({});
-  const auto result = solve(linear_map({-4, 0.2}, {1, 1}), 2, acceleration);
-  for (int i = 0; i < 2; ++i) EXPECT_NEAR(result.x.velocity[i], 10 * result.x.displacement[i], 1e-8);
+  for (const Type type : {Type::constant, Type::aitken, Type::iqn_ils, Type::iqn_mvj}) {
+    const auto result = solve(linear_map({-4, 0.2}, {1, 1}), 2, *make(type, 0.2));
+    for (int i = 0; i < 2; ++i) EXPECT_NEAR(result.x.velocity[i], 10 * result.x.displacement[i], 1e-8);
+  }
 }
 
 TEST(FixedPoint, without_convergence_it_says_how_far_it_came) {
-  AccelerationParameters parameters;
-  parameters.type = AccelerationParameters::Type::constant;
-  parameters.initial_relaxation = 1;
-  Acceleration acceleration(parameters);
   try {
-    solve(linear_map({-3.}, {1.}), 1, acceleration, 1e-10, 5);
+    solve(linear_map({-3.}, {1.}), 1, *make(Type::constant, 1), 1e-10, 5);
     FAIL() << "it converged";
   } catch (const SolveFailure& failure) {
     EXPECT_STREQ(
@@ -122,8 +141,8 @@ TEST(FixedPoint, without_convergence_it_says_how_far_it_came) {
 }
 
 TEST(FixedPoint, a_residual_that_is_not_finite_is_a_failure) {
-  Acceleration acceleration({});
-  EXPECT_THROW(solve(linear_map({NAN}, {1.}), 1, acceleration), SolveFailure);
+  for (const Type type : {Type::aitken, Type::iqn_ils, Type::iqn_mvj})
+    EXPECT_THROW(solve(linear_map({NAN}, {1.}), 1, *make(type)), SolveFailure);
 }
 
 TEST(Residual, is_relative_to_the_image_and_absolute_as_root_mean_square) {

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/relaxation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+
+#include "common/io/checkpoint.hpp"
+
+namespace couplet {
+namespace {
+
+std::vector<double> relaxed(const std::vector<double>& x, double omega, const std::vector<double>& image) {
+  std::vector<double> result(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) result[i] = x[i] + omega * (image[i] - x[i]);
+  return result;
+}
+
+Iterate relaxed(const Iterate& x, double omega, const Iterate& image) {
+  return {relaxed(x.unknown, omega, image.unknown), relaxed(x.rider, omega, image.rider)};
+}
+
+std::vector<double> residual_of(const Iterate& x, const Iterate& image) {
+  std::vector<double> r(x.unknown.size());
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = image.unknown[i] - x.unknown[i];
+  return r;
+}
+
+}  // namespace
+
+double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
+                     MPI_Comm comm) {
+  assert(residual.size() == next_residual.size());
+  std::array<double, 2> sums{};  // r . change, |change|^2
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    const double change = next_residual[i] - residual[i];
+    sums[0] += residual[i] * change;
+    sums[1] += change * change;
+  }
+  sum_over(comm, sums);
+  return sums[1] > 0 ? -omega * sums[0] / sums[1] : omega;
+}
+
+Iterate ConstantRelaxation::next(const Iterate& x, const Iterate& image) { return relaxed(x, omega_, image); }
+
+AitkenRelaxation::AitkenRelaxation(const AccelerationParameters& parameters, MPI_Comm comm)
+    : parameters_(parameters),
+      comm_(comm),
+      omega_(parameters.initial_relaxation),
+      first_(parameters.initial_relaxation) {}
+
+void AitkenRelaxation::start_step() {
+  last_residual_.reset();
+  omega_ = first_;
+  second_pass_ = false;
+}
+
+void AitkenRelaxation::learn(std::span<const double> residual) {
+  if (!last_residual_) return;
+  const double most = 10 * parameters_.maximum_relaxation;
+  omega_ = std::clamp(aitken_factor(omega_, *last_residual_, residual, comm_), -most, most);
+  if (second_pass_)
+    first_ = std::clamp(std::abs(omega_), std::min(1e-3, parameters_.maximum_relaxation),
+                        parameters_.maximum_relaxation);
+}
+
+Iterate AitkenRelaxation::next(const Iterate& x, const Iterate& image) {
+  const std::vector<double> r = residual_of(x, image);
+  const bool first = !last_residual_;
+  learn(r);
+  second_pass_ = first;
+  last_residual_ = r;
+  return relaxed(x, omega_, image);
+}
+
+void AitkenRelaxation::accept(const Iterate& x, const Iterate& image) {
+  // A step of two passes has its second factor only now.
+  if (second_pass_) learn(residual_of(x, image));
+  last_residual_.reset();
+}
+
+void AitkenRelaxation::save(CheckpointWriter& file) const { file.write_scalar("omega", first_); }
+
+void AitkenRelaxation::load(CheckpointReader& file) { first_ = file.read_scalar("omega"); }
+
+}  // namespace couplet

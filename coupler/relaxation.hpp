@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "coupler/accelerator.hpp"
+
+namespace couplet {
+
+/// x += omega r with the same omega always.
+class ConstantRelaxation final : public Accelerator {
+ public:
+  explicit ConstantRelaxation(double omega) : omega_(omega) {}
+  void start_step() override {}
+  Iterate next(const Iterate& x, const Iterate& image) override;
+  void accept(const Iterate&, const Iterate&) override {}
+  void map_changed() override {}
+  double relaxation() const override { return omega_; }
+  void save(CheckpointWriter&) const override {}
+  void load(CheckpointReader&) override {}
+
+ private:
+  double omega_;
+};
+
+/// x += omega r with Aitken's factor, thesis (4.23) with its erratum [Kuettler, Wall 2008]:
+///   omega^{k+1} = -omega^k r^k . (r^{k+1} - r^k) / |r^{k+1} - r^k|^2
+/// kept if the residual did not change at all, and in size never above ten times `maximum-relaxation` (its
+/// sign is free: a map of slope above 1 needs a negative one). The first factor of a step is what the second
+/// pass of the last step found out, i.e. the best factor for a first residual, between a thousandth and
+/// `maximum-relaxation`; the later ones belong to the modes that were left over and would start a step too
+/// small or too large.
+class AitkenRelaxation final : public Accelerator {
+ public:
+  AitkenRelaxation(const AccelerationParameters& parameters, MPI_Comm comm);
+  void start_step() override;
+  Iterate next(const Iterate& x, const Iterate& image) override;
+  void accept(const Iterate& x, const Iterate& image) override;
+  void map_changed() override { last_residual_.reset(); }
+  double relaxation() const override { return omega_; }
+  void save(CheckpointWriter& file) const override;
+  void load(CheckpointReader& file) override;
+
+ private:
+  void learn(std::span<const double> residual);
+  AccelerationParameters parameters_;
+  MPI_Comm comm_;
+  double omega_, first_;                              // in use; for the first update of the next step
+  bool second_pass_ = false;                          // of this step comes next
+  std::optional<std::vector<double>> last_residual_;  // none at the start of a step
+};
+
+/// The factor itself, over the values of this rank.
+double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
+                     MPI_Comm comm = MPI_COMM_SELF);
+
+}  // namespace couplet

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the one coupler: added mass, acceleration, mapping."""
+import re
+
+import couplet_series as couplet
+from validation.job import Bar
+from validation.main_job import FLAP, steps_of
+
+RAMP = ["participants.fluid.boundaries.inlet.ramp=0.4"]
+LIGHT = [*RAMP, "participants.solid.material.density=1", "simulation.output.interval=1", "simulation.checkpoint.interval=10"]
+
+
+def tip(folder):
+    probes = couplet.read_csv(folder / "solid" / "probes.csv")
+    return probes["time [s]"], probes["tip x [m]"]
+
+
+# -- added mass: two analytic participants, 40 modes ------------------------------------------------------------------
+def added_mass(job, test, keys):
+    """Recorded properties of one test: {key: text} and whether it passed."""
+    tests, _ = job.gtest("coupling_added_mass")
+    found = next(v for k, v in tests.items() if test in k)
+    return {k: v for k, v in found.items() if re.match(keys, k)}, found["passed"]
+
+
+def explicit_growth(job):
+    found, passed = added_mass(job, "grows_by_the_mass_ratio", "growth_")
+    off = [abs(float(v) * float(k.split("_")[1]) - 1) for k, v in found.items()]
+    return f"{100 * max(off):.2f} % off at most, {len(off)} runs", passed and len(off) >= 4 and max(off) <= 0.02
+
+
+def explicit_bounded(job):
+    found, passed = added_mass(job, "is_bounded_below", "amplitude_")
+    return ", ".join(f"{k.split('_')[1]}: {v}" for k, v in found.items()) + " of the bound", passed and len(found) == 2
+
+
+def contraction(job):
+    found, passed = added_mass(job, "plain_iteration_contracts", "contraction_")
+    off = [abs(float(v) / float(k.split("_")[1]) - 1) for k, v in found.items()]
+    return f"{100 * max(off):.3f} % off at most", passed and max(off) <= 0.02
+
+
+def iterations(method, most):
+    def measure(job):
+        found, _ = added_mass(job, "iterations_of", method + "_")
+        numbers = {float(k.split("_")[1]): v.split() for k, v in found.items()}
+        met = all(int(numbers[r][1]) <= bound for r, bound in zip((0.5, 5, 50), most))
+        return "; ".join(f"r {r:g}: {numbers[r][1]} at most, {numbers[r][0]} on average" for r in sorted(numbers)), met
+    return measure
+
+
+def very_light(job):
+    found, passed = added_mass(job, "holds_at_a_hundredth", "ils_100")
+    mean, most = found["ils_100"].split()
+    return f"{most} at most, {mean} on average", passed and int(most) <= 30
+
+
+ADDED_MASS = [
+    Bar("added mass: explicit growth a step, rho_s h/(rho_f mu_1) 0.9 and 0.99, two steps", "r within 2 %", explicit_growth),
+    Bar("added mass: explicit, rho_s h/(rho_f mu_1) 1.01 and 1.1", "bounded over 2000 steps", explicit_bounded),
+    Bar("added mass: unrelaxed contraction at r 0.3, 0.5, 0.8", "r_1 within 2 %", contraction),
+    Bar("added mass: iterations of Aitken, 1e-6", "at most 9/17/46 at r 0.5/5/50", iterations("aitken", (9, 17, 46))),
+    Bar("added mass: iterations of IQN-ILS, 1e-6", "at most 6/9/15 at r 0.5/5/50", iterations("ils", (6, 9, 15))),
+    Bar("added mass: iterations of IQN-MVJ, 1e-6", "at most 6/9/15 at r 0.5/5/50", iterations("mvj", (6, 9, 15))),
+    Bar("added mass: IQN-ILS at rho_s h/(rho_f mu_1) 0.01", "within 30 iterations", very_light),
+]
+
+
+# -- acceleration on the flap -----------------------------------------------------------------------------------------
+def light_flap(job, scheme, kind, end=0.6):
+    return job.coupled(job.root / FLAP, f"flap-light-{scheme}-{kind}", [
+        *LIGHT, f"simulation.end-time={end}", f"coupling.scheme={scheme}", f"coupling.acceleration.type={kind}",
+        "coupling.acceleration.initial-relaxation=0.2"])
+
+
+def light_iterations(job):
+    steps = steps_of(light_flap(job, "implicit", "iqn-ils"))
+    mean = steps[:, 0].mean()
+    return f"{mean:.2f} on average, {steps[:, 0].max():.0f} at most, {len(steps)} steps", bool(mean <= 4 and len(steps) >= 60)
+
+
+def light_aitken(job):
+    steps = steps_of(light_flap(job, "implicit", "aitken"))
+    a, b = (tip(light_flap(job, "implicit", kind))[1][-1] for kind in ("aitken", "iqn-ils"))
+    return f"{steps[:, 0].mean():.2f} on average; tips {abs(a / b - 1):.1e} apart", None
+
+
+ACCELERATION = [
+    Bar("flap, rho_s 1, ramp 0.4 s: implicit, IQN-ILS, to 0.6 s", "at most 4 iterations on average", light_iterations, long=True),
+    Bar("flap, rho_s 1, ramp 0.4 s: implicit, Aitken", "reported", light_aitken, long=True),
+]
+
+
+# -- mapping ----------------------------------------------------------------------------------------------------------
+def recorded(test, keys, limit, unit=""):
+    def measure(job):
+        tests, _ = job.gtest("unit_maps")
+        found = next(v for k, v in tests.items() if test in k)
+        values = {k: float(v) for k, v in found.items() if re.fullmatch(keys, k)}
+        text = ", ".join(f"{k} {v:g}{unit}" for k, v in values.items())
+        return text, bool(values) and found["passed"] and max(values.values()) <= limit
+    return measure
+
+
+def finer_solid(job, factor, kind, shift=0.0):
+    """The flap with `factor` of the solid's faces along one of the fluid's, to the first maximum."""
+    geo = (job.root / "configs/perpendicular-flap/solid.geo").read_text()
+    side, across = {2: (160, 16), 3: (240, 24), 1: (80, 8)}[factor]
+    if shift:
+        side, across = 147, 15
+    geo = re.sub(r"n_side = \d+;", f"n_side = {side};", re.sub(r"n_tip = \d+;", f"n_tip = {across};", geo))
+    mesh = job.scratch / f"solid-{side}.geo"
+    mesh.write_text(geo)
+    return job.coupled(job.root / FLAP, f"flap-{side}-{kind}", [
+        "simulation.end-time=0.8", "simulation.output.interval=1", "simulation.checkpoint.interval=10",
+        f"participants.solid.mesh={mesh}", f"coupling.mapping.type={kind}"])
+
+
+def non_matching(factor, shift=0.0):
+    def measure(job):
+        wanted = max(tip(finer_solid(job, 2, "nearest"))[1])
+        gaps = {kind: max(tip(finer_solid(job, factor, kind, shift))[1]) / wanted - 1 for kind in ("projection", "rbf")}
+        return ", ".join(f"{kind} {100 * gap:+.2f} %" for kind, gap in gaps.items()), all(abs(g) <= 0.01 for g in gaps.values())
+    return measure
+
+
+SAME = "the run beside it is the case itself, whose fluid vertices all have twins"
+MAPPING = [
+    Bar("maps: linear fields, flaps 2:1, 1:2, 3:1, 1:3, shifted, plates of all faces", "exact (1e-12)", recorded("linear_fields", "linear", 1e-12)),
+    Bar("maps: force kept, the same pairs", "1e-12", recorded("keep_force", "force", 1e-12)),
+    Bar("maps: moment kept, the same pairs", "1e-10", recorded("keep_force", "moment", 1e-10)),
+    Bar("maps: largest jump of slope over nearest's, 1:3", "at most 0.25", recorded("no_staircase", "rbf|projection", 0.25)),
+    Bar("maps: 1e5 vertices set up (motion and load)", "under 2 s cpu", recorded("n_log_n", r"setup_\d", 2, " s")),
+    Bar("flap, solid's faces 2:1, first maximum", "within 1 % of matching", non_matching(2), long=True, but=SAME),
+    Bar("flap, solid's faces 3:1, first maximum", "within 1 % of matching", non_matching(3), long=True, but=SAME),
+    Bar("flap, no vertex common but the corners (147 to 80), first maximum", "within 1 % of matching", non_matching(2, 0.5), long=True, but=SAME),
+]
+
+BARS = [*ADDED_MASS, *ACCELERATION, *MAPPING]

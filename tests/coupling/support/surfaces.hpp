@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces for tests of mappings, with the corners of their faces.
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "common/coupling/participant.hpp"
+#include "coupler/mapping.hpp"
+
+namespace couplet::tests {
+
+inline void add_face(Interface& s, std::vector<Index> corners, const Vec3& area) {
+  Vec3 centre = Vec3::Zero();
+  for (const Index v : corners) centre += s.vertices[v] / double(corners.size());
+  if (s.face_offset.empty()) s.face_offset.push_back(0);
+  s.face_vertices.insert(s.face_vertices.end(), corners.begin(), corners.end());
+  s.face_offset.push_back(Index(s.face_vertices.size()));
+  s.face_centres.push_back(centre);
+  s.face_areas.push_back(area);
+}
+
+/// The three wetted sides of a flap of 0.1 x 1 m: up, across, down. `sign` 1: areas out of the flap. `shift`
+/// moves the vertices within the sides along them, by that share of an edge.
+inline Interface flap(int along, int across, double sign, double shift = 0) {
+  Interface s;
+  s.dim = 2;
+  const auto at = [&](int i, int n) { return (i == 0 || i == n ? i : i + shift) / double(n); };
+  for (int i = 0; i <= along; ++i) s.vertices.emplace_back(0, at(i, along), 0);
+  for (int i = 1; i <= across; ++i) s.vertices.emplace_back(0.1 * at(i, across), 1, 0);
+  for (int i = 1; i <= along; ++i) s.vertices.emplace_back(0.1, 1 - at(i, along), 0);
+  for (Index v = 0; v + 1 < Index(s.vertices.size()); ++v) {
+    const Vec3 edge = s.vertices[v + 1] - s.vertices[v];
+    add_face(s, {v, v + 1}, sign * Vec3(-edge.y(), edge.x(), 0));
+  }
+  return s;
+}
+
+/// (0, 2) x (0, 1) at height `z`, n quadrilaterals on a length of 1, or each cut into two triangles; areas
+/// along sign z.
+inline Interface plate(int n, bool triangles, double sign, double z = 0) {
+  Interface s;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= 2 * n; ++i) s.vertices.emplace_back(i / double(n), j / double(n), z);
+  const Vec3 area(0, 0, sign / (double(n) * n));
+  for (Index j = 0; j < n; ++j)
+    for (Index i = 0; i < 2 * n; ++i) {
+      const Index a = j * (2 * n + 1) + i, b = a + 1, c = b + 2 * n + 1, d = a + 2 * n + 1;
+      if (triangles)
+        add_face(s, {a, b, c}, area / 2), add_face(s, {a, c, d}, area / 2);
+      else
+        add_face(s, {a, b, c, d}, area);
+    }
+  return s;
+}
+
+inline PointSet vertices_of(const Interface& s) { return {"vertices", s.vertices, {}, &s}; }
+inline PointSet faces_of(const Interface& s) {
+  PointSet set{"faces", s.face_centres, {}, &s};
+  for (const Vec3& area : s.face_areas) set.sizes.push_back(area.norm());
+  return set;
+}
+
+}  // namespace couplet::tests

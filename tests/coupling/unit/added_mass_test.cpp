@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// Added-mass theory [causin2005] against the coupler itself: a potential flow and an elastic wall in 40
+// modes.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "common/log/log.hpp"
+#include "coupler/coupler.hpp"
+#include "tests/coupling/support/residuals.hpp"
+#include "tests/coupling/toy/modal.hpp"
+
+namespace couplet {
+namespace {
+
+namespace fs = std::filesystem;
+using Type = AccelerationParameters::Type;
+
+struct ModalRun {
+  CouplingParameters coupling;
+  SimulationParameters simulation;
+  toy::ModalParameters p;
+  fs::path folder = fs::temp_directory_path() / ("couplet-modal-" + std::to_string(::getpid()));
+  std::string problem;
+  std::vector<double> amplitudes, velocities;
+  tests::Residuals residuals;
+
+  ModalRun() {
+    spdlog::set_level(spdlog::level::off);
+    coupling.scheme = Scheme::implicit;
+    coupling.convergence.relative = 1e-6;
+    coupling.convergence.max_iterations = 200;
+    simulation.max_step_halvings = 0;
+    p.inlet_pressure = 1;
+    p.stiffness = 8;
+    p.tension = 0.5;
+  }
+  ~ModalRun() { fs::remove_all(folder); }
+  ModalRun(const ModalRun&) = delete;
+  /// r = rho mu_1 / (rho_s h)
+  void ratio(double r) { p.surface_density = p.density * toy::added_mass_length(p, 1) / r; }
+  void steps(int n, double dt) {
+    simulation.time_step = dt;
+    simulation.end_time = n * dt;
+  }
+  void operator()() {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    toy::ModalChannel fluid(p);
+    toy::ModalWall wall(p);
+    CouplerChannels channels{std::make_unique<LocalChannel>("fluid", fluid),
+                             std::make_unique<LocalChannel>("solid", wall), nullptr};
+    {
+      Coupler coupler(coupling, simulation, std::move(channels), {folder, folder / "checkpoints", {}});
+      problem = coupler.run();
+    }
+    amplitudes = wall.amplitudes();
+    velocities = wall.velocities();
+    residuals = tests::read_residuals(folder / "residuals.csv");
+  }
+};
+
+/// Explicit coupling, w = v^n: m (v^{n+1} - v^n) = - rho mu (v^n - v^{n-1}), so the increments of the
+/// velocity grow by r a step, whatever the step.
+TEST(AddedMass, explicit_coupling_grows_by_the_mass_ratio_each_step) {
+  for (const double inverse : {0.9, 0.99})
+    for (const double dt : {1e-3, 1e-4}) {
+      ModalRun run;
+      run.coupling.scheme = Scheme::explicit_;
+      run.coupling.predictor_order = 1;
+      run.ratio(1 / inverse);
+      run.p.pulse_duration = 10 * dt;
+      std::vector<double> v;
+      for (const int steps : {399, 400, 401}) {
+        run.steps(steps, dt);
+        run();
+        v.push_back(run.velocities[0]);
+      }
+      const double before = v[1] - v[0], after = v[2] - v[1];
+      EXPECT_NEAR(std::abs(after / before), 1 / inverse, 0.02 / inverse);
+      RecordProperty(fmt::format("growth_{}_{}", inverse, dt),
+                     fmt::format("{:.6f}", std::abs(after / before)));
+      EXPECT_LT(after / before, 0) << "the sign alternates";
+    }
+}
+
+TEST(AddedMass, explicit_coupling_is_bounded_below_a_mass_ratio_of_one) {
+  for (const double inverse : {1.01, 1.1}) {
+    ModalRun run;
+    run.coupling.scheme = Scheme::explicit_;
+    run.coupling.predictor_order = 1;
+    run.ratio(1 / inverse);
+    run.p.pulse_duration = 0.1;
+    run.steps(2000, 1e-3);
+    run();
+    // The pulse moves the wall by about t^2 p / 2 m; ten times of that would be growth.
+    const double scale = run.p.inlet_pressure * 0.05 * 2 / run.p.surface_density;
+    EXPECT_LT(std::abs(run.amplitudes[0]), scale) << inverse;
+    RecordProperty(fmt::format("amplitude_{}", inverse),
+                   fmt::format("{:.6f}", std::abs(run.amplitudes[0]) / scale));
+  }
+}
+
+TEST(AddedMass, plain_iteration_contracts_by_the_first_mass_ratio) {
+  for (const double r : {0.3, 0.5, 0.8}) {
+    ModalRun run;
+    run.coupling.acceleration.type = Type::constant;
+    run.coupling.acceleration.initial_relaxation = 1;
+    run.coupling.convergence.relative = 1e-10;
+    run.ratio(r);
+    run.steps(1, 1e-3);
+    run();
+    ASSERT_EQ(run.problem, "");
+    // Late in the step one mode is left. The wall's stiffness adds a dt^2 / 4 to its mass: nothing here.
+    const auto& rows = run.residuals.steps.front();
+    ASSERT_GT(rows.size(), 10u);
+    const double slope = rows[rows.size() - 2].absolute / rows[rows.size() - 3].absolute;
+    EXPECT_NEAR(slope, r, 0.02 * r);
+    RecordProperty(fmt::format("contraction_{}", r), fmt::format("{:.6f}", slope));
+  }
+}
+
+int most_iterations(ModalRun& run) {
+  std::size_t most = 0;
+  for (const auto& step : run.residuals.steps) most = std::max(most, step.size());
+  return int(most);
+}
+
+TEST(AddedMass, iterations_of_aitken_and_quasi_newton) {
+  struct Bar {
+    double r;
+    int aitken, newton;
+  };
+  for (const Bar& bar : {Bar{0.5, 9, 6}, Bar{5, 17, 9}, Bar{50, 46, 15}})
+    for (const Type type : {Type::aitken, Type::iqn_ils, Type::iqn_mvj}) {
+      ModalRun run;
+      run.coupling.acceleration.type = type;
+      run.coupling.acceleration.initial_relaxation = 1 / (1 + bar.r);  // estimated from the mass ratio
+      run.coupling.acceleration.filter = 1e-6;                         // these participants make no noise
+      run.p.peak = 0.3;
+      run.ratio(bar.r);
+      run.p.pulse_duration = 0.2;
+      run.steps(30, 0.01);
+      run();
+      EXPECT_EQ(run.problem, "");
+      const int most = most_iterations(run);
+      EXPECT_LE(most, type == Type::aitken ? bar.aitken : bar.newton) << bar.r << " type " << int(type);
+      RecordProperty(fmt::format("{}_{}", std::array{"constant", "aitken", "ils", "mvj"}[int(type)], bar.r),
+                     fmt::format("{:.2f} {}", run.residuals.mean_iterations(), most));
+    }
+}
+
+TEST(AddedMass, quasi_newton_holds_at_a_hundredth_of_the_mass) {
+  ModalRun run;
+  run.coupling.acceleration.type = Type::iqn_ils;
+  run.p.peak = 0.3;
+  run.ratio(100);
+  run.p.pulse_duration = 0.2;
+  run.steps(30, 0.01);
+  run();
+  EXPECT_EQ(run.problem, "");
+  EXPECT_LE(most_iterations(run), 30);
+  RecordProperty("ils_100", fmt::format("{:.2f} {}", run.residuals.mean_iterations(), most_iterations(run)));
+}
+
+}  // namespace
+}  // namespace couplet
