@@ -36,7 +36,7 @@ struct Interface {
   bool closed = false;
   /// Corners of face f, in their order around it: face_vertices[face_offset[f]] .. [face_offset[f + 1] - 1].
   /// Both empty if they are not known.
-  std::vector<Index> face_offset, face_vertices;
+  std::vector<Index> face_offset{}, face_vertices{};
   bool empty() const { return vertices.empty() && face_centres.empty(); }
 };
 
