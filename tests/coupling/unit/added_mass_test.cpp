@@ -72,12 +72,13 @@ TEST(AddedMass, explicit_coupling_grows_by_the_mass_ratio_each_step) {
       run.ratio(1 / inverse);
       run.p.pulse_duration = 10 * dt;
       std::vector<double> v;
-      for (const int steps : {399, 400, 401}) {
+      for (const int steps : {397, 398, 399, 400}) {
         run.steps(steps, dt);
         run();
         v.push_back(run.velocities[0]);
       }
-      const double before = v[1] - v[0], after = v[2] - v[1];
+      // Second differences: the alternating part, without the slow swing of the wall on its springs.
+      const double before = v[2] - 2 * v[1] + v[0], after = v[3] - 2 * v[2] + v[1];
       EXPECT_NEAR(std::abs(after / before), 1 / inverse, 0.02 / inverse);
       RecordProperty(fmt::format("growth_{}_{}", inverse, dt),
                      fmt::format("{:.6f}", std::abs(after / before)));

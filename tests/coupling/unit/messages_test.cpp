@@ -66,8 +66,8 @@ TEST(Messages, replies_arrive_as_they_were_sent) {
   EXPECT_EQ(got.interface.vertices, sent.interface.vertices);
   EXPECT_EQ(got.interface.face_centres, sent.interface.face_centres);
   EXPECT_EQ(got.interface.face_areas, sent.interface.face_areas);
-  EXPECT_EQ(got.interface.face_offset, r.interface.face_offset);
-  EXPECT_EQ(got.interface.face_vertices, r.interface.face_vertices);
+  EXPECT_EQ(got.interface.face_offset, sent.interface.face_offset);
+  EXPECT_EQ(got.interface.face_vertices, sent.interface.face_vertices);
   ASSERT_EQ(got.interface.gives.size(), 1u);
   EXPECT_EQ(got.interface.gives[0].name, "pressure-force");
   EXPECT_EQ(got.interface.gives[0].unit, "N");
