@@ -69,6 +69,7 @@ TEST(AddedMass, explicit_coupling_grows_by_the_mass_ratio_each_step) {
       ModalRun run;
       run.coupling.scheme = Scheme::explicit_;
       run.coupling.predictor_order = 1;
+      run.coupling.on_divergence = CouplingParameters::OnDivergence::warn;
       run.ratio(1 / inverse);
       run.p.pulse_duration = 10 * dt;
       std::vector<double> v;
