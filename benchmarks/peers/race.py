@@ -2,13 +2,11 @@
 """What one run costs: whole process, started without mpirun, one core, in processor seconds (user and system: all
 contenders run one thread, and other work on the machine disturbs these least). Plate of configs/elliptic-plate and vibrating
 beam of configs/vibrating-cantilever with solid_solver; the plate with OpenFOAM's solidDisplacementFoam and CalculiX."""
-import dataclasses
 import os
 import pathlib
 import re
 import shutil
 import statistics
-import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -16,6 +14,7 @@ sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
 import calculix_plate  # noqa: E402
 import openfoam_plate  # noqa: E402
 import plate as geometry  # noqa: E402
+from couplet_run import Results, environment, launch  # noqa: E402
 from couplet_series import read_csv  # noqa: E402
 
 METHODS = {  # keys of solution-method as in the thesis's table 3.1, and ours; its tolerance
@@ -28,26 +27,12 @@ METHODS = {  # keys of solution-method as in the thesis's table 3.1, and ours; i
 }
 
 
-@dataclasses.dataclass
-class Cost:
-    seconds: float  # of the processor
-    memory: float   # bytes, at most
-    output: str
-
-
-def cost(command, folder, environment, timeout=3600):
-    """Runs a program and takes its own account; raises what it said last if it fails."""
+def cost(command, folder):
+    """What a program takes, with its output."""
     log = pathlib.Path(folder) / "race.log"
-    with open(log, "w") as out:
-        process = subprocess.Popen([str(c) for c in command], cwd=folder, env=environment, stdout=out,
-                                   stderr=subprocess.STDOUT)
-        _, status, usage = os.wait4(process.pid, 0)
-        seconds = usage.ru_utime + usage.ru_stime
-    process.returncode = os.waitstatus_to_exitcode(status)
-    text = log.read_text(errors="replace")
-    if process.returncode != 0:
-        raise RuntimeError(f"{command[0]} ended with code {process.returncode}: {' / '.join(text.splitlines()[-3:])}")
-    return Cost(seconds, usage.ru_maxrss * 1024.0, text)
+    taken = launch(command, log, folder, env=dict(environment(), WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam")))
+    taken.output = log.read_text(errors="replace")
+    return taken
 
 
 def ours(job, case, sets, times=1):
@@ -56,10 +41,12 @@ def ours(job, case, sets, times=1):
     folder.mkdir(parents=True, exist_ok=True)
     command = [job.build / "bin/solid_solver", job.root / "configs" / case / "case.yaml",
                f"--set=simulation.output.folder={folder / 'out'}", *(f"--set={s}" for s in sets)]
-    runs = [cost(command, folder, job.environment) for _ in range(times)]
+    runs = [cost(command, folder) for _ in range(times)]
     solver = read_csv(folder / "out/solid/solver.csv")
-    median = statistics.median(r.seconds for r in runs)
-    return min(runs, key=lambda r: abs(r.seconds - median)), folder / "out", solver["iterations"]
+    median = statistics.median(r.cpu for r in runs)
+    chosen = min(runs, key=lambda r: abs(r.cpu - median))
+    chosen.report = Results(folder / "out").report("solid")
+    return chosen, folder / "out", solver["iterations"]
 
 
 def plate_sets(n, method, tolerance, shape=0, extra=()):
@@ -75,8 +62,8 @@ def our_plate(job, n, method="newton-krylov, corrected", tolerance=1e-8, shape=0
         sets = plate_sets(n, METHODS[method], tolerance, shape)
         job.once(("meshed", n, shape), lambda: ours(job, "elliptic-plate", plate_sets(n, METHODS[method], 1e-2, shape)))
         run, folder, iterations = ours(job, "elliptic-plate", sets, times)
-        result = {"seconds": run.seconds, "memory": run.memory, "iterations": int(iterations[-1]),
-                  "solution": float(re.search(r"^.*\btotal\s+([\d.]+)", run.output, flags=re.M).group(1))}
+        result = {"seconds": run.cpu, "memory": 1048576 * run.report["memory-all"], "iterations": int(iterations[-1]),
+                  "solution": run.report["wall"]}
         result["cells"] = n[0] * n[1] * n[2] if shape == 0 else cells_of(folder)
         if shape == 0:
             result["error"] = geometry.nine_points.errors(folder / "solid")[0]
@@ -98,10 +85,9 @@ def foam_plate(job, n, tolerance=1e-5, solver="GAMG", relative=0.9, times=1):
     def make():
         folder = job.scratch / ("foam-%d-%d-%d" % n)
         openfoam_plate.write(folder, n, tolerance, solver, relative)
-        environment = dict(job.environment, WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"))
-        runs = [cost([program], folder, environment) for _ in range(times)]
+        runs = [cost([program], folder) for _ in range(times)]
         iterations = re.findall(r"^Iteration: (\d+)", runs[0].output, flags=re.M)
-        return {"seconds": statistics.median(r.seconds for r in runs), "memory": runs[0].memory,
+        return {"seconds": statistics.median(r.cpu for r in runs), "memory": 1048576 * runs[0].memory,
                 "iterations": int(iterations[-1]) if iterations else 0, "cells": n[0] * n[1] * n[2],
                 "error": openfoam_plate.plate_error(folder, n)}
     return job.once(("foam", n, tolerance, solver, relative, times), make)
@@ -117,8 +103,8 @@ def calculix(job, n, element, solver="SPOOLES", times=1):
         folder = job.scratch / f"ccx-{element}-{n[0]}-{solver.split()[-1]}"
         folder.mkdir(parents=True, exist_ok=True)
         calculix_plate.write(folder / "plate.inp", n, element, solver)
-        runs = [cost([program, "plate"], folder, job.environment) for _ in range(times)]
-        return {"seconds": statistics.median(r.seconds for r in runs), "memory": runs[0].memory, "iterations": 0,
+        runs = [cost([program, "plate"], folder) for _ in range(times)]
+        return {"seconds": statistics.median(r.cpu for r in runs), "memory": 1048576 * runs[0].memory, "iterations": 0,
                 "cells": n[0] * n[1] * n[2], "error": calculix_plate.plate_error(folder / "plate.frd", n, element)}
     return job.once(("ccx", n, element, solver, times), make)
 
@@ -130,7 +116,7 @@ def beam(job, method, tolerance=1e-7, step=0.01, steps=60, times=3, extra=()):
                 f"simulation.time-step={step}", f"simulation.end-time={n * step}", "simulation.output.interval=1000",
                 "participants.solid.time-scheme={type: three-point}", *extra]
         run, _, iterations = ours(job, "vibrating-cantilever", sets)
-        return run.seconds, iterations
+        return run.cpu, iterations
     pairs = [(one(steps // 6), one(steps)) for _ in range(times)]
     seconds = statistics.median(long[0] - short[0] for short, long in pairs)
     return seconds / (steps - steps // 6), statistics.mean(pairs[0][1][1])

@@ -57,13 +57,14 @@ class Bookkeeping {
   void waited() { log::timers().add("waiting for the coupler", seconds_since(since_)); }
   void received(const Command& command) {
     since_ = Clock::now();
+    processor_since_ = RunReport::processor_seconds();
     if (command.op == Op::begin_step) job_.watch->set_time(command.step.time);
     job_.enter(phase_of(command.op));
   }
   void done(const Command& command) {
     const double seconds = seconds_since(since_);
     log::timers().add(couplet::name(command.op), seconds);
-    report_.spent(seconds);
+    report_.spent(seconds, RunReport::processor_seconds() - processor_since_);
     if (command.op == Op::accept_step) job_.watch->set_time(command.time);
   }
 
@@ -71,6 +72,7 @@ class Bookkeeping {
   const Job& job_;
   RunReport& report_;
   Clock::time_point since_ = Clock::now();
+  double processor_since_ = 0;
 };
 
 void closing_words(const Job& job, Participant& participant, double seconds) {

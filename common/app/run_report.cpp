@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/run_report.hpp"
 
-#include <sys/resource.h>
-
 #include <array>
+#include <ctime>
 #include <fstream>
 #include <utility>
 
@@ -17,14 +16,6 @@ namespace couplet {
 namespace {
 
 const char* const summary_file = "run.json";
-
-/// User and system seconds of this process.
-double processor_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
 
 /// As a JSON string.
 std::string quoted(const std::string& text) {
@@ -47,6 +38,12 @@ std::string phases() {
 }
 
 }  // namespace
+
+double RunReport::processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
+}
 
 // getrusage would count what the process that started this one had in use before.
 double RunReport::peak_memory() {
@@ -78,17 +75,18 @@ void RunReport::accepted(double time, StepReport report) {
 }
 
 void RunReport::finish(double wall, const std::string& problem) {
-  const double cpu = sum(job_.comm, processor_seconds());
+  const double cpu = sum(job_.comm, processor_seconds()), working = sum(job_.comm, working_);
   const double most = max(job_.comm, peak_memory()), all = sum(job_.comm, peak_memory());
   if (job_.rank != 0) return;
   std::ofstream file(job_.output_folder / summary_file);
   file << fmt::format(
       "{{\n  \"participant\": {},\n  \"version\": {},\n  \"ranks\": {},\n"
       "  \"state\": \"{}\",\n  \"reason\": {},\n  \"time\": {:.17g},\n  \"steps\": {},\n"
-      "  \"iterations\": {},\n  \"wall\": {:.6g},\n  \"processor\": {:.6g},\n  \"memory-most\": {:.6g},\n"
+      "  \"iterations\": {},\n  \"wall\": {:.6g},\n  \"processor\": {:.6g},\n  \"processor-working\": "
+      "{:.6g},\n  \"memory-most\": {:.6g},\n"
       "  \"memory-all\": {:.6g},\n  \"phases\": {}\n}}\n",
       quoted(job_.name), quoted(version_text()), comm_size(job_.comm), problem.empty() ? "ended" : "failed",
-      quoted(problem), time_, count_, iterations_, wall, cpu, most, all, phases());
+      quoted(problem), time_, count_, iterations_, wall, cpu, working, most, all, phases());
 }
 
 }  // namespace couplet

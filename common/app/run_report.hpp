@@ -24,19 +24,25 @@ class RunReport {
  public:
   explicit RunReport(const Job& job);
   /// Adds seconds spent on the step under way, failed attempts included.
-  void spent(double seconds) { since_accepted_ += seconds; }
+  /// `processor`: user and system seconds of this process among them.
+  void spent(double seconds, double processor) {
+    since_accepted_ += seconds;
+    working_ += processor;
+  }
   /// `time`: the end of the step [s]; report.seconds is replaced by those spent since the last call.
   void accepted(double time, StepReport report);
   /// Collective over job.comm. `wall` [s]; `problem`: why the run ended early, empty if it did not.
   void finish(double wall, const std::string& problem);
 
+  /// User and system seconds of this process since it began.
+  static double processor_seconds();
   /// Most memory this process has had in use [MB]; 0 where the system does not tell.
   static double peak_memory();
 
  private:
   const Job& job_;
   std::optional<Series> steps_;
-  double since_accepted_ = 0, time_ = 0;
+  double since_accepted_ = 0, working_ = 0, time_ = 0;
   long count_ = 0, iterations_ = 0;
 };
 

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs of the porous body for benchmarks/porous and the validation: what one costs and gives."""
 import pathlib
-import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parents[1] / "scripts"), str(HERE)]
-import couplet_series as couplet  # noqa: E402
 import generate  # noqa: E402
 
 METHODS = {  # keys of solution-method; the thesis's operator and tolerance
@@ -32,11 +30,8 @@ def run(job, n, ranks=1, method="newton-krylov", extra=()):
     file, tets, _ = mesh_of(job, n)
     sets = (f"participants.solid.mesh={file}", "participants.solid.solution-method={%s}" % METHODS[method],
             "participants.solid.output={stress: false}", *extra)
-    folder, log = job.solve("solid_solver", "porous-body", sets, ranks, timeout=7200)
-    reactions = couplet.read_csv(folder / "solid" / "reactions.csv")
-    solver = couplet.read_csv(folder / "solid" / "solver.csv")
-    memory = re.search(r"peak memory of 'solid': (\d+) MB on the rank that needed most, (\d+) MB on all", log)
-    total = re.search(r"^total\s+([\d.]+)", log, flags=re.M)
+    results = job.solve_run("solid_solver", "porous-body", sets, ranks, timeout=7200)
+    reactions, solver, report = results.table("solid", "reactions.csv"), results.table("solid", "solver.csv"), results.report("solid")
     return {"cells": tets, "force": reactions["bottom z [N]"][-1], "iterations": int(solver["iterations"][-1]),
-            "inner": int(solver["inner iterations"][-1]), "seconds": float(total.group(1)),
-            "memory": float(memory.group(1)), "memory on all": float(memory.group(2))}
+            "inner": int(solver["inner iterations"][-1]), "seconds": report["wall"],
+            "memory": report["memory-most"], "memory on all": report["memory-all"]}

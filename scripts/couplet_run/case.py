@@ -86,9 +86,10 @@ class Case:
         expect(isinstance(entry, dict), f"{self.file}: there is no participant '{participant}'.")
         return self.build / "bin" / str(entry.get("program", "?"))
 
-    def command(self, changes, alone=None, ranks=None):
-        """The command line. `alone`: this participant by itself; `ranks`: {participant or coupler: number}."""
-        sets = [word for a in self.assignments(changes) for word in ("--set", a)]
+    def command(self, changes, alone=None, ranks=None, raw=()):
+        """The command line. `alone`: this participant by itself; `ranks`: {participant or coupler: number}; `raw`: further
+        arguments of --set as they are."""
+        sets = [word for a in (*self.assignments(changes), *raw) for word in ("--set", a)]
         ranks = ranks or {}
         if alone is not None or not self.coupled:
             name = alone or next(iter(self.participants))

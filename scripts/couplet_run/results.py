@@ -58,17 +58,17 @@ class Results:
         return self.table(participant, "steps.csv")
 
     def costs(self):
-        """Over all participants: steps, iterations, memory [MB], phases {name: seconds}, waiting [s]."""
+        """Over all participants: steps, iterations, memory [MB], processor seconds at work (waiting left out), phases {name: seconds}."""
         found = {"steps": 0, "iterations": 0, "memory": 0.0, "work": 0.0, "phases": {}}
         for name in self.participants():
             report = self.report(name)
             found["steps"] = max(found["steps"], int(report.get("steps", 0)))
             found["iterations"] += int(report.get("iterations", 0))
             found["memory"] += float(report.get("memory-all", 0))
+            found["work"] += float(report.get("processor-working", 0))
             for phase, seconds in report.get("phases", {}).items():
                 if phase.startswith("waiting") or ":" in phase:  # with a colon: a part of another
                     continue
                 label = phase if len(self.participants()) == 1 else f"{name}: {phase}"
                 found["phases"][label] = found["phases"].get(label, 0) + seconds
-                found["work"] += seconds
         return found

@@ -36,7 +36,7 @@ class Record:
     memory: float = 0.0      # [MB], of all processes together where the programs say it
     steps: int = 0
     iterations: int = 0
-    work: float = 0.0        # [s], the phases of all participants without waiting
+    work: float = 0.0        # [s], processor time of all participants at work, without waiting
     phases: dict = dataclasses.field(default_factory=dict)
     version: str = ""
     machine: dict = dataclasses.field(default_factory=dict)

@@ -11,7 +11,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator
 from couplet_study import convergence
 from couplet_study.table import series_of
 
-CLOCKS = {"cpu": "processor time of the run [s]", "wall": "wall time of the run [s]", "work": "time in the phases, without waiting [s]"}
+CLOCKS = {"cpu": "processor time of the run [s]", "wall": "wall time of the run [s]", "work": "processor time of all programs at work, without waiting [s]"}
 MARKS = "osD^vP*Xh<>"
 
 
@@ -101,6 +101,18 @@ def growth(title, rows, clock, refinement, file):
         axes.loglog(*zip(*xy), f"{MARKS[k % len(MARKS)]}-", markersize=4, lw=1, label=f"{name}: n^{exponent:.2f}")
     axes.set(xlabel=f"{refinement} (size n)", ylabel=CLOCKS[clock])
     return finish(made, axes, file) if drawn else plt.close(made)
+
+
+def scatter(title, found, file):
+    """`found`: (estimated, true, name)."""
+    made, axes = figure(title)
+    estimated, true = np.array([f[0] for f in found]), np.array([f[1] for f in found])
+    axes.loglog(true, estimated, "o", markersize=4)
+    line = np.array([min(true.min(), estimated.min()), max(true.max(), estimated.max())])
+    for factor, style in ((1, "-"), (0.5, "--"), (2, "--")):
+        axes.plot(line, factor * line, style, color="0.6", lw=0.8)
+    axes.set(xlabel="true error", ylabel="estimated error")
+    return finish(made, axes, file)
 
 
 def phases(title, rows, file, most=24):

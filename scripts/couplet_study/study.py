@@ -4,13 +4,13 @@ import pathlib
 
 from couplet_run import Task, expect, run_all
 from couplet_run.launch import machine
-from couplet_study import convergence, pictures, table
+from couplet_study import convergence, estimates, pictures, table
 from couplet_study.axes import Axes
 from couplet_study.quantities import quantities_of
 from couplet_study.report import Report
 
 KEYS = {"participant", "alone", "axes", "quantities", "set", "leave-out", "clock", "repeats", "timeout", "title", "text", "variants", "sweeps",
-        "peers"}
+        "peers", "sources"}
 
 
 class Study:
@@ -21,6 +21,7 @@ class Study:
         self.case, self.section, self.out = case, section, pathlib.Path(out)
         participant = section.get("participant", next(iter(case.participants), None))
         expect(participant in case.participants, f"{case.file}: study.participant: there is no participant '{participant}'.")
+        self.participant = participant
         self.alone = participant if section.get("alone") else None
         self.axes = Axes(case, section, participant)
         self.axes.common.update(changes)
@@ -73,6 +74,14 @@ class Study:
         self.all_runs(report, rows)
         return report.write(self.out)
 
+    def parts(self, name, say):
+        """What the error at the setting of `sources` is made of; lines to read, and {source: error}."""
+        from couplet_study.dominance import Dominance, sentences
+        quantity = next((q for q in self.quantities if q.name == (name or self.quantities[0].name)), None)
+        expect(quantity, f"--quantity {name}: there is no such quantity.")
+        found, value = Dominance(self, self.section.get("sources")).parts(quantity, say)
+        return [f"{quantity.name} = {value:.6g}", *sentences(found)], found
+
     def about(self, report, rows, quantity, against, others):
         name, safe = quantity.name, "".join(c if c.isalnum() else "-" for c in quantity.name)
         report.head(name)
@@ -89,6 +98,12 @@ class Study:
             return
         report.picture(pictures.order(f"{self.title}: order of {name}", rows, quantity, self.axes.refining.name, self.out / f"order-{safe}.png"),
                        f"Error of {name} over the size.")
+        found = estimates.of(rows, quantity)
+        if len(found) >= 3:
+            inside = sum(0.5 <= e / t <= 2 for e, t, _ in found)
+            report.text(f"Error estimated from a run and the next coarser ones beside the true one: within a factor of 2 on {inside} of {len(found)} runs.")
+            report.picture(pictures.scatter(f"{self.title}: estimated and true error of {name}", found, self.out / f"estimate-{safe}.png"),
+                           "Estimated error against the true one; between the dashed lines they agree within a factor of 2.")
         if not quantity.is_error:
             lines = []
             for series, limit in table.limits_of(rows, quantity).items():

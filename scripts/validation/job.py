@@ -11,6 +11,8 @@ import subprocess
 import tempfile
 from typing import Callable
 
+from couplet_run import Case, Results, environment, launch
+
 
 @dataclasses.dataclass
 class Bar:
@@ -32,8 +34,7 @@ class Job:
 
     def __init__(self, root, build, quick):
         self.root, self.build, self.quick, self._kept = root, build, quick, {}
-        self.environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1",
-                                OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        self.environment = environment()
 
     def __enter__(self):
         self.scratch = pathlib.Path(tempfile.mkdtemp(prefix="couplet-validate-"))
@@ -96,35 +97,36 @@ class Job:
         return self.once(("ctest", pattern), make)
 
     # -- programs -----------------------------------------------------------------------------------------------------
-    def coupled(self, case, folder, overrides=(), ranks=(1, 1, 1, 1), timeout=3600):
-        """Runs a coupled case into scratch/folder and gives that folder. Ranks: coupler, fluid, solid, mover."""
-        def make():
-            out = self.scratch / folder
-            sets = [f"--set=simulation.output.folder={out}", *(f"--set={o}" for o in overrides)]
-            command = ["mpirun", "--oversubscribe"]
-            for i, (program, n) in enumerate(zip(("coupler", "fluid_solver", "solid_solver", "mesh_mover"), ranks)):
-                command += [":"] * (i > 0) + ["-n", str(n), self.build / "bin" / program, case, *sets]
-            result = self.run(command, timeout)
-            if result.returncode != 0:
-                last = (result.stderr.strip() or result.stdout.strip()).splitlines()[-3:]
-                raise RuntimeError(f"the coupled run ended with code {result.returncode}: {' / '.join(last)}")
-            return out
-        return self.once(("coupled", folder), make)
+    def case_run(self, case, out, overrides, ranks, timeout):
+        """Runs a case into a folder; gives its Results with `cost` and `log`. `ranks`: by participant."""
+        command = Case(case, self.build).command({"simulation.output.folder": str(out)}, ranks=ranks, raw=overrides)
+        out.mkdir(parents=True, exist_ok=True)
+        results = Results(out)
+        results.cost = launch(command, out / "run.log", timeout=timeout)
+        results.log = (out / "run.log").read_text(errors="replace")
+        return results
 
-    def solve(self, program, case, overrides=(), ranks=1, timeout=3600):
-        """Runs one program alone on configs/<case>/case.yaml, on one rank without mpirun. Gives its output folder and its
-        log; runs with the same overrides are made once."""
+    def coupled_run(self, case, folder, overrides=(), ranks=(1, 1, 1, 1), timeout=3600):
+        """Results of a coupled case in scratch/folder. Ranks: coupler, fluid, solid, mover."""
+        by_name = dict(zip(("coupler", "fluid", "solid", "mover"), ranks))
+        return self.once(("coupled", folder), lambda: self.case_run(case, self.scratch / folder, overrides, by_name, timeout))
+
+    def coupled(self, *what, **more):
+        """The folder of coupled_run()."""
+        return self.coupled_run(*what, **more).folder
+
+    def solve_run(self, program, case, overrides=(), ranks=1, timeout=3600):
+        """Results of configs/<case>/case.yaml, whose one participant `program` runs; runs with the same overrides are made once."""
         def make():
-            out = self.scratch / f"solve-{len(self._kept)}"
-            command = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-            command += [self.build / "bin" / program, self.root / "configs" / case / "case.yaml",
-                        f"--set=simulation.output.folder={out}", *(f"--set={o}" for o in overrides)]
-            result = self.run(command, timeout)
-            if result.returncode != 0:
-                last = (result.stderr.strip() or result.stdout.strip()).splitlines()[-3:]
-                raise RuntimeError(f"{program} ended with code {result.returncode}: {' / '.join(last)}")
-            return out, result.stdout
+            file = self.root / "configs" / case / "case.yaml"
+            participant = next(n for n, p in Case(file).participants.items() if p.get("program") == program)
+            return self.case_run(file, self.scratch / f"solve-{len(self._kept)}", overrides, {participant: ranks}, timeout)
         return self.once(("solve", program, case, tuple(overrides), ranks), make)
+
+    def solve(self, *what, **more):
+        """Folder and log of solve_run()."""
+        run = self.solve_run(*what, **more)
+        return run.folder, run.log
 
     def beside(self, file):
         """A Python file of a case, such as configs/<case>/errors.py, as a module."""

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""CalculiX and OpenFOAM on the same plate for the picture of scripts/study: (processor seconds, error of the displacement);
+what is not installed is left out."""
+import json
+import os
+import pathlib
+import shutil
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
+import calculix_plate  # noqa: E402
+import openfoam_plate  # noqa: E402
+from couplet_run import environment, launch  # noqa: E402
+
+MESHES = ((4, 6, 3), (8, 12, 6), (16, 24, 12))
+
+
+def foam(folder, n):
+    openfoam_plate.write(folder, n, 1e-5, "GAMG", 0.9)
+    env = dict(environment(), WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"))
+    cost = launch(["solidDisplacementFoam"], folder / "run.log", folder, env=env)
+    return cost.cpu, float(openfoam_plate.plate_error(folder, n))
+
+
+def calculix(element, solver):
+    def run(folder, n):
+        folder.mkdir(parents=True, exist_ok=True)
+        calculix_plate.write(folder / "plate.inp", n, element, solver)
+        cost = launch(["ccx", "plate"], folder / "run.log", folder)
+        return cost.cpu, float(calculix_plate.plate_error(folder / "plate.frd", n, element))
+    return run
+
+
+PEERS = (("CalculiX C3D8I", "ccx", calculix("C3D8I", "ITERATIVE CHOLESKY"), MESHES), ("CalculiX C3D20", "ccx", calculix("C3D20", "SPOOLES"), MESHES[:2]),
+         ("solidDisplacementFoam", "solidDisplacementFoam", foam, MESHES))
+
+
+def displacement(folder):
+    """[(name, [(seconds, error)])]; each run is made once."""
+    found = []
+    for name, program, run, meshes in PEERS:
+        points = []
+        for n in meshes if shutil.which(program) else ():
+            place = pathlib.Path(folder) / f"{name}-{n[0]}".replace(" ", "-")
+            record = place / "record.json"
+            if not record.exists():
+                shutil.rmtree(place, ignore_errors=True)
+                place.mkdir(parents=True)
+                record.write_text(json.dumps(run(place, n)))
+            points.append(tuple(json.loads(record.read_text())))
+        if points:
+            found.append((name, points))
+    return found

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of issue "what accuracy costs in time": studies, --for-error, parts of the error, interruption, peers, one runner."""
+import csv
+import functools
+import json
+import math
+import re
+import subprocess
+import sys
+
+from couplet_run import Case
+from couplet_study.study import Study
+from validation.job import Bar
+
+SOURCES = ("scripts", "benchmarks", "common/app")
+STUDIES = {  # folder in docs/validation/studies: file in configs
+    "elliptic-plate": "elliptic-plate/case", "le1": "le1/case", "le11": "le11/case", "cantilever": "cantilever/case",
+    "vibrating-cantilever": "vibrating-cantilever/case", "heated-cylinder": "heated-cylinder/case", "taylor-green-2d": "taylor-green-2d/case",
+    "cylinder-2d-1": "cylinder/study-2d-1", "cylinder-2d-2": "cylinder/study-2d-2", "cavity": "cavity/study",
+    "perpendicular-flap": "perpendicular-flap/study", "schumann": "schumann/case", "thermocline-andasol": "thermocline-andasol/study"}
+TARGETS = {  # study: (quantity, three targets)
+    "elliptic-plate": ("displacement", ("2%", "1%", "0.4%")), "le11": ("stress at A", ("8%", "4%", "2%")),
+    "vibrating-cantilever": ("period", ("0.3%", "0.1%", "0.03%")), "taylor-green-2d": ("velocity", ("1%", "0.3%", "0.1%")),
+    "cylinder-2d-1": ("cd", ("1.5%", "0.8%", "0.5%")), "perpendicular-flap": ("tip at 0.4 s", ("5%", "2%", "1%")),
+    "thermocline-andasol": ("thickness", ("20%", "10%", "6%"))}
+
+
+def rows_of(job, name):
+    with open(job.root / "docs/validation/studies" / name / "runs.csv", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def committed(name):
+    """What the committed study says: its runs and their least error."""
+    def measure(job):
+        folder, rows = job.root / "docs/validation/studies" / name, rows_of(job, name)
+        errors = [k for k in rows[0] if k.startswith("error of")] or [k for k in rows[0] if k in ("displacement", "velocity", "hoop stress", "fluid", "u minimum")]
+        good = [r for r in rows if not r["reason"]]
+        least = min(float(r[errors[0]]) for r in good if r[errors[0]])
+        pictures = list(folder.glob("*.png"))
+        text = f"{len(rows)} runs, {len(rows) - len(good)} failed with their reason, {len(pictures)} pictures, least error {least:.2g}"
+        return text, len(good) >= 4 and len(pictures) >= 3 and (folder / "report.md").exists()
+    return measure
+
+
+def asked_for(name, target):
+    """scripts/study --for-error with the built programs: what it predicted and what came out. Each study's runs are shared."""
+    quantity, _ = TARGETS[name]
+    out = f"study-{name}"
+
+    def make(job):
+        command = [sys.executable, job.root / "scripts/study", job.root / "configs" / f"{STUDIES[name]}.yaml", f"--build={job.build}",
+                   f"--out={job.scratch / out}-{target}", f"--for-error={target}", f"--quantity={quantity}"]
+        result = job.run(command, timeout=1800)
+        file = job.scratch / f"{out}-{target}" / f"for-error-{quantity.replace(' ', '-')}-{target.replace('%', 'pc')}.json"
+        if not file.exists():
+            raise RuntimeError((result.stderr or result.stdout)[-300:])
+        return json.loads(file.read_text())
+    return lambda job: job.once(("for-error", name, target), lambda: make(job))
+
+
+def reached(name, what, judge):
+    """All three targets of a study; judge: (result) -> (text, met)."""
+    def measure(job):
+        parts, met = [], True
+        for target in TARGETS[name][1]:
+            r = asked_for(name, target)(job)
+            if "error" not in r:
+                parts, met = [*parts, f"{target}: none found"], False
+                continue
+            text, good = judge(r)
+            parts, met = [*parts, f"{target}: {text}"], met and good
+        return "; ".join(parts), met
+    return Bar(f"--for-error, {name}, {TARGETS[name][0]}: {what[0]}", what[1], measure, long=name in ("thermocline-andasol", "perpendicular-flap"))
+
+
+def error_judge(r):
+    return f"{100 * r['error']:.3g} % ({r['error'] / r['target']:.2f} of it)", 0.3 <= r["error"] / r["target"] <= 1.1
+
+
+def time_judge(r):
+    ratio = r["seconds"] / r["predicted seconds"]
+    return f"{r['seconds']:.2g} s, {ratio:.2f} of the predicted", 0.7 <= ratio <= 1.3
+
+
+def before_judge(r):
+    ratio = r["before"] / r["seconds"]
+    return f"{ratio:.2f} times {r['seconds']:.2g} s", ratio <= 1.5 or r["seconds"] <= 10
+
+
+# -- what dominates: settings made so that one part must ----------------------------------------------------------------
+GREEN = "taylor-green-2d/case"
+BEAM = "vibrating-cantilever/case"
+FLAP = "perpendicular-flap/study"
+
+
+def green(size, step, tolerance):
+    return GREEN, "velocity", {"mesh": {"size": size, "set": {"mesh-parameters": "{n: <n>}"}}, "step": {"key": "simulation.time-step", "value": step},
+                               "linear tolerance": {"key": "pressure-tolerance", "value": tolerance, "tolerance": True}}
+
+
+def beam(side, step, tolerance):
+    return BEAM, "period", {"mesh": {"size": side, "set": {"mesh-parameters": "{n_length: <10*n>, n_side: <n>}"}},
+                            "step": {"key": "simulation.time-step", "value": step},
+                            "linear tolerance": {"key": "solution-method.relative-tolerance", "value": tolerance, "tolerance": True}}
+
+
+def pulled(side, tolerance):
+    """A bar without lateral contraction under tension: its linear field is exact on any mesh."""
+    bar = {"mesh-parameters": "{n_length: <10*n>, n_side: <n>}", "solution-method.type": "segregated", "material.poissons-ratio": "0",
+           "boundaries.tip": "{type: traction, value: [125, 0, 0]}", "probes.tip.point": "[20, 0, 0]"}
+    return "cantilever/case", "pull", {"mesh": {"size": side, "set": bar},
+                                       "linear tolerance": {"key": "solution-method.relative-tolerance", "value": tolerance, "tolerance": True, "factor": 1e6}}
+
+
+def flap(side, step, linear, coupling, more=(), leave=()):
+    sizes = {"participants.fluid.mesh-parameters": "{n_side: <n>, n_tip: <n/10>, growth: 1.35, wall_growth: 1.35, wall_cells: 5}",
+             "participants.mover.mesh-parameters": "{n_side: <n>, n_tip: <n/10>, growth: 1.35, wall_growth: 1.35, wall_cells: 5}",
+             "participants.solid.mesh-parameters": "{n_side: <2*n>, n_tip: <n/5>}", **dict(more)}
+    sources = {"mesh": {"size": side, "set": sizes}, "step": {"key": "simulation.time-step", "value": step},
+                                  "linear tolerance": {"key": "participants.fluid.pressure-tolerance", "value": linear, "tolerance": True},
+                                  "coupling tolerance": {"key": "coupling.convergence.relative", "value": coupling, "tolerance": True}}
+    return FLAP, "tip at 0.4 s", {k: v for k, v in sources.items() if k not in leave}
+
+
+SLOW = {"coupling.predictor.order": "0", "coupling.acceleration": "{type: constant, initial-relaxation: 0.1}"}
+CASES = {  # constructed: (what must dominate, the setting)
+    "solid, coarse mesh": ("mesh", beam(2, 0.2, 1e-9)), "solid, long step": ("step", beam(8, 2.0, 1e-9)),
+    "solid, loose solver": ("linear tolerance", pulled(4, 1e-3)), "fluid, coarse mesh": ("mesh", green(16, 0.02, 1e-8)),
+    "coupled, coarse mesh": ("mesh", flap(20, 0.005, 1e-5, 1e-5)), "coupled, long step": ("step", flap(20, 0.08, 1e-5, 1e-5)),
+    "coupled, loose solver": ("linear tolerance", flap(20, 0.005, 0.05, 1e-6, leave=("mesh",))),
+    "coupled, loose coupling": ("coupling tolerance", flap(20, 0.005, 1e-6, 0.9, SLOW))}
+
+
+def dominates(name):
+    wanted, (file, quantity, sources) = CASES[name]
+
+    def measure(job):
+        case = Case(job.root / "configs" / f"{file}.yaml", job.build)
+        case.study["sources"] = sources
+        study = Study(case, job.scratch / "parts" / name.replace(" ", "-").replace(",", ""))
+        _, parts = study.parts(quantity, lambda line: None)
+        worst = max(parts, key=parts.get)
+        return ", ".join(f"{k} {v:.1e}" for k, v in parts.items()), worst == wanted and math.isfinite(parts[worst])
+    return Bar(f"what dominates: {name}", wanted, measure, long=name.startswith("coupled"))
+
+
+# -- the rest -----------------------------------------------------------------------------------------------------------
+def estimated(job):
+    """Runs of all committed studies with a reference: estimated within a factor of 2 of the true error."""
+    inside = total = 0
+    for name in STUDIES:
+        file = job.root / "docs/validation/studies" / name / "report.md"
+        for a, b in re.findall(r"within a factor of 2 on (\d+) of (\d+) runs", file.read_text() if file.exists() else ""):
+            inside, total = inside + int(a), total + int(b)
+    return f"{inside} of {total} runs", total > 0 and inside >= 0.8 * total
+
+
+def test_passes(pattern):
+    def measure(job):
+        passed, total, skipped, output = job.ctest(pattern)
+        looked = "; the page was looked at" if "the browser draws the page from top to bottom" in output else "; no browser is installed"
+        return f"{passed} of {total} tests passed{looked}", total > 0 and passed == total and "looked at" in looked
+    return measure
+
+
+@functools.cache
+def lines(root, commit):
+    """Lines of the four harnesses and of the runner at a commit (the studies by axes, which are new, are not counted)."""
+    names = subprocess.run(["git", "-C", root, "ls-tree", "-r", "--name-only", commit, "--", "scripts", "benchmarks"], capture_output=True, text=True).stdout.split()
+    chosen = [n for n in names if re.match(r"scripts/(accuracy|study|validate|couplet_run/.*|validation/job\.py|couplet_study/variants\.py)$|benchmarks/(?!README)", n)]
+    return sum(subprocess.run(["git", "-C", root, "show", f"{commit}:{n}"], capture_output=True, text=True).stdout.count("\n") for n in chosen)
+
+
+def less_code(job):
+    before, now = lines(str(job.root), "6c5b36a"), lines(str(job.root), "HEAD")
+    return f"{now} lines, {before} before; the runner's locks, records and resuming are new in it", now < before
+
+
+def on_the_plot(name, peers):
+    def measure(job):
+        text = (job.root / "docs/validation/studies" / name / "report.md").read_text()
+        there = [p for p in peers if p in text]
+        return f"{', '.join(there) or 'none'}", len(there) == len(peers)
+    return measure
+
+
+BARS = [
+    *(Bar(f"study committed with pictures: {name}", "runs, pictures, report", committed(name)) for name in STUDIES),
+    *(reached(name, *args) for name in TARGETS for args in (
+        (("error reached at three targets", "0.3 to 1.1 of the target"), error_judge),
+        (("time", "within 30 % of the predicted"), time_judge),
+        (("runs before the final one", "<= 1.5 times its time where that is over 10 s"), before_judge))),
+    *(dominates(name) for name in CASES),
+    Bar("estimated against true error, runs of all studies", "within a factor of 2 on >= 80 %", estimated),
+    Bar("a study killed, started again, started twice; a failed run; the page in a browser", "nothing made twice, the same table, the reason",
+        test_passes("^cli_study_by_axes$")),
+    Bar("peers on the same plot: plate B", "CalculiX, solidDisplacementFoam", on_the_plot("elliptic-plate", ("CalculiX", "solidDisplacementFoam"))),
+    Bar("accuracy, validate, benchmarks by the runner: lines", "fewer than before", less_code),
+]
