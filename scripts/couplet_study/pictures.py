@@ -55,8 +55,8 @@ def error_against_time(title, rows, quantity, clock, file, others=()):
             for x, y, row in xy:
                 size = next((v for a, v in row.point.labels.items() if row.point.size and a not in name and v not in name.split(", ")), "")
                 axes.annotate(size, (x, y), fontsize=6, color=line.get_color(), xytext=(4, 3), textcoords="offset points")
-    for name, xy in others:
-        axes.loglog(*zip(*xy), "k" + MARKS[len(name) % len(MARKS)] + "--", markersize=4, lw=0.8, label=name)
+    for k, (name, xy) in enumerate(others):
+        axes.loglog(*zip(*xy), f"k{MARKS[k]}--", markersize=4, lw=0.8, label=name)
     front = convergence.pareto(points)
     if len(front) > 1:
         axes.step(*zip(*front), where="post", color="0.6", lw=4, alpha=0.4, zorder=0, label="Pareto front")

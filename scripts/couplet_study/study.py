@@ -94,6 +94,9 @@ class Study:
             report.table(("run", "seconds", "error"), [(named[p], p[0], p[1]) for p in front])
         report.picture(pictures.error_against_time(f"{self.title}: {name}", rows, quantity, self.clock, self.out / f"error-{safe}.png", others),
                        f"Error of {name} against time.")
+        if others:
+            report.text("Other programs on the same case, processor seconds of the whole process on one core:")
+            report.table(("program", "seconds", "error"), [(who, *point) for who, points in others for point in points])
         if not self.axes.refining:
             return
         report.picture(pictures.order(f"{self.title}: order of {name}", rows, quantity, self.axes.refining.name, self.out / f"order-{safe}.png"),
