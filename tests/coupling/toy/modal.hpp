@@ -119,8 +119,7 @@ class ModalChannel final : public Participant {
     const double p_in = t < p_.pulse_duration ? p_.inlet_pressure * pulse * pulse : 0;
     std::vector<double> p(next_.size());
     for (int i = 0; i < modes_.modes(); ++i)
-      p[i] = p_in * load(i + 1) -
-             p_.density * added_mass_length(p_, i + 1) * (next_[i] - now_[i]) / step_.dt;
+      p[i] = p_in * load(i + 1) - p_.density * added_mass_length(p_, i + 1) * (next_[i] - now_[i]) / step_.dt;
     return {{"pressure-force", modes_.forces(p)}};
   }
   StepReport accept_step() override {
