@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 LONGEST = 500
-PROGRAMS = ["solid_solver", "fluid_solver", "mesh_mover", "thermocline", "coupler"]
+PROGRAMS = ["solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal", "coupler"]
 # Below which folders of common each folder of common stands.
 ALLOWED = {
     "base": [],
@@ -22,13 +22,14 @@ ALLOWED = {
     "fv": ["mesh", "linalg", "parallel", "config", "log", "base"],
     "time": ["config", "base"],
     "io": ["fv", "mesh", "linalg", "parallel", "config", "log", "base"],
+    "modes": ["io", "mesh", "linalg", "parallel", "log", "base"],
     "coupling": ["io", "mesh", "parallel", "config", "log", "base"],
     "app": ["coupling", "io", "fv", "mesh", "linalg", "parallel", "config", "log", "base"],
 }
 NOT_FOR = {"coupler": ["mesh", "fv"]}
 # Third-party headers by pattern, and the folders that may include them.
 THIRD_PARTY = {
-    r"petsc|slepc": ["common/linalg", "common/parallel", "common/mesh"],
+    r"petsc|slepc": ["common/linalg", "common/parallel", "common/mesh", "common/modes"],
     r"hdf5|H5": ["common/io"],
     r"yaml-cpp/": ["common/config"],
     r"CLI/": ["common/app"],

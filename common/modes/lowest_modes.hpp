@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <span>
+#include <vector>
+
+#include "common/linalg/matrix.hpp"
+
+namespace couplet {
+
+/// SLEPc beside a PETSc that is up already. Made on all ranks of the program (collective); at most one at a
+/// time.
+class SlepcEnvironment final {
+ public:
+  SlepcEnvironment();
+  ~SlepcEnvironment();
+  SlepcEnvironment(const SlepcEnvironment&) = delete;
+  SlepcEnvironment& operator=(const SlepcEnvironment&) = delete;
+};
+
+/// Lowest solutions of K x = lambda M x.
+struct EigenModes {
+  std::vector<double> eigenvalue;          ///< [1/s^2], ascending
+  std::vector<std::vector<double>> shape;  ///< x on the owned rows, x . M x = 1
+  double next = 0;                         ///< an eigenvalue beyond them [1/s^2]
+  double worst_residual = 0;               ///< |K x - lambda M x| / |lambda - shift|
+};
+
+/// The lowest `n` modes by shift-invert Krylov-Schur about `shift` < 0 [slepc], K symmetric and not negative,
+/// M symmetric and not negative (rows of M may be zero: K alone holds them). That none was missed is checked
+/// by the number of negative pivots of K - s M above the last mode (Sylvester's law of inertia), which
+/// repeated eigenvalues make necessary. Throws Error if there are fewer modes than asked for, SolveFailure if
+/// the iteration fails or modes stay hidden. Needs a SlepcEnvironment. Collective over the matrices' ranks.
+EigenModes lowest_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, int n, double shift);
+
+/// Modes whose eigenvalues differ by less than `tolerance` of the larger one, as the last one that is kept
+/// and the first one that is not: a group cut in two answers differently in different directions.
+bool cuts_a_group(const EigenModes& modes, double tolerance);
+
+}  // namespace couplet

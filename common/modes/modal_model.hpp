@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "common/base/types.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// A linear structure reduced to some of its modes, as its surface shows them: all that a coupled run needs
+/// of it. Shapes are mass-normalised (modal mass 1 kg), so u(x, t) = sum q_m(t) phi_m(x) with q in sqrt(kg)
+/// m.
+struct ModalModel {
+  std::vector<Vec3> vertices;  ///< of the surface, undeformed [m]
+  Csr faces;  ///< vertices of each face (3 or 4), turning right-handed about the outward normal
+  std::vector<double> omega;  ///< angular frequency of each mode [rad/s], ascending; 0: a rigid motion
+  /// phi at each vertex and its mean over each face: component c of entry i in mode m stands at
+  /// [(3 i + c) modes + m] [1/sqrt(kg)].
+  std::vector<double> vertex_shape, face_shape;
+  /// Integral of rho phi dV: component c, mode m at [c modes + m] [sqrt(kg)].
+  std::vector<double> participation;
+  double mass = 0;                   ///< of the structure [kg]
+  std::vector<double> face_density;  ///< mass a face stands for, over its area [kg/m^2]
+
+  std::size_t n_modes() const { return omega.size(); }
+};
+
+/// Centre (mean of the vertices) and area vector, outwards, of each face.
+std::vector<Vec3> face_centres(const ModalModel& model);
+std::vector<Vec3> face_areas(const ModalModel& model);
+
+/// Sets face_shape to the mean over the vertices of each face.
+void average_faces(ModalModel& model);
+
+/// The largest displacement of a mode's vertices [1/sqrt(kg)].
+double largest_displacement(const ModalModel& model, std::size_t mode);
+
+/// What is wrong with the sizes and values of a model; empty: nothing.
+std::string problem_of(const ModalModel& model);
+
+}  // namespace couplet

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/build_model.hpp"
+
+#include <cstring>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/mesh/on_root.hpp"
+#include "common/modes/modes_file.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// To be counted up when the same data would give other modes.
+constexpr int model_version = 1;
+
+/// FNV-1a over all that the modes depend on.
+class Key final {
+ public:
+  void add(const void* data, std::size_t bytes) {
+    const auto* at = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < bytes; ++i) hash_ = (hash_ ^ at[i]) * 1099511628211ull;
+  }
+  void add(double value) { add(&value, sizeof value); }
+  void add(const Vec3& value) { add(value.data(), sizeof(double) * 3); }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    add(double(values.size()));
+    add(values.data(), values.size() * sizeof(T));
+  }
+  std::string text() const { return fmt::format("{:016x}", hash_); }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ull;
+};
+
+std::vector<Support> supports(const Midsurface& surface, const Parameters& p) {
+  std::vector<Support> result;
+  for (const std::string& patch : surface.patches) result.push_back(p.boundaries.at(patch).support);
+  return result;
+}
+
+std::vector<bool> open_patches(const Midsurface& surface, const Parameters& p) {
+  std::vector<bool> result;
+  for (const Support support : supports(surface, p)) result.push_back(support == Support::free);
+  return result;
+}
+
+std::string key_of(const PlateModel& plate, const Parameters& p) {
+  const Midsurface& s = plate.surface();
+  Key key;
+  key.add(double(model_version));
+  key.add(double(p.n_modes));
+  for (const Vec2& x : s.points) key.add(x.x()), key.add(x.y());
+  key.add(s.cells.offset);
+  key.add(s.cells.index);
+  for (Index c = 0; c < s.cells.size(); ++c) {
+    const PlateCell& cell = plate.cell(c);
+    for (const double v : {cell.thickness, cell.density, cell.youngs_modulus, cell.poissons_ratio})
+      key.add(v);
+  }
+  const std::vector<Support> held = supports(s, p);
+  for (const auto& e : s.edges)
+    key.add(double(e.from)), key.add(double(e.to)), key.add(double(held[e.patch]));
+  for (const Vec3& v : {p.placement.origin, p.placement.x, p.placement.y}) key.add(v);
+  key.add(double(p.wetted));
+  return key.text();
+}
+
+std::vector<std::string> quoted(const std::vector<std::string>& names) {
+  std::vector<std::string> result;
+  for (const std::string& name : names) result.push_back("'" + name + "'");
+  return result;
+}
+
+void check_names(const Midsurface& s, const Parameters& p, const std::string& name) {
+  for (const auto& [zone, values] : p.zones)
+    if (std::ranges::find(s.zones, zone) == s.zones.end())
+      throw Error("participants.{}.zones: the mesh has no zone '{}'; it has {}.", name, zone,
+                  join(quoted(s.zones)));
+  for (const auto& [patch, values] : p.boundaries)
+    if (std::ranges::find(s.patches, patch) == s.patches.end())
+      throw Error("participants.{}.boundaries: the mesh has no patch '{}'; it has {}.", name, patch,
+                  join(quoted(s.patches)));
+  for (const std::string& patch : s.patches)
+    if (!p.boundaries.contains(patch))
+      throw Error(
+          "participants.{}.boundaries: patch '{}' has no entry; give it type: free, clamped, "
+          "simply-supported or "
+          "symmetry.",
+          name, patch);
+}
+
+RawMesh read(const Parameters& p, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / *p.mesh;
+  if (!std::filesystem::is_regular_file(file))
+    throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
+                file.string());
+  if (file.extension() != ".msh" && file.extension() != ".geo")
+    throw Error("The mesh file '{}' is neither .msh nor .geo.", file.string());
+  RawMesh raw = read_msh(file.extension() == ".geo" ? mesh_geo(file, 2, p.mesh_parameters) : file);
+  if (raw.dim != 2 || raw.cell_type.empty())
+    throw Error(
+        "The mesh '{}' is not a plane one. The mid-surface of a plate is a 2-D mesh with its surface in a "
+        "physical "
+        "group.",
+        file.string());
+  return raw;
+}
+
+void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const PlateContext& context) {
+  const std::filesystem::path file = context.output_folder / "modes.h5";
+  const std::string key = key_of(plate, p);
+  if (!context.output_folder.empty() && key_of_modes(file) == key) {
+    built.model = read_modes(file);
+    built.reused = true;
+    return;
+  }
+  const EigenModes modes = plate.modes(p.n_modes);
+  if (cuts_a_group(modes, 1e-3))
+    built.note = fmt::format(
+        "modes {} and {} have the same frequency, and only the first is kept: the plate answers differently "
+        "in "
+        "directions that should be alike. Keep one more or one less.",
+        p.n_modes, p.n_modes + 1);
+  built.model = skin_of(plate, modes, p.placement, p.wetted, open_patches(plate.surface(), p));
+  // Rigid motions come with the rounding of the stiffness: they are none.
+  for (double& omega : built.model.omega)
+    if (omega * omega < 1e-6 * plate.frequency_scale()) omega = 0;
+  if (!context.output_folder.empty()) write_modes(file, built.model, key);
+}
+
+}  // namespace
+
+PlateModel plate_of(const RawMesh& raw, const Parameters& p, const std::string& name) {
+  Midsurface surface = midsurface_of(raw);
+  check_names(surface, p, name);
+  std::vector<PlateCell> of_zone;
+  for (const std::string& zone : surface.zones) {
+    const auto found = p.zones.find(zone);
+    const Zone other = found == p.zones.end() ? Zone{} : found->second;
+    of_zone.push_back({other.thickness.value_or(p.thickness), other.density.value_or(p.material.density),
+                       other.youngs_modulus.value_or(p.material.youngs_modulus), p.material.poissons_ratio});
+  }
+  std::vector<PlateCell> cells;
+  for (const int zone : surface.zone) cells.push_back(of_zone[zone]);
+  const std::vector<Support> support = supports(surface, p);
+  return PlateModel(std::move(surface), std::move(cells), support);
+}
+
+Built build_model(const Parameters& p, const PlateContext& context, const RawMesh* raw) {
+  Built built;
+  const SlepcEnvironment slepc;
+  on_root(context.comm, [&] {
+    if (p.modes_file) {
+      built.model = read_modes(context.case_folder / *p.modes_file);
+      return;
+    }
+    auto plate =
+        std::make_unique<PlateModel>(plate_of(raw ? *raw : read(p, context.case_folder), p, context.name));
+    add_modes(built, *plate, p, context);
+    if (p.analysis == Parameters::Analysis::static_) built.plate = std::move(plate);
+  });
+  return built;
+}
+
+double seat_stiffness(const Parameters& p) {
+  return p.material.youngs_modulus / (3 * (1 - 2 * p.material.poissons_ratio)) / p.thickness;
+}
+
+}  // namespace couplet::plate

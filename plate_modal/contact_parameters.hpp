@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/config/section.hpp"
+
+namespace couplet::plate {
+
+enum class ContactRule {
+  conserving,  ///< force of a step = change of the penalty's energy over that of the gap [gonzalez2000]
+  midpoint,    ///< force of the penetration where the scheme asks for equilibrium, thesis (4.32)
+};
+
+/// A rigid seat without friction, thesis (4.32)-(4.33).
+struct ContactParameters {
+  config::ExpressionText height;              ///< of the seat along `direction` [m], of x, y, z
+  config::ExpressionText where{.text = "1"};  ///< of x, y, z: there is a seat where it is above 0
+  std::vector<double> direction;              ///< from the seat to the structure; empty: the plate's normal
+  double scale = 1;                           ///< f_SI of (4.33)
+  std::optional<double> stiffness;            ///< kappa per area [N/m^3]; absent: (4.33)
+  ContactRule rule = ContactRule::conserving;
+};
+
+void declare(config::Section& section, ContactParameters& parameters);
+
+}  // namespace couplet::plate

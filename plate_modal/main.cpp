@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/program.hpp"
+#include "plate_modal/structure.hpp"
+
+int main(int argc, char** argv) {
+  couplet::plate::Parameters parameters;
+  const couplet::Program program{
+      .name = "plate_modal",
+      .description = "a thin plate, or any linear structure, by superposition of its modes",
+      .declare = [&](couplet::config::Section& s) { couplet::plate::declare(s, parameters); },
+      .make =
+          [&](const couplet::ParticipantContext& c) {
+            return std::make_unique<couplet::plate::Structure>(
+                parameters,
+                couplet::plate::PlateContext{c.comm, c.name, c.case_folder, c.output_folder, c.restart_time});
+          }};
+  return couplet::run_program(argc, argv, program);
+}

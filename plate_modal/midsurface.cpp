@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/midsurface.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "common/base/error.hpp"
+
+namespace couplet::plate {
+namespace {
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// Twice the area of the smallest corner triangle, positive if the cell turns counter-clockwise and bulges
+/// everywhere.
+double least_corner(const Midsurface& s, std::span<const Index> cell) {
+  double least = std::numeric_limits<double>::infinity();
+  const std::size_t n = cell.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 &a = s.points[cell[i]], &b = s.points[cell[(i + 1) % n]], &c = s.points[cell[(i + 2) % n]];
+    least = std::min(least, cross(b - a, c - a));
+  }
+  return least;
+}
+
+void add_cells(const RawMesh& raw, Midsurface& s) {
+  std::vector<Index> number(raw.points.size(), -1);
+  for (Index c = 0; c < raw.cell_points.size(); ++c)
+    for (const Index p : raw.cell_points[c]) number[p] = 0;
+  for (std::size_t p = 0; p < raw.points.size(); ++p) {
+    if (number[p] < 0) continue;
+    number[p] = static_cast<Index>(s.points.size());
+    s.points.emplace_back(raw.points[p].x(), raw.points[p].y());
+  }
+  for (Index c = 0; c < raw.cell_points.size(); ++c) {
+    std::vector<Index> cell;
+    for (const Index p : raw.cell_points[c]) cell.push_back(number[p]);
+    if (least_corner(s, cell) <= 0) std::ranges::reverse(cell);
+    if (!(least_corner(s, cell) > 0)) {
+      const Vec2& x = s.points[cell.front()];
+      throw Error(
+          "The cell {} of the mid-surface at ({:.6g}, {:.6g}) has no area or a corner that turns inwards.",
+          c + 1, x.x(), x.y());
+    }
+    s.cells.push_row(cell);
+  }
+  s.zone = raw.cell_zone;
+  s.zone.resize(s.cells.size(), 0);
+  s.zones = raw.zones;
+  if (s.zones.empty()) s.zones = {"plate"};
+}
+
+std::map<std::pair<Index, Index>, int> patch_of_edges(const RawMesh& raw) {
+  std::vector<Index> number(raw.points.size(), -1);
+  Index next = 0;
+  for (Index c = 0; c < raw.cell_points.size(); ++c)
+    for (const Index p : raw.cell_points[c]) number[p] = 0;
+  for (Index& n : number)
+    if (n == 0) n = next++;
+  std::map<std::pair<Index, Index>, int> patch;
+  for (Index e = 0; e < raw.boundary_points.size(); ++e) {
+    const auto ends = raw.boundary_points[e];
+    patch[std::minmax(number[ends[0]], number[ends[1]])] = raw.boundary_patch[e];
+  }
+  return patch;
+}
+
+}  // namespace
+
+Midsurface midsurface_of(const RawMesh& raw) {
+  Midsurface s;
+  s.patches = raw.patches;
+  add_cells(raw, s);
+  std::map<std::pair<Index, Index>, int> uses;
+  for (Index c = 0; c < s.cells.size(); ++c)
+    for (std::size_t i = 0, n = s.cells[c].size(); i < n; ++i)
+      ++uses[std::minmax(s.cells[c][i], s.cells[c][(i + 1) % n])];
+  const auto patches = patch_of_edges(raw);
+  for (Index c = 0; c < s.cells.size(); ++c)
+    for (std::size_t i = 0, n = s.cells[c].size(); i < n; ++i) {
+      const Index from = s.cells[c][i], to = s.cells[c][(i + 1) % n];
+      const std::pair<Index, Index> edge = std::minmax(from, to);
+      const Vec2 middle = 0.5 * (s.points[from] + s.points[to]);
+      if (uses[edge] > 2)
+        throw Error("{} cells of the mid-surface meet at the edge at ({:.6g}, {:.6g}); it must be one sheet.",
+                    uses[edge], middle.x(), middle.y());
+      if (uses[edge] == 2) continue;
+      const auto found = patches.find(edge);
+      if (found == patches.end())
+        throw Error(
+            "The edge of the mid-surface at ({:.6g}, {:.6g}) belongs to no patch. Put the whole outline into "
+            "physical "
+            "curves.",
+            middle.x(), middle.y());
+      s.edges.push_back({from, to, c, found->second});
+    }
+  return s;
+}
+
+}  // namespace couplet::plate

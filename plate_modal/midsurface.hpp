@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/mesh/load.hpp"
+
+namespace couplet::plate {
+
+using Vec2 = Eigen::Vector2d;
+
+/// The mid-surface of a plate, whole, on one rank: a plane mesh of triangles and quadrilaterals.
+struct Midsurface {
+  std::vector<Vec2> points;  ///< [m]
+  Csr cells;                 ///< points of each cell, counter-clockwise
+  std::vector<int> zone;     ///< per cell, index into `zones`
+  std::vector<std::string> zones;
+  struct Edge {
+    Index from, to;  ///< counter-clockwise about the plate: the outside lies to the right
+    Index cell;
+    int patch;  ///< index into `patches`
+  };
+  std::vector<Edge> edges;  ///< the whole outline, each once
+  std::vector<std::string> patches;
+};
+
+/// Turns cells counter-clockwise, drops points that no cell uses and finds the patch of every edge of the
+/// outline. Throws Error naming the place of an edge without a patch or of a cell without area.
+Midsurface midsurface_of(const RawMesh& raw);
+
+}  // namespace couplet::plate

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/fv/expression.hpp"
+
+namespace couplet::plate {
+namespace {
+
+void declare_body(config::Section& s, Parameters& p) {
+  s.value("mesh", p.mesh)
+      .doc("mid-surface: 2-D mesh of triangles or quadrilaterals (.msh, or .geo to be meshed by gmsh)");
+  s.value("mesh-parameters", p.mesh_parameters)
+      .doc("numbers for names that the .geo defines by DefineConstant");
+  s.section(
+      "material",
+      [&](config::Section& m) {
+        m.value("density", p.material.density).unit("kg/m^3").not_negative().doc("density");
+        m.value("youngs-modulus", p.material.youngs_modulus).unit("Pa").not_negative().doc("Young's modulus");
+        m.value("poissons-ratio", p.material.poissons_ratio).range(-0.99, 0.499).doc("Poisson's ratio");
+      },
+      "isotropic material of the plate; needed with 'mesh'");
+  s.value("thickness", p.thickness).unit("m").not_negative().doc("of the plate; needed with 'mesh'");
+  s.map<Zone>(
+      "zones", p.zones,
+      [](config::Section& z, Zone& v) {
+        z.value("thickness", v.thickness).unit("m").positive().doc("in place of the plate's");
+        z.value("density", v.density).unit("kg/m^3").positive().doc("in place of the plate's");
+        z.value("youngs-modulus", v.youngs_modulus).unit("Pa").positive().doc("in place of the plate's");
+      },
+      "zone", "parts of the mesh (physical surfaces) that differ from the rest");
+  s.map<Edge>(
+      "boundaries", p.boundaries,
+      [](config::Section& b, Edge& v) {
+        b.choice("type", v.support,
+                 {{"free", Support::free},
+                  {"clamped", Support::clamped},
+                  {"simply-supported", Support::simply_supported},
+                  {"symmetry", Support::symmetry}})
+            .required()
+            .doc("how the edge is held; symmetry: no slope across it");
+      },
+      "patch", "one entry for each part of the outline; needed with 'mesh'");
+}
+
+void declare_place(config::Section& s, Parameters& p) {
+  s.section(
+      "placement",
+      [&](config::Section& q) {
+        q.value("origin", p.placement.origin).doc("where the origin of the mesh lies in space [m]");
+        q.value("x-axis", p.placement.x).doc("direction of the mesh's x in space");
+        q.value("y-axis", p.placement.y).doc("direction of the mesh's y; the plate's normal is x cross y");
+        q.check(
+            [&]() -> std::string {
+              const Vec3 &x = p.placement.x, &y = p.placement.y;
+              const bool sound =
+                  std::abs(x.norm() - 1) < 1e-9 && std::abs(y.norm() - 1) < 1e-9 && std::abs(x.dot(y)) < 1e-9;
+              return sound ? "" : "x-axis and y-axis must be of length 1 and at right angles";
+            },
+            "x-axis");
+      },
+      "where the mid-surface lies in space");
+  s.choice("wetted", p.wetted, {{"both", Wetted::both}, {"upper", Wetted::upper}, {"lower", Wetted::lower}})
+      .doc("sides that are the interface; upper: where the normal points; both: with the free edges' rims");
+  s.value("surface-density", p.surface_density)
+      .doc("also give the mass behind each face [kg/m^2], the impedance for a Robin interface");
+}
+
+void declare_modes(config::Section& s, Parameters& p) {
+  s.section(
+      "modes",
+      [&](config::Section& m) {
+        m.value("number", p.n_modes).range(1, 10000).doc("of modes kept, the lowest first");
+        m.value("file", p.modes_file)
+            .doc("modes that another program wrote (docs/formats.md), in place of 'mesh'");
+      },
+      "modes of the structure; those of a mesh are kept in modes.h5 of the output folder and used again "
+      "while "
+      "mesh and data are the same");
+  s.section(
+      "time-scheme", [&](config::Section& t) { couplet::declare(t, p.time_scheme); }, "integration in time");
+  s.optional_section<Damping>(
+      "damping", p.damping,
+      [](config::Section& d, Damping& v) {
+        d.value("ratio", v.ratio).range(0, 1).doc("of critical damping, the same in every mode");
+        d.value("mass", v.mass).unit("1/s").not_negative().doc("Rayleigh coefficient of the mass");
+        d.value("stiffness", v.stiffness)
+            .unit("s")
+            .not_negative()
+            .doc("Rayleigh coefficient of the stiffness");
+      },
+      "modal damping");
+}
+
+void declare_loads(config::Section& s, Parameters& p) {
+  s.value("gravity", p.gravity).unit("m/s^2").size(3).doc("acceleration of gravity in space, three numbers");
+  s.optional_section<Load>(
+      "load", p.load,
+      [](config::Section& l, Load& v) {
+        l.value("upper-pressure", v.upper).unit("Pa").doc("on the side the normal points to, of x, y, z, t");
+        l.value("lower-pressure", v.lower).unit("Pa").doc("on the other side, of x, y, z, t");
+        l.check([&] { return v.upper ? problem_of(*v.upper) : ""; }, "upper-pressure");
+        l.check([&] { return v.lower ? problem_of(*v.lower) : ""; }, "lower-pressure");
+      },
+      "pressures that push into the sides, beside those of a fluid; a table of a file: 'table(t, "
+      "\"p.csv\")'");
+  s.optional_section<ContactParameters>(
+      "contact", p.contact, [](config::Section& c, ContactParameters& v) { declare(c, v); },
+      "a rigid seat under the structure");
+}
+
+void check_together(config::Section& s, Parameters& p) {
+  using Analysis = Parameters::Analysis;
+  s.check(
+      [&] {
+        return p.mesh.has_value() == p.modes_file.has_value()
+                   ? "give either 'mesh' (of the mid-surface) or 'modes.file' (modes of another program)"
+                   : "";
+      },
+      "mesh");
+  const auto needed = [&](const char* key, auto&& is_missing) {
+    s.check(
+        [&p, key, is_missing] {
+          return p.mesh && is_missing() ? fmt::format("a plate needs '{}' above 0", key) : "";
+        },
+        p.mesh ? "mesh" : "modes");
+  };
+  needed("thickness", [&p] { return !(p.thickness > 0); });
+  needed("material.density", [&p] { return !(p.material.density > 0); });
+  needed("material.youngs-modulus", [&p] { return !(p.material.youngs_modulus > 0); });
+  s.check(
+      [&] {
+        return p.contact && p.analysis != Analysis::dynamic
+                   ? "contact is part of a dynamic analysis; remove it"
+                   : "";
+      },
+      "contact");
+  s.check(
+      [&] {
+        return p.contact && p.modes_file && !p.contact->stiffness
+                   ? "with 'modes.file' the material is not known: give 'stiffness'"
+                   : "";
+      },
+      "contact");
+  s.check(
+      [&] {
+        return p.contact && p.contact->rule == ContactRule::conserving &&
+                       p.time_scheme.type != TimeScheme::trapezoidal
+                   ? "'rule: conserving' goes with the trapezoidal time scheme; take 'rule: midpoint'"
+                   : "";
+      },
+      "contact");
+  s.check(
+      [&] {
+        return p.damping && p.analysis != Analysis::dynamic
+                   ? "damping has no effect in this analysis; remove it"
+                   : "";
+      },
+      "damping");
+  s.check(
+      [&] {
+        return std::ssize(p.initial_amplitudes) > p.n_modes
+                   ? fmt::format("{} amplitudes are given for {} modes", p.initial_amplitudes.size(),
+                                 p.n_modes)
+                   : "";
+      },
+      "initial-amplitudes");
+}
+
+}  // namespace
+
+void declare(config::Section& s, ContactParameters& c) {
+  s.value("height", c.height)
+      .unit("m")
+      .doc("of the seat along 'direction', of x, y, z of the structure at rest");
+  s.value("where", c.where).doc("there is a seat where this expression of x, y, z is above 0");
+  s.value("direction", c.direction).size(3).doc("from the seat to the structure; absent: the plate's normal");
+  s.value("scale", c.scale).positive().doc("f_SI of thesis (4.33): kappa = f_SI K S / h");
+  s.value("stiffness", c.stiffness)
+      .unit("N/m^3")
+      .positive()
+      .doc("force per area and penetration, in place of (4.33)");
+  s.choice("rule", c.rule, {{"conserving", ContactRule::conserving}, {"midpoint", ContactRule::midpoint}})
+      .doc(
+          "conserving: a bounce keeps the energy to rounding; midpoint: the force where the scheme has "
+          "equilibrium");
+  s.check([&] { return problem_of(c.height); }, "height");
+  s.check([&] { return problem_of(c.where); }, "where");
+  s.check(
+      [&] {
+        const auto& d = c.direction;
+        return !d.empty() && std::abs(std::hypot(d[0], d[1], d[2]) - 1) > 1e-9 ? "it must have length 1" : "";
+      },
+      "direction");
+}
+
+void declare(config::Section& s, Parameters& p) {
+  using Analysis = Parameters::Analysis;
+  s.choice("analysis", p.analysis,
+           {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}, {"modal", Analysis::modal}})
+      .doc("static: deflection of the plate without inertia; modal: frequencies and shapes alone");
+  declare_body(s, p);
+  declare_place(s, p);
+  declare_modes(s, p);
+  declare_loads(s, p);
+  s.value("initial-velocity", p.initial_velocity).doc("of the whole structure at the start [m/s]");
+  s.value("initial-amplitudes", p.initial_amplitudes)
+      .doc("of the modes at the start: the displacement where each is largest [m]");
+  s.map<Watched>(
+      "probes", p.probes,
+      [](config::Section& q, Watched& v) {
+        q.value("point", v.point).required().doc("place on the undeformed surface [m]");
+      },
+      "probe", "places of the surface whose displacement is written to probes.csv at each step");
+  s.section(
+      "output",
+      [&](config::Section& o) {
+        o.value("modes", p.output.modes).doc("write the shapes of the modes, one a time of a series");
+        o.value("fields", p.output.fields).doc("write the moving surface at the output interval");
+      },
+      "what is written");
+  check_together(s, p);
+}
+
+}  // namespace couplet::plate

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/plate_model.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/linalg/linear_solver.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// Directions in which supports hold the slope of a point; those of two edges that turn by less than 25
+/// degrees are one direction (a curved edge), more is a corner: tan^2(25 deg / 2) = 0.05.
+constexpr double corner_share = 0.05;
+
+Triangle corners(const Midsurface& s, const std::array<Index, 3>& p) {
+  return {s.points[p[0]], s.points[p[1]], s.points[p[2]]};
+}
+
+/// Calls f(points, triangle, share, cell) for every piece of every cell.
+template <class F>
+void for_pieces(const Midsurface& s, F&& f) {
+  for (Index c = 0; c < s.cells.size(); ++c) {
+    const auto cell = s.cells[c];
+    for (const Piece& piece : pieces_of(cell.size())) {
+      const std::array<Index, 3> points{cell[piece.corner[0]], cell[piece.corner[1]], cell[piece.corner[2]]};
+      f(points, corners(s, points), piece.share, c);
+    }
+  }
+}
+
+}  // namespace
+
+PlateModel::PlateModel(Midsurface surface, std::vector<PlateCell> cells, const std::vector<Support>& support)
+    : surface_(std::move(surface)), cells_(std::move(cells)) {
+  support_points(support);
+  assemble();
+}
+
+void PlateModel::support_points(const std::vector<Support>& support) {
+  const std::size_t n = surface_.points.size();
+  axis_.assign(n, Vec2::UnitX());
+  fixed_.assign(3 * n, false);
+  std::vector<Eigen::Matrix2d> held(n, Eigen::Matrix2d::Zero());
+  for (const auto& edge : surface_.edges) {
+    const Support kind = support[edge.patch];
+    if (kind == Support::free) continue;
+    const Vec2 t = (surface_.points[edge.to] - surface_.points[edge.from]).normalized(),
+               normal(t.y(), -t.x());
+    for (const Index p : {edge.from, edge.to}) {
+      if (kind != Support::symmetry) fixed_[3 * std::size_t(p)] = true;
+      // w = 0 along an edge leaves no slope along it; symmetry leaves none across it.
+      if (kind == Support::simply_supported) held[p] += t * t.transpose();
+      if (kind == Support::symmetry) held[p] += normal * normal.transpose();
+      if (kind == Support::clamped) held[p] += Eigen::Matrix2d::Identity();
+    }
+  }
+  for (std::size_t p = 0; p < n; ++p) {
+    if (held[p].isZero()) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> directions(held[p]);
+    axis_[p] = directions.eigenvectors().col(1);
+    fixed_[3 * p + 1] = true;
+    fixed_[3 * p + 2] = directions.eigenvalues()[0] > corner_share * directions.eigenvalues()[1];
+  }
+}
+
+TriangleMatrix PlateModel::turned(const TriangleMatrix& matrix, const std::array<Index, 3>& points) const {
+  TriangleMatrix turn = TriangleMatrix::Zero();
+  for (int i = 0; i < 3; ++i) {
+    const Vec2& a = axis_[points[i]];
+    turn(3 * i, 3 * i) = 1;
+    turn.block<2, 2>(3 * i + 1, 3 * i + 1) << a.x(), -a.y(), a.y(), a.x();
+  }
+  return turn.transpose() * matrix * turn;
+}
+
+void PlateModel::assemble() {
+  std::vector<GlobalIndex> row, column;
+  std::vector<double> k_values, m_values;
+  double scale = 0;
+  for_pieces(surface_, [&](const std::array<Index, 3>& points, const Triangle& x, double share, Index c) {
+    const TriangleMatrix k =
+        share * turned(bending_stiffness(x, cells_[c].rigidity(), cells_[c].poissons_ratio), points);
+    const TriangleMatrix m = share * turned(inertia(x, cells_[c].surface_density()), points);
+    scale = std::max(scale, k.diagonal().maxCoeff());
+    for (int i = 0; i < 9; ++i)
+      for (int j = 0; j < 9; ++j) {
+        const std::size_t r = 3 * std::size_t(points[i / 3]) + i % 3,
+                          s = 3 * std::size_t(points[j / 3]) + j % 3;
+        if (fixed_[r] || fixed_[s]) continue;
+        row.push_back(static_cast<GlobalIndex>(r));
+        column.push_back(static_cast<GlobalIndex>(s));
+        k_values.push_back(k(i, j));
+        m_values.push_back(m(i, j));
+      }
+  });
+  for (std::size_t r = 0; r < fixed_.size(); ++r) {
+    if (!fixed_[r]) continue;
+    row.push_back(static_cast<GlobalIndex>(r));
+    column.push_back(static_cast<GlobalIndex>(r));
+    k_values.push_back(scale);
+    m_values.push_back(0);
+  }
+  const auto n = static_cast<GlobalIndex>(n_unknowns());
+  stiffness_ = std::make_unique<SparseMatrix>(MPI_COMM_SELF, n, row, column);
+  mass_ = std::make_unique<SparseMatrix>(MPI_COMM_SELF, n, std::move(row), std::move(column));
+  stiffness_->fill(k_values);
+  mass_->fill(m_values);
+}
+
+std::vector<double> PlateModel::to_points(std::span<const double> unknowns) const {
+  std::vector<double> points(unknowns.begin(), unknowns.end());
+  for (std::size_t p = 0; p < axis_.size(); ++p) {
+    const double a = unknowns[3 * p + 1], b = unknowns[3 * p + 2];
+    points[3 * p + 1] = axis_[p].x() * a - axis_[p].y() * b;
+    points[3 * p + 2] = axis_[p].y() * a + axis_[p].x() * b;
+  }
+  return points;
+}
+
+std::vector<double> PlateModel::to_unknowns(std::span<const double> points) const {
+  std::vector<double> unknowns(points.begin(), points.end());
+  for (std::size_t p = 0; p < axis_.size(); ++p) {
+    const double x = points[3 * p + 1], y = points[3 * p + 2];
+    unknowns[3 * p + 1] = axis_[p].x() * x + axis_[p].y() * y;
+    unknowns[3 * p + 2] = -axis_[p].y() * x + axis_[p].x() * y;
+  }
+  return unknowns;
+}
+
+std::vector<double> PlateModel::load_of(std::span<const double> pressure) const {
+  std::vector<double> points(n_unknowns(), 0);
+  for_pieces(surface_, [&](const std::array<Index, 3>& p, const Triangle& x, double share, Index c) {
+    const TriangleVector load = share * pressure[c] * area(x) * mean_deflection(x);
+    for (int i = 0; i < 9; ++i) points[3 * std::size_t(p[i / 3]) + i % 3] += load[i];
+  });
+  std::vector<double> rhs = to_unknowns(points);
+  for (std::size_t r = 0; r < rhs.size(); ++r)
+    if (fixed_[r]) rhs[r] = 0;
+  return rhs;
+}
+
+std::vector<double> PlateModel::cell_means(std::span<const double> points) const {
+  std::vector<double> means(surface_.cells.size(), 0), areas = cell_areas();
+  for_pieces(surface_, [&](const std::array<Index, 3>& p, const Triangle& x, double share, Index c) {
+    const TriangleVector weight = mean_deflection(x);
+    for (int i = 0; i < 9; ++i)
+      means[c] += share * area(x) / areas[c] * weight[i] * points[3 * std::size_t(p[i / 3]) + i % 3];
+  });
+  return means;
+}
+
+std::vector<double> PlateModel::cell_areas() const {
+  std::vector<double> areas(surface_.cells.size(), 0);
+  for_pieces(surface_, [&](const std::array<Index, 3>&, const Triangle& x, double share, Index c) {
+    areas[c] += share * area(x);
+  });
+  return areas;
+}
+
+double PlateModel::frequency_scale() const {
+  Vec2 low = surface_.points.front(), high = low;
+  for (const Vec2& x : surface_.points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  const double length = (high - low).norm();
+  double least = std::numeric_limits<double>::infinity();
+  for (const PlateCell& c : cells_) least = std::min(least, c.rigidity() / c.surface_density());
+  return least / (length * length * length * length);
+}
+
+EigenModes PlateModel::modes(int n) const {
+  EigenModes modes = lowest_modes(*stiffness_, *mass_, n, -frequency_scale());
+  for (std::vector<double>& shape : modes.shape) {
+    // One of the two signs: the first of the largest deflections is positive.
+    double largest = 0;
+    for (std::size_t r = 0; r < shape.size(); r += 3) largest = std::max(largest, std::abs(shape[r]));
+    for (std::size_t r = 0; r < shape.size(); r += 3) {
+      if (std::abs(shape[r]) < 0.999 * largest) continue;
+      if (shape[r] < 0)
+        for (double& value : shape) value = -value;
+      break;
+    }
+  }
+  return modes;
+}
+
+std::vector<double> PlateModel::deflect(std::span<const double> load) const {
+  LinearSolver solver("deflection", *stiffness_, {.method = LinearMethod::direct_symmetric});
+  std::vector<double> u(load.size(), 0);
+  solver.solve(load, u);
+  return u;
+}
+
+}  // namespace couplet::plate

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/results.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+#include "common/mesh/on_root.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// The point of a triangle that is nearest to p, as weights of its corners [ericson2005].
+std::array<double, 3> nearest_in_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap), d3 = ab.dot(bp), d4 = ac.dot(bp), d5 = ab.dot(cp),
+               d6 = ac.dot(cp);
+  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
+  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
+  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
+  const double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {0, 1 - w, w};
+  }
+  const double sum = va + vb + vc;
+  return {va / sum, vb / sum, vc / sum};
+}
+
+/// The whole surface on rank 0 as a mesh to be written; the other ranks hold nothing of it.
+Mesh surface_mesh(MPI_Comm comm, const ModalModel& model) {
+  Mesh mesh;
+  mesh.comm = comm;
+  mesh.dim = 3;
+  mesh.cells = IndexMap(comm, model.faces.size(), {}, {});
+  mesh.points = IndexMap(comm, Index(model.vertices.size()), {}, {});
+  mesh.cell_points = model.faces;
+  mesh.reference_points = model.vertices;
+  for (Index f = 0; f < model.faces.size(); ++f)
+    mesh.cell_type.push_back(model.faces[f].size() == 3 ? CellType::triangle : CellType::quadrilateral);
+  mesh.cell_id.resize(model.faces.size());
+  mesh.point_id.resize(model.vertices.size());
+  std::iota(mesh.cell_id.begin(), mesh.cell_id.end(), 0);
+  std::iota(mesh.point_id.begin(), mesh.point_id.end(), 0);
+  return mesh;
+}
+
+std::vector<std::string> numbered(const std::string& before, int n, const std::string& after) {
+  std::vector<std::string> result;
+  for (int i = 1; i <= n; ++i) result.push_back(fmt::format("{}{}{}", before, i, after));
+  return result;
+}
+
+}  // namespace
+
+SurfacePlace nearest_place(const ModalModel& model, const Vec3& point) {
+  SurfacePlace best;
+  best.distance = std::numeric_limits<double>::infinity();
+  for (Index f = 0; f < model.faces.size(); ++f) {
+    const auto corners = model.faces[f];
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+      const std::array<Index, 3> v{corners[0], corners[i], corners[i + 1]};
+      const auto w =
+          nearest_in_triangle(model.vertices[v[0]], model.vertices[v[1]], model.vertices[v[2]], point);
+      const Vec3 place =
+          w[0] * model.vertices[v[0]] + w[1] * model.vertices[v[1]] + w[2] * model.vertices[v[2]];
+      const double distance = (place - point).norm();
+      if (distance >= best.distance) continue;
+      best = {{v.begin(), v.end()}, {w.begin(), w.end()}, distance};
+    }
+  }
+  return best;
+}
+
+PlateResults::PlateResults(const Structure& structure)
+    : structure_(structure),
+      active_(!structure.context().output_folder.empty()),
+      root_(comm_rank(structure.context().comm) == 0),
+      surface_(surface_mesh(structure.context().comm, structure.model())) {
+  const ModalModel& model = structure.model();
+  on_root(structure.context().comm, [&] {
+    double size = 0;
+    for (const Vec3& x : model.vertices) size = std::max(size, (x - model.vertices.front()).norm());
+    for (const auto& [name, probe] : structure.parameters().probes) {
+      probes_.push_back(nearest_place(model, probe.point));
+      if (probes_.back().distance > 0.05 * size)
+        throw Error("probes.{}: ({:g}, {:g}, {:g}) is {:.3g} m away from the surface of the structure.", name,
+                    probe.point.x(), probe.point.y(), probe.point.z(), probes_.back().distance);
+    }
+  });
+}
+
+Series& PlateResults::series(std::optional<Series>& one, const char* file,
+                             const std::vector<std::string>& columns) {
+  if (!one)
+    one.emplace(structure_.context().output_folder / file, columns, structure_.context().restart_time);
+  return *one;
+}
+
+void PlateResults::write_start() {
+  if (root_) {
+    const auto& omega = structure_.model().omega;
+    std::string list;
+    for (std::size_t m = 0; m < std::min<std::size_t>(8, omega.size()); ++m)
+      list += fmt::format(" {:.5g}", omega[m] / (2 * std::numbers::pi));
+    log::info("{} modes, Hz:{}{}", omega.size(), list, omega.size() > 8 ? " ..." : "");
+  }
+  if (!active_) return;
+  if (root_) write_frequencies();
+  if (structure_.parameters().output.modes || structure_.parameters().analysis == Parameters::Analysis::modal)
+    write_shapes();
+}
+
+void PlateResults::write_frequencies() {
+  const ModalModel& model = structure_.model();
+  Series file(structure_.context().output_folder / "frequencies.csv",
+              {"mode", "frequency [Hz]", "effective mass x [kg]", "effective mass y [kg]",
+               "effective mass z [kg]", "largest displacement [1/sqrt(kg)]"});
+  const std::size_t n = model.n_modes();
+  for (std::size_t m = 0; m < n; ++m) {
+    std::vector<double> row{double(m + 1), model.omega[m] / (2 * std::numbers::pi)};
+    for (int c = 0; c < 3; ++c) row.push_back(std::pow(model.participation[std::size_t(c) * n + m], 2));
+    row.push_back(largest_displacement(model, m));
+    file.row(row);
+  }
+}
+
+void PlateResults::write_shapes() {
+  const ModalModel& model = structure_.model();
+  const std::size_t n = structure_.share().n_modes();
+  FieldWriter writer(surface_, structure_.context().output_folder, "modes-shapes", false,
+                     std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t m = 0; m < n; ++m) {
+    std::vector<double> shape(model.vertex_shape.size() / n);
+    const double largest = root_ ? largest_displacement(model, m) : 1;
+    for (std::size_t i = 0; i < shape.size(); ++i) shape[i] = model.vertex_shape[i * n + m] / largest;
+    writer.write(double(m + 1), {}, {{"mode", "", OutputField::Place::points, 3, shape}});
+  }
+}
+
+void PlateResults::write_fields(double time) {
+  if (!active_ || !structure_.parameters().output.fields ||
+      structure_.parameters().analysis == Parameters::Analysis::modal)
+    return;
+  const std::vector<double> u = structure_.displacement(),
+                            v = structure_.share().gather_vertices(structure_.state().v);
+  std::vector<Vec3> places = surface_.reference_points;
+  for (std::size_t i = 0; i < places.size(); ++i) places[i] += Vec3(&u[3 * i]);
+  if (!fields_)
+    fields_.emplace(surface_, structure_.context().output_folder, structure_.context().name, true,
+                    structure_.context().restart_time);
+  fields_->write(time, places,
+                 {{"displacement", "m", OutputField::Place::points, 3, u},
+                  {"velocity", "m/s", OutputField::Place::points, 3, v}});
+}
+
+void PlateResults::write_series(double time) {
+  if (!active_ || structure_.parameters().analysis == Parameters::Analysis::modal) return;
+  const std::vector<double> u = structure_.displacement();
+  if (structure_.contact()) write_contact(time);
+  if (!root_) return;
+  const int n = structure_.share().n_modes();
+  const ModalState& state = structure_.state();
+  std::vector<std::string> columns{"time [s]"};
+  for (const std::string& one : numbered("q", n, " [sqrt(kg) m]")) columns.push_back(one);
+  std::vector<double> row{time};
+  row.insert(row.end(), state.q.begin(), state.q.end());
+  series(modal_, "modal.csv", columns).row(row);
+  write_energies(time);
+  if (probes_.empty()) return;
+  columns = {"time [s]"};
+  row = {time};
+  for (const auto& [name, probe] : structure_.parameters().probes)
+    for (const char* axis : {" x [m]", " y [m]", " z [m]"}) columns.push_back(name + axis);
+  for (const SurfacePlace& place : probes_)
+    for (int c = 0; c < 3; ++c) {
+      double value = 0;
+      for (std::size_t i = 0; i < place.vertices.size(); ++i)
+        value += place.weights[i] * u[3 * std::size_t(place.vertices[i]) + c];
+      row.push_back(value);
+    }
+  series(probe_series_, "probes.csv", columns).row(row);
+}
+
+void PlateResults::write_energies(double time) {
+  const Energies& e = structure_.state().energies;
+  series(energies_, "energies.csv",
+         {"time [s]", "kinetic [J]", "strain [J]", "gravity [J]", "seat [J]", "work of loads [J]",
+          "work of impact [J]", "damping loss [J]", "mismatch [J]"})
+      .row(std::vector<double>{time, e.kinetic, e.strain, e.gravity, e.contact, e.load_work, e.impact_work,
+                               e.damping_loss, e.mismatch()});
+}
+
+void PlateResults::write_contact(double time) {
+  Contact::Result seat;
+  structure_.contact()->look(structure_.state().q, seat);
+  if (root_)
+    series(contact_, "contact.csv", {"time [s]", "force [N]", "penetration [m]", "energy [J]"})
+        .row(std::vector<double>{time, seat.total, seat.penetration, seat.energy});
+}
+
+}  // namespace couplet::plate

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Static deflection: of the plate itself where there is a mesh, and by its modes beside it.
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+#include "common/mesh/on_root.hpp"
+#include "plate_modal/structure.hpp"
+
+namespace couplet::plate {
+
+/// q = Q / omega^2 of each mode; beside it K u = f on rank 0.
+void Structure::solve_static(double t, std::span<const double> fluid) {
+  std::vector<double> load(fluid.size(), 0);
+  if (upper_ || lower_) {
+    add_pressure(t, load);
+    share_->sum(load);
+  }
+  for (std::size_t m = 0; m < load.size(); ++m) {
+    if (share_->omega()[m] == 0)
+      throw Error(
+          "The structure moves as a rigid body (mode {} has no frequency): a static analysis needs supports "
+          "that hold "
+          "it.",
+          m + 1);
+    trial_.q[m] = (load[m] + fluid[m] + gravity_[m]) / (share_->omega()[m] * share_->omega()[m]);
+    trial_.v[m] = 0;
+  }
+  std::vector<double> by_modes = share_->gather_vertices(trial_.q);
+  on_root(context_.comm, [&] {
+    if (!built_.plate) return;
+    direct_ = direct_deflection(t);
+    double largest = 0, apart = 0;
+    for (std::size_t i = 0; i < direct_.size(); ++i) {
+      largest = std::max(largest, std::abs(direct_[i]));
+      apart = std::max(apart, std::abs(direct_[i] - by_modes[i]));
+    }
+    log::info("static deflection: at most {:.6e} m; by {} modes it differs by at most {:.2e} m ({:.2g} %)",
+              largest, by_modes.empty() ? 0 : share_->n_modes(), apart,
+              largest > 0 ? 100 * apart / largest : 0.);
+  });
+}
+
+std::vector<double> Structure::direct_deflection(double t) const {
+  const PlateModel& plate = *built_.plate;
+  const Midsurface& s = plate.surface();
+  const Placement& place = parameters_.placement;
+  const Vec3 normal = place.normal();
+  std::vector<double> pressure(s.cells.size(), 0);
+  for (Index c = 0; c < s.cells.size(); ++c) {
+    Vec2 middle = Vec2::Zero();
+    for (const Index p : s.cells[c]) middle += s.points[p] / double(s.cells[c].size());
+    const double half = 0.5 * plate.cell(c).thickness;
+    if (upper_) pressure[c] -= (*upper_)(place.place(middle, half), t);
+    if (lower_) pressure[c] += (*lower_)(place.place(middle, -half), t);
+    if (!parameters_.gravity.empty())
+      pressure[c] += plate.cell(c).surface_density() * normal.dot(Vec3(parameters_.gravity.data()));
+  }
+  const EigenModes one{{0}, {plate.deflect(plate.load_of(pressure))}, 0, 0};
+  return skin_of(plate, one, place, parameters_.wetted, std::vector<bool>(s.patches.size(), false))
+      .vertex_shape;
+}
+
+}  // namespace couplet::plate

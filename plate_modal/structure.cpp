@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/structure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/log/log.hpp"
+#include "common/mesh/on_root.hpp"
+#include "plate_modal/results.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// A side of the plate: faces whose normal is within 60 degrees of that of the plate.
+constexpr double least_cosine = 0.5;
+
+}  // namespace
+
+Structure::Structure(Parameters parameters, PlateContext context, const RawMesh* raw)
+    : parameters_(std::move(parameters)),
+      context_(std::move(context)),
+      built_(build_model(parameters_, context_, raw)),
+      share_(std::make_unique<Share>(context_.comm, built_.model)) {
+  const Parameters& p = parameters_;
+  if (comm_rank(context_.comm) == 0) {
+    if (!built_.note.empty()) log::warn("{}", built_.note);
+    if (built_.reused)
+      log::info("modes of {} are used again", (context_.output_folder / "modes.h5").string());
+  }
+  gravity_.assign(share_->n_modes(), 0);
+  if (!p.gravity.empty()) gravity_ = share_->participation(Vec3(p.gravity.data()));
+  if (p.contact)
+    contact_ = std::make_unique<Contact>(*share_, *p.contact, p.placement.normal(),
+                                         p.contact->stiffness ? 0 : seat_stiffness(p));
+  if (p.load && p.load->upper) upper_.emplace(*p.load->upper, "load.upper-pressure");
+  if (p.load && p.load->lower) lower_.emplace(*p.load->lower, "load.lower-pressure");
+  oscillators_ =
+      std::make_unique<Oscillators>(share_->omega(), damping(), gravity_, p.time_scheme, contact_.get());
+  state_ = trial_ = initial_state();
+  results_ = std::make_unique<PlateResults>(*this);
+}
+
+Structure::~Structure() = default;
+
+std::vector<double> Structure::damping() const {
+  const Damping d = parameters_.damping.value_or(Damping{});
+  std::vector<double> c;
+  for (const double omega : share_->omega())
+    c.push_back(2 * d.ratio * omega + d.mass + d.stiffness * omega * omega);
+  return c;
+}
+
+ModalState Structure::initial_state() const {
+  std::vector<double> q(share_->n_modes(), 0), v = share_->participation(parameters_.initial_velocity);
+  std::vector<double> largest(q.size(), 1);
+  if (std::ssize(parameters_.initial_amplitudes) > std::ssize(q))
+    throw Error("initial-amplitudes: {} are given for {} modes.", parameters_.initial_amplitudes.size(),
+                q.size());
+  if (comm_rank(context_.comm) == 0)
+    for (std::size_t m = 0; m < q.size(); ++m) largest[m] = largest_displacement(built_.model, m);
+  broadcast(context_.comm, largest);
+  for (std::size_t m = 0; m < parameters_.initial_amplitudes.size(); ++m)
+    q[m] = parameters_.initial_amplitudes[m] / largest[m];
+  return oscillators_->start(std::move(q), std::move(v));
+}
+
+Interface Structure::initialise() {
+  Interface interface = share_->describe();
+  interface.takes = {{"pressure-force", "N", Interface::Place::faces},
+                     {"viscous-force", "N", Interface::Place::faces}};
+  interface.gives = {{"displacement", "m", Interface::Place::vertices},
+                     {"velocity", "m/s", Interface::Place::vertices}};
+  if (parameters_.surface_density)
+    interface.gives.push_back({"surface-density", "kg/m^2", Interface::Place::faces, 1});
+  results_->write_start();
+  return interface;
+}
+
+void Structure::add_pressure(double t, std::span<double> load) const {
+  const Vec3 normal = parameters_.placement.normal();
+  std::vector<double> force(3 * share_->n_faces(), 0);
+  for (std::size_t f = 0; f < share_->n_faces(); ++f) {
+    const Vec3& area = share_->areas()[f];
+    const double cosine = area.dot(normal) / area.norm();
+    const auto& side = cosine > least_cosine ? upper_ : lower_;
+    if (!side || std::abs(cosine) <= least_cosine) continue;
+    const double pressure = (*side)(share_->centres()[f], t);
+    for (int c = 0; c < 3; ++c) force[3 * f + c] = -pressure * area[c];
+  }
+  share_->add_load(force, load);
+}
+
+Exchange Structure::solve(const Exchange& in) {
+  std::vector<double> fluid(share_->n_modes(), 0);
+  for (const char* name : {"pressure-force", "viscous-force"}) {
+    const auto given = in.find(name);
+    share_->add_load(share_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second), fluid);
+  }
+  share_->sum(fluid);
+  if (parameters_.analysis == Parameters::Analysis::dynamic) {
+    const auto load = [&](double after, std::span<double> total) {
+      std::ranges::fill(total, 0);
+      if (upper_ || lower_) {
+        add_pressure(step_.time + after, total);
+        share_->sum(total);
+      }
+      for (std::size_t m = 0; m < fluid.size(); ++m) total[m] += fluid[m];
+    };
+    oscillators_->step(state_, step_.dt, load, trial_);
+  } else if (parameters_.analysis == Parameters::Analysis::static_) {
+    solve_static(step_.time + step_.dt, fluid);
+  }
+  Exchange out;
+  std::vector<double> u = share_->gather_vertices(trial_.q), v = share_->gather_vertices(trial_.v);
+  if (comm_rank(context_.comm) != 0) return out;
+  out["displacement"] = std::move(u);
+  out["velocity"] = std::move(v);
+  if (parameters_.surface_density) out["surface-density"] = built_.model.face_density;
+  return out;
+}
+
+void Structure::accept_step() {
+  std::swap(state_, trial_);
+  const Energies& e = state_.energies;
+  worst_mismatch_ = std::max(worst_mismatch_, std::abs(e.mismatch()));
+  largest_exchange_ = std::max({largest_exchange_, e.kinetic + e.strain + e.contact, std::abs(e.load_work)});
+}
+
+std::vector<double> Structure::displacement() const {
+  if (!direct_.empty()) return direct_;
+  return share_->gather_vertices(state_.q);
+}
+
+void Structure::write_output(double time, int) { results_->write_fields(time); }
+void Structure::write_monitors(double time) { results_->write_series(time); }
+
+std::vector<std::string> Structure::judge_left_out_effects() {
+  if (parameters_.analysis != Parameters::Analysis::dynamic || !(largest_exchange_ > 0)) return {};
+  const double share = worst_mismatch_ / largest_exchange_;
+  std::vector<std::string> sentences{
+      fmt::format("energy: the balance of the structure (4.29-4.31) is off by at most {:.2e} J, {:.2g} % of "
+                  "the largest energy.",
+                  worst_mismatch_, 100 * share)};
+  if (share > 0.01)
+    sentences.push_back(
+        "The time scheme took or made more than 1 % of the energy: take a smaller step, or 'trapezoidal' "
+        "with "
+        "'contact.rule: conserving'.");
+  return sentences;
+}
+
+void Structure::save(CheckpointWriter& file) const {
+  file.write("omega", share_->omega());
+  for (const auto& [name, values] : {std::pair{"q", &state_.q},
+                                     {"v", &state_.v},
+                                     {"a", &state_.a},
+                                     {"q-old", &state_.q_old},
+                                     {"v-old", &state_.v_old}})
+    file.write(name, *values);
+  const Energies& e = state_.energies;
+  file.write("energies",
+             std::vector<double>{e.kinetic, e.strain, e.gravity, e.contact, e.initial, e.load_work,
+                                 e.impact_work, e.damping_loss, worst_mismatch_, largest_exchange_});
+  file.write_scalar("dt", state_.dt);
+}
+
+void Structure::load(CheckpointReader& file) {
+  if (file.read("omega") != share_->omega())
+    throw Error(
+        "The checkpoint was made with other modes than those of this run: mesh, material, thickness, "
+        "supports or the "
+        "number of modes differ.");
+  state_ = initial_state();
+  for (const auto& [name, values] : {std::pair{"q", &state_.q},
+                                     {"v", &state_.v},
+                                     {"a", &state_.a},
+                                     {"q-old", &state_.q_old},
+                                     {"v-old", &state_.v_old}})
+    file.read(name, *values);
+  std::vector<double> kept(10);
+  file.read("energies", kept);
+  Energies& e = state_.energies;
+  int i = 0;
+  for (double* part : {&e.kinetic, &e.strain, &e.gravity, &e.contact, &e.initial, &e.load_work,
+                       &e.impact_work, &e.damping_loss, &worst_mismatch_, &largest_exchange_})
+    *part = kept[i++];
+  state_.dt = file.read_scalar("dt");
+  trial_ = state_;
+}
+
+}  // namespace couplet::plate

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/coupling/participant.hpp"
+#include "common/fv/expression.hpp"
+#include "plate_modal/build_model.hpp"
+#include "plate_modal/contact.hpp"
+#include "plate_modal/oscillators.hpp"
+#include "plate_modal/share.hpp"
+
+namespace couplet::plate {
+
+class PlateResults;
+
+/// A structure by superposition of its modes, as a participant: takes the forces on the faces of its surface,
+/// gives displacement and velocity of its vertices.
+class Structure final : public Participant {
+ public:
+  /// `raw`: mid-surface on rank 0 in place of the mesh that the parameters name. Collective.
+  Structure(Parameters parameters, PlateContext context, const RawMesh* raw = nullptr);
+  ~Structure() override;
+
+  Interface initialise() override;
+  void begin_step(const Step& step) override { step_ = step; }
+  Exchange solve(const Exchange& in) override;
+  void accept_step() override;
+  void save(CheckpointWriter& file) const override;
+  void load(CheckpointReader& file) override;
+  void write_output(double time, int number) override;
+  void write_monitors(double time) override;
+  std::vector<std::string> judge_left_out_effects() override;
+
+  const Parameters& parameters() const { return parameters_; }
+  const PlateContext& context() const { return context_; }
+  const Share& share() const { return *share_; }
+  const ModalState& state() const { return state_; }
+  const ModalModel& model() const { return built_.model; }  ///< on rank 0
+  const Contact* contact() const { return contact_.get(); }
+  /// Displacement of every vertex now [m], 3 each, on rank 0. Collective.
+  std::vector<double> displacement() const;
+
+ private:
+  std::vector<double> damping() const;
+  ModalState initial_state() const;
+  void add_pressure(double t, std::span<double> load) const;
+  void solve_static(double t, std::span<const double> fluid);
+  std::vector<double> direct_deflection(double t) const;
+
+  Parameters parameters_;
+  PlateContext context_;
+  Built built_;
+  std::unique_ptr<Share> share_;
+  std::unique_ptr<Contact> contact_;  // none: no seat in this scene
+  std::unique_ptr<Oscillators> oscillators_;
+  std::optional<Expression> upper_, lower_;
+  std::vector<double> gravity_;
+  ModalState state_, trial_;
+  std::vector<double> direct_;  // static deflection of the plate itself, 3 a vertex on rank 0
+  Step step_;
+  double worst_mismatch_ = 0, largest_exchange_ = 0;
+  std::unique_ptr<PlateResults> results_;
+};
+
+}  // namespace couplet::plate

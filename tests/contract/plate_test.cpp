@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/structure.hpp"
+#include "tests/contract/contract_suite.hpp"
+
+namespace couplet::contract {
+namespace {
+
+/// A clamped plate, wetted on both sides and its free rims; with a seat that it presses on.
+template <bool Seat>
+struct PlateFactory {
+  static std::unique_ptr<Participant> make(MPI_Comm comm) {
+    plate::Parameters p;
+    p.material = {3000, 4e6, 0.3};
+    p.thickness = 0.1;
+    p.n_modes = 8;
+    p.damping.emplace().ratio = 0.01;
+    for (const char* side : {"xmin", "xmax", "ymax"}) p.boundaries[side];
+    p.boundaries["ymin"].support = plate::Support::clamped;
+    if (Seat) {
+      p.contact.emplace();
+      p.contact->height.text = "-0.0501";
+      p.contact->stiffness = 1e5;
+    } else {
+      p.time_scheme.type = TimeScheme::bathe;
+    }
+    static const RawMesh raw = make_box(BoxCells::quadrilaterals, {4, 5, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+    plate::PlateContext context;
+    context.comm = comm;
+    return std::make_unique<plate::Structure>(p, context, &raw);
+  }
+  static Exchange input(const Interface& interface, double factor) {
+    Exchange in;
+    for (const Vec3& area : interface.face_areas)
+      for (int c = 0; c < 3; ++c) {
+        in["pressure-force"].push_back(area.z() > 0 ? -50 * factor * area[c] : 0);
+        in["viscous-force"].push_back(c == 1 ? factor * area.norm() : 0);
+      }
+    return in;
+  }
+  static constexpr Scheme scheme = Scheme::implicit;
+  static constexpr double dt = 0.01, repeat_tolerance = 0, rank_tolerance = 1e-10, restart_tolerance = 0;
+};
+using Plate = PlateFactory<false>;
+using PlateOnSeat = PlateFactory<true>;
+
+INSTANTIATE_TYPED_TEST_SUITE_P(Plate, ParticipantContract, Plate);
+INSTANTIATE_TYPED_TEST_SUITE_P(PlateOnSeat, ParticipantContract, PlateOnSeat);
+
+}  // namespace
+}  // namespace couplet::contract

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Modes on file: written, reused, made by others, damaged; the same answer on any number of ranks.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "common/base/error.hpp"
+#include "common/io/hdf5.hpp"
+#include "common/modes/modes_file.hpp"
+#include "common/parallel/collective.hpp"
+#include "plate_modal/structure.hpp"
+#include "tests/verification/plate/plates.hpp"
+
+namespace couplet::plate {
+namespace {
+
+using namespace test;
+namespace fs = std::filesystem;
+
+class PlateModesFile : public ::testing::Test {
+ protected:
+  PlateModesFile() {
+    int id = ::getpid();
+    MPI_Bcast(&id, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    folder_ = fs::temp_directory_path() / fmt::format("couplet-plate-{}", id);
+    if (comm_rank(MPI_COMM_WORLD) == 0) fs::create_directories(folder_);
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+  ~PlateModesFile() override {
+    MPI_Barrier(MPI_COMM_WORLD);
+    std::error_code ignored;
+    if (comm_rank(MPI_COMM_WORLD) == 0) fs::remove_all(folder_, ignored);
+    MPI_Barrier(MPI_COMM_WORLD);
+  }
+  PlateContext context(MPI_Comm comm = MPI_COMM_WORLD) const {
+    return {comm, "plate", folder_, folder_, std::numeric_limits<double>::quiet_NaN()};
+  }
+  static Parameters parameters() {
+    Parameters p;
+    p.material = {1000, 1e9, 0.3};
+    p.thickness = 0.05;
+    p.n_modes = 6;
+    p.output.fields = false;
+    for (const char* patch : {"xmax", "ymin", "ymax"}) p.boundaries[patch];
+    p.boundaries["xmin"].support = Support::clamped;
+    return p;
+  }
+  /// Displacement after ten steps under a load, on rank 0.
+  static std::vector<double> run(Structure& structure) {
+    const Interface interface = structure.initialise();
+    Exchange in;
+    for (const Vec3& x : interface.face_centres)
+      for (const double f : {0.01, 0.02 * x.y(), 0.1 + x.x()}) in["pressure-force"].push_back(f);
+    for (int i = 0; i < 10; ++i) {
+      structure.begin_step({0.01 * i, 0.01, Scheme::standalone, i, false});
+      structure.solve(in);
+      structure.accept_step();
+    }
+    return structure.displacement();
+  }
+  fs::path folder_;
+};
+
+TEST_F(PlateModesFile, ranks_agree) {
+  const RawMesh raw = square(7);
+  PlateContext alone_context{MPI_COMM_SELF, "plate", {}, {}, std::numeric_limits<double>::quiet_NaN()};
+  Structure together(parameters(), context(), &raw), alone(parameters(), alone_context, &raw);
+  const std::vector<double> a = run(together), b = run(alone);
+  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  double apart = 0, largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    apart = std::max(apart, std::abs(a[i] - b[i])), largest = std::max(largest, std::abs(b[i]));
+  EXPECT_GT(largest, 0);
+  EXPECT_LT(apart, 1e-12 * largest);
+  RecordProperty("apart", fmt::format("{:.2e}", apart / largest));
+}
+
+TEST_F(PlateModesFile, modes_are_reused_while_mesh_and_data_are_the_same) {
+  const RawMesh raw = square(7), finer = square(8);
+  Structure first(parameters(), context(), &raw);
+  const std::string key = key_of_modes(folder_ / "modes.h5");
+  ASSERT_FALSE(key.empty());
+  MPI_Barrier(MPI_COMM_WORLD);
+  const auto time = fs::last_write_time(folder_ / "modes.h5");
+  Structure second(parameters(), context(), &raw);
+  EXPECT_EQ(fs::last_write_time(folder_ / "modes.h5"), time);
+  const std::vector<double> a = run(first), b = run(second);
+  EXPECT_EQ(a, b);
+  for (int change = 0; change < 5; ++change) {
+    Parameters other = parameters();
+    if (change == 1) other.thickness *= 1 + 1e-15;
+    if (change == 2) other.n_modes = 7;
+    if (change == 3) other.boundaries["xmin"].support = Support::simply_supported;
+    if (change == 4) other.placement.origin = Vec3(0, 0, 1);
+    MPI_Barrier(MPI_COMM_WORLD);
+    Structure changed(other, context(), change == 0 ? &finer : &raw);
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_NE(key_of_modes(folder_ / "modes.h5"), key) << change;
+  }
+}
+
+TEST_F(PlateModesFile, a_structure_runs_on_the_modes_of_a_file_as_on_those_of_its_mesh) {
+  const RawMesh raw = square(7);
+  Structure from_mesh(parameters(), context(), &raw);
+  MPI_Barrier(MPI_COMM_WORLD);
+  Parameters p;
+  p.modes_file = "modes.h5";
+  p.output.fields = false;
+  PlateContext where = context();
+  where.output_folder.clear();
+  Structure from_file(p, where);
+  EXPECT_EQ(run(from_mesh), run(from_file));
+}
+
+TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
+  if (comm_size(MPI_COMM_WORLD) > 1) return;
+  const RawMesh raw = square(3);
+  Structure structure(parameters(), context(), &raw);
+  const fs::path good = folder_ / "modes.h5", file = folder_ / "other.h5";
+  const auto message = [&] {
+    try {
+      read_modes(file);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(message().find("does not exist"), std::string::npos);
+  std::ofstream(file) << "no HDF5";
+  EXPECT_NE(message().find("cannot be used"), std::string::npos);
+  const ModalModel model = read_modes(good);
+  const auto damaged = [&](auto&& change) {
+    ModalModel copy = model;
+    change(copy);
+    write_modes(file, copy, "");
+    return message();
+  };
+  EXPECT_EQ(damaged([](ModalModel&) {}), "");
+  EXPECT_NE(damaged([](ModalModel& m) { m.omega[3] = -1; }).find("frequency of mode 4"), std::string::npos);
+  EXPECT_NE(damaged([](ModalModel& m) { m.omega[3] = 0.5 * m.omega[2]; }).find("lower frequency"),
+            std::string::npos);
+  EXPECT_NE(damaged([](ModalModel& m) { m.vertex_shape[5] = NAN; }).find("no number"), std::string::npos);
+  EXPECT_NE(damaged([](ModalModel& m) { m.faces.index[4] = 999; }).find("names vertex 999"),
+            std::string::npos);
+  EXPECT_NE(damaged([](ModalModel& m) { m.participation.resize(12); }).find("participation"),
+            std::string::npos);
+  EXPECT_NE(damaged([](ModalModel& m) { m.vertex_shape.resize(m.vertex_shape.size() - 6); }).find("rows"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace couplet::plate

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plates that several tests share.
+#pragma once
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "common/mesh/load.hpp"
+#include "plate_modal/plate_model.hpp"
+
+namespace couplet::plate::test {
+
+inline RawMesh square(int n, BoxCells cells = BoxCells::triangles, double distortion = 0) {
+  RawMesh raw = make_box(cells, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+  if (distortion > 0) perturb_interior(raw, distortion, 7);
+  return raw;
+}
+
+/// A disc of radius 1 in n rings of triangles; its outline is the patch "rim".
+inline RawMesh disc(int n) {
+  RawMesh raw;
+  raw.dim = 2;
+  raw.points.push_back(Vec3::Zero());
+  const auto first = [](int ring) { return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1); };
+  const auto at = [&](int ring, int i) {
+    return Index(ring == 0 ? 0 : first(ring) + (i % (6 * ring) + 6 * ring) % (6 * ring));
+  };
+  for (int r = 1; r <= n; ++r)
+    for (int i = 0; i < 6 * r; ++i) {
+      const double angle = 2 * std::numbers::pi * i / (6 * r);
+      raw.points.emplace_back(r * std::cos(angle) / n, r * std::sin(angle) / n, 0);
+    }
+  const auto add = [&](Index a, Index b, Index c) {
+    raw.cell_points.push_row(std::array{a, b, c});
+    raw.cell_type.push_back(CellType::triangle);
+    raw.cell_zone.push_back(0);
+  };
+  for (int r = 1; r <= n; ++r)
+    for (int side = 0; side < 6; ++side)
+      for (int i = 0; i < r; ++i) {
+        const int outer = side * r + i, inner = side * (r - 1) + i;
+        add(at(r, outer), at(r, outer + 1), at(r - 1, inner));
+        if (i + 1 < r) add(at(r - 1, inner), at(r, outer + 1), at(r - 1, inner + 1));
+      }
+  raw.zones = {"plate"};
+  raw.patches = {"rim"};
+  for (int i = 0; i < 6 * n; ++i) {
+    raw.boundary_points.push_row(std::array{at(n, i), at(n, i + 1)});
+    raw.boundary_patch.push_back(0);
+  }
+  return raw;
+}
+
+/// D = 1 N m and rho h = 1 kg/m^2, so that lambda = omega a^2.
+inline PlateCell unit_cell() { return {0.01, 100, 12 * (1 - 0.09) / 1e-6, 0.3}; }
+
+inline PlateModel make_plate(const RawMesh& raw, const std::map<std::string, Support>& held,
+                             const PlateCell& cell = unit_cell()) {
+  Midsurface surface = midsurface_of(raw);
+  std::vector<Support> support;
+  for (const std::string& patch : surface.patches)
+    support.push_back(held.contains(patch) ? held.at(patch) : Support::free);
+  const std::size_t n = surface.cells.size();
+  return PlateModel(std::move(surface), std::vector<PlateCell>(n, cell), support);
+}
+
+inline std::map<std::string, Support> all_edges(Support support) {
+  return {{"xmin", support}, {"xmax", support}, {"ymin", support}, {"ymax", support}, {"rim", support}};
+}
+
+inline std::vector<double> lambdas(const EigenModes& modes) {
+  std::vector<double> result;
+  for (const double value : modes.eigenvalue) result.push_back(std::sqrt(std::max(0., value)));
+  return result;
+}
+
+}  // namespace couplet::plate::test

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// Static deflections against closed forms, and by modes against the direct ones.
+#include <gtest/gtest.h>
+
+#include "common/base/error.hpp"
+#include "plate_modal/skin.hpp"
+#include "plate_modal/structure.hpp"
+#include "tests/verification/plate/plates.hpp"
+
+namespace couplet::plate {
+namespace {
+
+using namespace test;
+
+double largest(const PlateModel& plate, std::span<const double> unknowns) {
+  const std::vector<double> points = plate.to_points(unknowns);
+  double value = 0;
+  for (std::size_t i = 0; i < points.size(); i += 3)
+    if (std::abs(points[i]) > std::abs(value)) value = points[i];
+  return value;
+}
+
+double deflection(const PlateModel& plate, double pressure) {
+  const std::vector<double> p(plate.surface().cells.size(), pressure);
+  return largest(plate, plate.deflect(plate.load_of(p)));
+}
+
+// Timoshenko, "Theory of plates and shells": clamped circle p a^4 / (64 D); hinged circle times (5 + nu) / (1
+// + nu); squares p a^4 / D times 0.00126532 (clamped) and 0.00406235 (hinged).
+TEST(PlateStatics, deflections_are_those_of_closed_forms_and_converge_at_second_order) {
+  struct Case {
+    const char* name;
+    RawMesh (*mesh)(int);
+    Support support;
+    double exact;
+  };
+  const auto squares = [](int n) { return square(n, BoxCells::triangles); };
+  for (const Case& c : {Case{"clamped-circle", disc, Support::clamped, 1. / 64},
+                        Case{"hinged-circle", disc, Support::simply_supported, 5.3 / 1.3 / 64},
+                        Case{"clamped-square", squares, Support::clamped, 0.00126532},
+                        Case{"hinged-square", squares, Support::simply_supported, 0.00406235}}) {
+    const double coarse = deflection(make_plate(c.mesh(12), all_edges(c.support)), 1) / c.exact - 1;
+    const double fine = deflection(make_plate(c.mesh(24), all_edges(c.support)), 1) / c.exact - 1;
+    EXPECT_LT(std::abs(fine), 0.005) << c.name;
+    EXPECT_GT(std::log2(std::abs(coarse / fine)), 1.8) << c.name;
+    RecordProperty(std::string(c.name) + "-error", fmt::format("{:.6f}", fine));
+    RecordProperty(std::string(c.name) + "-slope", fmt::format("{:.3f}", std::log2(std::abs(coarse / fine))));
+  }
+}
+
+/// A strip that bends in one direction: mirrors along its sides. Its root half is twice as thick.
+RawMesh stepped_strip(int n) {
+  RawMesh raw = make_box(BoxCells::triangles, {2 * n, 2, 1}, Vec3::Zero(), Vec3(1, 2. / (2 * n), 0));
+  raw.zones = {"root", "tip"};
+  for (Index c = 0; c < raw.cell_points.size(); ++c) {
+    double x = 0;
+    for (const Index p : raw.cell_points[c]) x += raw.points[p].x() / 3;
+    raw.cell_zone[c] = x < 0.5 ? 0 : 1;
+  }
+  return raw;
+}
+
+TEST(PlateStatics, a_plate_of_two_thicknesses_and_its_weight_follow_the_closed_form) {
+  Parameters p;
+  p.analysis = Parameters::Analysis::static_;
+  p.material = {1000, 1e9, 0.3};
+  p.thickness = 0.01;
+  p.zones["root"].thickness = 0.02;
+  p.boundaries = {{"xmin", {Support::clamped}},
+                  {"xmax", {}},
+                  {"ymin", {Support::symmetry}},
+                  {"ymax", {Support::symmetry}}};
+  const PlateModel plate = plate_of(stepped_strip(20), p, "strip");
+  const double d2 = plate.cell(plate.surface().cells.size() - 1).rigidity(), d1 = 8 * d2;
+  // Cantilever of length 1 under q: w'' = q (1 - x)^2 / (2 D); tip = int (1 - x) w'' dx.
+  const double pressure = 10;
+  const double root = (1 - 1. / 16) / 4, tip = 1. / 64;  // int (1 - x)^3 over each half
+  const double exact = pressure / 2 * (root / d1 + tip / d2);
+  const double got = deflection(plate, pressure);
+  EXPECT_NEAR(got / exact, 1, 0.005);
+  RecordProperty("two-thicknesses", fmt::format("{:.6f}", got / exact - 1));
+  // Its weight: q = rho g h of each half; M(x) for x > 1/2: q2 (1-x)^2/2; below: q2/2 (3/4 - x) + q1 (1/2 -
+  // x)^2 / 2.
+  const double g = 9.81, q1 = 1000 * g * 0.02, q2 = 1000 * g * 0.01;
+  const double moment_root =
+      q2 / 2 *
+          (0.25 * 0 +
+           [] {  // int_0^{1/2} (1 - x)(3/4 - x) dx
+             const auto f = [](double x) { return 0.75 * x - 0.875 * x * x + x * x * x / 3; };
+             return f(0.5) - f(0);
+           }()) +
+      q1 / 2 * [] {  // int_0^{1/2} (1 - x)(1/2 - x)^2 dx, with s = 1/2 - x: (1/2 + s) s^2
+        return 0.5 / 3 * 0.125 + 0.25 * 0.0625;
+      }();
+  const double weight_exact = moment_root / d1 + q2 / 2 * tip / d2;
+  p.gravity = {0, 0, -g};
+  const RawMesh raw = stepped_strip(20);
+  Structure structure(p, PlateContext{}, &raw);
+  structure.begin_step({0, 1, Scheme::standalone, 0, false});
+  structure.solve({});
+  structure.accept_step();
+  double deepest = 0;
+  const std::vector<double> u = structure.displacement();
+  for (std::size_t i = 2; i < u.size(); i += 3) deepest = std::min(deepest, u[i]);
+  EXPECT_NEAR(-deepest / weight_exact, 1, 0.005);
+  RecordProperty("weight", fmt::format("{:.6f}", -deepest / weight_exact - 1));
+}
+
+TEST(PlateStatics, deflection_by_modes_tends_to_the_direct_one) {
+  const SlepcEnvironment slepc;
+  const PlateModel plate = make_plate(square(16), all_edges(Support::clamped));
+  const std::vector<double> ones(plate.surface().cells.size(), 1), load = plate.load_of(ones);
+  const std::vector<double> direct = plate.deflect(load);
+  double before = 1, last = 1;
+  for (const int n : {1, 5, 15, 45, 120}) {
+    const EigenModes modes = plate.modes(n);
+    std::vector<double> sum(direct.size(), 0);
+    for (int m = 0; m < n; ++m) {
+      double q = 0;
+      for (std::size_t r = 0; r < load.size(); ++r) q += modes.shape[m][r] * load[r] / modes.eigenvalue[m];
+      for (std::size_t r = 0; r < load.size(); ++r) sum[r] += q * modes.shape[m][r];
+    }
+    last = std::abs(largest(plate, sum) / largest(plate, direct) - 1);
+    EXPECT_LT(last, before) << n;
+    if (n == 15) {
+      EXPECT_LT(last, 0.01);
+      RecordProperty("by-15", fmt::format("{:.3e}", last));
+    }
+    before = last;
+  }
+  EXPECT_LT(last, 1e-4);
+  RecordProperty("by-120", fmt::format("{:.3e}", last));
+}
+
+TEST(PlateStatics, a_plate_that_nothing_holds_is_refused) {
+  Parameters p;
+  p.analysis = Parameters::Analysis::static_;
+  p.material = {1000, 1e9, 0.3};
+  p.thickness = 0.01;
+  p.n_modes = 4;
+  for (const char* patch : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[patch];
+  const RawMesh raw = square(4);
+  Structure structure(p, PlateContext{}, &raw);
+  structure.begin_step({0, 1, Scheme::standalone, 0, false});
+  EXPECT_THROW(structure.solve({}), Error);
+}
+
+}  // namespace
+}  // namespace couplet::plate
