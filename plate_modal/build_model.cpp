@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plate_modal/build_model.hpp"
 
-#include <cstring>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
@@ -125,8 +127,9 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
         p.n_modes, p.n_modes + 1);
   built.model = skin_of(plate, modes, p.placement, p.wetted, open_patches(plate.surface(), p));
   // Rigid motions come with the rounding of the stiffness: they are none.
-  for (double& omega : built.model.omega)
-    if (omega * omega < 1e-6 * plate.frequency_scale()) omega = 0;
+  const double least = std::sqrt(1e-6 * plate.frequency_scale()) / (2 * std::numbers::pi);
+  for (double& f : built.model.frequency)
+    if (f < least) f = 0;
   if (!context.output_folder.empty()) write_modes(file, built.model, key);
 }
 
@@ -158,6 +161,8 @@ Built build_model(const Parameters& p, const PlateContext& context, const RawMes
     }
     auto plate =
         std::make_unique<PlateModel>(plate_of(raw ? *raw : read(p, context.case_folder), p, context.name));
+    const std::vector<Support> held = supports(plate->surface(), p);
+    built.held_all_round = std::ranges::none_of(held, [](Support s) { return s == Support::free; });
     add_modes(built, *plate, p, context);
     if (p.analysis == Parameters::Analysis::static_) built.plate = std::move(plate);
   });

@@ -23,6 +23,7 @@ struct Built {
   ModalModel model;
   std::unique_ptr<PlateModel> plate;  ///< of a mesh, for a static analysis
   bool reused = false;                ///< modes of an earlier run
+  bool held_all_round = false;        ///< a plate whose outline cannot move: deflection stretches it
   std::string note;                   ///< something the user should know, or nothing
 };
 

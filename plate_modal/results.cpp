@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "common/base/error.hpp"
@@ -104,11 +103,11 @@ Series& PlateResults::series(std::optional<Series>& one, const char* file,
 
 void PlateResults::write_start() {
   if (root_) {
-    const auto& omega = structure_.model().omega;
+    const auto& frequency = structure_.model().frequency;
     std::string list;
-    for (std::size_t m = 0; m < std::min<std::size_t>(8, omega.size()); ++m)
-      list += fmt::format(" {:.5g}", omega[m] / (2 * std::numbers::pi));
-    log::info("{} modes, Hz:{}{}", omega.size(), list, omega.size() > 8 ? " ..." : "");
+    for (std::size_t m = 0; m < std::min<std::size_t>(8, frequency.size()); ++m)
+      list += fmt::format(" {:.5g}", frequency[m]);
+    log::info("{} modes, Hz:{}{}", frequency.size(), list, frequency.size() > 8 ? " ..." : "");
   }
   if (!active_) return;
   if (root_) write_frequencies();
@@ -123,7 +122,7 @@ void PlateResults::write_frequencies() {
                "effective mass z [kg]", "largest displacement [1/sqrt(kg)]"});
   const std::size_t n = model.n_modes();
   for (std::size_t m = 0; m < n; ++m) {
-    std::vector<double> row{double(m + 1), model.omega[m] / (2 * std::numbers::pi)};
+    std::vector<double> row{double(m + 1), model.frequency[m]};
     for (int c = 0; c < 3; ++c) row.push_back(std::pow(model.participation[std::size_t(c) * n + m], 2));
     row.push_back(largest_displacement(model, m));
     file.row(row);
@@ -171,7 +170,11 @@ void PlateResults::write_series(double time) {
   std::vector<double> row{time};
   row.insert(row.end(), state.q.begin(), state.q.end());
   series(modal_, "modal.csv", columns).row(row);
-  write_energies(time);
+  if (structure_.parameters().analysis == Parameters::Analysis::dynamic) write_energies(time);
+  if (const auto& d = structure_.deflection())
+    series(static_, "static.csv",
+           {"time [s]", "largest [m]", "largest by modes [m]", "largest difference [m]"})
+        .row(std::vector<double>{time, d->direct, d->by_modes, d->apart});
   if (probes_.empty()) return;
   columns = {"time [s]"};
   row = {time};

@@ -42,7 +42,7 @@ class PlateResults final {
   Mesh surface_;  // the whole surface on rank 0
   std::vector<SurfacePlace> probes_;
   std::optional<FieldWriter> fields_;
-  std::optional<Series> modal_, energies_, contact_, probe_series_;
+  std::optional<Series> modal_, energies_, contact_, probe_series_, static_;
 };
 
 }  // namespace couplet::plate

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plate_modal/share.hpp"
 
+#include <numbers>
+
 #include "common/base/error.hpp"
 #include "common/mesh/on_root.hpp"
 
@@ -49,10 +51,11 @@ const double* flat_data(const std::vector<Vec3>& values) {
 }  // namespace
 
 Share::Share(MPI_Comm comm, const ModalModel& whole)
-    : comm_(comm), omega_(whole.omega), participation_(whole.participation), mass_(whole.mass) {
+    : comm_(comm), omega_(whole.frequency), participation_(whole.participation), mass_(whole.mass) {
   std::vector<double> sizes{double(whole.faces.size()), double(whole.vertices.size()), whole.mass};
   broadcast(comm, sizes);
   broadcast(comm, omega_);
+  for (double& omega : omega_) omega *= 2 * std::numbers::pi;
   broadcast(comm, participation_);
   mass_ = sizes[2];
   face_counts_ = shares(comm, std::size_t(sizes[0]));

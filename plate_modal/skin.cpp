@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace couplet::plate {
 namespace {
@@ -101,7 +102,8 @@ ModalModel skin_of(const PlateModel& plate, const EigenModes& modes, const Place
   const std::vector<double> height = half_thickness(plate);
   const Shapes shapes(plate, modes, placement);
   ModalModel model;
-  for (const double value : modes.eigenvalue) model.omega.push_back(std::sqrt(std::max(0., value)));
+  for (const double value : modes.eigenvalue)
+    model.frequency.push_back(std::sqrt(std::max(0., value)) / (2 * std::numbers::pi));
   std::vector<double> signs;
   if (wetted != Wetted::lower) signs.push_back(1);
   if (wetted != Wetted::upper) signs.push_back(-1);

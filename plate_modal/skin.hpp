@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Geometry>
+
 #include "common/modes/modal_model.hpp"
 #include "plate_modal/plate_model.hpp"
 

@@ -30,6 +30,11 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
     if (built_.reused)
       log::info("modes of {} are used again", (context_.output_folder / "modes.h5").string());
   }
+  if (p.analysis == Parameters::Analysis::static_ && share_->omega().front() == 0)
+    throw Error(
+        "The structure moves as a rigid body (mode 1 has no frequency): a static analysis needs supports "
+        "that hold "
+        "it.");
   gravity_.assign(share_->n_modes(), 0);
   if (!p.gravity.empty()) gravity_ = share_->participation(Vec3(p.gravity.data()));
   if (p.contact)
@@ -116,17 +121,21 @@ Exchange Structure::solve(const Exchange& in) {
   Exchange out;
   std::vector<double> u = share_->gather_vertices(trial_.q), v = share_->gather_vertices(trial_.v);
   if (comm_rank(context_.comm) != 0) return out;
+  trial_largest_ = 0;
+  for (std::size_t i = 0; i < u.size(); i += 3) trial_largest_ = std::max(trial_largest_, Vec3(&u[i]).norm());
   out["displacement"] = std::move(u);
   out["velocity"] = std::move(v);
   if (parameters_.surface_density) out["surface-density"] = built_.model.face_density;
   return out;
 }
 
-void Structure::accept_step() {
+StepReport Structure::accept_step() {
   std::swap(state_, trial_);
+  largest_ = std::max(largest_, trial_largest_);
   const Energies& e = state_.energies;
   worst_mismatch_ = std::max(worst_mismatch_, std::abs(e.mismatch()));
   largest_exchange_ = std::max({largest_exchange_, e.kinetic + e.strain + e.contact, std::abs(e.load_work)});
+  return {.dt = step_.dt, .iterations = oscillators_->newton_iterations(), .energy = e.total()};
 }
 
 std::vector<double> Structure::displacement() const {
@@ -138,12 +147,28 @@ void Structure::write_output(double time, int) { results_->write_fields(time); }
 void Structure::write_monitors(double time) { results_->write_series(time); }
 
 std::vector<std::string> Structure::judge_left_out_effects() {
-  if (parameters_.analysis != Parameters::Analysis::dynamic || !(largest_exchange_ > 0)) return {};
+  std::vector<std::string> sentences;
+  double size = 0;
+  for (const Vec3& x : built_.model.vertices)
+    size = std::max(size, (x - built_.model.vertices.front()).norm());
+  if (largest_ > 0.25 * size && share_->omega().front() > 0)  // a body that moves as a whole may go far
+    sentences.push_back(
+        fmt::format("large displacements: up to {:.3g} m of a structure of {:.3g} m; modes are linear and "
+                    "know no rotations beyond "
+                    "a few tenths. Judge the result with care or take a program for finite strain.",
+                    largest_, size));
+  if (built_.held_all_round && largest_ > 0.5 * parameters_.thickness)
+    sentences.push_back(
+        fmt::format("stretch: the plate is held all round and deflects by {:.3g} m, {:.2g} of its thickness; "
+                    "its stretch, which is "
+                    "left out, would stiffen it noticeably.",
+                    largest_, largest_ / parameters_.thickness));
+  if (parameters_.analysis != Parameters::Analysis::dynamic || !(largest_exchange_ > 0)) return sentences;
   const double share = worst_mismatch_ / largest_exchange_;
-  std::vector<std::string> sentences{
+  sentences.push_back(
       fmt::format("energy: the balance of the structure (4.29-4.31) is off by at most {:.2e} J, {:.2g} % of "
                   "the largest energy.",
-                  worst_mismatch_, 100 * share)};
+                  worst_mismatch_, 100 * share));
   if (share > 0.01)
     sentences.push_back(
         "The time scheme took or made more than 1 % of the energy: take a smaller step, or 'trapezoidal' "

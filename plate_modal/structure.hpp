@@ -27,7 +27,7 @@ class Structure final : public Participant {
   Interface initialise() override;
   void begin_step(const Step& step) override { step_ = step; }
   Exchange solve(const Exchange& in) override;
-  void accept_step() override;
+  StepReport accept_step() override;
   void save(CheckpointWriter& file) const override;
   void load(CheckpointReader& file) override;
   void write_output(double time, int number) override;
@@ -40,6 +40,12 @@ class Structure final : public Participant {
   const ModalState& state() const { return state_; }
   const ModalModel& model() const { return built_.model; }  ///< on rank 0
   const Contact* contact() const { return contact_.get(); }
+  /// Static analysis: largest deflections of the plate itself and by its modes, largest difference [m]; rank
+  /// 0.
+  struct Deflection {
+    double direct = 0, by_modes = 0, apart = 0;
+  };
+  const std::optional<Deflection>& deflection() const { return deflection_; }
   /// Displacement of every vertex now [m], 3 each, on rank 0. Collective.
   std::vector<double> displacement() const;
 
@@ -60,8 +66,10 @@ class Structure final : public Participant {
   std::vector<double> gravity_;
   ModalState state_, trial_;
   std::vector<double> direct_;  // static deflection of the plate itself, 3 a vertex on rank 0
+  std::optional<Deflection> deflection_;
   Step step_;
   double worst_mismatch_ = 0, largest_exchange_ = 0;
+  double largest_ = 0, trial_largest_ = 0;  // displacement of any vertex [m], on rank 0
   std::unique_ptr<PlateResults> results_;
 };
 

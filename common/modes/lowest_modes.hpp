@@ -28,11 +28,12 @@ struct EigenModes {
   double worst_residual = 0;               ///< |K x - lambda M x| / |lambda - shift|
 };
 
-/// The lowest `n` modes by shift-invert Krylov-Schur about `shift` < 0 [slepc], K symmetric and not negative,
-/// M symmetric and not negative (rows of M may be zero: K alone holds them). That none was missed is checked
-/// by the number of negative pivots of K - s M above the last mode (Sylvester's law of inertia), which
-/// repeated eigenvalues make necessary. Throws Error if there are fewer modes than asked for, SolveFailure if
-/// the iteration fails or modes stay hidden. Needs a SlepcEnvironment. Collective over the matrices' ranks.
+/// The lowest `n` modes by shift-invert Krylov-Schur about `shift` < 0 [hernandez2005], K symmetric and not
+/// negative, M symmetric and not negative (rows of M may be zero: K alone holds them). That none was missed
+/// is checked by the number of negative pivots of K - s M above the last mode (Sylvester's law of inertia),
+/// which repeated eigenvalues make necessary. Throws Error if there are fewer modes than asked for,
+/// SolveFailure if the iteration fails or modes stay hidden. Needs a SlepcEnvironment. Collective over the
+/// matrices' ranks.
 EigenModes lowest_modes(const SparseMatrix& stiffness, const SparseMatrix& mass, int n, double shift);
 
 /// Modes whose eigenvalues differ by less than `tolerance` of the larger one, as the last one that is kept

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 
@@ -59,9 +61,9 @@ std::string problem_of(const ModalModel& model) {
   if (n == 0) return "it holds no mode";
   if (faces == 0) return "its surface has no face";
   for (std::size_t m = 0; m < n; ++m) {
-    if (!std::isfinite(model.omega[m]) || model.omega[m] < 0)
-      return fmt::format("the frequency of mode {} is {} Hz", m + 1, model.omega[m] / (2 * M_PI));
-    if (m > 0 && model.omega[m] < model.omega[m - 1])
+    if (!std::isfinite(model.frequency[m]) || model.frequency[m] < 0)
+      return fmt::format("the frequency of mode {} is {} Hz", m + 1, model.frequency[m]);
+    if (m > 0 && model.frequency[m] < model.frequency[m - 1])
       return fmt::format("mode {} has a lower frequency than the mode before it", m + 1);
   }
   if (model.vertex_shape.size() != vertices * 3 * n)

@@ -16,7 +16,7 @@ namespace couplet {
 struct ModalModel {
   std::vector<Vec3> vertices;  ///< of the surface, undeformed [m]
   Csr faces;  ///< vertices of each face (3 or 4), turning right-handed about the outward normal
-  std::vector<double> omega;  ///< angular frequency of each mode [rad/s], ascending; 0: a rigid motion
+  std::vector<double> frequency;  ///< of each mode [Hz], ascending; 0: a rigid motion
   /// phi at each vertex and its mean over each face: component c of entry i in mode m stands at
   /// [(3 i + c) modes + m] [1/sqrt(kg)].
   std::vector<double> vertex_shape, face_shape;
@@ -25,7 +25,7 @@ struct ModalModel {
   double mass = 0;                   ///< of the structure [kg]
   std::vector<double> face_density;  ///< mass a face stands for, over its area [kg/m^2]
 
-  std::size_t n_modes() const { return omega.size(); }
+  std::size_t n_modes() const { return frequency.size(); }
 };
 
 /// Centre (mean of the vertices) and area vector, outwards, of each face.

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/modes/modes_file.hpp"
 
-#include <cmath>
-#include <numbers>
-
 #include "common/base/error.hpp"
 #include "common/io/hdf5.hpp"
 
@@ -62,8 +59,7 @@ ModalModel read_model(hid_t id) {
   ModalModel model;
   if (!hdf5::exists(id, "frequency")) throw Error("it has no table 'frequency'");
   const std::size_t n = hdf5::table_length(id, "frequency");
-  model.omega = read(id, "frequency", n, 1);
-  for (double& f : model.omega) f *= 2 * std::numbers::pi;
+  model.frequency = read(id, "frequency", n, 1);
   if (!hdf5::exists(id, "surface/vertices")) throw Error("it has no table 'surface/vertices'");
   const std::size_t vertices = hdf5::table_length(id, "surface/vertices");
   const std::vector<double> places = read(id, "surface/vertices", vertices, 3);
@@ -97,12 +93,11 @@ void write_modes(const std::filesystem::path& file, const ModalModel& model, con
     hdf5::write_attribute(id, "version", double(format_version));
     hdf5::write_attribute(id, "key", key);
     hdf5::write_attribute(id, "mass", model.mass);
-    std::vector<double> frequency = model.omega, places;
-    for (double& f : frequency) f /= 2 * std::numbers::pi;
+    std::vector<double> places;
     for (const Vec3& x : model.vertices) places.insert(places.end(), x.begin(), x.end());
     const std::vector<std::int64_t> offset(model.faces.offset.begin(), model.faces.offset.end());
     const std::vector<std::int64_t> vertex(model.faces.index.begin(), model.faces.index.end());
-    write(id, "frequency", frequency, 1);
+    write(id, "frequency", model.frequency, 1);
     write(id, "surface/vertices", places, 3);
     hdf5::write_table(id, "surface/face-offset", rows(offset.size(), 1), offset.data());
     hdf5::write_table(id, "surface/face-vertex", rows(vertex.size(), 1), vertex.data());
@@ -126,8 +121,10 @@ ModalModel read_modes(const std::filesystem::path& file) {
     const hdf5::Handle id = hdf5::open_file_to_read(file);
     return read_model(id);
   } catch (const Error& error) {
+    std::string reason = error.what();
+    if (reason.ends_with('.')) reason.pop_back();
     throw Error("The file of modes '{}' cannot be used: {}. docs/formats.md says what it must hold.",
-                file.string(), error.what());
+                file.string(), reason);
   }
 }
 

@@ -4,6 +4,7 @@ import pathlib
 from dataclasses import dataclass, field
 
 import plant_table
+import plate_table
 import tank_table
 
 
@@ -484,5 +485,6 @@ couplet: The job cannot start:
 
 RIGHT_TANK, TANK = tank_table.cases(Case, RUN)
 RIGHT_PLANT, PLANT = plant_table.cases(Case, RUN)
-RIGHT += RIGHT_TANK + RIGHT_PLANT
-CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + HEAT + FLUID + COUPLING + COMMAND_LINE + MESH + TANK + PLANT
+RIGHT_PLATE, PLATE = plate_table.cases(Case, RUN)
+RIGHT += RIGHT_TANK + RIGHT_PLANT + RIGHT_PLATE
+CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + HEAT + FLUID + COUPLING + COMMAND_LINE + MESH + TANK + PLANT + PLATE

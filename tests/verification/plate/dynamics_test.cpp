@@ -16,10 +16,11 @@ const Oscillators::LoadAt no_load = [](double, std::span<double> load) { std::ra
 
 /// Error of one mode of 2 pi rad/s with damping ratio z under a harmonic load after 1.3 s.
 double error_after(TimeScheme scheme, double dt, double z) {
-  const double w = 2 * std::numbers::pi, force = 3, drive = 4;
+  const double w = 2 * std::numbers::pi;
+  constexpr double force = 3, drive = 4;
   Oscillators one({w}, {2 * z * w}, {0}, {scheme}, nullptr);
   ModalState now = one.start({0.7}, {0.2}), next = now;
-  const auto load = [&](double t0) {
+  const auto load = [](double t0) {
     return [t0](double t, std::span<double> q) { q[0] = force * std::cos(drive * (t0 + t)); };
   };
   const int steps = static_cast<int>(std::lround(1.3 / dt));

@@ -19,6 +19,8 @@ struct Reference {
   std::vector<double> lambda;  // in ascending order
 };
 
+void PrintTo(const Reference& r, std::ostream* out) { *out << r.name; }
+
 RawMesh triangles(int n) { return square(n, BoxCells::triangles); }
 RawMesh quadrilaterals(int n) { return square(n, BoxCells::quadrilaterals); }
 

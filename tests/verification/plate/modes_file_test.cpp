@@ -137,8 +137,9 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
     return message();
   };
   EXPECT_EQ(damaged([](ModalModel&) {}), "");
-  EXPECT_NE(damaged([](ModalModel& m) { m.omega[3] = -1; }).find("frequency of mode 4"), std::string::npos);
-  EXPECT_NE(damaged([](ModalModel& m) { m.omega[3] = 0.5 * m.omega[2]; }).find("lower frequency"),
+  EXPECT_NE(damaged([](ModalModel& m) { m.frequency[3] = -1; }).find("frequency of mode 4"),
+            std::string::npos);
+  EXPECT_NE(damaged([](ModalModel& m) { m.frequency[3] = 0.5 * m.frequency[2]; }).find("lower frequency"),
             std::string::npos);
   EXPECT_NE(damaged([](ModalModel& m) { m.vertex_shape[5] = NAN; }).find("no number"), std::string::npos);
   EXPECT_NE(damaged([](ModalModel& m) { m.faces.index[4] = 999; }).find("names vertex 999"),

@@ -2,6 +2,8 @@
 // Plates that several tests share.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <numbers>

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wrong plates; joined by table.py."""
+
+
+def cases(Case, run):
+    """The right ones and the wrong ones."""
+    def plate(name, message, *edits, **more):
+        return Case(name, "plate_modal", message, "plate", list(edits), **more)
+
+    right = [
+        plate("right plate", "", exit_code=0),
+        plate("right plate that runs", "", exit_code=0, **run),
+    ]
+    wrong = [
+        plate("plate without mesh or modes", """
+case.yaml:4:3: participants.plate.mesh: give either 'mesh' (of the mid-surface) or 'modes.file' (modes of another program).
+""", ("    mesh: square.msh\n", "")),
+        plate("plate with mesh and modes", """
+case.yaml:6:5: participants.plate.mesh: give either 'mesh' (of the mid-surface) or 'modes.file' (modes of another program).
+""", ("modes: {number: 3}", "modes: {number: 3, file: modes.h5}")),
+        plate("plate without thickness", """
+case.yaml:6:5: participants.plate.mesh: a plate needs 'thickness' above 0.
+""", ("    thickness: 1 cm\n", "")),
+        plate("plate without density", """
+case.yaml:6:5: participants.plate.mesh: a plate needs 'material.density' above 0.
+""", ("density: 1000, ", "")),
+        plate("axes of a plate that are not at right angles", """
+case.yaml:9:17: participants.plate.placement.x-axis: x-axis and y-axis must be of length 1 and at right angles.
+""",
+              ("    thickness: 1 cm\n", "    thickness: 1 cm\n    placement: {x-axis: [1, 0, 0], y-axis: [1, 0, 0]}\n")),
+        plate("edge held in an unknown way", """
+case.yaml:10:16: participants.plate.boundaries.bottom.type: 'clampd' is not one of: free, clamped, simply-supported, symmetry. Did you mean 'clamped'?
+""", ("bottom: {type: clamped}", "bottom: {type: clampd}")),
+        plate("conserving contact with another scheme", """
+case.yaml:16:5: participants.plate.contact: 'rule: conserving' goes with the trapezoidal time scheme; take 'rule: midpoint'.
+""",
+              ("modes: {number: 3}", "modes: {number: 3}\n    time-scheme: {type: bathe}")),
+        plate("contact in a static analysis", """
+case.yaml:16:5: participants.plate.contact: contact is part of a dynamic analysis; remove it.
+""", ("    mesh:", "    analysis: static\n    mesh:")),
+        plate("damping in a modal analysis", """
+case.yaml:7:5: participants.plate.damping: damping has no effect in this analysis; remove it.
+""", ("    mesh:", "    analysis: modal\n    damping: {ratio: 0.1}\n    mesh:"),
+              ("    contact: {height: -1 cm}\n", "")),
+        plate("direction of a seat without length 1", """
+case.yaml:15:30: participants.plate.contact.direction: it must have length 1.
+""", ("{height: -1 cm}", "{height: -1 cm, direction: [0, 0, 2]}")),
+        plate("height of a seat that cannot be read", """
+case.yaml:15:15: participants.plate.contact.height: the expression '0.1 * r' cannot be read at column 7: unknown name 'r'. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
+""", ("{height: -1 cm}", "{height: 0.1 * r}")),
+        plate("gravity of two components", """
+case.yaml:15:5: participants.plate.gravity: expected a list of 3 entries, found 2.
+""", ("modes: {number: 3}", "modes: {number: 3}\n    gravity: [0, -9.81]")),
+        plate("amplitudes of modes that are not kept", """
+case.yaml:15:5: participants.plate.initial-amplitudes: 4 amplitudes are given for 3 modes.
+""",
+              ("modes: {number: 3}", "modes: {number: 3}\n    initial-amplitudes: [1, 2, 3, 4]")),
+        plate("seat of unknown stiffness", """
+case.yaml:14:5: participants.plate.contact: with 'modes.file' the material is not known: give 'stiffness'.
+""", ("mesh: square.msh", "thickness: 1 cm"), ("    thickness: 1 cm\n    boundaries", "    boundaries"),
+              ("modes: {number: 3}", "modes: {number: 3, file: modes.h5}")),
+        plate("edge of a plate without an entry", """
+[plate 0] error: participants.plate.boundaries: patch 'top' has no entry; give it type: free, clamped, simply-supported or symmetry.
+""", ("      top: {type: free}\n", ""), **run),
+        plate("edge of a plate that is not there", """
+[plate 0] error: participants.plate.boundaries: the mesh has no patch 'tip'; it has 'left', 'right', 'bottom', 'top'.
+""", ("      top: {type: free}\n", "      top: {type: free}\n      tip: {type: free}\n"), **run),
+        plate("zone of a plate that is not there", """
+[plate 0] error: participants.plate.zones: the mesh has no zone 'rim'; it has 'inside'.
+""",
+              ("    boundaries:", "    zones: {rim: {thickness: 1 mm}}\n    boundaries:"), **run),
+        plate("more modes than a plate has", """
+[plate 0] error: 300 modes are asked for; the model has 27 unknowns. Ask for fewer or refine it.
+""", ("number: 3", "number: 300"), **run),
+        plate("modes of a file that is not there", """
+[plate 0] error: The file of modes 'modes.h5' does not exist. The path is relative to the folder of the YAML file.
+""", ("mesh: square.msh", "surface-density: true"),
+              ("modes: {number: 3}", "modes: {number: 3, file: modes.h5}"), ("    contact: {height: -1 cm}\n", ""), **run),
+        plate("modes of a file of another kind", """
+[plate 0] error: The file of modes 'square.msh' cannot be used: HDF5 could not open 'square.msh' (file signature not found). docs/formats.md says what it must hold.
+""", ("mesh: square.msh", "surface-density: true"),
+              ("modes: {number: 3}", "modes: {number: 3, file: square.msh}"), ("    contact: {height: -1 cm}\n", ""), **run),
+        plate("static analysis of a plate that nothing holds", """
+[plate 0] error: The structure moves as a rigid body (mode 1 has no frequency): a static analysis needs supports that hold it.
+""", ("    mesh:", "    analysis: static\n    mesh:"),
+              ("bottom: {type: clamped}", "bottom: {type: free}"), ("    contact: {height: -1 cm}\n", ""), **run),
+        plate("seat where there is no plate", """
+[plate 0] error: contact: no face of the structure looks at the seat. Check 'direction' and 'where'.
+""", ("{height: -1 cm}", "{height: -1 cm, where: x - 3}"), **run),
+        plate("probe far from the plate", """
+[plate 0] error: probes.tip: (0, 2, 0) is 1 m away from the surface of the structure.
+""",
+              ("modes: {number: 3}", "modes: {number: 3}\n    probes: {tip: {point: [0, 2, 0]}}"), **run),
+    ]
+    return right, wrong

@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""A plate that is stopped in the middle of a contact and continued gives the same bytes as one that was not stopped.
+Usage: restart.py alone|coupled CONFIGS BIN"""
+import csv
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+KIND, CONFIGS, BIN = sys.argv[1], *map(pathlib.Path, sys.argv[2:4])
+SEAT = "{height: -0.0202, direction: [-1, 0, 0], stiffness: 1e5}"
+CASES = {
+    # The sheet meets its seat at about 31 ms.
+    "alone": ("plate-drop", ["plate_modal"], "sheet",
+              ["simulation.time-step=1e-3", "simulation.end-time=0.04", "simulation.checkpoint={interval: 1e-3, keep: 100}",
+               "simulation.output.interval=0", "participants.sheet.modes.number=12",
+               "participants.sheet.contact.scale=1e-8"]),
+    "coupled": ("thin-plate", ["coupler", "fluid_solver", "plate_modal", "mesh_mover"], "structure",
+                ["simulation.end-time=0.16", "simulation.checkpoint={interval: 0.02, keep: 100}",
+                 "simulation.output.interval=0", "participants.fluid.mesh-parameters={n: 4, growth: 1.6}",
+                 "participants.mover.mesh-parameters={n: 4, growth: 1.6}",
+                 "participants.structure.mesh-parameters={n: 8}", f"participants.structure.contact={SEAT}"]),
+}
+
+
+def run(folder, programs, case, sets, restart=None):
+    command = ["mpirun", "--oversubscribe"]
+    for i, program in enumerate(programs):
+        command += [":"] * (i > 0) + ["-n", "1", BIN / program, case, f"--set=simulation.output.folder={folder}"]
+        command += [f"--set={s}" for s in sets] + (["--restart", restart] if restart else [])
+    result = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=500)
+    if result.returncode != 0:
+        sys.exit(f"{programs}: exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-2000:]}")
+
+
+def main():
+    name, programs, participant, sets = CASES[KIND]
+    with tempfile.TemporaryDirectory(prefix="couplet-plate-") as scratch:
+        here = pathlib.Path(scratch)
+        shutil.copytree(CONFIGS / name, here / "case", ignore=shutil.ignore_patterns("out*"))
+        case = here / "case" / "case.yaml"
+        whole = here / "whole"
+        run(whole, programs, case, sets)
+        rows = list(csv.DictReader((whole / participant / "contact.csv").open()))
+        touching = [i for i, row in enumerate(rows) if float(row["energy [J]"]) > 0]
+        inside = [i for i in touching if i > 0 and i + 2 < len(rows)]
+        if not inside:
+            sys.exit(f"the structure never touches its seat: {rows}")
+        step = inside[0] + 1  # the first step has row 0
+        print(f"stopped after step {step} of {len(rows)}, while {rows[step - 1]['energy [J]']} J are in the seat")
+        # The continued run must not see what lies after the stop.
+        again = here / "again"
+        shutil.copytree(whole, again)
+        kept = again / "checkpoints" / f"step-{step:08d}"
+        for folder in (again / "checkpoints").iterdir():
+            if folder != kept:
+                shutil.rmtree(folder)
+        run(again, programs, case, sets, kept)
+        for file in ("modal.csv", "energies.csv", "contact.csv", "probes.csv"):
+            a, b = ((f / participant / file).read_bytes() for f in (whole, again))
+            if a != b:
+                sys.exit(f"{file} differs after the restart")
+        print(f"{len(rows)} rows of four files are the same bit for bit")
+
+
+main()
