@@ -50,6 +50,13 @@ def main():
             sys.exit(f"the structure never touches its seat: {rows}")
         step = inside[0] + 1  # the first step has row 0
         print(f"stopped after step {step} of {len(rows)}, while {rows[step - 1]['energy [J]']} J are in the seat")
+        if KIND == "coupled":
+            audit = list(csv.DictReader((whole / participant / "energies.csv").open()))
+            impact = max(float(row["energy [J]"]) for row in rows)
+            mismatch = max(abs(float(row["mismatch [J]"])) for row in audit)
+            print(f"mismatch of the energies {mismatch:.2e} J, {100 * mismatch / impact:.2e} % of the impact's {impact:.3g} J")
+            if mismatch > 0.01 * impact:
+                sys.exit("the energies of the structure do not balance")
         # The continued run must not see what lies after the stop.
         again = here / "again"
         shutil.copytree(whole, again)
