@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A plate that is stopped in the middle of a contact and continued gives the same bytes as one that was not stopped.
+"""A plate that is stopped in the middle of a contact and continued gives the same bytes as one that was not stopped. With a
+fluid in three dimensions, whose multigrid starts anew, the same to 1e-8 of the largest value.
 Usage: restart.py alone|coupled CONFIGS BIN"""
 import csv
 import pathlib
@@ -66,10 +67,23 @@ def main():
                 shutil.rmtree(folder)
         run(again, programs, case, sets, kept)
         for file in ("modal.csv", "energies.csv", "contact.csv", "probes.csv"):
-            a, b = ((f / participant / file).read_bytes() for f in (whole, again))
-            if a != b:
-                sys.exit(f"{file} differs after the restart")
-        print(f"{len(rows)} rows of four files are the same bit for bit")
+            compare(file, *((f / participant / file).read_text() for f in (whole, again)))
+        print(f"{len(rows)} rows of four files are the same")
+
+
+def compare(file, whole, again):
+    if KIND == "alone":
+        if whole != again:
+            sys.exit(f"{file} differs after the restart")
+        return
+    a, b = (list(csv.reader(text.splitlines())) for text in (whole, again))
+    if a[0] != b[0] or len(a) != len(b):
+        sys.exit(f"{file} has other columns or rows after the restart")
+    size = max(abs(float(v)) for row in a[1:] for v in row[1:])
+    apart = max(abs(float(x) - float(y)) for row, other in zip(a[1:], b[1:]) for x, y in zip(row, other))
+    print(f"{file}: apart by {apart / size:.1e} of its largest value")
+    if apart > 1e-8 * size:
+        sys.exit(f"{file} differs after the restart")
 
 
 main()
