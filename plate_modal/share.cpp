@@ -65,6 +65,8 @@ Share::Share(MPI_Comm comm, const ModalModel& whole)
     interface_.vertices = whole.vertices;
     interface_.face_centres = face_centres(whole);
     interface_.face_areas = face_areas(whole);
+    interface_.face_offset = whole.faces.offset;
+    interface_.face_vertices = whole.faces.index;
   }
   const int width = 3 * n_modes();
   centres_ = vectors(scatter(comm, face_counts_, 3, flat_data(interface_.face_centres)));
