@@ -13,7 +13,7 @@ RIGIDITY = 200e9 * 0.01 ** 3 / (12 * (1 - 0.3 ** 2))
 
 def settings(n, modes, quadrilaterals=0):
     return {"participants.plate.mesh-parameters": f"{{n: {n}, quadrilaterals: {quadrilaterals}}}",
-            "participants.plate.modes.number": modes, "participants.plate.output.fields": "false"}
+            "participants.plate.modes.number": modes, "participants.plate.output": "{fields: false}"}
 
 
 SERIES = {
