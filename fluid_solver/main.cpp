@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 #include "common/mesh/load.hpp"
+#include "fluid_solver/effect_cards.hpp"
 #include "fluid_solver/participant.hpp"
 
 int main(int argc, char** argv) {
@@ -22,6 +23,12 @@ int main(int argc, char** argv) {
             return couplet::fluid::make_participant(
                 std::move(mesh), parameters, {context.name, context.output_folder, context.restart_time},
                 link);
+          },
+      .effects =
+          [&](const couplet::EffectScene& scene) {
+            return couplet::effects_of(
+                couplet::fluid::fluid_effect_cards(),
+                couplet::fluid::FluidScene{parameters, scene.has_mover, scene.coupled});
           }};
   return couplet::run_program(argc, argv, program);
 }

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
 #include "fluid_solver/derived.hpp"
+#include "fluid_solver/effect_cards.hpp"
 #include "fluid_solver/state_io.hpp"
 
 namespace couplet::fluid {
@@ -148,22 +151,18 @@ void FluidParticipant<D>::write_monitors(double time) {
 
 template <int D>
 std::vector<std::string> FluidParticipant<D>::judge_left_out_effects() {
-  const double peclet = fluid_->largest_peclet();
-  double yplus = 0;
+  FluidEvidence evidence{.largest_peclet = fluid_->largest_peclet(), .largest_yplus = 0};
   for (const Patch& patch : mesh_.patches)
     if (is_wall(fluid_->parameters().boundaries.at(patch.name).type))
-      yplus = std::max(yplus, summarise_wall(*fluid_, patch).largest_yplus);
-  const std::string numbers =
-      fmt::format("the largest cell Reynolds number is {:.3g}, the largest y+ {:.3g}", peclet, yplus);
-  if (fluid_->parameters().turbulence)
-    return {fmt::format("Turbulence model: {}{}", numbers,
-                        yplus < 2
-                            ? "; the walls are resolved."
-                            : ". There is no wall function: y+ should be about 1, refine at the walls.")};
-  return {fmt::format(
-      "No turbulence model: {}{}", numbers,
-      peclet < 50 ? "; the mesh resolves the flow, leaving it out was sound."
-                  : ". Steep layers may be finer than the mesh: refine it or read the result with care.")};
+      evidence.largest_yplus = std::max(evidence.largest_yplus, summarise_wall(*fluid_, patch).largest_yplus);
+  double speed = 0;
+  for (const Vec<D>& u : fluid_->state().u) speed = std::max(speed, u.squaredNorm());
+  evidence.largest_speed = std::sqrt(max(mesh_.comm, speed));
+  const FluidScene scene{fluid_->parameters(), fluid_->moving(), step_.scheme != Scheme::standalone};
+  std::vector<std::string> sentences;
+  for (const EffectVerdict& verdict : audit(fluid_effect_cards(), scene, evidence))
+    sentences.push_back(text(verdict));
+  return sentences;
 }
 
 template class FluidParticipant<2>;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
+#include "mesh_mover/effect_cards.hpp"
 #include "mesh_mover/mover.hpp"
 
 int main(int argc, char** argv) {
@@ -11,6 +12,10 @@ int main(int argc, char** argv) {
       .make =
           [&](const couplet::ParticipantContext& context) {
             return std::make_unique<couplet::mesh_mover::Mover>(parameters, context);
+          },
+      .effects =
+          [&](const couplet::EffectScene&) {
+            return couplet::effects_of(couplet::mesh_mover::effect_cards(), parameters);
           }};
   return couplet::run_program(argc, argv, program);
 }

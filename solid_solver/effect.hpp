@@ -10,6 +10,7 @@
 #include "common/fv/elasticity.hpp"
 #include "common/io/field_writer.hpp"
 #include "common/mesh/mesh.hpp"
+#include "solid_solver/effect_cards.hpp"
 #include "solid_solver/parameters.hpp"
 
 namespace couplet {
@@ -44,7 +45,9 @@ class SolidEffect {
   virtual void add_face_stress(Index /*first*/, std::span<Tensor3> /*stress*/) const {}
   /// Appends fields at the accepted time; their values must live until the next call.
   virtual void add_fields(std::vector<OutputField>& /*fields*/) {}
-  /// For Participant::judge_left_out_effects().
+  /// Adds what it has seen, for the verdicts on what was left out. Collective.
+  virtual void add_evidence(SolidEvidence& /*evidence*/) const {}
+  /// For Participant::judge_left_out_effects(), beside the verdicts of the cards.
   virtual void judge(std::vector<std::string>& /*sentences*/) const {}
 };
 

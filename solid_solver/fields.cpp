@@ -8,6 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/effect_cards.hpp"
 #include "solid_solver/output.hpp"
 #include "solid_solver/solid.hpp"
 #include "solid_solver/system.hpp"
@@ -131,25 +132,19 @@ void Solid::judge_inertia() {
 
 std::vector<std::string> Solid::judge_left_out_effects() {
   largest_gradient_ = std::max(largest_gradient_, largest_gradient(point_displacement()));
+  SolidEvidence evidence{.largest_gradient = largest_gradient_};
+  if (!is_dynamic() && state_.steps > 1) evidence.inertia_over_load = inertia_over_load_;
+  for (const auto& effect : effects_) effect->add_evidence(evidence);
   std::vector<std::string> sentences;
-  const double g = largest_gradient_;
-  sentences.push_back(
-      fmt::format("geometric non-linearity left out: the largest displacement gradient seen is "
-                  "{:.2g}; {}.",
-                  g,
-                  g < 0.02  ? "that is small, leaving it out was sound"
-                  : g < 0.1 ? "errors of some per cent are to be expected"
-                            : "it would matter"));
-  if (!is_dynamic() && state_.steps > 1)
-    sentences.push_back(fmt::format(
-        "inertia left out (static): it would have reached {:.2g} of the load; {}.", inertia_over_load_,
-        inertia_over_load_ < 0.01 ? "leaving it out was sound" : "use 'analysis: dynamic'"));
+  for (const EffectVerdict& verdict : audit(solid_effect_cards(), parameters_, evidence))
+    sentences.push_back(text(verdict));
   if (is_dynamic() && !parameters_.damping)
     sentences.push_back(
         "structural damping left out: free vibration does not decay, and modes that the time step resolves "
-        "may "
-        "grow; a little 'damping: {stiffness: ...}' or 'time-scheme: {type: bathe}' would stop that, "
-        "'output: {spectrum: true}' tells the rate on a coarse mesh of the same kind.");
+        "may grow; a "
+        "little 'damping: {stiffness: ...}' or 'time-scheme: {type: bathe}' would stop that, 'output: "
+        "{spectrum: true}' "
+        "tells the rate on a coarse mesh of the same kind.");
   for (const auto& effect : effects_) effect->judge(sentences);
   return sentences;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 #include "common/mesh/load.hpp"
+#include "solid_solver/effect_cards.hpp"
 #include "solid_solver/solid.hpp"
 #include "solid_solver/thermal_solid.hpp"
 
@@ -19,6 +20,10 @@ int main(int argc, char** argv) {
         if (parameters.analysis == couplet::SolidParameters::Analysis::thermal)
           return std::make_unique<couplet::ThermalSolid>(std::move(mesh), parameters, where);
         return std::make_unique<couplet::Solid>(std::move(mesh), parameters, where);
-      }};
+      },
+      .effects =
+          [&](const couplet::EffectScene&) {
+            return couplet::effects_of(couplet::solid_effect_cards(), parameters);
+          }};
   return couplet::run_program(argc, argv, program);
 }

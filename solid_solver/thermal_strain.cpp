@@ -345,18 +345,11 @@ void ThermalStrain::load(CheckpointReader& file) {
 
 void ThermalStrain::judge(std::vector<std::string>& sentences) const {
   if (heat_) heat_->judge(sentences);
-  if (const double number = coupling_number(); number > 0 && !coupled_)
-    sentences.push_back(fmt::format(
-        "thermoelastic coupling left out: heat of deformation would stiffen the solid by {:.1e}; {}.", number,
-        number < 0.05 ? "leaving it out was sound" : "'thermoelastic-coupling: true' takes it into account"));
-  if (expands()) return;
-  const double lowest = min(mesh_->comm, lowest_), highest = max(mesh_->comm, highest_);
-  sentences.push_back(fmt::format(
-      "thermal strain left out: temperatures from {:.6g} to {:.6g} K were seen; with a coefficient of 1e-5 "
-      "1/K "
-      "they would strain a free body by {:.2g}, to be compared with the displacement gradient above; "
-      "'thermal-expansion' takes it into account.",
-      lowest, highest, 1e-5 * (highest - lowest)));
+}
+
+void ThermalStrain::add_evidence(SolidEvidence& evidence) const {
+  if (const double number = coupling_number(); number > 0) evidence.coupling_number = number;
+  evidence.temperature_range = max(mesh_->comm, highest_) - min(mesh_->comm, lowest_);
 }
 
 }  // namespace couplet

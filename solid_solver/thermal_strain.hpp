@@ -43,6 +43,7 @@ class ThermalStrain final : public SolidEffect {
   void add_cell_stress(std::span<Tensor3> stress) const override;
   void add_face_stress(Index first, std::span<Tensor3> stress) const override;
   void add_fields(std::vector<OutputField>& fields) override;
+  void add_evidence(SolidEvidence& evidence) const override;
   void judge(std::vector<std::string>& sentences) const override;
 
   /// None: the temperature is prescribed.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
+#include "thermocline/effect_cards.hpp"
 #include "thermocline/elsewhere.hpp"
 
 int main(int argc, char** argv) {
@@ -12,6 +13,10 @@ int main(int argc, char** argv) {
       .make =
           [&](const couplet::ParticipantContext& context) {
             return couplet::thermocline::make_element(parameters, context);
+          },
+      .effects =
+          [&](const couplet::EffectScene&) {
+            return couplet::effects_of(couplet::thermocline::effect_cards(), parameters);
           }};
   return couplet::run_program(argc, argv, program);
 }

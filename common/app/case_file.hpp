@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "common/app/roll_call.hpp"
 #include "common/app/simulation.hpp"
 #include "common/config/load.hpp"
+#include "common/effects/card.hpp"
 
 namespace couplet {
 
@@ -18,6 +20,8 @@ struct ProgramKind {
   std::string description;           ///< one line
   bool is_coupler = false;           ///< reads `coupling` instead of a participant's section
   config::Section::Declare declare;  ///< its keys, without `program`
+  /// What it can simulate, with the parameters that were read; empty: not told.
+  std::function<std::vector<Effect>(const EffectScene&)> effects = {};
 };
 
 /// The YAML file as one program sees it: what it could read, and all that is wrong with it.

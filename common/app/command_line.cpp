@@ -65,7 +65,8 @@ std::string version_text() { return fmt::format("couplet {}", version); }
 ParsedCommandLine parse_command_line(int argc, const char* const* argv, const ProgramText& program) {
   ParsedCommandLine result;
   CommandLine& line = result.command_line;
-  bool check = false, docs = false, schema = false, print_config = false, verbose = false, quiet = false;
+  bool check = false, docs = false, schema = false, print_config = false, explain = false, effects = false,
+       verbose = false, quiet = false;
 
   CLI::App app(program.description, program.name);
   app.footer([&] { return footer(program); });
@@ -84,6 +85,9 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
   app.add_flag("--docs", docs, "print the reference of all keys as Markdown");
   app.add_flag("--schema", schema, "print the JSON schema of all keys, for editors");
   app.add_flag("--print-config", print_config, "print all values in force as YAML");
+  app.add_flag("--explain", explain,
+               "print which effects the scene has, what they add, and the launch line; runs nothing");
+  app.add_flag("--effects", effects, "print the list of all effects as Markdown");
   app.add_flag("-v,--verbose", verbose, "every rank tells more");
   app.add_flag("-q,--quiet", quiet, "warnings and errors only");
   // What is left over is told in our words, with the option that was meant.
@@ -92,12 +96,13 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
     app.parse(argc, argv);
     if (const std::vector<std::string> rest = app.remaining(); !rest.empty())
       throw CLI::ExtrasError(explain_extra(app, rest.front()), CLI::ExitCodes::ExtrasError);
-    if (check + docs + schema + print_config > 1)
-      throw CLI::ExcludesError("Give one of --check, --docs, --schema and --print-config, not several.",
-                               CLI::ExitCodes::ExcludesError);
+    if (check + docs + schema + print_config + explain + effects > 1)
+      throw CLI::ExcludesError(
+          "Give one of --check, --docs, --schema, --print-config, --explain and --effects, not several.",
+          CLI::ExitCodes::ExcludesError);
     if (verbose && quiet)
       throw CLI::ExcludesError("Give --verbose or --quiet, not both.", CLI::ExitCodes::ExcludesError);
-    if (line.case_file.empty() && !docs && !schema)
+    if (line.case_file.empty() && !docs && !schema && !effects)
       throw CLI::ValidationError("Give the YAML file of the case, for example: " + program.name +
                                  " case.yaml");
   } catch (const CLI::ParseError& error) {
@@ -111,6 +116,8 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
   if (docs) line.task = Task::docs;
   if (schema) line.task = Task::schema;
   if (print_config) line.task = Task::print_config;
+  if (explain) line.task = Task::explain;
+  if (effects) line.task = Task::effects;
   line.verbosity = verbose ? log::Verbosity::verbose : quiet ? log::Verbosity::quiet : log::Verbosity::normal;
   return result;
 }

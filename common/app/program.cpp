@@ -58,6 +58,10 @@ int run(const Job& job, const Program& program) {
   write_effective(job, program);
   log::info("{} runs '{}' with {} rank{}", program.name, job.name, comm_size(job.comm),
             comm_size(job.comm) == 1 ? "" : "s");
+  if (program.effects) {
+    const bool has_mover = config::text_of(*job.document, "coupling.mesh.participant").has_value();
+    log::info("{}", summary(program.effects({!job.alone, !job.alone && has_mover})));
+  }
   const std::unique_ptr<Participant> participant = program.make(context);
   return job.alone ? run_alone(job, *participant) : run_coupled(job, coupler, *participant);
 }
@@ -65,7 +69,7 @@ int run(const Job& job, const Program& program) {
 }  // namespace
 
 int run_program(int argc, char** argv, const Program& program) {
-  const ProgramKind kind{program.name, program.description, false, program.declare};
+  const ProgramKind kind{program.name, program.description, false, program.declare, program.effects};
   return run_job(argc, argv, kind, [&](const Job& job) { return run(job, program); });
 }
 

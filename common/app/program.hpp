@@ -13,6 +13,7 @@
 #include "common/config/section.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/effects/card.hpp"
 
 namespace couplet {
 
@@ -39,6 +40,8 @@ struct Program {
   config::Section::Declare declare;
   /// Called once after reading; the parameters are those that `declare` filled.
   std::function<std::unique_ptr<Participant>(const ParticipantContext&)> make;
+  /// What the program can simulate, looked at with the parameters that `declare` filled; empty: not told.
+  std::function<std::vector<Effect>(const EffectScene&)> effects = {};
 };
 
 /// main() of a physics program:

@@ -37,6 +37,32 @@ int check(const CommandLine& command_line, const ProgramKind& kind, bool print) 
 
 }  // namespace
 
+namespace {
+
+/// The effects of the scene and the launch line, without running anything.
+int explain(const CommandLine& command_line, const ProgramKind& kind) {
+  const CaseFile file = read_case(command_line, kind);
+  if (!file.errors.empty()) {
+    for (const std::string& error : file.errors) fmt::print(stderr, "{}\n", error);
+    return 2;
+  }
+  const bool has_mover = config::text_of(*file.document, "coupling.mesh.participant").has_value();
+  fmt::print("{} as '{}' of {}:\n", kind.name, kind.is_coupler ? "coupler" : file.participant,
+             command_line.case_file.string());
+  if (kind.effects) fmt::print("{}", explanation(kind.effects({file.coupled, file.coupled && has_mover})));
+  std::string job;
+  for (const Expected& e : file.expected)
+    job += fmt::format("{} -n 1 {} {}", job.empty() ? "mpirun" : " :", e.program,
+                       command_line.case_file.string());
+  if (file.coupled)
+    fmt::print("all of the case:  {}\n", job);
+  else
+    fmt::print("to run it:        {} {}\n", kind.name, command_line.case_file.string());
+  return 0;
+}
+
+}  // namespace
+
 int answer(const CommandLine& command_line, const ProgramKind& kind) {
   using Task = CommandLine::Task;
   SimulationParameters simulation;
@@ -52,6 +78,11 @@ int answer(const CommandLine& command_line, const ProgramKind& kind) {
       return 0;
     case Task::schema:
       fmt::print("{}\n", config::json_schema(kind.name, section_of(kind)));
+      return 0;
+    case Task::explain:
+      return explain(command_line, kind);
+    case Task::effects:
+      if (kind.effects) fmt::print("{}", markdown(kind.name, kind.effects({})));
       return 0;
     case Task::run:
       break;

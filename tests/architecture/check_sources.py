@@ -21,10 +21,11 @@ ALLOWED = {
     "mesh": ["linalg", "parallel", "config", "log", "base"],
     "fv": ["mesh", "linalg", "parallel", "config", "log", "base"],
     "time": ["config", "base"],
+    "effects": ["base"],
     "io": ["fv", "mesh", "linalg", "parallel", "config", "log", "base"],
     "modes": ["io", "mesh", "linalg", "parallel", "log", "base"],
     "coupling": ["io", "mesh", "parallel", "config", "log", "base"],
-    "app": ["coupling", "io", "fv", "mesh", "linalg", "parallel", "config", "log", "base"],
+    "app": ["coupling", "effects", "io", "fv", "mesh", "linalg", "parallel", "config", "log", "base"],
 }
 NOT_FOR = {"coupler": ["mesh", "fv"]}
 # Third-party headers by pattern, and the folders that may include them.

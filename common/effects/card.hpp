@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/effects/verdict.hpp"
+
+namespace couplet {
+
+/// What an effect adds to a run where it is on; nothing of it exists where it is off.
+struct EffectCost {
+  const char* adds = "";     ///< fields, matrices, files, processes, in words
+  double bytes_a_cell = 0;   ///< expected memory; 0: not in proportion to the cells, or too little to name
+  double share_of_step = 0;  ///< expected time, as a share of a step without it; 0: too little to name
+};
+
+/// One effect of a program as data. `asked_by` names what in the scene asks for it (a key with its value), or
+/// is empty where it is off. `judge` says of an effect that is off (or, with `judged_when_on`, of one that is
+/// on) what the evidence of the run says about it; null: nothing can be said from inside the run. It returns
+/// no verdict where it has no evidence.
+template <class Parameters, class Evidence>
+struct EffectCard {
+  const char* name;
+  const char* keys;  ///< what switches it on, for the documents
+  std::string (*asked_by)(const Parameters&);
+  EffectCost cost{};
+  const char* judged_by = "";  ///< the number and its threshold, for the documents
+  std::optional<EffectVerdict> (*judge)(const Parameters&, const Evidence&) = nullptr;
+  bool judged_when_on = false;
+};
+
+/// A card looked at with the parameters of a scene.
+struct Effect {
+  std::string name, keys;
+  std::string asked_by;  ///< empty: off
+  EffectCost cost;
+  std::string judged_by;
+  bool on() const { return !asked_by.empty(); }
+};
+
+/// What the job around a participant decides about its effects.
+struct EffectScene {
+  bool coupled = false;
+  bool has_mover = false;  ///< `coupling.mesh` names one
+};
+
+template <class Parameters, class Evidence>
+std::vector<Effect> effects_of(std::span<const EffectCard<Parameters, Evidence>> cards,
+                               const Parameters& parameters) {
+  std::vector<Effect> effects;
+  for (const auto& card : cards)
+    effects.push_back({card.name, card.keys, card.asked_by(parameters), card.cost, card.judged_by});
+  return effects;
+}
+
+/// The verdicts that the evidence allows.
+template <class Parameters, class Evidence>
+std::vector<EffectVerdict> audit(std::span<const EffectCard<Parameters, Evidence>> cards,
+                                 const Parameters& parameters, const Evidence& evidence) {
+  std::vector<EffectVerdict> verdicts;
+  for (const auto& card : cards) {
+    if (card.judge == nullptr || card.asked_by(parameters).empty() == card.judged_when_on) continue;
+    if (std::optional<EffectVerdict> verdict = card.judge(parameters, evidence)) {
+      verdict->effect = card.name;
+      verdict->left_out = !card.judged_when_on;
+      verdicts.push_back(std::move(*verdict));
+    }
+  }
+  return verdicts;
+}
+
+/// "effects: inertia (analysis: dynamic), gravity (gravity); left out: ...", for the start of a run.
+std::string summary(const std::vector<Effect>& effects);
+
+/// A line an effect, for --explain.
+std::string explanation(const std::vector<Effect>& effects);
+
+/// The cards as a Markdown table, for docs/effects.md.
+std::string markdown(const std::string& program, const std::vector<Effect>& effects);
+
+}  // namespace couplet

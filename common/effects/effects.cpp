@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/effects/card.hpp"
+
+namespace couplet {
+namespace {
+
+std::string cost_text(const EffectCost& cost) {
+  std::string text = cost.adds;
+  if (cost.bytes_a_cell > 0)
+    text += fmt::format("{}{:g} B a cell", text.empty() ? "" : "; ", cost.bytes_a_cell);
+  if (cost.share_of_step > 0)
+    text += fmt::format("{}{:+.0f} % of a step", text.empty() ? "" : "; ", 100 * cost.share_of_step);
+  return text.empty() ? "nothing to speak of" : text;
+}
+
+}  // namespace
+
+std::string text(const EffectVerdict& v) {
+  const char* good = v.left_out ? "leaving it out was sound" : "sound";
+  return fmt::format("{}{}: {} (sound up to {:.2g}); {}.", v.effect, v.left_out ? " left out" : "",
+                     v.sentence, v.threshold, v.sound() ? good : v.recommendation);
+}
+
+std::vector<EffectVerdict> AuditTrail::news(const std::vector<EffectVerdict>& verdicts) {
+  std::vector<EffectVerdict> result;
+  for (const EffectVerdict& v : verdicts) {
+    if (v.sound() || std::ranges::find(told_, v.effect) != told_.end()) continue;
+    told_.push_back(v.effect);
+    result.push_back(v);
+  }
+  return result;
+}
+
+std::string summary(const std::vector<Effect>& effects) {
+  std::string on, off;
+  for (const Effect& e : effects) {
+    std::string& list = e.on() ? on : off;
+    list += list.empty() ? "" : ", ";
+    list += e.on() ? fmt::format("{} ({})", e.name, e.asked_by) : e.name;
+  }
+  return fmt::format("effects: {}{}{}", on.empty() ? "none" : on, off.empty() ? "" : "; left out: ", off);
+}
+
+std::string explanation(const std::vector<Effect>& effects) {
+  std::string lines;
+  for (const bool on : {true, false})
+    for (const Effect& e : effects)
+      if (e.on() == on)
+        lines +=
+            on ? fmt::format("  on   {}: asked for by {}; adds {}\n", e.name, e.asked_by, cost_text(e.cost))
+               : fmt::format("  off  {}: {}\n", e.name, e.keys);
+  return lines;
+}
+
+std::string markdown(const std::string& program, const std::vector<Effect>& effects) {
+  std::string lines = fmt::format(
+      "## {}\n\n| effect | asked for by | adds | judged when left out |\n|---|---|---|---|\n", program);
+  for (const Effect& e : effects)
+    lines += fmt::format("| {} | {} | {} | {} |\n", e.name, e.keys, cost_text(e.cost), e.judged_by);
+  return lines;
+}
+
+}  // namespace couplet

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace couplet {
+
+/// What a run found out about an effect that its scene left out, or about one that it has and that may not do
+/// what it should there (a turbulence model beside walls that are not resolved).
+struct EffectVerdict {
+  std::string effect;    ///< the name on its card
+  double number = 0;     ///< how large what was left out would have been, of the whole run so far
+  double threshold = 0;  ///< leaving it out was sound up to here
+  std::string sentence;  ///< what the number is, with its unit, without verdict: "the largest ... is 0.29"
+  std::string recommendation;  ///< what to switch on, or to do, where it was not sound
+  bool left_out = true;        ///< false: a verdict on an effect that the scene has
+  /// NaN is never sound.
+  bool sound() const { return number <= threshold; }
+};
+
+/// One line: "<effect> left out: <sentence> (sound up to <threshold>); leaving it out was sound." or the
+/// recommendation.
+std::string text(const EffectVerdict& verdict);
+
+/// Which effects have become unsound since the last look; each is told once. A run asks at its outputs, so
+/// that a long one does not hide its bad news until its end.
+class AuditTrail {
+ public:
+  /// The verdicts that are unsound for the first time.
+  std::vector<EffectVerdict> news(const std::vector<EffectVerdict>& verdicts);
+  bool all_sound() const { return told_.empty(); }
+  /// Names of all that were unsound so far.
+  const std::vector<std::string>& unsound() const { return told_; }
+
+ private:
+  std::vector<std::string> told_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/effect_cards.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace couplet::fluid {
+namespace {
+
+using S = FluidScene;
+using E = FluidEvidence;
+using V = std::optional<EffectVerdict>;
+
+std::string when(bool on, const char* reason) { return on ? reason : ""; }
+
+bool has_interface(const S& s) {
+  return std::ranges::any_of(s.parameters.boundaries,
+                             [](const auto& b) { return b.second.type == BoundaryType::interface; });
+}
+
+V judge_turbulence(const S&, const E& e) {
+  if (std::isnan(e.largest_peclet)) return {};
+  return EffectVerdict{
+      "", e.largest_peclet, 50,
+      fmt::format("the largest cell Reynolds number is {:.3g}, the largest y+ {:.3g}", e.largest_peclet,
+                  e.largest_yplus),
+      "steep layers may be finer than the mesh: refine it, or give 'turbulence' if the flow is turbulent"};
+}
+
+V judge_walls(const S&, const E& e) {
+  if (std::isnan(e.largest_yplus)) return {};
+  return EffectVerdict{"", e.largest_yplus, 2,
+                       fmt::format("the largest y+ is {:.3g}, the largest cell Reynolds number {:.3g}",
+                                   e.largest_yplus, e.largest_peclet),
+                       "there is no wall function: y+ should be about 1, refine at the walls"};
+}
+
+// Density changes go with the Mach number squared over two: 5 % at 0.3. The speed of sound is that of air at
+// 20 degC for what is as light as a gas, else that of water.
+V judge_compressibility(const S& s, const E& e) {
+  if (std::isnan(e.largest_speed)) return {};
+  const bool gas = s.parameters.density < 50;
+  const double sound = gas ? 343 : 1480, mach = e.largest_speed / sound;
+  return EffectVerdict{"", mach, 0.3,
+                       fmt::format("the largest speed, {:.3g} m/s, is {:.2g} of that of sound in {}",
+                                   e.largest_speed, mach, gas ? "air" : "water"),
+                       "density would change by more than 5 %, which this program does not know"};
+}
+
+const std::array cards{
+    FluidCard{"turbulence model",
+              "`turbulence`",
+              [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },
+              {"an eddy viscosity a cell, a velocity gradient a step", 8, 0},
+              "largest cell Reynolds number, 50",
+              judge_turbulence},
+    FluidCard{"resolved walls",
+              "`turbulence`",
+              [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },
+              {},
+              "with a turbulence model: largest y+, 2",
+              judge_walls,
+              true},
+    FluidCard{"compressibility",
+              "not available here",
+              [](const S&) { return std::string(); },
+              {},
+              "largest speed over that of sound, 0.3",
+              judge_compressibility},
+    FluidCard{"mesh motion",
+              "a mesh mover in `coupling.mesh`",
+              [](const S& s) { return when(s.moving_mesh, "coupling.mesh"); },
+              {"points, swept volumes, geometry of each step; the process mesh_mover", 0, 0}},
+    FluidCard{"coupling load",
+              "a boundary of `type: interface`",
+              [](const S& s) { return when(s.coupled && has_interface(s), "a boundary of type interface"); },
+              {"forces a face of the interface", 0, 0}},
+    FluidCard{"immersed bodies",
+              "`bodies`",
+              [](const S& s) { return when(!s.parameters.bodies.empty(), "bodies"); },
+              {"a mark a cell and face", 0, 0}},
+    FluidCard{"body force", "`body-force`",
+              [](const S& s) { return when(!s.parameters.body_force.empty(), "body-force"); }},
+    FluidCard{"third dimension", "`dimension: 3`",
+              [](const S& s) { return when(s.parameters.dimension == 3, "dimension: 3"); }},
+    FluidCard{"running statistics",
+              "`statistics`",
+              [](const S& s) { return when(s.parameters.statistics.has_value(), "statistics"); },
+              {"sums of velocity, pressure and their squares a cell", 0, 0}},
+    FluidCard{"vorticity and Q",
+              "`output.vorticity`, `output.q-criterion`",
+              [](const S& s) {
+                return when(s.parameters.output.vorticity || s.parameters.output.q_criterion, "output");
+              },
+              {"fields at the outputs", 0, 0}},
+    FluidCard{"energy budget",
+              "`output.energy-budget`",
+              [](const S& s) { return when(s.parameters.output.energy_budget, "output.energy-budget"); },
+              {"energy.csv", 0, 0}},
+};
+
+}  // namespace
+
+std::span<const FluidCard> fluid_effect_cards() { return cards; }
+
+}  // namespace couplet::fluid

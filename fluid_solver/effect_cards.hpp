@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "common/effects/card.hpp"
+#include "fluid_solver/parameters.hpp"
+
+namespace couplet::fluid {
+
+/// What the cards look at: the parameters, and what the job around the fluid decides.
+struct FluidScene {
+  FluidParameters parameters;
+  bool moving_mesh = false;  ///< the job has a mesh mover
+  bool coupled = false;
+};
+
+/// What a run has seen. NaN: not seen.
+struct FluidEvidence {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double largest_peclet = unknown;  ///< cell Reynolds number
+  double largest_yplus = unknown;   ///< of walls; 0 without walls
+  double largest_speed = unknown;   ///< [m/s]
+};
+
+using FluidCard = EffectCard<FluidScene, FluidEvidence>;
+std::span<const FluidCard> fluid_effect_cards();
+
+}  // namespace couplet::fluid

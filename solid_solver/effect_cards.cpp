@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/effect_cards.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace couplet {
+namespace {
+
+using P = SolidParameters;
+using E = SolidEvidence;
+using V = std::optional<EffectVerdict>;
+
+bool is_dynamic(const P& p) { return p.analysis == P::Analysis::dynamic; }
+bool is_elastic(const P& p) { return p.analysis != P::Analysis::thermal; }
+std::string when(bool on, const char* reason) { return on ? reason : ""; }
+
+double largest_poissons_ratio(const P& p) {
+  double largest = 0;
+  for (const SolidMaterial& m : materials_of(p)) largest = std::max(largest, m.poissons_ratio);
+  return largest;
+}
+
+bool varies(const P& p) {
+  return std::ranges::any_of(
+      materials_of(p), [](const SolidMaterial& m) { return m.heat.youngs_modulus || m.heat.poissons_ratio; });
+}
+
+V verdict(double number, double threshold, std::string sentence, std::string recommendation) {
+  if (std::isnan(number)) return {};
+  return EffectVerdict{"", number, threshold, std::move(sentence), std::move(recommendation)};
+}
+
+V judge_inertia(const P& p, const E& e) {
+  if (!is_elastic(p)) return {};
+  return verdict(e.inertia_over_load, 0.01,
+                 fmt::format("it would have reached {:.2g} of the load", e.inertia_over_load),
+                 "use 'analysis: dynamic'");
+}
+
+// The stretch along a fibre that turns by an angle phi without straining is off by phi^2/2 in the linear
+// theory; a gradient of 0.02 is a fiftieth of that in the strain itself.
+V judge_geometry(const P& p, const E& e) {
+  if (!is_elastic(p)) return {};
+  const double g = e.largest_gradient;
+  return verdict(g, 0.02, fmt::format("the largest displacement gradient seen is {:.2g}", g),
+                 g < 0.1 ? "errors of some per cent are to be expected"
+                         : "it would matter: the result is that of the linear theory, not of the body");
+}
+
+V judge_incompressibility(const P& p, const E&) {
+  if (!is_elastic(p)) return {};
+  const double nu = largest_poissons_ratio(p);
+  return verdict(nu, 0.45, fmt::format("the largest Poisson's ratio is {:g}", nu),
+                 "coarse meshes are too stiff or worse there: refine, and compare two meshes");
+}
+
+// The strain of a free body with a coefficient of 1e-5 1/K beside the largest gradient of the displacement.
+V judge_thermal_strain(const P& p, const E& e) {
+  if (!is_elastic(p)) return {};
+  const double strain = 1e-5 * e.temperature_range;
+  return verdict(
+      strain / std::max(e.largest_gradient, 1e-300), 0.02,
+      fmt::format(
+          "a temperature range of {:.3g} K would strain a free body with 1e-5 1/K by {:.2g}, the largest "
+          "displacement gradient being {:.2g}",
+          e.temperature_range, strain, e.largest_gradient),
+      "'thermal-expansion' takes it into account");
+}
+
+V judge_thermoelastic(const P&, const E& e) {
+  return verdict(e.coupling_number, 0.05,
+                 fmt::format("heat of deformation would stiffen the solid by {:.1e}", e.coupling_number),
+                 "'thermoelastic-coupling: true' takes it into account");
+}
+
+const std::array cards{
+    SolidCard{"inertia",
+              "`analysis: dynamic`",
+              [](const P& p) { return when(is_dynamic(p), "analysis: dynamic"); },
+              {"velocities, a mass in the matrix", 0, 0},
+              "inertia over load, 0.01",
+              judge_inertia},
+    SolidCard{"geometric non-linearity",
+              "not available here",
+              [](const P&) { return std::string(); },
+              {},
+              "largest displacement gradient, 0.02",
+              judge_geometry},
+    SolidCard{"near incompressibility",
+              "not available here",
+              [](const P&) { return std::string(); },
+              {},
+              "largest Poisson's ratio, 0.45",
+              judge_incompressibility},
+    SolidCard{"gravity",
+              "`gravity`",
+              [](const P& p) { return when(!p.gravity.empty(), "gravity"); },
+              {"a load a cell", 0, 0}},
+    SolidCard{"body force",
+              "`body-force`",
+              [](const P& p) { return when(!p.body_force.empty(), "body-force"); },
+              {"a load a cell", 0, 0}},
+    SolidCard{"structural damping",
+              "`damping`",
+              [](const P& p) { return when(p.damping.has_value(), "damping"); },
+              {},
+              "said of every dynamic run without it"},
+    SolidCard{"conduction of heat",
+              "`heat`",
+              [](const P& p) { return when(p.heat.has_value(), "heat"); },
+              {"a temperature, its matrix and solver", 0, 0}},
+    SolidCard{"thermal strain",
+              "`thermal-expansion`",
+              [](const P& p) { return when(p.expansion.has_value(), "thermal-expansion"); },
+              {"a temperature a face", 0, 0},
+              "strain of a free body over the displacement gradient, 0.02",
+              judge_thermal_strain},
+    SolidCard{"thermoelastic coupling",
+              "`thermoelastic-coupling: true`",
+              [](const P& p) { return when(p.thermoelastic_coupling, "thermoelastic-coupling"); },
+              {"a strain rate a cell", 0, 0},
+              "stiffening by heat of deformation, 0.05",
+              judge_thermoelastic},
+    SolidCard{"properties of temperature",
+              "`youngs-modulus-table`, `poissons-ratio-table`",
+              [](const P& p) { return when(varies(p), "a table of the material"); },
+              {"Lame's constants a cell; the matrix is made anew when they change", 0, 0}},
+    SolidCard{"third dimension", "`dimension: 3`",
+              [](const P& p) { return when(p.dimension == 3, "dimension: 3"); }},
+    SolidCard{"energies",
+              "`output.energies: true`",
+              [](const P& p) { return when(p.output.energies, "output.energies"); },
+              {"energies.csv, work of the step summed over the faces", 0, 0}},
+};
+
+}  // namespace
+
+std::span<const SolidCard> solid_effect_cards() { return cards; }
+
+}  // namespace couplet

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "common/effects/card.hpp"
+#include "solid_solver/parameters.hpp"
+
+namespace couplet {
+
+/// What a run of the solid has seen that says whether an effect was rightly left out. NaN: not seen.
+struct SolidEvidence {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double largest_gradient = unknown;   ///< Frobenius norm of the displacement gradient, over space and time
+  double inertia_over_load = unknown;  ///< of a static run with several steps
+  double coupling_number = unknown;    ///< stiffening by the heat of deformation, thesis (2.27)
+  double temperature_range = unknown;  ///< of a run that knows a temperature [K]
+};
+
+using SolidCard = EffectCard<SolidParameters, SolidEvidence>;
+/// All that a solid can simulate beside linear elasticity, in the order in which it is told.
+std::span<const SolidCard> solid_effect_cards();
+
+}  // namespace couplet

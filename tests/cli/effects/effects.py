@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""What --explain, --effects and the first lines of a run say of the effects of a scene.
+Usage: effects.py PROJECT_ROOT BIN"""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+root, programs = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+
+
+def ask(program, *arguments):
+    result = subprocess.run([str(programs / program), *map(str, arguments)], capture_output=True, text=True, timeout=60)
+    assert result.returncode == 0, (program, arguments, result.stdout, result.stderr)
+    return result.stdout
+
+
+def effects(text):
+    """name -> on, of the lines of --explain."""
+    return {name: state == "on" for state, name in re.findall(r"^  (on|off) +([^:]+):", text, flags=re.M)}
+
+
+flap, cantilever = root / "configs/perpendicular-flap/case.yaml", root / "configs/cantilever/case.yaml"
+
+# The flap needs a mover and a coupler, and says so; the cantilever needs neither.
+text = ask("fluid_solver", flap, "--explain")
+assert effects(text)["mesh motion"] and effects(text)["coupling load"] and not effects(text)["turbulence model"], text
+for program in ("coupler", "fluid_solver", "solid_solver", "mesh_mover"):
+    assert re.search(rf"mpirun .*-n 1 {program} ", text), text
+text = ask("solid_solver", cantilever, "--explain")
+assert "mpirun" not in text and "mesh_mover" not in text, text
+
+# A key of the command line switches an effect on in what is explained.
+assert not effects(ask("solid_solver", cantilever, "--explain"))["energies"]
+name = re.search(r"as '(\w+)'", text).group(1)
+assert effects(ask("solid_solver", cantilever, "--explain", "--set", f"participants.{name}.output={{energies: true}}"))["energies"]
+
+# A run starts with the same list.
+with tempfile.TemporaryDirectory() as folder:
+    out = subprocess.run([str(programs / "fluid_solver"), str(root / "configs/cavity/case.yaml"), "--set",
+                          f"simulation.output.folder={folder}", "--set", "simulation.end-time=0.01", "--set",
+                          "simulation.time-step=0.01"], capture_output=True, text=True, timeout=100)
+    assert out.returncode == 0, out.stdout + out.stderr
+    assert re.search(r"effects: .*left out: .*turbulence model", out.stdout), out.stdout
+
+# Every program lists its cards.
+for program in ("solid_solver", "fluid_solver", "mesh_mover", "thermocline"):
+    rows = [line for line in ask(program, "--effects").splitlines() if line.startswith("| ")]
+    assert len(rows) >= 4, (program, rows)
+print("effects: as expected")

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/effect_cards.hpp"
+
+#include <array>
+
+namespace couplet::thermocline {
+namespace {
+
+using P = ElementParameters;
+
+/// Of a tank only; other elements have one effect each.
+std::string when(const P& p, bool on, const char* reason) {
+  return p.type == ElementParameters::Type::tank && on ? reason : "";
+}
+
+const std::array cards{
+    Card{"resolved grains",
+         "`bed.shells` above 1",
+         [](const P& p) { return when(p, p.tank.bed.shells > 1, "bed.shells"); },
+         {"a temperature a shell of the grains of each cell", 0, 0}},
+    Card{"shell",
+         "`shell`",
+         [](const P& p) { return when(p, p.tank.shell.has_value(), "shell"); },
+         {"rings: temperature and stress", 0, 0}},
+    Card{"filler mechanics",
+         "`mechanics`",
+         [](const P& p) { return when(p, p.tank.mechanics.has_value(), "mechanics"); },
+         {"contact and slip a ring", 0, 0}},
+    Card{"wall as a solid",
+         "`external-wall`",
+         [](const P& p) { return when(p, p.tank.external_wall.has_value(), "external-wall"); },
+         {"the processes solid_solver and coupler", 0, 0}},
+    Card{"insulation",
+         "`insulation`",
+         [](const P& p) { return when(p, p.tank.insulation.has_value(), "insulation"); },
+         {"layers of the blanket a ring", 0, 0}},
+    Card{"ullage",
+         "`ullage`",
+         [](const P& p) { return when(p, p.tank.ullage.has_value(), "ullage"); },
+         {"gas, roof and radiation between them", 0, 0}},
+    Card{"ground",
+         "`ground`",
+         [](const P& p) { return when(p, p.tank.ground.has_value(), "ground"); },
+         {"a column of cells", 0, 0}},
+    Card{"elements elsewhere",
+         "`elsewhere`",
+         [](const P& p) { return when(p, p.tank.elsewhere.has_value(), "elsewhere"); },
+         {"a process each, and the coupler", 0, 0}},
+    Card{"weather",
+         "`ambient` with a file or a clear sky",
+         [](const P& p) { return when(p, p.tank.ambient.kind != WeatherKind::constant, "ambient"); },
+         {"hours of the year", 0, 0}},
+    Card{"day report",
+         "`report`",
+         [](const P& p) { return when(p, p.tank.report.has_value(), "report"); },
+         {"days.csv", 0, 0}},
+};
+
+}  // namespace
+
+std::span<const Card> effect_cards() { return cards; }
+
+}  // namespace couplet::thermocline
