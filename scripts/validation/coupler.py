@@ -5,6 +5,7 @@ import re
 import couplet_series as couplet
 from validation.job import Bar
 from validation.main_job import FLAP, steps_of
+from validation.parts.coupler_runs import RUNS
 
 RAMP = ["participants.fluid.boundaries.inlet.ramp=0.4"]
 LIGHT = [*RAMP, "participants.solid.material.density=1", "simulation.output.interval=1", "simulation.checkpoint.interval=10"]
@@ -136,4 +137,4 @@ MAPPING = [
     Bar("flap, no vertex common but the corners (147 to 80), first maximum", "within 1 % of matching", non_matching(2, 0.5), long=True, but=SAME),
 ]
 
-BARS = [*ADDED_MASS, *ACCELERATION, *MAPPING]
+BARS = [*ADDED_MASS, *ACCELERATION, *MAPPING, *RUNS]
