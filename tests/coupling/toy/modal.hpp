@@ -8,20 +8,26 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "common/app/program.hpp"
+#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/io/series.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet::toy {
 
 struct ModalParameters {
-  int vertices = 42;                              // 40 modes: one for each vertex within
-  double length = 5, radius = 0.5;                // [m]
-  double density = 1;                             // of the fluid [kg/m^3]
-  double surface_density = 1;                     // of the wall [kg/m^2]
-  double stiffness = 0, tension = 0;              // a [N/m^3], b [N/m]
-  double inlet_pressure = 0, pulse_duration = 1;  // p_in = that times sin^2(pi t / duration) [Pa], [s]
-  double peak = 0;                                // of the load, in lengths; 0: the inlet's, 1 - x / L
+  int vertices = 42;                  // 40 modes: one for each vertex within
+  double length = 5, radius = 0.5;    // [m]
+  double density = 1;                 // of the fluid [kg/m^3]
+  double surface_density = 1;         // of the wall [kg/m^2]
+  double stiffness = 0, tension = 0;  // a [N/m^3], b [N/m]
+  double inlet_pressure = 0;          // over the fluid, times sin^2(pi t / duration) [Pa]
+  double push = 0;                    // on the wall, the same [Pa]
+  double pulse_duration = 1;          // [s]
+  double peak = 0;                    // place of the largest load, in lengths; 0: 1 - x / L, a pressure drop
 };
 
 inline void declare(config::Section& s, ModalParameters& p) {
@@ -33,6 +39,7 @@ inline void declare(config::Section& s, ModalParameters& p) {
   s.value("stiffness", p.stiffness).not_negative().doc("force per area and displacement [N/m^3]");
   s.value("tension", p.tension).unit("N/m").not_negative().doc("along the wall");
   s.value("inlet-pressure", p.inlet_pressure).unit("Pa").doc("of the pulse");
+  s.value("push", p.push).unit("Pa").doc("the same, on the wall itself");
   s.value("peak", p.peak).range(0, 1).doc("place of the largest load over the length; 0: a pressure drop");
   s.value("pulse-duration", p.pulse_duration).unit("s").positive().doc("of the pulse");
 }
@@ -41,6 +48,15 @@ inline void declare(config::Section& s, ModalParameters& p) {
 inline double added_mass_length(const ModalParameters& p, int i) {
   const double k = i * std::numbers::pi / p.length;
   return 1 / (k * std::tanh(k * p.radius));
+}
+
+/// Amplitude i of the load at time t for a pressure of 1: 1 - x/L = sum 2 / (i pi) sin(i pi x / L), or a hat
+/// of height 1 with its peak at c L: sum 2 / (c (1 - c) i^2 pi^2) sin(i pi c) sin(i pi x / L).
+inline double load_amplitude(const ModalParameters& p, int i, double t) {
+  if (t > p.pulse_duration) return 0;
+  const double k = i * std::numbers::pi, c = p.peak,
+               pulse = std::pow(std::sin(std::numbers::pi * t / p.pulse_duration), 2);
+  return pulse * (c == 0 ? 2 / k : 2 / (c * (1 - c) * k * k) * std::sin(k * c));
 }
 
 /// Sine modes sin(i pi x / L) over n vertices or the n-1 faces between them.
@@ -115,11 +131,11 @@ class ModalChannel final : public Participant {
   void begin_step(const Step& step) override { step_ = step; }
   Exchange solve(const Exchange& in) override {
     next_ = in.contains("velocity") ? modes_.of_vertices(in.at("velocity")) : now_;
-    const double t = step_.time + step_.dt / 2, pulse = std::sin(std::numbers::pi * t / p_.pulse_duration);
-    const double p_in = t < p_.pulse_duration ? p_.inlet_pressure * pulse * pulse : 0;
+    const double t = step_.time + step_.dt / 2;
     std::vector<double> p(next_.size());
     for (int i = 0; i < modes_.modes(); ++i)
-      p[i] = p_in * load(i + 1) - p_.density * added_mass_length(p_, i + 1) * (next_[i] - now_[i]) / step_.dt;
+      p[i] = p_.inlet_pressure * load_amplitude(p_, i + 1, t) -
+             p_.density * added_mass_length(p_, i + 1) * (next_[i] - now_[i]) / step_.dt;
     return {{"pressure-force", modes_.forces(p)}};
   }
   StepReport accept_step() override {
@@ -132,12 +148,6 @@ class ModalChannel final : public Participant {
   void write_monitors(double) override {}
 
  private:
-  /// Amplitude i of the load: 1 - x/L = sum 2 / (i pi) sin(i pi x / L), or a hat of height 1 with its peak at
-  /// c L: sum 2 / (c (1 - c) i^2 pi^2) sin(i pi c) sin(i pi x / L).
-  double load(int i) const {
-    const double k = i * std::numbers::pi, c = p_.peak;
-    return c == 0 ? 2 / k : 2 / (c * (1 - c) * k * k) * std::sin(k * c);
-  }
   ModalParameters p_;
   SineModes modes_;
   Step step_;
@@ -146,8 +156,14 @@ class ModalChannel final : public Participant {
 
 class ModalWall final : public Participant {
  public:
-  explicit ModalWall(const ModalParameters& p)
-      : p_(p), modes_(p), eta_(modes_.modes()), v_(eta_), next_eta_(eta_), next_v_(eta_) {}
+  explicit ModalWall(const ModalParameters& p, const ParticipantContext& context = {})
+      : p_(p), modes_(p), eta_(modes_.modes()), v_(eta_), next_eta_(eta_), next_v_(eta_) {
+    if (comm_size(context.comm) > 1) throw Error("This wall knows one rank only.");
+    if (!context.output_folder.empty())
+      series_.emplace(context.output_folder / "mode.csv",
+                      std::vector<std::string>{"time [s]", "mode 1 [m]", "its velocity [m/s]"},
+                      context.restart_time);
+  }
   Interface initialise() override {
     Interface line = modal_wall(p_, -1);
     line.takes = {{"pressure-force", "N", Interface::Place::faces}};
@@ -155,14 +171,15 @@ class ModalWall final : public Participant {
                   {"velocity", "m/s", Interface::Place::vertices}};
     return line;
   }
-  void begin_step(const Step& step) override { dt_ = step.dt; }
+  void begin_step(const Step& step) override { time_ = step.time, dt_ = step.dt; }
   Exchange solve(const Exchange& in) override {
     std::vector<double> force(2 * (p_.vertices - 1));
     if (in.contains("pressure-force")) force = in.at("pressure-force");
-    const std::vector<double> p = modes_.of_forces(force);
+    std::vector<double> p = modes_.of_forces(force);
     for (int i = 0; i < modes_.modes(); ++i) {
       const double k = (i + 1) * std::numbers::pi / p_.length, m = p_.surface_density,
                    s = p_.stiffness + p_.tension * k * k;
+      p[i] += p_.push * load_amplitude(p_, i + 1, time_ + dt_ / 2);
       next_v_[i] = (m / dt_ * v_[i] - s * (eta_[i] + dt_ / 4 * v_[i]) + p[i]) / (m / dt_ + s * dt_ / 4);
       next_eta_[i] = eta_[i] + dt_ / 2 * (v_[i] + next_v_[i]);
     }
@@ -175,15 +192,18 @@ class ModalWall final : public Participant {
   void save(CheckpointWriter& file) const override { file.write("eta", eta_), file.write("v", v_); }
   void load(CheckpointReader& file) override { file.read("eta", eta_), file.read("v", v_); }
   void write_output(double, int) override {}
-  void write_monitors(double) override {}
+  void write_monitors(double time) override {
+    if (series_) series_->row(std::vector<double>{time, eta_[0], v_[0]});
+  }
   const std::vector<double>& amplitudes() const { return eta_; }
   const std::vector<double>& velocities() const { return v_; }
 
  private:
   ModalParameters p_;
   SineModes modes_;
-  double dt_ = 0;
+  double time_ = 0, dt_ = 0;
   std::vector<double> eta_, v_, next_eta_, next_v_;
+  std::optional<Series> series_;
 };
 
 }  // namespace couplet::toy

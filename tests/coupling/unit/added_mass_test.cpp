@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Added-mass theory [causin2005] against the coupler itself: a potential flow and an elastic wall in 40
 // modes.
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -164,6 +165,47 @@ TEST(AddedMass, quasi_newton_holds_at_a_hundredth_of_the_mass) {
   EXPECT_EQ(run.problem, "");
   EXPECT_LE(most_iterations(run), 30);
   RecordProperty("ils_100", fmt::format("{:.2f} {}", run.residuals.mean_iterations(), most_iterations(run)));
+}
+
+/// The map of mass ratio and scheme, each limit with the neighbour that fails.
+TEST(AddedMass, map_of_mass_ratio_and_scheme) {
+  const auto iterations = [](double r, auto&& change) {
+    ModalRun run;
+    run.p.peak = 0.3;
+    run.p.pulse_duration = 0.05;
+    run.coupling.on_divergence = CouplingParameters::OnDivergence::warn;
+    run.coupling.acceleration.initial_relaxation = 1 / (1 + r);
+    run.ratio(r);
+    run.steps(60, 0.005);
+    change(run.coupling);
+    run();
+    // What grows by itself leaves the size that the push can give by far.
+    const double speed = run.p.inlet_pressure * run.p.pulse_duration / run.p.surface_density;
+    const bool grew = !(std::abs(run.velocities[0]) < 20 * speed);
+    return run.problem.empty() && !grew ? run.residuals.mean_iterations() : -1.;
+  };
+  const auto explicit_of = [](int order) {
+    return [order](CouplingParameters& c) { c.scheme = Scheme::explicit_, c.predictor_order = order; };
+  };
+  const auto of_type = [](Type type, double omega = 0) {
+    return [=](CouplingParameters& c) {
+      c.acceleration.type = type;
+      if (omega > 0) c.acceleration.initial_relaxation = omega;
+    };
+  };
+  for (const double r : {0.05, 0.2, 0.3, 0.5, 0.8, 1.3, 5., 20., 50., 100.}) {
+    const double rows[] = {iterations(r, explicit_of(1)),
+                           iterations(r, explicit_of(2)),
+                           iterations(r, of_type(Type::constant, 1)),
+                           iterations(r, of_type(Type::aitken)),
+                           iterations(r, of_type(Type::iqn_ils)),
+                           iterations(r, of_type(Type::iqn_mvj))};
+    EXPECT_EQ(rows[0] > 0, r < 1) << "explicit, order 1, r = " << r;
+    EXPECT_EQ(rows[1] > 0, r < 1. / 3) << "explicit, order 2, r = " << r;
+    EXPECT_EQ(rows[2] > 0, r < 1) << "plain iteration, r = " << r;
+    for (int i = 3; i < 6; ++i) EXPECT_GT(rows[i], 0) << "type " << i - 2 << ", r = " << r;
+    RecordProperty(fmt::format("map_{}", r), fmt::format("{:.1f}", fmt::join(rows, " ")));
+  }
 }
 
 }  // namespace
