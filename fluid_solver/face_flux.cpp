@@ -60,11 +60,11 @@ void FractionalStep<D>::set_relaxation(const State<D>& from) {
 template <int D>
 void FractionalStep<D>::add_memory(const State<D>& from) {
   set_relaxation(from);
-  const double ratio = from.dt_old > 0 ? step_.dt / from.dt_old : 0;
+  const double ratio = by_.dt_old > 0 ? step_.dt / by_.dt_old : 0;
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     const double rate = 0.5 * (relaxation_[mesh_.owner[f]] + relaxation_[mesh_.neighbour[f]]);
     const double decay = rate * step_.dt;
-    if (decay > largest_decay && from.pressure[0]) {
+    if (decay > largest_decay && by_.pressure[0]) {
       const double share = decay / (1 + decay);
       phi_orthogonal_[f] += from.memory[f] - share * (from.memory[f] + step_.dt * pressure_excess(from, f));
       continue;
@@ -88,7 +88,7 @@ void FractionalStep<D>::add_increment(const State<D>& from) {
     const double decay = rate * step_.dt;
     fading_[f] = from.memory[f] / (1 + decay * (1 + decay / 2));  // exp(-decay) to second order
     phi_orthogonal_[f] += fading_[f];
-    if (from.pressure[0]) phi_orthogonal_[f] -= step_.dt * pressure_excess(from, f);
+    if (by_.pressure[0]) phi_orthogonal_[f] -= step_.dt * pressure_excess(from, f);
   }
 }
 
@@ -96,7 +96,7 @@ void FractionalStep<D>::add_increment(const State<D>& from) {
 template <int D>
 double FractionalStep<D>::pressure_excess(const State<D>& from, Index f) const {
   const Placement<D>& at = *from.placement;
-  const PressureLevel<D>& level = *from.pressure[0];
+  const PressureLevel<D>& level = *by_.pressure[0];
   const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
   const double w = at.weight[f];
   const double flux = at.conductance[f] * (level.p[n] - level.p[p]) +

@@ -6,11 +6,14 @@
 
 #include "common/base/error.hpp"
 #include "common/log/timer.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
 namespace {
 
 constexpr int most_sub_steps = 100000;
+// An interface faster than so many times all that moved so far (at the very start: than this [m/s]) diverges.
+constexpr double most_times_faster = 1e4, most_speed = 1e8;
 // The implicit viscous term costs about this much more a sub-step.
 constexpr double implicit_cost = 1.5;
 
@@ -60,7 +63,7 @@ void Fluid<D>::check_scheme() {
 template <int D>
 void Fluid<D>::run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity) {
   Vectors<D> rate, shear;
-  step_.rates(trial(), rate, shear);
+  step_.rates(level(), rate, shear);
   step.rate = rate;
   step.shear = shear;
   for (const double share : {1.0 / 3, 2.0 / 3}) {
@@ -69,11 +72,11 @@ void Fluid<D>::run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_
     part.to = step.to;
     part.rate = rate;
     part.shear = shear;
-    State<D> stage = trial();
+    State<D> stage = level();
     const Vectors<D> w = wall_velocity_at(done + part.dt, wall_velocity, part);
-    step_.predict(stage, std::move(part), w);
+    step_.predict(stage, history_, std::move(part), w);
     step_.project(stage, w);
-    step_.finish(stage);
+    step_.commit(stage);
     step_.rates(stage, rate, shear);
   }
   for (std::size_t c = 0; c < rate.size(); ++c) step.rate[c] = 0.25 * step.rate[c] + 0.75 * rate[c];
@@ -126,29 +129,17 @@ template <int D>
 void Fluid<D>::restore(State<D> state) {
   accepted_ = std::move(state);
   accepted_.number = 0;
-  beginning_.reset();
   split_ = false;
   step_.set_eddy_viscosity(accepted_);
-}
-
-/// The accepted state as it was before a step that was not accepted, or that is repeated.
-template <int D>
-void Fluid<D>::rewind() {
-  split_ = false;
-  if (!beginning_) return;
-  accepted_.dt_old = beginning_->dt_old;
-  accepted_.implicit = beginning_->implicit;
-  accepted_.start = beginning_->start;
-  accepted_.pressure = beginning_->pressure;
 }
 
 template <int D>
 void Fluid<D>::begin_step(double time, double dt) {
   time_ = time;
   dt_ = dt;
-  rewind();
-  accepted_.time = time;
-  beginning_ = Beginning{accepted_.dt_old, accepted_.implicit, accepted_.start, accepted_.pressure};
+  split_ = false;
+  begin_ = accepted_;
+  begin_.time = time;
   if (!parameters_.time_step) statistics_.limits = step_size_.limits(accepted_);
   if (parameters_.viscous == ViscousTreatment::automatic) choose_viscous_treatment();
   statistics_.sub_steps = 0;
@@ -159,7 +150,7 @@ void Fluid<D>::begin_step(double time, double dt) {
 template <int D>
 void Fluid<D>::choose_viscous_treatment() {
   const StepLimits& limits = statistics_.limits;
-  bool implicit = accepted_.implicit;
+  bool implicit = begin_.implicit;
   if (parameters_.time_step) {
     const double own = dt_ / parts(dt_, *parameters_.time_step);
     implicit = step_size_.explicit_viscous_limit_is_below(
@@ -171,9 +162,9 @@ void Fluid<D>::choose_viscous_treatment() {
     if (implicit && with_explicit < 0.7 * with_implicit) implicit = false;
     if (!implicit && with_implicit < 0.9 * with_explicit) implicit = true;
   }
-  if (implicit == accepted_.implicit) return;
-  accepted_.implicit = implicit;
-  accepted_.dt_old = 0;
+  if (implicit == begin_.implicit) return;
+  begin_.implicit = implicit;
+  begin_.dt_old = 0;
 }
 
 /// Equal parts of what remains, each within the limit of the present flow.
@@ -183,9 +174,9 @@ double Fluid<D>::next_size(double remaining, bool& last) {
   if (parameters_.time_step) {
     limit = *parameters_.time_step;
   } else {
-    const StepLimits limits = statistics_.sub_steps == 0 ? statistics_.limits : step_size_.limits(trial());
+    const StepLimits limits = statistics_.sub_steps == 0 ? statistics_.limits : step_size_.limits(level());
     limit =
-        parameters_.safety_factor * (trial().implicit ? limits.implicit_viscous : limits.explicit_viscous);
+        parameters_.safety_factor * (history_.implicit ? limits.implicit_viscous : limits.explicit_viscous);
   }
   const double n = parts(remaining, limit);
   if (!(n + statistics_.sub_steps <= most_sub_steps))
@@ -200,7 +191,7 @@ template <int D>
 SubStep<D> Fluid<D>::make_sub_step(double dt, double done, std::span<const Vec3> points) const {
   SubStep<D> step;
   step.dt = dt;
-  step.to = trial().placement;
+  step.to = level().placement;
   if (!moving_) return step;
   const double s = done / dt_;
   if (s == 1 || points.empty()) {
@@ -211,7 +202,7 @@ SubStep<D> Fluid<D>::make_sub_step(double dt, double done, std::span<const Vec3>
       step.points[i] = accepted_.points[i] + s * (points[i] - accepted_.points[i]);
   }
   step.to = make_placement<D>(mesh_, step.points);
-  step.swept = swept_volumes(mesh_, trial().points, step.points);
+  step.swept = swept_volumes(mesh_, level().points, step.points);
   step.swept.resize(mesh_.n_flux_faces());
   return step;
 }
@@ -225,7 +216,7 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
     for (std::size_t b = 0; b < w.size(); ++b)
       if (boundary_.is_interface(b)) w[b] = accepted_.w[b] + s * (interface_velocity[b] - accepted_.w[b]);
   boundary_.velocity_at(time_ + done, step.to->boundary_centre, w);
-  boundary_.convect(mesh_, *trial().placement, trial().u, trial().w, step.dt, w);
+  boundary_.convect(mesh_, *level().placement, level().u, level().w, step.dt, w);
   return w;
 }
 
@@ -233,13 +224,13 @@ Vectors<D> Fluid<D>::wall_velocity_at(double done, const Vectors<D>& interface_v
 // step it comes from a trial of the step.
 template <int D>
 void Fluid<D>::start_pressure(const SubStep<D>& step, const Vectors<D>& w) {
-  State<D> probe = trial();
+  History<D> probe = history_;
   probe.implicit = false;  // an implicit predictor without a pressure would smear what the pressure balances
-  step_.predict(probe, step, w);
-  step_.project(probe, w);
-  auto level = std::make_shared<PressureLevel<D>>(*step_.pressure_level(trial()));
-  level->time = trial().time;  // the step itself adds a level in its middle
-  trial().pressure[0] = std::move(level);
+  step_.predict(level(), probe, step, w);
+  step_.project(level(), w);
+  auto first = step_.pressure_level();
+  first->time = history_.time;  // the step itself adds a level in its middle
+  history_.pressure[0] = std::move(first);
 }
 
 template <int D>
@@ -254,15 +245,9 @@ void Fluid<D>::add_forces(double share) {
 
 template <int D>
 void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity) {
-  if (statistics_.sub_steps > 0) {  // a repetition of the whole step
-    const bool implicit = trial().implicit;
-    rewind();
-    if (accepted_.implicit != implicit) {
-      accepted_.implicit = implicit;
-      accepted_.dt_old = 0;
-    }
-    statistics_.sub_steps = 0;
-  }
+  split_ = judged_ = false;
+  history_ = begin_;
+  statistics_.sub_steps = 0;
   pressure_done_.assign(accepted_.w.size(), Vec<D>::Zero());
   viscous_done_ = pressure_done_;
   double done = 0;
@@ -271,27 +256,77 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
     const double end = last ? dt_ : done + dt;
     SubStep<D> sub_step = make_sub_step(dt, end, points);
     last_w_ = wall_velocity_at(end, wall_velocity, sub_step);
-    if (trial().start == Start::after_impulse) {
-      trial().pressure = {};
-      trial().start = Start::flowing;
+    if (history_.start == Start::after_impulse) {
+      history_.pressure = {};
+      history_.start = Start::flowing;
     }
     const bool needs_pressure =
-        trial().implicit || step_.oblique() || parameters_.projection == Projection::incremental;
-    if (needs_pressure && !trial().pressure[0]) start_pressure(sub_step, last_w_);
+        history_.implicit || step_.oblique() || parameters_.projection == Projection::incremental;
+    if (needs_pressure && !history_.pressure[0]) start_pressure(sub_step, last_w_);
     if (parameters_.scheme == ExplicitScheme::runge_kutta) run_stages(sub_step, end - dt, wall_velocity);
-    step_.predict(trial(), std::move(sub_step), last_w_);
+    step_.predict(level(), history_, std::move(sub_step), last_w_);
     ++statistics_.sub_steps;
     ++statistics_.all_sub_steps;
     if (last) break;
-    step_.project(trial(), last_w_);
+    step_.project(level(), last_w_);
     add_forces(dt / dt_);
     pressure_done_.swap(pressure_force_);
     viscous_done_.swap(viscous_force_);
+    step_.complete(level());
     if (!split_) trial_ = accepted_;
     split_ = true;
-    step_.finish(trial_);
+    step_.commit(trial_);
+    history_ = trial_;
     done = end;
   }
+  if (!boundary_.interface_patches().empty()) guess_ = last_w_;
+}
+
+/// The layer that a wall drags along within a step is rho sqrt(nu dt) thick: a mass that acts on w* in the
+/// loop, see docs/theory.md.
+template <int D>
+double Fluid<D>::unseen_share() const {
+  const double layer = std::sqrt(parameters_.density * parameters_.viscosity / dt_);  // rho sqrt(nu dt)/dt
+  double sums[4] = {};  // unseen^2, load^2, load.S, S^2
+  for (std::size_t b = 0; b < guess_.size(); ++b) {
+    if (!boundary_.is_interface(static_cast<Index>(b))) continue;
+    const Vec<D>& area = level().placement->area[mesh_.n_interior + static_cast<Index>(b)];
+    const Vec<D> load = pressure_force_[b] + viscous_force_[b];
+    sums[0] += layer * layer * area.squaredNorm() * (last_w_[b] - guess_[b]).squaredNorm();
+    sums[1] += load.squaredNorm();
+    sums[2] += load.dot(area);
+    sums[3] += area.squaredNorm();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  const double load = sums[3] > 0 ? sums[1] - sums[2] * sums[2] / sums[3] : 0;
+  return load > 0 ? std::sqrt(sums[0] / load) : 0;
+}
+
+/// A structure that fails gives velocities that no fluid can follow.
+template <int D>
+void Fluid<D>::check_wall_velocity() const {
+  double worst = 0;
+  Index where = -1;
+  for (std::size_t b = 0; b < last_w_.size(); ++b) {
+    const double square = last_w_[b].squaredNorm();
+    if (square <= worst || !boundary_.is_interface(static_cast<Index>(b))) continue;
+    worst = std::isfinite(square) ? square : std::numeric_limits<double>::infinity();
+    where = static_cast<Index>(b);
+  }
+  const double limit = step_.largest_speed() > 0 ? most_times_faster * step_.largest_speed() : most_speed;
+  if (!any(mesh_.comm, !(std::sqrt(worst) <= limit))) return;
+  struct {
+    double value;
+    int rank;
+  } first{worst, comm_rank(mesh_.comm)};
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh_.comm);
+  Vec3 place = where < 0 ? Vec3(Vec3::Zero()) : level().placement->boundary_centre[where];
+  MPI_Bcast(place.data(), 3, MPI_DOUBLE, first.rank, mesh_.comm);
+  throw SolveFailure(
+      "The velocity of the interface {} at t = {:.6g} s near ({:.6g}, {:.6g}, {:.6g}) m: the structure or "
+      "the coupling diverges.",
+      std::isfinite(first.value) ? fmt::format("is {:.3g} m/s", std::sqrt(first.value)) : "is not finite",
+      time_ + dt_, place.x(), place.y(), place.z());
 }
 
 template <int D>
@@ -299,7 +334,11 @@ void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity) {
   if (!wall_velocity.empty())
     for (std::size_t b = 0; b < last_w_.size(); ++b)
       if (boundary_.is_interface(b)) last_w_[b] = wall_velocity[b];
-  step_.project(trial(), last_w_);
+  check_wall_velocity();
+  step_.project(level(), last_w_);
+  // Once a prediction: what a repetition changes is the potential flow of a bounded wall velocity.
+  if (!judged_) step_.complete(level());
+  judged_ = true;
   ++statistics_.pressure_solves;
   add_forces(step_.size() / dt_);
 }
@@ -312,11 +351,10 @@ void Fluid<D>::solve(std::span<const Vec3> points, const Vectors<D>& wall_veloci
 
 template <int D>
 void Fluid<D>::accept() {
-  step_.finish(trial());
-  trial().time = time_ + dt_;
   if (split_) std::swap(accepted_, trial_);
   split_ = false;
-  beginning_.reset();
+  step_.commit(accepted_);
+  accepted_.time = time_ + dt_;
   statistics_.pressure_iterations = step_.statistics().pressure_iterations;
   statistics_.viscous_iterations = step_.statistics().viscous_iterations;
 }

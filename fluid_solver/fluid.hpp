@@ -19,7 +19,8 @@ struct FluidStatistics {
 };
 
 /// The fluid through whole coupling steps: cuts them into stable sub-steps, moves the mesh and the walls
-/// linearly within them. The accepted state changes when the step is accepted only.
+/// linearly within them. The accepted state changes when the step is accepted only: a step that fails, is
+/// repeated or begun again leaves nothing to be put back.
 ///
 ///   begin_step; prepare(points, w); solve_pressure(w') ...; accept
 ///
@@ -35,9 +36,15 @@ class Fluid {
   /// `points`: at t^{n+1}, empty if the mesh rests. `wall_velocity`: per boundary face at t^{n+1} [m/s], only
   /// the interface faces count (empty: at rest). Collective.
   void prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
+  /// Throws SolveFailure if the flow that follows is none; everything that can fail is here and in prepare().
   void solve_pressure(const Vectors<D>& wall_velocity);
+  /// Force that friction would add if it saw the wall velocity of the last solve_pressure() instead of that
+  /// of prepare(), rho sqrt(nu dt) |w - w*| S / dt, over the load (less a uniform pressure), both as root
+  /// mean square over the interface. Collective.
+  double unseen_share() const;
   /// prepare and solve_pressure.
   void solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
+  /// The step becomes level n. Cannot fail.
   void accept();
 
   const State<D>& state() const { return accepted_; }
@@ -64,13 +71,13 @@ class Fluid {
   const ImmersedBodies<D>* bodies() const { return step_.bodies(); }
 
  private:
-  State<D>& trial() { return split_ ? trial_ : accepted_; }
-  const State<D>& trial() const { return split_ ? trial_ : accepted_; }
-  void rewind();
+  /// What the sub-step under way starts from.
+  const State<D>& level() const { return split_ ? trial_ : accepted_; }
   void check_bodies();
   void check_scheme();
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(double time);
+  void check_wall_velocity() const;
   void choose_viscous_treatment();
   double next_size(double remaining, bool& last);
   SubStep<D> make_sub_step(double dt, double done, std::span<const Vec3> points) const;
@@ -85,17 +92,14 @@ class Fluid {
   Boundary<D> boundary_;
   FractionalStep<D> step_;
   StepSize<D> step_size_;
-  /// What a step that is given up or repeated has to put back, besides the sub-steps it finished.
-  struct Beginning {
-    double dt_old;
-    bool implicit;
-    Start start;
-    std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;
-  };
-  std::optional<Beginning> beginning_;  // of the step under way
-  State<D> accepted_, trial_;
-  bool split_ = false;  // a sub-step of the step under way is finished: it goes on from trial_
+  State<D> accepted_;    // level n: accept() and restore() alone change it
+  History<D> begin_;     // how the step under way sees level n
+  State<D> trial_;       // after the last finished sub-step of the step under way
+  History<D> history_;   // how the sub-step under way sees level()
+  bool split_ = false;   // a sub-step of the step under way is finished: it goes on from trial_
+  bool judged_ = false;  // the prediction under way has given a sound level n+1
   double time_ = 0, dt_ = 0;
+  Vectors<D> guess_;                         // given velocities at the step's end as prepare() had them
   Vectors<D> last_w_;                        // given velocities at the end of the last sub-step
   Vectors<D> pressure_done_, viscous_done_;  // time integrals over the finished sub-steps / dt_
   Vectors<D> pressure_force_, viscous_force_;

@@ -33,11 +33,14 @@ template <int D>
 void FractionalStep<D>::project_initial(State<D>& s) {
   oblique_ = max(mesh_.comm, s.placement->obliqueness) > orthogonal || !s.points.empty();
   const Placement<D>& at = *s.placement;
+  set_obliqueness(at);
   phi_p_.assign(mesh_.n_flux_faces(), 0.0);
   mean_flux<D>(mesh_, at, s.u, s.u_boundary, velocity_gradient_, phi_p_);
   for (std::size_t b = 0; b < s.w.size(); ++b)
     phi_p_[mesh_.n_interior + b] = s.u_boundary[b].dot(at.area[mesh_.n_interior + b]);
   step_ = {rho_, s.placement, {}, {}};  // dt/rho = 1
+  by_ = s;
+  right_side_.resize(s.u.size());
   if (bodies_) {
     mark_bodies(s.time);
     bodies_->force(at, s.u);
@@ -59,9 +62,9 @@ void FractionalStep<D>::project_initial(State<D>& s) {
     if (boundary_.kind()[b] == FaceKind::pressure) continue;
     p_boundary_[b] = p_[mesh_.owner[f]] - (s.w[b] - jump_from[b]).dot(at.area[f]) / at.conductance[f];
   }
-  correct(s);
+  correct();
   s.phi.swap(phi_p_);
-  s.u.swap(u_p_);
+  s.u.swap(right_side_);
   s.w = w_;
   s.u_old.clear();
   s.pressure = {};

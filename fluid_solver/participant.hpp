@@ -24,7 +24,10 @@ using MotionLink = std::function<std::unique_ptr<MeshMotionSource>(const Mesh&)>
 ///
 ///   semi-implicit      the first solve() of a step moves the mesh and does all but the last pressure
 ///   equation;
-///                      every solve() costs one pressure equation
+///                      every solve() costs one pressure equation. Where friction would say something else
+///                      with the wall velocity of a later pass than with the first guess (see
+///                      unseen_share()), that pass repeats the step's first part once, on the mesh of the
+///                      guess: equal input gives equal output before it and from it on, not across it
 ///   implicit, explicit every solve() moves the mesh and starts from level n
 ///   standalone         interfaces are walls at rest
 template <int D>
@@ -47,6 +50,7 @@ class FluidParticipant final : public Participant {
 
  private:
   Vectors<D> wall_velocity(const Exchange& in) const;
+  void prepare(const Vectors<D>& w);
   std::vector<Vec3> receive_points();
   Exchange forces() const;
 
@@ -58,7 +62,11 @@ class FluidParticipant final : public Participant {
   std::optional<RunningStatistics<D>> statistics_;
   FluidOutput<D> output_;
   Step step_;
-  bool prepared_ = false;
+  std::vector<Vec3> points_;  // of the first guess; semi-implicit only
+  int passes_ = 0;            // of the step under way
+  bool renewed_ = false;      // its prediction
+  long steps_ = 0, renewed_steps_ = 0;
+  double largest_unseen_ = 0;  // share of the load, of the accepted steps
 };
 
 /// The participant of the dimension that the parameters name.

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
 #include "fluid_solver/fractional_step.hpp"
 
 namespace couplet::fluid {
@@ -14,23 +16,29 @@ namespace {
 // stiff modes.
 constexpr double c_modified = 1.0 / 16;
 constexpr int most_passes = 60;
+// Up to here two passes of the pressure equation hold after an implicit predictor (measured: 40 hold, 50
+// grow).
+constexpr double largest_degrees = 40;
 
 }  // namespace
 
 template <int D>
-void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vectors<D>& w) {
+void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubStep<D> step,
+                                const Vectors<D>& w) {
   step_ = std::move(step);
+  by_ = by;
+  level_.reset();
   w_ = w;
   const bool moving = !step_.swept.empty();
-  const bool implicit = from.implicit;
+  const bool implicit = by_.implicit;
   if (moving)
     for (std::size_t b = 0; b < w_.size(); ++b)
       if (boundary_.kind()[b] == FaceKind::slip) {
         const Index f = mesh_.n_interior + static_cast<Index>(b);
         w_[b] = step_.swept[f] / (step_.dt * step_.to->area[f].squaredNorm()) * step_.to->area[f];
       }
-  if (bodies_) mark_bodies(from.time + step_.dt);
-  const double dt = step_.dt, ratio = from.dt_old > 0 ? dt / from.dt_old : 0;
+  if (bodies_) mark_bodies(by_.time + step_.dt);
+  const double dt = step_.dt, ratio = by_.dt_old > 0 ? dt / by_.dt_old : 0;
   const double e0 = 1 + ratio / 2, e1 = -ratio / 2;
 
   const bool given = !step_.rate.empty();
@@ -41,7 +49,7 @@ void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vec
     right_side_[c] = volume[c] * from.u[c] + (given ? dt * step_.rate[c] : dt * e0 * rates_.rate[c]);
   if (ratio > 0 && !given)
     for (Index c = 0; c < mesh_.cells.n_local(); ++c) right_side_[c] += dt * e1 * from.rates_old.rate[c];
-  if (!body_force_.empty()) add_body_force(from);
+  if (!body_force_.empty()) add_body_force();
   if (moving) add_swept(from, e0, e1);
   if (moving || implicit) add_old_pressure(from, implicit);
   u_p_.resize(from.u.size());
@@ -58,14 +66,22 @@ void FractionalStep<D>::predict(const State<D>& from, SubStep<D> step, const Vec
     for (std::size_t b = 0; b < shear_.size() && !given; ++b)
       viscous_force_[b] = ratio > 0 ? Vec<D>(e0 * shear_[b] + e1 * from.shear_old[b]) : shear_[b];
   }
+  remember_prediction(implicit);
   mesh_.cells.update_ghosts(flat<D>(u_p_), D);
   if (bodies_) bodies_->force(*step_.to, u_p_);
-  extrapolate_pressure(from);
+  extrapolate_pressure();
   predict_flux(from);
   if (assembled_ != step_.to) {
+    if (oblique_) set_obliqueness(*step_.to);
     pressure_.set(pressure_placement());
     assembled_ = step_.to;
   }
+}
+
+template <int D>
+void FractionalStep<D>::set_obliqueness(const Placement<D>& at) {
+  degrees_ = std::atan(max(mesh_.comm, at.obliqueness)) * 180 / std::numbers::pi;
+  very_oblique_ = degrees_ > largest_degrees;
 }
 
 template <int D>
@@ -87,12 +103,11 @@ void FractionalStep<D>::rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& 
 
 // Volume-integrated at t^{n+1/2}, where the pressure lives that may balance it.
 template <int D>
-void FractionalStep<D>::add_body_force(const State<D>& from) {
+void FractionalStep<D>::add_body_force() {
   std::vector<Vec3> places(mesh_.cells.n_local(), Vec3::Zero());
   for (std::size_t c = 0; c < places.size(); ++c) places[c].template head<D>() = step_.to->centre[c];
   force_.resize(places.size());
-  for (int c = 0; c < D; ++c)
-    body_force_[c].evaluate(places, from.time + step_.dt / 2, flat<D>(force_), D, c);
+  for (int c = 0; c < D; ++c) body_force_[c].evaluate(places, by_.time + step_.dt / 2, flat<D>(force_), D, c);
   for (std::size_t c = 0; c < places.size(); ++c)
     right_side_[c] += step_.dt * step_.to->volume[c] * force_[c];
 }
@@ -121,8 +136,8 @@ void FractionalStep<D>::add_swept(const State<D>& from, double e0, double e1) {
 // velocity is the right boundary value of the predictor; add_back_old_pressure() returns the part on S^{n+1}.
 template <int D>
 void FractionalStep<D>::add_old_pressure(const State<D>& from, bool implicit) {
-  if (!from.pressure[0]) return;
-  const PressureLevel<D>& level = *from.pressure[0];
+  if (!by_.pressure[0]) return;
+  const PressureLevel<D>& level = *by_.pressure[0];
   const double factor = step_.dt / rho_;
   const Placement<D>&old = *from.placement, &now = *step_.to;
   if (step_.swept.empty()) {  // S does not change: the gradient of that step is still at hand
@@ -162,11 +177,11 @@ double FractionalStep<D>::viscous_tolerance() const {
 /// that of the levels, extrapolated in the same way.
 template <int D>
 void FractionalStep<D>::guess_velocity(const State<D>& from, double a) {
-  if (from.dt_old == 0) {
+  if (by_.dt_old == 0) {
     u_p_ = from.u;
     return;
   }
-  const double ratio = step_.dt / from.dt_old;
+  const double ratio = step_.dt / by_.dt_old;
   const std::vector<double>& inverse = viscous_solver_.inverse_diagonal();
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
     const Vec<D> ahead = from.u[c] + ratio * (from.u[c] - from.u_old[c]);
@@ -187,7 +202,7 @@ void FractionalStep<D>::solve_viscous(const State<D>& from, const Vectors<D>& w,
   boundary_.close(mesh_, *step_.to, u_p_, w, u_boundary_);
   wall_shear<D>(mesh_, *step_.to, parameters_.viscosity, u_p_, u_boundary_, viscous_force_);
   for (std::size_t b = 0; b < shear_.size(); ++b) viscous_force_[b] = 0.5 * (viscous_force_[b] + shear_[b]);
-  add_back_old_pressure(from);
+  add_back_old_pressure();
 }
 
 /// The non-orthogonal part is implicit too, by passes of deferred correction: left explicit beside an
@@ -221,9 +236,9 @@ void FractionalStep<D>::solve_oblique_viscous(const Vectors<D>& w, double a) {
 }
 
 template <int D>
-void FractionalStep<D>::add_back_old_pressure(const State<D>& from) {
-  if (!from.pressure[0]) return;
-  const PressureLevel<D>& level = *from.pressure[0];
+void FractionalStep<D>::add_back_old_pressure() {
+  if (!by_.pressure[0]) return;
+  const PressureLevel<D>& level = *by_.pressure[0];
   const double factor = step_.dt / rho_;
   if (step_.swept.empty()) {
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c) u_p_[c] += factor * level.gradient[c];
@@ -237,11 +252,11 @@ void FractionalStep<D>::add_back_old_pressure(const State<D>& from) {
 /// the last two. With q < 1 its share of the operator, two passes make that z^2 = q^2 (2 z - 1), |z| = q: no
 /// step amplifies it. A parabola would need q < 0.7, a single pass q < 1/3.
 template <int D>
-void FractionalStep<D>::extrapolate_pressure(const State<D>& from) {
+void FractionalStep<D>::extrapolate_pressure() {
   const std::size_t order = parameters_.pressure_tolerance >= 1e-3 ? 2 : 3;
-  const double t = from.time + step_.dt / 2;
+  const double t = by_.time + step_.dt / 2;
   std::vector<const PressureLevel<D>*> levels;
-  for (std::size_t k = 0; k < order && from.pressure[k]; ++k) levels.push_back(from.pressure[k].get());
+  for (std::size_t k = 0; k < order && by_.pressure[k]; ++k) levels.push_back(by_.pressure[k].get());
   std::array<double, 3> weight{1, 1, 1};
   for (std::size_t k = 0; k < levels.size(); ++k)
     for (std::size_t j = 0; j < levels.size(); ++j)
@@ -264,8 +279,10 @@ void FractionalStep<D>::extrapolate_pressure(const State<D>& from) {
     gradient_start_[c] += ahead * (levels[0]->gradient[c] - levels[1]->gradient[c]);
 }
 
-template void FractionalStep<2>::predict(const State<2>&, SubStep<2>, const Vectors<2>&);
-template void FractionalStep<3>::predict(const State<3>&, SubStep<3>, const Vectors<3>&);
+template void FractionalStep<2>::predict(const State<2>&, const History<2>&, SubStep<2>, const Vectors<2>&);
+template void FractionalStep<3>::predict(const State<3>&, const History<3>&, SubStep<3>, const Vectors<3>&);
+template void FractionalStep<2>::set_obliqueness(const Placement<2>&);
+template void FractionalStep<3>::set_obliqueness(const Placement<3>&);
 template void FractionalStep<2>::rates(const State<2>&, Vectors<2>&, Vectors<2>&);
 template void FractionalStep<3>::rates(const State<3>&, Vectors<3>&, Vectors<3>&);
 

@@ -31,15 +31,31 @@ struct PressureLevel {
 /// A fluid at rest is set going by the impulse of its first step, whose pressure says nothing of what comes.
 enum class Start : int { at_rest, after_impulse, flowing };
 
-/// Everything that the next step needs: level n and the history of the multi-step schemes.
+/// How a level was reached: all that a step may look at in another way than the level was left (another
+/// viscous treatment, a first pressure), so that the level itself stays as it is until it is replaced.
 template <int D>
-struct State {
+struct History {
   double time = 0;        ///< t^n [s]
   double dt_old = 0;      ///< size of the last step [s]; 0: no history, the next step is an Euler step
   bool implicit = false;  ///< viscous term of the history (Rates::viscous is there)
   Start start = Start::flowing;
+  std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;  ///< latest first; null: not there yet
+};
+
+/// Kinetic energy and what of it no work explains, see EnergyGuard.
+struct EnergyLedger {
+  double energy = -1;  ///< at t^n [J]; below 0: not known yet
+  double largest = 0;  ///< so far [J]
+  double excess = 0;   ///< [J]
+  double level = 0;    ///< pressure about which the boundaries' work is counted [Pa]
+};
+
+/// Everything that the next step needs: level n and the history of the multi-step schemes.
+template <int D>
+struct State : History<D> {
   std::uint64_t number = 0;  ///< of u among all that a solver computed, so that what follows from it is not
                              ///< computed again; 0: not computed
+  EnergyLedger ledger;
 
   Vectors<D> u;             ///< u^n per local cell, ghosts current [m/s]
   Vectors<D> w;             ///< given velocity per boundary face at t^n [m/s]
@@ -47,7 +63,6 @@ struct State {
   std::vector<double> phi;  ///< absolute volume flux per flux face at t^n [m^3/s]
   std::vector<double> memory,
       memory_old;  ///< delta^n per interior face [m^3/s] (incremental: what is left of delta^0)
-  std::array<std::shared_ptr<const PressureLevel<D>>, 3> pressure;  ///< latest first; null: not there yet
 
   std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty: no model
 

@@ -22,6 +22,10 @@ void write_state(CheckpointWriter& file, const State<D>& s) {
   file.write_scalar("dt-old", s.dt_old);
   file.write_scalar("implicit", s.implicit ? 1 : 0);
   file.write_scalar("start", static_cast<int>(s.start));
+  file.write_scalar("energy", s.ledger.energy);
+  file.write_scalar("energy-largest", s.ledger.largest);
+  file.write_scalar("energy-excess", s.ledger.excess);
+  file.write_scalar("energy-level", s.ledger.level);
   file.write_scalar("pressure-levels", levels);
   file.write_scalar("has-mesh-flux", s.mesh_flux.empty() ? 0 : 1);
   file.write_scalar("has-flux-memory", s.memory.empty() ? 0 : 1);
@@ -53,13 +57,16 @@ void write_state(CheckpointWriter& file, const State<D>& s) {
 }
 
 template <int D>
-State<D> read_state(CheckpointReader& file, const Mesh& mesh, bool moving) {
+State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<const Placement<D>> at_rest) {
+  const bool moving = !at_rest;
   State<D> s;
   const std::size_t cells = mesh.cells.n_local(), faces = mesh.boundary.n_owned();
   s.time = file.read_scalar("time");
   s.dt_old = file.read_scalar("dt-old");
   s.implicit = file.read_scalar("implicit") != 0;
   s.start = static_cast<Start>(static_cast<int>(file.read_scalar("start")));
+  s.ledger = {file.read_scalar("energy"), file.read_scalar("energy-largest"),
+              file.read_scalar("energy-excess"), file.read_scalar("energy-level")};
   const int levels = static_cast<int>(file.read_scalar("pressure-levels"));
   const bool has_mesh_flux = file.read_scalar("has-mesh-flux") != 0;
   const bool has_memory = file.read_scalar("has-flux-memory") != 0;
@@ -97,13 +104,13 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, bool moving) {
     s.mesh_flux.resize(has_mesh_flux ? mesh.n_flux_faces() : 0);
     file.read("mesh-flux", s.mesh_flux);
   }
-  s.placement = moving ? make_placement<D>(mesh, s.points) : make_placement<D>(mesh, mesh.reference);
+  s.placement = moving ? make_placement<D>(mesh, s.points) : std::move(at_rest);
   return s;
 }
 
 template void write_state<2>(CheckpointWriter&, const State<2>&);
 template void write_state<3>(CheckpointWriter&, const State<3>&);
-template State<2> read_state<2>(CheckpointReader&, const Mesh&, bool);
-template State<3> read_state<3>(CheckpointReader&, const Mesh&, bool);
+template State<2> read_state<2>(CheckpointReader&, const Mesh&, std::shared_ptr<const Placement<2>>);
+template State<3> read_state<3>(CheckpointReader&, const Mesh&, std::shared_ptr<const Placement<3>>);
 
 }  // namespace couplet::fluid

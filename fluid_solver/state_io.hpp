@@ -9,8 +9,9 @@ namespace couplet::fluid {
 /// All of a state, history included, bit for bit. Collective.
 template <int D>
 void write_state(CheckpointWriter& file, const State<D>& state);
-/// Throws Error if the file does not fit the mesh. Collective.
+/// `at_rest`: the placement of a mesh that does not move; null: the file says where the points are. Throws
+/// Error if the file does not fit the mesh. Collective.
 template <int D>
-State<D> read_state(CheckpointReader& file, const Mesh& mesh, bool moving);
+State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<const Placement<D>> at_rest);
 
 }  // namespace couplet::fluid

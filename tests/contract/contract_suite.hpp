@@ -12,6 +12,8 @@
 //     which add
 //     // in the order in which messages arrive: two runs of one program differ too.
 //     static constexpr double restart_tolerance = 0;
+//     // If there is an input that no step can be solved with:
+//     static Exchange hopeless(const Interface& interface);
 //   };
 //   INSTANTIATE_TYPED_TEST_SUITE_P(Mine, ParticipantContract, MyFactory);
 #pragma once
@@ -25,10 +27,12 @@
 #include <map>
 #include <memory>
 
+#include "common/base/error.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
+#include "tests/contract/contents.hpp"
 
 namespace couplet::contract {
 
@@ -179,7 +183,41 @@ TYPED_TEST_P(ParticipantContract, all_ranks_together_give_what_one_rank_gives) {
   }
 }
 
-REGISTER_TYPED_TEST_SUITE_P(ParticipantContract, output_is_what_the_interface_announced, input_matters,
+/// As a job that gives up writes it: the state before the step, to the bit.
+TYPED_TEST_P(ParticipantContract, a_step_that_fails_leaves_state_n_bit_for_bit) {
+  if constexpr (requires { TypeParam::hopeless(Interface{}); }) {
+    typename TestFixture::Subject subject(MPI_COMM_WORLD);
+    const auto saved = [&] {
+      int id = ::getpid();
+      MPI_Bcast(&id, 1, MPI_INT, 0, MPI_COMM_WORLD);
+      const auto file =
+          std::filesystem::temp_directory_path() / ("couplet-failing-" + std::to_string(id) + ".h5");
+      CheckpointWriter writer(MPI_COMM_WORLD, file);
+      subject.participant->save(writer);
+      writer.close();
+      const Contents all = contents(file);
+      MPI_Barrier(MPI_COMM_WORLD);
+      if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
+      MPI_Barrier(MPI_COMM_WORLD);
+      return all;
+    };
+    for (int i = 0; i < 3; ++i) subject.step(1 + i);
+    const Contents before = saved();
+    subject.begin();
+    EXPECT_THROW(subject.participant->solve(TypeParam::hopeless(subject.interface)), SolveFailure);
+    EXPECT_EQ(apart(before, saved()), 0);
+    subject.begin();
+    subject.solve(1);
+    EXPECT_THROW(subject.participant->solve(TypeParam::hopeless(subject.interface)), SolveFailure);
+    EXPECT_EQ(apart(before, saved()), 0) << "in a later pass";
+    subject.step(1);
+  } else {
+    GTEST_SKIP() << "no input is hopeless for it";
+  }
+}
+
+REGISTER_TYPED_TEST_SUITE_P(ParticipantContract, a_step_that_fails_leaves_state_n_bit_for_bit,
+                            output_is_what_the_interface_announced, input_matters,
                             equal_input_gives_equal_output_within_a_step,
                             a_step_begun_again_forgets_what_was_tried, only_accepted_steps_change_the_state,
                             a_checkpoint_continues_bit_for_bit, all_ranks_together_give_what_one_rank_gives);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/participant.hpp"
 #include "tests/contract/contract_suite.hpp"
+#include "tests/contract/standalone_suite.hpp"
 
 namespace couplet::contract {
 namespace {
@@ -55,9 +56,44 @@ struct FluidFactory {
       }
     return in;
   }
+  static Exchange hopeless(const Interface& interface) {
+    Exchange in = input(interface, 1);
+    for (double& v : in["velocity"]) v *= 1e30;
+    return in;
+  }
   static constexpr Scheme scheme = S;
   static constexpr double dt = 0.01, repeat_tolerance = 1e-8, rank_tolerance = 1e-7, restart_tolerance = 1e-8;
 };
+
+/// A channel on its own, on a skewed mesh; given sub-steps, so that a step has several.
+template <fluid::ViscousTreatment Viscous>
+struct FluidAlone {
+  static RawMesh raw_mesh() {
+    RawMesh raw = make_box(BoxCells::quadrilaterals, {12, 8, 1}, Vec3::Zero(), Vec3(2, 1, 0));
+    perturb_interior(raw, 0.15, 3);
+    return raw;
+  }
+  static std::unique_ptr<Participant> make(MPI_Comm comm) {
+    using namespace fluid;
+    FluidParameters p;
+    p.mesh = "box";
+    p.dimension = 2;
+    p.density = 1;
+    p.viscosity = 0.01;
+    p.viscous = Viscous;
+    p.boundaries["xmin"].type = BoundaryType::inlet;
+    p.boundaries["xmin"].velocity = {{"1+sin(9*t)"}, {"0"}};
+    p.boundaries["xmax"].type = BoundaryType::outlet;
+    p.boundaries["ymax"].type = BoundaryType::slip;
+    p.boundaries["ymin"].type = BoundaryType::no_slip;
+    return make_participant(mesh_of<FluidAlone>(comm), p, FluidContext{}, {});
+  }
+  static constexpr double dt = 0.05, restart_tolerance = 1e-8;
+};
+using FluidAloneExplicit = FluidAlone<fluid::ViscousTreatment::explicit_>;
+using FluidAloneImplicit = FluidAlone<fluid::ViscousTreatment::implicit>;
+INSTANTIATE_TYPED_TEST_SUITE_P(FluidAloneExplicit, StandaloneContract, FluidAloneExplicit);
+INSTANTIATE_TYPED_TEST_SUITE_P(FluidAloneImplicit, StandaloneContract, FluidAloneImplicit);
 
 using SemiImplicit = FluidFactory<Scheme::semi_implicit, false>;
 using Implicit = FluidFactory<Scheme::implicit, false>;

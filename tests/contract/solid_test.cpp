@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/solid.hpp"
 #include "tests/contract/contract_suite.hpp"
+#include "tests/contract/standalone_suite.hpp"
 
 namespace couplet::contract {
 namespace {
@@ -36,6 +37,29 @@ struct SolidFactory {
                           restart_tolerance = 1e-11;
 };
 
+/// The column on its own, pushed by a traction.
+struct SolidAlone {
+  static RawMesh raw_mesh() { return SolidFactory::raw_mesh(); }
+  static std::unique_ptr<Participant> make(MPI_Comm comm) {
+    SolidParameters p;
+    p.mesh = "box";
+    p.dimension = 2;
+    p.analysis = SolidParameters::Analysis::dynamic;
+    p.material = {3000, 4e6, 0.3};
+    p.boundaries["ymin"].type = SolidBoundary::Type::fixed_displacement;
+    p.boundaries["ymin"].value = {{"0"}, {"0"}};
+    for (const char* side : {"xmin", "xmax"}) {
+      p.boundaries[side].type = SolidBoundary::Type::traction;
+      p.boundaries[side].value = {{"0"}, {"0"}};
+    }
+    p.boundaries["ymax"].type = SolidBoundary::Type::traction;
+    p.boundaries["ymax"].value = {{"1000*t"}, {"0"}};
+    return std::make_unique<Solid>(mesh_of<SolidAlone>(comm), p, SolidContext{});
+  }
+  static constexpr double dt = 0.01, restart_tolerance = 1e-11;
+};
+
+INSTANTIATE_TYPED_TEST_SUITE_P(SolidAlone, StandaloneContract, SolidAlone);
 INSTANTIATE_TYPED_TEST_SUITE_P(Solid, ParticipantContract, SolidFactory);
 
 }  // namespace
