@@ -25,7 +25,7 @@ void check_names(const Mesh& mesh, const FluidParameters& parameters) {
   if (!missing.empty())
     throw Error(
         "boundaries: the mesh '{}' has patches without a boundary: {}. Give each of them a type (inlet, "
-        "outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic or interface).",
+        "outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface or body).",
         parameters.mesh, join(missing));
 }
 
@@ -60,6 +60,10 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
     case BoundaryType::interface:
       std::fill_n(interface_.begin() + first, patch.count, 1);
       interface_patches_.push_back(patch.name);
+      return;
+    case BoundaryType::body:
+      std::fill_n(interface_.begin() + first, patch.count, 1);
+      body_patches_.push_back(&patch);
       return;
     case BoundaryType::convective_outlet:
       std::fill_n(convective_.begin() + first, patch.count, 1);

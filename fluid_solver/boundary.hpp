@@ -30,6 +30,9 @@ class Boundary {
   bool closed() const { return closed_; }
   /// Names of the patches of type interface.
   const std::vector<std::string>& interface_patches() const { return interface_patches_; }
+  /// Patches of type body.
+  const std::vector<const Patch*>& body_patches() const { return body_patches_; }
+  /// A wall whose velocity is given from outside: by the structure or by the prescribed motion.
   bool is_interface(Index boundary_face) const { return interface_[boundary_face] != 0; }
 
   /// w at time t [m/s] at the faces with given velocity; interface faces are left as they are.
@@ -66,6 +69,7 @@ class Boundary {
   std::vector<FaceKind> kind_;
   std::vector<char> interface_, convective_, free_backflow_;
   std::vector<std::string> interface_patches_;
+  std::vector<const Patch*> body_patches_;
   std::vector<Given> velocity_patches_, pressure_patches_;
   std::vector<std::pair<Index, Index>> convective_patches_;  // first boundary face, count; also empty ones
   bool closed_ = true;

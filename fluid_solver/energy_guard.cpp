@@ -45,7 +45,8 @@ void EnergyGuard<D>::add_boundary(const EnergyStep<D>& s, double level, double* 
       case FaceKind::velocity: {
         const Vec<D> on_face = 0.5 * (s.from.u_boundary[b] + s.w[b]);
         convection = -rho_ * through * (on_face.dot(inside) - 0.5 * inside.squaredNorm());
-        friction = mu_ * s.to.conductance[f] * (on_face - inside).dot(inside);
+        // What a wall takes is not counted: a stiff layer changes within the step, its mean says nothing.
+        friction = std::max(0.0, mu_ * s.to.conductance[f] * (on_face - inside).dot(on_face));
         break;
       }
       case FaceKind::pressure:

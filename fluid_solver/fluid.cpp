@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/base/error.hpp"
 #include "common/log/timer.hpp"
@@ -187,6 +188,30 @@ double Fluid<D>::next_size(double remaining, bool& last) {
   return remaining / n;
 }
 
+/// Whoever moved the points: a cell turned over has no flow.
+template <int D>
+void Fluid<D>::refuse_inverted(const Placement<D>& at) const {
+  struct {
+    double value;
+    int rank;
+  } least{std::numeric_limits<double>::infinity(), comm_rank(mesh_.comm)};
+  Index where = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    if (at.volume[c] >= least.value) continue;
+    least.value = at.volume[c];
+    where = c;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh_.comm);
+  if (least.value > 0) return;
+  Vec3 place = Vec3::Zero();
+  if (mesh_.cells.n_owned() > 0) place.template head<D>() = at.centre[where];
+  MPI_Bcast(place.data(), 3, MPI_DOUBLE, least.rank, mesh_.comm);
+  throw SolveFailure(
+      "The motion of the mesh from t = {:.6g} s turns a cell over near ({:.6g}, {:.6g}, {:.6g}) m (volume "
+      "{:.3e} m^3).",
+      time_, place.x(), place.y(), place.z(), least.value);
+}
+
 template <int D>
 SubStep<D> Fluid<D>::make_sub_step(double dt, double done, std::span<const Vec3> points) const {
   SubStep<D> step;
@@ -202,6 +227,7 @@ SubStep<D> Fluid<D>::make_sub_step(double dt, double done, std::span<const Vec3>
       step.points[i] = accepted_.points[i] + s * (points[i] - accepted_.points[i]);
   }
   step.to = make_placement<D>(mesh_, step.points);
+  refuse_inverted(*step.to);
   step.swept = swept_volumes(mesh_, level().points, step.points);
   step.swept.resize(mesh_.n_flux_faces());
   return step;

@@ -78,6 +78,7 @@ class Fluid {
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(double time);
   void check_wall_velocity() const;
+  void refuse_inverted(const Placement<D>& at) const;
   void choose_viscous_treatment();
   double next_size(double remaining, bool& last);
   SubStep<D> make_sub_step(double dt, double done, std::span<const Vec3> points) const;

@@ -20,12 +20,13 @@ enum class BoundaryType {
   slip,
   symmetry,
   periodic,
-  interface
+  interface,
+  body
 };
 /// No-slip wall, whoever gives its velocity.
 inline bool is_wall(BoundaryType type) {
   return type == BoundaryType::no_slip || type == BoundaryType::moving_wall ||
-         type == BoundaryType::interface;
+         type == BoundaryType::interface || type == BoundaryType::body;
 }
 enum class InletProfile { uniform, parabolic };
 enum class ViscousTreatment { automatic, explicit_, implicit };
@@ -60,6 +61,16 @@ struct BodyParameters {
   std::vector<config::ExpressionText> velocity;  // [m/s]; empty: at rest
 };
 
+/// A prescribed motion of the mesh; absent: none.
+struct MotionParameters {
+  std::vector<config::ExpressionText> translation;   // [m], of t
+  config::ExpressionText angle;                      // [rad], of t
+  std::vector<config::ExpressionText> displacement;  // [m], of the reference place and t
+  Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]; of the rotation
+  double inner_radius = 0;                           // [m]
+  std::optional<double> outer_radius;                // [m]; absent: the whole mesh moves
+};
+
 /// Running means from a time on; absent: none.
 struct StatisticsParameters {
   double start = 0;  // [s]
@@ -92,6 +103,7 @@ struct FluidParameters {
   std::optional<StatisticsParameters> statistics;
   FluidOutputParameters output;
   std::map<std::string, BodyParameters> bodies;
+  std::optional<MotionParameters> motion;
   ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   Projection projection = Projection::flux_memory;
   std::map<std::string, ProbeParameters> probes;

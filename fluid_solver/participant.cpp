@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/derived.hpp"
@@ -30,12 +31,13 @@ template <int D>
 FluidParticipant<D>::FluidParticipant(Mesh mesh, const FluidParameters& parameters, FluidContext context,
                                       const MotionLink& link)
     : mesh_(std::move(mesh)),
-      fluid_(std::make_unique<Fluid<D>>(mesh_, parameters, bool(link))),
+      fluid_(std::make_unique<Fluid<D>>(mesh_, parameters, bool(link) || parameters.motion)),
       output_(*fluid_, std::move(context)) {
   if (link) motion_ = link(mesh_);
+  set_up_motion();
   if (parameters.statistics) statistics_.emplace(mesh_.cells.n_local());
   if (fluid_->boundary().interface_patches().empty()) {
-    if (!link) mesh_.reference = {};  // only the set-up needed it
+    if (!fluid_->moving()) mesh_.reference = {};  // only the set-up needed it
     return;
   }
   interface_ = std::make_unique<InterfaceMap>(mesh_, fluid_->boundary().interface_patches());
@@ -47,6 +49,51 @@ FluidParticipant<D>::FluidParticipant(Mesh mesh, const FluidParameters& paramete
       row.push_back(
           static_cast<Index>(std::lower_bound(points.begin(), points.end(), point) - points.begin()));
     interface_vertices_.push_row(row);
+  }
+}
+
+template <int D>
+void FluidParticipant<D>::set_up_motion() {
+  const FluidParameters& parameters = fluid_->parameters();
+  const auto& bodies = fluid_->boundary().body_patches();
+  if (!parameters.motion) {
+    if (!bodies.empty())
+      throw Error(
+          "boundaries.{}: a wall of type 'body' moves as the section 'motion' says, which is not there.",
+          bodies.front()->name);
+    return;
+  }
+  if (motion_)
+    throw Error(
+        "motion: this fluid has a mesh mover, which moves its mesh already. Remove one of them; a wall that "
+        "a mesh mover "
+        "moves by itself is of type 'moving-wall' here.");
+  prescribed_ = std::make_unique<PrescribedMotion>(*parameters.motion, D);
+  const double start = fluid_->state().time;
+  const double largest = max(mesh_.comm, prescribed_->largest_displacement(mesh_.reference_points, start));
+  if (largest > 0)
+    throw Error(
+        "motion: at t = {:g} s it displaces the mesh by up to {:.3g} m, but the fluid starts from the "
+        "reference "
+        "configuration. Subtract the value at the start, or multiply with a ramp.",
+        start, largest);
+}
+
+/// At the faces of bodies the mean of the velocities of their points, as at an interface.
+template <int D>
+void FluidParticipant<D>::add_body_velocity(Vectors<D>& w) const {
+  for (const Patch* patch : fluid_->boundary().body_patches()) {
+    std::vector<Vec3> corners;
+    for (Index f = patch->first; f < patch->first + patch->count; ++f)
+      for (const Index v : mesh_.face_points[f]) corners.push_back(mesh_.reference_points[v]);
+    const std::vector<Vec3> velocities = prescribed_->velocities(corners, step_.time + step_.dt, step_.dt);
+    auto next = velocities.begin();
+    for (Index f = patch->first; f < patch->first + patch->count; ++f) {
+      const auto n = mesh_.face_points[f].size();
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t i = 0; i < n; ++i) sum += *next++;
+      w[f - mesh_.n_interior] = (sum / double(n)).template head<D>();
+    }
   }
 }
 
@@ -72,11 +119,14 @@ void FluidParticipant<D>::begin_step(const Step& step) {
 /// w at a face is the mean of the velocities of its vertices.
 template <int D>
 Vectors<D> FluidParticipant<D>::wall_velocity(const Exchange& in) const {
-  if (!interface_ || step_.scheme == Scheme::standalone) return {};
+  const bool coupled = interface_ && step_.scheme != Scheme::standalone;
+  if (!coupled && !prescribed_) return {};
+  Vectors<D> w(mesh_.boundary.n_owned(), Vec<D>::Zero());
+  if (prescribed_) add_body_velocity(w);
+  if (!coupled) return w;
   const auto given = in.find("velocity");
   const std::vector<double> at_points =
       interface_->scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, D);
-  Vectors<D> w(mesh_.boundary.n_owned(), Vec<D>::Zero());
   const std::vector<Index>& faces = interface_->faces();
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const auto vertices = interface_vertices_[static_cast<Index>(i)];
@@ -89,6 +139,7 @@ Vectors<D> FluidParticipant<D>::wall_velocity(const Exchange& in) const {
 
 template <int D>
 std::vector<Vec3> FluidParticipant<D>::receive_points() {
+  if (prescribed_) return prescribed_->places(mesh_.reference_points, step_.time + step_.dt);
   if (!motion_) return {};
   const std::vector<double> displacement = motion_->receive();
   std::vector<Vec3> points = mesh_.reference_points;

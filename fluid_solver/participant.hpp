@@ -12,6 +12,7 @@
 #include "common/coupling/participant.hpp"
 #include "fluid_solver/fluid.hpp"
 #include "fluid_solver/output.hpp"
+#include "fluid_solver/prescribed_motion.hpp"
 
 namespace couplet::fluid {
 
@@ -29,7 +30,7 @@ using MotionLink = std::function<std::unique_ptr<MeshMotionSource>(const Mesh&)>
 ///                      unseen_share()), that pass repeats the step's first part once, on the mesh of the
 ///                      guess: equal input gives equal output before it and from it on, not across it
 ///   implicit, explicit every solve() moves the mesh and starts from level n
-///   standalone         interfaces are walls at rest
+///   standalone         interfaces are walls at rest; bodies move as the case prescribes, in every scheme
 template <int D>
 class FluidParticipant final : public Participant {
  public:
@@ -51,14 +52,17 @@ class FluidParticipant final : public Participant {
  private:
   Vectors<D> wall_velocity(const Exchange& in) const;
   void prepare(const Vectors<D>& w);
+  void set_up_motion();
+  void add_body_velocity(Vectors<D>& w) const;
   std::vector<Vec3> receive_points();
   Exchange forces() const;
 
   Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;
-  std::unique_ptr<InterfaceMap> interface_;  // null: no interface patch
-  Csr interface_vertices_;                   // per interface face: entries of interface_->points()
-  std::unique_ptr<MeshMotionSource> motion_;
+  std::unique_ptr<InterfaceMap> interface_;       // null: no interface patch
+  Csr interface_vertices_;                        // per interface face: entries of interface_->points()
+  std::unique_ptr<MeshMotionSource> motion_;      // by a mesh mover
+  std::unique_ptr<PrescribedMotion> prescribed_;  // by the case
   std::optional<RunningStatistics<D>> statistics_;
   FluidOutput<D> output_;
   Step step_;

@@ -4,6 +4,7 @@
 #include "common/base/error.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/on_root.hpp"
+#include "common/mesh/quality.hpp"
 
 namespace couplet {
 
@@ -43,6 +44,7 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
     Mesh mesh = distribute(comm, raw);
     raw = {};
     malloc_trim(0);  // the whole mesh has left holes that nothing else fills
+    check_and_report(mesh);
     return mesh;
   } catch (const Error& e) {
     throw Error("The mesh '{}' cannot be used. {}", file.string(), e.what());

@@ -2,10 +2,13 @@
 #include "common/mesh/quality.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -24,13 +27,60 @@ Vec3 mean_face_centre(const Mesh& mesh, const Geometry& geometry, Index cell) {
   return sum / n;
 }
 
+/// The largest of all ranks and where it is.
+struct Extreme {
+  double value = 0;
+  Vec3 at = Vec3::Zero();
+  void add(double other, const Vec3& place) {
+    if (other <= value) return;
+    value = other;
+    at = place;
+  }
+  void reduce(MPI_Comm comm) {
+    struct {
+      double value;
+      int rank;
+    } best{value, comm_rank(comm)};
+    MPI_Allreduce(MPI_IN_PLACE, &best, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm);
+    MPI_Bcast(at.data(), 3, MPI_DOUBLE, best.rank, comm);
+    value = best.value;
+  }
+};
+
+double longest_edge(const Mesh& mesh, std::span<const Index> face) {
+  double longest = 0;
+  for (std::size_t i = 0; i < face.size(); ++i)
+    longest = std::max(
+        longest,
+        (mesh.reference_points[face[i]] - mesh.reference_points[face[(i + 1) % face.size()]]).norm());
+  return longest;
+}
+
+/// Of the reference placement: nobody asks for that of another one.
+Extreme largest_aspect_ratio(const Mesh& mesh, const Geometry& geometry) {
+  std::vector<double> length(mesh.cells.n_local(), 0.0), area(mesh.cells.n_local(), 0.0);
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    const double edge = longest_edge(mesh, mesh.face_points[f]), size = geometry.face_area[f].norm();
+    for (const Index c : {mesh.owner[f], f < mesh.n_interior ? mesh.neighbour[f] : mesh.owner[f]}) {
+      length[c] = std::max(length[c], edge);
+      area[c] = std::max(area[c], size);
+    }
+  }
+  Extreme extreme;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    if (geometry.volume[c] > 0)
+      extreme.add(length[c] * area[c] / geometry.volume[c], geometry.cell_centre[c]);
+  return extreme;
+}
+
 }  // namespace
 
 MeshQuality measure_quality(const Mesh& mesh, const Geometry& geometry) {
-  MeshQuality q{std::numeric_limits<double>::max(), -std::numeric_limits<double>::max(), 0, 0};
+  double largest = -std::numeric_limits<double>::max();
+  Extreme smallest{-std::numeric_limits<double>::max()}, angle, skewness;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-    q.min_volume = std::min(q.min_volume, geometry.volume[c]);
-    q.max_volume = std::max(q.max_volume, geometry.volume[c]);
+    smallest.add(-geometry.volume[c], geometry.cell_centre[c]);
+    largest = std::max(largest, geometry.volume[c]);
   }
   for (Index f = 0; f < mesh.n_interior; ++f) {
     const Vec3& from = geometry.cell_centre[mesh.owner[f]];
@@ -39,14 +89,19 @@ MeshQuality measure_quality(const Mesh& mesh, const Geometry& geometry) {
     const double along = line.dot(area), length = line.norm(), size = area.norm();
     if (length == 0 || size == 0) continue;
     const double cosine = std::clamp(along / (length * size), -1.0, 1.0);
-    q.max_non_orthogonality = std::max(q.max_non_orthogonality, std::acos(cosine) * 180 / std::numbers::pi);
+    angle.add(std::acos(cosine) * 180 / std::numbers::pi, geometry.face_centre[f]);
     if (along <= 0) continue;
     const Vec3 to_face = geometry.face_centre[f] - from;
     const Vec3 pierced = to_face.dot(area) / along * line;
-    q.max_skewness = std::max(q.max_skewness, (to_face - pierced).norm() / length);
+    skewness.add((to_face - pierced).norm() / length, geometry.face_centre[f]);
   }
-  return {min(mesh.comm, q.min_volume), max(mesh.comm, q.max_volume), max(mesh.comm, q.max_non_orthogonality),
-          max(mesh.comm, q.max_skewness)};
+  Extreme aspect = largest_aspect_ratio(mesh, geometry);
+  for (Extreme* e : {&smallest, &angle, &skewness, &aspect}) e->reduce(mesh.comm);
+  return {-smallest.value, max(mesh.comm, largest),
+          angle.value,     skewness.value,
+          aspect.value,    smallest.at,
+          angle.at,        skewness.at,
+          aspect.at};
 }
 
 std::optional<CellTrouble> find_inverted(const Mesh& mesh, const Geometry& geometry) {
@@ -70,6 +125,66 @@ std::optional<CellTrouble> find_inverted(const Mesh& mesh, const Geometry& geome
   if (!any(mesh.comm, !(worst.volume > 0))) return std::nullopt;
   const std::vector<CellTrouble> all = all_gather(mesh.comm, std::vector<CellTrouble>{worst});
   return *std::min_element(all.begin(), all.end(), worse);
+}
+
+namespace {
+
+Vec3 turn(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - b); }
+
+/// Of four corners none turns another way than the rest in a convex quadrilateral, one in a concave one, two
+/// in one that crosses itself.
+bool crosses_itself(const std::array<Vec3, 4>& x) {
+  const Vec3 first = turn(x[0], x[1], x[2]);
+  int other = 0;
+  for (int i = 1; i < 4; ++i) other += turn(x[i], x[(i + 1) % 4], x[(i + 2) % 4]).dot(first) < 0;
+  return other == 2;
+}
+
+}  // namespace
+
+std::optional<CellTrouble> find_crossed(const Mesh& mesh, const Geometry& geometry,
+                                        std::span<const Vec3> points) {
+  std::vector<CellTrouble> found;
+  const auto judge = [&](std::span<const Index> corner, Index cell) {
+    if (corner.size() != 4 || cell >= mesh.cells.n_owned()) return;
+    const std::array<Vec3, 4> x{points[corner[0]], points[corner[1]], points[corner[2]], points[corner[3]]};
+    if (crosses_itself(x))
+      found.push_back({mesh.cell_id[cell], 0.25 * (x[0] + x[1] + x[2] + x[3]), geometry.volume[cell]});
+  };
+  if (mesh.dim == 2)
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) judge(mesh.cell_points[c], c);
+  else
+    for (Index f = 0; f < mesh.n_flux_faces(); ++f) judge(mesh.face_points[f], mesh.owner[f]);
+  const std::vector<CellTrouble> all = all_gather(mesh.comm, found);
+  if (all.empty()) return std::nullopt;
+  return *std::ranges::min_element(all, {}, &CellTrouble::cell_id);
+}
+
+void check_and_report(const Mesh& mesh) {
+  const auto text = [&](const Vec3& x) {
+    return mesh.dim == 2 ? fmt::format("({:.4g}, {:.4g})", x.x(), x.y())
+                         : fmt::format("({:.4g}, {:.4g}, {:.4g})", x.x(), x.y(), x.z());
+  };
+  if (const auto trouble = find_inverted(mesh, mesh.reference))
+    throw Error(
+        "The mesh has an inverted cell: cell {} at {} m has the volume {:.3g} m^3. Its faces cross one "
+        "another; mesh "
+        "that place anew, coarser or with another element size.",
+        trouble->cell_id, text(trouble->centre), trouble->volume);
+  if (const auto trouble = find_crossed(mesh, mesh.reference, mesh.reference_points))
+    throw Error(
+        "The mesh has a cell that crosses itself: cell {} at {} m. Its points come in the wrong order; mesh "
+        "that "
+        "place anew.",
+        trouble->cell_id, text(trouble->centre));
+  const MeshQuality q = measure_quality(mesh, mesh.reference);
+  if (comm_rank(mesh.comm) != 0) return;
+  log::info(
+      "mesh: {} cells; smallest volume {:.3g} m^3 at {}, largest angle {:.3g} degrees at {}, skewness {:.3g} "
+      "at {}, "
+      "aspect ratio {:.3g} at {}",
+      mesh.cells.n_global(), q.min_volume, text(q.volume_at), q.max_non_orthogonality, text(q.angle_at),
+      q.max_skewness, text(q.skewness_at), q.max_aspect_ratio, text(q.aspect_at));
 }
 
 }  // namespace couplet

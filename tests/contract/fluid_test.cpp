@@ -90,6 +90,29 @@ struct FluidAlone {
   }
   static constexpr double dt = 0.05, restart_tolerance = 1e-8;
 };
+/// A duct with a moving middle, on its own.
+struct FluidInMotion {
+  static RawMesh raw_mesh() { return FluidAlone<fluid::ViscousTreatment::explicit_>::raw_mesh(); }
+  static std::unique_ptr<Participant> make(MPI_Comm comm) {
+    using namespace fluid;
+    FluidParameters p;
+    p.mesh = "box";
+    p.dimension = 2;
+    p.density = 1;
+    p.viscosity = 0.01;
+    p.motion.emplace();
+    p.motion->angle = {"0.3*sin(t)"};
+    p.motion->centre = Vec3(1, 0.5, 0);
+    p.motion->outer_radius = 0.45;
+    p.boundaries["xmin"].type = BoundaryType::inlet;
+    p.boundaries["xmin"].velocity = {{"1"}, {"0"}};
+    p.boundaries["xmax"].type = BoundaryType::outlet;
+    p.boundaries["ymax"].type = p.boundaries["ymin"].type = BoundaryType::no_slip;
+    return make_participant(mesh_of<FluidInMotion>(comm), p, FluidContext{}, {});
+  }
+  static constexpr double dt = 0.05, restart_tolerance = 1e-8;
+};
+INSTANTIATE_TYPED_TEST_SUITE_P(FluidInMotion, StandaloneContract, FluidInMotion);
 using FluidAloneExplicit = FluidAlone<fluid::ViscousTreatment::explicit_>;
 using FluidAloneImplicit = FluidAlone<fluid::ViscousTreatment::implicit>;
 INSTANTIATE_TYPED_TEST_SUITE_P(FluidAloneExplicit, StandaloneContract, FluidAloneExplicit);

@@ -47,6 +47,42 @@ TEST(Quality, skewness_is_the_offset_of_the_face_centre_over_the_distance_of_the
   EXPECT_NEAR(q.max_skewness, (7.0 / 9 - 0.5) / (10.0 / 9), 1e-14);
 }
 
+TEST(Quality, says_where_the_worst_of_each_kind_is) {
+  const Mesh mesh = square_box();
+  std::vector<Vec3> points(mesh.reference_points);
+  for (Vec3& x : points)
+    if (x[0] > 3.5) x[0] = 3.1;  // the last column is a tenth as wide
+  const MeshQuality q = measure_quality(mesh, compute_geometry(mesh, points));
+  EXPECT_NEAR(q.min_volume, 0.1, 1e-14);
+  EXPECT_NEAR(q.volume_at.x(), 3.05, 1e-12);
+  EXPECT_NEAR(q.max_aspect_ratio, 10, 1e-12);
+  EXPECT_NEAR(q.aspect_at.x(), 3.05, 1e-12);
+}
+
+TEST(FindCrossed, names_a_quadrilateral_that_crosses_itself_and_not_a_concave_one) {
+  const Mesh mesh = square_box();
+  EXPECT_FALSE(find_crossed(mesh, mesh.reference, mesh.reference_points).has_value());
+  std::vector<Vec3> concave(mesh.reference_points), crossed(mesh.reference_points);
+  for (Vec3& x : concave)
+    if ((x - Vec3(1, 1, 0)).norm() < 0.1) x = Vec3(0.4, 0.4, 0);
+  EXPECT_FALSE(find_crossed(mesh, compute_geometry(mesh, concave), concave).has_value());
+  for (Vec3& x : crossed)
+    if ((x - Vec3(0, 0, 0)).norm() < 0.1) x = Vec3(1.5, 0.8, 0);  // cell 0's corner beyond its right side
+  const auto trouble = find_crossed(mesh, compute_geometry(mesh, crossed), crossed);
+  ASSERT_TRUE(trouble.has_value());
+  EXPECT_EQ(trouble->cell_id, 0);
+}
+
+TEST(FindCrossed, names_a_hexahedron_with_a_face_that_crosses_itself) {
+  RawMesh raw = make_box(BoxCells::hexahedra, {1, 1, 1}, Vec3::Zero(), Vec3::Ones());
+  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
+  EXPECT_FALSE(find_crossed(mesh, mesh.reference, mesh.reference_points).has_value());
+  std::vector<Vec3> twisted(mesh.reference_points);
+  for (Vec3& x : twisted)
+    if (x.z() > 0.5 && x.x() > 0.5) x.y() = 1 - x.y();
+  EXPECT_TRUE(find_crossed(mesh, compute_geometry(mesh, twisted), twisted).has_value());
+}
+
 TEST(FindInverted, is_silent_for_a_good_mesh) {
   const Mesh mesh = square_box();
   EXPECT_FALSE(find_inverted(mesh, mesh.reference).has_value());

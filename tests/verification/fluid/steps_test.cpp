@@ -37,6 +37,33 @@ std::vector<double> fingerprint(FluidCase<2>& c) {
   return sums;
 }
 
+/// Shear layers that decay, in steps of 2 h and h by turns: with the weights of constant steps AB2 is of
+/// first order.
+TEST(VariableSteps, keep_second_order_where_every_step_has_another_size) {
+  FluidParameters p;
+  p.density = 1;
+  p.viscosity = 0.05;
+  p.viscous = ViscousTreatment::explicit_;
+  p.time_step = 1;
+  p.pressure_tolerance = 1e-12;
+  all_sides(p, 2, boundary(BoundaryType::slip));
+  p.initial_velocity = {{"cos(pi*y)"}, {"0"}};
+  p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::periodic);
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {4, 8, 1}, Vec3::Zero(), Vec3(1, 1, 1));
+  raw.periodic = {{"xmin", "xmax"}};
+  const auto energy = [&](int pairs) {
+    FluidCase<2> c(MPI_COMM_WORLD, raw, p);
+    const double h = 2.0 / (3 * pairs);
+    for (int i = 0; i < pairs; ++i) c.step(2 * h), c.step(h);
+    return c.state().ledger.energy;
+  };
+  const double exact = energy(640), coarse = energy(20) - exact, fine = energy(40) - exact;
+  const double slope = std::log2(coarse / fine);
+  RecordProperty("slope", std::to_string(slope));
+  EXPECT_GT(slope, 1.8);
+  EXPECT_LT(slope, 2.3);
+}
+
 TEST(Ranks, give_the_same_flow_as_one_rank) {
   FluidCase<2> all(MPI_COMM_WORLD, channel_mesh(), channel(), floor_place);
   FluidCase<2> one(MPI_COMM_SELF, channel_mesh(), channel(), floor_place);

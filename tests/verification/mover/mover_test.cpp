@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
@@ -155,6 +156,38 @@ TEST(Laplacian, stiffening_protects_the_small_cells) {
   }
   EXPECT_LT(least[0], 0.72);
   EXPECT_GT(least[1], 0.95);
+}
+
+/// A row of cells is a chain of springs: (4.12) between two cells is the mean of V^-chi over the distance of
+/// their centres, between a cell and a wall that of the cell.
+TEST(Laplacian, stiffening_is_the_volume_to_the_power_of_minus_chi) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {12, 1, 1}, Vec3::Zero(), Vec3::Ones());
+  for (Vec3& x : raw.points) x.x() = std::pow(x.x(), 2.0);
+  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
+  const auto pushed = at_points(mesh, [](const Vec3& x) { return Vec3(x.x() < 1e-9 ? 0.2 : 0.0, 0, 0); });
+  for (const double chi : {1.0, 2.0}) {
+    Parameters p = all_patches(mesh, BoundaryMotion::slip);
+    p.boundaries["xmin"].motion = BoundaryMotion::interface;
+    p.boundaries["xmax"].motion = BoundaryMotion::fixed;
+    p.stiffening = chi;
+    Laplacian laplacian(mesh, p);
+    laplacian.solve(pushed);
+    std::vector<double> compliance, edge;
+    for (int i = 0; i <= 12; ++i) edge.push_back(std::pow(i / 12.0, 2));
+    const auto centre = [&](int i) { return (edge[i] + edge[i + 1]) / 2; };
+    const auto stiffness = [&](int i) { return std::pow(edge[i + 1] - edge[i], -chi); };
+    compliance.push_back((centre(0) - edge[0]) / stiffness(0));
+    for (int i = 1; i < 12; ++i)
+      compliance.push_back((centre(i) - centre(i - 1)) / ((stiffness(i) + stiffness(i - 1)) / 2));
+    compliance.push_back((edge[12] - centre(11)) / stiffness(11));
+    const double all = std::accumulate(compliance.begin(), compliance.end(), 0.0);
+    for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+      double behind = 0;
+      for (int i = 0; i < 12 && centre(i) < mesh.reference.cell_centre[c].x() + 1e-9; ++i)
+        behind += compliance[i];
+      EXPECT_NEAR(laplacian.cell_displacement()[2 * c], 0.2 * (1 - behind / all), 1e-12) << "chi " << chi;
+    }
+  }
 }
 
 TEST(Laplacian, a_slip_patch_off_the_axes_is_refused_by_name) {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/fv/expression.hpp"
+#include "fluid_solver/parameters.hpp"
+
+namespace couplet::fluid {
+
+/// A motion that the case prescribes, of the whole mesh or of a body in its midst:
+///   X(x, t) = c + R(s phi(t)) (x - c) + s [T(t) + d(x, t)]
+/// about the centre c, by the angle phi, the translation T and the displacement field d. s = 1 everywhere
+/// (rigid mesh, d apart), or 1 up to the inner radius about c and smoothly 0 from the outer one on: the body
+/// inside moves, its surroundings follow, what is outside rests. No equation is solved.
+class PrescribedMotion {
+ public:
+  /// Throws Error for expressions that cannot be read.
+  PrescribedMotion(const MotionParameters& parameters, int dim);
+
+  /// Places at time t of points given in the reference configuration [m].
+  std::vector<Vec3> places(std::span<const Vec3> reference, double t) const;
+  /// Their velocities [m/s], from three places not more than `dt` back: second order in a thousandth of dt.
+  std::vector<Vec3> velocities(std::span<const Vec3> reference, double t, double dt) const;
+  /// Largest displacement at time t on this rank [m].
+  double largest_displacement(std::span<const Vec3> reference, double t) const;
+
+ private:
+  double share(const Vec3& x) const;
+
+  MotionParameters parameters_;
+  std::vector<Expression> translation_, displacement_;
+  Expression angle_;
+};
+
+}  // namespace couplet::fluid

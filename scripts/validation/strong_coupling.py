@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of strong coupling: light structures in viscous fluids."""
+import resource
+
+import numpy as np
+
+import couplet_series as couplet
+from validation.job import Bar
+
+FLAP = "configs/perpendicular-flap/case.yaml"
+LADDER = [(rho, mu) for rho in (42, 10, 1) for mu in (10, 1, 0.1)]
+END = 0.2  # s; long rows go on to 0.6 s
+
+
+def flap(job, rho, mu, scheme="semi-implicit", dt=0.01, end=END, more=()):
+    """One rung: tip displacements, coupling iterations a step and cpu seconds of all programs, which hold about 0.5 s of start-up."""
+    def make():
+        name = f"ladder-{rho}-{mu}-{scheme}-{dt}-{end}"
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        folder = job.coupled(job.root / FLAP, name, [
+            f"simulation.end-time={end}", f"simulation.time-step={dt}", "simulation.max-step-halvings=0",
+            f"simulation.output.interval={end}", "simulation.checkpoint.interval=0",
+            "participants.fluid.boundaries.inlet.ramp=0.4", f"participants.fluid.viscosity={mu}",
+            f"participants.solid.material.density={rho}", f"coupling.scheme={scheme}",
+            "coupling.convergence.max-iterations=100", *more])
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        tip = couplet.read_csv(folder / "solid" / "probes.csv")["tip x [m]"]
+        passes = len(couplet.read_csv(folder / "coupler" / "residuals.csv")["iteration"])
+        return tip, passes / len(tip), after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return job.once(("flap", rho, mu, scheme, dt, end, more), make)
+
+
+def zigzag(tip):
+    """rms third difference over rms first difference of the last 8 steps: below 0.1 smooth, above 1 a two-step oscillation."""
+    last = tip[-9:]
+    return float(np.sqrt(np.mean(np.diff(last, 3) ** 2) / np.mean(np.diff(last) ** 2)))
+
+
+def rung(rho, mu, dt=0.01, end=END):
+    def measure(job):
+        tip, passes, seconds = flap(job, rho, mu, dt=dt, end=end)
+        value = zigzag(tip)
+        return f"{len(tip)} steps, tip {tip[-1]:.5f} m, {passes:.1f} passes, {seconds:.1f} cpu s, zigzag {value:.3f}", \
+            len(tip) == round(end / dt) and value < 0.15
+    return measure
+
+
+def beside_implicit(rho, mu):
+    """Tip within 1 % of implicit at a quarter of the step, cpu beside implicit at the same step."""
+    def measure(job):
+        tip, _, seconds = flap(job, rho, mu)
+        fine = flap(job, rho, mu, "implicit", 0.0025)[0]
+        same = flap(job, rho, mu, "implicit")[2]
+        gap, ratio = abs(tip[-1] / fine[-1] - 1), seconds / same
+        return f"tips {tip[-1]:.5f} m and {fine[-1]:.5f} m, {100 * gap:.2f} % apart; cpu {ratio:.2f} of implicit's", \
+            gap <= 0.01 and ratio <= 0.7
+    return measure
+
+
+def renewals(rho):
+    """A heavy flap never repeats the fluid's first part: counted, since its cost is below what a busy machine resolves."""
+    def measure(job):
+        folder = job.scratch / "heavy"
+        result = job.run(["mpirun", "--oversubscribe"] + sum(
+            ([":"] * (i > 0) + ["-n", "1", job.build / "bin" / program, job.root / FLAP,
+                                f"--set=simulation.output.folder={folder}", "--set=simulation.end-time=0.3",
+                                f"--set=participants.solid.material.density={rho}"]
+             for i, program in enumerate(("coupler", "fluid_solver", "solid_solver", "mesh_mover"))), []))
+        sentence = next((l for l in result.stdout.splitlines() if "friction was computed anew" in l), "")
+        words = sentence.split(" in ", 1)[-1].split(";")[0]
+        return words or "nothing said", result.returncode == 0 and words.startswith("0 of 30")
+    return measure
+
+
+def tested(executable, pattern):
+    def measure(job):
+        tests, _ = job.gtest(executable, pattern)
+        return f"{sum(t['passed'] for t in tests.values())} of {len(tests)} tests passed", all(t["passed"] for t in tests.values())
+    return measure
+
+
+BARS = [
+    *(Bar(f"ladder rho_s {rho}, mu {mu}, dt 0.01 s, to {END} s", "every step solved, zigzag < 0.15", rung(rho, mu),
+          but=f"to {END} s; the row to 0.6 s follows") for rho, mu in LADDER),
+    *(Bar(f"ladder rho_s {rho}, mu {mu}, dt 0.01 s, to 0.6 s", "every step solved, zigzag < 0.15", rung(rho, mu, end=0.6),
+          long=True) for rho, mu in ((10, 1), (1, 1))),
+    *(Bar(f"ladder rho_s {rho}, mu {mu}, dt {dt} s", "every step solved, zigzag < 0.15", rung(rho, mu, dt), long=True,
+          but=f"to {END} s") for dt in (0.02, 0.0025) for rho, mu in ((10, 1), (1, 1), (10, 10))),
+    *(Bar(f"ladder rho_s {rho}, mu {mu}: beside implicit", "tip within 1 % of implicit at dt 0.0025 s, cpu <= 0.7 of implicit's",
+          beside_implicit(rho, mu), long=True) for rho, mu in LADDER),
+    Bar("heavy flap (rho_s 3000): predictions renewed", "0 of 30 steps", renewals(3000),
+        but="counted in place of cpu within 5 % of before, which a shared machine does not resolve"),
+    Bar("the neighbour that fails without the cure", "tests pass", tested("stability_fluid_light_wall", "*")),
+]

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// A flow that gains energy from nowhere fails in solve, by name, and leaves level n; one that is driven does
+// not.
+#include <gmock/gmock.h>
+
+#include "../../verification/fluid/fluid_case.hpp"
+#include "common/base/error.hpp"
+
+namespace couplet::fluid::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Shear layers in a box of 1 m whose explicit viscous term is stable up to about 0.01 s.
+FluidParameters layers() {
+  FluidParameters p;
+  p.density = 1;
+  p.viscosity = 0.01;
+  p.viscous = ViscousTreatment::explicit_;
+  p.initial_velocity = {{"sin(6*y)"}, {"0.01*sin(9*x)"}};
+  all_sides(p, 2, boundary(BoundaryType::slip));
+  return p;
+}
+RawMesh box(int n) { return make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3::Ones()); }
+
+TEST(EnergyGuard, an_explicit_viscous_term_beyond_its_limit_fails_by_name_and_leaves_level_n) {
+  FluidParameters p = layers();
+  p.time_step = 1;
+  FluidCase<2> c(MPI_COMM_WORLD, box(32), p);
+  Vectors<2> before;
+  double time = -1;
+  try {
+    for (int i = 0; i < 10; ++i) {
+      before = c.state().u;
+      time = c.state().time;
+      c.step(1);
+    }
+    FAIL() << "10 steps of a hundred times the limit went through";
+  } catch (const SolveFailure& failure) {
+    EXPECT_THAT(failure.what(), HasSubstr("explicit viscous term is stable there up to a step of"));
+    EXPECT_THAT(failure.what(), HasSubstr("in cell"));
+    EXPECT_THAT(failure.what(), HasSubstr("kinetic energy grew by"));
+  }
+  EXPECT_EQ(c.state().u, before);
+  EXPECT_EQ(c.state().time, time);
+  EXPECT_LT(c.state().ledger.energy, 1) << "accepted energy, of 0.25 J at the start";
+}
+
+TEST(EnergyGuard, the_same_flow_within_the_limit_goes_through) {
+  FluidCase<2> c(MPI_COMM_WORLD, box(32), layers());
+  c.run(1, 20);
+  EXPECT_LT(c.state().ledger.excess, 1e-3 * c.state().ledger.energy);
+}
+
+/// What brings energy: a lid, an inlet, a pressure, a force, a wall that moves the mesh, from rest and at
+/// once.
+class Driven : public ::testing::TestWithParam<ViscousTreatment> {};
+
+double excess(const FluidParameters& p, double end, int steps, PointMotion motion = {},
+              WallVelocity wall = {}) {
+  FluidCase<2> c(MPI_COMM_WORLD, box(16), p, std::move(motion));
+  double largest = 0;
+  for (int i = 0; i < steps; ++i) {
+    c.step(end / steps, wall);
+    largest = std::max(largest, c.state().ledger.excess / c.state().ledger.energy);
+  }
+  return largest;
+}
+
+TEST_P(Driven, stays_below_a_third_of_what_is_called_a_blow_up) {
+  for (const double viscosity : {1e-3, 0.1, 10.0}) {
+    FluidParameters p;
+    p.density = 1.3;
+    p.viscosity = viscosity;
+    p.viscous = GetParam();
+    all_sides(p, 2, boundary(BoundaryType::no_slip));
+    FluidParameters lid = p, duct = p, pushed = p, force = p;
+    lid.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1+sin(20*t)", "0"});
+    duct.boundaries["xmin"] = boundary(BoundaryType::inlet, {"4*y*(1-y)*(1+0.9*sin(9*t))", "0"});
+    duct.boundaries["xmax"] = boundary(BoundaryType::outlet);
+    pushed.boundaries["xmin"] = boundary(BoundaryType::outlet, {}, "1e5+5*sin(7*t)");
+    pushed.boundaries["xmax"] = boundary(BoundaryType::outlet, {}, "1e5");
+    force.body_force = {{"sin(9*t)*y"}, {"0"}};
+    const int steps = viscosity > 1 && GetParam() == ViscousTreatment::explicit_ ? 4 : 40;
+    for (const auto& [name, q] :
+         {std::pair{"lid", &lid}, {"duct", &duct}, {"pressure", &pushed}, {"force", &force}})
+      EXPECT_LT(excess(*q, 0.025 * steps, steps), 0.15) << name << ", viscosity " << viscosity;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(viscous, Driven,
+                         ::testing::Values(ViscousTreatment::explicit_, ViscousTreatment::implicit),
+                         [](const auto& info) {
+                           return info.param == ViscousTreatment::explicit_ ? "explicit" : "implicit";
+                         });
+
+}  // namespace
+}  // namespace couplet::fluid::test

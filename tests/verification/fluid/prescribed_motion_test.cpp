@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mesh that moves as the case says, in a fluid on its own.
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "common/base/error.hpp"
+#include "common/mesh/load.hpp"
+#include "common/mesh/quality.hpp"
+#include "common/parallel/collective.hpp"
+#include "fluid_case.hpp"
+#include "fluid_solver/participant.hpp"
+
+namespace couplet::fluid::test {
+namespace {
+
+constexpr double rho = 1.3;
+
+FluidParameters box_of_fluid() {
+  FluidParameters p;
+  p.mesh = "box";
+  p.dimension = 2;
+  p.density = rho;
+  p.viscosity = 0.02;
+  p.pressure_tolerance = 1e-12;
+  p.motion.emplace();
+  return p;
+}
+
+class Alone {
+ public:
+  explicit Alone(const FluidParameters& p, int n = 16)
+      : participant_(std::make_unique<FluidParticipant<2>>(
+            distribute(MPI_COMM_WORLD, comm_rank(MPI_COMM_WORLD) == 0 ? mesh(n) : RawMesh{}), p,
+            FluidContext{}, MotionLink{})) {
+    participant_->initialise();
+  }
+  void step(double dt) {
+    participant_->begin_step({participant_->fluid().state().time, dt, Scheme::standalone, 0});
+    participant_->solve({});
+    participant_->accept_step();
+  }
+  const State<2>& state() const { return participant_->fluid().state(); }
+  const Mesh& mesh() const { return participant_->fluid().mesh(); }
+  double largest(const std::function<double(Index)>& error) const {
+    double worst = 0;
+    for (Index c = 0; c < mesh().cells.n_owned(); ++c) worst = std::max(worst, std::abs(error(c)));
+    return max(mesh().comm, worst);
+  }
+
+ private:
+  static RawMesh mesh(int n) {
+    RawMesh raw = make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 1));
+    perturb_interior(raw, 0.15, 5);
+    return raw;
+  }
+  std::unique_ptr<FluidParticipant<2>> participant_;
+};
+
+TEST(PrescribedMotion, fluid_in_a_box_that_swings_moves_with_it) {
+  FluidParameters p = box_of_fluid();
+  p.motion->translation = {{"0.1*(1-cos(6*t))"}, {"0.05*t^2"}};
+  all_sides(p, 2, boundary(BoundaryType::body));
+  Alone run(p);
+  for (int i = 0; i < 20; ++i) run.step(0.01);
+  const double t = run.state().time, u = 0.6 * std::sin(6 * t), v = 0.1 * t;
+  EXPECT_LT(run.largest([&](Index c) { return (run.state().u[c] - Vec<2>(u, v)).norm(); }), 1e-6);
+  // p = -rho a.x at the middle of the step, up to a constant
+  const double middle = t - 0.005, a = (0.6 * std::sin(6 * t) - 0.6 * std::sin(6 * (t - 0.01))) / 0.01;
+  EXPECT_NEAR(a, 3.6 * std::cos(6 * middle), 1e-2);
+  const auto& gradient = run.state().pressure[0]->gradient;
+  EXPECT_LT(run.largest([&](Index c) { return (gradient[c] + rho * Vec<2>(a, 0.1)).norm(); }), 1e-3);
+}
+
+TEST(PrescribedMotion, a_uniform_flow_does_not_feel_a_mesh_that_moves_and_turns) {
+  FluidParameters p = box_of_fluid();
+  p.motion->translation = {{"0.1*sin(3*t)"}, {"0.2*t"}};
+  p.motion->angle = {"sin(2*t)"};
+  p.motion->centre = Vec3(0.3, 0.4, 0);
+  all_sides(p, 2, boundary(BoundaryType::inlet, {"1", "0.5"}));
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+  p.initial_velocity = {{"1"}, {"0.5"}};
+  Alone run(p);
+  for (int i = 0; i < 20; ++i) run.step(0.02);
+  EXPECT_GT((run.state().points[0] - run.mesh().reference_points[0]).norm(), 0.05);
+  EXPECT_LT(run.largest([&](Index c) { return (run.state().u[c] - Vec<2>(1, 0.5)).norm(); }), 1e-11);
+}
+
+TEST(PrescribedMotion, a_body_turns_rigidly_and_what_is_outside_rests) {
+  MotionParameters m;
+  m.angle = {"t"};
+  m.translation = {{"0.02*t"}, {"0"}};
+  m.centre = Vec3(0.5, 0.5, 0);
+  m.inner_radius = 0.1;
+  m.outer_radius = 0.45;
+  const PrescribedMotion motion(m, 2);
+  const Mesh mesh =
+      distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {40, 40, 1}, Vec3::Zero(), Vec3(1, 1, 1)));
+  const std::vector<Vec3>& before = mesh.reference_points;
+  for (const double angle : {-std::numbers::pi / 3, std::numbers::pi / 3}) {
+    const std::vector<Vec3> after = motion.places(before, angle);
+    Vec3 centre = m.centre + Vec3(0.02 * angle, 0, 0);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const Vec3 d = before[i] - m.centre;
+      if (d.norm() > 0.45) {
+        EXPECT_EQ(after[i], before[i]);
+      } else if (d.norm() < 0.1) {
+        const Vec3 turned(std::cos(angle) * d.x() - std::sin(angle) * d.y(),
+                          std::sin(angle) * d.x() + std::cos(angle) * d.y(), 0);
+        EXPECT_LT((after[i] - centre - turned).norm(), 1e-14);
+      }
+    }
+    EXPECT_FALSE(find_inverted(mesh, compute_geometry(mesh, after)).has_value()) << angle;
+  }
+  // v = (-w y, w x) + translation about the centre as it is at that time
+  const std::vector<Vec3> corner{Vec3(0.55, 0.5, 0)};
+  const Vec3 v = motion.velocities(corner, 0.2, 0.1)[0];
+  EXPECT_LT((v - Vec3(0.02 - 0.05 * std::sin(0.2), 0.05 * std::cos(0.2), 0)).norm(), 1e-8);
+}
+
+std::string refusal(const FluidParameters& p) {
+  try {
+    Alone run(p);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+
+TEST(PrescribedMotion, what_cannot_be_is_refused_by_name) {
+  FluidParameters p = box_of_fluid();
+  all_sides(p, 2, boundary(BoundaryType::body));
+  FluidParameters none = p;
+  none.motion.reset();
+  EXPECT_THAT(refusal(none), testing::HasSubstr("the section 'motion'"));
+  p.motion->translation = {{"0.1*cos(t)"}, {"0"}};
+  EXPECT_THAT(refusal(p), testing::HasSubstr("displaces the mesh by up to 0.1 m"));
+}
+
+TEST(PrescribedMotion, that_turns_cells_over_fails_in_solve) {
+  FluidParameters p = box_of_fluid();
+  p.motion->displacement = {{"t*sin(40*x)"}, {"0"}};
+  all_sides(p, 2, boundary(BoundaryType::no_slip));
+  Alone run(p);
+  EXPECT_THROW(run.step(0.5), SolveFailure);
+  EXPECT_EQ(run.state().time, 0);
+}
+
+}  // namespace
+}  // namespace couplet::fluid::test
