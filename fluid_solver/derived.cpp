@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/derived.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -67,6 +68,26 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const Patch& patch) {
 }
 
 template <int D>
+Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& c) {
+  const Mesh& mesh = fluid.mesh();
+  Vec3 sums[2] = {Vec3::Zero(), Vec3::Zero()};  // force, moment
+  for (const std::string& name : c.patches) {
+    const Patch& patch = *mesh.find_patch(name);
+    if (fluid.pressure_force().empty()) break;  // before the first step
+    for (Index b = patch.first - mesh.n_interior; b < patch.first - mesh.n_interior + patch.count; ++b) {
+      Vec3 force = Vec3::Zero();
+      force.template head<D>() = fluid.pressure_force()[b] + fluid.viscous_force()[b];
+      sums[0] += force;
+      sums[1] += (fluid.state().placement->boundary_centre[b] - c.centre).cross(force);
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  const double qa = 0.5 * fluid.parameters().density * c.speed * c.speed * c.area;
+  return {sums[0].dot(c.drag.normalized()) / qa, sums[0].dot(c.lift.normalized()) / qa,
+          sums[1].dot(c.axis.normalized()) / (qa * c.length)};
+}
+
+template <int D>
 EnergyBudget energy_budget(const Fluid<D>& fluid) {
   const Mesh& mesh = fluid.mesh();
   const State<D>& s = fluid.state();
@@ -108,6 +129,8 @@ template std::vector<std::array<double, 2>> wall_units<2>(const Fluid<2>&);
 template std::vector<std::array<double, 2>> wall_units<3>(const Fluid<3>&);
 template WallSummary summarise_wall<2>(const Fluid<2>&, const Patch&);
 template WallSummary summarise_wall<3>(const Fluid<3>&, const Patch&);
+template Coefficients force_coefficients<2>(const Fluid<2>&, const CoefficientParameters&);
+template Coefficients force_coefficients<3>(const Fluid<3>&, const CoefficientParameters&);
 template EnergyBudget energy_budget<2>(const Fluid<2>&);
 template EnergyBudget energy_budget<3>(const Fluid<3>&);
 

@@ -27,6 +27,15 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const Patch& patch);
 template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid);
 
+/// Coefficients of drag, lift and moment: sum F.d / (q A), sum F.l / (q A), sum ((x - c) x F).a / (q A L) of
+/// the forces on some walls, means over the last step.
+struct Coefficients {
+  double drag = 0, lift = 0, moment = 0;
+};
+/// Collective.
+template <int D>
+Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& parameters);
+
 /// Kinetic energy [J] and what takes it away [W], as the scheme has it: the sum over the faces of mu g |du|^2
 /// (orthogonal part), of the eddies' force times du, and what the pressure takes because the cells' velocity
 /// is not quite free of divergence, the sum of V grad p.u at t^{n+1/2}: the price of no checkerboard (in an

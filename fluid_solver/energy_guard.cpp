@@ -19,6 +19,9 @@ constexpr double boundary_share = 0.25;
 constexpr double largest_excess = 0.5;
 // Of the largest energy so far: below it there is only round-off.
 constexpr double least_energy = 1e-10;
+// What a sub-step leaves of the energy that an excess is measured by: a flow that turns back is at rest for
+// some steps, where its own energy is no measure.
+constexpr double remembered = 0.85;
 
 }  // namespace
 
@@ -27,6 +30,20 @@ double EnergyGuard<D>::kinetic(const Placement<D>& at, const Vectors<D>& u) cons
   double sum = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) sum += at.volume[c] * u[c].squaredNorm();
   return 0.5 * rho_ * sum;
+}
+
+/// About which the work of the pressure is counted when no step before says it. Collective.
+template <int D>
+double EnergyGuard<D>::mean_pressure(const EnergyStep<D>& s) const {
+  double sums[2] = {};
+  for (std::size_t b = 0; b < s.w.size(); ++b) {
+    const std::size_t f = mesh_.n_interior + b;
+    const double flux = std::abs(0.5 * (s.from.phi[f] + s.phi[f]));
+    sums[0] += s.p[b] * flux;
+    sums[1] += flux;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  return sums[1] > 0 ? sums[0] / sums[1] : 0;
 }
 
 /// sums: work, what passed, p |phi|, |phi|.
@@ -66,7 +83,7 @@ EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
   const EnergyLedger& before = s.from.ledger;
   enum { work, passed, weighted, fluxes, energy, old_energy };
   double sums[6] = {};
-  add_boundary(s, before.level, sums);
+  add_boundary(s, before.energy < 0 ? mean_pressure(s) : before.level, sums);
   sums[energy] = kinetic(s.to, s.u);
   if (before.energy < 0) sums[old_energy] = kinetic(*s.from.placement, s.from.u);
   if (!s.force.empty())
@@ -81,9 +98,11 @@ EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
   j.work = sums[work];
   j.ledger.energy = sums[energy];
   j.ledger.largest = std::max({before.largest, sums[energy], before.energy < 0 ? sums[old_energy] : 0});
-  j.ledger.excess = std::max(0.0, before.excess + j.gain - j.work - boundary_share * sums[passed]);
+  j.ledger.reference = std::max(sums[energy], remembered * before.reference);
+  j.ledger.excess =
+      std::max(0.0, before.excess + j.gain - std::max(0.0, j.work) - boundary_share * sums[passed]);
   j.ledger.level = sums[fluxes] > 0 ? sums[weighted] / sums[fluxes] : 0;
-  j.out_of_bounds = j.gain > 0 && j.ledger.excess > largest_excess * sums[energy] &&
+  j.out_of_bounds = j.gain > 0 && j.ledger.excess > largest_excess * j.ledger.reference &&
                     sums[energy] > least_energy * j.ledger.largest;
   return j;
 }

@@ -33,8 +33,9 @@ struct EnergyJudgement {
 ///                   u_P).u_b)] + dt sum rho V f.u,  phi' relative to the mesh, s the backflow's share
 /// Friction inside only takes, the skew-symmetric convection gives nothing: an excess is the scheme's own. It
 /// is summed over the steps (a CUSUM test [page1954]: what is missing is not counted as credit), less a share
-/// of what went through the boundaries, whose rates are known to the order of the scheme only. One loop over
-/// the cells that is needed for the largest speed anyway, one over the boundary.
+/// of what went through the boundaries, whose rates are known to the order of the scheme only; work taken out
+/// is not counted against what comes in. One loop over the cells that is needed for the largest speed anyway,
+/// one over the boundary.
 template <int D>
 class EnergyGuard {
  public:
@@ -46,6 +47,7 @@ class EnergyGuard {
   double kinetic(const Placement<D>& at, const Vectors<D>& u) const;
 
  private:
+  double mean_pressure(const EnergyStep<D>& step) const;
   void add_boundary(const EnergyStep<D>& step, double level, double* sums) const;
   const Mesh& mesh_;
   const Boundary<D>& boundary_;

@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/derived.hpp"
 
@@ -25,6 +27,36 @@ FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, FluidContext context)
     interpolation_.emplace(mesh_, std::vector<PatchStencil>(mesh_.patches.size(), PatchStencil::open));
   for (const Patch& patch : mesh_.patches)
     if (is_wall(fluid.parameters().boundaries.at(patch.name).type)) walls_.push_back(&patch);
+  check_coefficients();
+}
+
+template <int D>
+void FluidOutput<D>::check_coefficients() const {
+  std::vector<std::string> names;
+  for (const Patch* patch : walls_) names.push_back(patch->name);
+  for (const auto& [name, c] : fluid_.parameters().output.coefficients)
+    for (const std::string& patch : c.patches)
+      if (std::ranges::find(names, patch) == names.end())
+        throw Error("output.coefficients.{}.patches: '{}' is no wall. {}", name, patch,
+                    did_you_mean(patch, names, "walls"));
+}
+
+template <int D>
+void FluidOutput<D>::write_coefficients(double time) {
+  std::vector<double> row{time};
+  const auto& all = fluid_.parameters().output.coefficients;
+  for (const auto& [name, parameters] : all) {
+    const Coefficients c = force_coefficients(fluid_, parameters);
+    row.insert(row.end(), {c.drag, c.lift, c.moment});
+  }
+  if (!root_) return;
+  if (!coefficients_) {
+    std::vector<std::string> columns{"time [s]"};
+    for (const auto& [name, unused] : all)
+      for (const char* what : {"drag [-]", "lift [-]", "moment [-]"}) columns.push_back(name + " " + what);
+    coefficients_.emplace(open("coefficients.csv", columns));
+  }
+  coefficients_->row(row);
 }
 
 template <int D>
@@ -71,7 +103,9 @@ template <int D>
 void FluidOutput<D>::write_series(double time) {
   if (context_.output_folder.empty()) return;
   if (!walls_.empty()) write_forces(time);
-  if (!walls_.empty() && fluid_.parameters().turbulence) write_walls(time);
+  if (!fluid_.parameters().output.coefficients.empty()) write_coefficients(time);
+  if (!walls_.empty() && (fluid_.parameters().turbulence || fluid_.parameters().output.walls))
+    write_walls(time);
   write_balance(time);
   if (fluid_.parameters().output.energy_budget) write_energy(time);
   if (fluid_.bodies()) write_bodies(time);

@@ -23,8 +23,8 @@ struct FluidContext {
   double restart_time = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The files of a fluid: fields, forces.csv, walls.csv, balance.csv, energy.csv, bodies.csv, probes.csv. They
-/// are opened when first written to.
+/// The files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, balance.csv, energy.csv,
+/// bodies.csv, probes.csv. They are opened when first written to.
 template <int D>
 class FluidOutput {
  public:
@@ -36,6 +36,8 @@ class FluidOutput {
  private:
   void write_forces(double time);
   void write_walls(double time);
+  void write_coefficients(double time);
+  void check_coefficients() const;
   void write_energy(double time);
   void write_bodies(double time);
   void write_balance(double time);
@@ -51,7 +53,8 @@ class FluidOutput {
   std::vector<const Patch*> walls_;
   std::optional<FieldWriter> fields_;
   std::vector<double> divergence_;
-  std::optional<Series> forces_, walls_series_, balance_, energy_, bodies_, probe_series_;  // on rank 0
+  std::optional<Series> forces_, coefficients_, walls_series_, balance_, energy_, bodies_,
+      probe_series_;  // on rank 0
 };
 
 }  // namespace couplet::fluid

@@ -98,9 +98,33 @@ void declare_motion(config::Section& s, MotionParameters& m) {
       "outer-radius");
 }
 
+void declare_coefficients(config::Section& s, CoefficientParameters& c) {
+  s.value("patches", c.patches).required().doc("walls whose forces are added");
+  s.value("speed", c.speed)
+      .unit("m/s")
+      .positive()
+      .required()
+      .doc("U of the dynamic pressure q = rho U^2 / 2");
+  s.value("area", c.area)
+      .unit("m^2")
+      .positive()
+      .required()
+      .doc("A: force over q A; in 2-D a length times 1 m");
+  s.value("length", c.length).unit("m").positive().doc("L: moment over q A L");
+  s.value("drag", c.drag).doc("direction of the first coefficient; need not be of length 1");
+  s.value("lift", c.lift).doc("direction of the second coefficient");
+  s.value("centre", c.centre).unit("m").doc("point about which the moment is taken; it rests");
+  s.value("axis", c.axis).size(3).doc("of the moment; a plane scene turns about z");
+}
+
 void declare_output(config::Section& s, FluidOutputParameters& p) {
   s.value("vorticity", p.vorticity).doc("field of the curl of the velocity [1/s]");
   s.value("q-criterion", p.q_criterion).doc("field of Q = (|W|^2 - |S|^2)/2 [1/s^2]: positive in vortices");
+  s.value("walls", p.walls)
+      .doc("walls.csv: shear and y+ of each wall; with a turbulence model it is always written");
+  s.map<CoefficientParameters>(
+      "coefficients", p.coefficients, declare_coefficients, "name",
+      "coefficients.csv: force and moment coefficients of some walls, means over the step");
   s.value("energy-budget", p.energy_budget)
       .doc(
           "energy.csv: kinetic energy and the power that viscosity, eddy viscosity and pressure take from "

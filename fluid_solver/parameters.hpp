@@ -76,9 +76,17 @@ struct StatisticsParameters {
   double start = 0;  // [s]
 };
 
+/// Force and moment coefficients of some walls together.
+struct CoefficientParameters {
+  std::vector<std::string> patches;
+  double speed = 1, area = 1, length = 1;  // [m/s], [m^2] (2-D: m of depth 1 m), [m]
+  Vec3 drag = Vec3::UnitX(), lift = Vec3::UnitY(), axis = Vec3::UnitZ(), centre = Vec3::Zero();
+};
+
 /// Fields and series beyond velocity, pressure, forces and balance.
 struct FluidOutputParameters {
-  bool vorticity = false, q_criterion = false, energy_budget = false;
+  bool vorticity = false, q_criterion = false, energy_budget = false, walls = false;
+  std::map<std::string, CoefficientParameters> coefficients;
 };
 
 struct ProbeParameters {

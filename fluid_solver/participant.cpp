@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
@@ -17,13 +18,42 @@
 namespace couplet::fluid {
 namespace {
 
-// The prediction is renewed in this pass at the earliest, when the wall velocity is a better one than the
-// guess, and where friction misses more than this share of the load: growth, which needs a mass of friction
-// above a third of all mass, stays below three times that.
+// The prediction is renewed in the third pass at the earliest, when the wall velocity is better than the
+// guess, and where friction misses more than a share of the load. In the third pass a larger one, unless the
+// passes converge slowly: a heavy structure is about to end then.
 constexpr int first_renewal = 3;
-constexpr double largest_unseen_share = 0.01;
+constexpr double largest_unseen_share = 0.01, largest_in_third_pass = 0.05, slow = 0.1;
 // At the end of a step: what a growing oscillation reaches.
 constexpr double near_limit = 0.1;
+
+// Of the area of an interface: up to here it surrounds a body (the rest is where that is clamped), beyond it
+// is the wall of a cavity.
+constexpr double largest_open_share = 0.3;
+
+/// An incompressible fluid without an outlet lets no wall move that would change its volume. Collective.
+template <int D>
+void refuse_trapped_volume(const Fluid<D>& fluid) {
+  const Boundary<D>& boundary = fluid.boundary();
+  if (!boundary.closed() || boundary.has_convective_outlet() || boundary.interface_patches().empty()) return;
+  double sums[4] = {};  // S, |S|
+  for (const std::string& name : boundary.interface_patches()) {
+    const Patch& patch = *fluid.mesh().find_patch(name);
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Vec<D>& area = fluid.state().placement->area[f];
+      for (int c = 0; c < D; ++c) sums[c] += area[c];
+      sums[3] += area.norm();
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, fluid.mesh().comm);
+  if (Vec3(sums[0], sums[1], sums[2]).norm() <= largest_open_share * sums[3]) return;
+  throw Error(
+      "boundaries: this fluid has no outlet, and its interface is a wall of the cavity ({:.3g} of its area "
+      "{:.3g} m^2 faces "
+      "one way): it could only move by changing the volume of an incompressible fluid. The pressure level "
+      "that holds the "
+      "volume is not computed; give the fluid an outlet (a small one far from the interface will do).",
+      Vec3(sums[0], sums[1], sums[2]).norm() / sums[3], sums[3]);
+}
 
 }  // namespace
 
@@ -110,6 +140,7 @@ Interface FluidParticipant<D>::initialise() {
 
 template <int D>
 void FluidParticipant<D>::begin_step(const Step& step) {
+  if (step.number == 0 && step.scheme != Scheme::standalone) refuse_trapped_volume(*fluid_);
   step_ = step;
   passes_ = 0;
   renewed_ = false;
@@ -164,17 +195,38 @@ Exchange FluidParticipant<D>::forces() const {
   return out;
 }
 
-/// A structure heavy enough to converge in fewer passes, or whose motion was guessed well, never pays.
+/// How much the wall velocity changed since the pass before, over what it did then.
+template <int D>
+double FluidParticipant<D>::contraction(const Vectors<D>& w) {
+  double square = 0;
+  for (std::size_t b = 0; b < last_w_.size(); ++b) square += (w[b] - last_w_[b]).squaredNorm();
+  const double change = std::sqrt(sum(mesh_.comm, square)), before = std::exchange(last_change_, change);
+  last_w_ = w;
+  return before > 0 ? change / before : 1;
+}
+
+template <int D>
+bool FluidParticipant<D>::needs_renewal(double contraction) const {
+  if (renewed_ || passes_ < first_renewal) return false;
+  const double unseen = fluid_->unseen_share();
+  return unseen >
+         (passes_ > first_renewal || contraction > slow ? largest_unseen_share : largest_in_third_pass);
+}
+
+/// A structure heavy enough to converge fast, or whose motion was guessed well, never pays.
 template <int D>
 void FluidParticipant<D>::prepare(const Vectors<D>& w) {
   ++passes_;
   if (step_.scheme != Scheme::semi_implicit || passes_ == 1) {
     points_ = receive_points();
     fluid_->prepare(points_, w);
-  } else if (!renewed_ && passes_ >= first_renewal && fluid_->unseen_share() > largest_unseen_share) {
-    renewed_ = true;
-    fluid_->prepare(points_, w);
+    last_w_ = w;
+    last_change_ = 0;
+    return;
   }
+  if (!needs_renewal(contraction(w))) return;
+  renewed_ = true;
+  fluid_->prepare(points_, w);
 }
 
 template <int D>

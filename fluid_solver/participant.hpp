@@ -52,6 +52,8 @@ class FluidParticipant final : public Participant {
  private:
   Vectors<D> wall_velocity(const Exchange& in) const;
   void prepare(const Vectors<D>& w);
+  double contraction(const Vectors<D>& w);
+  bool needs_renewal(double contraction) const;
   void set_up_motion();
   void add_body_velocity(Vectors<D>& w) const;
   std::vector<Vec3> receive_points();
@@ -69,6 +71,8 @@ class FluidParticipant final : public Participant {
   std::vector<Vec3> points_;  // of the first guess; semi-implicit only
   int passes_ = 0;            // of the step under way
   bool renewed_ = false;      // its prediction
+  Vectors<D> last_w_;         // of the pass before
+  double last_change_ = 0;    // of w between the two passes before [m/s]
   long steps_ = 0, renewed_steps_ = 0;
   double largest_unseen_ = 0;  // share of the load, of the accepted steps
 };

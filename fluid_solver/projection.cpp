@@ -16,6 +16,9 @@ namespace {
 // round-off, on which a relative tolerance would spin (uniform flow, fluid at rest).
 constexpr double flux_floor = 3e-15;
 constexpr double least_span = 1e-3;
+// A closed domain: share of the boundary fluxes that a moving wall may leave over as an error of
+// discretisation, and the speed below which there is no flow [m/s].
+constexpr double largest_leftover = 0.1, least_speed = 1e-9;
 constexpr int oblique_passes = 2, most_oblique_passes = 200;
 constexpr double standing = 1e-3;  // change of the pressure gradient in a pass
 // The first pass only gives the second one the gradient of its non-orthogonal part: what that share of the
@@ -84,6 +87,16 @@ void FractionalStep<D>::balance_closed_domain() {
         "outlet or "
         "correct the velocities.",
         sums[total]);
+  if (adjustable && !boundary_.has_convective_outlet() &&
+      std::abs(sums[total]) > largest_leftover * sums[size] &&
+      sums[size] > least_speed * (sums[adjustable_area] + sums[other_area]))
+    throw Error(
+        "The fluid domain is closed: at t = {:.6g} s {:.6g} m^3/s more flow out than in, and neither the "
+        "given velocities "
+        "nor the motion of the interface make up for it. What a pressure level would have to push through "
+        "the interface "
+        "is not computed: give the fluid an outlet (a small one far from the interface will do).",
+        by_.time + step_.dt, sums[total]);
   const double correction = sums[total] / (adjustable ? sums[adjustable_area] : sums[other_area]);
   for (std::size_t b = 0; b < w_.size(); ++b) {
     const Index f = mesh_.n_interior + static_cast<Index>(b);

@@ -44,10 +44,11 @@ struct History {
 
 /// Kinetic energy and what of it no work explains, see EnergyGuard.
 struct EnergyLedger {
-  double energy = -1;  ///< at t^n [J]; below 0: not known yet
-  double largest = 0;  ///< so far [J]
-  double excess = 0;   ///< [J]
-  double level = 0;    ///< pressure about which the boundaries' work is counted [Pa]
+  double energy = -1;    ///< at t^n [J]; below 0: not known yet
+  double largest = 0;    ///< so far [J]
+  double excess = 0;     ///< [J]
+  double reference = 0;  ///< by which the excess is measured: of late [J]
+  double level = 0;      ///< pressure about which the boundaries' work is counted [Pa]
 };
 
 /// Everything that the next step needs: level n and the history of the multi-step schemes.

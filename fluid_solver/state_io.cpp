@@ -25,6 +25,7 @@ void write_state(CheckpointWriter& file, const State<D>& s) {
   file.write_scalar("energy", s.ledger.energy);
   file.write_scalar("energy-largest", s.ledger.largest);
   file.write_scalar("energy-excess", s.ledger.excess);
+  file.write_scalar("energy-reference", s.ledger.reference);
   file.write_scalar("energy-level", s.ledger.level);
   file.write_scalar("pressure-levels", levels);
   file.write_scalar("has-mesh-flux", s.mesh_flux.empty() ? 0 : 1);
@@ -66,7 +67,8 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<co
   s.implicit = file.read_scalar("implicit") != 0;
   s.start = static_cast<Start>(static_cast<int>(file.read_scalar("start")));
   s.ledger = {file.read_scalar("energy"), file.read_scalar("energy-largest"),
-              file.read_scalar("energy-excess"), file.read_scalar("energy-level")};
+              file.read_scalar("energy-excess"), file.read_scalar("energy-reference"),
+              file.read_scalar("energy-level")};
   const int levels = static_cast<int>(file.read_scalar("pressure-levels"));
   const bool has_mesh_flux = file.read_scalar("has-mesh-flux") != 0;
   const bool has_memory = file.read_scalar("has-flux-memory") != 0;

@@ -20,7 +20,7 @@ def flap(job, rho, mu, scheme="semi-implicit", dt=0.01, end=END, more=()):
         folder = job.coupled(job.root / FLAP, name, [
             f"simulation.end-time={end}", f"simulation.time-step={dt}", "simulation.max-step-halvings=0",
             f"simulation.output.interval={end}", "simulation.checkpoint.interval=0",
-            "participants.fluid.boundaries.inlet.ramp=0.4", f"participants.fluid.viscosity={mu}",
+            "participants.fluid.boundaries.inlet.ramp=0.4", "participants.fluid.pressure-tolerance=1e-8", f"participants.fluid.viscosity={mu}",
             f"participants.solid.material.density={rho}", f"coupling.scheme={scheme}",
             "coupling.convergence.max-iterations=100", *more])
         after = resource.getrusage(resource.RUSAGE_CHILDREN)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "common/base/error.hpp"
 #include "fluid_solver/participant.hpp"
 #include "tests/contract/contract_suite.hpp"
 #include "tests/contract/standalone_suite.hpp"
@@ -117,6 +118,52 @@ using FluidAloneExplicit = FluidAlone<fluid::ViscousTreatment::explicit_>;
 using FluidAloneImplicit = FluidAlone<fluid::ViscousTreatment::implicit>;
 INSTANTIATE_TYPED_TEST_SUITE_P(FluidAloneExplicit, StandaloneContract, FluidAloneExplicit);
 INSTANTIATE_TYPED_TEST_SUITE_P(FluidAloneImplicit, StandaloneContract, FluidAloneImplicit);
+
+/// The floor of a box without an outlet.
+TEST(ClosedFluid, whose_interface_would_have_to_change_its_volume_is_refused_at_the_start) {
+  using namespace fluid;
+  FluidParameters p;
+  p.mesh = "box";
+  p.dimension = 2;
+  p.density = 1;
+  p.viscosity = 0.01;
+  for (const char* side : {"xmin", "xmax", "ymax"}) p.boundaries[side].type = BoundaryType::no_slip;
+  p.boundaries["ymin"].type = BoundaryType::interface;
+  const auto begin = [&](Scheme scheme) {
+    using Factory = FluidFactory<Scheme::semi_implicit, false>;
+    make_participant(mesh_of<Factory>(MPI_COMM_WORLD), p, FluidContext{}, {})
+        ->begin_step({0, 0.01, scheme, 0});
+  };
+  try {
+    begin(Scheme::semi_implicit);
+    FAIL() << "accepted";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("has no outlet"), std::string::npos) << e.what();
+  }
+  EXPECT_NO_THROW(begin(Scheme::standalone)) << "a wall at rest there";
+  p.boundaries["xmax"].type = BoundaryType::outlet;
+  EXPECT_NO_THROW(begin(Scheme::semi_implicit));
+}
+
+/// A box whose four walls are the interface, as of a body around it: its walls may move, but not with an
+/// inlet open.
+TEST(ClosedFluid, that_is_pumped_up_is_refused_with_the_flow) {
+  using namespace fluid;
+  FluidParameters p;
+  p.mesh = "box";
+  p.dimension = 2;
+  p.density = 1;
+  p.viscosity = 0.01;
+  p.boundaries["ymax"].type = p.boundaries["ymin"].type = p.boundaries["xmax"].type = BoundaryType::interface;
+  p.boundaries["xmin"].type = BoundaryType::inlet;
+  p.boundaries["xmin"].velocity = {{"1"}, {"0"}};
+  using Factory = FluidFactory<Scheme::semi_implicit, false>;
+  const Mesh& mesh = mesh_of<Factory>(MPI_COMM_WORLD);
+  Fluid<2> fluid(mesh, p, false);
+  fluid.begin_step(0, 0.01);
+  const Vectors<2> rest(mesh.boundary.n_owned(), Vec<2>::Zero());
+  EXPECT_THROW(fluid.solve({}, rest), Error);
+}
 
 using SemiImplicit = FluidFactory<Scheme::semi_implicit, false>;
 using Implicit = FluidFactory<Scheme::implicit, false>;
