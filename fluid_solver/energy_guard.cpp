@@ -15,6 +15,8 @@ namespace {
 
 // Share of what passes the boundaries that may be wrong: their rates are means of two levels.
 constexpr double boundary_share = 0.25;
+// Of the pressure's level: what a solver whose tolerance is relative to it may leave. It moves the fluid.
+constexpr double level_share = 1e-4;
 // Excess, in kinetic energies, that is called a blow-up.
 constexpr double largest_excess = 0.5;
 // Of the largest energy so far: below it there is only round-off.
@@ -98,10 +100,11 @@ EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
   j.work = sums[work];
   j.ledger.energy = sums[energy];
   j.ledger.largest = std::max({before.largest, sums[energy], before.energy < 0 ? sums[old_energy] : 0});
-  j.ledger.reference = std::max(sums[energy], remembered * before.reference);
-  j.ledger.excess =
-      std::max(0.0, before.excess + j.gain - std::max(0.0, j.work) - boundary_share * sums[passed]);
   j.ledger.level = sums[fluxes] > 0 ? sums[weighted] / sums[fluxes] : 0;
+  const double unsure =
+      boundary_share * sums[passed] + level_share * std::abs(j.ledger.level) * sums[fluxes] * s.dt;
+  j.ledger.reference = std::max(sums[energy], remembered * before.reference);
+  j.ledger.excess = std::max(0.0, before.excess + j.gain - std::max(0.0, j.work) - unsure);
   j.out_of_bounds = j.gain > 0 && j.ledger.excess > largest_excess * j.ledger.reference &&
                     sums[energy] > least_energy * j.ledger.largest;
   return j;
