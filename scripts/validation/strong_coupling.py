@@ -90,5 +90,7 @@ BARS = [
           beside_implicit(rho, mu), long=True) for rho, mu in LADDER),
     Bar("heavy flap (rho_s 3000): predictions renewed", "0 of 30 steps", renewals(3000),
         but="counted in place of cpu within 5 % of before, which a shared machine does not resolve"),
-    Bar("the neighbour that fails without the cure", "tests pass", tested("stability_fluid_light_wall", "*")),
+    Bar("shear of the pass, light and heavy walls", "tests pass", tested("stability_fluid_light_wall", "*")),
+    Bar("a prediction is renewed where friction matters, and kept where it does not", "test passes",
+        tested("contract_fluid", "SemiImplicitFluid*")),
 ]

@@ -119,6 +119,26 @@ using FluidAloneImplicit = FluidAlone<fluid::ViscousTreatment::implicit>;
 INSTANTIATE_TYPED_TEST_SUITE_P(FluidAloneExplicit, StandaloneContract, FluidAloneExplicit);
 INSTANTIATE_TYPED_TEST_SUITE_P(FluidAloneImplicit, StandaloneContract, FluidAloneImplicit);
 
+/// Semi-implicit: where the wall moves otherwise than guessed, a later pass gives what a first one with that
+/// motion gives; where it was guessed well the prediction is kept.
+TEST(SemiImplicitFluid, renews_its_prediction_where_friction_would_say_something_else) {
+  using Factory = FluidFactory<Scheme::semi_implicit, false>;
+  const auto passes = [](const std::vector<double>& factors) {
+    const auto fluid = Factory::make(MPI_COMM_WORLD);
+    const Interface interface = fluid->initialise();
+    std::vector<Exchange> out;
+    fluid->begin_step({0, Factory::dt, Factory::scheme, 0});
+    for (const double factor : factors) out.push_back(fluid->solve(Factory::input(interface, factor)));
+    return out;
+  };
+  const auto renewed = passes({1, 50, 50, 50}), told = passes({50}), kept = passes({50, 50.001, 50, 50});
+  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  EXPECT_GT(difference(renewed[1], told[0]), 1e-5) << "friction does not matter here: the case shows nothing";
+  EXPECT_LT(difference(renewed[3], told[0]), 1e-8);
+  EXPECT_LT(difference(kept[3], told[0]), 1e-8);
+  EXPECT_LT(difference(kept[2], kept[3]), 1e-12);
+}
+
 /// The floor of a box without an outlet.
 TEST(ClosedFluid, whose_interface_would_have_to_change_its_volume_is_refused_at_the_start) {
   using namespace fluid;

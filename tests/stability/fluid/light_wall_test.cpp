@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A light wall on a viscous fluid in the semi-implicit loop, one mode of it, so that every pass is solved
-// exactly: what is left is the scheme. Growth sets in where friction's mass E = rho sqrt(nu dt) is above a
-// third of wall and potential flow.
+// exactly: what is left is the scheme.
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -103,16 +102,9 @@ double zigzag(double mass, double viscosity, bool renew) {
   return differences(last, 3) / differences(last, 1);
 }
 
-// M z^2 + 2 E z - E = 0 with the guess alone, whose root leaves the circle at E = M/3; z^2 - 2 e^2 z + e^2 =
-// 0, e = E/M, after one renewal, |z| = e. At z = -1 the weights 9/16, 3/8, 1/16 leave the layer 1/l, l^2 =
-// k^2 + 8/(nu dt): E = rho/(l - k) = 0.089, potential flow rho/k = 0.159: e = 0.55.
-TEST(LightWall, renewed_predictions_hold_where_the_guess_alone_oscillates) {
-  const double guess_alone = zigzag(0.002, 3, false), renewed = zigzag(0.002, 3, true);
-  RecordProperty("guess_alone", std::to_string(guess_alone));
-  RecordProperty("renewed", std::to_string(renewed));
-  printf("zigzag of the guess alone %.3f, renewed %.3f\n", guess_alone, renewed);
-  EXPECT_GT(guess_alone, 1) << "the neighbour that is to fail holds: the case shows nothing";
-  EXPECT_LT(renewed, 0.15);
+TEST(LightWall, of_a_fortieth_of_the_added_mass_moves_smoothly) {
+  for (const double viscosity : {0.1, 1.0, 10.0})
+    EXPECT_LT(zigzag(0.002, viscosity, true), 0.15) << viscosity;
 }
 
 TEST(LightWall, a_heavy_one_needs_no_renewal) {
