@@ -64,8 +64,11 @@ void EnergyGuard<D>::add_boundary(const EnergyStep<D>& s, double level, double* 
       case FaceKind::velocity: {
         const Vec<D> on_face = 0.5 * (s.from.u_boundary[b] + s.w[b]);
         convection = -rho_ * through * (on_face.dot(inside) - 0.5 * inside.squaredNorm());
-        // What a wall takes is not counted: a stiff layer changes within the step, its mean says nothing.
-        friction = std::max(0.0, mu_ * s.to.conductance[f] * (on_face - inside).dot(on_face));
+        // At most, at either level: a stiff layer changes within the step, its mean says nothing.
+        const Vec<D>&before = s.from.u_boundary[b], &after = s.w[b];
+        friction =
+            mu_ * s.to.conductance[f] *
+            std::max(before.norm() * (before - s.from.u[p]).norm(), after.norm() * (after - s.u[p]).norm());
         break;
       }
       case FaceKind::pressure:

@@ -29,8 +29,9 @@ struct EnergyJudgement {
 };
 
 /// Closes the kinetic energy of each sub-step against the work that boundaries and forces can have done:
-///   E^{n+1} - E^n <= dt sum_b [ -(p_b - p_ref) phi - phi' (s u_b.u_P - |u_P|^2/2) rho + max(0, mu g (u_b -
-///                   u_P).u_b)] + dt sum rho V f.u,  phi' relative to the mesh, s the backflow's share
+///   E^{n+1} - E^n <= dt sum_b [ -(p_b - p_ref) phi - phi' (s u_b.u_P - |u_P|^2/2) rho
+///                               + mu g |u_b| |u_b - u_P| ] + dt sum rho V f.u,
+/// phi' relative to the mesh, s the backflow's share.
 /// Friction inside only takes, the skew-symmetric convection gives nothing: an excess is the scheme's own. It
 /// is summed over the steps (a CUSUM test [page1954]: what is missing is not counted as credit), less a share
 /// of what went through the boundaries, whose rates are known to the order of the scheme only; work taken out

@@ -293,7 +293,8 @@ std::vector<std::string> FluidParticipant<D>::judge_left_out_effects() {
     sentences.push_back(text(verdict));
   if (steps_ > 0)
     sentences.push_back(fmt::format(
-        "Semi-implicit coupling: friction was computed anew with a better wall velocity in {} of {} steps; what it "
+        "Semi-implicit coupling: friction was computed anew with a better wall velocity in {} of {} steps; "
+        "what it "
         "missed at a step's end was at most {:.2g} of the load{}",
         renewed_steps_, steps_, largest_unseen_,
         largest_unseen_ < near_limit
