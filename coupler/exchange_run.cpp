@@ -132,7 +132,7 @@ std::string ExchangeRun::summary() const {
   std::string text = fmt::format("{} steps, {} halvings in {:.2f} s", loop_.steps(), loop_.halvings(), wall);
   for (std::size_t i = 0; i < partners_.size(); ++i)
     text += fmt::format("\n  {:<20} {:>9.2f} s {:>9.3f} ms a step", partners_[i].name(), total_[i],
-                        1e3 * total_[i] / std::max(1, loop_.steps()));
+                        1e3 * total_[i] / double(std::max<GlobalIndex>(1, loop_.steps())));
   return text;
 }
 

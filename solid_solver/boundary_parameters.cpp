@@ -10,8 +10,8 @@ using Type = SolidCondition::Type;
 
 /// Nothing, or one expression a component.
 void declare_vector(config::Section& s, const char* key, std::vector<config::ExpressionText>& texts,
-                    const int& dimension, const char* doc) {
-  s.value(key, texts).doc(doc);
+                    const int& dimension, const char* unit, const char* doc) {
+  s.value(key, texts).unit(unit).doc(doc);
   s.check([&] { return texts.empty() ? std::string() : problem_of(texts, dimension); }, key);
 }
 
@@ -29,47 +29,54 @@ std::string problem_of_components(const SolidCondition& c, int dimension) {
 }
 
 void declare_displacement(config::Section& s, SolidCondition& c, const int& dimension) {
-  s.value("value", c.value).doc("displacement, one expression of x, y, z, t a component [m]");
+  s.value("value", c.value).unit("m").doc("displacement, one expression of x, y, z, t a component");
   s.section(
       "components",
       [&c](config::Section& v) {
         constexpr std::array<const char*, 3> axis{"x", "y", "z"};
         for (int i = 0; i < 3; ++i)
-          v.value(axis[i], c.components[i]).doc("displacement along this axis, of x, y, z, t [m]");
+          v.value(axis[i], c.components[i]).unit("m").doc("displacement along this axis, of x, y, z, t");
       },
       "in place of value: these components are known, the others are free; a part of a patch then holds its "
       "faces, but not the vertices at its edge");
   s.check([&] { return problem_of_components(c, dimension); }, "value");
-  declare_vector(s, "traction", c.traction, dimension, "force per area on the free components [Pa]");
+  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area on the free components");
 }
 
 void declare_plate(config::Section& s, SolidCondition& c, const int& dimension) {
   s.value("plate-normal", c.plate_normal).doc("normal of the plate, any length");
   s.check([&c] { return c.plate_normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
           "plate-normal");
-  declare_vector(s, "traction", c.traction, dimension, "force per area on what is left free [Pa]");
+  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area on what is left free");
 }
 
 void declare_spring(config::Section& s, SolidCondition& c, const int& dimension) {
   s.value("stiffness", c.stiffness)
+      .unit("N/m^3")
       .required()
-      .doc("force per area and displacement, of x, y, z [N/m^3] (Winkler's bedding)");
+      .doc("force per area and displacement, of x, y, z (Winkler's bedding)");
   s.check([&c] { return problem_of(c.stiffness); }, "stiffness");
   s.choice("direction", c.along_normal, {{"all", false}, {"normal", true}})
       .doc("which displacement the springs resist");
-  declare_vector(s, "value", c.value, dimension,
-                 "displacement of the far ends of the springs, of x, y, z, t [m]");
-  declare_vector(s, "traction", c.traction, dimension, "force per area beside the springs [Pa]");
+  declare_vector(s, "value", c.value, dimension, "m",
+                 "displacement of the far ends of the springs, of x, y, z, t");
+  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area beside the springs");
 }
 
 void declare_condition(config::Section& s, SolidCondition& c, const int& dimension, bool whole_patch) {
   const auto displacement = [&](config::Section& v) { declare_displacement(v, c, dimension); };
   const auto traction = [&](config::Section& v) {
-    v.value("value", c.value).required().doc("force per area, one expression of x, y, z, t a component [Pa]");
+    v.value("value", c.value)
+        .unit("Pa")
+        .required()
+        .doc("force per area, one expression of x, y, z, t a component");
     v.check([&] { return problem_of(c.value, dimension); }, "value");
   };
   const auto pressure = [&](config::Section& v) {
-    v.value("value", c.pressure).required().doc("pressure that pushes into the solid, of x, y, z, t [Pa]");
+    v.value("value", c.pressure)
+        .unit("Pa")
+        .required()
+        .doc("pressure that pushes into the solid, of x, y, z, t");
     v.check([&] { return problem_of(c.pressure); }, "value");
   };
   const auto plate = [&](config::Section& v) { declare_plate(v, c, dimension); };

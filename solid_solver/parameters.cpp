@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/parameters.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "common/fv/expression.hpp"
@@ -79,6 +81,19 @@ void declare_heat(config::Section& s, SolidParameters& p) {
   needs(&HeatMaterial::expansion, p.expansion.has_value(), "expansion", "'thermal-expansion'");
 }
 
+/// Whether a condition of any kind keeps some displacement from being free.
+bool is_held(const SolidParameters& p) {
+  const auto holds = [](const SolidCondition& c) {
+    using Type = SolidCondition::Type;
+    return c.type != Type::traction && c.type != Type::pressure && c.type != Type::free &&
+           c.type != Type::zero_normal_gradient;
+  };
+  return std::any_of(p.boundaries.begin(), p.boundaries.end(), [&](const auto& entry) {
+    const auto& parts = entry.second.parts;
+    return holds(entry.second) || std::any_of(parts.begin(), parts.end(), holds);
+  });
+}
+
 void check_together(config::Section& s, SolidParameters& p) {
   const auto check_components = [&](const char* key, const std::vector<config::ExpressionText>& texts) {
     s.check([&] { return texts.empty() ? std::string() : problem_of(texts, p.dimension); }, key);
@@ -105,6 +120,14 @@ void check_together(config::Section& s, SolidParameters& p) {
         return p.boundaries.empty() && p.analysis != SolidParameters::Analysis::thermal
                    ? "each patch of the mesh needs an entry"
                    : "";
+      },
+      "boundaries");
+  s.check(
+      [&] {
+        return p.analysis != SolidParameters::Analysis::static_ || is_held(p)
+                   ? ""
+                   : "nothing holds the solid of this static analysis: at least one patch must be fixed, supported, "
+                     "sprung or on a plane of symmetry";
       },
       "boundaries");
   s.check(
@@ -150,10 +173,12 @@ void declare(config::Section& s, SolidParameters& p) {
       "boundaries", p.boundaries, [&p](config::Section& b, SolidBoundary& v) { declare(b, v, p.dimension); },
       "patch", "one entry for each patch of the mesh");
   s.value("body-force", p.body_force)
-      .doc("force per volume, one expression of x, y, z, t a component [N/m^3]");
+      .unit("N/m^3")
+      .doc("force per volume, one expression of x, y, z, t a component");
   s.value("gravity", p.gravity).unit("m/s^2").doc("acceleration of gravity, one number a component");
   s.value("initial-velocity", p.initial_velocity)
-      .doc("velocity at the start, one expression of x, y, z a component [m/s]");
+      .unit("m/s")
+      .doc("velocity at the start, one expression of x, y, z a component");
   s.section(
       "time-scheme", [&](config::Section& t) { declare(t, p.time_scheme); },
       "integration in time of a dynamic analysis");

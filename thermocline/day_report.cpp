@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "thermocline/celsius.hpp"
 #include "thermocline/thickness.hpp"
 
@@ -213,12 +214,12 @@ void DayReport::finish() {
     results_.add(day_);
   }
   if (folder_.empty()) return;
-  std::ofstream summary(folder_ / "summary.csv");
+  std::ofstream summary(own_file(folder_ / "summary.csv"));
   summary << "quantity,unit,value\n";
   for (const ReportLine& line : lines())
     summary << fmt::format("{},{},{}\n", line.quantity, line.unit, line.value);
   if (!stress_.empty()) {
-    std::ofstream stress(folder_ / "stress.csv");
+    std::ofstream stress(own_file(folder_ / "stress.csv"));
     stress << "z [m],mean daily lowest share [-],mean daily highest share [-],highest share [-]\n";
     const std::vector<double> low = stress_.mean_lowest(), high = stress_.mean_highest();
     for (std::size_t i = 0; i < low.size(); ++i)

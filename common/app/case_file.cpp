@@ -2,18 +2,39 @@
 #include "common/app/case_file.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/fv/expression.hpp"
+#include "common/fv/table.hpp"
 
 namespace couplet {
 namespace {
 
+constexpr std::size_t most_errors = 30, most_participants = 100, longest_name = 50;
+
+/// Why a participant cannot have this name: it becomes a folder and a file beside those of the run itself.
+std::string problem_of_name(const std::string& name) {
+  if (name.empty()) return "a participant needs a name";
+  if (name == coupler_name) return "the coupler is not a participant; its keys are in `coupling`";
+  if (name == "checkpoints" || name == "run")
+    return "the run itself has a folder or file of this name; take another";
+  if (name.size() > longest_name)
+    return fmt::format("the name has {} characters; at most {} are possible", name.size(), longest_name);
+  const auto is_bad = [](char c) {
+    return c == '/' || c == '\\' || c == ' ' || c == '.' || c == '\n' || c == '\t';
+  };
+  if (name.front() == '-' || std::any_of(name.begin(), name.end(), is_bad))
+    return "the name becomes a folder: no '/', '\\', '.' or blank in it, no '-' in front";
+  return "";
+}
+
 void check_top_level(const config::Document& document, CaseFile& result) {
   static const std::vector<std::string> known{"simulation", "participants", "coupling", "study"};
   for (const std::string& key : config::keys_of(document, ""))
-    if (std::find(known.begin(), known.end(), key) == known.end())
+    if (std::find(known.begin(), known.end(), key) == known.end() && result.errors.size() < most_errors)
       result.errors.push_back(fmt::format("{}: unknown section. {}", config::where(document, key),
                                           did_you_mean(key, known, "sections")));
 }
@@ -21,11 +42,17 @@ void check_top_level(const config::Document& document, CaseFile& result) {
 void list_expected(const config::Document& document, CaseFile& result) {
   result.coupled = !config::keys_of(document, "coupling").empty();
   if (result.coupled) result.expected.push_back({coupler_name, "coupler"});
-  for (const std::string& name : config::keys_of(document, "participants")) {
+  const std::vector<std::string> names = config::keys_of(document, "participants");
+  if (names.size() > most_participants)
+    throw Error("{}: {} participants; at most {} are possible.", config::where(document, "participants"),
+                names.size(), most_participants);
+  for (const std::string& name : names) {
+    if (const std::string problem = problem_of_name(name); !problem.empty()) {
+      result.errors.push_back(
+          fmt::format("{}: {}.", config::where(document, "participants." + name), problem));
+      continue;
+    }
     const auto program = config::text_of(document, "participants." + name + ".program");
-    if (name == coupler_name)
-      result.errors.push_back(fmt::format("{}: the coupler is not a participant; its keys are in `coupling`.",
-                                          config::where(document, "participants.coupler")));
     if (!program)
       result.errors.push_back(
           fmt::format("{}: the key 'program' is missing: the name of the program that runs this "
@@ -77,7 +104,8 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
     if (!command_line.participant.empty() && command_line.participant != coupler_name)
       throw Error("The coupler takes no --participant: it couples those that {} names.", source);
     if (!file.coupled)
-      throw Error("{} has no `coupling` section: there is nothing for the coupler to do.", source);
+      throw Error("{}:1:1: there is no `coupling` section, so there is nothing for the coupler to do.",
+                  source);
     return coupler_name;
   }
   std::vector<std::string> names, mine;
@@ -87,29 +115,38 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
     if (e.program == kind.name) mine.push_back(e.participant);
   }
   if (names.empty())
-    throw Error("{} has no `participants` section, which says what {} is to run.", source, kind.name);
+    throw Error("{}:1:1: there is no `participants` section, which says what {} is to run.", source,
+                kind.name);
   const std::string& wanted = command_line.participant;
   if (!wanted.empty()) {
     if (std::find(names.begin(), names.end(), wanted) == names.end())
       throw Error("--participant {}: {} has no participant of this name. {}", wanted, source,
                   did_you_mean(wanted, names, "participants"));
     if (std::find(mine.begin(), mine.end(), wanted) == mine.end())
-      throw Error(
-          "Participant '{}' of {} is run by the program '{}', but '{}' was started for it.", wanted, source,
-          config::text_of(*file.document, "participants." + wanted + ".program").value_or("?"), kind.name);
+      throw Error("--participant {}: it is run by the program '{}', but '{}' was started for it.", wanted,
+                  config::text_of(*file.document, "participants." + wanted + ".program").value_or("?"),
+                  kind.name);
     return wanted;
   }
   if (mine.empty()) {
     std::vector<std::string> pairs;
     for (const Expected& e : file.expected)
       if (e.participant != coupler_name) pairs.push_back(fmt::format("'{}' ({})", e.participant, e.program));
-    throw Error("No participant of {} is run by the program '{}'. Its participants are: {}.", source,
-                kind.name, join(pairs));
+    throw Error("{}: none of them is run by the program '{}': {}.",
+                config::where(*file.document, "participants"), kind.name, join(pairs));
   }
   if (mine.size() > 1)
-    throw Error("{} participants of {} are run by the program '{}' ({}): say which one with --participant.",
-                mine.size(), source, kind.name, join(mine));
+    throw Error("{}: {} of them are run by the program '{}' ({}): say which one with --participant.",
+                config::where(*file.document, "participants"), mine.size(), kind.name, join(mine));
   return mine.front();
+}
+
+/// Of an expression in x, y, z, t or of a property, which is a number or a table of the temperature T.
+std::string problem_of_expression(const config::ExpressionText& text) {
+  std::string problem = problem_of(text);
+  if (problem.find("unknown name 'T'") != std::string::npos)
+    return problem_of_property(text, -std::numeric_limits<double>::infinity());
+  return problem;
 }
 
 void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
@@ -140,7 +177,7 @@ CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
     result.participant = find_participant(command_line, kind, result);
     append(result.errors,
            config::load(*result.document, kind.is_coupler ? "coupling" : "participants." + result.participant,
-                        section_of(kind)));
+                        section_of(kind), problem_of_expression));
   } catch (const Error& error) {
     result.errors.emplace_back(error.what());
   }

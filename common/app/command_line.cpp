@@ -44,7 +44,8 @@ std::string footer(const ProgramText& program) {
       ": "
       "-n 1 mesh_mover case.yaml\n"
       "            Every program gets the same YAML file and the same --set options.\n"
-      "Exit codes: 0 done, 1 the run failed, 2 the configuration or the command line is wrong.",
+      "Exit codes: 0 done, 1 the run failed, 2 the configuration or the command line is wrong, 3 stopped by SIGTERM with a "
+      "checkpoint to go on from.",
       is_participant ? "this program's section under 'participants'" : "the section 'coupling'", program.name,
       list_keys(items), is_participant ? alone : "");
 }
@@ -81,6 +82,10 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
       ->allow_extra_args(false);
   app.add_option("--restart", line.restart_folder, "go on from the checkpoints in this folder")
       ->type_name("FOLDER");
+  app.add_flag("--restart-with-changes", line.restart_with_changes,
+               "go on although keys that change what is solved are not those of the checkpoint");
+  app.add_flag("--allow-commands", line.allow_commands,
+               "let a .geo run commands and write files: it does so with your rights");
   app.add_flag("--check", check, "only check the configuration: exit code 0 or 2");
   app.add_flag("--docs", docs, "print the reference of all keys as Markdown");
   app.add_flag("--schema", schema, "print the JSON schema of all keys, for editors");

@@ -18,6 +18,8 @@ struct CommandLine {
   std::string participant;               ///< empty: the only one in the YAML that names this program
   std::vector<std::string> overrides;    ///< "a.b=v", for config::Document::set
   std::filesystem::path restart_folder;  ///< empty: fresh start
+  bool allow_commands = false;           ///< a .geo may run commands and write files
+  bool restart_with_changes = false;     ///< consent to changes of the case since the checkpoint
   log::Verbosity verbosity = log::Verbosity::normal;
 };
 

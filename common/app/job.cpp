@@ -4,24 +4,28 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/prctl.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 
+#include "common/app/case_keys.hpp"
 #include "common/app/command_line.hpp"
 #include "common/app/questions.hpp"
 #include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "common/parallel/mpi_start.hpp"
 
 namespace couplet {
 namespace {
 
-constexpr int exit_failed = 1, exit_configuration = 2;
+constexpr int exit_failed = 1, exit_configuration = 2, exit_stopped = 3;
 
 int application_number() {
   int* number = nullptr;
@@ -46,14 +50,23 @@ Attendant introduce(const CommandLine& command_line, const ProgramKind& kind, co
 
 /// Two jobs in one folder would spoil each other's files. The lock ends with the process, whatever becomes of
 /// it.
-bool lock_folder(const std::filesystem::path& folder) {
-  const int file = ::open((folder / ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+bool lock(const std::filesystem::path& name) {
+  const int file = ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   // File systems without locks: no protection, but no refusal either.
   return file < 0 || ::flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
 }
 
+/// The checkpoint to continue from, and what has changed in the case since. `is_driver`: the program that makes the
+/// steps, which compares for all.
+void find_restart(Job& job, const CommandLine& command_line, bool is_driver) {
+  job.restart_folder = find_checkpoint(command_line.restart_folder, is_driver && job.rank == 0);
+  job.restart_time = read_run_state(job.restart_folder).time;
+  if (is_driver && job.rank == 0)
+    judge_changes(job.restart_folder, job.simulation.keys, command_line.restart_with_changes);
+}
+
 /// Folders, log and the checkpoint to continue from. Collective over job.comm.
-void prepare(Job& job, const CommandLine& command_line) {
+void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
   job.case_folder = command_line.case_file.parent_path();
   const std::filesystem::path output = job.case_folder / job.simulation.output_folder;
   job.output_folder = output / job.name;
@@ -63,7 +76,14 @@ void prepare(Job& job, const CommandLine& command_line) {
   if (any(job.comm, bool(failed)))
     throw Error("The output folder {} could not be made ({}). Its place is `simulation.output.folder` of {}.",
                 job.output_folder.string(), failed.message(), command_line.case_file.string());
-  if (any(job.comm, job.rank == 0 && !lock_folder(job.output_folder)))
+  for (const std::filesystem::path& folder : {job.output_folder, job.checkpoints})
+    if (any(job.comm, job.rank == 0 && std::filesystem::is_symlink(folder)))
+      throw Error(
+          "{} is a symbolic link: a run does not write through it. Move it, or give another `simulation.output.folder`.",
+          folder.string());
+  const bool is_driver = job.alone || is_coupler;
+  if (any(job.comm, job.rank == 0 && (!lock(job.output_folder / ".lock") ||
+                                      (is_driver && !lock(output / ".checkpoints.lock")))))
     throw Error(
         "The output folder {} is in use by another job that is still running. Wait for it, or give this one "
         "another "
@@ -71,9 +91,8 @@ void prepare(Job& job, const CommandLine& command_line) {
         job.output_folder.string());
   log::setup(job.name, job.rank, command_line.verbosity, (job.output_folder / (job.name + ".log")).string());
   job.restart_time = std::numeric_limits<double>::quiet_NaN();
-  if (command_line.restart_folder.empty()) return;
-  job.restart_folder = find_checkpoint(command_line.restart_folder);
-  job.restart_time = read_run_state(job.restart_folder).time;
+  if (is_driver) job.simulation.keys = case_keys(*job.document, job.case_folder);
+  if (!command_line.restart_folder.empty()) find_restart(job, command_line, is_driver);
 }
 
 /// Reports what was thrown, once a participant, and ends all programs of the job.
@@ -81,7 +100,11 @@ void prepare(Job& job, const CommandLine& command_line) {
   if (watch.claim_report()) log::error("{}", what);
   watch.ending();
   std::fflush(nullptr);
-  MPI_Abort(MPI_COMM_WORLD, configuring ? exit_configuration : exit_failed);
+  const int code = configuring ? exit_configuration : exit_failed;
+  // MPI_Abort would add a page of its own to the sentence. Open MPI's launcher ends a job as well when one of its
+  // processes leaves with such a code, and a process alone has nobody to end.
+  if (has_open_mpi_launcher() || comm_size(MPI_COMM_WORLD) == 1) ::_exit(code);
+  MPI_Abort(MPI_COMM_WORLD, code);
   std::abort();
 }
 
@@ -117,9 +140,11 @@ int attend(const CommandLine& command_line, const ProgramKind& kind,
     job.alone = verdict.alone;
     job.document = &*file.document;
     job.simulation = file.simulation;
-    prepare(job, command_line);
+    prepare(job, command_line, kind.is_coupler);
     job.enter(Phase::initialise);
-    return run(job);
+    watch.limit_silence(job.simulation.hang_timeout);
+    const int code = run(job);
+    return code == 0 && Watch::has_stopped() ? exit_stopped : code;
   } catch (const std::exception& error) {
     const bool of_the_user = dynamic_cast<const Error*>(&error) && !dynamic_cast<const SolveFailure*>(&error);
     end_the_job(watch, error.what(), of_the_user && watch.phase() <= Phase::initialise);
@@ -154,6 +179,9 @@ int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<
   const CommandLine& command_line = parsed.command_line;
   if (command_line.task != CommandLine::Task::run) return answer(command_line, kind);
 
+  // Read where the geometry is meshed, far from here.
+  if (command_line.allow_commands) ::setenv("COUPLET_ALLOW_COMMANDS", "1", 1);
+  prepare_mpi_start();
   MPI_Init(&argc, &argv);
   // Short sleeps while waiting for other programs shall be short (Linux adds 50 us to each by default).
   prctl(PR_SET_TIMERSLACK, 2000UL);

@@ -6,6 +6,7 @@
 #include "common/app/job.hpp"
 #include "common/app/run_participant.hpp"
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/config/load.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
@@ -34,7 +35,7 @@ MPI_Comm connect_mesh_peer(const Job& job) {
 /// What is in force, defaults included, beside the results.
 void write_effective(const Job& job, const Program& program) {
   if (job.rank != 0) return;
-  std::ofstream file(job.output_folder / "effective.yaml");
+  std::ofstream file(own_file(job.output_folder / "effective.yaml"));
   file << config::effective(program.declare);
 }
 

@@ -6,11 +6,15 @@
 #include <cstdio>
 #include <sstream>
 
+#include "common/app/check_files.hpp"
+
 namespace couplet {
 namespace {
 
 int check(const CommandLine& command_line, const ProgramKind& kind, bool print) {
   CaseFile file = read_case(command_line, kind);
+  if (!print && file.errors.empty() && !kind.is_coupler)
+    file.errors = problems_of_files(*file.document, file.participant, command_line.case_file.parent_path());
   if (!file.errors.empty()) {
     for (const std::string& error : file.errors) fmt::print(stderr, "{}\n", error);
     return 2;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/simulation.hpp"
 
+#include <fmt/format.h>
+
+#include "common/coupling/step_plan.hpp"
+
 namespace couplet {
 
 void declare(config::Section& section, SimulationParameters& p) {
@@ -14,6 +18,12 @@ void declare(config::Section& section, SimulationParameters& p) {
   section.value("max-step-halvings", p.max_step_halvings)
       .range(0, 20)
       .doc("a step that could not be solved is halved at most this often before the run stops");
+  section.value("hang-timeout", p.hang_timeout)
+      .unit("s")
+      .not_negative()
+      .doc(
+          "the job ends and names the culprit when one of its processes has shown no sign of life for so long: "
+          "more than the longest step, output or meshing takes; 0: never");
   section.section(
       "output",
       [&](config::Section& s) {
@@ -41,7 +51,11 @@ void declare(config::Section& section, SimulationParameters& p) {
       "files to continue from with --restart");
   section.check(
       [&]() -> std::string {
-        return p.time_step <= p.end_time ? "" : "the time step must not be longer than the run ('end-time')";
+        if (p.time_step > p.end_time) return "the time step must not be longer than the run ('end-time')";
+        const double steps = p.end_time / p.time_step;
+        if (steps <= StepPlan::most_steps) return "";
+        return fmt::format("the run would take {:g} steps; at most {:g} are possible", steps,
+                           StepPlan::most_steps);
       },
       "time-step");
 }

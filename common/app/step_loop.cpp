@@ -2,11 +2,17 @@
 #include "common/app/step_loop.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <fstream>
+#include <random>
+#include <tuple>
 #include <vector>
 
+#include "common/app/watch.hpp"
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/io/checkpoint_set.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -17,18 +23,26 @@ namespace fs = std::filesystem;
 
 const char* const run_file = "run.h5";
 
-/// Complete checkpoints in a folder, oldest first. By age, not by step: those of an earlier run that went
-/// further are older than what this run writes.
-std::vector<fs::path> complete_checkpoints(const fs::path& folder) {
-  std::vector<std::pair<fs::file_time_type, fs::path>> found;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (entry.path().filename().string().starts_with("step-") && fs::exists(entry.path() / run_file))
-      found.emplace_back(fs::last_write_time(entry.path() / run_file), entry.path());
-  std::sort(found.begin(), found.end());
-  std::vector<fs::path> paths;
-  for (const auto& [time, path] : found) paths.push_back(path);
-  return paths;
+/// Different for each run that ever writes into a folder; later runs have larger ones.
+std::string make_run_id() {
+  std::random_device device;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+  return fmt::format("{:012x}-{:08x}", milliseconds, device());
+}
+
+/// What rank 0 does alone: its Error is thrown on every rank. Collective.
+void on_first_rank(MPI_Comm comm, const std::function<void()>& action) {
+  std::string problem;
+  if (comm_rank(comm) == 0) {
+    try {
+      action();
+    } catch (const std::exception& error) {
+      problem = error.what();
+    }
+  }
+  broadcast(comm, problem);
+  if (!problem.empty()) throw Error("{}", problem);
 }
 
 }  // namespace
@@ -53,15 +67,26 @@ RunState read_run_state(const fs::path& folder) {
   return state;
 }
 
-fs::path find_checkpoint(const fs::path& folder) {
-  if (fs::exists(folder / run_file)) return folder;
-  const std::vector<fs::path> found = complete_checkpoints(folder);
+fs::path find_checkpoint(const fs::path& folder, bool tell) {
+  if (read_checkpoint_set(folder)) return folder;
+  const std::vector<FoundSet> found = checkpoint_sets(folder);
   if (found.empty())
     throw Error(
         "--restart {}: there is no complete checkpoint. Give a folder made by an earlier run, such as "
         "out/checkpoints/step-00000100, or the folder above it for the latest one.",
         folder.string());
-  return found.back();
+  const FoundSet& furthest = found.back();
+  const auto youngest =
+      std::max_element(found.begin(), found.end(), [](const FoundSet& a, const FoundSet& b) {
+        return std::tie(a.stamp.run, a.stamp.time) < std::tie(b.stamp.run, b.stamp.time);
+      });
+  if (tell && youngest->stamp.run > furthest.stamp.run)
+    log::warn(
+        "--restart {}: {} of an earlier run has gone further (t = {:g} s) than the last of the latest run, {} (t = {:g} s). "
+        "The former is taken; give the folder itself for the latter.",
+        folder.string(), furthest.folder.filename().string(), furthest.stamp.time,
+        youngest->folder.filename().string(), youngest->stamp.time);
+  return furthest.folder;
 }
 
 StepLoop::StepLoop(MPI_Comm comm, const SimulationParameters& simulation, Scheme scheme, fs::path checkpoints)
@@ -69,6 +94,7 @@ StepLoop::StepLoop(MPI_Comm comm, const SimulationParameters& simulation, Scheme
       simulation_(simulation),
       scheme_(scheme),
       checkpoints_(std::move(checkpoints)),
+      run_id_(comm_rank(comm) == 0 ? make_run_id() : ""),
       plan_(simulation.end_time, simulation.time_step, simulation.max_step_halvings) {}
 
 void StepLoop::restart(const RunState& state) {
@@ -82,26 +108,42 @@ bool StepLoop::due(double interval) const {
   if (interval <= 0) return false;
   // Due when a multiple of the interval lies in the nominal step that has just ended.
   const auto multiples = [&](double t) {
-    return std::floor(t / interval + 1e-9 * simulation_.time_step / interval);
+    const double rounding = std::max(1e-9 * simulation_.time_step, 4e-16 * plan_.time());
+    return std::floor((t + rounding) / interval);
   };
   return multiples(plan_.time()) > multiples(plan_.time() - simulation_.time_step);
 }
 
-void StepLoop::checkpoint(const StepActions& actions) {
-  const fs::path folder = checkpoints_ / fmt::format("step-{:08d}", plan_.steps_accepted());
-  std::error_code failed;
-  if (comm_rank(comm_) == 0) {
-    fs::remove(folder / run_file, failed);
-    fs::create_directories(folder, failed);
-  }
-  if (any(comm_, bool(failed)))
-    throw Error("The checkpoint folder {} could not be made: {}.", folder.string(), failed.message());
+fs::path StepLoop::checkpoint(const StepActions& actions) {
+  const CheckpointStamp stamp{run_id_, plan_.steps_accepted(), plan_.time()};
+  std::string name;
+  on_first_rank(comm_, [&] { name = begin_checkpoint_set(checkpoints_, stamp).string(); });
+  broadcast(comm_, name);
+  const fs::path folder = name;
   actions.save(folder);
   write_run_state(comm_, folder, {plan_.time(), outputs_, plan_.state()});
-  log::debug("checkpoint {} at t = {:g} s", folder.string(), plan_.time());
-  if (comm_rank(comm_) != 0) return;
-  const std::vector<fs::path> all = complete_checkpoints(checkpoints_);
-  for (std::size_t i = 0; i + simulation_.checkpoints_kept < all.size(); ++i) fs::remove_all(all[i], failed);
+  on_first_rank(comm_, [&] {
+    std::ofstream keys(folder / "keys.txt", std::ios::binary);
+    keys << simulation_.keys;
+    keys.close();
+    if (!keys) throw Error("The checkpoint in {} could not be written. Is the disk full?", folder.string());
+    finish_checkpoint_set(folder, stamp);
+    log::debug("checkpoint {} at t = {:g} s", folder.string(), plan_.time());
+    // Only what this run wrote goes: sets of other runs are theirs.
+    std::vector<FoundSet> own = checkpoint_sets(checkpoints_);
+    std::erase_if(own, [&](const FoundSet& set) { return set.stamp.run != run_id_; });
+    for (std::size_t i = 0; i + simulation_.checkpoints_kept < own.size(); ++i)
+      remove_checkpoint_set(own[i].folder);
+  });
+  return folder;
+}
+
+void StepLoop::stop(const StepActions& actions) {
+  const fs::path folder = checkpoint(actions);
+  Watch::stopped();
+  if (comm_rank(comm_) == 0)
+    log::info("stopped at t = {:g} s, as asked by a signal; the state is saved: go on with --restart {}",
+              plan_.time(), folder.string());
 }
 
 std::string StepLoop::give_up(const StepActions& actions, const Step& step, const StepFailure& failure) {
@@ -117,8 +159,16 @@ std::string StepLoop::give_up(const StepActions& actions, const Step& step, cons
 }
 
 std::string StepLoop::run(const StepActions& actions) {
+  on_first_rank(comm_, [&] {
+    for (const fs::path& folder : clear_incomplete_sets(checkpoints_))
+      log::info("the incomplete checkpoint {} of an earlier run was taken away", folder.string());
+  });
   if (!restarted_) actions.write_start(outputs_++);
   while (!plan_.finished()) {
+    if (any(comm_, Watch::stop_requested())) {
+      stop(actions);
+      return "";
+    }
     plan_.limit(actions.advised_dt());
     const Step step{plan_.time(), plan_.dt(), scheme_, plan_.steps_accepted(), plan_.is_last()};
     if (const auto failure = actions.attempt(step)) {

@@ -17,7 +17,7 @@
 namespace couplet {
 
 /// Where a run stands at an accepted time; kept beside the participants' files in a checkpoint folder as
-/// run.h5, which is written last: a folder that holds it is complete.
+/// run.h5.
 struct RunState {
   double time = 0;
   int outputs = 0;  ///< written so far
@@ -27,9 +27,10 @@ struct RunState {
 void write_run_state(MPI_Comm comm, const std::filesystem::path& folder, const RunState& state);
 RunState read_run_state(const std::filesystem::path& folder);
 
-/// `folder` itself if it is a complete checkpoint, else the latest complete one in it; throws Error if there
-/// is none.
-std::filesystem::path find_checkpoint(const std::filesystem::path& folder);
+/// `folder` itself if it is a complete checkpoint, else the one in it that has gone furthest, whichever file is
+/// the newest; throws Error if there is none. `tell`: a warning where the latest run has not gone as far as an
+/// earlier one.
+std::filesystem::path find_checkpoint(const std::filesystem::path& folder, bool tell = false);
 
 /// Why a step was not solved, and whether a smaller one may be.
 struct StepFailure {
@@ -62,22 +63,26 @@ class StepLoop {
            std::filesystem::path checkpoints);
   /// Continues from this state instead of from the start.
   void restart(const RunState& state);
-  /// Runs to the end. The text is empty if all went well, else it says at what time and why no step could be
-  /// found; the state before that step was saved.
+  /// Runs to the end, or to the next accepted step after the job was asked to stop (Watch::stop_requested), which is
+  /// saved. The text is empty if all went well, else it says at what time and why no step could be found; the
+  /// state before that step was saved.
   std::string run(const StepActions& actions);
 
-  int steps() const { return plan_.steps_accepted(); }
+  GlobalIndex steps() const { return plan_.steps_accepted(); }
   int halvings() const { return halvings_; }
 
  private:
   bool due(double interval) const;
-  void checkpoint(const StepActions& actions);
+  /// Gives the folder.
+  std::filesystem::path checkpoint(const StepActions& actions);
+  void stop(const StepActions& actions);
   std::string give_up(const StepActions& actions, const Step& step, const StepFailure& failure);
 
   MPI_Comm comm_;
   SimulationParameters simulation_;
   Scheme scheme_;
   std::filesystem::path checkpoints_;
+  std::string run_id_;  // on rank 0
   StepPlan plan_;
   int outputs_ = 0, halvings_ = 0;
   bool restarted_ = false;

@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <string>
+#include <thread>
 
 namespace couplet {
 
@@ -25,7 +26,9 @@ const char* name(Phase phase);
 /// The processes of a job on one machine watch over each other through a small page of shared memory: each
 /// writes there who it is and what it does. MPI's launcher ends a job with SIGTERM when one of its processes
 /// dies; the handler then finds which processes are gone, and the first survivor to look writes the one line
-/// that names them and what they did last. One Watch a process. It stays in force until the process ends.
+/// that names them and what they did last. If none is gone, SIGTERM is somebody's wish that the job ends: it is
+/// passed on to the loop of steps, which saves the state and ends the run. One Watch a process. It stays in force
+/// until the process ends.
 class Watch {
  public:
   /// Collective over `world`, right after MPI_Init.
@@ -42,6 +45,15 @@ class Watch {
   /// True for the first process of this participant on this machine that asks: it is the one that prints the
   /// error.
   bool claim_report();
+  /// From now on a thread looks whether the processes of this machine go on: one that has shown no sign of life
+  /// for so long [s], and does not just wait for others, ends the job and is named. 0: never.
+  void limit_silence(double seconds);
+
+  /// A signal asked this job to stop while it was making steps.
+  static bool stop_requested();
+  /// The job has saved its state and stops, as asked.
+  static void stopped();
+  static bool has_stopped();
   /// This process ends the job on purpose: the others need not look for a culprit.
   void ending();
   /// This process is through with MPI: it may be gone from now on.
@@ -49,6 +61,7 @@ class Watch {
 
  private:
   Phase phase_ = Phase::roll_call;
+  std::jthread guard_;
 };
 
 }  // namespace couplet

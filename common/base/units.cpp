@@ -156,8 +156,12 @@ class UnitParser {
   Unit base() {
     ++factors_;
     if (take("(")) {
+      // Brackets in brackets are a call in a call: a long row of them shall not use up the stack.
+      if (++depth_ > deepest)
+        throw Error("the unit '{:.20}...' has more than {} brackets in brackets.", all_, deepest);
       const Unit unit = product();
       if (!take(")")) fail();
+      --depth_;
       return unit;
     }
     if (take("1")) return {};
@@ -181,7 +185,8 @@ class UnitParser {
   }
 
   std::string_view all_, rest_;
-  int factors_ = 0;
+  static constexpr int deepest = 20;
+  int factors_ = 0, depth_ = 0;
   bool powers_ = false;
 };
 

@@ -14,34 +14,72 @@
 namespace couplet::config {
 namespace {
 
-void find_duplicates(const YAML::Node& node, const std::string& path, std::vector<Message>& messages,
-                     int depth = 0) {
-  constexpr int deepest = 50;
-  if (depth > deepest)
-    throw Error("{}: this is nested deeper than {} levels. Does an anchor contain itself?",
-                path.substr(0, 60), deepest);
-  if (node.IsSequence()) {
-    for (std::size_t i = 0; i < node.size(); ++i)
-      find_duplicates(node[i], fmt::format("{}[{}]", path, i), messages, depth + 1);
-  }
-  if (!node.IsMap()) return;
-  std::map<std::string, Place> seen;
-  for (const auto& item : node) {
-    if (!item.first.IsScalar()) {
-      messages.push_back({place_of(item.first), path, "a key must be a single word."});
-      continue;
+/// Looks for what yaml-cpp lets pass and nobody after it could bear.
+class Inspection {
+ public:
+  std::vector<Message> messages;
+
+  void look(const YAML::Node& node, const std::string& path, int depth = 0) {
+    if (messages.size() >= most_messages) return;
+    // Anchors of anchors double with every line.
+    if (++nodes_ > most_nodes)
+      throw Error("{}: there are more than {} values up to here. Do anchors contain each other?",
+                  path.substr(0, 60), most_nodes);
+    if (depth > deepest)
+      throw Error("{}: this is nested deeper than {} levels. Does an anchor contain itself?",
+                  path.substr(0, 60), deepest);
+    if (node.IsScalar()) check_text(node, path, "value");
+    if (node.IsSequence()) {
+      std::size_t i = 0;
+      for (const YAML::Node& entry : node) look(entry, fmt::format("{}[{}]", path, i++), depth + 1);
     }
-    const std::string& name = item.first.Scalar();
-    const std::string here = join_path(path, name);
-    const Place place = place_of(item.first);
-    const auto [first, is_new] = seen.emplace(name, place);
-    if (!is_new)
-      messages.push_back({place, here,
-                          fmt::format("this key stands here twice (first at {}:{}); remove one of the two.",
-                                      first->second.line, first->second.column)});
-    find_duplicates(item.second, here, messages, depth + 1);
+    if (node.IsMap()) look_at_map(node, path, depth);
   }
-}
+
+ private:
+  static constexpr int deepest = 50;
+  static constexpr std::size_t most_messages = 50, most_nodes = 1'000'000, longest_name = 200;
+
+  /// False if the text holds what would spoil messages, names of files and terminals.
+  bool check_text(const YAML::Node& node, const std::string& path, const char* what) {
+    const std::string& text = node.Scalar();
+    const auto is_control = [](unsigned char c) { return (c < 32 && c != '\n' && c != '\t') || c == 127; };
+    const auto found = std::find_if(text.begin(), text.end(), is_control);
+    if (found == text.end()) return true;
+    messages.push_back(
+        {place_of(node), path,
+         fmt::format("this {} holds a control character (code {}); remove it.", what, int(*found))});
+    return false;
+  }
+
+  void look_at_map(const YAML::Node& node, const std::string& path, int depth) {
+    std::map<std::string, Place> seen;
+    for (const auto& item : node) {
+      if (!item.first.IsScalar()) {
+        messages.push_back({place_of(item.first), path, "a key must be a single word."});
+        continue;
+      }
+      const std::string& name = item.first.Scalar();
+      const Place place = place_of(item.first);
+      if (!check_text(item.first, path, "key")) continue;
+      if (name.size() > longest_name) {
+        messages.push_back(
+            {place, path,
+             fmt::format("a key has {} characters; at most {} are possible.", name.size(), longest_name)});
+        continue;
+      }
+      const std::string here = join_path(path, name);
+      const auto [first, is_new] = seen.emplace(name, place);
+      if (!is_new)
+        messages.push_back({place, here,
+                            fmt::format("this key stands here twice (first at {}:{}); remove one of the two.",
+                                        first->second.line, first->second.column)});
+      look(item.second, here, depth + 1);
+    }
+  }
+
+  std::size_t nodes_ = 0;
+};
 
 /// yaml-cpp's words for the usual mistakes, in words that say what to do.
 std::string explain(const std::string& message, std::string_view line) {
@@ -151,6 +189,13 @@ Document Document::read(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file, error))
     throw Error("{}: this is a folder; give the YAML file in it, for example {}.", file.string(),
                 (file / "case.yaml").string());
+  if (!std::filesystem::is_regular_file(file, error))
+    throw Error("{}: this is neither a file nor a link to one (a pipe?); save the case in a file.",
+                file.string());
+  constexpr std::uintmax_t largest = 64 << 20;
+  if (const auto size = std::filesystem::file_size(file, error); size > largest)
+    throw Error("{}: this file has {} MB; at most {} are read as a case.", file.string(), size >> 20,
+                largest >> 20);
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
@@ -164,13 +209,13 @@ Document Document::parse(const std::string& text, const std::string& name) {
   content.name = name;
   content.text = text;
   content.root = parse_yaml(text, name);
-  std::vector<Message> messages;
+  Inspection inspection;
   try {
-    find_duplicates(content.root, "", messages);
+    inspection.look(content.root, "");
   } catch (const Error& error) {
-    throw Error("{}: {}", name, error.what());
+    throw Error("{}:1:1: {}", name, error.what());
   }
-  if (!messages.empty()) throw Error(join(format_all(name, messages), "\n"));
+  if (!inspection.messages.empty()) throw Error(join(format_all(name, inspection.messages), "\n"));
   return document;
 }
 
@@ -187,9 +232,10 @@ void Document::set(const std::string& assignment) {
   } catch (const YAML::Exception& error) {
     throw Error("{}: the value is not valid YAML: {}.", option, explain(error.msg, ""));
   }
-  std::vector<Message> messages;
-  find_duplicates(value, path, messages);
-  if (!messages.empty()) throw Error("{}: {}: {}", option, messages[0].path, messages[0].text);
+  Inspection inspection;
+  inspection.look(value, path);
+  if (!inspection.messages.empty())
+    throw Error("{}: {}: {}", option, inspection.messages[0].path, inspection.messages[0].text);
   if (std::find(parts.begin(), parts.end(), "") != parts.end())
     throw Error("{}: the path '{}' has an empty part.", option, path);
   std::string walked;
@@ -207,6 +253,10 @@ void Document::set(const std::string& assignment) {
         node.force_insert(parts[i], value);
       }
     } else {
+      // A section that is not there is made: which keys it may have is for its declaration to say. Participants and
+      // what stands at the top are not made this way: a misspelt name would be another one.
+      if (node.IsMap() && !walked.empty() && walked != "participants" && !value.IsNull() && !find(node, parts[i]).found)
+        node.force_insert(parts[i], YAML::Node(YAML::NodeType::Map));
       YAML::Node next = step_into(node, walked, parts[i], option);
       if (last) next = value;
       node.reset(next);

@@ -42,7 +42,7 @@ Located locate(const Document::Content& content, const std::string& path) {
 }  // namespace
 
 std::vector<std::string> load(const Document& document, const std::string& path,
-                              const Section::Declare& declare) {
+                              const Section::Declare& declare, const CheckExpression& check_expression) {
   const Document::Content& content = document.content();
   if (content.root.IsNull()) return {fmt::format("{}:1:1: this file is empty.", content.name)};
   if (!content.root.IsMap())
@@ -56,7 +56,7 @@ std::vector<std::string> load(const Document& document, const std::string& path,
     return format_all(content.name,
                       {{located.entry.place, join_path(located.reached, located.missing), text}});
   }
-  Reader reader(content);
+  Reader reader(content, check_expression);
   reader.read_mapping(located.entry.node, located.entry.place, path, declare);
   return format_all(content.name, reader.messages());
 }

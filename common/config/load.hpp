@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,11 @@ class Document {
 /// Reads the mapping at `path` (dotted, "" is the whole file, e.g. "participants.solid") into whatever
 /// `declare` binds. Every message is "file:line:column: key.path: text". Returns all of them, in file order;
 /// empty means valid.
+/// `check_expression` says what is wrong with the text of an expression or a table (nothing: ""); it stands above this
+/// folder.
+using CheckExpression = std::function<std::string(const ExpressionText&)>;
 std::vector<std::string> load(const Document& document, const std::string& path,
-                              const Section::Declare& declare);
+                              const Section::Declare& declare, const CheckExpression& check_expression = {});
 /// The same; throws one Error with all messages, one a line.
 void load_or_throw(const Document& document, const std::string& path, const Section::Declare& declare);
 

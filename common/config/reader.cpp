@@ -90,7 +90,7 @@ void Reader::read_mapping(const YAML::Node& node, const Place& place, const std:
     return;
   }
   frames_.push_back(
-      {is_empty ? YAML::Node(YAML::NodeType::Map) : node, place, path, {}, {}, messages_.size(), false});
+      {is_empty ? YAML::Node(YAML::NodeType::Map) : node, place, path, {}, {}, messages_.size(), {}, false});
   Section section(*this);
   declare(section);
   report_unknown_keys();
@@ -99,9 +99,12 @@ void Reader::read_mapping(const YAML::Node& node, const Place& place, const std:
 
 void Reader::report_unknown_keys() {
   const Frame frame = frames_.back();
+  constexpr int most = 20;  // of one mapping: suggestions for more take long, and nobody reads them
+  int unknown = 0;
   for (const auto& item : frame.node) {
     const std::string& name = item.first.Scalar();
     if (std::find(frame.known.begin(), frame.known.end(), name) != frame.known.end()) continue;
+    if (++unknown > most) continue;
     const std::string path = join_path(frame.path, name);
     std::vector<std::string> owners;
     for (const auto& [key, owner] : frame.elsewhere)
@@ -120,10 +123,30 @@ void Reader::report_unknown_keys() {
     report(place_of(item.first), path,
            "unknown key. " + did_you_mean(name, meant ? free : frame.known, "keys"));
   }
+  if (unknown > most)
+    report(frame.place, frame.path, fmt::format("{} more unknown keys stand here.", unknown - most));
+}
+
+std::string Reader::problem_of(const Facts& facts, const Slot& slot) const {
+  if (!check_expression_) return "";
+  if (const auto* text = std::get_if<ExpressionText*>(&slot)) return check_expression_(**text);
+  if (const auto* text = std::get_if<std::optional<ExpressionText>*>(&slot))
+    return **text ? check_expression_(***text) : "";
+  const auto* texts = std::get_if<std::vector<ExpressionText>*>(&slot);
+  if (texts == nullptr) return "";
+  const auto around =
+      std::find_if(frames_.rbegin(), frames_.rend(), [](const Frame& f) { return bool(f.dimension); });
+  if (around != frames_.rend() && !facts.size && std::ssize(**texts) != *around->dimension)
+    return fmt::format("{} components are given where the {}-dimensional scene needs {}.", (**texts).size(),
+                       *around->dimension, *around->dimension);
+  for (std::size_t i = 0; i < (**texts).size(); ++i)
+    if (const std::string problem = check_expression_((**texts)[i]); !problem.empty())
+      return fmt::format("entry {} of the list: {}", i + 1, problem);
+  return "";
 }
 
 void Reader::key(const Facts& facts, const Slot& slot) {
-  const Frame& frame = frames_.back();
+  Frame& frame = frames_.back();
   const std::string path = join_path(frame.path, facts.name);
   const Entry entry = take(facts.name);
   if (!entry.found) {
@@ -138,6 +161,9 @@ void Reader::key(const Facts& facts, const Slot& slot) {
   }
   try {
     read_value(entry.node, facts, slot, std::filesystem::absolute(content_.name).parent_path());
+    if (const auto* number = std::get_if<int*>(&slot); number && facts.name == "dimension")
+      frame.dimension = **number;
+    if (const std::string problem = problem_of(facts, slot); !problem.empty()) throw Error("{}", problem);
   } catch (const Error& error) {
     report_key(entry.place, path, error.what());
   }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/config/document.hpp"
+#include "common/config/load.hpp"
 #include "common/config/visitor.hpp"
 
 namespace couplet::config {
@@ -12,7 +15,8 @@ namespace couplet::config {
 /// Fills the members from a mapping and collects everything that is wrong with it.
 class Reader final : public Visitor {
  public:
-  explicit Reader(const Document::Content& content) : content_(content) {}
+  explicit Reader(const Document::Content& content, CheckExpression check_expression = {})
+      : content_(content), check_expression_(std::move(check_expression)) {}
 
   /// `node` may be undefined: all defaults, required keys are missing at `place`.
   void read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
@@ -39,7 +43,8 @@ class Reader final : public Visitor {
     std::vector<std::string> known;
     std::vector<std::pair<std::string, std::string>> elsewhere;  ///< key, the variant case it belongs to
     std::size_t messages_before = 0;
-    bool wrong_key = false;  ///< one of the keys in this very mapping could not be read
+    std::optional<int> dimension;  ///< value of the key of this name
+    bool wrong_key = false;        ///< one of the keys in this very mapping could not be read
   };
   Entry take(std::string_view name);
   void report(const Place& place, const std::string& path, const std::string& text);
@@ -48,7 +53,12 @@ class Reader final : public Visitor {
   /// A misspelt required key is one mistake, not two.
   void forget_missing(const std::string& path);
 
+  /// What is wrong with the expressions of a key that was read; a list of them is a vector of the scene, whose
+  /// `dimension` stands in one of the mappings around it.
+  std::string problem_of(const Facts& facts, const Slot& slot) const;
+
   const Document::Content& content_;
+  CheckExpression check_expression_;
   std::vector<Frame> frames_;
   std::vector<Message> messages_;
 };

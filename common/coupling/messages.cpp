@@ -184,7 +184,7 @@ Command unpack_command(std::span<const char> bytes) {
   c.step.time = in.real();
   c.step.dt = in.real();
   c.step.scheme = Scheme(in.integer());
-  c.step.number = int(in.integer());
+  c.step.number = in.integer();
   c.time = in.real();
   c.output = int(in.integer());
   c.folder = in.text();

@@ -52,7 +52,7 @@ struct Step {
   double time = 0;  ///< t^n
   double dt = 0;
   Scheme scheme = Scheme::standalone;
-  int number = 0;
+  GlobalIndex number = 0;
   bool is_last = false;  ///< accepted, it ends the run; false in a coupled job
 };
 

@@ -13,24 +13,34 @@ namespace {
 
 constexpr int least_patience = 2, most_patience = 64;
 
+/// Nominal steps to the end; what rounding adds to the quotient is no step of its own.
+GlobalIndex count(double end_time, double nominal_dt) {
+  const double steps = end_time / nominal_dt;
+  if (!(steps <= StepPlan::most_steps))
+    throw Error(
+        "From 0 to {:g} s there are {:g} steps of {:g} s; at most {:g} are possible. Is a unit missing?",
+        end_time, steps, nominal_dt, StepPlan::most_steps);
+  return static_cast<GlobalIndex>(std::ceil(steps * (1 - 1e-15) - 1e-9));
+}
+
 }  // namespace
 
 StepPlan::StepPlan(double end_time, double nominal_dt, int max_halvings)
     : end_time_(end_time),
       nominal_dt_(nominal_dt),
       max_halvings_(max_halvings),
-      n_nominal_(static_cast<int>(std::ceil(end_time / nominal_dt * (1 - 1e-12) - 1e-9))),
+      n_nominal_(count(end_time, nominal_dt)),
       largest_dt_(std::numeric_limits<double>::infinity()) {
   assert(nominal_dt > 0 && max_halvings >= 0 && max_halvings <= 30);
 }
 
-double StepPlan::nominal_time(int i) const {
-  const double t = i * nominal_dt_;
+double StepPlan::nominal_time(GlobalIndex i) const {
+  const double t = double(i) * nominal_dt_;
   return i == n_nominal_ && std::abs(t - end_time_) > 1e-9 * nominal_dt_ ? end_time_ : t;
 }
 
 double StepPlan::nominal_length() const {
-  const double rest = end_time_ - nominal_ * nominal_dt_;
+  const double rest = end_time_ - double(nominal_) * nominal_dt_;
   return rest < nominal_dt_ * (1 - 1e-9) ? rest : nominal_dt_;
 }
 
@@ -84,14 +94,14 @@ std::array<double, 6> StepPlan::state() const {
 }
 
 void StepPlan::restore(const std::array<double, 6>& state, double time) {
-  nominal_ = int(state[0]);
+  nominal_ = GlobalIndex(state[0]);
   tick_ = long(state[1]);
   wanted_level_ = std::min(int(state[2]), max_halvings_);
   calm_ = int(state[3]);
-  accepted_ = int(state[4]);
+  accepted_ = GlobalIndex(state[4]);
   patience_ = int(state[5]);
   if (std::abs(this->time() - time) <= 1e-9 * nominal_dt_) return;
-  nominal_ = int(std::lround(time / nominal_dt_));
+  nominal_ = std::llround(time / nominal_dt_);
   tick_ = 0;
   if (std::abs(this->time() - time) > 1e-9 * nominal_dt_)
     throw Error(

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "common/base/types.hpp"
+
 namespace couplet {
 
 /// Which step comes next. Nominal steps end at multiples of the nominal dt (the last one at the end time); a
@@ -11,7 +13,10 @@ namespace couplet {
 /// keeps a factorised matrix for each dt meets few different ones.
 class StepPlan {
  public:
-  /// max_halvings: a step is halved at most this often (0 to 30).
+  /// More nominal steps than this are refused: times would no longer be told apart.
+  static constexpr double most_steps = 1e12;
+
+  /// max_halvings: a step is halved at most this often (0 to 30). Throws Error for more than `most_steps`.
   StepPlan(double end_time, double nominal_dt, int max_halvings);
 
   bool finished() const { return nominal_ >= n_nominal_; }
@@ -25,8 +30,8 @@ class StepPlan {
   bool halve();
   /// True right after a nominal step was completed (outputs and checkpoints are made then).
   bool at_nominal_time() const { return tick_ == 0; }
-  int steps_accepted() const { return accepted_; }
-  int nominal_step() const { return nominal_; }
+  GlobalIndex steps_accepted() const { return accepted_; }
+  GlobalIndex nominal_step() const { return nominal_; }
   int halvings() const { return level(); }
 
   /// For checkpoints.
@@ -37,18 +42,19 @@ class StepPlan {
 
  private:
   int level() const;  // halvings in force, made to fit the grid of ticks and the advice
-  double nominal_time(int i) const;
+  double nominal_time(GlobalIndex i) const;
   double nominal_length() const;  // of the nominal step under way [s]
 
   double end_time_, nominal_dt_;
-  int max_halvings_, n_nominal_;
+  int max_halvings_;
+  GlobalIndex n_nominal_;
   double largest_dt_;
-  int nominal_ = 0;  // nominal steps completed
-  long tick_ = 0;    // within the nominal step, in units of length / 2^max_halvings
+  GlobalIndex nominal_ = 0;  // nominal steps completed
+  long tick_ = 0;            // within the nominal step, in units of length / 2^max_halvings
   int wanted_level_ = 0;
   int calm_ = 0;      // steps accepted since the last failure or growth
   int patience_ = 2;  // so many calm steps before the next growth
-  int accepted_ = 0;
+  GlobalIndex accepted_ = 0;
 };
 
 }  // namespace couplet

@@ -43,8 +43,13 @@ std::vector<std::string> cells_of(std::string line) {
 /// Number (from 0) of the column that is wanted.
 std::size_t find_column(const std::filesystem::path& file, const std::vector<std::string>& names,
                         const std::string& column) {
-  if (const auto number = number_of(column); number && *number == std::floor(*number) && *number >= 2)
+  constexpr double most = 10000;
+  if (const auto number = number_of(column); number && *number == std::floor(*number)) {
+    if (*number < 2 || *number > most)
+      throw Error("{}: a table's values stand in a column from 2 to {}, not in '{}'.", file.string(), most,
+                  column);
     return static_cast<std::size_t>(*number) - 1;
+  }
   const auto found = std::ranges::find(names, column);
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   throw Error("{}: there is no column '{}' for a table. {}", file.string(), column,
@@ -107,8 +112,12 @@ double Table::integral(double from, double to) const {
 }
 
 Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside) {
-  std::ifstream stream(file);
-  if (!stream) throw Error("{}: this file of a table cannot be read.", file.string());
+  // A pipe would wait for ever for somebody to write.
+  std::error_code ignored;
+  const bool is_file = std::filesystem::is_regular_file(file, ignored);
+  std::ifstream stream;
+  if (is_file) stream.open(file);
+  if (!is_file || !stream) throw Error("{}: this file of a table cannot be read.", file.string());
   std::vector<double> at, values;
   std::vector<std::string> names;
   std::optional<std::size_t> wanted;

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/checkpoint.hpp"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cstring>
 #include <exception>
 
+#include "common/base/own_file.hpp"
+#include "common/io/checkpoint_set.hpp"
 #include "common/io/hdf5.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -14,7 +15,7 @@ namespace couplet {
 namespace {
 
 constexpr const char* format_name = "couplet checkpoint";
-constexpr int format_version = 1;
+constexpr int format_version = 2;
 
 // FNV-1a over the bit patterns: cheap, and any flipped bit of an array is noticed when it is read.
 std::int64_t checksum(std::span<const double> values) {
@@ -32,14 +33,10 @@ std::int64_t checksum(std::span<const double> values) {
 
 std::string array_path(const std::string& name) { return "arrays/" + name; }
 std::string layout_path(const std::string& name) { return "layout/" + name; }
-std::string scalar_path(const std::string& name) { return "scalars/" + name; }
-
-void flush_to_disk(const std::filesystem::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY);
-  if (file < 0) return;
-  ::fsync(file);
-  ::close(file);
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  return file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
 }
+std::string scalar_path(const std::string& name) { return "scalars/" + name; }
 
 }  // namespace
 
@@ -58,7 +55,7 @@ CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& f
   std::string trouble;
   if (comm_rank(comm) == 0) {
     std::error_code code;
-    const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+    const std::filesystem::path folder = folder_of(file);
     std::filesystem::create_directories(folder, code);
     if (!std::filesystem::is_directory(folder))
       trouble = fmt::format("The folder '{}' for the checkpoint '{}' could not be made ({}).",
@@ -68,10 +65,14 @@ CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& f
                             file.string());
   }
   hdf5::throw_together(comm, trouble);
+  std::string stamp = comm_rank(comm) == 0 ? stamp_being_written(folder_of(file)) : "";
+  if (stamp.empty()) stamp = "alone";
+  broadcast(comm, stamp);
   state_->id = hdf5::create_file(comm, state_->part);
   hdf5::write_attribute(state_->id, "format", std::string(format_name));
   hdf5::write_attribute(state_->id, "version", double(format_version));
   hdf5::write_attribute(state_->id, "ranks", double(comm_size(comm)));
+  hdf5::write_attribute(state_->id, "set", stamp);
 }
 
 CheckpointWriter::~CheckpointWriter() {
@@ -184,9 +185,24 @@ struct CheckpointReader::State {
 
 namespace {
 
-// What is wrong with the file as a whole; empty if nothing.
+// Whether the stamp in the file is that of the set it lies in.
+std::string examine_stamp(const std::filesystem::path& file, const hdf5::Handle& id) {
+  const auto set = read_checkpoint_set(folder_of(file));
+  if (!set || hdf5::read_text_attribute(id, "set") == set->stamp.text()) return {};
+  return fmt::format(
+      "'{}' was written at another step or by another run than the checkpoint it lies in (step {}, t = {:g} s of "
+      "run {}).",
+      file.string(), set->stamp.step, set->stamp.time, set->stamp.run);
+}
+
+// What is wrong with the file as a whole; empty if nothing. Its digest is compared before HDF5 sees it.
 std::string examine(const std::filesystem::path& file, int ranks) {
   if (!std::filesystem::exists(file)) return fmt::format("There is no checkpoint '{}'.", file.string());
+  try {
+    if (std::string problem = problem_in_set(file); !problem.empty()) return problem;
+  } catch (const Error& error) {
+    return error.what();
+  }
   const hdf5::Quiet quiet;
   if (H5Fis_hdf5(file.c_str()) <= 0)
     return fmt::format("'{}' is not a checkpoint: it is not an HDF5 file, or its beginning is damaged.",
@@ -204,6 +220,7 @@ std::string examine(const std::filesystem::path& file, int ranks) {
       return fmt::format(
           "The checkpoint '{}' was written on {} {}, this run has {}. Restart on the same number of ranks.",
           file.string(), written, written == 1 ? "rank" : "ranks", ranks);
+    return examine_stamp(file, id);
   } catch (const Error& error) {
     return fmt::format("The checkpoint '{}' is truncated or corrupted. Use an earlier one. {}", file.string(),
                        error.what());

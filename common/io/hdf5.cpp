@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/base/own_file.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::hdf5 {
@@ -110,6 +111,7 @@ std::string reason() {
 }
 
 Handle create_file(MPI_Comm comm, const std::filesystem::path& file) {
+  own_file(file);
   const Quiet quiet;
   return checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, file_access(comm)), H5Fclose, "create",
                  file.string());

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 
 namespace couplet {
 namespace {
@@ -54,7 +55,8 @@ Series::Series(const std::filesystem::path& file, const std::vector<std::string>
   const std::string text =
       std::isnan(restart_time) ? head + "\n" : kept_rows(file, head, n_columns_, restart_time);
   const std::filesystem::path part = file.string() + ".part";
-  std::ofstream(part) << text;
+  own_file(file);
+  std::ofstream(own_file(part)) << text;
   std::filesystem::rename(part, file, code);
   if (!code) file_.open(file, std::ios::app);
   if (code || !file_)

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 
 namespace couplet::xdmf {
 namespace {
@@ -112,7 +113,8 @@ std::uint64_t points_of(std::int64_t code) {
 void write(const std::filesystem::path& index, const Series& series) {
   const std::filesystem::path part = index.string() + ".part";
   {
-    std::ofstream file(part);
+    own_file(index);
+    std::ofstream file(own_file(part));
     file << "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
             "    <Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
     for (const Entry& entry : series.entries) file << grid(series, entry);

@@ -70,6 +70,10 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   const double size = std::sqrt(over_ranks<1>(comm_, {dot_here(b, b)})[0]);
   const double wanted = options.relative_tolerance * size;
   statistics.residual = true_residual(b, x);
+  // Every comparison with a NaN is false, so that it would count as converged.
+  if (!std::isfinite(size) || !std::isfinite(statistics.residual))
+    throw SolveFailure("The Krylov solver for {} was given {} that is not finite.", what_,
+                       std::isfinite(size) ? "a guess" : "a right-hand side");
   if (projection && projection->project(r_, x)) {
     statistics.residual = std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]);
     if (statistics.residual <= wanted) statistics.residual = true_residual(b, x);
@@ -77,7 +81,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   // A restart that gains nothing means that rounding, not the method, sets the limit.
   double before = std::numeric_limits<double>::infinity();
   bool is_hard = false;
-  while (statistics.residual > wanted) {
+  while (!(statistics.residual <= wanted)) {
     bool stuck = statistics.residual > 0.9 * before;
     if (stuck && statistics.residual < at_rounding * rounding(x)) break;
     if (!is_hard && (stuck || statistics.iterations >= patience)) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 
 namespace couplet::log {
 namespace {
@@ -47,7 +48,7 @@ void setup(const std::string& participant, int rank, Verbosity verbosity, const 
   sinks.back()->set_level(spdlog::level::err);
   if (!file.empty() && rank == 0) {
     try {
-      sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(file));
+      sinks.push_back(std::make_shared<spdlog::sinks::basic_file_sink_mt>(own_file(file).string()));
     } catch (const spdlog::spdlog_ex&) {
       throw Error(
           "The log file '{}' cannot be opened for writing. Check the output folder and its permissions.",

@@ -2,11 +2,28 @@
 #include <malloc.h>
 
 #include "common/base/error.hpp"
+#include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/on_root.hpp"
 #include "common/mesh/quality.hpp"
 
 namespace couplet {
+namespace {
+
+/// A cached mesh that cannot be read (a machine that went down, a full disk) is made anew: it is no fault of the
+/// user's.
+RawMesh read_geo_mesh(const std::filesystem::path& geo, int dim, const MeshParameters& parameters) {
+  const std::filesystem::path cached = mesh_geo(geo, dim, parameters);
+  try {
+    return read_msh(cached);
+  } catch (const Error& error) {
+    log::warn("The cached mesh is damaged and made anew: {}", error.what());
+  }
+  std::filesystem::remove(cached);
+  return read_msh(mesh_geo(geo, dim, parameters));
+}
+
+}  // namespace
 
 Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const MeshParameters& parameters,
                const std::vector<std::array<std::string, 2>>& periodic,
@@ -28,7 +45,7 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
           ".geo "
           "it was made from.",
           file.string());
-    raw = read_msh(kind == ".geo" ? mesh_geo(file, dim, parameters) : file);
+    raw = kind == ".geo" ? read_geo_mesh(file, dim, parameters) : read_msh(file);
     if (raw.cell_type.empty())
       throw Error("The mesh '{}' has no cells. Put the {} into a physical group, else gmsh does not save {}.",
                   file.string(), dim == 2 ? "surface" : "volume", dim == 2 ? "its triangles" : "its cells");

@@ -6,19 +6,22 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <regex>
 #include <sstream>
 
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
+#include "common/mesh/geo_script.hpp"
 #include "common/mesh/load.hpp"
 
 namespace couplet {
 namespace {
 
+/// Output and script of gmsh, whole.
 std::string read_text(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in)
@@ -27,18 +30,6 @@ std::string read_text(const std::filesystem::path& file) {
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
-}
-
-/// The text of a .geo with that of the files it includes or merges, so that a change in them is seen.
-std::string full_text(const std::filesystem::path& geo, int depth = 0) {
-  std::string text = read_text(geo);
-  static const std::regex include(R"re(\b(?:Include|Merge)\s+"([^"]+)")re");
-  std::string more;
-  for (std::sregex_iterator i(text.begin(), text.end(), include), end; i != end; ++i) {
-    const std::filesystem::path file = geo.parent_path() / (*i)[1].str();
-    if (depth < 16 && std::filesystem::is_regular_file(file)) more += full_text(file, depth + 1);
-  }
-  return text + more;
 }
 
 /// The environment without the variables by which an MPI program finds its job: a gmsh that was built with
@@ -97,40 +88,8 @@ std::string complaints(const std::string& output) {
   return found;
 }
 
-std::string without_comments(const std::string& text) {
-  std::string kept;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::string_view rest = std::string_view(text).substr(at);
-    const bool line = rest.starts_with("//"), block = rest.starts_with("/*");
-    if (line || block) {
-      const std::size_t end = line ? rest.find('\n') : rest.find("*/", 2);
-      at = end == std::string_view::npos ? text.size() : at + end + (line ? 0 : 2);
-    } else {
-      kept += text[at++];
-    }
-  }
-  return kept;
-}
-
-/// The names in all DefineConstant [...] of a .geo: `n = 8` or `n = {8, Name "..."}`.
-std::vector<std::string> constants(const std::string& geo) {
-  static const std::regex block(R"re(\bDefineConstant\s*\[([^\]]*)\])re"), name(R"re((\w+)\s*(=|,|$))re"),
-      braces(R"re(\{[^}]*\})re");
-  const std::string text = without_comments(geo);
-  std::vector<std::string> names;
-  for (std::sregex_iterator i(text.begin(), text.end(), block), end; i != end; ++i) {
-    const std::string inside = std::regex_replace((*i)[1].str(), braces, "0");
-    for (const std::string& entry : split(inside, ','))
-      if (std::smatch found; std::regex_search(entry, found, name)) names.push_back(found[1].str());
-  }
-  return names;
-}
-
-/// gmsh itself passes over a number for a name that the .geo does not define.
-void check_names(const std::filesystem::path& geo, const std::string& text,
+void check_names(const std::filesystem::path& geo, const std::vector<std::string>& known,
                  const MeshParameters& parameters) {
-  if (parameters.empty()) return;
-  const std::vector<std::string> known = constants(text);
   for (const auto& [name, value] : parameters) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     if (known.empty())
@@ -147,13 +106,18 @@ void check_names(const std::filesystem::path& geo, const std::string& text,
 }  // namespace
 
 std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const MeshParameters& parameters) {
-  const std::string text = full_text(geo);
-  check_names(geo, text, parameters);
+  const GeoScript script = read_geo(geo);
+  if (!script.danger.empty() && std::getenv("COUPLET_ALLOW_COMMANDS") == nullptr)
+    throw Error(
+        "The geometry has {}: gmsh would run commands or write files with your rights. If you trust the case, start with "
+        "--allow-commands.",
+        script.danger);
+  check_names(geo, script.constants, parameters);
   std::vector<std::string> numbers;
   for (const auto& [name, value] : parameters)
     numbers.insert(numbers.end(), {"-setnumber", name, fmt::format("{}", value)});
   const std::string hash =
-      fmt::format("{:016x}", stable_hash(fmt::format("{}\n{}\n{}", dim, join(numbers, " "), text)));
+      fmt::format("{:016x}", stable_hash(fmt::format("{}\n{}\n{}", dim, join(numbers, " "), script.text)));
   const std::string stem = geo.stem().string() + "." + hash;
   const std::filesystem::path result = geo.parent_path() / (stem + ".cache.msh");
   if (std::filesystem::is_regular_file(result)) return result;
@@ -175,7 +139,8 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
   try {
     std::vector<std::string> command{"gmsh", fmt::format("-{}", dim), "-format", "msh41", "-v", "2"};
     command.insert(command.end(), numbers.begin(), numbers.end());
-    command.insert(command.end(), {"-o", mesh.string(), geo.string()});
+    // Absolute: a name that starts with '-' would be an option.
+    command.insert(command.end(), {"-o", absolute(mesh).string(), absolute(geo).string()});
     code = run(command, log);
   } catch (...) {
     std::filesystem::remove(log);
@@ -187,6 +152,7 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
     std::filesystem::remove(mesh);
     throw Error("gmsh could not mesh '{}' (exit code {}).{}", geo.string(), code, errors);
   }
+  flush_to_disk(mesh);
   std::filesystem::rename(mesh, result);
   return result;
 }

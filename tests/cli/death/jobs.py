@@ -4,9 +4,11 @@ import os
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 MPIRUN = ["mpirun", "--oversubscribe"]
+PATIENCE = 120  # [s] with a whole job: a busy machine is no failure
 
 CASE = """\
 simulation:
@@ -32,34 +34,42 @@ class Suite:
     """Scenarios that report themselves; each runs in an empty folder."""
 
     def __init__(self):
-        programs = sys.argv[1:3]
+        programs = [os.path.abspath(p) for p in sys.argv[1:3]]
         for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
             os.environ.setdefault(name, "1")
         os.environ["PATH"] = os.pathsep.join(programs + [os.environ["PATH"]])
         self.failed = []
 
-    def scenario(self, name, command, cases, code, lines, fault=None, within=5.0, not_lines=(),
-                 once=None):
-        """`lines`: each must be part of a line of the output, `once` of exactly one; `code`: None is any but 0."""
+    def scenario(self, name, command, cases, code, lines, fault=None, within=5.0, not_lines=(), once=None, prepare=None):
+        """`lines`: each must be part of a line of the output, `once` of exactly one; `code`: None is any but 0. `within`: so
+        many seconds after the first program of the job is gone (not after the start) all of it is. `prepare`: called with
+        the folder."""
         with tempfile.TemporaryDirectory() as folder:
             for file, text in cases.items():
                 with open(os.path.join(folder, file), "w", encoding="utf-8") as out:
                     out.write(text)
+            if prepare:
+                prepare(folder)
             environment = dict(os.environ)
             environment.pop("COUPLET_FAULT", None)
             if fault:
                 environment["COUPLET_FAULT"] = fault
-            start = time.monotonic()
             # A group of its own: nothing may be left of it afterwards.
             process = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                                        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                        start_new_session=True)
+            clock = threading.Thread(target=watch, args=(process, deaths := [])) if fault else None
+            if clock:
+                clock.start()
             try:
-                output, _ = process.communicate(timeout=30)
+                output, _ = process.communicate(timeout=PATIENCE)
             except subprocess.TimeoutExpired:
                 os.killpg(process.pid, 9)
                 output, _ = process.communicate()
-                output += "\n(still running after 30 s)"
+                output += f"\n(still running after {PATIENCE} s)"
+            if clock:
+                clock.join()
+            start = deaths[0] if fault and deaths else time.monotonic()
             # The last of them may still be on their way out when mpirun returns.
             while living_in_session(process.pid) and time.monotonic() - start < within:
                 time.sleep(0.05)
@@ -90,6 +100,17 @@ class Suite:
     def finish(self):
         print(f"{len(self.failed)} scenarios failed" if self.failed else "all scenarios passed")
         sys.exit(1 if self.failed else 0)
+
+
+def watch(process, deaths):
+    """Notes when the first process of the job that is not mpirun itself is gone."""
+    seen = set()
+    while process.poll() is None and not deaths:
+        living = set(living_in_session(process.pid)) - {process.pid}
+        if seen - living:
+            deaths.append(time.monotonic())
+        seen |= living
+        time.sleep(0.01)
 
 
 def living_in_session(session):

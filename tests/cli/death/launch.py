@@ -26,10 +26,10 @@ suite.scenario("same participant twice", mpmd(coupler, piston, spring, spring), 
 suite.scenario("one too many", mpmd(coupler, piston, spring, "1 toy_spring case.yaml --participant extra"), case, 2,
                ["--participant extra: case.yaml has no participant of this name.", right])
 suite.scenario("wrong program", mpmd(coupler, piston, "1 toy_piston case.yaml --participant solid"), case, 2,
-               ["Participant 'solid' of case.yaml is run by the program 'toy_spring', but 'toy_piston' was started"])
+               ["--participant solid: it is run by the program 'toy_spring', but 'toy_piston' was started"])
 suite.scenario("program that nobody asked for", mpmd(coupler, spring, piston),
                {"case.yaml": text.replace("toy_piston", "fluid_solver")}, 2,
-               ["No participant of case.yaml is run by the program 'toy_piston'."])
+               ["none of them is run by the program 'toy_piston'"])
 suite.scenario("two couplers", mpmd("2 coupler case.yaml", piston, spring), case, 2,
                ["the coupler was started with 2 ranks: it runs with one."])
 suite.scenario("different YAML files", mpmd(coupler, piston, "1 toy_spring other.yaml"),

@@ -3,6 +3,7 @@
 import pathlib
 from dataclasses import dataclass, field
 
+import check_table
 import plant_table
 import plate_table
 import tank_table
@@ -62,11 +63,11 @@ FILE = [
 """, arguments=[".", "--check"]),
     solid("empty file", """
 case.yaml:1:1: this file is empty.
-case.yaml has no `participants` section, which says what solid_solver is to run.
+case.yaml:1:1: there is no `participants` section, which says what solid_solver is to run.
 """, text=""),
     solid("a list instead of a mapping", """
 case.yaml:1:1: expected a mapping (keys with values), found a list.
-case.yaml has no `participants` section, which says what solid_solver is to run.
+case.yaml:1:1: there is no `participants` section, which says what solid_solver is to run.
 """, text="- a\n- b\n"),
     solid("tab", "case.yaml:5:2: this is not valid YAML: a tab cannot indent a line; use spaces.", ("    program", "\tprogram")),
     solid("list that is not closed", """
@@ -135,29 +136,29 @@ case.yaml:2:47: simulation.output: expected a mapping (keys with values), found 
 
 PARTICIPANTS = [
     solid("no participants", """
-case.yaml has no `participants` section, which says what solid_solver is to run.
+case.yaml:1:1: there is no `participants` section, which says what solid_solver is to run.
 """, text="simulation: {end-time: 1 s, time-step: 0.5 s}\n"),
     solid("no program", """
 case.yaml:4:3: participants.solid: the key 'program' is missing: the name of the program that runs this participant, for instance solid_solver.
-No participant of case.yaml is run by the program 'solid_solver'. Its participants are: 'solid' (?).
+case.yaml:3:1: participants: none of them is run by the program 'solid_solver': 'solid' (?).
 """, ("    program: solid_solver\n", "")),
     solid("misspelt program", """
-No participant of case.yaml is run by the program 'solid_solver'. Its participants are: 'solid' (solid_slover).
+case.yaml:3:1: participants: none of them is run by the program 'solid_solver': 'solid' (solid_slover).
 """, ("program: solid_solver", "program: solid_slover")),
     solid("no such participant", """
 --participant sold: case.yaml has no participant of this name. Did you mean 'solid'?
 """, arguments=["case.yaml", "--check", "--participant", "sold"]),
     fluid("program of another participant", """
-No participant of case.yaml is run by the program 'fluid_solver'. Its participants are: 'solid' (solid_solver).
+case.yaml:2:1: participants: none of them is run by the program 'fluid_solver': 'solid' (solid_solver).
 """, arguments=["case.yaml", "--check"], text="""\
 simulation: {end-time: 1 s, time-step: 0.5 s}
 participants:
   solid: {program: solid_solver}
 """),
     solid("two participants with this program", """
-2 participants of case.yaml are run by the program 'solid_solver' (other, solid): say which one with --participant.
+case.yaml:3:1: participants: 2 of them are run by the program 'solid_solver' (other, solid): say which one with --participant.
 """, ("  solid:", "  other: {program: solid_solver}\n  solid:")),
-    coupler("no coupling", "case.yaml has no `coupling` section: there is nothing for the coupler to do.", text="simulation: {end-time: 1 s, time-step: 0.5 s}\nparticipants:\n  a: {program: b}\n"),
+    coupler("no coupling", "case.yaml:1:1: there is no `coupling` section, so there is nothing for the coupler to do.", text="simulation: {end-time: 1 s, time-step: 0.5 s}\nparticipants:\n  a: {program: b}\n"),
 ]
 
 SOLID = [
@@ -211,7 +212,7 @@ case.yaml:13:5: participants.solid.boundaries: expected a mapping with one entry
 case.yaml:13:5: participants.solid.gravity: expected a list of numbers in m/s^2 or with their units, found '9.81'.
 """, ("    boundaries", "    gravity: 9.81\n    boundaries")),
     solid("probe without a second coordinate", """
-case.yaml:13:20: participants.solid.probes.tip.point: expected a list of 2 or 3 numbers, found 1 of them.
+case.yaml:13:20: participants.solid.probes.tip.point: expected a list of 2 or 3 numbers in m or with their units, found 1 of them.
 """, ("    boundaries", "    probes: {tip: {point: [1]}}\n    boundaries")),
     solid("damping of a static analysis", """
 case.yaml:9:5: participants.solid.damping: damping has no effect in a static analysis; remove it.
@@ -245,7 +246,7 @@ case.yaml:16:51: participants.solid.boundaries.bottom.parts[0].type: 'interface'
 """,
           ("bottom: {type: free}", "bottom: {type: free, parts: [{where: x < 1, type: interface}]}")),
     solid("spring without stiffness", """
-case.yaml:16:7: participants.solid.boundaries.bottom.stiffness: this required key is missing (force per area and displacement, of x, y, z [N/m^3] (Winkler's bedding): number or expression).
+case.yaml:16:7: participants.solid.boundaries.bottom.stiffness: this required key is missing (force per area and displacement, of x, y, z (Winkler's bedding): number or expression in N/m^3).
 """, ("bottom: {type: free}", "bottom: {type: spring}")),
     solid("no material", """
 case.yaml:4:3: participants.solid.material: give either 'material' (of the whole solid) or 'materials' (by zone of the mesh).
@@ -283,7 +284,7 @@ case.yaml:13:7: participants.solid.material.conductivity: '50 - 0.1*T' is neithe
 case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: a table needs one value for each place; 2 places and 1 values are given.
 """, ("value: [1000, 0]", "value: [{of: t, at: [0, 1], values: [1000]}, 0]")),
     solid("places of a table that do not grow", """
-case.yaml:15:31: participants.solid.boundaries.right.value: the places of a table must grow, but 2 stands before 1.
+case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: the places of a table must grow, but 2 stands before 1.
 """, ("value: [1000, 0]", "value: [{of: t, at: [0, 2, 1], values: [0, 1, 2]}, 0]")),
 ]
 
@@ -458,11 +459,11 @@ couplet: The job cannot start:
 """, ("value: [1000, 0]", "value: [1000, 0, 0]"), **RUN),
     solid("expression that cannot be read", """
 couplet: The job cannot start:
-  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: the expression '1000*sin(t' cannot be read at column 11: a ')' is missing. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
+  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: the expression '1000*sin(t' cannot be read at column 11: a ')' is missing. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
 """, ("value: [1000, 0]", "value: [1000*sin(t, 0]"), **RUN),
     solid("expression with an unknown name", """
 couplet: The job cannot start:
-  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: the expression '1000*time' cannot be read at column 6: unknown name 'time'. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
+  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: the expression '1000*time' cannot be read at column 6: unknown name 'time'. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
 """, ("value: [1000, 0]", "value: [1000*time, 0]"), **RUN),
     fluid("unknown patch of a fluid", """
 [fluid 0] error: boundaries.rigth: the mesh 'square.msh' has no patch 'rigth'. Did you mean 'right'?
@@ -486,5 +487,6 @@ couplet: The job cannot start:
 RIGHT_TANK, TANK = tank_table.cases(Case, RUN)
 RIGHT_PLANT, PLANT = plant_table.cases(Case, RUN)
 RIGHT_PLATE, PLATE = plate_table.cases(Case, RUN)
-RIGHT += RIGHT_TANK + RIGHT_PLANT + RIGHT_PLATE
-CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + HEAT + FLUID + COUPLING + COMMAND_LINE + MESH + TANK + PLANT + PLATE
+RIGHT_CHECK, CHECK = check_table.cases(Case)
+RIGHT += RIGHT_TANK + RIGHT_PLANT + RIGHT_PLATE + RIGHT_CHECK
+CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + HEAT + FLUID + COUPLING + COMMAND_LINE + MESH + CHECK + TANK + PLANT + PLATE

@@ -65,7 +65,7 @@ def difference(a, b):
     return max(abs(x - y) for row_a, row_b in zip(a, b) for x, y in zip(row_a, row_b))
 
 
-with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as other:
+with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as other, tempfile.TemporaryDirectory() as third:
     output = run(one)
     whole = rows(one, "fluid/motion.csv")
     check("one console line a step", sum(" its  |r|=" in line for line in output.splitlines()) == 20)
@@ -80,10 +80,13 @@ with tempfile.TemporaryDirectory() as one, tempfile.TemporaryDirectory() as othe
 
     files = ("fluid/motion.csv", "coupler/residuals.csv", "coupler/balance.csv")
     wanted = [text(one, f) for f in files]
-    run(other, sets=["simulation.end-time=1"])
-    run(other, restart="out/checkpoints")
+    run(third, sets=["simulation.end-time=1"])
+    run(third, restart="out/checkpoints")
     for file, want in zip(files, wanted):
-        check(f"restart from the latest checkpoint: {file} bit for bit", text(other, file) == want)
+        check(f"restart from the latest checkpoint: {file} bit for bit", text(third, file) == want)
+    run(third, sets=["simulation.end-time=1"])
+    output = run(third, restart="out/checkpoints", sets=["simulation.end-time=3"])
+    check("that of an earlier run that has gone further is taken, and said", "step-00000020 of an earlier run" in output)
     run(other)
     run(other, restart="out/checkpoints/step-00000015")
     for file, want in zip(files, wanted):

@@ -37,6 +37,29 @@ TEST(StepPlan, last_step_is_shortened_to_the_end_time) {
   EXPECT_EQ(plan.time(), 0.25);
 }
 
+TEST(StepPlan, more_steps_than_an_int_can_count) {
+  const double n = 3e9;
+  StepPlan plan(n * 0.1, 0.1, 6);
+  EXPECT_FALSE(plan.finished());
+  EXPECT_EQ(plan.dt(), 0.1);
+  plan.restore({n - 2, 0, 0, 0, n - 2, 2}, (n - 2) * 0.1);
+  int left = 0;
+  for (; !plan.finished(); ++left) {
+    ASSERT_LT(left, 4);
+    EXPECT_EQ(plan.is_last(), left == 1);
+    plan.accepted();
+  }
+  EXPECT_EQ(left, 2);
+  EXPECT_EQ(plan.steps_accepted(), 3'000'000'000);
+  EXPECT_EQ(plan.time(), n * 0.1);
+}
+
+TEST(StepPlan, refuses_what_cannot_be_counted) {
+  EXPECT_NO_THROW(StepPlan(1, 1e-12, 0));
+  EXPECT_THROW(StepPlan(1, 1e-13, 0), Error);
+  EXPECT_THROW(StepPlan(1e300, 1e-300, 0), Error) << "infinitely many";
+}
+
 TEST(StepPlan, last_step_is_known_when_steps_are_halved) {
   StepPlan plan(0.2, 0.1, 6);
   plan.accepted();

@@ -142,7 +142,7 @@ TEST(WrongFile, broken_yaml_is_refused_with_its_place) {
       parse_error("a: *nowhere\n"),
       "case.yaml:1:4: this is not valid YAML: this '*name' refers to an anchor '&name' that does not exist.");
   EXPECT_EQ(parse_error(",a: 1\n"), "case.yaml:1:1" + second.substr(13));
-  EXPECT_EQ(parse_error("a: &x {b: *x}\n").substr(0, 20), "case.yaml: a.b.b.b.b");
+  EXPECT_EQ(parse_error("a: &x {b: *x}\n").substr(0, 20), "case.yaml:1:1: a.b.b");
   EXPECT_EQ(parse_error("? [1, 2]\n: 3\n"), "case.yaml:1:3: a key must be a single word.");
 }
 

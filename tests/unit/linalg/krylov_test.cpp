@@ -48,6 +48,26 @@ TEST(KrylovSolver, reaches_the_tolerance_in_the_true_residual) {
   }
 }
 
+TEST(KrylovSolver, what_is_not_finite_never_counts_as_converged) {
+  const std::size_t n = 20;
+  const double nan = std::nan("");
+  std::vector<double> b(n, 1.0), x(n, 0.0);
+  KrylovSolver good("u", MPI_COMM_WORLD, n, convect, identity);
+  b[3] = nan;
+  EXPECT_THROW(good.solve(b, x, {1e-8, 50}), SolveFailure) << "right-hand side";
+  b[3] = 1;
+  x[5] = nan;
+  EXPECT_THROW(good.solve(b, x, {1e-8, 50}), SolveFailure) << "guess";
+  x.assign(n, 0.0);
+  const auto poison = [&](std::span<const double> r, std::span<double> z) {
+    std::fill_n(z.begin(), r.size(), nan);
+  };
+  KrylovSolver poisoned("u", MPI_COMM_WORLD, n, convect, poison);
+  EXPECT_THROW(poisoned.solve(b, x, {1e-8, 50}), SolveFailure) << "preconditioner";
+  x.assign(n, 0.0);
+  EXPECT_NO_THROW(good.solve(b, x, {1e-8, 50}));
+}
+
 TEST(KrylovSolver, a_good_guess_costs_no_iteration) {
   const std::size_t n = 50;
   KrylovSolver solver("u", MPI_COMM_WORLD, n, convect, identity);

@@ -61,7 +61,7 @@ std::pair<int, int> run(Solid& solid, const Visit& visit, double time_step, int 
   actions.advised_dt = [&] { return advised; };
   EXPECT_EQ(loop.run(actions), "");
   std::filesystem::remove_all(folder);
-  return {loop.steps(), loop.halvings()};
+  return {int(loop.steps()), loop.halvings()};
 }
 
 double distance(const std::vector<double>& a, const std::vector<double>& b) {

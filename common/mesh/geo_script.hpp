@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace couplet {
+
+/// A .geo with the files it includes or merges, as far as it must be understood before gmsh gets it.
+struct GeoScript {
+  /// All of it, one file after the other, so that a change in any of them is seen.
+  std::string text;
+  /// The names in all DefineConstant [...]: `n = 8` or `n = {8, Name "..."}`.
+  std::vector<std::string> constants;
+  /// What in it runs commands or writes files, or cannot be looked into: "'SystemCall' in line 3 of plate.geo"; empty
+  /// if nothing does.
+  std::string danger;
+  /// Names of the physical groups by dimension (0 to 3); nothing where one of them is computed.
+  std::vector<std::optional<std::vector<std::string>>> groups;
+};
+
+/// Throws Error if a file cannot be read.
+GeoScript read_geo(const std::filesystem::path& file);
+
+}  // namespace couplet

@@ -1,0 +1,218 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Signals at random moments on the processes of the perpendicular flap. After each: all processes have ended within 5 s
+(or the run has come to its end), none is left, one line names the one that was struck. The next run goes on from the
+last checkpoint; a run that comes to its end must leave what an undisturbed one does, bit for bit. One that was stopped on
+request has saved at a step at which the undisturbed one did not: the fluid renews its factors at each save, so that these
+two agree to the solvers' tolerance only (1e-6 here).
+Usage: strikes.py BIN CASE_FOLDER COUNT [SEED]"""
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import h5py
+import numpy
+
+PROGRAMS = {"coupler": "coupler", "fluid": "fluid_solver", "solid": "solid_solver", "mover": "mesh_mover"}
+SIGNALS = ["KILL", "TERM", "INT", "STOP", "SEGV"]
+WITHIN = 5.0
+SETS = ["simulation.end-time=0.8", "simulation.output.interval=0.2", "simulation.checkpoint.interval=0.05",
+        "simulation.hang-timeout=2"]
+
+
+def fields_of(pid):
+    with open(f"/proc/{pid}/stat", encoding="utf-8", errors="replace") as file:
+        return file.read().rpartition(")")[2].split()
+
+
+def living_in_session(session):
+    left = {}
+    for entry in os.listdir("/proc"):
+        if entry.isdigit():
+            try:
+                fields = fields_of(entry)
+                if int(fields[3]) == session and fields[0] not in "ZX":
+                    left[int(entry)] = os.path.basename(os.readlink(f"/proc/{entry}/exe"))
+            except OSError:
+                continue
+    return left
+
+
+class Job:
+    def __init__(self, binaries, folder, restart=False):
+        words = ["mpirun", "--oversubscribe"]
+        for i, program in enumerate(PROGRAMS.values()):
+            words += [":"] * (i > 0) + ["-n", "1", str(binaries / program), "case.yaml"]
+            words += [word for s in SETS for word in ("--set", s)] + (["--restart", "out/checkpoints"] if restart else [])
+        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
+                           OPENBLAS_NUM_THREADS="1")
+        self.said = open(folder / "said", "w+", encoding="utf-8", errors="replace")
+        self.start = time.monotonic()
+        self.process = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=self.said,
+                                        stderr=subprocess.STDOUT, start_new_session=True)
+
+    def victims(self):
+        """{participant: pid}: the processes that run the programs themselves."""
+        names = {program: name for name, program in PROGRAMS.items()}
+        found = {names[exe]: pid for pid, exe in living_in_session(self.process.pid).items() if exe in names}
+        found["mpirun"] = self.process.pid
+        return found
+
+    def wait(self, seconds):
+        """True if all of the job has ended in time."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            self.process.poll()
+            if self.process.returncode is not None and not living_in_session(self.process.pid):
+                return True
+            time.sleep(0.02)
+        return False
+
+    def clear(self):
+        for pid in living_in_session(self.process.pid):
+            os.kill(pid, signal.SIGKILL)
+        self.process.wait()
+        self.said.seek(0)
+        text = self.said.read()
+        self.said.close()
+        return text
+
+
+def final_state(folder):
+    """All arrays and values of the last checkpoint."""
+    state = {}
+    last = sorted((folder / "out/checkpoints").glob("step-*"))[-1]
+    for file in sorted(last.glob("*.h5")):
+        with h5py.File(file) as data:
+            data.visititems(lambda name, item: state.update({f"{file.name}/{name}": item[()]})
+                            if isinstance(item, h5py.Dataset) else None)
+    return state
+
+
+def differences(a, b, tolerance=0.0):
+    """Names of what differs; with a tolerance, of the arrays that differ by more than this share of their largest value."""
+    if tolerance:
+        a, b = ({k: v for k, v in s.items() if "/arrays/" in k and "projection" not in k} for s in (a, b))
+    found = []
+    for key in sorted(a.keys() | b.keys()):
+        if key not in a or key not in b or a[key].shape != b[key].shape:
+            found.append(key)
+        elif tolerance:
+            if numpy.abs(a[key] - b[key]).max(initial=0) > tolerance * max(1e-12, numpy.abs(a[key]).max(initial=0)):
+                found.append(key)
+        elif not numpy.array_equal(a[key], b[key], equal_nan=True):
+            found.append(key)
+    return found
+
+
+def copy_case(source, folder):
+    folder.mkdir()
+    for file in source.iterdir():
+        if file.suffix in (".yaml", ".geo") or file.name.endswith(".cache.msh"):
+            shutil.copy(file, folder)
+
+
+def judge(name, victim, ended, finished, said, left):
+    """(problems, whether the culprit was to be named, whether it was)"""
+    problems = []
+    if not ended and not finished:
+        problems.append(f"not ended within {WITHIN:g} s")
+    if left:
+        problems.append(f"processes left: {left}")
+    asked = "as asked by a signal" in said
+    named = f"participant '{victim}'" in said or asked
+    due = victim != "mpirun" and not finished and "t=" in said  # after the start-up
+    return problems, due, named
+
+
+def main():
+    binaries, source, count = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), int(sys.argv[3])
+    dice = random.Random(int(sys.argv[4]) if len(sys.argv) > 4 else 1)
+    failed, due_count, named_count, compared, equal, stopped, asked = 0, 0, 0, 0, 0, 0, False
+    with tempfile.TemporaryDirectory(prefix="couplet-strikes-") as name:
+        scratch = pathlib.Path(name)
+        folder = scratch / "undisturbed"
+        copy_case(source, folder)
+        job = Job(binaries, folder)
+        job.wait(600)
+        whole = time.monotonic() - job.start
+        text = job.clear()
+        if job.process.returncode != 0:
+            sys.exit(f"the undisturbed run failed:\n{text}")
+        wanted = final_state(folder)
+        for mesh in folder.glob("*.cache.msh"):
+            shutil.copy(mesh, scratch)
+        run = 0
+        for strike in range(count):
+            folder = scratch / f"run-{run}"
+            restart = False
+            if folder.exists():
+                restart = any((s / "set.txt").exists() for s in (folder / "out/checkpoints").glob("step-*"))
+            else:
+                copy_case(source, folder)
+                for mesh in scratch.glob("*.cache.msh"):
+                    shutil.copy(mesh, folder)
+            job = Job(binaries, folder, restart)
+            which = SIGNALS[strike % len(SIGNALS)]
+            moment = dice.uniform(0.3, 0.7 * whole)
+            finished = job.wait(moment)
+            victim = "nobody"
+            if not finished:
+                choice = job.victims()
+                victim = "mpirun" if which in ("TERM", "KILL") and dice.random() < 0.15 else dice.choice(
+                    sorted(set(choice) - {"mpirun"}) or ["mpirun"])
+                struck = time.monotonic()
+                try:
+                    os.kill(choice[victim], getattr(signal, "SIG" + which))
+                except ProcessLookupError:
+                    victim = "nobody"
+                ended = job.wait(WITHIN)
+                seconds = time.monotonic() - struck
+            else:
+                ended, seconds = True, 0.0
+            left = {} if ended else living_in_session(job.process.pid)
+            said = job.clear()
+            code = job.process.returncode
+            if code == 0:
+                finished = True
+            stopped += "as asked by a signal" in said
+            asked = asked or "as asked by a signal" in said
+            problems, due, named = judge(which, victim, ended, finished, said, left)
+            due_count, named_count = due_count + due, named_count + (due and named)
+            if finished:
+                compared += 1
+                equal += not asked
+                other = differences(wanted, final_state(folder), 1e-6 if asked else 0.0)
+                if other:
+                    problems.append(f"another result: {other[:5]}")
+                shutil.rmtree(folder)
+                run, asked = run + 1, False
+            print(f"{'not ok' if problems else 'ok'}  {strike}: SIG{which} to {victim} after {moment:.1f} s, {'restarted' if restart else 'fresh'}: "
+                  f"code {code} after {seconds:.1f} s{', named' if named else ''}{', came to its end' if finished else ''}", flush=True)
+            if problems or (due and not named):
+                print("  " + "\n  ".join(problems) + "\n    " + "\n    ".join(said.splitlines()[-12:]), flush=True)
+            failed += bool(problems)
+        # What is left of the last run, to its end.
+        folder = scratch / f"run-{run}"
+        if folder.exists() and any((s / "set.txt").exists() for s in (folder / "out/checkpoints").glob("step-*")):
+            job = Job(binaries, folder, True)
+            job.wait(600)
+            said = job.clear()
+            compared, equal = compared + 1, equal + (not asked)
+            if job.process.returncode != 0 or differences(wanted, final_state(folder), 1e-6 if asked else 0.0):
+                failed += 1
+                print(f"not ok  the last run, to its end: code {job.process.returncode}\n    " + "\n    ".join(said.splitlines()[-12:]))
+    share = named_count / due_count if due_count else 1.0
+    print(f"{count} strikes, {failed} failed, culprit named in {named_count} of {due_count} ({100 * share:.0f} %), {stopped} stopped on "
+          f"request, {compared} runs compared at their end, {equal} of them bit for bit")
+    sys.exit(1 if failed or share < 0.95 or compared == 0 else 0)
+
+
+main()

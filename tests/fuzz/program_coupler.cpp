@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/coupler.hpp"
+#include "tests/fuzz/program.hpp"
+
+namespace couplet::fuzz {
+
+std::string ProgramUnderTest::name() const { return "coupler"; }
+
+ProgramKind ProgramUnderTest::fresh() const {
+  return {name(), "", true,
+          with_fresh<CouplingParameters>([](config::Section& s, CouplingParameters& p) { declare(s, p); })};
+}
+
+}  // namespace couplet::fuzz

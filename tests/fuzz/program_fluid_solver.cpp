@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/parameters.hpp"
+#include "tests/fuzz/program.hpp"
+
+namespace couplet::fuzz {
+
+std::string ProgramUnderTest::name() const { return "fluid_solver"; }
+
+ProgramKind ProgramUnderTest::fresh() const {
+  return {name(), "", false,
+          with_fresh<fluid::FluidParameters>(
+              [](config::Section& s, fluid::FluidParameters& p) { declare(s, p); })};
+}
+
+}  // namespace couplet::fuzz

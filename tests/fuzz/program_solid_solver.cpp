@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/parameters.hpp"
+#include "tests/fuzz/program.hpp"
+
+namespace couplet::fuzz {
+
+std::string ProgramUnderTest::name() const { return "solid_solver"; }
+
+ProgramKind ProgramUnderTest::fresh() const {
+  return {name(), "", false,
+          with_fresh<SolidParameters>([](config::Section& s, SolidParameters& p) { declare(s, p); })};
+}
+
+}  // namespace couplet::fuzz

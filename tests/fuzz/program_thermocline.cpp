@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/fuzz/program.hpp"
+#include "thermocline/elsewhere.hpp"
+
+namespace couplet::fuzz {
+
+std::string ProgramUnderTest::name() const { return "thermocline"; }
+
+ProgramKind ProgramUnderTest::fresh() const {
+  return {name(), "", false,
+          with_fresh<thermocline::ElementParameters>(
+              [](config::Section& s, thermocline::ElementParameters& p) { declare(s, p); })};
+}
+
+}  // namespace couplet::fuzz

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mesh/geo_script.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class Geo : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder); }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+  GeoScript script(const std::string& text, const std::string& name = "a.geo") {
+    std::ofstream(folder / name) << text;
+    return read_geo(folder / name);
+  }
+  std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("couplet-geo-" + std::to_string(::getpid()));
+};
+
+TEST_F(Geo, commands_and_written_files_are_found) {
+  for (const char* text :
+       {"x = 1;\nSystemCall \"touch pwned\";", "NonBlockingSystemCall \"x\";", "systemcall 'x';",
+        "Printf(\"a;b)\", x) > \"file\";", "Printf('x') >> 'file';", "Save \"x.msh\";", "Print \"x.png\";",
+        "CreateDir \"x\";", "OnelabRun(\"a\", \"rm x\");", "Include StrCat(\"b\", \".geo\");",
+        "Merge Str(\"b.geo\");", "Merge \"b.py\";", "s = \"//\"; SystemCall \"x\";"})
+    EXPECT_NE(script(text).danger, "") << text;
+  EXPECT_EQ(script("x = 1;\nSystemCall \"x\";").danger,
+            "'SystemCall' in line 2 of " + (folder / "a.geo").string());
+}
+
+TEST_F(Geo, an_ordinary_geometry_is_not_suspected) {
+  EXPECT_EQ(
+      script(
+          "// Printf into > a file\nPrintf(\"n = %g\", n);\nIf (n > 3)\n  Point(1) = {0, 0, 0, h};\nEndIf\n"
+          "Save_me = 1; Mesh.SaveAll = 0; /* Print \"x\" */ Physical Curve(\"Print\") = {1};")
+          .danger,
+      "");
+}
+
+TEST_F(Geo, included_files_are_looked_into) {
+  std::ofstream(folder / "b.geo") << "Include \"c.geo\";\n";
+  std::ofstream(folder / "c.geo") << "SystemCall \"x\";\n";
+  EXPECT_THAT(script("Include \"b.geo\";").danger, HasSubstr("c.geo"));
+  std::ofstream(folder / "b.geo") << "Include \"b.geo\";\n";
+  EXPECT_THROW(script("Include \"b.geo\";"), Error) << "a file that includes itself";
+}
+
+TEST_F(Geo, names_are_found_as_they_stand) {
+  const GeoScript s = script(
+      "DefineConstant [ n = 8, h = {0.1, Name \"size, or [so]\"} , m ];\n"
+      "Physical Curve(\"top\") = {1}; Physical Line(\"bottom\", 7) = {2}; Physical Surface(\"all\") = {1};"
+      "Physical Volume(Sprintf(\"v%g\", 1)) = {1};");
+  EXPECT_THAT(s.constants, ElementsAre("n", "h", "m"));
+  ASSERT_TRUE(s.groups[1] && s.groups[2]);
+  EXPECT_THAT(*s.groups[1], ElementsAre("top", "bottom"));
+  EXPECT_THAT(*s.groups[2], ElementsAre("all"));
+  EXPECT_FALSE(s.groups[3]) << "computed";
+}
+
+}  // namespace
+}  // namespace couplet
