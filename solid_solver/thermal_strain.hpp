@@ -18,8 +18,7 @@ namespace couplet {
 std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& parameters);
 
 /// Temperature in the solid, solved for or prescribed, and the stress it makes, thesis (2.21), (2.60):
-///   sigma = sigma(grad u) - B epsilon I,   epsilon = integral of alpha dT from T_ref on,   B = 3 lambda + 2
-///   mu
+///   sigma = sigma(grad u) - B epsilon I,   epsilon = integral of alpha dT from T_ref on,   B = 3 lambda + 2 mu
 /// (plane stress: B = 2 lambda + 2 mu with the effective lambda). alpha is the instantaneous coefficient: 3 K
 /// alpha (T - T0) of (5.10) holds for a constant one only. In the equations B epsilon S is a known force of
 /// each face at its own temperature: uniform temperatures leave a free body without stress, exactly.

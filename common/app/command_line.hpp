@@ -30,8 +30,7 @@ struct ProgramText {
   config::Section::Declare declare;  ///< its parameters: --help lists the first level of them
 };
 
-/// What to do now: go on with the command line, or leave with this exit code after `output` was printed
-/// (--help,
+/// What to do now: go on with the command line, or leave with this exit code after `output` was printed (--help,
 /// --version: 0 and standard output; a wrong command line: 2 and standard error).
 struct ParsedCommandLine {
   CommandLine command_line;

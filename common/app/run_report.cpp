@@ -9,6 +9,7 @@
 #include "common/app/command_line.hpp"
 #include "common/app/job.hpp"
 #include "common/base/error.hpp"
+#include "common/base/own_file.hpp"
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -78,7 +79,7 @@ void RunReport::finish(double wall, const std::string& problem) {
   const double cpu = sum(job_.comm, processor_seconds()), working = sum(job_.comm, working_);
   const double most = max(job_.comm, peak_memory()), all = sum(job_.comm, peak_memory());
   if (job_.rank != 0) return;
-  std::ofstream file(job_.output_folder / summary_file);
+  std::ofstream file(own_file(job_.output_folder / summary_file));
   file << fmt::format(
       "{{\n  \"participant\": {},\n  \"version\": {},\n  \"ranks\": {},\n"
       "  \"state\": \"{}\",\n  \"reason\": {},\n  \"time\": {:.17g},\n  \"steps\": {},\n"

@@ -28,9 +28,8 @@ enum class HeatCondition {
 /// the owner, from the rows' own stencils,
 ///   cell row       - sum_f q_f over its faces that are not flux faces      + h |S| T_B over those that are
 ///   flux face row    q_f + h |S| T_B
-///   bonded face row  q_f + q_f' of the two sides (the unknown is that of the side with the smaller
-///   boundary_id, listed
-///                    with the flux faces)
+///   bonded face row  q_f + q_f' of the two sides (the unknown is that of the side with the smaller boundary_id,
+///                    listed with the flux faces)
 /// so that a flux face's known heat, |S| (q + h T_inf), stands on the right of both (h = 0 without
 /// convection).
 class ConductionOperator {

@@ -22,9 +22,8 @@ void tangential_weights(const Mesh& mesh, std::span<const Vec3> points, Index fa
                         Vec3* c);
 
 /// Gradient at a face from the two nodes beside it and the vertices around it, thesis (2.53)-(2.58):
-///   grad_t phi = sum_V c_V phi_V                    surface Gauss theorem, edge values = mean of their end
-///   points n . grad phi = (phi_N - phi_P) / (d . n) + k . grad_t phi,   d = x_N - x_P,  k = n - d / (d . n)
-///   (over-relaxed)
+///   grad_t phi = sum_V c_V phi_V                    surface Gauss theorem, edge values = mean of their end points
+///   n . grad phi = (phi_N - phi_P) / (d . n) + k . grad_t phi,   d = x_N - x_P,  k = n - d / (d . n) (over-relaxed)
 /// N is the neighbour cell's centre, on the boundary the face centre. Exact for linear fields on any (also
 /// warped) face.
 struct FaceGradient {
