@@ -255,7 +255,8 @@ void Document::set(const std::string& assignment) {
     } else {
       // A section that is not there is made: which keys it may have is for its declaration to say. Participants and
       // what stands at the top are not made this way: a misspelt name would be another one.
-      if (node.IsMap() && !walked.empty() && walked != "participants" && !value.IsNull() && !find(node, parts[i]).found)
+      if (node.IsMap() && !walked.empty() && walked != "participants" && !value.IsNull() &&
+          !find(node, parts[i]).found)
         node.force_insert(parts[i], YAML::Node(YAML::NodeType::Map));
       YAML::Node next = step_into(node, walked, parts[i], option);
       if (last) next = value;
