@@ -67,9 +67,9 @@ def set_errors(rows, quantities):
             limits = [(max(r.point.size for r in some), limit) for some, limit in
                       ((series_of(rows)[s], limit) for s, limit in limits_of(rows, quantity).items()) if limit]
             reference, word = None, "none: the values do not approach a limit"
-            if limits:  # of the series with the smallest uncertainty on its finest run
-                best = min(limits, key=lambda pair: pair[1].gci)[1]
-                reference, word = best.value, f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f})"
+            if limits:  # of the series that go farthest the one with the smallest uncertainty: coarse ones look too certain
+                best = min(limits, key=lambda pair: (-pair[0], pair[1].gci))[1]
+                reference, word = best.value, f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertain by {100 * best.gci / abs(best.value or 1):.2g} %)"
         elif reference == "finest":
             finest = max(good, key=lambda r: (r.point.size, r.record.cpu)) if good else None
             reference, word = (finest.values[name], f"the finest run, {finest.point.name}") if finest else (None, "no run")
