@@ -47,11 +47,9 @@ void list_expected(const config::Document& document, CaseFile& result) {
     throw Error("{}: {} participants; at most {} are possible.", config::where(document, "participants"),
                 names.size(), most_participants);
   for (const std::string& name : names) {
-    if (const std::string problem = problem_of_name(name); !problem.empty()) {
-      result.errors.push_back(
-          fmt::format("{}: {}.", config::where(document, "participants." + name), problem));
-      continue;
-    }
+    // The first one is told alone: its path cannot be looked up.
+    if (const std::string problem = problem_of_name(name); !problem.empty())
+      throw Error("{}: '{}': {}.", config::where(document, "participants"), name, problem);
     const auto program = config::text_of(document, "participants." + name + ".program");
     if (!program)
       result.errors.push_back(

@@ -25,14 +25,14 @@ def cases(Case):
         solid("3e9 steps", "", ("time-step: 0.5 s", "time-step: 3e-10 s"), exit_code=0),
     ]
     wrong = [
-        fluid("an expression of an inlet with an unknown name", "case.yaml:10:28: participants.fluid.boundaries.left.velocity: entry 1 of "
+        fluid("an expression of an inlet with an unknown name", "case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 1 of "
               "the list: the expression '6*y*(1-Y)' cannot be read at column 8: unknown name 'Y'. " + KNOWN,
               ("[1 m/s, 0 m/s]", '["6*y*(1-Y)", 0]')),
-        fluid("components of an inlet", "case.yaml:10:28: participants.fluid.boundaries.left.velocity: 3 components are given where the "
+        fluid("components of an inlet", "case.yaml:11:27: participants.fluid.boundaries.left.velocity: 3 components are given where the "
               "2-dimensional scene needs 2.", ("[1 m/s, 0 m/s]", "[1, 0, 0]")),
         fluid("--check: patch of a fluid that the mesh has not", """
-case.yaml:9:5: participants.fluid.boundaries: the patch 'right' of the mesh has no entry here.
-case.yaml:11:7: participants.fluid.boundaries.rigth: the mesh has no patch of this name. Did you mean 'right'?
+case.yaml:12:7: participants.fluid.boundaries.rigth: the mesh has no patch of this name. Did you mean 'right'?
+case.yaml:10:5: participants.fluid.boundaries: the patch 'right' of the mesh has no entry here.
 """, ("right: {type", "rigth: {type")),
         solid("--check: patch without an entry", "case.yaml:13:5: participants.solid.boundaries: the patch 'top' of the mesh has no entry "
               "here.", ("      top: {type: free}\n", "")),
@@ -55,12 +55,12 @@ case.yaml:17:7: participants.solid.boundaries.top: the mesh has no patch of this
               "values stand in a column from 2 to 10000, not in '1e300'.",
               ("{type: traction, value: [1000, 0]}", "{type: pressure, value: {of: t, file: profile.csv, column: 1e300}}"),
               files={"profile.csv": "0 1\n1 2\n"}),
-        solid("a participant with a folder's name", "case.yaml:4:3: participants.../up: the name becomes a folder: no '/', '\\', '.' or "
+        solid("a participant with a folder's name", "case.yaml:3:1: participants: '../up': the name becomes a folder: no '/', '\\', '.' or "
               "blank in it, no '-' in front.", ("  solid:\n", "  ../up:\n")),
-        solid("a participant without a name", "case.yaml:4:3: participants.: a participant needs a name.", ("  solid:\n", '  "":\n')),
-        solid("a participant called like the checkpoints", "case.yaml:4:3: participants.checkpoints: the run itself has a folder or file of "
+        solid("a participant without a name", "case.yaml:3:1: participants: '': a participant needs a name.", ("  solid:\n", '  "":\n')),
+        solid("a participant called like the checkpoints", "case.yaml:3:1: participants: 'checkpoints': the run itself has a folder or file of "
               "this name; take another.", ("  solid:\n", "  checkpoints:\n")),
-        solid("more steps than can be counted", "case.yaml:2:30: simulation.time-step: the run would take 1e+15 steps; at most 1e+12 are "
+        solid("more steps than can be counted", "case.yaml:2:29: simulation.time-step: the run would take 1e+15 steps; at most 1e+12 are "
               "possible.", ("time-step: 0.5 s", "time-step: 1e-15 s")),
     ]
     return right, wrong

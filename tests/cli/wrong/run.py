@@ -48,7 +48,9 @@ def run(binaries, case):
     with tempfile.TemporaryDirectory(prefix="couplet-wrong-") as folder:
         prepare(folder, case)
         command = [os.path.join(binaries, case.program), *case.arguments]
-        return subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+        result = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=60, check=False)
+        result.stderr = result.stderr.replace(os.path.join(os.path.realpath(folder), ""), "")
+        return result
 
 
 def compare(case, result):

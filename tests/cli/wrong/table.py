@@ -293,7 +293,7 @@ FLUID = [
 case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' does not convert to Pa s; expected Pa s or a unit that converts to it.
 """, ("1e-3 Pa s", "1e-6 m^2/s")),
     fluid("boundary of a fluid without type", """
-case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface).
+case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface, body).
 """, ("{type: no-slip}", "{}")),
     fluid("inlet without velocity", """
 case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity' or 'mean-speed'.
@@ -354,7 +354,7 @@ case.yaml:37:3: coupling.exchange: an exchange is made with 'scheme: explicit' o
 case.yaml:36:3: coupling.scheme: 'semiimplicit' is not one of: explicit, semi-implicit, implicit. Did you mean 'semi-implicit'?
 """, ("scheme: implicit", "scheme: semiimplicit")),
     coupler("unknown acceleration", """
-case.yaml:40:18: coupling.acceleration.type: 'anderson' is not one of: constant, aitken.
+case.yaml:40:18: coupling.acceleration.type: 'anderson' is not one of: constant, aitken, iqn-ils, iqn-mvj.
 """, ("type: aitken", "type: anderson")),
     coupler("relaxation out of range", """
 case.yaml:40:32: coupling.acceleration.initial-relaxation: 0 is out of range; expected a value from 1e-06 to 2.
@@ -436,7 +436,8 @@ MESH = [
 [solid 0] error: boundaries.bottom.stiffness: the stiffness of a spring cannot depend on the time t.
 """, ("bottom: {type: free}", "bottom: {type: spring, stiffness: 1e9*t}"), **RUN),
     solid("static body that floats", """
-[solid 0] error: boundaries: a static analysis needs supports that hold the solid in place; these leave it free: translation along x, translation along y, rotation about (0.5, 0.5). Hold it by 'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use 'analysis: dynamic'.
+couplet: The job cannot start:
+  [solid] case.yaml:13:5: participants.solid.boundaries: nothing holds the solid of this static analysis: at least one patch must be fixed, supported, sprung or on a plane of symmetry.
 """, ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: free}"), **RUN),
     solid("static body on one roller", """
 [solid 0] error: boundaries: a static analysis needs supports that hold the solid in place; these leave it free: translation along y. Hold it by 'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use 'analysis: dynamic'.
@@ -446,7 +447,7 @@ MESH = [
 """, ("    material:\n      density", "    materials: {steel: {zones: [insid], density"),
           (" kg/m^3\n      youngs-modulus: 1 MPa\n      poissons-ratio: 0.3\n", ", youngs-modulus: 1e6, poissons-ratio: 0.3}}\n"), **RUN),
     solid("folded mesh", """
-[solid 0] error: The mesh is folded at (1.2, 0.5): cell 1 (counted from 0 in the file) does not lie behind its face there. A cell is inverted or bent over; mesh that place anew.
+[solid 0] error: The mesh 'folded.msh' cannot be used. The mesh has a cell that crosses itself: cell 1 at (0.975, 0.25) m. Its points come in the wrong order; mesh that place anew.
 """, ("square.msh", "folded.msh"), files={"folded.msh": FOLDED}, **RUN),
     solid("plane mesh in three dimensions", """
 couplet: The job cannot start:
@@ -469,7 +470,7 @@ couplet: The job cannot start:
 [fluid 0] error: boundaries.rigth: the mesh 'square.msh' has no patch 'rigth'. Did you mean 'right'?
 """, ("right: {type", "rigth: {type"), **RUN),
     fluid("patch of a fluid without a boundary", """
-[fluid 0] error: boundaries: the mesh 'square.msh' has patches without a boundary: top. Give each of them a type (inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic or interface).
+[fluid 0] error: boundaries: the mesh 'square.msh' has patches without a boundary: top. Give each of them a type (inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface or body).
 """, ("      top: {type: slip}\n", ""), **RUN),
     mover("mover without its coupled job", """
 couplet: The job cannot start:
