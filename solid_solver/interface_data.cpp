@@ -1,16 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/interface_data.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
+#include <numeric>
 
 namespace couplet {
+namespace {
+
+/// A face, the faces around it, and what turns the differences of their values into a gradient (3 x k).
+struct Patch {
+  std::vector<Index> around;
+  Eigen::Matrix3Xd gradient;
+};
+
+Patch patch_of(Index face, std::span<const Vec3> centres) {
+  constexpr std::size_t most = 8;
+  std::vector<Index> others(centres.size());
+  std::iota(others.begin(), others.end(), 0);
+  others.erase(others.begin() + face);
+  const auto distance = [&](Index k) { return (centres[k] - centres[face]).squaredNorm(); };
+  const auto nearer = [&](Index a, Index b) {
+    return std::pair(distance(a), a) < std::pair(distance(b), b);  // equal distances: the same on all ranks
+  };
+  const std::size_t n = std::min(most, others.size());
+  std::partial_sort(others.begin(), others.begin() + std::ptrdiff_t(n), others.end(), nearer);
+  others.resize(n);
+  // Beyond the nearest ring of faces nothing is needed: in a strip that is one face to each side.
+  Eigen::MatrixX3d offsets(Eigen::Index(n), 3);
+  for (std::size_t i = 0; i < n; ++i) offsets.row(Eigen::Index(i)) = centres[others[i]] - centres[face];
+  // Weighted by the inverse squared distance, so that near faces decide.
+  Eigen::VectorXd weight = offsets.rowwise().squaredNorm().cwiseInverse();
+  const Eigen::MatrixX3d weighted = weight.asDiagonal() * offsets;
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(weighted, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  svd.setThreshold(0.05);
+  Patch patch{std::move(others), Eigen::Matrix3Xd::Zero(3, Eigen::Index(n))};
+  if (n > 0) patch.gradient = svd.solve(Eigen::MatrixXd(weight.asDiagonal()));
+  return patch;
+}
+
+}  // namespace
+
+FaceInterpolation::FaceInterpolation(std::span<const Vec3> centres, std::span<const Vec3> points) {
+  if (centres.empty()) return;
+  std::vector<Patch> patches(centres.size());
+  std::vector<bool> made(centres.size(), false);
+  first_.push_back(0);
+  for (const Vec3& x : points) {
+    Index a = 0;
+    double least = (x - centres.front()).squaredNorm();
+    for (std::size_t k = 1; k < centres.size(); ++k)
+      if (const double d = (x - centres[k]).squaredNorm(); d < least) least = d, a = static_cast<Index>(k);
+    if (!made[a]) patches[a] = patch_of(a, centres), made[a] = true;
+    nearest_.push_back(a);
+    const Eigen::RowVectorXd weights = (x - centres[a]).transpose() * patches[a].gradient;
+    for (std::size_t k = 0; k < patches[a].around.size(); ++k)
+      face_.push_back(patches[a].around[k]), weight_.push_back(weights[Eigen::Index(k)]);
+    first_.push_back(static_cast<Index>(face_.size()));
+  }
+}
+
+double FaceInterpolation::value(std::size_t point, std::span<const double> faces) const {
+  const double here = faces[nearest_[point]];
+  double sum = here, low = here, high = here;
+  for (Index k = first_[point]; k < first_[point + 1]; ++k) {
+    const double other = faces[face_[k]];
+    sum += weight_[k] * (other - here);
+    low = std::min(low, other), high = std::max(high, other);
+  }
+  return std::clamp(sum, low, high);
+}
 
 void declare(config::Section& s, InterfaceData& d) {
   using Load = InterfaceData::Load;
   s.choice("load", d.load, {{"forces", Load::forces}, {"pressure", Load::pressure}})
       .doc("taken at the faces: pressure-force and viscous-force, or one pressure");
   s.value("temperature", d.temperature)
-      .doc("a temperature is taken at the faces; every point of the solid has that of the nearest face");
+      .doc(
+          "a temperature is taken at the faces; the solid has it along the interface, linear between the "
+          "faces, and "
+          "the same through its thickness");
 }
 
 std::vector<Interface::Datum> taken(const InterfaceData& data) {
@@ -30,17 +99,6 @@ InterfaceTemperature::InterfaceTemperature(MPI_Comm comm, std::vector<Vec3> cent
   MPI_Bcast(&n, 1, MPI_INT, 0, comm_);
   centres_.resize(n);
   MPI_Bcast(centres_.data(), 3 * n, MPI_DOUBLE, 0, comm_);
-}
-
-std::vector<Index> InterfaceTemperature::nearest(std::span<const Vec3> points) const {
-  std::vector<Index> found(points.size(), 0);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    double least = (points[i] - centres_.front()).squaredNorm();
-    for (std::size_t k = 1; k < centres_.size(); ++k)
-      if (const double d = (points[i] - centres_[k]).squaredNorm(); d < least)
-        least = d, found[i] = static_cast<Index>(k);
-  }
-  return found;
 }
 
 std::vector<double> InterfaceTemperature::broadcast(std::vector<double> on_root) const {

@@ -26,7 +26,25 @@ void declare(config::Section& section, InterfaceData& data);
 /// The data to announce at the faces of the interface.
 std::vector<Interface::Datum> taken(const InterfaceData& data);
 
-/// Temperature given at the faces of the interface, carried into the solid from the nearest face: for walls
+/// How points of the solid get their temperature from the faces of the interface: that of the nearest face
+/// and a gradient along the interface, held within the values of the faces that it is made from.
+///   T(x) = T_a + sum_k weight_k (T_k - T_a), between the least and the largest of T_a, T_k
+class FaceInterpolation {
+ public:
+  /// Gradients by least squares over the nearest faces of each face; in directions in which these do not
+  /// extend (through the wall, across a strip of one face's width) there is none.
+  FaceInterpolation() = default;
+  FaceInterpolation(std::span<const Vec3> centres, std::span<const Vec3> points);
+  std::size_t size() const { return nearest_.size(); }
+  bool empty() const { return nearest_.empty(); }
+  double value(std::size_t point, std::span<const double> faces) const;
+
+ private:
+  std::vector<Index> nearest_, first_, face_;  // first_: where the faces of a point begin, and one more
+  std::vector<double> weight_;
+};
+
+/// Temperature given at the faces of the interface, carried into the solid along the interface: for walls
 /// so thin, or so well insulated, that they have one temperature through their thickness.
 class InterfaceTemperature final {
  public:
@@ -34,8 +52,7 @@ class InterfaceTemperature final {
   InterfaceTemperature(MPI_Comm comm, std::vector<Vec3> centres);
 
   std::size_t n_faces() const { return centres_.size(); }
-  /// The nearest face of each point.
-  std::vector<Index> nearest(std::span<const Vec3> points) const;
+  FaceInterpolation at(std::span<const Vec3> points) const { return {centres_, points}; }
   /// `on_root`: a value a face on rank 0, empty if nothing was given yet; on every rank after the call.
   std::vector<double> broadcast(std::vector<double> on_root) const;
 

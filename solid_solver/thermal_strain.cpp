@@ -96,7 +96,7 @@ double ThermalStrain::three_bulk(Index cell) const {
 
 std::vector<double> ThermalStrain::cell_temperature(double t, bool trial) const {
   if (heat_) return trial ? heat_->trial().cells : heat_->accepted().cells;
-  if (given_ && !nearest_to_cells_.empty()) return given_at(nearest_to_cells_, trial);
+  if (given_ && !to_cells_.empty()) return given_at(to_cells_, trial);
   std::vector<double> values(mesh_->cells.n_local(), reference_);
   if (given_) return values;  // set_interface() comes later
   prescribed_->evaluate(mesh_->reference.cell_centre, t, values);
@@ -141,25 +141,25 @@ std::span<const LameConstants> ThermalStrain::stiffness() const {
 
 std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const {
   if (heat_) return heat_->face_temperature(trial ? heat_->trial() : heat_->accepted());
-  if (given_) return given_at(nearest_to_faces_, trial);
+  if (given_) return given_at(to_faces_, trial);
   std::vector<double> values(mesh_->n_flux_faces());
   prescribed_->evaluate({mesh_->reference.face_centre.data(), values.size()}, t, values);
   return values;
 }
 
 /// Before anything was given the solid has its reference temperature.
-std::vector<double> ThermalStrain::given_at(const std::vector<Index>& nearest, bool trial) const {
+std::vector<double> ThermalStrain::given_at(const FaceInterpolation& places, bool trial) const {
   const std::vector<double>& faces = trial ? given_trial_ : given_accepted_;
-  std::vector<double> values(nearest.size(), reference_);
-  for (std::size_t i = 0; i < nearest.size() && !faces.empty(); ++i) values[i] = faces[nearest[i]];
+  std::vector<double> values(places.size(), reference_);
+  for (std::size_t i = 0; i < places.size() && !faces.empty(); ++i) values[i] = places.value(i, faces);
   return values;
 }
 
 void ThermalStrain::set_interface(const InterfaceTemperature& interface) {
   const auto& g = mesh_->reference;
-  nearest_to_faces_ = interface.nearest({g.face_centre.data(), std::size_t(mesh_->n_flux_faces())});
-  nearest_to_points_ = interface.nearest(mesh_->reference_points);
-  nearest_to_cells_ = interface.nearest(g.cell_centre);
+  to_faces_ = interface.at({g.face_centre.data(), std::size_t(mesh_->n_flux_faces())});
+  to_points_ = interface.at(mesh_->reference_points);
+  to_cells_ = interface.at(g.cell_centre);
   start_ = face_temperature(0, false);
   set_accepted();
 }
@@ -288,7 +288,7 @@ double ThermalStrain::coupling_number() const {
 
 std::vector<double> ThermalStrain::point_temperature() const {
   if (heat_) return heat_->point_temperature(heat_->accepted());
-  if (given_) return given_at(nearest_to_points_, false);
+  if (given_) return given_at(to_points_, false);
   std::vector<double> values(mesh_->points.n_local());
   prescribed_->evaluate(mesh_->reference_points, time_, values);
   return values;
@@ -299,7 +299,7 @@ void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
   if (heat_) {
     cells_ = heat_->accepted().cells;
   } else if (given_) {
-    cells_ = given_at(nearest_to_cells_, false);
+    cells_ = given_at(to_cells_, false);
   } else {
     cells_.resize(mesh_->cells.n_local());
     prescribed_->evaluate(mesh_->reference.cell_centre, time_, cells_);

@@ -54,7 +54,7 @@ class ThermalStrain final : public SolidEffect {
   bool expands() const { return !expansion_.empty(); }
   /// Temperatures of the flux faces of the mesh at an end of the step: T^{n+1} of the trial, or accepted.
   std::vector<double> face_temperature(double t, bool trial) const;
-  std::vector<double> given_at(const std::vector<Index>& nearest, bool trial) const;
+  std::vector<double> given_at(const FaceInterpolation& places, bool trial) const;
   std::vector<double> strain(std::span<const double> temperature) const;
   double modulus(Index cell) const;  // B
   double face_modulus(Index face) const;
@@ -70,11 +70,11 @@ class ThermalStrain final : public SolidEffect {
   const ElasticOperator* elastic_;
   std::unique_ptr<Heat> heat_;  // none: prescribed
   std::optional<Expression> prescribed_;
-  bool given_ = false;                                                          // at the interface
-  std::vector<Index> nearest_to_faces_, nearest_to_points_, nearest_to_cells_;  // faces of the interface
-  std::vector<double> given_accepted_, given_trial_;                            // at them [K]
-  std::vector<Property> expansion_;  // one a material; none: no thermal strain
-  double reference_ = 0;             // [K]
+  bool given_ = false;                                 // at the interface
+  FaceInterpolation to_faces_, to_points_, to_cells_;  // from faces of the interface
+  std::vector<double> given_accepted_, given_trial_;   // at them [K]
+  std::vector<Property> expansion_;                    // one a material; none: no thermal strain
+  double reference_ = 0;                               // [K]
   bool plane_stress_ = false;
   SolidParameters parameters_;
   std::vector<std::optional<Property>> youngs_modulus_, poissons_ratio_;  // one a material

@@ -28,22 +28,23 @@ struct Range {
 
 }  // namespace
 
+GrainCells PackedBed::cells_of(const Operator& op, const BedGrid::Run& run) const {
+  return {op.rate.data(),           op.share.data(),        op.beta.data(),
+          op.heat.data(),           std::size_t(run.first), std::size_t(run.first + run.count),
+          std::size_t(grid_.size())};
+}
+
 void PackedBed::solve(const Operator& op, double* fluid, const double* shells, double* to_shells,
-                      const double* extra) const {
-  const auto cells = [&](const BedGrid::Run& run) {
-    return GrainCells{op.rate.data(),           op.share.data(),        op.beta.data(),
-                      op.heat.data(),           std::size_t(run.first), std::size_t(run.first + run.count),
-                      std::size_t(grid_.size())};
-  };
-  with_shells(shells_, [&](auto n) {
-    for (std::size_t r = 0; r < grid_.runs.size(); ++r)
-      gather_grains<n()>(op.grains[r], cells(grid_.runs[r]), shells, extra, fluid);
-  });
+                      const double* extra, bool sums_are_known) {
+  for (std::size_t r = 0; r < grid_.runs.size(); ++r) {
+    if (sums_are_known)
+      gather_sums(cells_of(op, grid_.runs[r]), extra, fluid, sums_.data());
+    else
+      gather_grains(op.grains[r], cells_of(op, grid_.runs[r]), shells, extra, fluid, sums_.data());
+  }
   op.matrix.solve(fluid);
-  with_shells(shells_, [&](auto n) {
-    for (std::size_t r = 0; r < grid_.runs.size(); ++r)
-      scatter_grains<n()>(op.grains[r], cells(grid_.runs[r]), shells, fluid, to_shells);
-  });
+  for (std::size_t r = 0; r < grid_.runs.size(); ++r)
+    scatter_grains(op.grains[r], cells_of(op, grid_.runs[r]), shells, fluid, to_shells, sums_.data());
 }
 
 PackedBed::Stage PackedBed::explicit_terms(const double* t, double flux, double inlet, bool second_order) {
@@ -99,7 +100,12 @@ PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux,
     stage = explicit_terms(fluid_.data(), flux, inlet, second_order);
   }
   extra_[entry] += through_inlet * inlet;
-  solve(op, fluid_.data(), shell_.data(), shell_.data(), extra_.data());
+  if (!melting_.empty()) {
+    solve_with_melting(op, extra_.data());
+  } else {
+    solve(op, fluid_.data(), shell_.data(), shell_.data(), extra_.data(), sums_of_ == op.number);
+    sums_of_ = op.number;
+  }
   if (advection_ == Advection::implicit && flux != 0) stage.outlet = fluid_[exit];
   stage.conducted = through_inlet * (inlet - fluid_[entry]);
   StepHeat heat;
@@ -131,7 +137,8 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   };
   std::copy(fluid_.begin(), fluid_.end(), fluid1_.begin());
   only_inlet();
-  solve(main_, fluid1_.data(), shell_.data(), shell1_.data(), extra_.data());
+  sums_of_ = 0;
+  solve(main_, fluid1_.data(), shell_.data(), shell1_.data(), extra_.data(), false);
   const double conducted1 = through_inlet * (inlet - fluid1_[entry]);
   const Stage first = explicit_terms(fluid1_.data(), flux, inlet, true);
   // R2 in fluid2_, shell2_; fluid1_ becomes u' as far as it is known.
@@ -142,7 +149,7 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   }
   for (std::size_t i = 0; i < ns; ++i) shell2_[i] = shell_[i] + carry * (shell1_[i] - shell_[i]);
   only_inlet();
-  solve(main_, fluid2_.data(), shell2_.data(), shell2_.data(), extra_.data());
+  solve(main_, fluid2_.data(), shell2_.data(), shell2_.data(), extra_.data(), false);
   const double conducted2 = through_inlet * (inlet - fluid2_[entry]);
   const Stage second = explicit_terms(fluid2_.data(), flux, inlet, true);
   Range before{flux != 0 ? inlet : fluid_[0], flux != 0 ? inlet : fluid_[0]};

@@ -84,24 +84,34 @@ LayerClosure::Node LayerClosure::node_at(double t) const {
 }
 
 Closure LayerClosure::at(double temperature, const MassFlux& flux) const {
-  const double place = std::clamp((temperature - first_) * inverse_spacing_, 0.0, double(n_nodes - 2));
-  const int i = int(place);
-  const double w = place - i;
-  const Node &a = nodes_[i], &b = nodes_[i + 1];
-  const auto mix = [&](double Node::*member) { return a.*member + w * (b.*member - a.*member); };
   Closure c;
-  c.film = mix(&Node::film_still) + mix(&Node::film_flow) * flux.g_film;
-  c.conductivity = mix(&Node::conduction_still);
-  if (parameters_.conduction == Conduction::wakao || parameters_.conduction == Conduction::stagnant)
-    c.conductivity += 0.5 * fluid_.specific_heat * diameter_ * flux.g;  // 0.5 Re Pr k
-  double moving = 0;
-  if (parameters_.wall_film == WallFilm::beek)
-    moving = mix(&Node::wall_third) * flux.g_third + mix(&Node::wall_flow) * flux.g_wall;
-  else if (parameters_.wall_film == WallFilm::yagi_wakao)
-    moving = flux.g < mix(&Node::wall_switch) ? mix(&Node::wall_half) * flux.g_half
-                                              : mix(&Node::wall_flow) * flux.g_wall;
-  c.wall = std::max(mix(&Node::wall_still), moving);
+  fill({&temperature, 1}, flux, &c.film, &c.conductivity, &c.wall);
   return c;
+}
+
+void LayerClosure::fill(std::span<const double> temperature, const MassFlux& flux, double* film,
+                        double* conductivity, double* wall) const {
+  const bool disperses =
+      parameters_.conduction == Conduction::wakao || parameters_.conduction == Conduction::stagnant;
+  const double dispersion = disperses ? 0.5 * fluid_.specific_heat * diameter_ * flux.g : 0;  // 0.5 Re Pr k
+  const WallFilm kind = parameters_.wall_film;
+  const Node* const nodes = nodes_.data();
+  for (std::size_t k = 0; k < temperature.size(); ++k) {
+    const double place = std::clamp((temperature[k] - first_) * inverse_spacing_, 0.0, double(n_nodes - 2));
+    const int i = int(place);
+    const double w = place - i;
+    const Node &a = nodes[i], &b = nodes[i + 1];
+    const auto mix = [&](double Node::*member) { return a.*member + w * (b.*member - a.*member); };
+    film[k] = mix(&Node::film_still) + mix(&Node::film_flow) * flux.g_film;
+    conductivity[k] = mix(&Node::conduction_still) + dispersion;
+    double moving = 0;
+    if (kind == WallFilm::beek)
+      moving = mix(&Node::wall_third) * flux.g_third + mix(&Node::wall_flow) * flux.g_wall;
+    else if (kind == WallFilm::yagi_wakao)
+      moving = flux.g < mix(&Node::wall_switch) ? mix(&Node::wall_half) * flux.g_half
+                                                : mix(&Node::wall_flow) * flux.g_wall;
+    wall[k] = std::max(mix(&Node::wall_still), moving);
+  }
 }
 
 double LayerClosure::reynolds(double temperature, double flux) const {

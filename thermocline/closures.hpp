@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "thermocline/properties.hpp"
@@ -53,6 +54,9 @@ class LayerClosure {
   LayerClosure(const ClosureParameters& parameters, const Fluid& fluid, const Filler& filler, double porosity,
                double diameter);
   Closure at(double temperature, const MassFlux& flux) const;
+  /// The same of many cells: film, conductivity and wall coefficient of each.
+  void fill(std::span<const double> temperature, const MassFlux& flux, double* film, double* conductivity,
+            double* wall) const;
   /// Re on the superficial velocity.
   double reynolds(double temperature, double flux) const;
 

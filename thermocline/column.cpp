@@ -51,8 +51,8 @@ Column::Heat Column::step(double dt, double inner_power, const Film& outer) {
   return advance(dt, 0, 0, inner_power / area_, outer);
 }
 
-Column::Heat Column::advance(double dt, double inner, double inner_reference, double power,
-                             const Film& outer) {
+/// Rows of the implicit step without what enters at the inner side.
+void Column::fill(double dt, const Film& outer) {
   const int n = int(x_.size()), last = n - 1;
   for (int i = 0; i < n; ++i) k_[i] = conductivity_[layer_[i]](temperature_[i]);
   for (int i = 0; i < n; ++i) b_[i] = capacity_[i] / dt, r_[i] = b_[i] * temperature_[i];
@@ -62,8 +62,28 @@ Column::Heat Column::advance(double dt, double inner, double inner_reference, do
     b_[i] += g, b_[i + 1] += g;
   }
   const double out = in_series(outer.coefficient, 2 * k_[last] / dx_[last]);
-  b_[0] += inner, r_[0] += inner * inner_reference + power;
   b_[last] += out, r_[last] += out * outer.reference;
+}
+
+Film Column::inner_response(double dt, const Film& outer) {
+  fill(dt, outer);
+  // Elimination from the outside leaves d T_0 = r + q; with q = g (T_surface - T_0) of the inner half cell.
+  double d = b_.back(), r = r_.back();
+  for (std::size_t i = b_.size() - 1; i-- > 0;) {
+    const double ratio = c_[i] / d;
+    d = b_[i] - ratio * a_[i + 1];
+    r = r_[i] - ratio * r;
+  }
+  const double g = inner_conductance();
+  return {g * d / (g + d), r / d};
+}
+
+Column::Heat Column::advance(double dt, double inner, double inner_reference, double power,
+                             const Film& outer) {
+  const int last = int(x_.size()) - 1;
+  fill(dt, outer);
+  b_[0] += inner, r_[0] += inner * inner_reference + power;
+  const double out = in_series(outer.coefficient, 2 * k_[last] / dx_[last]);
   matrix_.factorise(a_.data(), b_.data(), c_.data());
   matrix_.solve(r_.data());
   temperature_ = r_;

@@ -30,6 +30,10 @@ class Column {
   /// The same with a given heat flow into the inner side [W].
   Heat step(double dt, double inner_power, const Film& outer);
 
+  /// What a heat flow into the inner surface will meet over a step of dt: it enters as coefficient (T_surface
+  /// - reference) [W/m^2] of the surface's temperature at the end of the step. Changes nothing.
+  Film inner_response(double dt, const Film& outer);
+
   /// Steady profile between two surface temperatures.
   void set_steady(double inner, double outer);
   void set_uniform(double temperature) { temperature_.assign(temperature_.size(), temperature); }
@@ -48,6 +52,7 @@ class Column {
   const std::vector<double>& centre() const { return x_; }  ///< depth of the cells [m]
 
  private:
+  void fill(double dt, const Film& outer);
   Heat advance(double dt, double inner_conductance, double inner_reference, double inner_power,
                const Film& outer);
 

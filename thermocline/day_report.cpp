@@ -38,6 +38,10 @@ void declare(config::Section& s, ReportParameters& p) {
       .unit("K")
       .positive()
       .doc("the time is counted in which the tank's outlet is nearer than this to its design temperature");
+  s.optional_section<EconomicsParameters>(
+      "economics", p.economics, [](config::Section& q, EconomicsParameters& e) { declare(q, e); },
+      "prices, in a currency of one's own: the summary then has capital and levelised cost of the "
+      "electricity");
   s.value("dead-state", p.dead_state).unit("K").positive().doc("reference temperature of the exergy");
 }
 
@@ -86,12 +90,19 @@ double DayReport::add_step(const BedStep& step) {
   const PlantParameters& plant = plant_.parameters();
   const double dt = step.dt, c = plant_.specific_heat();
   const double field = plant_.field_heat(weather_.irradiation(step.t, step.t + dt)),
-               block = plant_.block_heat() * dt;
+               block = plant_.block_heat() * plant_.load(step.t) * dt;
   const double outlet = step.outlet_temperature, mass = std::abs(step.flow.mass_flow) * dt;
   day_[Sums::field] += field;
   day_[Sums::excess] += std::max(field - block, 0.);  // (5.24)
   day_[Sums::lacking] += std::max(block - field, 0.);
   day_[Sums::duration] += dt;
+  day_[Sums::asked] += block;
+  day_[Sums::pumping] += step.pump_power * dt;
+  const auto sell = [&](double heat) {
+    day_[Sums::electricity] += plant.block_efficiency * heat;
+    day_[Sums::revenue] += plant_.tariff(step.t) * plant.block_efficiency * heat / megawatt_hour;
+  };
+  sell(std::min(field, block));
   const auto mode = static_cast<PlantMode>(step.flow.mode);
   if (mode == PlantMode::standby) {
     day_[field > block ? Sums::charged_rest : Sums::discharged_rest] += dt;
@@ -107,6 +118,7 @@ double DayReport::add_step(const BedStep& step) {
   day_[Sums::discharging] += dt;
   if (outlet > plant.hot - p_.outlet_margin) day_[Sums::hot_outlet] += dt;
   day_[Sums::delivered] += delivered;
+  sell(delivered);
   day_[Sums::lacking] -= delivered;
   // (5.29)
   day_[Sums::exergy] += delivered - mass * c * p_.dead_state * std::log(outlet / plant.cold);
@@ -177,7 +189,7 @@ std::vector<ReportLine> DayReport::lines_of(const ReportSums& s, double days) co
           {"Q_C/Q_excess", "%", share(s[Sums::stored], s[Sums::excess])},
           {"Q_D/Q_C", "%", share(s[Sums::delivered], s[Sums::stored])},
           {"B_D", "MWh/day", energy(Sums::exergy)},
-          {"Q_lacking/Q_PB", "%", share(s[Sums::lacking], plant_.block_heat() * s[Sums::duration])},
+          {"Q_lacking/Q_PB", "%", share(s[Sums::lacking], s[Sums::asked])},
           {"energy losses", "MWh/day", energy(Sums::losses)},
           {"charge time", "h", time(Sums::charging)},
           {"discharge time", "h", time(Sums::discharging)},
@@ -191,6 +203,10 @@ std::vector<ReportLine> DayReport::lines_of(const ReportSums& s, double days) co
 
 std::vector<ReportLine> DayReport::lines() const {
   std::vector<ReportLine> all = lines_of(results_, results_[Sums::duration] / day_length);
+  if (results_[Sums::pumping] > 0)
+    all.push_back({"pumping", "MWh/day",
+                   results_[Sums::pumping] / megawatt_hour / (results_[Sums::duration] / day_length)});
+  add_money(all);
   if (stress_.empty()) return all;
   const StressHistory::Factor least = stress_.static_factor(), dynamic = stress_.dynamic_factor();
   all.push_back({"FoS_static", "-", least.value});
@@ -199,6 +215,22 @@ std::vector<ReportLine> DayReport::lines() const {
   all.push_back({"FoS_dynamic", "-", dynamic.value});
   all.push_back({"FoS_dynamic height", "m", dynamic.z});
   return all;
+}
+
+/// Electricity and what it earns and costs, a year of days as those that count.
+void DayReport::add_money(std::vector<ReportLine>& all) const {
+  if (!p_.economics && plant_.parameters().tariff.empty()) return;
+  const double years = results_[Sums::duration] / (365 * day_length);
+  const double electricity = years > 0 ? results_[Sums::electricity] / megawatt_hour / years : 0;
+  all.push_back({"electricity", "MWh/year", electricity});
+  if (!plant_.parameters().tariff.empty())
+    all.push_back({"revenue", "1/year", years > 0 ? results_[Sums::revenue] / years : 0});
+  if (!p_.economics) return;
+  const LevelisedCost cost = levelised_cost(*p_.economics, inventory_, electricity);
+  all.push_back({"capital", "1", cost.capital});
+  all.push_back({"capital of the storage", "1", cost.storage});
+  all.push_back({"cost", "1/year", cost.per_year});
+  all.push_back({"levelised cost", "1/MWh", cost.per_energy});
 }
 
 void DayReport::write_day(double time) {

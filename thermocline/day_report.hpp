@@ -10,6 +10,7 @@
 
 #include "common/config/section.hpp"
 #include "common/io/series.hpp"
+#include "thermocline/economics.hpp"
 #include "thermocline/interfaces.hpp"
 #include "thermocline/plant.hpp"
 #include "thermocline/stress_history.hpp"
@@ -24,6 +25,7 @@ struct ReportParameters {
   double outlet_margin = 5;           ///< "near the design temperature" of the outlets [K]
   std::optional<double> profile_day;  ///< days from the start; its profiles are written every hour
   double dead_state = 318.15;         ///< T_ref of the exergy (5.29) [K]
+  std::optional<EconomicsParameters> economics;
 };
 void declare(config::Section& section, ReportParameters& parameters);
 
@@ -46,6 +48,10 @@ struct ReportSums {
     thickness,  ///< integral of h_th over the time for which it is defined [m s]
     thickness_time,
     duration,
+    asked,        ///< heat that the power block asked for
+    electricity,  ///< of the heat it got
+    revenue,      ///< [currency]
+    pumping,      ///< work of pump or fan
     n_items
   };
   std::array<double, n_items> sum{};
@@ -78,6 +84,9 @@ class DayReport final : public TankObserver {
   std::vector<double> state() const override;
   void restore(std::span<const double> state) override;
 
+  /// What the plant consists of, for its costs.
+  void take_stock(const Inventory& inventory) { inventory_ = inventory; }
+
   const ReportSums& results() const { return results_; }
   int days_counted() const { return days_counted_; }
   const StressHistory& stress() const { return stress_; }
@@ -90,6 +99,7 @@ class DayReport final : public TankObserver {
   void write_profiles(const TankRecord& record);
   std::vector<ReportLine> lines_of(const ReportSums& sums, double days) const;
   void write_day(double time);
+  void add_money(std::vector<ReportLine>& lines) const;
 
   ReportParameters p_;
   Plant plant_;
@@ -97,6 +107,7 @@ class DayReport final : public TankObserver {
   std::filesystem::path folder_;
   ReportSums day_, results_;
   StressHistory stress_;
+  Inventory inventory_;
   int days_seen_ = 0, days_counted_ = 0;
   double storable_ = 0, bed_height_ = 0, last_thickness_ = 0;
   std::unique_ptr<Series> days_, series_, profiles_;

@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
+#include "thermocline/questions.hpp"
 #include "thermocline/tank.hpp"
 
 namespace couplet::thermocline {
@@ -85,6 +86,7 @@ class BlanketModel {
         wall_(p.sections, p.initial_temperature),
         heat_(p.sections, 0.0),
         blanket_(p.insulation, dz_, p.diameter / 2) {
+    require_sun(p.insulation.outside.solar_absorptance, weather, "insulation.solar-absorptance");
     air_ = weather.at(0).temperature;
     blanket_.set_steady(wall_, air_);
     start_ = blanket_.energy(air_);

@@ -27,7 +27,10 @@ GrainElimination::GrainElimination(const Grains& grains, double tau)
     : n(grains.n), keep(n, 0.0), pass(n, 0.0), beta(n, 0.0), weight(n, 0.0) {
   const double store = grains.capacity / tau;
   own = store;
-  if (grains.capacity <= 0) return;
+  if (grains.capacity <= 0) {  // no filler: the shells are a name for the fluid
+    beta.assign(n, 1.0);
+    return;
+  }
   // Row j: (store + a_{j-1} + a_j) theta_j - a_{j-1} theta_{j-1} - a_j theta_{j+1} = store theta_j^n.
   // 1 - beta is carried along by itself: in tiny grains it is far below the rounding of beta.
   double rest_inside = 1;  // 1 - beta of the shell further in

@@ -5,6 +5,31 @@
 #include <numbers>
 
 namespace couplet::thermocline {
+namespace {
+
+struct Node {
+  double store, a, b,
+      film;  // capacity over the step; half a node, half the next one, the film as resistances
+};
+
+/// A node of all rings, the nodes further in being eliminated: half a node and half the next one, or the
+/// film, in series, k k'/(a k' + b k).
+[[gnu::target_clones("avx2", "default")]] void eliminate(const Node& node, std::size_t n, const double* k,
+                                                         const double* next, const double* before,
+                                                         const double* eliminated, double* t, double* up,
+                                                         double* in) {
+  const double store = node.store, a = node.a, b = node.b, film = node.film;
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < n; ++i) {
+    const double out = k[i] * next[i] / (next[i] * (a + film * k[i]) + b * k[i]);
+    const double inverse = 1 / (store + out + in[i] * (1 - eliminated[i]));
+    t[i] = (store * t[i] + in[i] * before[i]) * inverse;
+    up[i] = out * inverse;
+    in[i] = out;
+  }
+}
+
+}  // namespace
 
 Insulation::Insulation(const InsulationParameters& p, std::span<const double> dz, double radius)
     : cells_(p.cells), rings_(dz.size()), dz_(dz.begin(), dz.end()) {
@@ -20,7 +45,8 @@ Insulation::Insulation(const InsulationParameters& p, std::span<const double> dz
   }
   outer_circumference_ = 2 * pi * (radius + p.thickness);
   temperature_.assign(rings_ * cells_, 293.15);
-  k_.resize(rings_ * cells_), up_.resize(rings_ * cells_), inner_.resize(rings_), in_.resize(rings_);
+  k_.resize(rings_ * cells_), up_.resize(rings_ * cells_), inner_.resize(rings_), in_.resize(rings_),
+      nothing_.assign(rings_, 0.0);
 }
 
 double Insulation::step(double dt, std::span<const double> inside, const Film& outside,
@@ -32,23 +58,13 @@ double Insulation::step(double dt, std::span<const double> inside, const Film& o
   // up_ holds g_j over the diagonal that is left when the nodes further in are eliminated.
   double* in = in_.data();  // conductance inwards; outwards it is that of the next node inwards
   for (std::size_t i = 0; i < n; ++i) in[i] = inner_[i] = shape_[0] * k_[i];
-  const std::vector<double> nothing(n, 0.0);
   for (int j = 0; j < cells_; ++j) {
     double *t = temperature_.data() + j * n, *up = up_.data() + j * n;
     const double *k = k_.data() + j * n, *next = j < last ? k + n : k;
-    const double *before = j > 0 ? t - n : inside.data(), *eliminated = j > 0 ? up - n : nothing.data();
-    // Half a node and half the next one, or the film, in series: k k'/(a k' + b k).
-    const double store = capacity_[j] / dt, a = 1 / shape_[2 * j + 1];
-    const double b = j < last ? 1 / shape_[2 * j + 2] : 0;
-    const double film = j < last ? 0 : 1 / (outer_circumference_ * outside.coefficient);
-#pragma GCC ivdep
-    for (std::size_t i = 0; i < n; ++i) {
-      const double out = k[i] * next[i] / (next[i] * (a + film * k[i]) + b * k[i]);
-      const double inverse = 1 / (store + out + in[i] * (1 - eliminated[i]));
-      t[i] = (store * t[i] + in[i] * before[i]) * inverse;
-      up[i] = out * inverse;
-      in[i] = out;
-    }
+    const double *before = j > 0 ? t - n : inside.data(), *eliminated = j > 0 ? up - n : nothing_.data();
+    const Node node{capacity_[j] / dt, 1 / shape_[2 * j + 1], j < last ? 1 / shape_[2 * j + 2] : 0,
+                    j < last ? 0 : 1 / (outer_circumference_ * outside.coefficient)};
+    eliminate(node, n, k, next, before, eliminated, t, up, in);
   }
   double lost = 0;
   double* t = temperature_.data() + last * n;

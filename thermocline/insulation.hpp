@@ -45,7 +45,7 @@ class Insulation {
   std::vector<double> capacity_;  // per height of each node [J/(m K)]
   double outer_circumference_;
   std::vector<double> temperature_;  // node by node, the innermost first; rings within [K]
-  std::vector<double> k_, up_, inner_, in_;
+  std::vector<double> k_, up_, inner_, in_, nothing_;
 };
 
 void declare(config::Section& section, InsulationParameters& parameters);

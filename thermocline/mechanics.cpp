@@ -26,7 +26,9 @@ InnerPressure inner_pressure(const Rings& rings, const BedGrid& bed, const Fluid
     column += density * gravity * bed.dz[i];
     p.fluid[i] += column - density * gravity * bed.dz[i] / 2;
     const double porosity = bed.runs[bed.layer[i]].layer.porosity;
-    const double own = (1 - porosity) * (filler.density - density) * gravity * bed.dz[i];
+    const auto& grains = bed.runs[bed.layer[i]].layer.filler;
+    const double solid = grains ? grains->density : filler.density;
+    const double own = (1 - porosity) * (solid - density) * gravity * bed.dz[i];
     p.vertical[i] = std::max(0.0, below + own / 2);  // mean of its faces; grains that float do not press
     below += own;
   }

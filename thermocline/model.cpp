@@ -101,6 +101,7 @@ void TankModel::advance(double t, double dt, FlowControl& control, const Ambient
         exchange(t, rest / std::ceil(rest / wanted * (1 - 1e-9)), control, ambient, steps, speed);
     t = end - (t + h) <= tiny ? end : t + h;
   }
+  update_stress();
 }
 
 void TankModel::update_contact(std::span<const double> radial) {
@@ -136,7 +137,6 @@ void TankModel::update_stress() {
 }
 
 void TankModel::watch(double t) {
-  update_stress();
   if (const auto now = bed_.inversion(); now.depth > inversion_.depth) inversion_ = {now.depth, now.z, t};
   const auto fluid = bed_.fluid();
   const auto [low, high] = std::minmax_element(fluid.begin(), fluid.end());

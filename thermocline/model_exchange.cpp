@@ -29,8 +29,10 @@ class Stopwatch final {
 /// Fluid and filler of a cell of the bed [J/(m^2 K)].
 double TankModel::cell_capacity(int i) const {
   const BedGrid& grid = bed_.grid();
-  const double eps = grid.runs[grid.layer[i]].layer.porosity;
-  return (eps * setup_->fluid.volumetric() + (1 - eps) * setup_->filler.volumetric()) * grid.dz[i];
+  const BedLayer& layer = grid.runs[grid.layer[i]].layer;
+  const Filler& filler = layer.filler ? *layer.filler : setup_->filler;
+  return (layer.porosity * setup_->fluid.volumetric() + (1 - layer.porosity) * filler.volumetric()) *
+         grid.dz[i];
 }
 
 /// The bed's lowest cell against the flux that the ground computes from it: half its capacity over the
@@ -137,13 +139,22 @@ double TankModel::upper_wall() const {
 
 void TankModel::step_ullage(double h, const Ambient& air) {
   const TankParameters& p = setup_->parameters;
-  // The roof's inner cell takes the heat explicitly: steps of half its time constant.
+  // The roof's inner cell takes the heat explicitly: steps of half its time constant. Where these would be
+  // many (a blanket of millimetres) the gas sees the roof's implicit answer instead.
   const double limit = roof_ ? 0.5 * roof_->inner_capacity() / roof_->inner_conductance() : h;
-  const int parts = std::max(1, int(std::ceil(h / limit)));
+  constexpr double most_parts = 8;
+  const bool light = h > most_parts * limit;
+  const int parts = light ? 1 : std::max(1, int(std::ceil(h / limit)));
   from_liquid_ = wall_to_ullage_ = ullage_coefficient_ = 0;
   for (int k = 0; k < parts; ++k) {
-    const double roof_cell = roof_ ? roof_->inner_temperature() : 0;
-    const double conductance = roof_ ? roof_->inner_conductance() * roof_->area() : 0;
+    double roof_cell = roof_ ? roof_->inner_temperature() : 0;
+    double conductance = roof_ ? roof_->inner_conductance() * roof_->area() : 0;
+    if (light) {
+      Film outer = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
+      outer = roof_film(p.insulation->outside, roof_->outer_surface(outer), p.diameter, air);
+      const Film answer = roof_->inner_response(h, outer);
+      roof_cell = answer.reference, conductance = answer.coefficient * roof_->area();
+    }
     const Ullage::Heat heat =
         ullage_->step(h / parts, bed_.top(), upper_wall(), roof_cell, conductance, air.pressure);
     from_liquid_ += heat.from_liquid / parts;
@@ -208,6 +219,11 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Ambie
     ledger_.flow += heat.by_flow;
     ledger_.bed += heat.by_flow + heat.by_source;
     ledger_.turnover += std::abs(heat.by_flow);
+    if (setup_->parameters.pump && m != 0) {
+      const PressureLoss loss = pressure_loss(bed_.grid(), setup_->fluid, bed_.fluid(), m, bed_.area());
+      s.pressure_loss = loss.loss();
+      s.pump_power = pump_power(loss, setup_->fluid, bed_.bottom(), m, setup_->parameters.pump->efficiency);
+    }
     steps.push_back(s);
     speed.cell_steps += bed_.grid().size();
     ++speed.bed_steps;

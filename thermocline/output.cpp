@@ -5,13 +5,23 @@
 #include <cmath>
 
 namespace couplet::thermocline {
+namespace {
+
+std::vector<std::string> monitored(const TankModel& model) {
+  std::vector<std::string> columns{
+      "time [s]",      "mass flow [kg/s]", "inlet [degC]",     "outlet [degC]",
+      "top [degC]",    "bottom [degC]",    "heat by flow [J]", "loss side [J]",
+      "loss roof [J]", "loss ground [J]",  "imbalance [J]",    "largest equivalent stress over yield [1]",
+      "at z [m]"};
+  if (model.setup().parameters.pump) columns.insert(columns.end(), {"pressure loss [Pa]", "pump [W]"});
+  return columns;
+}
+
+}  // namespace
+
 TankOutputFiles::TankOutputFiles(const TankModel& model, const std::filesystem::path& folder,
                                  double restart_time)
-    : tank_(folder / "tank.csv",
-            {"time [s]", "mass flow [kg/s]", "inlet [degC]", "outlet [degC]", "top [degC]", "bottom [degC]",
-             "heat by flow [J]", "loss side [J]", "loss roof [J]", "loss ground [J]", "imbalance [J]",
-             "largest equivalent stress over yield [1]", "at z [m]"},
-            restart_time),
+    : tank_(folder / "tank.csv", monitored(model), restart_time),
       bed_(folder / "bed.csv", {"time [s]", "z [m]", "fluid [degC]", "filler [degC]"}, restart_time),
       interval_(model.setup().parameters.output.monitor_interval) {
   if (model.shell())
@@ -36,10 +46,21 @@ void TankOutputFiles::monitor(const TankModel& model, double time, const BedStep
     if (s.equivalent[i] > worst * s.yield[i])
       worst = s.equivalent[i] / s.yield[i], place = model.setup().rings->z[i];
   const Ledger& l = model.ledger();
-  tank_.row(std::vector<double>{time, last.flow.mass_flow, celsius(last.flow.inlet_temperature),
-                                celsius(last.outlet_temperature), celsius(model.bed().top()),
-                                celsius(model.bed().bottom()), l.flow, l.side, l.roof, l.ground,
-                                model.imbalance(time), worst, place});
+  std::vector<double> row{time,
+                          last.flow.mass_flow,
+                          celsius(last.flow.inlet_temperature),
+                          celsius(last.outlet_temperature),
+                          celsius(model.bed().top()),
+                          celsius(model.bed().bottom()),
+                          l.flow,
+                          l.side,
+                          l.roof,
+                          l.ground,
+                          model.imbalance(time),
+                          worst,
+                          place};
+  if (model.setup().parameters.pump) row.insert(row.end(), {last.pressure_loss, last.pump_power});
+  tank_.row(row);
 }
 
 void TankOutputFiles::profiles(const TankModel& model, double time) {

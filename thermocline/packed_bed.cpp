@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
+#include "thermocline/bed_rows.hpp"
 
 namespace couplet::thermocline {
 
@@ -21,9 +22,15 @@ PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& f
   const int n = grid_.size();
   limit_ = std::numeric_limits<double>::infinity();
   capacity_.resize(n);
+  std::vector<LayerClosure> closures;
+  const bool melts =
+      std::any_of(p.layers.begin(), p.layers.end(), [](const BedLayer& l) { return l.melting; });
   for (const BedGrid::Run& run : grid_.runs) {
-    closures_.emplace_back(p.closures, fluid, filler, run.layer.porosity, run.layer.diameter);
-    grains_.emplace_back(filler, run.layer.porosity, run.layer.diameter, shells_);
+    const Filler& own = run.layer.filler ? *run.layer.filler : filler;
+    closures.emplace_back(p.closures, fluid, own, run.layer.porosity, run.layer.diameter);
+    grains_.emplace_back(own, run.layer.porosity, run.layer.diameter, shells_);
+    if (melts) melting_.emplace_back();
+    if (run.layer.melting) melting_.back().emplace(own, *run.layer.melting);
     for (int i = run.first; i < run.first + run.count; ++i) {
       capacity_[i] = run.layer.porosity * fluid.volumetric() * grid_.dz[i];
       heat_capacity_ += area_ * (capacity_[i] + grains_.back().capacity * shells_ * grid_.dz[i]);
@@ -31,10 +38,23 @@ PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& f
       limit_ = std::min(limit_, run.layer.porosity * lightest * grid_.dz[i]);
     }
   }
-  for (auto* v : {&fluid_, &extra_, &fluid1_, &fluid2_, &source_, &film_, &conductivity_, &wall_})
+  closures_ = std::make_shared<const std::vector<LayerClosure>>(std::move(closures));
+  for (auto* v : {&fluid_, &extra_, &source_, &film_, &conductivity_, &wall_, &sums_, &lower_, &diagonal_,
+                  &upper_, &exchange_})
     v->assign(n, 0.0);
   face_.assign(n + 1, 0.0);
-  for (auto* v : {&shell_, &shell1_, &shell2_}) v->assign(std::size_t(n) * shells_, 0.0);
+  shell_.assign(std::size_t(n) * shells_, 0.0);
+  if (advection_ == Advection::tvd) {  // its stages
+    fluid1_.assign(n, 0.0), fluid2_.assign(n, 0.0);
+    shell1_.assign(shell_.size(), 0.0), shell2_.assign(shell_.size(), 0.0);
+  }
+  if (melts) {
+    for (auto* v : {&melt_.capacity, &melt_.right, &melt_.alpha, &melt_.beta}) v->assign(shell_.size(), 0.0);
+    melt_.diagonal.assign(n, 0.0);
+    main_.own_part.assign(n, 0.0);
+    if (advection_ == Advection::tvd)
+      throw Error("bed.advection: tvd does not know layers that melt; use upwind or implicit.");
+  }
   std::vector<double> start(n, p.initial_temperature);
   if (!p.profile_z.empty()) {
     const Table profile(p.profile_z, p.profile_temperature);
@@ -47,6 +67,7 @@ void PackedBed::set_temperature(std::span<const double> temperature) {
   std::copy(temperature.begin(), temperature.end(), fluid_.begin());
   for (int j = 0; j < shells_; ++j)
     std::copy(temperature.begin(), temperature.end(), shell_.begin() + std::size_t(j) * grid_.size());
+  sums_of_ = 0;
   follow_density();
 }
 
@@ -80,9 +101,9 @@ void PackedBed::prepare(double dt, double mass_flow) {
   dt_ = dt;
   prepared_flow_ = mass_flow;
   const MassFlux flux(std::abs(mass_flow) / area_);
-  for (int i = 0; i < grid_.size(); ++i) {
-    const Closure c = closures_[grid_.layer[i]].at(fluid_[i], flux);
-    film_[i] = c.film, conductivity_[i] = c.conductivity, wall_[i] = c.wall;
+  for (const BedGrid::Run& run : grid_.runs) {
+    const std::size_t l = &run - grid_.runs.data(), i = run.first;
+    (*closures_)[l].fill({&fluid_[i], std::size_t(run.count)}, flux, &film_[i], &conductivity_[i], &wall_[i]);
   }
   // SDIRK of order 2 needs gamma = 1 - 1/sqrt(2); see second_order_step.
   build(main_, advection_ == Advection::tvd ? dt * (1 - std::numbers::sqrt2 / 2) : dt);
@@ -94,30 +115,31 @@ double PackedBed::inlet_conductance(bool upward) const {
   return conducting_inlet_ ? 2 * conductivity_[i] / grid_.dz[i] : 0;
 }
 
-void PackedBed::build(Operator& op, double tau) const {
+void PackedBed::build(Operator& op, double tau) {
   const int n = grid_.size();
+  const bool same_tau = op.tau == tau && !op.grains.empty();
   op.tau = tau;
+  sums_of_ = 0;
   for (auto* v : {&op.rate, &op.share, &op.beta, &op.heat}) v->resize(n);
-  op.grains.clear();
-  for (const Grains& g : grains_) op.grains.emplace_back(g, tau);
-  std::vector<double> a(n), b(n), c(n);
-  for (int i = 0; i < n; ++i) {
-    const int l = grid_.layer[i];
-    const double g = grains_[l].exchange(film_[i]), total = op.grains[l].own + g, dz = grid_.dz[i];
-    op.rate[i] = capacity_[i] / tau;
-    op.share[i] = total > 0 ? 1 / total : 0;
-    op.beta[i] = g * op.share[i];
-    op.heat[i] = g * op.share[i] * dz;
-    // g (1 - beta), in a form that does not cancel for large g.
-    b[i] = op.rate[i] + op.grains[l].own * op.heat[i];
+  if (!same_tau) {
+    op.grains.clear();
+    for (const Grains& g : grains_) op.grains.emplace_back(g, tau);
   }
-  for (int i = 0; i + 1 < n; ++i) {
-    const double resistance =
-        grid_.dz[i] / (2 * conductivity_[i]) + grid_.dz[i + 1] / (2 * conductivity_[i + 1]);
-    const double k = 1 / resistance;  // 0 for a bed that does not conduct
-    c[i] = a[i + 1] = -k;
-    b[i] += k, b[i + 1] += k;
+  for (const BedGrid::Run& run : grid_.runs) {
+    const std::size_t l = &run - grid_.runs.data();
+    const int i = run.first;
+    if (grains_[l].area > 0)
+      exchange_rows({tau, op.grains[l].own, grains_[l].area, grains_[l].surface},
+                    {&capacity_[i], &film_[i], &grid_.dz[i], std::size_t(run.count)},
+                    {&op.rate[i], &op.share[i], &op.beta[i], &op.heat[i], &diagonal_[i]});
+    else  // no grains: what stands for them has the fluid's temperature
+      for (int k = i; k < i + run.count; ++k)
+        diagonal_[k] = op.rate[k] = capacity_[k] / tau, op.share[k] = op.heat[k] = 0, op.beta[k] = 1;
   }
+  if (!op.own_part.empty())
+    for (int i = 0; i < n; ++i) op.own_part[i] = diagonal_[i] - op.rate[i];
+  conduction_rows(n, conductivity_.data(), grid_.dz.data(), lower_.data(), diagonal_.data(), upper_.data());
+  double *a = lower_.data(), *b = diagonal_.data(), *c = upper_.data();
   if (prepared_flow_ != 0) b[prepared_flow_ > 0 ? 0 : n - 1] += inlet_conductance(prepared_flow_ > 0);
   if (advection_ == Advection::implicit) {
     const double gc = std::abs(prepared_flow_) / area_ * liquid_.specific_heat;
@@ -128,15 +150,15 @@ void PackedBed::build(Operator& op, double tau) const {
     }
   }
   op.matrix.resize(n);
-  op.matrix.factorise(a.data(), b.data(), c.data());
+  op.matrix.factorise(a, b, c);
 }
 
 void PackedBed::set_source(std::span<const double> source) {
   source_rate_ = 0;
-  for (std::size_t i = 0; i < source_.size(); ++i) {
-    source_[i] = source[i] / area_;
+  for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = source[i] / area_;
+  if (advection_ != Advection::tvd) return;  // which alone asks for it
+  for (std::size_t i = 0; i < source_.size(); ++i)
     source_rate_ = std::max(source_rate_, std::abs(source_[i]) / capacity_[i]);
-  }
 }
 
 double PackedBed::energy(double reference) const {
@@ -149,18 +171,32 @@ double PackedBed::energy(double reference) const {
     if (liquid_.real_density)
       fluid = capacity_[i] * (fluid_[i] - settled_[i] +
                               liquid_.real->between(reference, settled_[i]) / liquid_.real->at(settled_[i]));
-    sum += fluid + grains_[grid_.layer[i]].capacity * grid_.dz[i] * grain;
+    const std::size_t l = grid_.layer[i];
+    if (!melting_.empty() && melting_[l]) {
+      double heat = 0;
+      for (int j = 0; j < shells_; ++j)
+        heat += melting_[l]->heat(shell_[std::size_t(j) * n + i]) - melting_[l]->heat(reference);
+      sum += fluid + (1 - grid_.runs[l].layer.porosity) / shells_ * grid_.dz[i] * heat;
+    } else {
+      sum += fluid + grains_[l].capacity * grid_.dz[i] * grain;
+    }
   }
   return area_ * sum;
 }
 
 double PackedBed::heat_between(double cold, double hot) const {
-  if (!liquid_.real_density) return heat_capacity_ * (hot - cold);
+  if (!liquid_.real_density && melting_.empty()) return heat_capacity_ * (hot - cold);
   double sum = 0;
   for (const BedGrid::Run& run : grid_.runs) {
     const double eps = run.layer.porosity, height = run.layer.height;
-    sum += height * eps * liquid_.specific_heat * liquid_.real->between(cold, hot);
-    sum += height * grains_[&run - grid_.runs.data()].capacity * shells_ * (hot - cold);
+    const std::size_t l = &run - grid_.runs.data();
+    const double mass_degrees =  // integral of the density [kg K/m^3]
+        liquid_.real_density ? liquid_.real->between(cold, hot) : liquid_.density * (hot - cold);
+    sum += height * eps * liquid_.specific_heat * mass_degrees;
+    if (!melting_.empty() && melting_[l])
+      sum += height * (1 - eps) * (melting_[l]->heat(hot) - melting_[l]->heat(cold));
+    else
+      sum += height * grains_[l].capacity * shells_ * (hot - cold);
   }
   return area_ * sum;
 }
@@ -171,10 +207,12 @@ void PackedBed::filler_temperature(std::vector<double>& mean) const {
   for (int j = 0; j < shells_; ++j)
     for (std::size_t i = 0; i < n; ++i) mean[i] += shell_[j * n + i];
   for (double& t : mean) t /= shells_;
+  for (const BedGrid::Run& run : grid_.runs)  // fluid alone: there are no grains
+    if (run.layer.porosity >= 1) std::copy_n(fluid_.begin() + run.first, run.count, mean.begin() + run.first);
 }
 
 double PackedBed::reynolds(int cell, double mass_flow) const {
-  return closures_[grid_.layer[cell]].reynolds(fluid_[cell], std::abs(mass_flow) / area_);
+  return (*closures_)[grid_.layer[cell]].reynolds(fluid_[cell], std::abs(mass_flow) / area_);
 }
 
 PackedBed::Inversion PackedBed::inversion() const {
@@ -186,6 +224,9 @@ PackedBed::Inversion PackedBed::inversion() const {
 }
 
 void PackedBed::mix_inversions() {
+  int inverted = 0;
+  for (int i = 0; i + 1 < grid_.size(); ++i) inverted += fluid_[i + 1] < fluid_[i];
+  if (inverted == 0) return;
   // Pool adjacent violators: from the bottom up, a cell colder than the pool below it joins that pool.
   struct Pool {
     int first;
@@ -221,6 +262,7 @@ void PackedBed::restore(std::span<const double> state) {
                 state.size(), fluid_.size() + shell_.size());
   std::copy_n(state.begin(), fluid_.size(), fluid_.begin());
   std::copy(state.begin() + fluid_.size(), state.end(), shell_.begin());
+  sums_of_ = 0;
   follow_density();
 }
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "thermocline/bed_grid.hpp"
 #include "thermocline/closures.hpp"
+#include "thermocline/grain_kernels.hpp"
 #include "thermocline/grains.hpp"
+#include "thermocline/phase_change.hpp"
 #include "thermocline/tridiagonal.hpp"
 
 namespace couplet::thermocline {
@@ -97,7 +101,9 @@ class PackedBed {
   Inversion inversion() const;
   /// Mixes fluid where it is colder than the fluid below it; keeps its heat.
   void mix_inversions();
-  /// Steps of the tvd scheme that were taken again at first order in time to stay within bounds.
+  bool melts() const { return !melting_.empty(); }
+  /// Steps of the tvd scheme that were taken again at first order in time to stay within bounds; of a bed
+  /// that melts, those whose iteration was cut short.
   long fallbacks() const { return fallbacks_; }
 
   /// Fluid and then the shells, cell by cell.
@@ -108,11 +114,14 @@ class PackedBed {
  private:
   /// I - tau L with L conduction and exchange (and advection if implicit): matrix and grain factors.
   struct Operator {
+    Operator(int name) : number(name) {}
+    int number;  // 1 the scheme's own, 2 the fallback's
     double tau = 0;
     std::vector<double> rate;  // eps rho c dz/tau [W/(m^2 K)]
     // With g = exchange(film) and sum_j weight_j theta_j of the grains as they were: theta_0 = share sum +
     // beta T, and the fluid gets heat sum from them.
     std::vector<double> share, beta, heat;  // 1/(own + g), g/(own + g), g dz/(own + g)
+    std::vector<double> own_part;           // what the grains add to the diagonal; where layers melt only
     std::vector<GrainElimination> grains;
     Tridiagonal matrix;
   };
@@ -120,10 +129,18 @@ class PackedBed {
     double outlet = 0,
            conducted = 0;  // temperature of what leaves; conduction through the inlet face [W/m^2]
   };
-  void build(Operator& op, double tau) const;
-  /// Solves (I - tau L) x = (fluid, shells) + tau extra. `to_shells` may be `shells`.
-  void solve(const Operator& op, double* fluid, const double* shells, double* to_shells,
-             const double* extra) const;
+  void build(Operator& op, double tau);
+  /// Solves (I - tau L) x = (fluid, shells) + tau extra. `to_shells` may be `shells`. `sums_are_known`: sums_
+  /// are those of `shells` with this operator, as the last step left them.
+  void solve(const Operator& op, double* fluid, const double* shells, double* to_shells, const double* extra,
+             bool sums_are_known);
+  GrainCells cells_of(const Operator& op, const BedGrid::Run& run) const;
+  /// The same for a bed with layers that melt, in place.
+  void solve_with_melting(const Operator& op, const double* extra);
+  void linearise_melting(const BedGrid::Run& run, const PhaseChange& phase);
+  void eliminate_melting(const Operator& op, const BedGrid::Run& run, const Grains& grains,
+                         const double* extra);
+  double settle_melting(const BedGrid::Run& run, const PhaseChange& phase);
   /// Advection and sources [W/m^2] of the fluid temperatures given.
   Stage explicit_terms(const double* fluid, double flux, double inlet, bool second_order);
   StepHeat first_order_step(const Operator& op, double flux, double inlet, bool second_order);
@@ -133,7 +150,7 @@ class PackedBed {
 
   BedGrid grid_;
   Fluid liquid_;
-  std::vector<LayerClosure> closures_;
+  std::shared_ptr<const std::vector<LayerClosure>> closures_;  // large, and the same in all copies
   std::vector<Grains> grains_;
   double area_;
   int shells_;
@@ -145,15 +162,23 @@ class PackedBed {
   double limit_;                  // smallest eps rho dz [kg/m^2]
 
   double dt_ = 0, prepared_flow_ = 0;
-  Operator main_, fallback_;
+  Operator main_{1}, fallback_{2};
+  int sums_of_ = 0;  // the operator that sums_ belong to; 0: to none
   bool fallback_is_built_ = false;
   std::vector<double> fluid_, shell_;  // state
   std::vector<double> settled_;        // fluid that capacity_ belongs to; with a real density only
   std::vector<double> source_, film_, conductivity_, wall_;
   double source_rate_ = 0;  // largest |source|/capacity [K/s]
   // Work space.
-  std::vector<double> extra_, face_, fluid1_, fluid2_, shell1_, shell2_;
+  std::vector<double> extra_, face_, fluid1_, fluid2_, shell1_, shell2_, sums_;
+  std::vector<double> lower_, diagonal_, upper_, exchange_;  // of a matrix being built
   long fallbacks_ = 0;
+  // Of layers that melt; empty without.
+  std::vector<std::optional<PhaseChange>> melting_;  // of each run of cells
+  struct MeltingWork {
+    std::vector<double> capacity, right, alpha, beta, diagonal;  // shells times cells; the last: cells
+    Tridiagonal matrix;
+  } melt_;
 };
 
 void declare(config::Section& section, BedParameters& parameters);

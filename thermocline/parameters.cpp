@@ -5,6 +5,7 @@
 
 #include "common/base/text.hpp"
 #include "thermocline/grain_kernels.hpp"
+#include "thermocline/questions.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -61,6 +62,15 @@ void check_together(config::Section& s, TankParameters& p) {
       },
       "elsewhere");
   s.check([&p] { return p.insulation && !p.shell ? "lies around a shell; add one" : ""; }, "insulation");
+  s.check(
+      [&p] {
+        return p.fluid.type == FluidParameters::Type::air && p.bed.advection != Advection::implicit
+                   ? "a gas crosses a cell in milliseconds: give bed.advection: implicit"
+                   : "";
+      },
+      "bed");
+  s.check([&p] { return forgotten_unit_of_bed(p); }, "bed");
+  s.check([&p] { return forgotten_unit_of_flow(p); }, "flow");
 }
 
 }  // namespace
@@ -77,6 +87,12 @@ void declare(config::Section& section, BedParameters& p) {
             .positive()
             .required()
             .doc("effective diameter of the grains");
+        s.optional_section<Filler>(
+            "filler", l.filler, [](config::Section& q, Filler& v) { declare(q, v); },
+            "grains of this layer, if they are others than those of the tank");
+        s.optional_section<Melting>(
+            "melting", l.melting, [](config::Section& q, Melting& v) { declare(q, v); },
+            "capsules whose content melts, of density, specific heat and conductivity of 'filler'");
       },
       "from the bottom up");
   section.value("shells", p.shells)
@@ -105,6 +121,15 @@ void declare(config::Section& section, BedParameters& p) {
       .doc("heights of an initial profile, in place of one temperature");
   section.value("profile-temperature", p.profile_temperature).unit("K").doc("the profile, piecewise linear");
   section.check([&p] { return p.layers.empty() ? "needs one layer at least" : ""; }, "layers");
+  section.check(
+      [&p] {
+        const bool melts =
+            std::any_of(p.layers.begin(), p.layers.end(), [](const BedLayer& l) { return l.melting; });
+        return melts && p.advection == Advection::tvd
+                   ? "tvd does not know layers that melt; use upwind or implicit"
+                   : "";
+      },
+      "advection");
   section.check([&p] { return problem_of_profile(p); }, "profile-temperature");
   section.check(
       [&p] {
@@ -168,7 +193,7 @@ void declare(config::Section& section, GroundParameters& p) {
   section.value("step", p.step).unit("s").positive().doc("its own step");
   section.value("deep-temperature", p.deep_temperature)
       .unit("K")
-      .positive()
+      .range(200, 600)
       .doc("below; else the air's annual mean");
   section.check([&p] { return p.layers.empty() ? "needs one layer at least" : ""; }, "layers");
 }
@@ -222,8 +247,15 @@ void declare(config::Section& section, TankParameters& p) {
         s.value("insulation", v.insulation).doc("a participant with element: insulation");
       },
       "elements of this tank that participants of their own compute");
-  section.section(
-      "ambient", [&p](config::Section& s) { declare(s, p.ambient); }, "weather");
+  section.optional_section<PumpParameters>(
+      "pump", p.pump,
+      [](config::Section& s, PumpParameters& v) {
+        s.value("efficiency", v.efficiency).range(0.01, 1).doc("of pump or fan with its motor");
+      },
+      "pressure loss of the bed by Ergun's equation, and the work that it costs");
+  section.optional_section<Present>(
+      "ambient", p.ambient_given, [&p](config::Section& s, Present&) { declare(s, p.ambient); },
+      "weather; without it: still air of 20 degC, no sun");
   section.section(
       "flow", [&p](config::Section& s) { declare(s, p.flow); }, "what is pumped through the tank");
   section.section(

@@ -9,6 +9,7 @@
 #include "thermocline/flow.hpp"
 #include "thermocline/insulation.hpp"
 #include "thermocline/packed_bed.hpp"
+#include "thermocline/pressure_loss.hpp"
 #include "thermocline/shell.hpp"
 #include "thermocline/ullage.hpp"
 #include "thermocline/wall_interface.hpp"
@@ -34,6 +35,9 @@ struct GroundParameters {
 
 struct FillerMechanicsParameters {};
 
+/// A section that stands in the YAML, for those that have defaults all through.
+struct Present {};
+
 /// Elements of this tank that participants of their own compute.
 struct ElsewhereParameters {
   bool ground = false, insulation = false;
@@ -58,6 +62,8 @@ struct TankParameters {
   std::optional<UllageSpace> ullage;
   std::optional<GroundParameters> ground;
   std::optional<ElsewhereParameters> elsewhere;
+  std::optional<PumpParameters> pump;
+  std::optional<Present> ambient_given;  ///< else `ambient` holds its defaults
   WeatherParameters ambient;
   FlowParameters flow;
   std::optional<ReportParameters> report;

@@ -1,9 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/plant.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace couplet::thermocline {
+namespace {
+
+constexpr double hour = 3600, tiny = 1e-9;  // [s], [h]
+
+double at_hour(const std::vector<double>& values, double t) {
+  if (values.size() == 1) return values.front();
+  const double clock = std::floor(t / hour + tiny);
+  return values[std::size_t(clock - 24 * std::floor(clock / 24))];
+}
+
+std::string problem_of_day(const std::vector<double>& values, bool share) {
+  if (values.size() != 1 && values.size() != 24)
+    return fmt::format("has {} values; give one, or 24 for the hours of the day from 00:00 on",
+                       values.size());
+  for (const double v : values)
+    if (share && !(v >= 0 && v <= 1)) return fmt::format("{:g} is no share of the load; expected 0 to 1", v);
+  return "";
+}
+
+}  // namespace
 
 void declare(config::Section& s, PlantParameters& p) {
   s.value("electric-power", p.electric_power)
@@ -33,9 +57,15 @@ void declare(config::Section& s, PlantParameters& p) {
       .unit("K")
       .positive()
       .doc(
-          "charging stops when what enters the solar field is this much too warm, discharging when what "
-          "enters the power "
-          "block is this much too cold");
+          "charging stops when what enters the solar field (or leaves the tank, see cut-off-at) is this much "
+          "too "
+          "warm, discharging when what enters the power block is this much too cold");
+  s.choice("cut-off-at", p.cut_off_at,
+           {{"mixed", PlantParameters::CutOffAt::mixed}, {"outlet", PlantParameters::CutOffAt::outlet}})
+      .doc(
+          "mixed: the cut-off looks at what enters field or block, where the tank's flow has been mixed with "
+          "that "
+          "of the other; outlet: at what leaves the tank");
   s.value("restart", p.restart)
       .unit("K")
       .positive()
@@ -43,6 +73,14 @@ void declare(config::Section& s, PlantParameters& p) {
           "charging starts only if the bottom of the tank is at most this much too warm, discharging only if "
           "its top is at "
           "most this much too cold");
+  s.value("load", p.load)
+      .doc(
+          "share of electric-power that is asked for, one value or 24 for the hours of the day from 00:00 "
+          "on");
+  s.value("tariff", p.tariff)
+      .doc("price of the electricity per MWh, one value or 24; with it the report counts the revenue");
+  s.check([&] { return problem_of_day(p.load, true); }, "load");
+  s.check([&] { return p.tariff.empty() ? "" : problem_of_day(p.tariff, false); }, "tariff");
   s.check([&] { return p.hot > p.cold ? "" : "'hot' must be above 'cold'."; }, "hot");
   s.check(
       [&] { return p.cut_off < p.hot - p.cold ? "" : "must be smaller than the step from 'cold' to 'hot'."; },
@@ -55,11 +93,18 @@ double Plant::field_heat(double irradiance) const { return irradiance * p_.field
 
 double Plant::block_heat() const { return p_.electric_power / p_.block_efficiency; }
 
+double Plant::load(double t) const { return at_hour(p_.load, t); }
+double Plant::tariff(double t) const { return p_.tariff.empty() ? 0 : at_hour(p_.tariff, t); }
+double Plant::load_until(double t) const {
+  if (p_.load.size() < 2 && p_.tariff.size() < 2) return std::numeric_limits<double>::infinity();
+  return (std::floor(t / hour + tiny) + 1) * hour;
+}
+
 /// The store rests: the field feeds the block with what it has, at most what the block asks for.
-PlantFlows Plant::idle(double field_heat) const {
+PlantFlows Plant::idle(double field_heat, double load) const {
   PlantFlows f;
   f.field_heat = field_heat;
-  f.block_heat = block_heat();
+  f.block_heat = block_heat() * load;
   f.field_flow = std::min(field_heat, f.block_heat) / (c_ * (p_.hot - p_.cold));
   f.block_flow = f.block_heat / (c_ * (p_.hot - p_.cold));
   f.field_inlet = p_.cold;
@@ -67,8 +112,8 @@ PlantFlows Plant::idle(double field_heat) const {
   return f;
 }
 
-PlantFlows Plant::charge(double field_heat, double bottom) const {
-  PlantFlows f = idle(field_heat);
+PlantFlows Plant::charge(double field_heat, double bottom, double load) const {
+  PlantFlows f = idle(field_heat, load);
   f.mode = PlantMode::charge;
   const double m = (field_heat - f.block_heat) / (c_ * (p_.hot - bottom));
   f.tank_flow = -m;
@@ -77,8 +122,8 @@ PlantFlows Plant::charge(double field_heat, double bottom) const {
   return f;
 }
 
-PlantFlows Plant::discharge(double field_heat, double top) const {
-  PlantFlows f = idle(field_heat);
+PlantFlows Plant::discharge(double field_heat, double top, double load) const {
+  PlantFlows f = idle(field_heat, load);
   f.mode = PlantMode::discharge;
   const double m = (f.block_heat - field_heat) / (c_ * (top - p_.cold));
   f.tank_flow = m;
@@ -87,21 +132,23 @@ PlantFlows Plant::discharge(double field_heat, double top) const {
   return f;
 }
 
-PlantFlows Plant::flows(double field_heat, double top, double bottom, PlantMode before) const {
-  if (field_heat > block_heat()) {
+PlantFlows Plant::flows(double field_heat, double top, double bottom, PlantMode before, double load) const {
+  const double block = block_heat() * load;
+  const bool at_outlet = p_.cut_off_at == PlantParameters::CutOffAt::outlet;
+  if (field_heat > block) {
     const double start = before == PlantMode::charge ? p_.hot : p_.cold + p_.restart;
     // At the hot temperature no flow could take the heat up.
-    if (bottom > start || bottom >= p_.hot) return idle(field_heat);
-    const PlantFlows f = charge(field_heat, bottom);
-    return f.field_inlet < p_.cold + p_.cut_off ? f : idle(field_heat);
+    if (bottom > start || bottom >= p_.hot) return idle(field_heat, load);
+    const PlantFlows f = charge(field_heat, bottom, load);
+    return (at_outlet ? bottom : f.field_inlet) < p_.cold + p_.cut_off ? f : idle(field_heat, load);
   }
-  if (field_heat < block_heat()) {
+  if (field_heat < block) {
     const double start = before == PlantMode::discharge ? p_.cold : p_.hot - p_.restart;
-    if (top < start || top <= p_.cold) return idle(field_heat);
-    const PlantFlows f = discharge(field_heat, top);
-    return f.block_inlet > p_.hot - p_.cut_off ? f : idle(field_heat);
+    if (top < start || top <= p_.cold) return idle(field_heat, load);
+    const PlantFlows f = discharge(field_heat, top, load);
+    return (at_outlet ? top : f.block_inlet) > p_.hot - p_.cut_off ? f : idle(field_heat, load);
   }
-  return idle(field_heat);
+  return idle(field_heat, load);
 }
 
 }  // namespace couplet::thermocline

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "common/config/section.hpp"
 
 namespace couplet::thermocline {
@@ -14,6 +16,12 @@ struct PlantParameters {
   double hot = 0, cold = 0;       ///< design temperatures [K]
   double cut_off = 15;            ///< dT_CO [K]
   double restart = 10;            ///< dT_R [K]
+  /// What the cut-off looks at: the mixed temperature at the field's or the block's inlet (what the thesis's
+  /// text says), or what leaves the tank (what its tables follow).
+  enum class CutOffAt { mixed, outlet } cut_off_at = CutOffAt::mixed;
+  std::vector<double> load{
+      1};  ///< share of the power block's output that is asked for, always or by the hour
+  std::vector<double> tariff = {};  ///< of the electricity, always or by the hour [currency/MWh]; empty: none
 };
 void declare(config::Section& section, PlantParameters& parameters);
 
@@ -43,17 +51,23 @@ class Plant {
   /// Flows of a step that starts with the outlet temperatures `top` and `bottom` of the tank [K]. `before`
   /// is the mode of the step before: a process that runs goes on until the mixed temperature reaches its
   /// cut-off, one that does not run starts only within the restart tolerance.
-  PlantFlows flows(double field_heat, double top, double bottom, PlantMode before) const;
+  /// `load`: share of the design load that is asked for.
+  PlantFlows flows(double field_heat, double top, double bottom, PlantMode before, double load = 1) const;
 
   double field_heat(double irradiance) const;  ///< equation 5.2 [W]
-  double block_heat() const;                   ///< equation 5.1 [W]
+  double block_heat() const;                   ///< equation 5.1, at the design load [W]
+  /// At a time [s] from 00:00 of the first day: share of the design load, price [currency/MWh], and the end
+  /// of the hour if either follows the clock (else infinity).
+  double load(double t) const;
+  double tariff(double t) const;
+  double load_until(double t) const;
   const PlantParameters& parameters() const { return p_; }
   double specific_heat() const { return c_; }
 
  private:
-  PlantFlows idle(double field_heat) const;
-  PlantFlows charge(double field_heat, double bottom) const;
-  PlantFlows discharge(double field_heat, double top) const;
+  PlantFlows idle(double field_heat, double load) const;
+  PlantFlows charge(double field_heat, double bottom, double load) const;
+  PlantFlows discharge(double field_heat, double top, double load) const;
 
   PlantParameters p_;
   double c_;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/plant_control.hpp"
 
+#include <algorithm>
+
 namespace couplet::thermocline {
 
 Flow PlantControl::decide(double t, double t_top, double t_bottom, const Ambient& ambient) {
-  const PlantFlows flows = plant_.flows(plant_.field_heat(ambient.dni), t_top, t_bottom, mode_);
+  const PlantFlows flows =
+      plant_.flows(plant_.field_heat(ambient.dni), t_top, t_bottom, mode_, plant_.load(t));
   mode_ = flows.mode;
   Flow flow;
   flow.mode = static_cast<int>(mode_);
@@ -12,7 +15,7 @@ Flow PlantControl::decide(double t, double t_top, double t_bottom, const Ambient
   flow.inlet_temperature = mode_ == PlantMode::charge ? plant_.parameters().hot : plant_.parameters().cold;
   // At rest the bed could take long steps over sunrise.
   constexpr double longest_without_a_look = 120;  // [s]
-  flow.until = t + longest_without_a_look;
+  flow.until = std::min(t + longest_without_a_look, plant_.load_until(t));
   return flow;
 }
 

@@ -61,6 +61,19 @@ Fluid caloria_ht43() {
           DensityLaw{885, -0.6617, -1.265e-4}};
 }
 
+Fluid air_at(double pressure, double reference_temperature) {
+  constexpr double gas_constant = 287.05;
+  Fluid air{"air",
+            pressure / (gas_constant * reference_temperature),
+            1075,  // mean of 300 to 900 K
+            [](double t) { return 0.0241 * std::pow(t / 273.15, 1.5) * (273.15 + 194) / (t + 194); },
+            [](double t) { return 1.716e-5 * std::pow(t / 273.15, 1.5) * (273.15 + 110.4) / (t + 110.4); },
+            150,
+            1500};
+  air.gas_constant = gas_constant, air.pressure = pressure;
+  return air;
+}
+
 Steel steel_a537() {
   return steel("A537 class 2", 7850, {477, 577}, {512, 547}, {53.5, 49}, {1.92e11, 1.84e11},
                {1.39e-5, 1.49e-5}, {3.11e8, 2.82e8}, zero_celsius + 371);
@@ -90,6 +103,7 @@ std::vector<std::string> foundation_materials() {
 }
 
 Fluid make_fluid(const FluidParameters& p) {
+  if (p.type == FluidParameters::Type::air) return air_at(p.pressure, p.reference_temperature);
   if (p.type != FluidParameters::Type::custom) {
     Fluid known = p.type == FluidParameters::Type::solar_salt ? solar_salt() : caloria_ht43();
     known.real_density = p.real_density;

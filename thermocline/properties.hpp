@@ -41,6 +41,8 @@ struct Fluid {
   double lowest = 0, highest = 1e4;            // it is a liquid that lasts between these [K]
   std::optional<DensityLaw> real = {};         // what the density really does, where that is known
   bool real_density = false;                   // the tank follows it
+  double gas_constant = 0, pressure = 101325;  // of an ideal gas [J/(kg K)], [Pa]; 0: a liquid
+  bool is_gas() const { return gas_constant > 0; }
   double volumetric() const { return density * specific_heat; }
   double density_at(double kelvin) const { return real_density ? real->at(kelvin) : density; }
 };
@@ -52,6 +54,14 @@ struct Filler {
   double expansion = 7.92e-6;                                         // linear [1/K]
   double volumetric() const { return density * specific_heat; }
 };
+
+/// A capsule's content melts within a range of temperatures; the heat of melting is spread over it evenly.
+struct Melting {
+  double temperature = 0;  ///< middle of the range [K]
+  double width = 2;        ///< of the range [K]
+  double latent_heat = 0;  ///< [J/kg]
+};
+void declare(config::Section& section, Melting& melting);
 
 /// A metal of the shell. `expansion` is the instantaneous coefficient d(strain)/dT, as ASME II-D lists it:
 /// the thermal strain is its integral (the products alpha (T - T0) of a mean coefficient would be a third too
@@ -73,6 +83,10 @@ struct Insulator {
 
 Fluid solar_salt();
 Fluid caloria_ht43();
+/// Dry air as an ideal gas: specific heat a constant, conductivity and viscosity by Sutherland's laws. Its
+/// density at the reference temperature counts for the little heat that the pores hold, that of the moment
+/// for Ergun.
+Fluid air_at(double pressure, double reference_temperature);
 Steel steel_a537();     // A537 class 2, 477-577 K
 Steel steel_a387();     // A387 grade 91, 563-663 K
 Steel nickel_n06022();  // 563-838 K
@@ -84,7 +98,8 @@ std::vector<std::string> foundation_materials();
 
 // -- as they stand in the YAML ------------------------------------------------------------------------------
 struct FluidParameters {
-  enum class Type { solar_salt, caloria_ht43, custom } type = Type::solar_salt;
+  enum class Type { solar_salt, caloria_ht43, air, custom } type = Type::solar_salt;
+  double pressure = 101325, reference_temperature = 600;  ///< of air [Pa], [K]
   bool real_density = false;
   double density = 0, specific_heat = 0;
   std::vector<double> temperature, conductivity, viscosity;

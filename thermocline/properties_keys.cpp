@@ -47,11 +47,23 @@ void declare(config::Section& section, FluidParameters& p) {
             "the density falls with temperature: in the heat that the pores hold and in the pressure on the "
             "wall; otherwise it is the constant of thesis table 5.1");
   };
+  const auto gas = [&p](config::Section& s) {
+    s.value("pressure", p.pressure).unit("Pa").positive().doc("where the gas leaves the bed");
+    s.value("reference-temperature", p.reference_temperature)
+        .unit("K")
+        .range(150, 1500)
+        .doc(
+            "of the density that counts for the heat in the pores; the pressure loss follows the "
+            "temperature");
+  };
   section.variant<Type>("type", p.type,
                         {{"solar-salt", Type::solar_salt, known},
                          {"caloria-ht43", Type::caloria_ht43, known},
+                         {"air", Type::air, gas},
                          {"custom", Type::custom, custom}},
-                        "60 % NaNO3 + 40 % KNO3, the oil of Solar One, or the values given here", true);
+                        "60 % NaNO3 + 40 % KNO3, the oil of Solar One, dry air (with bed.advection: "
+                        "implicit), or the values given here",
+                        true);
 }
 
 void declare(config::Section& s, Filler& f) {
@@ -66,6 +78,20 @@ void declare(config::Section& s, Filler& f) {
       .range(0.01, 1.5)
       .doc("internal friction of the bulk, phi in (5.17)");
   s.value("expansion", f.expansion).unit("1/K").not_negative().doc("linear thermal expansion of the bulk");
+}
+
+void declare(config::Section& s, Melting& m) {
+  s.value("temperature", m.temperature)
+      .unit("K")
+      .positive()
+      .required()
+      .doc("middle of the range in which it melts");
+  s.value("width", m.width).unit("K").range(1e-3, 200).doc("of that range");
+  s.value("latent-heat", m.latent_heat)
+      .unit("J/kg")
+      .not_negative()
+      .required()
+      .doc("taken in over the range, evenly");
 }
 
 void declare(config::Section& section, SteelParameters& p) {

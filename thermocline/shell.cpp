@@ -6,6 +6,43 @@
 #include <numbers>
 
 namespace couplet::thermocline {
+namespace {
+
+/// Half a ring's resistance from its conductivity, and the conductance between rings as lower and upper rows.
+[[gnu::target_clones("avx2", "default")]] void conduct(std::size_t n, const double* bare, double* resistance,
+                                                       double* a, double* c) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < n; ++i) resistance[i] = bare[i] / resistance[i];
+#pragma GCC ivdep
+  for (std::size_t i = 0; i + 1 < n; ++i) c[i] = -1 / (resistance[i] + resistance[i + 1]);
+  for (std::size_t i = 0; i + 1 < n; ++i) a[i + 1] = c[i];
+}
+
+struct Row {
+  const double *mass, *specific_heat, *a, *c, *temperature, *lost;
+};
+/// Storage, conduction and what is lost.
+[[gnu::target_clones("avx2", "default")]] void store(std::size_t n, double dt, const Row& in, double* b,
+                                                     double* r) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < n; ++i) {
+    const double capacity = in.mass[i] * in.specific_heat[i] / dt;
+    b[i] = capacity - in.a[i] - in.c[i];  // of the ends: 0
+    r[i] = capacity * in.temperature[i] - in.lost[i];
+  }
+}
+
+/// The fluid beside the rings.
+[[gnu::target_clones("avx2", "default")]] void wet(std::size_t n, const double* coupling, const double* fluid,
+                                                   double* b, double* r) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < n; ++i) {
+    b[i] += coupling[i];
+    r[i] += coupling[i] * fluid[i];
+  }
+}
+
+}  // namespace
 
 Rings::Rings(const ShellParameters& p, const BedGrid& bed, double d, double above)
     : diameter(d), in_bed(bed.size()), z(bed.z), dz(bed.dz) {
@@ -43,7 +80,7 @@ Shell::Shell(const Rings& rings, const Steel& steel)
     bare_.push_back(rings.dz[i] / (2 * around * rings.thickness[i]));
   }
   temperature_.assign(n, 293.15);
-  for (auto* v : {&a_, &b_, &c_, &r_, &capacity_, &specific_heat_, &resistance_}) v->assign(n, 0.0);
+  for (auto* v : {&a_, &b_, &c_, &r_, &coupling_, &specific_heat_, &resistance_}) v->assign(n, 0.0);
   matrix_.resize(n);
 }
 
@@ -58,20 +95,14 @@ void Shell::step(double dt, std::span<const double> fluid, std::span<const doubl
   const double around = std::numbers::pi * rings.diameter;
   specific_heat_of_.values(temperature_.data(), specific_heat_.data(), n);
   conductivity_of_.values(temperature_.data(), resistance_.data(), n);
-  for (int i = 0; i < n; ++i) resistance_[i] = bare_[i] / resistance_[i];  // half a ring
-  for (int i = 0; i + 1 < n; ++i) c_[i] = a_[i + 1] = -1 / (resistance_[i] + resistance_[i + 1]);
+  conduct(n, bare_.data(), resistance_.data(), a_.data(), c_.data());
+  for (int i = 0; i < rings.in_bed; ++i) coupling_[i] = film[i] * around * rings.dz[i];
   // Twice, so that the specific heat is its mean over the step: what is stored is then exactly what came in.
   for (int pass = 0; pass < 2; ++pass) {
-    for (int i = 0; i < n; ++i) {
-      capacity_[i] = mass_[i] * specific_heat_[i] / dt;
-      b_[i] = capacity_[i] - a_[i] - c_[i];  // of the ends: 0
-      r_[i] = capacity_[i] * temperature_[i] - lost[i];
-    }
-    for (int i = 0; i < rings.in_bed; ++i) {
-      const double g = film[i] * around * rings.dz[i];
-      b_[i] += g;
-      r_[i] += g * fluid[i];
-    }
+    store(n, dt,
+          {mass_.data(), specific_heat_.data(), a_.data(), c_.data(), temperature_.data(), lost.data()},
+          b_.data(), r_.data());
+    wet(rings.in_bed, coupling_.data(), fluid.data(), b_.data(), r_.data());
     matrix_.factorise(a_.data(), b_.data(), c_.data());
     matrix_.solve(r_.data());
     double largest = 0;
@@ -80,8 +111,7 @@ void Shell::step(double dt, std::span<const double> fluid, std::span<const doubl
     specific_heat_of_.means(temperature_.data(), r_.data(), specific_heat_.data(), n);
   }
   temperature_ = r_;
-  for (int i = 0; i < rings.in_bed; ++i)
-    from_bed[i] = film[i] * around * rings.dz[i] * (fluid[i] - temperature_[i]);
+  for (int i = 0; i < rings.in_bed; ++i) from_bed[i] = coupling_[i] * (fluid[i] - temperature_[i]);
 }
 
 double Shell::energy(double reference) const {

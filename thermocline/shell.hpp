@@ -55,7 +55,7 @@ class Shell {
   const Steel* steel_;
   Ramps specific_heat_of_, conductivity_of_;
   std::vector<double> mass_, bare_;  // of each ring [kg]; dz/(2 pi D e) [1/m]
-  std::vector<double> temperature_, a_, b_, c_, r_, capacity_, specific_heat_, resistance_;
+  std::vector<double> temperature_, a_, b_, c_, r_, coupling_, specific_heat_, resistance_;
   Tridiagonal matrix_;
 };
 

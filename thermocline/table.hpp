@@ -18,7 +18,7 @@ struct Table {
   double operator()(double at) const {
     if (at <= x.front()) return y.front();
     if (at >= x.back()) return y.back();
-    const std::size_t i = std::upper_bound(x.begin(), x.end(), at) - x.begin();
+    const std::size_t i = x.size() == 2 ? 1 : std::upper_bound(x.begin(), x.end(), at) - x.begin();
     return y[i - 1] + (y[i] - y[i - 1]) * (at - x[i - 1]) / (x[i] - x[i - 1]);
   }
   /// Integral from x.front() to `at`, exact for the piecewise linear function.
@@ -48,26 +48,9 @@ class Ramps {
     }
   }
   /// Values at n temperatures.
-  void values(const double* t, double* value, std::size_t n) const {
-    for (std::size_t i = 0; i < n; ++i) value[i] = first_;
-    for (std::size_t s = 0; s < at_.size(); ++s) {
-      const double at = at_[s], bend = bend_[s];
-      for (std::size_t i = 0; i < n; ++i) value[i] += bend * std::max(0.0, t[i] - at);
-    }
-  }
+  void values(const double* t, double* value, std::size_t n) const;
   /// Means over the way from one temperature to another; the value where they are (nearly) the same.
-  void means(const double* from, const double* to, double* value, std::size_t n) const {
-    for (std::size_t i = 0; i < n; ++i) value[i] = first_;
-    for (std::size_t s = 0; s < at_.size(); ++s) {
-      const double at = at_[s], bend = bend_[s];
-      for (std::size_t i = 0; i < n; ++i) {
-        const double a = std::max(0.0, from[i] - at), b = std::max(0.0, to[i] - at), way = to[i] - from[i];
-        // Both beyond the bend: their mean; otherwise half the difference of the squares over the way.
-        const bool both = (a > 0) == (b > 0);
-        value[i] += bend * (both ? 0.5 * (a + b) : 0.5 * (b * b - a * a) / (way == 0 ? 1 : way));
-      }
-    }
-  }
+  void means(const double* from, const double* to, double* value, std::size_t n) const;
 
  private:
   double first_ = 0;

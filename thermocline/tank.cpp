@@ -4,14 +4,42 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "thermocline/questions.hpp"
+#include "thermocline/wall_bending.hpp"
 
 namespace couplet::thermocline {
+
+namespace {
+
+/// What the tank and its plant consist of.
+Inventory inventory_of(const TankSetup& setup) {
+  const TankParameters& p = setup.parameters;
+  const double area = 0.25 * std::numbers::pi * p.diameter * p.diameter;
+  Inventory all;
+  all.field_area = p.flow.plant.field_area, all.block_power = p.flow.plant.electric_power;
+  for (const auto& layer : p.bed.layers) {
+    const Filler& filler = layer.filler ? *layer.filler : setup.filler;
+    all.fluid += area * layer.height * layer.porosity * setup.fluid.density;
+    all.filler += area * layer.height * (1 - layer.porosity) * filler.density;
+  }
+  all.foundation = area;
+  if (!setup.rings) return all;
+  for (int i = 0; i < setup.rings->size(); ++i)
+    all.steel += setup.steel->density * setup.rings->surface(i) * setup.rings->thickness[i];
+  if (p.insulation)
+    all.insulated =
+        area + std::numbers::pi * p.diameter * (setup.rings->z.back() + setup.rings->dz.back() / 2);
+  return all;
+}
+
+}  // namespace
 
 Tank::Tank(const TankParameters& p, const ParticipantContext& context)
     : name_(context.name),
@@ -33,12 +61,21 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
     wall_.emplace(ExternalWallParameters{accepted_.setup().rings->size(), 0.01}, *accepted_.setup().rings);
   if (comm_rank(context.comm) == 0)
     files_ = std::make_unique<TankOutputFiles>(accepted_, context.output_folder, context.restart_time);
-  if (files_)
+  if (p.insulation)
+    require_sun(p.insulation->outside.solar_absorptance, *weather_,
+                fmt::format("participants.{}.insulation.solar-absorptance", context.name));
+  if (files_) {
     for (const std::string& sentence : weather_->warnings()) log::warn("{}", sentence);
-  if (p.report)
-    add_observer(std::make_unique<DayReport>(
+    if (std::isnan(context.restart_time))
+      for (const std::string& sentence : questions(p, accepted_)) log::warn("{}: {}", context.name, sentence);
+  }
+  if (p.report) {
+    auto report = std::make_unique<DayReport>(
         *p.report, Plant(p.flow.plant, make_fluid(p.fluid).specific_heat), *weather_,
-        files_ ? context.output_folder : std::filesystem::path(), context.restart_time));
+        files_ ? context.output_folder : std::filesystem::path(), context.restart_time);
+    report->take_stock(inventory_of(accepted_.setup()));
+    add_observer(std::move(report));
+  }
 }
 
 Interface Tank::initialise() {
@@ -130,6 +167,7 @@ StepReport Tank::accept_step() {
   side_ = now.side - before.side, roof_ = now.roof - before.roof, ground_ = now.ground - before.ground;
   std::swap(accepted_, next_);
   control_state_ = control_->state();
+  look_at_bending();
   for (const BedStep& s : steps_) peak_flow_ = std::max(peak_flow_, std::abs(s.flow.mass_flow));
   for (const std::string& sentence : accepted_.take_warnings())
     if (files_) log::warn("{}", sentence);
@@ -139,6 +177,24 @@ StepReport Tank::accept_step() {
     for (const auto& observer : observers_) observer->record(r);
   }
   return {.dt = step_.dt};
+}
+
+void Tank::look_at_bending() {
+  constexpr double every = 2 * 3600;  // [s]
+  const double end = step_.time + step_.dt;
+  if (!accepted_.shell() || accepted_.contact() ||
+      std::floor(end / every + 1e-9) == std::floor(step_.time / every + 1e-9))
+    return;
+  const Rings& rings = *accepted_.setup().rings;
+  const std::vector<double>& hoop = accepted_.stress().hoop;
+  const WallBending bent =
+      wall_bending(rings, *accepted_.setup().steel, hoop, accepted_.shell()->temperature());
+  bending_.rings = std::max(bending_.rings, *std::max_element(hoop.begin(), hoop.end()));
+  for (std::size_t i = 0; i < hoop.size(); ++i) {
+    if (bent.hoop[i] > bending_.shell) bending_.shell = bent.hoop[i], bending_.shell_z = rings.z[i];
+    if (std::abs(bent.axial[i]) > bending_.axial)
+      bending_.axial = std::abs(bent.axial[i]), bending_.axial_z = rings.z[i], bending_.axial_time = end;
+  }
 }
 
 TankRecord Tank::record() const {

@@ -11,6 +11,13 @@
 
 namespace couplet::thermocline {
 
+/// What bending, which the rings leave out, would have made of the wall; looked at every two hours.
+struct BendingSeen {
+  double rings = 0, shell = 0,
+         shell_z = 0;  ///< largest hoop stress, as rings and with bending, and where [Pa], [m]
+  double axial = 0, axial_z = 0, axial_time = 0;  ///< largest bending stress, where and when [Pa], [m], [s]
+};
+
 /// The tank as a participant: runs the elements that the YAML asks for. A tank is small, so every rank
 /// computes all of it; rank 0 writes.
 class Tank final : public Participant {
@@ -36,6 +43,7 @@ class Tank final : public Participant {
 
  private:
   TankRecord record() const;
+  void look_at_bending();
   Exchange given() const;
   std::vector<double> received(const Exchange& in, const char* name) const;
 
@@ -50,6 +58,7 @@ class Tank final : public Participant {
   Step step_;
   Speed speed_;
   double peak_flow_ = 0;                    // largest |m| of this run [kg/s]
+  BendingSeen bending_;                     // of this run; only where the wall is of rings
   std::unique_ptr<TankOutputFiles> files_;  // on rank 0
   std::optional<WallInterface> wall_;
   // Of the last accepted step, for its record.

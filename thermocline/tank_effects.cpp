@@ -20,6 +20,20 @@ void energy(const TankModel& m, double t, Lines& lines) {
       std::abs(m.imbalance(t)) / turnover));
 }
 
+/// A parabola stands for the profile in each grain: late by d^2/(60 a) for what changes slowly, wrong for
+/// what changes faster than that.
+void lumped_grains(const TankModel& m, Lines& lines) {
+  const Filler& filler = m.setup().filler;
+  double largest = 0;
+  for (const auto& run : m.bed().grid().runs)
+    if (run.layer.porosity < 1) largest = std::max(largest, run.layer.diameter);
+  if (largest == 0) return;
+  lines.push_back(fmt::format(
+      "grains: shells: 1 takes one temperature a grain and a parabola inside it (linear driving force); "
+      "grains of {:.3g} mm follow changes slower than {:.3g} s, five shells are within 2 % of all",
+      1e3 * largest, largest * largest * filler.volumetric() / (60 * filler.conductivity)));
+}
+
 void fluid(const TankModel& m, double peak_flow, Lines& lines) {
   if (m.inversion().depth > 0.01)
     lines.push_back(fmt::format(
@@ -34,7 +48,14 @@ void fluid(const TankModel& m, double peak_flow, Lines& lines) {
         "density: that of the {} was kept at {:.1f} kg/m^3; from {:.0f} to {:.0f} degC it falls from {:.0f} "
         "to {:.0f} (fluid.real-density)",
         f.name, f.density, celsius(cold), celsius(hot), f.real->at(cold), f.real->at(hot)));
+  if (m.bed().shells() == 1) lumped_grains(m, lines);
   if (peak_flow == 0) return;
+  if (!m.setup().parameters.pump) {
+    const PressureLoss loss = pressure_loss(m.bed().grid(), f, m.bed().fluid(), peak_flow, m.bed().area());
+    lines.push_back(fmt::format(
+        "pressure: the bed's {:.3g} kPa at the largest flow, {:.3g} kW of a pump, were left out (pump)",
+        1e-3 * loss.loss(), 1e-3 * pump_power(loss, f, m.bed().bottom(), peak_flow, 0.7)));
+  }
   std::string layers;
   for (const auto& run : m.bed().grid().runs)
     layers += fmt::format("{}{:.3g}", layers.empty() ? "" : ", ",
@@ -65,7 +86,7 @@ void surroundings(const TankModel& m, const Ambient& air, Lines& lines) {
                               1e-6 * area * film.coefficient * (wall - film.reference)));
 }
 
-void wall(const TankModel& m, Lines& lines) {
+void wall(const TankModel& m, const BendingSeen& bending, Lines& lines) {
   const auto& rings = m.setup().rings;
   const double diameter = m.setup().parameters.diameter;
   if (m.shell() && !m.mechanics() && !m.contact()) {
@@ -83,10 +104,18 @@ void wall(const TankModel& m, Lines& lines) {
     // beta^4 = 3 (1 - nu^2)/(a^2 e^2): edge effects of a cylinder fade as exp(-beta z).
     const double nu = m.setup().steel->poissons_ratio;
     const double e = *std::max_element(rings->thickness.begin(), rings->thickness.end());
-    lines.push_back(fmt::format(
-        "bending of the wall was left out: it rounds off what changes within {:.2f} m, such as the steps "
-        "between plates (external-wall)",
-        std::sqrt(diameter / 2 * e) / std::pow(3 * (1 - nu * nu), 0.25)));
+    std::string line =
+        fmt::format("bending of the wall was left out: it rounds off what changes within {:.2f} m",
+                    std::sqrt(diameter / 2 * e) / std::pow(3 * (1 - nu * nu), 0.25));
+    if (bending.rings > 0)
+      line += fmt::format(
+          "; the largest hoop stress of {:.0f} MPa becomes {:.0f} at z = {:.2f} m, and the wall bends with "
+          "up to {:.0f} "
+          "MPa along z, at z = {:.2f} m and t = {:.6g} s, {} (external-wall computes it)",
+          1e-6 * bending.rings, 1e-6 * bending.shell, bending.shell_z, 1e-6 * bending.axial, bending.axial_z,
+          bending.axial_time,
+          bending.axial > 0.5 * bending.rings ? "which matters" : "small beside the hoop stress");
+    lines.push_back(line);
   }
   if (!m.mechanics() && !m.contact()) return;
   const auto slip = m.mechanics() ? m.mechanics()->slip() : m.contact()->slip();
@@ -122,9 +151,11 @@ std::vector<std::string> Tank::judge_left_out_effects() {
   fluid(m, peak_flow_, lines);
   surroundings(m, weather_->at(t), lines);
   if (m.bed().fallbacks() > 0)
-    lines.push_back(fmt::format("bed: {} of {} steps were taken at first order in time to stay within bounds",
-                                m.bed().fallbacks(), speed_.bed_steps));
-  wall(m, lines);
+    lines.push_back(fmt::format("bed: {} of {} steps {}", m.bed().fallbacks(), speed_.bed_steps,
+                                m.bed().melts()
+                                    ? "ended before the temperatures of what melts agreed to 1e-6 K"
+                                    : "were taken at first order in time to stay within bounds"));
+  wall(m, bending_, lines);
   thermocline::speed(speed_, m.bed().grid().size(), lines);
   return lines;
 }

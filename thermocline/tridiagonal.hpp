@@ -27,22 +27,23 @@ class Tridiagonal {
 };
 
 inline void Tridiagonal::factorise(const double* a, const double* b, const double* c) {
-  const int m = n_ / 2;
-  double previous = 0;  // 1/d of the row before
-  for (int i = 0; i < m; ++i) {
-    low_[i] = i > 0 ? a[i] * previous : 0;
-    previous = inverse_[i] = 1 / (b[i] - (i > 0 ? low_[i] * c[i - 1] : 0));
-    up_[i] = c[i] * previous;
-  }
-  previous = 0;
-  for (int i = n_ - 1; i > m; --i) {
-    up_[i] = i < n_ - 1 ? c[i] * previous : 0;
-    previous = inverse_[i] = 1 / (b[i] - (i < n_ - 1 ? up_[i] * a[i + 1] : 0));
-    low_[i] = a[i] * previous;
-  }
+  const int m = n_ / 2, last = n_ - 1, above = last - m;  // `above` rows over the middle, m or m - 1 of them
+  double below_it = 0, above_it = 0;                      // 1/d of the rows before, from the two ends
+  const auto up_row = [&](int i) {
+    low_[i] = i > 0 ? a[i] * below_it : 0;
+    below_it = inverse_[i] = 1 / (b[i] - (i > 0 ? low_[i] * c[i - 1] : 0));
+    up_[i] = c[i] * below_it;
+  };
+  const auto down_row = [&](int i) {
+    up_[i] = i < last ? c[i] * above_it : 0;
+    above_it = inverse_[i] = 1 / (b[i] - (i < last ? up_[i] * a[i + 1] : 0));
+    low_[i] = a[i] * above_it;
+  };
+  for (int j = 0; j < above; ++j) up_row(j), down_row(last - j);  // side by side: neither waits for the other
+  if (above < m) up_row(m - 1);
   low_[m] = m > 0 ? a[m] * inverse_[m - 1] : 0;
-  up_[m] = m < n_ - 1 ? c[m] * inverse_[m + 1] : 0;
-  inverse_[m] = 1 / (b[m] - (m > 0 ? low_[m] * c[m - 1] : 0) - (m < n_ - 1 ? up_[m] * a[m + 1] : 0));
+  up_[m] = m < last ? c[m] * inverse_[m + 1] : 0;
+  inverse_[m] = 1 / (b[m] - (m > 0 ? low_[m] * c[m - 1] : 0) - (m < last ? up_[m] * a[m + 1] : 0));
 }
 
 inline void Tridiagonal::solve(double* x) const {

@@ -32,6 +32,9 @@ class Weather final : public AmbientSource {
   double mean_temperature() const override { return mean_temperature_; }  ///< of the whole record [K]
   /// Direct normal irradiation between two times [J/m^2].
   double irradiation(double from, double to) const;
+  /// It is known where the sun stands.
+  bool has_site() const { return hours_.site.has_value(); }
+  const std::string& source() const { return hours_.source; }
   /// What was mended in the record, with file:line.
   const std::vector<std::string>& warnings() const { return hours_.warnings; }
   /// Of the day in which t lies, as MM-DD.

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
-
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "thermocline/weather_columns.hpp"
 #include "thermocline/weather_date.hpp"
 #include "thermocline/weather_text.hpp"
 
@@ -19,14 +18,6 @@ struct Column {
 /// In the order of weather_quantities: irradiance, temperature, wind, humidity, pressure.
 constexpr std::array<Column, 5> columns{{{14, 9999}, {6, 99.9}, {21, 999}, {8, 999}, {9, 999999}}};
 
-int whole(const std::vector<std::string>& fields, std::size_t column, const char* name,
-          const std::string& place) {
-  const double value = number_in(fields[column], name, place);
-  if (!(std::abs(value) < 1e4) || value != std::floor(value))
-    throw Error("{}: {} must be a whole number, not '{}'.", place, name, fields[column]);
-  return static_cast<int>(value);
-}
-
 /// LOCATION,city,region,country,source,number,latitude,longitude,time zone,altitude
 WeatherHours::Site read_site(const std::string& line, const std::string& place) {
   const std::vector<std::string> fields = split(line, ',');
@@ -35,11 +26,7 @@ WeatherHours::Site read_site(const std::string& line, const std::string& place) 
   const double latitude = number_in(fields[6], "the latitude", place);
   const double longitude = number_in(fields[7], "the longitude", place);
   const double zone = number_in(fields[8], "the time zone", place);
-  if (!(std::abs(latitude) <= 90 && std::abs(longitude) <= 180 && std::abs(zone) <= 14))
-    throw Error("{}: latitude {:g}, longitude {:g} and time zone {:g} are no place on earth.", place,
-                latitude, longitude, zone);
-  constexpr double seconds_a_degree = 240;  // the earth turns by 15 degrees an hour
-  return {latitude, longitude * seconds_a_degree - 3600 * zone};
+  return site_of(latitude, longitude, zone, place);
 }
 
 }  // namespace
@@ -57,9 +44,10 @@ WeatherHours read_weather_epw(const std::filesystem::path& file) {
     const std::vector<std::string> fields = split(lines[i], ',');
     if (fields.size() < fewest_columns)
       throw Error("{}: {} columns; an EPW record has 35.", place, fields.size());
-    const int m = whole(fields, month, "the month", place), d = whole(fields, day, "the day", place);
+    const int m = whole_number(fields, month, "the month", place),
+              d = whole_number(fields, day, "the day", place);
     if (m == 2 && d == 29) continue;  // a reference year has 365 days
-    const int h = whole(fields, hour, "the hour", place);
+    const int h = whole_number(fields, hour, "the hour", place);
     if (h < 1 || h > hours_a_day)
       throw Error("{}: the hour is {}; it must be from 1 to {}.", place, h, hours_a_day);
     int number = 0;
@@ -78,11 +66,6 @@ WeatherHours read_weather_epw(const std::filesystem::path& file) {
   WeatherHours result = hours.finish(end_of_hour);
   result.site = read_site(lines[0], hours.place(1));
   return result;
-}
-
-WeatherHours read_weather(const std::filesystem::path& file) {
-  const std::filesystem::path plain = file.extension() == ".gz" ? file.stem() : file;
-  return plain.extension() == ".epw" ? read_weather_epw(file) : read_weather_csv(file);
 }
 
 }  // namespace couplet::thermocline

@@ -52,7 +52,19 @@ WeatherHours read_weather_csv(const std::filesystem::path& file);
 /// ends then, states at that moment) [epw]. Its codes for missing values are treated as gaps.
 WeatherHours read_weather_epw(const std::filesystem::path& file);
 
-/// By the file name: .epw, else CSV; ".gz" behind either is taken off first.
+/// SAM CSV, the format of NREL's NSRDB: site in two lines, then Year,Month,Day,Hour,Minute,... with DNI, air
+/// temperature, wind, humidity or dew point, pressure [mbar]; several records an hour are averaged.
+WeatherHours read_weather_sam(const std::filesystem::path& file);
+
+/// NREL's TMY3: site in one line, hours 01:00 to 24:00, the irradiance of the hour that ends then.
+WeatherHours read_weather_tmy3(const std::filesystem::path& file);
+
+/// The typical year of PVGIS as CSV, clock UTC, values of the moment: the mean of an hour is that of its
+/// ends.
+WeatherHours read_weather_pvgis(const std::filesystem::path& file);
+
+/// By the file's first lines: EPW, PVGIS, TMY3, SAM or NSRDB, else the project's own CSV; ".gz" behind any is
+/// decompressed.
 WeatherHours read_weather(const std::filesystem::path& file);
 
 /// The same record with each hour's irradiance replaced by the mean over that hour of all days of its month

@@ -32,9 +32,11 @@ void declare_file(config::Section& s, WeatherParameters& p) {
   s.value("file", p.file)
       .required()
       .doc(
-          "hourly weather: EnergyPlus (.epw) or CSV with the columns hour (of the year, from 0), dni_W_m2 "
-          "(mean of the "
-          "hour), T_degC, wind_m_s, rh_pct, p_Pa; either may be compressed (.gz)");
+          "hourly weather: EnergyPlus (EPW), SAM or NSRDB, TMY3, the typical year of PVGIS (CSV), or a CSV "
+          "with the "
+          "columns hour (of the year, from 0), dni_W_m2 (mean of the hour), T_degC, wind_m_s, rh_pct, p_Pa; "
+          "all may be "
+          "compressed (.gz)");
   s.value("shift", p.shift_hours)
       .range(-12, 12)
       .doc("hours by which the simulation's clock is ahead of the file's");
@@ -42,6 +44,45 @@ void declare_file(config::Section& s, WeatherParameters& p) {
       .doc(
           "monthly-mean: each hour has the mean irradiance of that hour in its month, as tables of average "
           "days give it");
+  s.optional_section<SiteParameters>(
+      "site", p.site, [](config::Section& q, SiteParameters& site) { declare(q, site); },
+      "for files that do not say it: the sun's height follows from it (solar-absorptance)");
+  declare_period(s, p);
+}
+
+void declare_air(config::Section& s, ClearSky& sky) {
+  s.value("altitude", sky.altitude).unit("m").range(0, 2500).doc("of the site above the sea");
+  s.value("coldest", sky.coldest).unit("K").range(200, 340).doc("temperature of the air at 03:00");
+  s.value("warmest", sky.warmest).unit("K").range(200, 340).doc("temperature of the air at 15:00");
+  s.value("wind", sky.wind).unit("m/s").range(0, 80).doc("speed of the wind");
+  s.value("humidity", sky.humidity).range(0, 1).doc("relative humidity of the air");
+}
+
+void declare_smooth_days(config::Section& s, WeatherParameters& p) {
+  SmoothDays& d = p.smooth;
+  s.value("latitude", d.latitude)
+      .unit("deg")
+      .range(-90, 90)
+      .required()
+      .doc("of the site, north positive; the length of the days follows from it");
+  s.value("daily-sums", d.daily_sums)
+      .unit("J/m^2")
+      .required()
+      .doc("mean daily direct normal irradiation of the 12 months, for example 7.2 kWh/m^2");
+  s.value("form-n", d.n).doc("n of (1 - |2 t/T|^n)^p, one value or 12: 1 a peak, 2 round, large: a box");
+  s.value("form-p", d.p).doc("p of the same: small: steep sides, large: a narrow bell");
+  s.value("day-length", d.length).doc("T over the time from sunrise to sunset, one value or 12");
+  for (const char* name : {"daily-sums", "form-n", "form-p", "day-length"})
+    s.check(
+        [&d, name] {
+          std::string about;
+          const std::string problem = problem_of(d, about);
+          return about == name ? problem : "";
+        },
+        name);
+  s.value("air", p.file)
+      .doc("a weather file whose air, wind, humidity and pressure are taken; absent: the keys that follow");
+  declare_air(s, p.sky);
   declare_period(s, p);
 }
 
@@ -51,11 +92,7 @@ void declare_clear_sky(config::Section& s, WeatherParameters& p) {
       .range(-90, 90)
       .required()
       .doc("of the site, north positive; the sun of cloudless days follows from it");
-  s.value("altitude", p.sky.altitude).unit("m").range(0, 2500).doc("of the site above the sea");
-  s.value("coldest", p.sky.coldest).unit("K").range(200, 340).doc("temperature of the air at 03:00");
-  s.value("warmest", p.sky.warmest).unit("K").range(200, 340).doc("temperature of the air at 15:00");
-  s.value("wind", p.sky.wind).unit("m/s").range(0, 80).doc("speed of the wind");
-  s.value("humidity", p.sky.humidity).range(0, 1).doc("relative humidity of the air");
+  declare_air(s, p.sky);
   declare_period(s, p);
 }
 
@@ -84,19 +121,41 @@ WeatherHours constant_year(const WeatherParameters& p) {
 WeatherHours record_of(const WeatherParameters& p, const std::filesystem::path& case_folder) {
   if (p.kind == WeatherKind::file) {
     WeatherHours record = read_weather(case_folder / p.file);
+    constexpr double hour = 3600, seconds_a_degree = 240;  // the earth turns by 15 degrees an hour
+    if (p.site)
+      record.site = WeatherHours::Site{p.site->latitude,
+                                       p.site->longitude * seconds_a_degree - p.site->time_zone * hour};
     return p.mean_days ? with_mean_days(std::move(record)) : record;
+  }
+  if (p.kind == WeatherKind::smooth_days) {
+    ClearSky sky = p.sky;
+    sky.latitude = p.smooth.latitude;
+    WeatherHours record =
+        with_smooth_days(p.file.empty() ? clear_sky_year(sky) : read_weather(case_folder / p.file), p.smooth);
+    if (p.file.empty()) record.source = "smooth days";
+    return record;
   }
   return p.kind == WeatherKind::clear_sky ? clear_sky_year(p.sky) : constant_year(p);
 }
 
 }  // namespace
 
+void declare(config::Section& s, SiteParameters& p) {
+  s.value("latitude", p.latitude).unit("deg").range(-90, 90).required().doc("north positive");
+  s.value("longitude", p.longitude).unit("deg").range(-180, 180).required().doc("east positive");
+  s.value("time-zone", p.time_zone)
+      .range(-14, 14)
+      .required()
+      .doc("hours that the file's clock is ahead of Greenwich");
+}
+
 void declare(config::Section& section, WeatherParameters& p) {
   section.variant<WeatherKind>(
       "type", p.kind,
       {{"constant", WeatherKind::constant, [&](config::Section& s) { declare_constant(s, p); }},
        {"file", WeatherKind::file, [&](config::Section& s) { declare_file(s, p); }},
-       {"clear-sky", WeatherKind::clear_sky, [&](config::Section& s) { declare_clear_sky(s, p); }}},
+       {"clear-sky", WeatherKind::clear_sky, [&](config::Section& s) { declare_clear_sky(s, p); }},
+       {"smooth-days", WeatherKind::smooth_days, [&](config::Section& s) { declare_smooth_days(s, p); }}},
       "where the sun and the air come from");
 }
 

@@ -3,21 +3,32 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/config/section.hpp"
 #include "thermocline/clear_sky.hpp"
+#include "thermocline/smooth_days.hpp"
 #include "thermocline/weather.hpp"
 
 namespace couplet::thermocline {
 
-enum class WeatherKind { constant, file, clear_sky };
+enum class WeatherKind { constant, file, clear_sky, smooth_days };
+
+/// Where on earth a weather file belongs, for files that do not say it.
+struct SiteParameters {
+  double latitude = 0, longitude = 0;  ///< [deg], north and east positive
+  double time_zone = 0;                ///< hours that the file's clock is ahead of Greenwich
+};
+void declare(config::Section& section, SiteParameters& site);
 
 /// What the section `weather` of the YAML says.
 struct WeatherParameters {
   WeatherKind kind = WeatherKind::constant;
   std::string file;
+  std::optional<SiteParameters> site;
   ClearSky sky;
+  SmoothDays smooth;
   int shift_hours = 0;
   bool mean_days = false;
   std::string from = "01-01", to;  ///< dates MM-DD; empty: the whole year

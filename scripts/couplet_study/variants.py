@@ -13,7 +13,7 @@ from couplet_run import Task, expect
 def variants_of(case):
     """(participant, {name: {full key: value}})."""
     study = case.study
-    unknown = set(study) - {"participant", "variants", "sweeps"}
+    unknown = set(study) - {"participant", "variants", "sweeps", "optimise"}
     expect(not unknown, f"{case.file}: study: unknown key '{next(iter(unknown), '')}'; valid are participant, variants, sweeps, or those of "
                         "a study by axes.")
     participant = study.get("participant", next(iter(case.participants), None))

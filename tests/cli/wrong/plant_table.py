@@ -25,6 +25,9 @@ def cases(Case, run):
         tank("hot below cold", """
 case.yaml:23:7: participants.tank.flow.hot: 'hot' must be above 'cold'.
 """, ("hot: 390 degC", "hot: 280 degC")),
+        tank("temperature without its unit", """
+case.yaml:17:5: participants.tank.flow: hot is 390 K, that is 116.9 degC, and solar salt is no liquid below 238 degC. A number without a unit is in K; write '390 degC' if that is meant.
+""", ("hot: 390 degC", "hot: 390"), ("cold: 290 degC", "cold: 290")),
         tank("cut-off wider than the plant's span", """
 case.yaml:25:7: participants.tank.flow.cut-off: must be smaller than the step from 'cold' to 'hot'.
 """, ("cold: 290 degC", "cold: 290 degC\n      cut-off: 120 K")),

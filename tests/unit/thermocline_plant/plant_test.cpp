@@ -81,6 +81,23 @@ TEST(Plant, cut_off_looks_at_the_mixed_temperature) {
   EXPECT_EQ(plant.flows(0, zero + 374.99, zero + 290, PlantMode::discharge).mode, PlantMode::standby);
 }
 
+TEST(Plant, cut_off_at_the_outlet_does_not_care_what_is_mixed_in) {
+  PlantParameters p = andasol;
+  p.cut_off_at = PlantParameters::CutOffAt::outlet;
+  const Plant plant(p, salt);
+  const double field = plant.field_heat(700), dusk = plant.field_heat(200);
+  EXPECT_EQ(plant.flows(field, zero + 390, zero + 304.99, PlantMode::charge).mode, PlantMode::charge);
+  EXPECT_EQ(plant.flows(field, zero + 390, zero + 305.01, PlantMode::charge).mode, PlantMode::standby);
+  for (const double heat : {0.0, dusk}) {
+    EXPECT_EQ(plant.flows(heat, zero + 375.01, zero + 290, PlantMode::discharge).mode, PlantMode::discharge);
+    EXPECT_EQ(plant.flows(heat, zero + 374.99, zero + 290, PlantMode::discharge).mode, PlantMode::standby);
+  }
+  // The mixed rule goes on in both.
+  const Plant mixed(andasol, salt);
+  EXPECT_EQ(mixed.flows(field, zero + 390, zero + 305.01, PlantMode::charge).mode, PlantMode::charge);
+  EXPECT_EQ(mixed.flows(dusk, zero + 374.99, zero + 290, PlantMode::discharge).mode, PlantMode::discharge);
+}
+
 TEST(Plant, starts_again_only_within_the_restart_tolerance) {
   const Plant plant(andasol, salt);
   const double sun = plant.field_heat(800);

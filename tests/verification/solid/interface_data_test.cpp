@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/thermal_strain.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet {
@@ -92,6 +93,70 @@ TEST(InterfaceData, stress_of_free_expansion_is_zero) {
   double worst = 0;
   for (const Tensor3& s : solid->cell_stress(solid->point_displacement())) worst = std::max(worst, s.norm());
   EXPECT_LT(worst, 1e-3 * 200e9 * 1.2e-5 * 100 * 1e-6);
+}
+
+TEST(FaceInterpolation, is_exact_for_a_linear_temperature_along_a_strip) {
+  // Faces along the height of a wall, one wide, sections of changing height; points between them, at their
+  // edges and behind them in the wall.
+  std::vector<Vec3> faces;
+  std::vector<double> values;
+  for (int k = 0; k < 10; ++k) faces.emplace_back(9.1, 0, 0.05 * k * (1 + 0.1 * k));
+  for (const Vec3& f : faces) values.push_back(400 + 150 * f.z());
+  std::vector<Vec3> points;
+  for (double z = 0; z < faces.back().z(); z += 0.013)
+    for (const double r : {9.1, 9.12}) points.emplace_back(r, 0.001, z);
+  const FaceInterpolation at(faces, points);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_NEAR(at.value(i, values), 400 + 150 * points[i].z(), 1e-9) << "z = " << points[i].z();
+}
+
+TEST(FaceInterpolation, is_exact_for_a_linear_temperature_on_a_plane) {
+  std::vector<Vec3> faces, points;
+  std::vector<double> values;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 5; ++j) faces.emplace_back(0.5, 0.1 * i, 0.08 * j);
+  const auto linear = [](const Vec3& x) { return 300 + 70 * x.y() - 40 * x.z(); };
+  for (const Vec3& f : faces) values.push_back(linear(f));
+  for (double y = 0.06; y < 0.44; y += 0.03)
+    for (double z = 0.05; z < 0.27; z += 0.03) points.emplace_back(0.4, y, z);
+  const FaceInterpolation at(faces, points);
+  for (std::size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(at.value(i, values), linear(points[i]), 1e-9);
+}
+
+TEST(FaceInterpolation, stays_within_its_faces) {
+  std::vector<Vec3> faces, points;
+  std::vector<double> values;
+  for (int k = 0; k < 10; ++k) faces.emplace_back(1, 0, k), values.push_back(k < 5 ? 300 : 400);
+  for (double z = -2; z < 12; z += 0.1) points.emplace_back(1, 0, z);
+  const FaceInterpolation at(faces, points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_GE(at.value(i, values), 300);
+    EXPECT_LE(at.value(i, values), 400);
+  }
+  const FaceInterpolation one(std::vector<Vec3>{Vec3(0, 0, 0)}, points);
+  EXPECT_EQ(one.value(3, std::vector<double>{351}), 351);
+}
+
+TEST(InterfaceData, the_solid_has_the_given_temperature_along_the_interface) {
+  // Linear along y on the face x = max; the points at the edges between faces, too. With the nearest face's
+  // value they would be off by half a cell, 40/3/2 K.
+  const auto solid = testing::make_solid(raw_box(), pressed_box());
+  const Interface interface = solid->initialise();
+  Exchange in = given(interface, 0, 300);
+  for (std::size_t f = 0; f < interface.face_centres.size(); ++f)
+    in["temperature"][f] = 300 + 40 * interface.face_centres[f].y();
+  take(*solid, in);
+  int found = 0;
+  for (const auto& effect : solid->effects())
+    if (const auto* strain = dynamic_cast<const ThermalStrain*>(effect.get())) {
+      const std::vector<double> points = strain->point_temperature();
+      const auto& places = solid->mesh().reference_points;
+      for (std::size_t v = 0; v < points.size(); ++v, ++found)
+        if (places[v].y() > 0.2 && places[v].y() < 0.8) {
+          EXPECT_NEAR(points[v], 300 + 40 * places[v].y(), 1e-9);
+        }
+    }
+  EXPECT_GT(found, 0);
 }
 
 }  // namespace

@@ -99,6 +99,16 @@ TEST(Closures, wakao_and_beek_have_the_values_of_their_formulae) {
   EXPECT_NEAR(c.wall, 2 * zehner_schluender(0.22, 2.2 / k) * k / 0.0046, 1e-3 * c.wall);
 }
 
+TEST(Closures, wakao_and_kaguei_are_those_of_the_paper) {
+  // By hand: Re = 32, Pr = 8: Re^0.6 = 2^3, Pr^(1/3) = 2, Nu = 2 + 1.1 * 2 * 8.
+  EXPECT_NEAR(wakao_nusselt(32, 8), 19.6, 1e-12);
+  EXPECT_NEAR(wakao_nusselt(0, 8), 2, 1e-12);
+  // And what the bed takes: a fluid with these numbers, k = 0.5, d = 0.02: h = 19.6 * 0.5/0.02.
+  const Fluid fluid{"fluid", 1000, 4000, Table(0.5), Table(1e-3), 1, 1e4};  // Pr = 8
+  const LayerClosure layer({}, fluid, Filler{}, 0.4, 0.02);
+  EXPECT_NEAR(layer.at(350, MassFlux(1.6)).film, 490, 1e-9);  // Re = 1.6 * 0.02/1e-3
+}
+
 TEST(Closures, a_stagnant_bed_of_like_materials_conducts_as_they_do) {
   EXPECT_NEAR(zehner_schluender(0.4, 1), 1, 1e-12);
   // Continuous where the formula is 0/0.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "thermocline/mechanics.hpp"
+#include "thermocline/wall_bending.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -182,6 +183,47 @@ TEST(Wall, carries_its_own_weight_and_the_roof) {
   EXPECT_NEAR(stress.axial[0], -weight / 0.02, 0.01 * weight / 0.02);
   // (5.23)
   EXPECT_NEAR(stress.hoop[0], (p.fluid[0] + p.vertical[0] / 3) * 18 / (2 * 0.02), 1e-6 * stress.hoop[0]);
+}
+
+TEST(Bending, of_a_step_in_temperature_is_the_closed_form) {
+  // 204 and 304 degC, E and alpha of the middle: 0.293 E alpha 100 K = 79 MPa, at a quarter wave from the
+  // step.
+  ShellParameters shell;
+  shell.plates = {{14, 0.019}};
+  const BedGrid bed({{14, 0.22, 0.0046}}, 1400);
+  const Rings rings(shell, bed, 18.2, 0);
+  Steel steel = steel_a537();
+  steel.youngs_modulus = Table(1.88e11), steel.expansion = Table(1.44e-5);
+  std::vector<double> temperature(1400, 477.15), hoop(1400, 0.0);
+  std::fill(temperature.begin() + 700, temperature.end(), 577.15);
+  const WallBending bent = wall_bending(rings, steel, hoop, temperature);
+  const double scale = 1.88e11 * 1.44e-5 * 100, e = 0.019, a = 9.1, nu = 0.3;
+  const double beta = std::pow(3 * (1 - nu * nu), 0.25) / std::sqrt(a * e);
+  const double peak = scale * std::sqrt(3 / (1 - nu * nu)) / 2 * std::exp(-M_PI / 4) * std::sin(M_PI / 4);
+  const auto highest = std::max_element(bent.axial.begin(), bent.axial.end());
+  RecordProperty("peak", std::to_string(1e-6 * *highest));
+  RecordProperty("closed", std::to_string(1e-6 * peak));
+  EXPECT_NEAR(peak, 79.2e6, 0.1e6);
+  EXPECT_NEAR(*highest, peak, 0.005 * peak);
+  EXPECT_NEAR(std::abs(rings.z[highest - bent.axial.begin()] - 7), M_PI / 4 / beta, 0.02);
+  // Mean hoop stress: half of E alpha dT on either side, tension on the cold one, and both sides fade.
+  EXPECT_NEAR(bent.hoop[699], scale / 2, 0.03 * scale);
+  EXPECT_NEAR(bent.hoop[700], -scale / 2, 0.03 * scale);
+  EXPECT_NEAR(bent.hoop[100], 0, 1e-4 * scale);
+}
+
+TEST(Bending, leaves_what_changes_slowly) {
+  ShellParameters shell;
+  shell.plates = {{14, 0.019}};
+  const BedGrid bed({{14, 0.22, 0.0046}}, 500);
+  const Rings rings(shell, bed, 18.2, 0);
+  std::vector<double> temperature(500, 500.0), hoop;
+  for (const double z : rings.z) hoop.push_back(1e8 - 6e6 * z);  // a fluid's
+  const WallBending bent = wall_bending(rings, steel_a537(), hoop, temperature);
+  for (std::size_t i = 0; i < hoop.size(); ++i) {
+    EXPECT_NEAR(bent.hoop[i], hoop[i], 1e-6 * hoop[i]);
+    EXPECT_NEAR(bent.axial[i], 0, 1e2);
+  }
 }
 
 }  // namespace

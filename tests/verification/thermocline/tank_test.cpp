@@ -110,6 +110,79 @@ TEST(Elements, thin_cells_on_a_heavy_plate_cool_without_swings) {
   EXPECT_GT(before, 150 + zero_celsius);
 }
 
+/// Its roof's cells answer within microseconds: they are solved with the gas, not beside it.
+TEST(Elements, a_blanket_of_a_micrometre_loses_as_a_bare_tank_does) {
+  TankParameters p = solar_one_parameters();
+  p.bed.cells = 50;
+  p.bed.initial_temperature = kelvin(304);
+  p.flow = {};
+  p.insulation->thickness = 1e-6;
+  TankRun run(p);
+  run.until(6 * 3600, 900);
+  const TankModel& m = run.model();
+  EXPECT_LT(std::abs(m.imbalance(run.time)), 1e-6 * m.ledger().turnover);
+  EXPECT_LT(run.speed.bed_steps, 10000);
+  // Roof: gas and radiation from 304 degC to a roof between that and the air's 20 degC.
+  const double area = m.bed().area(), roof = m.ledger().roof / run.time / area;
+  RecordProperty("roof", std::to_string(roof));
+  EXPECT_GT(roof, 300);
+  EXPECT_LT(roof, 3000);
+}
+
+/// Either way of joining roof and gas is of first order; on a blanket that both can do they agree.
+TEST(Elements, the_implicit_answer_of_the_roof_is_that_of_its_explicit_steps) {
+  std::vector<double> lost;
+  for (const double step : {30.0, 900.0}) {
+    TankParameters p = solar_one_parameters();
+    p.bed.cells = 5;
+    p.bed.initial_temperature = kelvin(304);
+    p.flow = {}, p.ground.reset();
+    p.insulation->thickness = 0.04;  // cells of 5 mm: their time constant is 6 s, 900 s are solved implicitly
+    p.shell.reset(), p.mechanics.reset();
+    p.exchange_step = step;
+    TankRun run(p);
+    run.until(4 * 3600, 900);
+    lost.push_back(run.model().ledger().roof);
+  }
+  RecordProperty("ratio", std::to_string(lost[1] / lost[0]));
+  EXPECT_NEAR(lost[1] / lost[0], 1, 0.01);
+}
+
+TEST(Column, what_it_answers_to_a_flow_is_what_its_step_does) {
+  const Insulator wool = mineral_wool();
+  for (const double thickness : {0.4, 1e-3}) {
+    Column column({{wool, thickness, 8}}, 2.0);
+    column.set_steady(500, 300);
+    const Film outer{12, 290};
+    const Film answer = column.inner_response(60, outer);
+    const double own = column.inner_conductance(), power = 700;  // W
+    column.step(60, power, outer);
+    // Its surface then has T_0 + q/own; that must be what the answer says for this flow.
+    const double surface = column.inner_temperature() + power / 2 / own;
+    EXPECT_NEAR(answer.coefficient * (surface - answer.reference), power / 2, 1e-6 * power) << thickness;
+  }
+}
+
+TEST(Bed, without_filler_has_the_fluids_temperature_where_grains_would_be) {
+  for (const int shells : {1, 5})
+    for (const Advection advection : {Advection::upwind, Advection::tvd, Advection::implicit}) {
+      TankParameters p = solar_one_parameters();
+      p.bed.cells = 40, p.bed.shells = shells, p.bed.advection = advection;
+      p.bed.layers = {{6, 1, 0.01}, {6, 0.3, 0.01}};
+      TankRun run(p);
+      run.until(3 * 3600, 900);
+      std::vector<double> filler;
+      run.model().bed().filler_temperature(filler);
+      for (int i = 0; i < 40; ++i) {
+        EXPECT_GE(filler[i], kelvin(203.9)) << i;
+        if (i < 20) {
+          EXPECT_NEAR(filler[i], run.model().bed().fluid()[i], 1e-9) << i;
+        }
+      }
+      EXPECT_LT(std::abs(run.model().imbalance(run.time)), 1e-6 * run.model().ledger().turnover);
+    }
+}
+
 TEST(Schedule, repeats_its_rows_and_stops_at_the_outlet) {
   Schedule s(solar_one_parameters().flow);
   const double hot = 304 + zero_celsius, cold = 204 + zero_celsius, hour = 3600;

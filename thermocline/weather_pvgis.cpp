@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// PVGIS, the typical year as CSV: lines with latitude and longitude, the year of each month, column names,
+// records by time (UTC), a legend. Values belong to the moment of the record.
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "thermocline/weather_columns.hpp"
+#include "thermocline/weather_text.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+const WeatherColumns::Names names{{{{"Gb(n)"}, {"T2m"}, {"WS10m"}, {"RH"}, {"SP"}}}, {}, 1, -90};
+
+/// The number behind "Latitude (decimal degrees): " and its like among the first lines.
+double number_behind(const std::vector<std::string>& lines, std::size_t end, std::string_view word,
+                     const HourCollector& hours) {
+  for (std::size_t i = 0; i < end; ++i)
+    if (trim(lines[i]).starts_with(word)) {
+      const auto colon = lines[i].find(':');
+      if (colon != std::string::npos)
+        return number_in(lines[i].substr(colon + 1), word, hours.place(int(i) + 1));
+    }
+  throw Error("{}: a PVGIS file says '{} (decimal degrees): ...' in its first lines.", hours.place(1), word);
+}
+
+}  // namespace
+
+WeatherHours read_weather_pvgis(const std::filesystem::path& file) {
+  const std::vector<std::string> lines = read_lines(file);
+  HourCollector hours(file.string());
+  std::size_t head_line = 0;
+  while (head_line < lines.size() && !column_of(csv_fields(lines[head_line]), "time(UTC)")) ++head_line;
+  if (head_line == lines.size())
+    throw Error(
+        "{}: there is no line 'time(UTC),T2m,RH,...': only the typical year (TMY) of PVGIS as CSV is read, "
+        "not "
+        "its hourly or monthly radiation.",
+        hours.place(1));
+  const double latitude = number_behind(lines, head_line, "Latitude", hours),
+               longitude = number_behind(lines, head_line, "Longitude", hours);
+  const WeatherHours::Site site = site_of(latitude, longitude, 0, hours.place(1));
+  const std::vector<std::string> head = csv_fields(lines[head_line]);
+  const auto time = column_of(head, "time(UTC)");
+  const WeatherColumns columns(head, names, hours.place(int(head_line) + 1));
+  for (std::size_t i = head_line + 1; i < lines.size() && !trim(lines[i]).empty(); ++i) {
+    const int line = int(i) + 1;
+    const std::string place = hours.place(line);
+    const std::vector<std::string> fields = csv_fields(lines[i]);
+    const std::string& stamp = fields.at(*time);
+    if (stamp.size() != 13 || stamp[8] != ':')
+      throw Error("{}: '{}' is no time YYYYMMDD:HHMM.", place, stamp);
+    const std::vector<std::string> parts{stamp.substr(4, 2), stamp.substr(6, 2), stamp.substr(9, 2)};
+    const auto number =
+        hour_of_year(whole_number(parts, 0, "the month", place), whole_number(parts, 1, "the day", place),
+                     whole_number(parts, 2, "the hour", place), place);
+    if (number) hours.add(*number, columns.values(fields, place), line);
+  }
+  WeatherHours result = hours.finish(0);
+  result.site = site;
+  // Moments at the begin of each hour: its mean by the trapezoidal rule. The sum over the record stays.
+  const double first = result.dni.front();
+  for (std::size_t h = 0; h < result.dni.size(); ++h)
+    result.dni[h] = 0.5 * (result.dni[h] + (h + 1 < result.dni.size() ? result.dni[h + 1] : first));
+  return result;
+}
+
+WeatherHours read_weather(const std::filesystem::path& file) {
+  const std::filesystem::path plain = file.extension() == ".gz" ? file.stem() : file;
+  if (plain.extension() == ".epw") return read_weather_epw(file);
+  if (plain.extension() == ".json")
+    throw Error("{}:1: JSON is not read; ask for the same year as CSV or EPW.", file.string());
+  const std::vector<std::string> lines = read_lines(file);
+  const std::vector<std::string> first = csv_fields(lines.empty() ? "" : lines[0]),
+                                 second = csv_fields(lines.size() > 1 ? lines[1] : "");
+  if (!lines.empty() && lines[0].starts_with("LOCATION,")) return read_weather_epw(file);
+  if (!lines.empty() && trim(lines[0]).starts_with("Latitude (")) return read_weather_pvgis(file);
+  if (column_of(second, "Date (MM/DD/YYYY)")) return read_weather_tmy3(file);
+  if (column_of(first, "Time Zone") || (column_of(first, "Month") && column_of(first, "Hour")))
+    return read_weather_sam(file);
+  return read_weather_csv(file);
+}
+
+}  // namespace couplet::thermocline
