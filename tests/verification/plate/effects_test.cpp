@@ -52,7 +52,7 @@ Cost cost(bool seat, double damping, double gravity, TimeScheme scheme = TimeSch
   Cost result;
   const long long before_making = allocated;
   ContactParameters p;
-  p.height.text = "-1";
+  p.height.text = fmt::format("{}", -1);
   p.stiffness = 1e3;
   std::unique_ptr<Contact> contact;
   if (seat) contact = std::make_unique<Contact>(share, p, Vec3::UnitZ(), 1);
