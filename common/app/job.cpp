@@ -108,11 +108,18 @@ void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
   std::abort();
 }
 
+/// The first process that has read the case (a guest may not have) speaks for all.
+int speaker(const std::vector<Attendant>& attendants) {
+  for (const Attendant& a : attendants)
+    if (a.case_hash != 0) return a.world_rank;
+  return 0;
+}
+
 int attend(const CommandLine& command_line, const ProgramKind& kind,
            const std::function<int(const Job&)>& run) {
   CaseFile file = read_case(command_line, kind);
   const std::string label = file.participant.empty() ? kind.name : file.participant;
-  Watch watch(MPI_COMM_WORLD, label);
+  Watch watch(shake_hands(MPI_COMM_WORLD), label);
   log::setup(label, 0, command_line.verbosity);
   try {
     const std::vector<Attendant> attendants = roll_call(MPI_COMM_WORLD, introduce(command_line, kind, file));
@@ -130,9 +137,11 @@ int attend(const CommandLine& command_line, const ProgramKind& kind,
     job.enter(Phase::roll_call);
     const Verdict verdict = judge(attendants, file.expected, file.coupled);
     if (!verdict.problem.empty()) {
-      if (world_rank == 0) fmt::print(stderr, "couplet: {}\n", verdict.problem);
+      if (world_rank == speaker(attendants)) fmt::print(stderr, "couplet: {}\n", verdict.problem);
+      all_agree_to_start(MPI_COMM_WORLD, true);
       return exit_configuration;
     }
+    if (!all_agree_to_start(MPI_COMM_WORLD, false)) return exit_configuration;
     MPI_Comm_split(MPI_COMM_WORLD, color, world_rank, &job.comm);
     job.rank = comm_rank(job.comm);
     watch.set_rank(job.rank);

@@ -2,12 +2,16 @@
 #include "common/app/roll_call.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <sstream>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/coupling/messages.hpp"
+#include "common/coupling/wait.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -86,8 +90,11 @@ std::string configuration_errors(const std::vector<Attendant>& attendants) {
 
 /// The first way in which two processes read different things.
 std::string disagreement(const std::vector<Attendant>& attendants) {
-  const Attendant& first = attendants.front();
+  // A guest that does not read the file says 0.
+  const auto reader = std::ranges::find_if(attendants, [](const Attendant& a) { return a.case_hash != 0; });
+  const Attendant& first = reader == attendants.end() ? attendants.front() : *reader;
   for (const Attendant& a : attendants) {
+    if (a.case_hash == 0) continue;
     if (a.case_hash != first.case_hash)
       return fmt::format(
           "\n  '{}' reads {} and '{}' reads {}, and what they read differs. All programs of a job need the "
@@ -137,6 +144,36 @@ std::string attendance(const std::vector<Attendant>& attendants, const std::vect
 }
 
 }  // namespace
+
+MPI_Comm shake_hands(MPI_Comm world) {
+  constexpr std::int64_t mark = 0x434f55504c4554;  // "COUPLET"
+  const std::array<std::int64_t, 4> mine{mark, protocol_version, 0, 0};
+  std::vector<std::int64_t> all(4 * std::size_t(comm_size(world)));
+  MPI_Request request;
+  MPI_Iallgather(mine.data(), 4, MPI_INT64_T, all.data(), 4, MPI_INT64_T, world, &request);
+  wait_politely(request,
+                "every process of the job to say that it is part of it (docs/protocol.md, handshake)");
+  for (std::size_t r = 0; 4 * r < all.size(); ++r) {
+    if (all[4 * r] != mark)
+      throw Error(
+          "Process {} of the job is no program of Couplet: its handshake begins with {}. A program of your "
+          "own joins "
+          "as docs/protocol.md says.",
+          r, all[4 * r]);
+    if (all[4 * r + 1] != protocol_version)
+      throw Error("Process {} of the job speaks version {} of the protocol, this program version {}.", r,
+                  all[4 * r + 1], protocol_version);
+  }
+  MPI_Comm natives;
+  MPI_Comm_split(world, 0, comm_rank(world), &natives);
+  return natives;
+}
+
+bool all_agree_to_start(MPI_Comm world, bool problem) {
+  std::int64_t worst = problem ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_INT64_T, MPI_MAX, world);
+  return worst == 0;
+}
 
 std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self) {
   const std::string text = encode(self);

@@ -40,12 +40,22 @@ struct Verdict {
 
 inline constexpr const char* coupler_name = "coupler";
 
+/// The very first words of a job: every process says in four 64-bit integers that it is part of it (mark,
+/// version of the protocol, 0 for a program of this project or 1 for a guest, 0; docs/protocol.md). Returns
+/// the communicator of this project's processes, who watch over each other; guests are not in it. Waits
+/// without burning a core and says for what. Throws Error if a process says something else. Collective over
+/// `world`.
+MPI_Comm shake_hands(MPI_Comm world);
+
 /// Every process's answer, by world rank, on every process. Collective.
 std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self);
 
 /// Compares who has come with who is expected. `coupled`: the YAML has a `coupling` section (the coupler is
 /// then expected too, and is part of `expected`). The same on every process.
 Verdict judge(const std::vector<Attendant>& attendants, const std::vector<Expected>& expected, bool coupled);
+
+/// Whether nobody has seen a problem: then the job starts. Collective over `world`.
+bool all_agree_to_start(MPI_Comm world, bool problem);
 
 /// In order of first world rank.
 std::vector<Member> members(const std::vector<Attendant>& attendants);

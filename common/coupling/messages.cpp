@@ -203,6 +203,7 @@ std::vector<char> pack(const Reply& r) {
   out.put(r.suggested_dt);
   out.put(r.data);
   out.put(std::int64_t(r.interface.dim));
+  out.put(std::int64_t(r.interface.closed));
   out.put(r.interface.vertices);
   out.put(r.interface.face_centres);
   out.put(r.interface.face_areas);
@@ -226,6 +227,7 @@ Reply unpack_reply(std::span<const char> bytes) {
   r.suggested_dt = in.real();
   r.data = in.exchange();
   r.interface.dim = int(in.integer());
+  r.interface.closed = in.integer() != 0;
   r.interface.vertices = in.points();
   r.interface.face_centres = in.points();
   r.interface.face_areas = in.points();

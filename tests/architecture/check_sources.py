@@ -55,6 +55,8 @@ def wrong_include(path, included):
         return None
     target = pathlib.PurePosixPath(included)
     top = target.parts[0]
+    if here == "client" and len(target.parts) > 1 and top in ("common", "tests", *PROGRAMS):
+        return "the client knows the protocol alone"
     if top == "tests":
         return "production code includes test code"
     if top in PROGRAMS and top != here:
@@ -91,7 +93,7 @@ def check_text(path, text):
 
 
 def project_files(root):
-    tops = ["common", "tests", "scripts", "configs", "benchmarks", *PROGRAMS]
+    tops = ["common", "tests", "scripts", "configs", "benchmarks", "client", *PROGRAMS]
     files = [root / "CMakeLists.txt"]
     for top in tops:
         for pattern in SOURCES + SCRIPTS:

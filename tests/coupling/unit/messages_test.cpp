@@ -28,6 +28,7 @@ Reply some_reply() {
   r.seconds = 0.125;
   r.data = {{"pressure-force", {1, 2}}};
   r.interface.dim = 2;
+  r.interface.closed = true;
   r.interface.vertices = {{1, 2, 0}, {3, 4, 0}};
   r.interface.face_centres = {{2, 3, 0}};
   r.interface.face_areas = {{0, 1, 0}};
@@ -63,6 +64,7 @@ TEST(Messages, replies_arrive_as_they_were_sent) {
   EXPECT_TRUE(std::isinf(got.suggested_dt));
   EXPECT_EQ(got.data, sent.data);
   EXPECT_EQ(got.interface.dim, 2);
+  EXPECT_TRUE(got.interface.closed);
   EXPECT_EQ(got.interface.vertices, sent.interface.vertices);
   EXPECT_EQ(got.interface.face_centres, sent.interface.face_centres);
   EXPECT_EQ(got.interface.face_areas, sent.interface.face_areas);

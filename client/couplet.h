@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: Apache-2.0 */
+/* A program of any kind as a participant of a Couplet job, over MPI alone. The protocol is docs/protocol.md.
+ *
+ *   MPI_Init(...);
+ *   couplet_client* c = couplet_join("solid", "my_solver");     all processes of the participant
+ *   couplet_vertices(c, ...); couplet_faces(c, ...);             all of the interface, by process 0 of the participant
+ *   couplet_takes(c, "pressure-force", "N", COUPLET_FACES, 0); couplet_gives(c, ...);
+ *   while ((event = couplet_next(c)) != COUPLET_END) switch (event) ...
+ *   couplet_leave(c); MPI_Finalize();
+ *
+ * Between two calls of couplet_next the program does what the event asks for; the next call answers for it. Units
+ * are SI. An error that is no failed step ends the whole job with a sentence (MPI_Abort). */
+#ifndef COUPLET_H
+#define COUPLET_H
+
+#include <mpi.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct couplet_client couplet_client;
+
+enum couplet_place { COUPLET_VERTICES = 0, COUPLET_FACES = 1 };
+
+enum couplet_event {
+  COUPLET_END = 0,    /* the job is over */
+  COUPLET_BEGIN = 2,  /* a step from state n begins (again, perhaps shorter): couplet_time, couplet_dt */
+  COUPLET_SOLVE = 3,  /* solve it from state n for couplet_read, then couplet_write */
+  COUPLET_ACCEPT = 4, /* what was solved last is state n now */
+  COUPLET_OUTPUT = 5, /* write fields for couplet_time, number couplet_output */
+  COUPLET_SAVE = 6,   /* save state n in the file couplet_checkpoint */
+  COUPLET_LOAD = 7    /* load it from there */
+};
+
+/* Takes part in the start of the job, collective over all its processes. `participant`: its name under
+ * `participants:` of the case; `program`: of that entry. */
+couplet_client* couplet_join(const char* participant, const char* program);
+/* The processes of this participant. */
+MPI_Comm couplet_comm(const couplet_client* c);
+
+/* The interface, before the first couplet_next; process 0 speaks for all of the participant. `xyz`: 3 n coordinates [m], reference
+ * configuration. `dimension`: 2 (z = 0, areas per metre of depth) or 3. */
+void couplet_vertices(couplet_client* c, int dimension, int n, const double* xyz);
+/* `areas`: vectors out of this participant [m^2]. `first` (n + 1) and `vertices` (first[n]): the vertices of face f
+ * are vertices[first[f]] up to vertices[first[f + 1]]; both may be NULL, the coupler guesses them then. */
+void couplet_faces(couplet_client* c, int n, const double* centres, const double* areas, const int64_t* first,
+                   const int64_t* vertices);
+/* `components`: values a place; 0: one a dimension (a vector). */
+void couplet_takes(couplet_client* c, const char* datum, const char* unit, enum couplet_place place, int components);
+void couplet_gives(couplet_client* c, const char* datum, const char* unit, enum couplet_place place, int components);
+
+/* Answers for the last event and waits, without burning a core, for the next. Collective over couplet_comm. */
+enum couplet_event couplet_next(couplet_client* c);
+
+double couplet_time(const couplet_client* c); /* BEGIN, SOLVE: t^n; ACCEPT, OUTPUT: the accepted time [s] */
+double couplet_dt(const couplet_client* c);
+int couplet_output(const couplet_client* c);            /* ACCEPT, OUTPUT: number of the output that is due, or -1 */
+const char* couplet_checkpoint(const couplet_client* c); /* SAVE, LOAD: folder of the checkpoint + /<participant> */
+/* SOLVE: values of a datum that is taken, place by place, on process 0; NULL if nobody has given it yet, and on the
+ * other processes. Valid until the next couplet_next. */
+const double* couplet_read(const couplet_client* c, const char* datum);
+/* SOLVE: values of a datum that is given; those of process 0 count. */
+void couplet_write(couplet_client* c, const char* datum, const double* values);
+/* SOLVE: instead of writing: the step could not be solved, by process 0; the coupler tries a shorter one. */
+void couplet_fail(couplet_client* c, const char* why);
+/* The largest step that is advised from now on [s]. */
+void couplet_advise(couplet_client* c, double dt);
+/* ACCEPT: what the accepted step was like: iterations of solvers, estimated time error, energy [J]; NAN: unknown. */
+void couplet_report(couplet_client* c, int64_t iterations, double error, double energy);
+
+void couplet_leave(couplet_client* c);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "wire.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+namespace couplet_wire {
+namespace {
+
+class Reader {
+ public:
+  explicit Reader(const std::vector<char>& bytes) : bytes_(bytes) {}
+  std::int64_t integer() { return plain<std::int64_t>(); }
+  double real() { return plain<double>(); }
+  std::string text() {
+    const std::int64_t n = integer();
+    if (n < 0 || std::size_t(n) > bytes_.size() - at_) throw std::runtime_error("a command is cut short.");
+    std::string value(bytes_.data() + at_, std::size_t(n));
+    at_ += std::size_t(n);
+    return value;
+  }
+
+  std::vector<double> reals() {
+    const std::int64_t n = integer();
+    if (n < 0 || std::size_t(n) > (bytes_.size() - at_) / 8)
+      throw std::runtime_error("a command is cut short.");
+    std::vector<double> values(static_cast<std::size_t>(n));
+    if (n > 0) std::memcpy(values.data(), bytes_.data() + at_, 8 * values.size());
+    at_ += 8 * values.size();
+    return values;
+  }
+
+ private:
+  template <class T>
+  T plain() {
+    T value;
+    if (sizeof value > bytes_.size() - at_) throw std::runtime_error("a command is cut short.");
+    std::memcpy(&value, bytes_.data() + at_, sizeof value);
+    at_ += sizeof value;
+    return value;
+  }
+  const std::vector<char>& bytes_;
+  std::size_t at_ = 0;
+};
+
+/// The fields of one process at the roll call: each ends with 0x1f, all of them with 0x1e.
+std::string introduction(const std::string& participant, const std::string& program, int application,
+                         int rank) {
+  std::string text;
+  for (const std::string& field :
+       {program, participant, std::string("(guest)"), std::string("0"), std::string(), std::string("1"),
+        std::to_string(application), std::to_string(rank)})
+    text += field + '\x1f';
+  return text + '\x1e';
+}
+
+/// Participant of each process, by rank.
+std::vector<std::string> roll_call(const std::string& mine, int size) {
+  std::vector<int> counts(static_cast<std::size_t>(size)), first;
+  const int length = int(mine.size());
+  MPI_Allgather(&length, 1, MPI_INT, counts.data(), 1, MPI_INT, MPI_COMM_WORLD);
+  int total = 0;
+  for (const int n : counts) first.push_back(total), total += n;
+  std::string all(std::size_t(total), '\0');
+  MPI_Allgatherv(mine.data(), length, MPI_BYTE, all.data(), counts.data(), first.data(), MPI_BYTE,
+                 MPI_COMM_WORLD);
+  std::vector<std::string> participants;
+  std::istringstream in(all);
+  for (std::string one; std::getline(in, one, '\x1e');) {
+    std::istringstream fields(one);
+    std::string program, participant;
+    std::getline(fields, program, '\x1f');
+    std::getline(fields, participant, '\x1f');
+    participants.push_back(participant);
+  }
+  return participants;
+}
+
+}  // namespace
+
+Command unpack(const std::vector<char>& head) {
+  Reader in(head);
+  if (in.integer() != command_mark) throw std::runtime_error("a message of the coupler is no command.");
+  if (const auto v = in.integer(); v != version)
+    throw std::runtime_error("the coupler speaks version " + std::to_string(v) +
+                             " of the protocol, this client version " + std::to_string(version) + ".");
+  Command c;
+  c.op = in.integer();
+  c.time = in.real();
+  c.dt = in.real();
+  c.scheme = in.integer();
+  c.number = in.integer();
+  c.accepted = in.real();
+  c.output = in.integer();
+  c.folder = in.text();
+  for (std::int64_t n = in.integer(); n > 0; --n) {
+    const std::string name = in.text();
+    c.data[name] = in.reals();
+  }
+  return c;
+}
+
+Place join(const std::string& participant, const std::string& program) {
+  int rank = 0, size = 0, found = 0;
+  int* application = nullptr;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  MPI_Comm_get_attr(MPI_COMM_WORLD, MPI_APPNUM, &application, &found);
+  // 1. Handshake.
+  const std::int64_t hello[4] = {hello_mark, version, 1, 0};
+  std::vector<std::int64_t> all(4 * std::size_t(size));
+  MPI_Request request;
+  MPI_Iallgather(hello, 4, MPI_INT64_T, all.data(), 4, MPI_INT64_T, MPI_COMM_WORLD, &request);
+  wait(request);
+  for (std::size_t r = 0; r < std::size_t(size); ++r)
+    if (all[4 * r] != hello_mark || all[4 * r + 1] != version)
+      throw std::runtime_error("process " + std::to_string(r) + " of the job speaks another protocol.");
+  // 2. Guests have no part in the programs' own communicator.
+  MPI_Comm nobody;
+  MPI_Comm_split(MPI_COMM_WORLD, MPI_UNDEFINED, rank, &nobody);
+  // 3. Roll call.
+  const std::vector<std::string> participants =
+      roll_call(introduction(participant, program, found ? *application : 0, rank), size);
+  // 4. Verdict.
+  Place place;
+  std::int64_t problem = 0;
+  MPI_Allreduce(MPI_IN_PLACE, &problem, 1, MPI_INT64_T, MPI_MAX, MPI_COMM_WORLD);
+  if (problem != 0) return place;
+  // 5. One communicator a participant, numbered by first appearance.
+  std::vector<std::string> order;
+  int color = 0, leader = 0;
+  for (std::size_t r = 0; r < participants.size(); ++r) {
+    if (std::find(order.begin(), order.end(), participants[r]) != order.end()) continue;
+    if (participants[r] == participant) color = int(order.size());
+    if (participants[r] == "coupler") leader = int(r);
+    order.push_back(participants[r]);
+  }
+  MPI_Comm_split(MPI_COMM_WORLD, color, rank, &place.comm);
+  // 6. To the coupler.
+  MPI_Intercomm_create(place.comm, 0, MPI_COMM_WORLD, leader, join_tag, &place.coupler);
+  place.starts = true;
+  return place;
+}
+
+}  // namespace couplet_wire

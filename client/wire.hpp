@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bytes and messages of docs/protocol.md; private to the client library.
+#pragma once
+
+#include <mpi.h>
+#include <sched.h>
+
+#include <chrono>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "couplet.h"
+
+namespace couplet_wire {
+
+constexpr std::int64_t version = 3, command_mark = 0x434f4d4d, reply_mark = 0x5245504c,
+                       hello_mark = 0x434f55504c4554;
+constexpr int join_tag = 100, command_tag = 101, reply_tag = 102;
+enum Operation : std::int64_t { initialise = 1, begin = 2, solve = 3, accept = 4, finalise = 8 };
+
+struct Datum {
+  std::string name, unit;
+  int place = 0, components = 0;
+  int size(int dim) const { return components > 0 ? components : dim; }
+};
+
+struct Surface {
+  int dim = 3;
+  std::vector<double> xyz, centres, areas;
+  std::vector<std::int64_t> first{0}, corners;
+  std::size_t vertices() const { return xyz.size() / 3; }
+  std::size_t faces() const { return centres.size() / 3; }
+};
+
+class Packer {
+ public:
+  void raw(const void* data, std::size_t size) {
+    const char* first = static_cast<const char*>(data);
+    bytes_.insert(bytes_.end(), first, first + size);
+  }
+  void integers(const std::vector<std::int64_t>& values) { raw(values.data(), 8 * values.size()); }
+  void list(const std::vector<std::int64_t>& values) {
+    integers({std::int64_t(values.size())});
+    integers(values);
+  }
+  void real(double value) { raw(&value, 8); }
+  void text(const std::string& value) {
+    integers({std::int64_t(value.size())});
+    raw(value.data(), value.size());
+  }
+  void reals(const std::vector<double>& values) {
+    integers({std::int64_t(values.size())});
+    raw(values.data(), 8 * values.size());
+  }
+  /// Three coordinates each.
+  void points(const std::vector<double>& values) {
+    integers({std::int64_t(values.size() / 3)});
+    raw(values.data(), 8 * values.size());
+  }
+  void table(const std::map<std::string, std::vector<double>>& data) {
+    integers({std::int64_t(data.size())});
+    for (const auto& [name, values] : data) {
+      text(name);
+      reals(values);
+    }
+  }
+  void data(const std::vector<Datum>& list) {
+    integers({std::int64_t(list.size())});
+    for (const Datum& d : list) {
+      text(d.name);
+      text(d.unit);
+      integers({d.place, d.components});
+    }
+  }
+  const std::vector<char>& bytes() const { return bytes_; }
+
+ private:
+  std::vector<char> bytes_;
+};
+
+struct Command {
+  std::int64_t op = 0, scheme = 0, number = 0, output = -1;
+  double time = 0, dt = 0, accepted = 0;
+  std::string folder;
+  std::map<std::string, std::vector<double>> data;
+};
+/// Throws std::runtime_error if the bytes are no command of this version.
+Command unpack(const std::vector<char>& head);
+
+/// Handshake, roll call and connection, collective over the whole job.
+struct Place {
+  bool starts = false;
+  MPI_Comm comm = MPI_COMM_NULL, coupler = MPI_COMM_NULL;
+};
+Place join(const std::string& participant, const std::string& program);
+
+/// Between two looks at what is awaited: the core belongs to the others.
+inline void pause(std::chrono::steady_clock::time_point since) {
+  const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - since;
+  if (waited < std::chrono::microseconds(80))
+    sched_yield();
+  else
+    std::this_thread::sleep_for(
+        std::min<std::chrono::duration<double>>(waited / 8, std::chrono::microseconds(500)));
+}
+
+inline void wait(MPI_Request& request) {
+  const auto since = std::chrono::steady_clock::now();
+  for (int done = 0;;) {
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+    if (done) return;
+    pause(since);
+  }
+}
+
+template <class T>
+void send(MPI_Comm peers, int to, int tag, const std::vector<T>& values, MPI_Datatype type) {
+  MPI_Request request;
+  MPI_Isend(values.data(), int(values.size()), type, to, tag, peers, &request);
+  wait(request);
+}
+
+template <class T>
+std::vector<T> receive(MPI_Comm peers, int from, int tag, MPI_Datatype type) {
+  const auto since = std::chrono::steady_clock::now();
+  MPI_Message message;
+  MPI_Status status;
+  for (int there = 0;;) {
+    MPI_Improbe(from, tag, peers, &there, &message, &status);
+    if (there) break;
+    pause(since);
+  }
+  int count = 0;
+  MPI_Get_count(&status, type, &count);
+  std::vector<T> values(static_cast<std::size_t>(count));
+  MPI_Mrecv(values.data(), count, type, &message, MPI_STATUS_IGNORE);
+  return values;
+}
+
+inline void broadcast(MPI_Comm comm, void* data, std::size_t size) {
+  MPI_Request request;
+  MPI_Ibcast(data, int(size), MPI_BYTE, 0, comm, &request);
+  wait(request);
+}
+
+}  // namespace couplet_wire

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Programs of other people in a job: the examples in C++, C and Python with the real fluid, from the build and from an
+installed prefix, on several ranks of the fluid and over a restart; what goes wrong is said.
+Usage: run.py PROJECT BUILD MPIRUN... -- [examples | install | handshake]"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+project, build = map(pathlib.Path, sys.argv[1:3])
+mpirun, what = sys.argv[3:sys.argv.index("--")], sys.argv[-1]
+here = project / "tests/coupling/client"
+environment = dict(os.environ, PYTHONPATH=str(project / "client/python"))
+body_of = {"c++": [build / "bin/tests/spring_cylinder"], "c": [build / "bin/tests/spring_cylinder_c"],
+           "python": ["/usr/bin/python3", project / "client/examples/spring_cylinder.py"]}
+parameters = ["body", "2", "0.1", "3", "0.05"]
+failed = []
+
+
+def check(claim, holds, detail=""):
+    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
+    if not holds:
+        failed.append(claim)
+
+
+def run(folder, body, fluid_ranks=1, sets=(), restart=None, code=0):
+    for name in ("case.yaml", "cylinder.geo"):
+        shutil.copy(here / name, folder)
+    extra = [*(f"--set={s}" for s in sets), *(["--restart", restart] if restart else [])]
+    command = list(mpirun)
+    for n, program in ((1, "coupler"), (fluid_ranks, "fluid_solver"), (1, "mesh_mover")):
+        command += ["-n", str(n), build / "bin" / program, "case.yaml", *extra, ":"]
+    command += ["-n", "1", *body, *parameters]
+    result = subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, timeout=300,
+                            env=environment)
+    if result.returncode != code:
+        print(result.stdout[-3000:], result.stderr[-3000:])
+        check(f"exit code {code}", False, f"it is {result.returncode}")
+    return result
+
+
+def motion(folder):
+    return [[float(w) for w in line.split(",")] for line in (pathlib.Path(folder) / "body.csv").read_text().splitlines()]
+
+
+def apart(a, b):
+    return max((abs(x - y) for p, q in zip(a, b) for x, y in zip(p, q)), default=0) if len(a) == len(b) else float("inf")
+
+
+def examples():
+    results = {}
+    for language, body in body_of.items():
+        if language == "python" and subprocess.run(["/usr/bin/python3", "-c", "import mpi4py, numpy"],
+                                                   capture_output=True).returncode:
+            print("skipped: Python without mpi4py and numpy")
+            continue
+        with tempfile.TemporaryDirectory() as folder:
+            run(folder, body)
+            results[language] = motion(folder)
+    reference = results["c++"]
+    check("the cylinder moves", len(reference) == 20 and abs(reference[-1][1] - 0.05) > 1e-4, f"{reference[-1]}")
+    for language, result in results.items():
+        check(f"{language}: the same motion", apart(reference, result) < 1e-9, f"{apart(reference, result):.1e}")
+    with tempfile.TemporaryDirectory() as folder:
+        run(folder, body_of["c++"], fluid_ranks=2)
+        off = apart(reference, motion(folder))
+        check("fluid on 2 ranks: the same motion", off < 1e-6, f"{off:.1e}")
+    with tempfile.TemporaryDirectory() as folder:
+        run(folder, body_of["c++"], sets=["simulation.end-time=0.2"])
+        run(folder, body_of["c++"], restart="out/checkpoints")
+        check("restart continues bit for bit", motion(folder) == reference[10:])
+    for name in ("spring_cylinder.cpp", "spring_cylinder.c", "spring_cylinder.py"):
+        n = len((project / "client/examples" / name).read_text().splitlines())
+        check(f"{name} takes less than 80 lines", n < 80, str(n))
+
+
+def install():
+    with tempfile.TemporaryDirectory() as top:
+        top = pathlib.Path(top)
+        prefix, user = top / "prefix", top / "user"
+        subprocess.run(["cmake", "--install", build / "client", "--prefix", prefix], check=True, capture_output=True)
+        shutil.copytree(project / "client/examples", user)
+        (user / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.20)\nproject(user LANGUAGES C CXX)\nset(CMAKE_CXX_STANDARD 17)\n"
+            "find_package(couplet_client REQUIRED)\nadd_executable(mine spring_cylinder.cpp)\n"
+            "target_link_libraries(mine couplet::client)\n")
+        for command in (["cmake", "-S", user, "-B", user / "build", f"-DCMAKE_PREFIX_PATH={prefix}"],
+                        ["cmake", "--build", user / "build"]):
+            made = subprocess.run(command, capture_output=True, text=True)
+            if made.returncode:
+                print(made.stdout, made.stderr)
+        check("a CMake project finds and links the installed library", (user / "build/mine").exists())
+        flags = subprocess.run(["pkg-config", "--cflags", "--libs", "couplet_client"], capture_output=True, text=True,
+                               env=dict(os.environ, PKG_CONFIG_PATH=str(prefix / "lib/pkgconfig"))).stdout.split()
+        made = subprocess.run(["cc", "spring_cylinder.c", "-o", "mine_c", *flags, "-lm"], cwd=user, capture_output=True,
+                              text=True)
+        check("a C compiler does with pkg-config", made.returncode == 0, made.stderr[-500:])
+        environment["PYTHONPATH"] = str(prefix / "share/couplet/python")
+        bodies = {"cmake": [user / "build/mine"], "pkg-config": [user / "mine_c"],
+                  "python": ["/usr/bin/python3", user / "spring_cylinder.py"]}
+        results = {}
+        for name, body in bodies.items():
+            folder = top / name
+            folder.mkdir()
+            run(folder, body, sets=["simulation.end-time=0.06"])
+            results[name] = motion(folder)
+        for name, result in results.items():
+            check(f"{name}: runs from the prefix", len(result) == 3 and apart(results["cmake"], result) < 1e-9)
+
+
+def handshake():
+    with tempfile.TemporaryDirectory() as folder:
+        # Another participant's name: nobody plays the body.
+        global parameters
+        parameters = ["somebody", *parameters[1:]]
+        said = run(folder, body_of["c++"], code=2)
+        check("a guest whom nobody asked for is named", "'somebody' was started" in said.stderr + said.stdout)
+        check("so is who is missing", "participant 'body' (spring_cylinder) is missing" in said.stderr + said.stdout)
+
+
+{"examples": examples, "install": install, "handshake": handshake}[what]()
+print(f"{len(failed)} checks failed" if failed else "all checks passed")
+sys.exit(1 if failed else 0)
