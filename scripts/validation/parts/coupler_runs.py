@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the coupler: divergence is named."""
+"""Bars of the coupler: divergence is named; programs of other people."""
 import numpy as np
 
 import couplet_series as couplet
 from validation.job import Bar
-from validation.main_job import FLAP
+from validation.main_job import FLAP, registered
 
 
 def passed(executable, pattern):
@@ -63,4 +63,7 @@ RUNS = [
     Bar("flap explicit, rho_s 42", "refused within 10 steps with the reason", explicit_light),
     Bar("flap semi-implicit, rho_s 1, mu 1, ramp 0.4 s: the swing is named", "refused with the reason", viscous_swing),
     Bar("guards: each fires and does not", "all tests", passed("unit_coupler", "Guard")),
+    Bar("strangers: C++, C, Python with the real fluid; two ranks of the fluid; restart bit for bit", "all", registered("^client_examples$")),
+    Bar("strangers: installed library by CMake and pkg-config, Python module", "all", registered("^client_install$")),
+    Bar("strangers: a wrong guest is named, the job ends", "named", registered("^client_handshake$")),
 ]
