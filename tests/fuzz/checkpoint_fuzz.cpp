@@ -160,6 +160,7 @@ TEST(Checkpoints, damaged_sets_never_continue_with_another_result) {
   for (std::size_t i = 0; i < count(); ++i) {
     const fs::path last = folder / "last";
     fs::remove_all(last);
+    fs::create_directories(last);
     fs::copy(folder / "a", last / "a", fs::copy_options::recursive);
     fs::copy(folder / "b", last / "b", fs::copy_options::recursive);
     damage(last / "a", last / "b", dice);
