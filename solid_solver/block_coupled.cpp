@@ -76,11 +76,11 @@ SolveStatistics BlockCoupled::solve(std::span<const double> b, std::span<double>
   try {
     return accelerator_ ? solve_corrected(b, u) : solver_.solve(b, u);
   } catch (const SolveFailure& e) {
-    throw SolveFailure(
-        "{} The method is {}. If the loads are sound, another 'solution-method: {{linear-solver: ...}}' may "
-        "help; 'direct' "
-        "needs most memory and bears most.",
-        e.what(), name());
+    // Never the method that has just failed.
+    throw SolveFailure("{} The method is {}. If the loads are sound, 'solution-method: {}' is another way{}.",
+                       e.what(), name(),
+                       linear_ == LinearMethod::direct ? "{type: newton-krylov}" : "{linear-solver: direct}",
+                       linear_ == LinearMethod::direct ? "" : ", which needs most memory and bears most");
   }
 }
 

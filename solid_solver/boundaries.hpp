@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "common/fv/expression.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/parameters.hpp"

@@ -61,6 +61,11 @@ std::vector<Tensor3> Solid::cell_stress(std::span<const double> points) const {
 }
 
 std::vector<std::complex<double>> Solid::eigenvalues() const {
+  if (has_mass_)
+    return symmetric_spectrum(
+        mesh_, elastic_.n_unknowns(),
+        [&](std::span<const double> x, std::span<double> y) { kernel_.apply(x, {}, y); },
+        [&](std::span<const double> x, std::span<double> y) { kernel_.apply_with_mass(x, {}, 1, false, y); });
   std::vector<double> mass;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) mass.push_back(density(c) * mesh_.reference.volume[c]);
   const std::vector<double> still(known_accepted_.size(), 0);
@@ -115,6 +120,7 @@ void Solid::finish_acceleration() {
     for (int a = 0; a < dim; ++a) {
       const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
       const std::size_t c = std::size_t(mesh_.owner[f]) * dim + a;
+      // Faces with inertia: as their cell, with what their own velocity changes more.
       const double rate = trial_.face_v[b] - trial_.cell_v[c], before = state_.face_v[b] - state_.cell_v[c];
       trial_.face_acceleration[b] = trial_.acceleration[c] + (rate - before) / dt;
     }

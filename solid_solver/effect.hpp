@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "common/coupling/participant.hpp"
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "common/io/field_writer.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/effect_cards.hpp"
@@ -26,8 +27,10 @@ class SolidEffect {
   /// Elastic constants that the operator must get for the step now tried, one a local cell; empty: its own
   /// hold. The same answer on all ranks.
   virtual std::span<const LameConstants> stiffness() const { return {}; }
-  /// Adds its forces [N] at time t within the step to the rows of the operator (see ElasticOperator).
-  virtual void add_loads(double t, std::span<double> rhs) = 0;
+  /// Adds its forces [N] at time t within the step to the rows of the kernel.
+  virtual void add_loads(double t, const ElasticKernel& kernel, std::span<double> rhs) = 0;
+  /// The stress - p I it stands for at time t, p [Pa] per local face; empty: none.
+  virtual std::vector<double> pressure(double /*t*/) { return {}; }
   virtual void accept_step() {}
   /// An effect that wants_temperature() gets the place of the interface once, and what was given at its faces
   /// at the start of each solve (empty: nothing yet); begin_step() follows. Collective.

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "solid_solver/solution_method.hpp"
+
 namespace couplet {
 namespace {
 
@@ -17,10 +19,8 @@ bool is_dynamic(const P& p) { return p.analysis == P::Analysis::dynamic; }
 bool is_elastic(const P& p) { return p.analysis != P::Analysis::thermal; }
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 
-double largest_poissons_ratio(const P& p) {
-  double largest = 0;
-  for (const SolidMaterial& m : materials_of(p)) largest = std::max(largest, m.poissons_ratio);
-  return largest;
+bool has_volume_strain_of_cells(const P& p) {
+  return is_elastic(p) && face_gradient_scheme(p) == FaceGradientScheme::symmetric && volume_by_cells(p);
 }
 
 bool varies(const P& p) {
@@ -51,10 +51,12 @@ V judge_geometry(const P& p, const E& e) {
 }
 
 V judge_incompressibility(const P& p, const E&) {
-  if (!is_elastic(p)) return {};
-  const double nu = largest_poissons_ratio(p);
-  return verdict(nu, 0.45, fmt::format("the largest Poisson's ratio is {:g}", nu),
-                 "coarse meshes are too stiff or worse there: refine, and compare two meshes");
+  if (!is_elastic(p) || has_volume_strain_of_cells(p)) return {};
+  const double nu = std::max(0.0, largest_poissons_ratio(p));
+  return verdict(
+      nu, 0.45, fmt::format("the largest Poisson's ratio is {:g}", nu),
+      "coarse meshes are too stiff or worse there: 'solution-method: {face-gradient: symmetric}' takes one "
+      "volume strain a cell");
 }
 
 // The strain of a free body with a coefficient of 1e-5 1/K beside the largest gradient of the displacement.
@@ -90,9 +92,9 @@ const std::array cards{
               "largest displacement gradient, 0.02",
               judge_geometry},
     SolidCard{"near incompressibility",
-              "not available here",
-              [](const P&) { return std::string(); },
-              {},
+              "`solution-method: {face-gradient: symmetric, volume-strain: cells}`",
+              [](const P& p) { return when(has_volume_strain_of_cells(p), "one volume strain a cell"); },
+              {"a mean stress a cell, a pass over the faces", 0, 0},
               "largest Poisson's ratio, 0.45",
               judge_incompressibility},
     SolidCard{"gravity",

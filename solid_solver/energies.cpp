@@ -48,8 +48,13 @@ double Solid::stress_work(const Placed& stressed, std::span<const double> cell_c
   return work;
 }
 
-double Solid::kinetic_energy(std::span<const double> velocity) const {
+double Solid::kinetic_energy(const SolidState& state, std::span<const double> known_rate) const {
+  const std::span<const double> velocity = state.cell_v;
   const int dim = mesh_.dim;
+  if (has_mass_) {
+    const std::vector<double> rates = unknowns_of(state.cell_v, state.face_v);
+    return 0.5 * kernel_.product(ElasticPart::mass, {rates, known_rate}, {rates, known_rate});
+  }
   double energy = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     energy += 0.5 * density(c) * mesh_.reference.volume[c] * at(velocity, c, dim).squaredNorm();
@@ -113,13 +118,110 @@ void Solid::add_work(const StageWork& work, const SolidState& before) {
     loss += damping.mass / dt * density(c) * mesh_.reference.volume[c] * at(cells, c, dim).squaredNorm();
   energies.damping_loss += loss;
   energies.external_work += outside;
-  energies.kinetic = kinetic_energy(trial_.cell_v);
+  energies.kinetic = kinetic_energy(trial_, known_rate_);
+}
+
+/// The same with the symmetric kernel, whose own products these are: all that acts by its trial functions.
+void Solid::add_symmetric_work(const StageWork& work, const SolidState& before) {
+  SolidEnergies& energies = trial_.energies;
+  std::vector<double> change = unknowns_of(trial_.cell_u, trial_.face_u);
+  const std::vector<double> start = unknowns_of(before.cell_u, before.face_u);
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= start[i];
+  const ElasticField w{unknowns_, work.known}, moved{change, work.known_change};
+  if (parameters_.time_scheme.type != TimeScheme::trapezoidal) mean_of_ends(work);
+  double outside = -kernel_.product(ElasticPart::springs, w, moved);
+  for (std::size_t i = 0; i < change.size(); ++i) outside += load_rows_[i] * change[i];
+  if (!prescribed_.is_zero()) outside += known_work(work, before);
+  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
+  double loss = damping.stiffness > 0 ? damping.stiffness / work.stage.dt *
+                                            kernel_.product(ElasticPart::stiffness, moved, moved)
+                                      : 0;
+  energies.internal_work += kernel_.product(ElasticPart::stiffness, w, moved) - loss;
+  if (damping.mass > 0)
+    loss += damping.mass / work.stage.dt * kernel_.product(ElasticPart::mass, moved, moved);
+  energies.damping_loss += loss;
+  energies.external_work += outside;
+  energies.kinetic = kinetic_energy(trial_, known_rate_);
+}
+
+/// The loads of a stage at its place become the mean of those at its ends, whose work on the change is second
+/// order.
+void Solid::mean_of_ends(const StageWork& work) {
+  const auto rows_at = [&](double t) {
+    std::vector<double> rows(elastic_.n_unknowns(), 0);
+    const std::vector<double> body = body_forces(t);
+    if (!body.empty()) kernel_.add_cell_forces(body, rows);
+    for (const auto& effect : effects_) effect->add_loads(t, kernel_, rows);
+    std::vector<double> faces(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
+    boundaries_.add_forces(t, faces);
+    kernel_.add_face_forces(faces, rows);
+    return rows;
+  };
+  const std::vector<double> start = rows_at(work.start_time), place = rows_at(work.place_time),
+                            end = rows_at(work.end_time);
+  for (std::size_t i = 0; i < load_rows_.size(); ++i) load_rows_[i] += 0.5 * (start[i] + end[i]) - place[i];
+}
+
+/// What holds the known nodes does on their change: against stress and inertia.
+double Solid::known_work(const StageWork& work, const SolidState& before) const {
+  const std::vector<double> still(unknowns_.size(), 0);
+  double sum = kernel_.product(ElasticPart::stiffness, {unknowns_, work.known}, {still, work.known_change});
+  const std::vector<double> of_known = known_inertia(work);
+  if (of_known.empty()) return sum;
+  // The mean over the stage, which the trapezoidal rule has at its place.
+  const std::vector<double> after = unknowns_of(trial_.cell_v, trial_.face_v);
+  std::vector<double> rate = unknowns_of(before.cell_v, before.face_v);
+  const double alpha = parameters_.damping ? parameters_.damping->mass : 0;
+  for (std::size_t i = 0; i < rate.size(); ++i)
+    rate[i] = (after[i] - rate[i]) / work.stage.dt + alpha * 0.5 * (after[i] + rate[i]);
+  return sum + kernel_.product(ElasticPart::mass, {rate, of_known}, {still, work.known_change});
+}
+
+/// Of body forces, tractions, pressures and the interface over a stage: what the audit holds against the
+/// energy found. Moving supports and effects do work that is not counted; no audit then.
+void Solid::add_load_work(const StageWork& work, std::span<const double> interface_load,
+                          std::span<const double> cells_before, std::span<const double> faces_before) {
+  const int dim = mesh_.dim;
+  double sum = 0;
+  if (has_mass_) {
+    for (std::size_t i = 0; i < std::size_t(mesh_.cells.n_owned()) * dim; ++i)
+      sum += load_rows_[i] * (trial_.cell_u[i] - cells_before[i]);
+    std::size_t row = std::size_t(mesh_.cells.n_owned()) * dim;
+    for (const Index f : elastic_.unknown_faces())
+      for (int a = 0; a < dim; ++a) {
+        const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
+        sum += load_rows_[row++] * (trial_.face_u[b] - faces_before[b]);
+      }
+    trial_.load_work += sum;
+    return;
+  }
+  if (!work.rhs.empty())
+    for (std::size_t i = 0; i < std::size_t(mesh_.cells.n_owned()) * dim; ++i)
+      sum += work.rhs[i] * (trial_.cell_u[i] - cells_before[i]);
+  for (const Index f : elastic_.unknown_faces())
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
+      const double force = work.face_force[b] + (interface_load.empty() ? 0 : interface_load[b]);
+      sum += force * (trial_.face_u[b] - faces_before[b]);
+    }
+  trial_.load_work += sum;
 }
 
 SolidEnergies Solid::energies(std::span<const double> points) const {
   SolidEnergies e = state_.energies;
+  e.conserving = parameters_.time_scheme.type == TimeScheme::trapezoidal;
+  if (kernel_.is_symmetric()) {
+    const std::vector<double> unknowns = unknowns_of(state_.cell_u, state_.face_u);
+    const ElasticField u{unknowns, known_accepted_};
+    e.strain = 0.5 * kernel_.product(ElasticPart::stiffness, u, u);
+    return summed(e);
+  }
   const Placed now{state_.cell_u, state_.face_u, {points.begin(), points.end()}};
   e.strain = 0.5 * stress_work(now, state_.cell_u, state_.face_u, nullptr);
+  return summed(e);
+}
+
+SolidEnergies Solid::summed(SolidEnergies e) const {
   for (double* part :
        {&e.kinetic, &e.initial_kinetic, &e.strain, &e.internal_work, &e.external_work, &e.damping_loss})
     *part = sum(mesh_.comm, *part);

@@ -59,7 +59,7 @@ Exchange Solid::interface_values() const {
 
 std::vector<double> Solid::to_points(std::span<const double> cells, std::span<const double> faces,
                                      std::span<const double> known) const {
-  if (is_corrected()) return corrected_points(cells, faces, known);
+  if (!is_thesis()) return corrected_points(cells, faces, known);
   std::vector<Index> all(mesh_.points.n_local());
   for (Index v = 0; v < mesh_.points.n_local(); ++v) all[v] = v;
   std::vector<double> values = at_points(mesh_, elastic_, all, cells, faces, known);
@@ -81,6 +81,17 @@ std::vector<double> Solid::point_acceleration() const {
 
 std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
   std::vector<PatchForce> forces;
+  if (kernel_.is_symmetric()) {
+    const std::vector<Vec3> held =
+        kernel_.holding_forces(unknowns_of(state_.cell_u, state_.face_u), known_accepted_, loads_now());
+    for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+      if (!boundaries_.holds(p)) continue;
+      Vec3 force = held[p];
+      for (int a = 0; a < 3; ++a) force[a] = sum(mesh_.comm, force[a]);
+      forces.push_back({mesh_.patches[p].name, force});
+    }
+    return forces;
+  }
   // One pass over the faces between the first and the last that is held, often few of the boundary's.
   Index first = mesh_.n_flux_faces(), end = mesh_.n_interior;
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
@@ -100,6 +111,21 @@ std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
     forces.push_back({mesh_.patches[p].name, force});
   }
   return forces;
+}
+
+/// At the accepted time; of the interface what it had in the last solve.
+ElasticLoads Solid::loads_now() const {
+  ElasticLoads loads;
+  loads.faces.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
+  boundaries_.add_forces(state_.time, loads.faces);
+  for (std::size_t i = 0; i < last_interface_load_.size(); ++i) loads.faces[i] += last_interface_load_[i];
+  loads.cells = body_forces(state_.time);
+  for (const auto& effect : effects_) {
+    const std::vector<double> pressure = effect->pressure(state_.time);
+    if (loads.pressure.empty()) loads.pressure.resize(pressure.size(), 0);
+    for (std::size_t i = 0; i < pressure.size(); ++i) loads.pressure[i] += pressure[i];
+  }
+  return loads;
 }
 
 Vec3 Solid::total_load() const {
@@ -136,9 +162,13 @@ std::vector<std::string> Solid::judge_left_out_effects() {
   if (!is_dynamic() && state_.steps > 1) evidence.inertia_over_load = inertia_over_load_;
   for (const auto& effect : effects_) effect->add_evidence(evidence);
   std::vector<std::string> sentences;
+  if (is_dynamic()) audit_answer();
+  if (audit_)
+    sentences.push_back(fmt::format("error indicator: {}{}.", audit_->text(),
+                                    audit_->is_doubtful() ? "; NOT to be trusted" : ""));
   for (const EffectVerdict& verdict : audit(solid_effect_cards(), parameters_, evidence))
     sentences.push_back(text(verdict));
-  if (is_dynamic() && !parameters_.damping)
+  if (is_dynamic() && !parameters_.damping && !kernel_.is_symmetric())
     sentences.push_back(
         "structural damping left out: free vibration does not decay, and modes that the time step resolves "
         "may grow; a "
@@ -152,6 +182,7 @@ std::vector<std::string> Solid::judge_left_out_effects() {
 void Solid::write_output(double time, int) {
   const std::vector<double> points = point_displacement();
   largest_gradient_ = std::max(largest_gradient_, largest_gradient(points));
+  if (is_dynamic()) audit_answer();
   output_->write_fields(time, points);
 }
 
@@ -161,6 +192,13 @@ void Solid::save(CheckpointWriter& file) const {
   file.write("cell-displacement", state_.cell_u);
   file.write("cell-velocity", state_.cell_v);
   if (!state_.cell_a.empty()) file.write("cell-acceleration", state_.cell_a);
+  if (has_mass_) {
+    if (!state_.face_a.empty()) file.write("nodes-face-acceleration", state_.face_a);
+    if (!state_.face_u_old.empty()) {
+      file.write("old-face-displacement", state_.face_u_old);
+      file.write("old-face-velocity", state_.face_v_old);
+    }
+  }
   if (!state_.acceleration.empty()) {
     file.write("acceleration", state_.acceleration);
     file.write("mean-acceleration", state_.mean_acceleration);
@@ -182,6 +220,9 @@ void Solid::save(CheckpointWriter& file) const {
     file.write("energies", std::vector<double>{e.kinetic, e.initial_kinetic, e.internal_work, e.external_work,
                                                e.damping_loss});
   }
+  if (is_dynamic())
+    file.write("load-work", std::vector<double>{state_.load_work, state_.energies.initial_kinetic});
+  file.write_scalar("audit-scale", energy_audit_.scale);
   if (parameters_.step_control) file.write_scalar("error", state_.error);
   file.write_scalar("dt", state_.dt);
   file.write_scalar("stage-dt", state_.stage_dt);
@@ -210,7 +251,7 @@ void Solid::save_projections(CheckpointWriter& file) const {
 void Solid::load_projections(CheckpointReader& file) {
   for (int i = static_cast<int>(file.read_scalar("projections")); i-- > 0;) {
     System& system = system_for(file.read_scalar(fmt::format("projection-{}-mass-factor", i)));
-    const SolidProblem problem{mesh_, elastic_, system.inertia, kernel_};
+    const SolidProblem problem = problem_of(system);
     const auto apply = [&](std::span<const double> x, std::span<double> y) { problem.apply(x, y); };
     if (ResidualProjection* projection = system.method->projection())
       projection->set_values(file.read(fmt::format("projection-{}", i)), apply);
@@ -221,6 +262,13 @@ void Solid::load(CheckpointReader& file) {
   file.read("cell-displacement", state_.cell_u);
   file.read("cell-velocity", state_.cell_v);
   if (!state_.cell_a.empty()) file.read("cell-acceleration", state_.cell_a);
+  if (has_mass_) {
+    if (!state_.face_a.empty()) file.read("nodes-face-acceleration", state_.face_a);
+    if (!state_.face_u_old.empty()) {
+      file.read("old-face-displacement", state_.face_u_old);
+      file.read("old-face-velocity", state_.face_v_old);
+    }
+  }
   if (!state_.acceleration.empty()) {
     file.read("acceleration", state_.acceleration);
     file.read("mean-acceleration", state_.mean_acceleration);
@@ -241,6 +289,12 @@ void Solid::load(CheckpointReader& file) {
     const std::vector<double> e = file.read("energies");
     state_.energies = {e.at(0), e.at(1), 0, e.at(2), e.at(3), e.at(4)};
   }
+  if (is_dynamic()) {
+    const std::vector<double> work = file.read("load-work");
+    state_.load_work = work.at(0);
+    state_.energies.initial_kinetic = work.at(1);
+  }
+  energy_audit_.scale = file.read_scalar("audit-scale");
   if (parameters_.step_control) state_.error = file.read_scalar("error");
   state_.dt = file.read_scalar("dt");
   state_.stage_dt = file.read_scalar("stage-dt");

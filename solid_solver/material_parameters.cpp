@@ -10,8 +10,8 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   };
   needed(s.value("youngs-modulus", m.youngs_modulus).unit("Pa").positive().doc("Young's modulus"));
   needed(s.value("poissons-ratio", m.poissons_ratio)
-             .range(-0.99, 0.499)
-             .doc("Poisson's ratio; accuracy fades above 0.45"));
+             .range(-0.99, 0.49999)
+             .doc("Poisson's ratio; from 0.4 up the symmetric face gradient is the default"));
   declare(s, m.heat);
 }
 

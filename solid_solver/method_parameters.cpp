@@ -26,12 +26,23 @@ void declare(config::Section& s, MethodParameters& m) {
   s.choice("face-gradient", m.face_gradient,
            {{"auto", FaceGradient::automatic},
             {"thesis", FaceGradient::thesis},
-            {"corrected", FaceGradient::corrected}})
+            {"corrected", FaceGradient::corrected},
+            {"symmetric", FaceGradient::symmetric}})
       .doc(
           "displacement gradient at the faces; thesis: locks in bending with few or long cells; corrected: "
           "does not, at two to three times the work, but undamped motion grows sooner with short steps; "
+          "symmetric: "
+          "from an energy, so that nothing grows on any mesh, by conjugate gradients; "
           "auto: "
           "corrected in static analyses, thesis in dynamic ones");
+  using VolumeStrain = MethodParameters::VolumeStrain;
+  s.choice(
+       "volume-strain", m.volume_strain,
+       {{"auto", VolumeStrain::automatic}, {"faces", VolumeStrain::faces}, {"cells", VolumeStrain::cells}})
+      .doc(
+          "of face-gradient symmetric; cells: one a cell, which does not lock as nu goes to 0.5; faces: that "
+          "of each "
+          "face; auto: cells from nu = 0.4 up");
   s.choice("linear-solver", m.linear_solver,
            {{"auto", LinearSolver::automatic},
             {"direct", LinearSolver::direct},
@@ -45,7 +56,7 @@ void declare(config::Section& s, MethodParameters& m) {
       .doc(
           "of newton-krylov; multigrid: compact component-wise operator and rigid motions of aggregates; "
           "factors: LU of "
-          "the thesis's operator, kept for all steps of one size");
+          "the thesis's operator (symmetric: Cholesky of its own), kept for all steps of one size");
   s.choice(
        "acceleration", m.acceleration,
        {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}})

@@ -8,13 +8,15 @@ namespace couplet {
 /// How the equations of a step are solved.
 struct MethodParameters {
   enum class Type { automatic, block_coupled, segregated, newton_krylov };
-  enum class FaceGradient { automatic, thesis, corrected };
+  enum class FaceGradient { automatic, thesis, corrected, symmetric };
   enum class LinearSolver { automatic, direct, bicgstab_ilu, gmres_multigrid };
   enum class Preconditioner { automatic, multigrid, factors };
   enum class Acceleration { none, aitken, anderson };
   enum class Predictor { none, euler, adams };
+  enum class VolumeStrain { automatic, faces, cells };
   Type type = Type::automatic;
   FaceGradient face_gradient = FaceGradient::automatic;
+  VolumeStrain volume_strain = VolumeStrain::automatic;       // of the symmetric gradient
   LinearSolver linear_solver = LinearSolver::automatic;       // of the block-coupled method
   Preconditioner preconditioner = Preconditioner::automatic;  // of newton-krylov
   Acceleration acceleration = Acceleration::anderson;         // of the segregated method

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/symmetric_matrix.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -53,10 +54,21 @@ double heaviness(const SolidProblem& problem) {
   return sum(mesh.comm, inertia) / sum(mesh.comm, stiffness);
 }
 
+/// Row sums of the kernel's mass times its factor, one an unknown node; empty: static.
+std::vector<double> node_inertia(const SolidProblem& problem) {
+  if (problem.mass_factor == 0) return {};
+  const std::size_t n = problem.elastic.n_unknowns(), dim = problem.mesh.dim;
+  std::vector<double> ones(n, 1), row(n), result(n / dim, 0);
+  problem.kernel.apply_with_mass(ones, {}, problem.mass_factor, false, row);
+  for (std::size_t i = 0; i < n; ++i) result[i / dim] = std::max(result[i / dim], row[i]);
+  return result;
+}
+
 }  // namespace
 
 NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters)
-    : problem_(problem), options_{parameters.relative_tolerance, parameters.max_iterations} {
+    : problem_(problem),
+      options_{parameters.relative_tolerance, parameters.max_iterations, problem.is_symmetric()} {
   using Preconditioner = MethodParameters::Preconditioner;
   if (parameters.preconditioner == Preconditioner::factors)
     choose_factors();
@@ -78,6 +90,13 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
   const double heavy_here = heaviness(problem_);
   ElasticPreconditioner::Options options;
   options.scheme = problem_.kernel.scheme();
+  if (problem_.is_symmetric()) {
+    const std::vector<double> inertia = node_inertia(problem_);
+    options.node_inertia = inertia;
+    multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
+    name_ = "newton-krylov (conjugate gradients, multigrid)";
+    return;
+  }
   options.n_aggregates = heavy_here > heavy
                              ? 0
                              : static_cast<int>(std::min<GlobalIndex>(
@@ -100,6 +119,15 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
 }
 
 void NewtonKrylov::choose_factors() {
+  LinearOptions of_factors;
+  if (problem_.is_symmetric()) {
+    matrix_ = std::make_unique<SparseMatrix>(
+        symmetric_matrix(problem_.mesh, problem_.elastic, node_inertia(problem_)));
+    of_factors.method = problem_.mesh.dim == 2 ? LinearMethod::direct_planar : LinearMethod::direct_symmetric;
+    factors_ = std::make_unique<LinearSolver>("displacement", *matrix_, of_factors);
+    name_ = "newton-krylov (conjugate gradients, Cholesky factors)";
+    return;
+  }
   matrix_ = std::make_unique<SparseMatrix>(problem_.elastic.matrix(problem_.inertia));
   LinearOptions options;
   options.method = LinearMethod::direct;
@@ -113,11 +141,15 @@ SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double>
     if (problem_.inertia.empty()) krylov_->forget_vectors();  // static: what is written next needs room
     return statistics;
   } catch (const SolveFailure& e) {
+    // Never the method that has just failed.
+    const char* other = !problem_.is_symmetric() ? "{type: block-coupled, linear-solver: direct}"
+                        : multigrid_             ? "{face-gradient: symmetric, preconditioner: factors}"
+                                                 : "{face-gradient: corrected}";
     throw SolveFailure(
         "{} Is the solid held everywhere, is nu below 0.5, are the cells sound? If the loads and supports "
-        "are, "
-        "'solution-method: {{type: block-coupled, linear-solver: direct}}' needs most memory and bears most.",
-        e.what());
+        "are, 'solution-method: {}' is another way{}.",
+        e.what(), other,
+        !problem_.is_symmetric() || multigrid_ ? ", which needs most memory and bears most" : "");
   }
 }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/fv/elastic_kernel.hpp"
-#include "common/fv/elastic_preconditioner.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/elastic_preconditioner.hpp"
 #include "common/linalg/krylov.hpp"
 #include "common/linalg/matrix.hpp"
 #include "solid_solver/solution_method.hpp"

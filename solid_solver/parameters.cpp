@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/fv/expression.hpp"
 
 namespace couplet {
@@ -218,11 +220,35 @@ LameConstants lame_constants(const SolidParameters& p, const SolidMaterial& mate
   return lame;
 }
 
+double largest_poissons_ratio(const SolidParameters& p) {
+  double largest = -1;
+  for (const SolidMaterial& m : materials_of(p)) largest = std::max(largest, m.poissons_ratio);
+  return largest;
+}
+
+bool symmetric_suits(const SolidParameters& p) {
+  using Type = MethodParameters::Type;
+  if (p.method.type != Type::automatic && p.method.type != Type::newton_krylov) return false;
+  const auto has_no_energy = [](const SolidCondition& c) {
+    return c.type == SolidCondition::Type::zero_normal_gradient;
+  };
+  return std::ranges::none_of(p.boundaries, [&](const auto& entry) {
+    return has_no_energy(entry.second) || std::ranges::any_of(entry.second.parts, has_no_energy);
+  });
+}
+
+bool volume_by_cells(const SolidParameters& p) {
+  using VolumeStrain = MethodParameters::VolumeStrain;
+  if (p.method.volume_strain != VolumeStrain::automatic) return p.method.volume_strain == VolumeStrain::cells;
+  const bool plane_stress = p.dimension == 2 && p.plane == SolidParameters::Plane::stress;
+  return !plane_stress && largest_poissons_ratio(p) >= nearly_incompressible;
+}
+
 ElasticBody elastic_body(const SolidParameters& p, const Mesh& mesh) {
   std::vector<LameConstants> of_material;
   for (const SolidMaterial& material : materials_of(p)) of_material.push_back(lame_constants(p, material));
-  if (mesh.cell_material.empty()) return {{of_material.front()}, {}};
-  ElasticBody body{{}, mesh.cell_material};
+  if (mesh.cell_material.empty()) return {{of_material.front()}, {}, volume_by_cells(p)};
+  ElasticBody body{{}, mesh.cell_material, volume_by_cells(p)};
   for (const int material : mesh.cell_material) body.lame.push_back(of_material[material]);
   return body;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "solid_solver/boundary_parameters.hpp"
 #include "solid_solver/heat_parameters.hpp"
 #include "solid_solver/interface_data.hpp"
@@ -58,6 +58,14 @@ LameConstants lame_constants(const SolidParameters& parameters, const SolidMater
 inline LameConstants lame_constants(const SolidParameters& parameters) {
   return lame_constants(parameters, parameters.material);
 }
+
+/// From here up the volume strain of faces locks.
+inline constexpr double nearly_incompressible = 0.4;
+double largest_poissons_ratio(const SolidParameters& parameters);
+/// The symmetric gradient takes one volume strain a cell.
+bool volume_by_cells(const SolidParameters& parameters);
+/// The symmetric gradient can have all of the scene's boundaries and the method that is asked for.
+bool symmetric_suits(const SolidParameters& parameters);
 
 /// For ElasticOperator: the constants of the cells.
 ElasticBody elastic_body(const SolidParameters& parameters, const Mesh& mesh);

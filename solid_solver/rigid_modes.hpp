@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/fv/elastic_kernel.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
 #include "common/linalg/acceleration.hpp"
 #include "common/linalg/linear_solver.hpp"
 #include "common/linalg/matrix.hpp"

@@ -15,6 +15,24 @@
 
 namespace couplet {
 
+namespace {
+
+/// Of the gradients without an energy: beyond it they only lock.
+constexpr double most_poissons_ratio = 0.499;
+
+/// A support's face has a vertex that is free in a direction which the face knows.
+bool has_loose_vertex(const Mesh& mesh, const ElasticOperator& elastic) {
+  for (const Index f : elastic.known_faces()) {
+    if (elastic.condition(f) != ElasticCondition::support) continue;
+    const Tensor3& known = elastic.support(f).known;
+    for (const Index v : mesh.face_points[f])
+      if ((known * elastic.constraints().free_part(v) * known).trace() > 0.5) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
     : mesh_(std::move(mesh)),
       parameters_(std::move(parameters)),
@@ -22,9 +40,10 @@ Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
       materials_(materials_of(parameters_)),
       boundaries_(mesh_, parameters_),
       elastic_(mesh_, boundaries_.elastic(), elastic_body(parameters_, mesh_)),
-      kernel_(mesh_, elastic_, face_gradient_scheme(parameters_.method, !is_dynamic())),
+      kernel_(mesh_, elastic_, face_gradient_scheme(parameters_)),
       prescribed_(mesh_, boundaries_, elastic_) {
   check_supports();
+  find_mass();
   if (!boundaries_.interface_patches().empty()) {
     interface_ = std::make_unique<InterfaceMap>(mesh_, boundaries_.interface_patches());
     description_ = interface_->describe();
@@ -58,6 +77,31 @@ void Solid::check_supports() const {
   if (!is_dynamic()) check_supported(mesh_, elastic_);
 }
 
+void Solid::find_mass() {
+  if (kernel_.is_symmetric())
+    for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+      if (elastic_.condition(f) == ElasticCondition::zero_gradient)
+        throw Error(
+            "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no "
+            "energy, so that "
+            "this gradient cannot have it; use 'symmetry' or 'frictionless', or 'face-gradient: corrected'.");
+  if (kernel_.is_symmetric() && any(mesh_.comm, has_loose_vertex(mesh_, elastic_)))
+    throw Error(
+        "solution-method.face-gradient: symmetric: a part of a patch holds components of the displacement and ends "
+        "at vertices that it does not hold; there this gradient would lose a part of the reaction. Give the part a "
+        "patch of its own, hold all components, or take 'face-gradient: corrected'.");
+  if (!kernel_.is_symmetric() && largest_poissons_ratio(parameters_) > most_poissons_ratio)
+    throw Error(
+        "material.poissons-ratio: {:g} is beyond {:g}, up to which 'face-gradient: thesis' and 'corrected' "
+        "can go; "
+        "'symmetric' can (with 'solution-method: {{type: auto}}' and no 'zero-normal-gradient').",
+        largest_poissons_ratio(parameters_), most_poissons_ratio);
+  if (!is_dynamic()) return;
+  std::vector<double> densities;
+  for (Index c = 0; c < mesh_.cells.n_local(); ++c) densities.push_back(density(c));
+  has_mass_ = kernel_.set_density(densities);
+}
+
 void Solid::start_from_rest() {
   const int dim = mesh_.dim;
   state_.cell_u.assign(std::size_t(mesh_.cells.n_local()) * dim, 0);
@@ -72,6 +116,8 @@ void Solid::start_from_rest() {
   if (is_dynamic() && (uses_old_level(parameters_.time_scheme.type) ||
                        parameters_.method.predictor == MethodParameters::Predictor::adams))
     state_.cell_u_old = state_.cell_v_old = state_.cell_u;
+  if (has_mass_ && !state_.cell_a.empty()) state_.face_a = state_.face_u;
+  if (has_mass_ && !state_.cell_u_old.empty()) state_.face_u_old = state_.face_v_old = state_.face_u;
   if (wants_acceleration()) {
     state_.acceleration = state_.mean_acceleration = state_.cell_u;
     state_.face_acceleration = state_.face_u;
@@ -85,7 +131,7 @@ void Solid::start_from_rest() {
       velocity[c].evaluate(faces, 0, state_.face_v, dim, c);
     }
   }
-  state_.energies.kinetic = state_.energies.initial_kinetic = kinetic_energy(state_.cell_v);
+  state_.energies.kinetic = state_.energies.initial_kinetic = kinetic_energy(state_, known_rate_);
   trial_ = state_;
 }
 
@@ -99,12 +145,18 @@ void Solid::apply_stiffness() {
     systems_.clear();
     elastic_.set_lame({lame.begin(), lame.end()});
     kernel_ = ElasticKernel(mesh_, elastic_, kernel_.scheme());
+    find_mass();
   }
 }
 
 void Solid::begin_step(const Step& step) {
   step_ = step;
   effort_ = {};
+  if (failed_ && failed_->time == step.time && !is_dynamic() && step.scheme == Scheme::standalone)
+    throw Error(
+        "The static step from t = {:g} s could not be solved, and a shorter one meets the same equations: {}",
+        step.time, failed_->reason);
+  failed_.reset();
   if (!(step.dt > 0)) throw Error("The solid was asked for a step of {} s; time must go on.", step.dt);
   if (!interface_temperature_) prepare_stages();
   if (parameters_.output.spectrum && is_dynamic() && step.number == 0) output_->write_spectrum(step.dt);
@@ -146,13 +198,20 @@ void Solid::take_temperature(const Exchange& in) {
 Exchange Solid::solve(const Exchange& in) {
   if (interface_temperature_) take_temperature(in);
   const std::vector<double> load = interface_load(in);
-  for (std::size_t i = 0; i < stages_.size(); ++i) solve_stage(stages_[i], load, i == 0);
+  if (kernel_.is_symmetric()) last_interface_load_ = load;
+  try {
+    for (std::size_t i = 0; i < stages_.size(); ++i) solve_stage(stages_[i], load, i == 0);
+  } catch (const SolveFailure& failure) {
+    failed_ = {step_.time, failure.what()};
+    throw;
+  }
   trial_.time = step_.time + step_.dt;
   trial_.dt = step_.dt;
   trial_.steps = state_.steps + 1;
   if (!state_.cell_u_old.empty()) {
     trial_.cell_u_old = state_.cell_u;
     trial_.cell_v_old = state_.cell_v;
+    if (has_mass_) trial_.face_u_old = state_.face_u, trial_.face_v_old = state_.face_v;
   }
   if (!trial_.acceleration.empty()) finish_acceleration();
   elastic_.impose_known(known_, trial_.face_u);
@@ -181,6 +240,7 @@ StepReport Solid::accept_step() {
   std::swap(known_rate_accepted_, known_rate_);
   // What is written next needs room; a dynamic run may be continued from it, with the same first guesses.
   if (step_.is_last && !is_dynamic()) systems_.clear();
+  if (!is_dynamic()) audit_answer();
   for (const auto& effect : effects_)
     if (effect->wants_stress()) effect->take_stress(cell_stress(point_displacement()));
   return {.dt = step_.dt, .iterations = effort_.iterations};

@@ -5,20 +5,23 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/participant.hpp"
-#include "common/fv/elastic_kernel.hpp"
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 #include "common/time/time_scheme.hpp"
 #include "solid_solver/boundaries.hpp"
 #include "solid_solver/effect.hpp"
 #include "solid_solver/energies.hpp"
 #include "solid_solver/parameters.hpp"
+#include "solid_solver/solution_method.hpp"
+#include "solid_solver/strain_audit.hpp"
 #include "solid_solver/stress.hpp"
 
 namespace couplet {
@@ -37,13 +40,15 @@ struct SolidState {
   double time = 0, dt = 0;  ///< dt: of the step that ended here
   int steps = 0;            ///< accepted so far
   std::vector<double> cell_u, cell_v, face_u, face_v;
-  std::vector<double> cell_a;                  ///< generalised-alpha alone
-  std::vector<double> cell_u_old, cell_v_old;  ///< a step earlier; three-point, Adams's predictor
-  double stage_dt = 0;                         ///< of the last stage
-  double offset_lag = 0;                       ///< `offset` lives so long before `time`
+  std::vector<double> cell_a;                          ///< generalised-alpha alone
+  std::vector<double> cell_u_old, cell_v_old;          ///< a step earlier; three-point, Adams's predictor
+  std::vector<double> face_a, face_u_old, face_v_old;  ///< the same of faces, where they have inertia
+  double stage_dt = 0;                                 ///< of the last stage
+  double offset_lag = 0;                               ///< `offset` lives so long before `time`
   std::vector<double> offset;       ///< u_B - u_P of the traction faces where the last stage was solved
   std::vector<double> offset_rate;  ///< v_B - v_P at the middle of the last stage
   SolidEnergies energies;           ///< if they are wanted
+  double load_work = 0;             ///< of the loads since the start, dynamic runs, this rank's [J]
   double error = 0;                 ///< estimated for the last step if the step size is controlled, rms [m]
   // If the acceleration is wanted: at `time`, in cells and on faces, and its mean over the last step in
   // cells.
@@ -118,6 +123,11 @@ class Solid final : public Participant {
   std::vector<PatchForce> reactions(std::span<const double> points) const;
   /// Energies over all ranks at the accepted time; needs output.energies. Collective.
   SolidEnergies energies(std::span<const double> points) const;
+  /// Work against strain energy, and, where asked for, one face gradient against another. Collective.
+  StrainAudit audit_strain(std::span<const double> points, bool compare_gradients) const;
+  /// The last audit of the run; none before the first.
+  const std::optional<StrainAudit>& last_audit() const { return audit_; }
+  const EnergyAudit& energy_audit() const { return energy_audit_; }
   /// Eigenvalues of M^-1 K [1/s^2] on rank 0, see spectrum.hpp. Collective.
   std::vector<std::complex<double>> eigenvalues() const;
   /// All loads of the last solve: tractions, pressures, interface, body forces. Collective.
@@ -144,7 +154,11 @@ class Solid final : public Participant {
                                       std::span<const double> faces, std::span<const double> points) const;
   double stress_work(const Placed& stressed, std::span<const double> cell_change,
                      std::span<const double> face_change, double* on_boundary) const;
-  double kinetic_energy(std::span<const double> velocity) const;
+  double kinetic_energy(const SolidState& state, std::span<const double> known_rate) const;
+  void add_symmetric_work(const StageWork& work, const SolidState& before);
+  void mean_of_ends(const StageWork& work);
+  double known_work(const StageWork& work, const SolidState& before) const;
+  SolidEnergies summed(SolidEnergies local) const;
   Placed place_unknowns(const StageWork& work) const;
   void add_work(const StageWork& work, const SolidState& before);
   std::vector<Tensor3> cell_gradient(std::span<const double> points) const;
@@ -158,6 +172,13 @@ class Solid final : public Participant {
   void prepare_stage(StageWork& work);
   void subtract_prescribed(StageWork& work);
   void add_body_forces(double t, std::span<double> rhs);
+  std::vector<double> body_forces(double t) const;
+  ElasticLoads loads_now() const;
+  SolidProblem problem_of(const System& system) const;
+  void find_mass();
+  void add_kernel_inertia(const StageWork& work, const SolidState& now, const Levels& known);
+  std::vector<double> known_inertia(const StageWork& work) const;
+  void finish_faces(const StageWork& work, const SolidState& now);
   std::vector<double> interface_load(const Exchange& in) const;
   void prepare_stages();
   void take_temperature(const Exchange& in);
@@ -172,11 +193,16 @@ class Solid final : public Participant {
   std::vector<double> to_points(std::span<const double> cells, std::span<const double> faces,
                                 std::span<const double> known) const;
   bool is_corrected() const { return kernel_.scheme() == FaceGradientScheme::corrected; }
+  bool is_thesis() const { return kernel_.scheme() == FaceGradientScheme::thesis; }
   std::vector<double> unknowns_of(std::span<const double> cells, std::span<const double> faces) const;
   std::vector<double> known_of(std::span<const double> faces, std::span<const double> points) const;
   std::vector<double> corrected_points(std::span<const double> cells, std::span<const double> faces,
                                        std::span<const double> known) const;
   void judge_inertia();
+  void audit_answer();
+  double residual_work(std::span<const double> unknowns) const;
+  void add_load_work(const StageWork& work, std::span<const double> interface_load,
+                     std::span<const double> cells_before, std::span<const double> faces_before);
   void save_projections(CheckpointWriter& file) const;
   void load_projections(CheckpointReader& file);
 
@@ -186,7 +212,8 @@ class Solid final : public Participant {
   const std::vector<SolidMaterial> materials_;
   SolidBoundaries boundaries_;
   ElasticOperator elastic_;
-  ElasticKernel kernel_;  // the rows of elastic_ with the face gradient that was chosen
+  ElasticKernel kernel_;   // the rows of elastic_ with the face gradient that was chosen
+  bool has_mass_ = false;  // the kernel has its own, and all its nodes inertia
   PrescribedDisplacement prescribed_;
   std::unique_ptr<InterfaceMap> interface_;  // none: no interface patch
   Interface description_;
@@ -205,7 +232,18 @@ class Solid final : public Participant {
   Vec3 body_load_ = Vec3::Zero();  // this rank's sum of body forces
   Vec3 face_load_ = Vec3::Zero();  // this rank's sum of face forces of the last solve
   std::vector<double> rhs_, unknowns_;
+  std::vector<double> last_interface_load_;
+  std::vector<double>
+      load_rows_;  // of the last solve, without inertia and prescribed motion; kernels with mass
   double largest_gradient_ = 0, inertia_over_load_ = 0;
+  std::optional<StrainAudit> audit_;
+  EnergyAudit energy_audit_;
+  struct Failed {
+    double time;
+    std::string reason;
+  };
+  std::optional<Failed> failed_;  // the step that was tried last
+  bool strain_doubted_ = false, energy_doubted_ = false;
   std::unique_ptr<SolidOutput> output_;
   mutable std::unique_ptr<PointTensors> point_tensors_;  // made when first asked for
 };

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/block_coupled.hpp"
 #include "solid_solver/newton_krylov.hpp"
@@ -24,6 +25,18 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
   const GlobalIndex cells = problem.mesh.cells.n_global();
   const bool small = cells <= (problem.mesh.dim == 2 ? factors_up_to_2d : factors_up_to_3d);
   std::string why;
+  const bool asked_automatic = parameters.type == Type::automatic;
+  if (problem.is_symmetric()) {
+    if (parameters.type != Type::automatic && parameters.type != Type::newton_krylov)
+      throw Error(
+          "solution-method: 'face-gradient: symmetric' is solved by conjugate gradients ('type: "
+          "newton-krylov' or "
+          "'auto'); 'segregated' and 'block-coupled' are those of 'face-gradient: thesis' and 'corrected'.");
+    if (parameters.preconditioner == Preconditioner::automatic)
+      parameters.preconditioner = small ? Preconditioner::factors : Preconditioner::multigrid;
+    parameters.type = Type::newton_krylov;
+    return asked_automatic ? fmt::format("{} cells in {}-D", cells, problem.mesh.dim) : "";
+  }
   if (parameters.type == Type::automatic) {
     const bool direct = small && !problem.is_corrected();
     parameters.type = direct ? Type::block_coupled : Type::newton_krylov;
@@ -38,6 +51,10 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
 }  // namespace
 
 void SolidProblem::apply(std::span<const double> x, std::span<double> y) const {
+  if (is_symmetric()) {
+    if (mass_factor > 0) return kernel.apply_with_mass(x, {}, mass_factor, true, y);
+    return kernel.apply(x, {}, y);
+  }
   kernel.apply(x, {}, y);
   const std::size_t dim = mesh.dim;
   for (std::size_t c = 0; c < inertia.size(); ++c)
@@ -65,18 +82,32 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
       method = std::make_unique<BlockCoupled>(problem, parameters);
   }
   if (!why.empty()) method->name_ += fmt::format(" (auto: {})", why);
-  method->name_ += problem.is_corrected() ? ", corrected face gradient" : ", thesis's face gradient";
+  method->name_ += problem.is_symmetric()   ? ", symmetric face gradient"
+                   : problem.is_corrected() ? ", corrected face gradient"
+                                            : ", thesis's face gradient";
   if (asked.face_gradient == MethodParameters::FaceGradient::automatic)
-    method->name_ += problem.is_static() ? " (auto: static, where it errs less)"
-                                         : " (auto: dynamic, where the corrected one's growth is faster)";
+    method->name_ += problem.is_symmetric() ? " (auto: nu from 0.4 up)"
+                     : problem.is_static()  ? " (auto: static, where it errs less)"
+                                            : " (auto: dynamic, where the corrected one's growth is faster)";
   return method;
 }
 
-FaceGradientScheme face_gradient_scheme(const MethodParameters& parameters, bool is_static) {
+FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters) {
   using FaceGradient = MethodParameters::FaceGradient;
-  const bool corrected = parameters.face_gradient == FaceGradient::corrected ||
-                         (parameters.face_gradient == FaceGradient::automatic && is_static);
-  return corrected ? FaceGradientScheme::corrected : FaceGradientScheme::thesis;
+  switch (parameters.method.face_gradient) {
+    case FaceGradient::symmetric:
+      return FaceGradientScheme::symmetric;
+    case FaceGradient::corrected:
+      return FaceGradientScheme::corrected;
+    case FaceGradient::thesis:
+      return FaceGradientScheme::thesis;
+    default:
+      break;
+  }
+  if (largest_poissons_ratio(parameters) >= nearly_incompressible && symmetric_suits(parameters))
+    return FaceGradientScheme::symmetric;
+  return parameters.analysis == SolidParameters::Analysis::static_ ? FaceGradientScheme::corrected
+                                                                   : FaceGradientScheme::thesis;
 }
 
 double norm(MPI_Comm comm, std::span<const double> values) {

@@ -5,12 +5,12 @@
 #include <span>
 #include <string>
 
-#include "common/fv/elastic_kernel.hpp"
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "common/linalg/linear_solver.hpp"
 #include "common/linalg/residual_projection.hpp"
 #include "common/mesh/mesh.hpp"
-#include "solid_solver/method_parameters.hpp"
+#include "solid_solver/parameters.hpp"
 
 namespace couplet {
 
@@ -21,7 +21,9 @@ struct SolidProblem {
   const ElasticOperator& elastic;
   std::span<const double> inertia;  ///< per owned cell [N/m]; empty: static
   const ElasticKernel& kernel;      ///< A, with the face gradient that was chosen
+  double mass_factor = 0;           ///< of the kernel's own mass [1/s^2], where it has one
   bool is_static() const { return inertia.empty(); }
+  bool is_symmetric() const { return kernel.is_symmetric(); }
   bool is_corrected() const { return kernel.scheme() == FaceGradientScheme::corrected; }
   /// y = (diag(inertia) + A) x. Collective.
   void apply(std::span<const double> x, std::span<double> y) const;
@@ -53,10 +55,11 @@ class SolutionMethod {
 std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
                                                      const MethodParameters& parameters);
 
-/// The face gradient that the parameters ask for; `automatic`: the corrected one, which errs less on every
-/// kind of cells, in static runs; the thesis's in dynamic ones, where the corrected one's complex
-/// eigenvalues grow 1.5 to 16 times as fast.
-FaceGradientScheme face_gradient_scheme(const MethodParameters& parameters, bool is_static);
+/// The face gradient that the parameters ask for; `automatic`: the symmetric one from nu = 0.4 up
+/// (near_incompressible), where the others lock and pass through a pole; below that the corrected one, which
+/// errs less on every kind of cells, in static runs; the thesis's in dynamic ones, where the corrected one's
+/// complex eigenvalues grow 1.5 to 16 times as fast.
+FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters);
 
 /// Euclidean norm over all ranks.
 double norm(MPI_Comm comm, std::span<const double> values);

@@ -28,19 +28,45 @@ Eigen::MatrixXd probe(MPI_Comm comm, std::size_t n_local, GlobalIndex n, const E
   return a;
 }
 
+void check_size(GlobalIndex n) {
+  if (n > largest_spectrum)
+    throw Error(
+        "output.spectrum: the spectrum of {} displacement components was asked for; it is computed up to {}. "
+        "Use a "
+        "coarser mesh of the same kind.",
+        n, largest_spectrum);
+}
+
 }  // namespace
+
+std::vector<std::complex<double>> symmetric_spectrum(const Mesh& mesh, std::size_t n_unknowns,
+                                                     const ElasticApplication& stiffness,
+                                                     const ElasticApplication& mass) {
+  const GlobalIndex n = sum(mesh.comm, GlobalIndex(n_unknowns));
+  check_size(n);
+  const Eigen::MatrixXd a = probe(mesh.comm, n_unknowns, n, stiffness);
+  const Eigen::MatrixXd b = probe(mesh.comm, n_unknowns, n, mass);
+  if (comm_rank(mesh.comm) != 0) return {};
+  std::vector<Eigen::Index> massive, massless;
+  for (Eigen::Index i = 0; i < n; ++i)
+    (b(i, i) > 1e-12 * b.trace() / double(n) ? massive : massless).push_back(i);
+  Eigen::MatrixXd k = a(massive, massive), m = b(massive, massive);
+  if (!massless.empty()) k -= a(massive, massless) * a(massless, massless).ldlt().solve(a(massless, massive));
+  k = (0.5 * (k + k.transpose())).eval();
+  m = (0.5 * (m + m.transpose())).eval();
+  // An oblique support leaves a direction without mass on the diagonal blocks.
+  m.diagonal().array() += 1e-13 * m.trace() / double(m.rows());
+  const Eigen::VectorXd values =
+      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(k, m, Eigen::EigenvaluesOnly).eigenvalues();
+  return {values.begin(), values.end()};
+}
 
 std::vector<std::complex<double>> spectrum(const Mesh& mesh, std::span<const double> cell_mass,
                                            std::size_t n_unknowns, const ElasticApplication& apply) {
   const std::size_t n_cells = cell_mass.size() * mesh.dim;
   const GlobalIndex n = sum(mesh.comm, GlobalIndex(n_unknowns)),
                     n_massive = sum(mesh.comm, GlobalIndex(n_cells));
-  if (n_massive > largest_spectrum)
-    throw Error(
-        "output.spectrum: the spectrum of {} displacement components was asked for; it is computed up to {}. "
-        "Use a "
-        "coarser mesh of the same kind.",
-        n_massive, largest_spectrum);
+  check_size(n_massive);
   // The mass of each row, 0 for faces, in the order of the gathered rows.
   std::vector<double> local_mass(n_unknowns, 0);
   for (std::size_t i = 0; i < n_cells; ++i) local_mass[i] = cell_mass[i / mesh.dim];

@@ -22,4 +22,10 @@ constexpr GlobalIndex largest_spectrum = 4000;
 std::vector<std::complex<double>> spectrum(const Mesh& mesh, std::span<const double> cell_mass,
                                            std::size_t n_unknowns, const ElasticApplication& apply);
 
+/// The same of a symmetric pair, M applied like A: real, smallest first. Rows without mass are eliminated.
+/// Collective.
+std::vector<std::complex<double>> symmetric_spectrum(const Mesh& mesh, std::size_t n_unknowns,
+                                                     const ElasticApplication& stiffness,
+                                                     const ElasticApplication& mass);
+
 }  // namespace couplet

@@ -20,8 +20,14 @@ constexpr std::size_t systems_kept = 2;
 /// Combinations of levels for one component after another.
 class History {
  public:
-  History(const SolidState& now, std::span<const double> u_old, std::span<const double> v_old)
-      : u_(now.cell_u), v_(now.cell_v), a_(now.cell_a), u_old_(u_old), v_old_(v_old) {}
+  History(const SolidState& now, const SolidState& start, bool of_faces)
+      : u_(of_faces ? now.face_u : now.cell_u),
+        v_(of_faces ? now.face_v : now.cell_v),
+        a_(of_faces ? now.face_a : now.cell_a),
+        u_old_(&now == &start ? (of_faces ? now.face_u_old : now.cell_u_old)
+                              : (of_faces ? start.face_u : start.cell_u)),
+        v_old_(&now == &start ? (of_faces ? now.face_v_old : now.cell_v_old)
+                              : (of_faces ? start.face_v : start.cell_v)) {}
   double operator()(const Levels& l, std::size_t i, double x = 0) const {
     double value = l.x * x + l.u * u_[i] + l.v * v_[i];
     if (!a_.empty()) value += l.a * a_[i];
@@ -34,10 +40,7 @@ class History {
 };
 
 /// `start`: the state at the start of the step, which is the old level of a second stage.
-History history(const SolidState& now, const SolidState& start) {
-  return &now == &start ? History(now, now.cell_u_old, now.cell_v_old)
-                        : History(now, start.cell_u, start.cell_v);
-}
+History history(const SolidState& now, const SolidState& start) { return {now, start, false}; }
 
 }  // namespace
 
@@ -66,11 +69,15 @@ Solid::System& Solid::system_for(double mass_factor) {
   if (mass_factor > 0)
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
       system->inertia.push_back(mass_factor * density(c) * mesh_.reference.volume[c]);
-  system->method = make_solution_method({mesh_, elastic_, system->inertia, kernel_}, parameters_.method);
+  system->method = make_solution_method(problem_of(*system), parameters_.method);
   elastic_.forget_faces();  // what the method needs of them it has by now
   announce(*system);
   systems_.insert(systems_.begin(), std::move(system));
   return *systems_.front();
+}
+
+SolidProblem Solid::problem_of(const System& system) const {
+  return {mesh_, elastic_, system.inertia, kernel_, has_mass_ ? system.mass_factor : 0};
 }
 
 void Solid::announce(const System& system) {
@@ -90,10 +97,11 @@ void Solid::prepare_stage(StageWork& work) {
   work.system = &system_for((stage.acceleration.x + damping.mass * stage.rate.x) / work.damping_scale);
   const bool is_loaded = !body_force_.empty() || !parameters_.gravity.empty() || !effects_.empty() ||
                          !prescribed_.is_zero() || parameters_.output.energies;
+  work.known_force.clear();
   work.rhs.assign(is_loaded ? elastic_.n_unknowns() : 0, 0);
   work.face_force.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
   add_body_forces(work.place_time, work.rhs);
-  for (const auto& effect : effects_) effect->add_loads(work.place_time, work.rhs);
+  for (const auto& effect : effects_) effect->add_loads(work.place_time, kernel_, work.rhs);
   boundaries_.add_forces(work.place_time, work.face_force);
   if (parameters_.output.energies) {
     work.loads = work.rhs;
@@ -118,20 +126,29 @@ void Solid::subtract_prescribed(StageWork& work) {
   std::vector<double> still(work.rhs.size(), 0), force(work.rhs.size());
   kernel_.apply(still, work.known, force);
   for (std::size_t i = 0; i < force.size(); ++i) work.rhs[i] -= force[i];
+  work.known_force = std::move(force);
 }
 
 void Solid::add_body_forces(double t, std::span<double> rhs) {
+  const std::vector<double> forces = body_forces(t);
+  if (forces.empty()) return;
+  kernel_.add_cell_forces(forces, rhs);
   body_load_.setZero();
-  if (body_force_.empty() && parameters_.gravity.empty()) return;
+  for (std::size_t i = 0; i < forces.size(); ++i) body_load_[Index(i % mesh_.dim)] += forces[i];
+}
+
+/// Of the owned cells [N], `dim` values each; empty: none.
+std::vector<double> Solid::body_forces(double t) const {
+  if (body_force_.empty() && parameters_.gravity.empty()) return {};
   const int dim = mesh_.dim;
+  std::vector<double> forces(std::size_t(mesh_.cells.n_owned()) * dim);
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     for (int a = 0; a < dim; ++a) {
       double force = body_force_.empty() ? 0 : body_force_[a](mesh_.reference.cell_centre[c], t);
       if (!parameters_.gravity.empty()) force += density(c) * parameters_.gravity[a];
-      force *= mesh_.reference.volume[c];  // (2.59)
-      rhs[std::size_t(c) * dim + a] += force;
-      body_load_[a] += force;
+      forces[std::size_t(c) * dim + a] = force * mesh_.reference.volume[c];  // (2.59)
     }
+  return forces;
 }
 
 /// Sum of the given forces, `dim` values a boundary face of owned cells; empty without interface.
@@ -169,8 +186,14 @@ void Solid::solve_stage(const StageWork& work, std::span<const double> interface
     std::ranges::fill(rhs_, 0.0);
   else
     rhs_ = work.rhs;
-  if (work.system->mass_factor > 0) add_inertia(work, now);
+  if (work.system->mass_factor > 0 && !has_mass_) add_inertia(work, now);
   add_face_forces(work, interface_load);
+  if (has_mass_) {
+    load_rows_ = rhs_;
+    if (!work.known_force.empty())
+      for (std::size_t i = 0; i < rhs_.size(); ++i) load_rows_[i] += work.known_force[i];
+    add_inertia(work, now);
+  }
   guess(work, now);
   {
     const log::ScopedTimer timer(log::timers(), "solid: linear solver");
@@ -178,16 +201,24 @@ void Solid::solve_stage(const StageWork& work, std::span<const double> interface
     effort_ = {effort_.solves + 1, effort_.iterations + statistics.iterations,
                effort_.inner_iterations + statistics.inner_iterations, statistics.residual};
   }
-  if (!parameters_.output.energies) {
+  if (first) trial_.energies = state_.energies, trial_.load_work = state_.load_work;
+  // A second stage starts from the trial state, which is about to change.
+  const bool keeps = is_dynamic() && !first;
+  const std::vector<double> cells = keeps ? now.cell_u : std::vector<double>();
+  const std::vector<double> faces = keeps ? now.face_u : std::vector<double>();
+  const auto finish = [&] {
     finish_offsets(work.stage, now);
     finish_cells(work, now);
-    return;
-  }
-  if (first) trial_.energies = state_.energies;
+    if (is_dynamic())
+      add_load_work(work, interface_load, first ? state_.cell_u : cells, first ? state_.face_u : faces);
+  };
+  if (!parameters_.output.energies) return finish();
   const SolidState before = now;
-  finish_offsets(work.stage, now);
-  finish_cells(work, now);
-  add_work(work, before);
+  finish();
+  if (has_mass_)
+    add_symmetric_work(work, before);
+  else
+    add_work(work, before);
 }
 
 void Solid::add_inertia(const StageWork& work, const SolidState& now) {
@@ -195,6 +226,7 @@ void Solid::add_inertia(const StageWork& work, const SolidState& now) {
   const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
   Levels known =
       stage.acceleration + (damping.mass - work.system->mass_factor * damping.stiffness) * stage.rate;
+  if (has_mass_) return add_kernel_inertia(work, now, known);
   const History levels = history(now, state_);
   const int dim = mesh_.dim;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
@@ -206,14 +238,44 @@ void Solid::add_inertia(const StageWork& work, const SolidState& now) {
   }
 }
 
+/// All nodes have inertia, known ones that of their own acceleration (and mass damping of their velocity).
+void Solid::add_kernel_inertia(const StageWork& work, const SolidState& now, const Levels& known) {
+  const History cells(now, state_, false), faces(now, state_, true);
+  const int dim = mesh_.dim;
+  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
+  std::vector<double> levels(unknowns_.size()), force(unknowns_.size());
+  for (std::size_t i = 0; i < n_cells; ++i) levels[i] = cells(known, i);
+  const auto& open = elastic_.unknown_faces();
+  for (std::size_t i = 0; i < open.size(); ++i)
+    for (int a = 0; a < dim; ++a)
+      levels[n_cells + i * dim + a] = faces(known, std::size_t(open[i] - mesh_.n_interior) * dim + a);
+  const std::vector<double> of_known = known_inertia(work);
+  kernel_.apply_with_mass(levels, of_known, 1, false, force);
+  for (std::size_t i = 0; i < force.size(); ++i) rhs_[i] -= force[i];
+}
+
+/// Acceleration of the known columns at the place of a stage, with mass damping of their velocity; empty:
+/// they rest.
+std::vector<double> Solid::known_inertia(const StageWork& work) const {
+  if (!prescribed_.uses_time()) return {};
+  const double damping = parameters_.damping ? parameters_.damping->mass : 0, h = 0.5 * work.stage.dt;
+  std::vector<double> before(known_.size()), now(before), after(before);
+  prescribed_.evaluate(work.place_time - h, before);
+  prescribed_.evaluate(work.place_time, now);
+  prescribed_.evaluate(work.place_time + h, after);
+  for (std::size_t i = 0; i < now.size(); ++i)
+    now[i] = (after[i] - 2 * now[i] + before[i]) / (h * h) + damping * (after[i] - before[i]) / (2 * h);
+  return now;
+}
+
 void Solid::add_face_forces(const StageWork& work, std::span<const double> interface_load) {
   if (interface_load.empty()) {
-    face_load_ = elastic_.add_forces(work.face_force, rhs_);
+    face_load_ = kernel_.add_face_forces(work.face_force, rhs_);
     return;
   }
   std::vector<double> force = work.face_force;
   for (std::size_t i = 0; i < force.size(); ++i) force[i] += interface_load[i];
-  face_load_ = elastic_.add_forces(force, rhs_);
+  face_load_ = kernel_.add_face_forces(force, rhs_);
 }
 
 // For iterative methods: where the accepted motion leads, so that equal loads give equal answers.
@@ -251,6 +313,7 @@ void Solid::finish_cells(const StageWork& work, const SolidState& now) {
     trial_.cell_v[i] = v;
   }
   trial_.stage_dt = stage.dt;
+  if (has_mass_) return finish_faces(work, now);
   const int dim = mesh_.dim;
   for (const Index f : elastic_.unknown_faces())
     for (int a = 0; a < dim; ++a) {
@@ -261,11 +324,32 @@ void Solid::finish_cells(const StageWork& work, const SolidState& now) {
     }
 }
 
+/// As the cells, where faces have inertia. What a support knows is imposed at the end of the step.
+void Solid::finish_faces(const StageWork& work, const SolidState& now) {
+  const Stage& stage = work.stage;
+  const double s = work.damping_scale, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
+  const History levels(now, state_, true);
+  const int dim = mesh_.dim;
+  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
+  const auto& open = elastic_.unknown_faces();
+  for (std::size_t i = 0; i < open.size(); ++i)
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t b = std::size_t(open[i] - mesh_.n_interior) * dim + a;
+      const double w = unknowns_[n_cells + i * dim + a];
+      const double x = beta > 0 ? (w - beta * levels(stage.rate, b)) / s : w;
+      const double u = levels(stage.end_value, b, x), v = levels(stage.end_rate, b, x);
+      if (!trial_.face_a.empty()) trial_.face_a[b] = levels(stage.end_acceleration, b, x);
+      trial_.face_u[b] = u;
+      trial_.face_v[b] = v;
+    }
+}
+
 // Leaves in the faces what finish_cells() adds to their cells' values:
 // delta = u_B - u_P at the end of the stage from the places of this solve and the last one (the trapezoidal
 // rule with equal steps: 3/2 and -1/2), its rate likewise from the difference of the ends, which lives in the
 // middle. Stiffness damping makes w of the solve lead: w_B - w_P = delta + beta d(delta)/dt.
 void Solid::finish_offsets(const Stage& stage, const SolidState& now) {
+  if (has_mass_) return;
   const int dim = mesh_.dim;
   const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
   const bool is_first = now.stage_dt == 0;

@@ -23,9 +23,10 @@ struct Solid::StageWork {
   double damping_scale = 1;  ///< s = 1 + beta c
   System* system = nullptr;
   double start_time = 0, place_time = 0, end_time = 0;
-  std::vector<double> rhs;    ///< loads and prescribed displacements, without face forces and inertia;
-                              ///< empty: none
-  std::vector<double> known;  ///< prescribed w, one a known column
+  std::vector<double> rhs;          ///< loads and prescribed displacements, without face forces and inertia;
+                                    ///< empty: none
+  std::vector<double> known_force;  ///< what `rhs` holds of the prescribed displacements; empty: none
+  std::vector<double> known;        ///< prescribed w, one a known column
   // If energies are wanted: rows of body forces and effects, change of the prescribed displacements.
   std::vector<double> loads, known_change;
   std::vector<double> face_force;  ///< loads but the interface's, per boundary face of owned cells

@@ -195,21 +195,27 @@ void ThermalStrain::begin_step(const Step& step) {
   if (varies_) choose_stiffness(step.time + step.dt);
 }
 
-void ThermalStrain::add_loads(double t, std::span<double> rhs) {
-  if (!expands()) return;
+void ThermalStrain::add_loads(double t, const ElasticKernel& kernel, std::span<double> rhs) {
+  if (expands()) kernel.add_pressure(pressure(t), rhs);
+}
+
+std::vector<double> ThermalStrain::pressure(double t) {
+  if (!expands()) return {};
   std::vector<double> temperature;
   if (prescribed_) {
     temperature = face_temperature(t, true);
   } else {
-    const double part = (t - step_.time) / step_.dt;
+    // After the step has been accepted `start_` is its end.
+    const double part = t > time_ ? (t - step_.time) / step_.dt : 0;
     temperature = start_;
-    for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
+    if (part > 0)
+      for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
   }
   std::vector<double> pressure = strain(temperature);
   for (Index f = 0; f < mesh_->n_flux_faces(); ++f) pressure[f] *= face_modulus(f);
   pressure.resize(mesh_->n_faces());
   mesh_->boundary.update_ghosts(std::span(pressure).subspan(mesh_->n_interior));
-  elastic_->add_pressure(pressure, rhs);
+  return pressure;
 }
 
 void ThermalStrain::accept_step() {

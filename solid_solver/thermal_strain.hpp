@@ -30,7 +30,8 @@ class ThermalStrain final : public SolidEffect {
 
   void begin_step(const Step& step) override;
   std::span<const LameConstants> stiffness() const override;
-  void add_loads(double t, std::span<double> rhs) override;
+  void add_loads(double t, const ElasticKernel& kernel, std::span<double> rhs) override;
+  std::vector<double> pressure(double t) override;
   void accept_step() override;
   bool wants_temperature() const override { return given_; }
   void set_interface(const InterfaceTemperature& interface) override;

@@ -86,6 +86,8 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
                "go on although keys that change what is solved are not those of the checkpoint");
   app.add_flag("--allow-commands", line.allow_commands,
                "let a .geo run commands and write files: it does so with your rights");
+  app.add_flag("--strict", line.strict,
+               "a run that doubts its own result (see the warnings) ends with exit code 1");
   app.add_flag("--check", check, "only check the configuration: exit code 0 or 2");
   app.add_flag("--docs", docs, "print the reference of all keys as Markdown");
   app.add_flag("--schema", schema, "print the JSON schema of all keys, for editors");

@@ -20,6 +20,7 @@ struct CommandLine {
   std::filesystem::path restart_folder;  ///< empty: fresh start
   bool allow_commands = false;           ///< a .geo may run commands and write files
   bool restart_with_changes = false;     ///< consent to changes of the case since the checkpoint
+  bool strict = false;                   ///< a result in doubt (log::doubt) fails the run
   log::Verbosity verbosity = log::Verbosity::normal;
 };
 

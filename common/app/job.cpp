@@ -18,6 +18,7 @@
 #include "common/app/questions.hpp"
 #include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
+#include "common/log/doubt.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/parallel/mpi_start.hpp"
@@ -153,7 +154,12 @@ int attend(const CommandLine& command_line, const ProgramKind& kind,
     job.enter(Phase::initialise);
     watch.limit_silence(job.simulation.hang_timeout);
     const int code = run(job);
-    return code == 0 && Watch::has_stopped() ? exit_stopped : code;
+    if (code == 0 && Watch::has_stopped()) return exit_stopped;
+    if (code != 0 || !command_line.strict || log::doubts() == 0) return code;
+    if (job.rank == 0)
+      log::error("--strict: the result is in doubt ({} warning{} above); the run counts as failed.",
+                 log::doubts(), log::doubts() == 1 ? "" : "s");
+    return exit_failed;
   } catch (const std::exception& error) {
     const bool of_the_user = dynamic_cast<const Error*>(&error) && !dynamic_cast<const SolveFailure*>(&error);
     end_the_job(watch, error.what(), of_the_user && watch.phase() <= Phase::initialise);

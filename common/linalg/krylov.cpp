@@ -84,7 +84,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   while (!(statistics.residual <= wanted)) {
     bool stuck = statistics.residual > 0.9 * before;
     if (stuck && statistics.residual < at_rounding * rounding(x)) break;
-    if (!is_hard && (stuck || statistics.iterations >= patience)) {
+    if (!is_hard && !options.is_symmetric && (stuck || statistics.iterations >= patience)) {
       is_hard = true;
       stuck = false;
     }
@@ -92,11 +92,16 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
       throw SolveFailure(
           "The Krylov solver for {} did not converge: {} reached a residual of {:.3e} of the right-hand side "
           "({:.3e} wanted) in {} of at most {} iterations{}.",
-          what_, is_hard ? "IDR(4) after BiCGStab" : "BiCGStab", statistics.residual / size,
-          options.relative_tolerance, statistics.iterations, options.max_iterations,
-          stuck ? " and a restart gains nothing" : "");
+          what_,
+          options.is_symmetric ? "CG"
+          : is_hard            ? "IDR(4) after BiCGStab"
+                               : "BiCGStab",
+          statistics.residual / size, options.relative_tolerance, statistics.iterations,
+          options.max_iterations, stuck ? " and a restart gains nothing" : "");
     before = statistics.residual;
-    if (is_hard)
+    if (options.is_symmetric)
+      run_cg(x, wanted, options.max_iterations, statistics);
+    else if (is_hard)
       run_idr(x, wanted, options.max_iterations, statistics);
     else
       run_bicgstab(x, wanted, std::min(options.max_iterations, patience), statistics);
@@ -105,6 +110,35 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   if (projection) projection->finish(r_, x);
   statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return statistics;
+}
+
+/// Preconditioned conjugate gradients in the flexible form of Polak and Ribiere, which forgives a
+/// preconditioner that rounds to single precision.
+void KrylovSolver::run_cg(std::span<double> x, double wanted, int max_iterations,
+                          SolveStatistics& statistics) {
+  const std::size_t n = r_.size();
+  for (auto* v : {&p_, &v_, &z_}) v->resize(n);
+  precondition_(r_, z_);
+  p_ = z_;
+  double rz = over_ranks<1>(comm_, {dot_here(r_, z_)})[0];
+  while (statistics.iterations < max_iterations) {
+    ++statistics.iterations;
+    apply_(p_, v_);
+    const double curvature = over_ranks<1>(comm_, {dot_here(p_, v_)})[0];
+    const double alpha = rz / curvature;
+    if (!(curvature > 0) || !std::isfinite(alpha)) return;
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] += alpha * p_[i];
+      r_[i] -= alpha * v_[i];
+    }
+    precondition_(r_, z_);
+    const auto [rr, next, change] =
+        over_ranks<3>(comm_, {dot_here(r_, r_), dot_here(r_, z_), dot_here(v_, z_)});
+    if (std::sqrt(rr) <= wanted) return;
+    const double beta = -alpha * change / rz;  // z . (r - r_before) / (z . r)_before
+    rz = next;
+    for (std::size_t i = 0; i < n; ++i) p_[i] = z_[i] + beta * p_[i];
+  }
 }
 
 void KrylovSolver::run_idr(std::span<double> x, double wanted, int max_iterations,

@@ -19,13 +19,15 @@ class ResidualProjection;
 struct KrylovOptions {
   double relative_tolerance = 1e-8;  ///< of |b - A x| / |b|
   int max_iterations = 500;
+  bool is_symmetric = false;  ///< A and the preconditioner are, and positive: conjugate gradients
 };
 
 /// BiCGStab [vandervorst1992] preconditioned from the right, for operators that are only applied; where it
 /// has not converged after 50 iterations, IDR(4) goes on, which needs more memory and bears more. The
 /// residual that is judged is the true one, b - A x: the recurrence drifts away from it on long runs, so that
 /// it is computed anew when the recurrence has reached the tolerance, and the iteration begins again from
-/// there if it has not. A residual that is only what rounding leaves in A x counts as reached.
+/// there if it has not. Symmetric positive pairs take preconditioned conjugate gradients [hestenes1952] in
+/// their place, under the same rules. A residual that is only what rounding leaves in A x counts as reached.
 class KrylovSolver {
  public:
   /// `what` names the unknown in messages. `n`: rows of this rank.
@@ -43,6 +45,7 @@ class KrylovSolver {
   double true_residual(std::span<const double> b, std::span<const double> x);
   double rounding(std::span<const double> x);
   void run_bicgstab(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
+  void run_cg(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
   void run_idr(std::span<double> x, double wanted, int max_iterations, SolveStatistics& statistics);
 
   std::string what_;

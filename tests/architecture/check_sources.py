@@ -20,6 +20,7 @@ ALLOWED = {
     "linalg": ["parallel", "log", "base"],
     "mesh": ["linalg", "parallel", "config", "log", "base"],
     "fv": ["mesh", "linalg", "parallel", "config", "log", "base"],
+    "elasticity": ["fv", "mesh", "linalg", "parallel", "config", "log", "base"],
     "time": ["config", "base"],
     "effects": ["base"],
     "io": ["fv", "mesh", "linalg", "parallel", "config", "log", "base"],

@@ -4,7 +4,7 @@ the slender beam."""
 from validation.job import Bar
 from validation.parts.measures import all_pass, at_most, programs_pass
 
-METHODS, KERNEL = "verification_solid_methods", "unit_fv_elastic_kernel"
+METHODS, KERNEL = "verification_solid_methods", "unit_elasticity_kernel"
 
 
 def slender(gradient):

@@ -173,7 +173,7 @@ case.yaml:11:7: participants.solid.material.youngs-modulus: '1 kg': the unit 'kg
 case.yaml:11:7: participants.solid.material.youngs-modulus: '1 Mpa': unknown unit 'Mpa'. Did you mean 'MPa'? Expected Pa or a unit that converts to it.
 """, ("1 MPa", "1 Mpa")),
     solid("incompressible", """
-case.yaml:12:7: participants.solid.material.poissons-ratio: 0.5 is out of range; expected a value from -0.99 to 0.499.
+case.yaml:12:7: participants.solid.material.poissons-ratio: 0.5 is out of range; expected a value from -0.99 to 0.49999.
 """, ("poissons-ratio: 0.3", "poissons-ratio: 0.5")),
     solid("misspelt key", """
 case.yaml:12:7: participants.solid.material.poisson-ratio: unknown key. Did you mean 'poissons-ratio'?

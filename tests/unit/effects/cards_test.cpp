@@ -64,10 +64,15 @@ TEST(EffectCards, solid_verdicts_turn_at_their_thresholds) {
   EXPECT_TRUE(sound("thermoelastic coupling", {.coupling_number = 0.049}, p));
   EXPECT_FALSE(sound("thermoelastic coupling", {.coupling_number = 0.051}, p));
   SolidParameters rubber = p;
+  rubber.method.face_gradient = MethodParameters::FaceGradient::corrected;
   rubber.material.poissons_ratio = 0.451;
   EXPECT_FALSE(sound("near incompressibility", {}, rubber));
   rubber.material.poissons_ratio = 0.449;
   EXPECT_TRUE(sound("near incompressibility", {}, rubber));
+  rubber.method.face_gradient = MethodParameters::FaceGradient::automatic;  // takes one volume strain a cell
+  rubber.material.poissons_ratio = 0.451;
+  EXPECT_FALSE(
+      verdict_on("near incompressibility", solid_effect_cards(), rubber, SolidEvidence{}).has_value());
 }
 
 TEST(EffectCards, an_effect_that_is_on_is_not_judged_as_left_out) {

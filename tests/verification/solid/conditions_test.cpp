@@ -146,7 +146,7 @@ TEST_P(Conditions, zero_normal_gradient_is_exact_for_fields_that_do_not_change_a
   SolidParameters p = pulled_box(constant_along_x, dim);
   p.boundaries["xmax"] = boundary(Type::zero_normal_gradient);
   p.boundaries["ymin"] = boundary(Type::fixed_displacement, constant_along_x.text(dim));
-  expect_exact_after_a_step(p, constant_along_x);
+  if (!symmetric_refuses(GetParam(), p)) expect_exact_after_a_step(p, constant_along_x);
 }
 
 TEST_P(Conditions, soft_and_hard_supports_hold_along_the_plate_normal_and_the_edge) {
@@ -183,7 +183,7 @@ TEST_P(Conditions, parts_of_a_patch_have_conditions_of_their_own) {
   middle.where = {"y < 0.5"};
   static_cast<SolidCondition&>(middle) = some_components(field, dim, "y", traction);
   b.parts = {low, middle};
-  expect_exact_after_a_step(p, field);
+  if (!symmetric_refuses(GetParam(), p)) expect_exact_after_a_step(p, field);
 }
 
 // Symmetry planes beside prescribed, partly known and sprung sides: edges and corners of all pairs.

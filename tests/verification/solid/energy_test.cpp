@@ -103,6 +103,34 @@ TEST(SolidEnergy, what_dissipative_schemes_lose_vanishes_with_the_step) {
   }
 }
 
+TEST(SolidEnergy, dissipative_schemes_never_show_a_gain_in_free_vibration) {
+  for (const TimeScheme scheme : {TimeScheme::euler, TimeScheme::three_point, TimeScheme::bathe}) {
+    SolidParameters p = box_parameters(2);
+    p.analysis = SolidParameters::Analysis::dynamic;
+    p.material = {1000, 1e5, 0.3};
+    p.time_scheme.type = scheme;
+    p.method.face_gradient = FaceGradient::symmetric;
+    p.method.relative_tolerance = 1e-12;
+    p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+    p.initial_velocity = {{"0.1*x*sin(9*y)"}, {"0.2*x*x"}};
+    p.output.energies = true;
+    RawMesh raw = make_box(BoxCells::quadrilaterals, {10, 4, 1}, Vec3::Zero(), Vec3(1, 0.4, 0));
+    perturb_interior(raw, 0.15, 4);
+    const auto solid = make_solid(raw, p);
+    double least = 0;
+    for (int i = 0; i < 40; ++i) {
+      step(*solid, 0.01);
+      const SolidEnergies e = solid->energies(solid->point_displacement());
+      least = std::min(least, e.lost() / e.initial_kinetic);
+    }
+    const SolidEnergies e = solid->energies(solid->point_displacement());
+    fmt::print("{}: lost {:.2e} of {:.2e} J, least {:.1e}\n", name(scheme), e.lost(), e.initial_kinetic,
+               least);
+    EXPECT_GT(least, -1e-9) << name(scheme);
+    EXPECT_GT(e.lost(), 1e-4 * e.initial_kinetic) << name(scheme);
+  }
+}
+
 // A drop of a rigid weight: kinetic energy equals the work of gravity.
 TEST(SolidEnergy, of_a_falling_body_is_all_kinetic) {
   SolidParameters p = box_parameters(2);

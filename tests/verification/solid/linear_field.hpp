@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 
@@ -43,15 +44,17 @@ inline std::vector<std::string> traction_text(const SolidParameters& p, const Li
 
 /// A mesh and a face gradient; names such as "prisms_corrected".
 using CellsAndGradient = std::tuple<BoxCells, FaceGradient>;
-inline const auto all_cells_and_gradients =
-    ::testing::Combine(::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
-                                         BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed),
-                       ::testing::Values(FaceGradient::thesis, FaceGradient::corrected));
+inline const auto all_cells_and_gradients = ::testing::Combine(
+    ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                      BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed),
+    ::testing::Values(FaceGradient::thesis, FaceGradient::corrected, FaceGradient::symmetric));
 inline std::string name_of(const ::testing::TestParamInfo<CellsAndGradient>& info) {
   constexpr std::array names{"quadrilaterals", "triangles", "hexahedra", "tetrahedra", "prisms", "mixed"};
   const auto& [cells, gradient] = info.param;
   return fmt::format("{}_{}", names.at(std::size_t(cells)),
-                     gradient == FaceGradient::thesis ? "thesis" : "corrected");
+                     gradient == FaceGradient::thesis      ? "thesis"
+                     : gradient == FaceGradient::corrected ? "corrected"
+                                                           : "symmetric");
 }
 
 /// With this gradient, solved to round-off.
@@ -65,6 +68,14 @@ inline RawMesh distorted_box(BoxCells cells) {
   RawMesh raw = make_box(cells, {5, 4, 3}, Vec3::Zero(), Vec3(1, 0.8, 0.6));
   perturb_interior(raw, 0.25, 11);
   return raw;
+}
+
+/// With the symmetric gradient the scene must be refused, since it cannot have its conditions: true, checked.
+inline bool symmetric_refuses(const CellsAndGradient& which, const SolidParameters& p) {
+  const auto& [cells, gradient] = which;
+  if (gradient != FaceGradient::symmetric) return false;
+  EXPECT_THROW(make_solid(distorted_box(cells), to_round_off(p, gradient)), Error);
+  return true;
 }
 
 /// Largest error of cells, points and traction faces over the largest displacement.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/fv/rigid_coarse_space.hpp"
+#include "common/elasticity/rigid_coarse_space.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "common/fv/elastic_nodes.hpp"
+#include "common/elasticity/elastic_nodes.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {

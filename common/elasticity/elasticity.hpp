@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "common/base/types.hpp"
-#include "common/fv/elastic_boundary.hpp"
+#include "common/elasticity/elastic_boundary.hpp"
+#include "common/elasticity/vertex_constraints.hpp"
 #include "common/fv/face_gradient.hpp"
-#include "common/fv/vertex_constraints.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/linalg/matrix.hpp"
 #include "common/mesh/mesh.hpp"
@@ -27,7 +27,14 @@ struct LameConstants {
 struct ElasticBody {
   std::vector<LameConstants> lame;
   std::vector<int> material_of_cell;
+  /// Symmetric gradient: the volume strain is one a cell, the mean of its faces', which does not lock as nu
+  /// goes to 1/2.
+  bool volume_by_cells = false;
 };
+
+/// What acts on the strain without its volume part, in three dimensions: sigma = 2 mu dev(e) + K tr(e) I.
+inline LameConstants deviatoric(const LameConstants& lame) { return {lame.mu, -2 * lame.mu / 3}; }
+inline double bulk_modulus(const LameConstants& lame) { return lame.lambda + 2 * lame.mu / 3; }
 
 /// Divergence of the linear-elastic stress on cells and boundary faces: thesis (2.56)-(2.58) and (2.77) (with
 /// errata), all displacement components coupled, reference configuration.
@@ -79,6 +86,7 @@ class ElasticOperator {
   std::size_t n_unknowns() const { return (mesh_->cells.n_owned() + unknown_faces_.size()) * mesh_->dim; }
   ElasticCondition condition(Index face) const { return boundary_.condition[face - mesh_->n_interior]; }
   const ElasticSupport& support(Index face) const { return boundary_.support(face - mesh_->n_interior); }
+  bool volume_by_cells() const { return body_.volume_by_cells; }
   /// One pair of constants for all cells.
   bool is_uniform() const { return body_.lame.size() == 1; }
   const LameConstants& lame(Index cell) const { return body_.lame[body_.lame.size() == 1 ? 0 : cell]; }

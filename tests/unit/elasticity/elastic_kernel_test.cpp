@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/fv/elastic_kernel.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
 
 #include <gtest/gtest.h>
 

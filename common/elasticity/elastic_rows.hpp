@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/fv/elastic_nodes.hpp"
+#include "common/elasticity/elastic_nodes.hpp"
 
 namespace couplet {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/fv/vertex_constraints.hpp"
+#include "common/elasticity/vertex_constraints.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

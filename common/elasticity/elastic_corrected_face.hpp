@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "common/fv/elastic_nodes.hpp"
-#include "common/fv/lanes.hpp"
+#include "common/elasticity/elastic_nodes.hpp"
+#include "common/elasticity/lanes.hpp"
 
 namespace couplet::corrected {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/fv/elastic_corrections.hpp"
+#include "common/elasticity/elastic_corrections.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "common/fv/elastic_nodes.hpp"
+#include "common/elasticity/elastic_nodes.hpp"
 #include "common/fv/nodes.hpp"
 
 namespace couplet {

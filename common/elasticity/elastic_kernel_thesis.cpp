@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "common/fv/elastic_nodes.hpp"
-#include "common/fv/elastic_rows.hpp"
-#include "common/fv/elastic_vertices.hpp"
+#include "common/elasticity/elastic_nodes.hpp"
+#include "common/elasticity/elastic_rows.hpp"
+#include "common/elasticity/elastic_vertices.hpp"
 
 namespace couplet {
 namespace {

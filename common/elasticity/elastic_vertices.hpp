@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "common/fv/elasticity.hpp"
-#include "common/fv/lanes.hpp"
+#include "common/elasticity/elasticity.hpp"
+#include "common/elasticity/lanes.hpp"
 
 namespace couplet {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet {

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "common/fv/elastic_corrected_face.hpp"
-#include "common/fv/elastic_corrections.hpp"
-#include "common/fv/elastic_nodes.hpp"
-#include "common/fv/elastic_rows.hpp"
-#include "common/fv/elastic_vertices.hpp"
+#include "common/elasticity/elastic_corrected_face.hpp"
+#include "common/elasticity/elastic_corrections.hpp"
+#include "common/elasticity/elastic_nodes.hpp"
+#include "common/elasticity/elastic_rows.hpp"
+#include "common/elasticity/elastic_vertices.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/base/types.hpp"
-#include "common/fv/elastic_boundary.hpp"
+#include "common/elasticity/elastic_boundary.hpp"
 #include "common/fv/vertex_interpolation.hpp"
 #include "common/mesh/mesh.hpp"
 

@@ -2,7 +2,7 @@
 // What the boundary faces of an ElasticOperator carry: known forces and values, holding forces, twins.
 #include <algorithm>
 
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elasticity.hpp"
 
 namespace couplet {
 namespace {

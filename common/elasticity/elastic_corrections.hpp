@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elasticity.hpp"
 
 namespace couplet {
 

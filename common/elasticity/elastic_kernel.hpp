@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/types.hpp"
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elasticity.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet {
@@ -16,6 +16,21 @@ namespace couplet {
 enum class FaceGradientScheme {
   thesis,     ///< (2.53)-(2.58): the operator that ElasticOperator assembles; locks in bending
   corrected,  ///< the same unknowns and conditions, with second-order corrections from cell gradients
+  symmetric,  ///< the thesis's gradient with its transpose for the forces: from an energy (SymmetricKernel)
+};
+
+/// Displacements (or velocities, ...) as the kernels take them; an empty `known` stands for zeros.
+struct ElasticField {
+  std::span<const double> unknowns, known;
+};
+/// What a product is taken with: K without springs, springs, M.
+enum class ElasticPart { stiffness, springs, mass };
+
+/// All that acts on a body from outside, as the kernels take it.
+struct ElasticLoads {
+  std::vector<double> faces;     ///< `dim` values a boundary face of owned cells [N]; empty: none
+  std::vector<double> cells;     ///< `dim` values an owned cell [N]; empty: none
+  std::vector<double> pressure;  ///< of thermal strain, per local face [Pa]; empty: none
 };
 
 /// The rows of ElasticOperator applied without a matrix: result = A u + K known, in some 30 ns (thesis) to 80
@@ -54,10 +69,36 @@ class ElasticKernel {
   void point_values(std::span<const double> unknowns, std::span<const double> known,
                     std::span<double> points) const;
   FaceGradientScheme scheme() const { return scheme_; }
+  bool is_symmetric() const { return scheme_ == FaceGradientScheme::symmetric; }
+
+  /// What acts on the body as right-hand sides, by the trial functions of the kernel. Collective.
+  ///
+  /// Known forces [N] of the boundary faces of owned cells, `dim` values a face; gives the sum of what this
+  /// rank added.
+  Vec3 add_face_forces(std::span<const double> forces, std::span<double> rhs) const;
+  /// Forces [N] on owned cells, `dim` values each.
+  void add_cell_forces(std::span<const double> forces, std::span<double> rhs) const;
+  /// Of an isotropic stress - p I beside that of the displacement, p [Pa] per local face.
+  void add_pressure(std::span<const double> pressure, std::span<double> rhs) const;
+
+  /// Tells the kernel the density of the local cells [kg/m^3]. True: its mass is consistent with its
+  /// stiffness and apply_with_mass() knows it; all its nodes have inertia. False: the mass of a cell is its
+  /// density times volume, and faces have none.
+  bool set_density(std::span<const double> of_cells) const;
+  /// mass_factor M u, and K u if asked for; after set_density() said true. Collective.
+  void apply_with_mass(std::span<const double> unknowns, std::span<const double> known, double mass_factor,
+                       bool with_stiffness, std::span<double> result) const;
+  /// v . A u of this rank, known values included. Of the symmetric kernel alone. Collective.
+  double product(ElasticPart part, const ElasticField& u, const ElasticField& v) const;
+  /// Force [N] on the body at each patch, from what the stress leaves there and the loads that act there;
+  /// this rank's part. Of the symmetric kernel alone. Collective.
+  std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                   const ElasticLoads& loads) const;
 
   class Implementation;
 
  private:
+  const ElasticOperator* rows_;
   FaceGradientScheme scheme_;
   std::unique_ptr<Implementation> implementation_;
 };

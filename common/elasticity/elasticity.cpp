@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/fv/elasticity.hpp"
+#include "common/elasticity/elasticity.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>

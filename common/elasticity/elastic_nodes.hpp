@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "common/fv/elastic_kernel.hpp"
-#include "common/fv/lanes.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/lanes.hpp"
 
 namespace couplet {
 
@@ -20,11 +20,31 @@ class ElasticKernel::Implementation {
                               const TakeGradient& take, Index first, Index end) = 0;
   virtual void point_values(std::span<const double> unknowns, std::span<const double> known,
                             std::span<double> points) = 0;
+  // Of the symmetric kernel alone, see ElasticKernel.
+  virtual bool set_density(std::span<const double> /*of_cells*/) { return false; }
+  virtual void apply_with_mass(std::span<const double> /*unknowns*/, std::span<const double> /*known*/,
+                               double /*mass_factor*/, bool /*with_stiffness*/,
+                               std::span<double> /*result*/) {}
+  virtual double product(ElasticPart /*part*/, const ElasticField& /*force*/,
+                         const ElasticField& /*motion*/) {
+    return 0;
+  }
+  virtual Vec3 add_face_forces(std::span<const double> /*forces*/, std::span<double> /*rhs*/) {
+    return Vec3::Zero();
+  }
+  virtual void add_cell_forces(std::span<const double> /*forces*/, std::span<double> /*rhs*/) {}
+  virtual void add_pressure(std::span<const double> /*pressure*/, std::span<double> /*rhs*/) {}
+  virtual std::vector<Vec3> holding_forces(std::span<const double> /*unknowns*/,
+                                           std::span<const double> /*known*/, const ElasticLoads& /*loads*/) {
+    return {};
+  }
 };
 
 std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const Mesh& mesh,
                                                                   const ElasticOperator& rows);
 std::unique_ptr<ElasticKernel::Implementation> make_corrected_kernel(const Mesh& mesh,
+                                                                     const ElasticOperator& rows);
+std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const Mesh& mesh,
                                                                      const ElasticOperator& rows);
 
 /// Lame's constants of a face: the owner's where cells have their own, the mean of both across an interior
@@ -70,21 +90,26 @@ class ElasticNodes {
         force_(std::size_t(mesh.cells.n_local()) * stride, 0.0) {}
 
   const double* operator[](Index node) const { return value_.data() + std::size_t(node) * stride; }
+  double* value(Index node) { return at(node); }
   const double* of_face(Index face) const {
     return (*this)[mesh_->cells.n_local() + face - mesh_->n_interior];
   }
   double* force(Index cell) { return force_.data() + std::size_t(cell) * stride; }
   void clear_forces() { std::fill(force_.begin(), force_.end(), 0.0); }
 
-  /// Node values of all local nodes. Collective.
-  void fill(std::span<const double> unknowns, std::span<const double> known) {
+  /// Node values of all local nodes. `supports_hold`: supports have their known components, whatever the
+  /// unknowns say. Collective.
+  void fill(std::span<const double> unknowns, std::span<const double> known, bool supports_hold = false) {
     const Index n_owned = mesh_->cells.n_owned(), n_cells = mesh_->cells.n_local();
     for (Index c = 0; c < n_owned; ++c) copy(unknowns.data() + std::size_t(c) * D, at(c));
     const auto& open = rows_->unknown_faces();
     for (std::size_t i = 0; i < open.size(); ++i)
       copy(unknowns.data() + (n_owned + i) * D, at(n_cells + open[i] - mesh_->n_interior));
     for (const Index f : rows_->known_faces()) {
-      if (rows_->condition(f) != ElasticCondition::prescribed) continue;
+      if (rows_->condition(f) != ElasticCondition::prescribed) {
+        if (supports_hold) hold(f, known);
+        continue;
+      }
       double* here = at(n_cells + f - mesh_->n_interior);
       if (known.empty())
         std::fill_n(here, D, 0.0);
@@ -108,6 +133,14 @@ class ElasticNodes {
   }
 
  private:
+  void hold(Index f, std::span<const double> known) {
+    double* here = at(mesh_->cells.n_local() + f - mesh_->n_interior);
+    Vec3 gap = Vec3::Zero();
+    for (int a = 0; a < D; ++a)
+      gap[a] = (known.empty() ? 0 : known[std::size_t(rows_->known_of_face(f)) * D + a]) - here[a];
+    const Vec3 step = rows_->support(f).known * gap;
+    for (int a = 0; a < D; ++a) here[a] += step[a];
+  }
   double* at(Index node) { return value_.data() + std::size_t(node) * stride; }
   static void copy(const double* from, double* to) {
     for (int a = 0; a < D; ++a) to[a] = from[a];

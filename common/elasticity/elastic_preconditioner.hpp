@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "common/fv/elastic_kernel.hpp"
-#include "common/fv/rigid_coarse_space.hpp"
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/rigid_coarse_space.hpp"
 #include "common/linalg/component_multigrid.hpp"
 
 namespace couplet {
@@ -23,6 +23,8 @@ class ElasticPreconditioner {
     /// The thesis's operator, kept by reference: the coarse space comes first and the cycle sees what it
     /// leaves. Costs one application and saves a third of the iterations. None: both are added.
     const ElasticKernel* between = nullptr;
+    /// Of the symmetric operator: inertia of the unknown nodes, owned cells, then faces [N/m]; empty: none.
+    std::span<const double> node_inertia = {};
   };
   /// Collective.
   ElasticPreconditioner(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
@@ -38,13 +40,16 @@ class ElasticPreconditioner {
     Tensor3 inverse, cell, other;
     Index owner, twin_owner;  // -1: not bonded, or the other cell is on another rank
   };
-  void find_face_rows(double boundary_factor);
+  void find_face_rows(double boundary_factor, std::span<const double> node_inertia);
   void smooth(std::span<const double> r, std::span<double> z);
+  void smooth_symmetric(std::span<const double> r, std::span<double> z);
 
   const Mesh* mesh_;
   const ElasticOperator* rows_;
   std::vector<double> inertia_;
   const ElasticKernel* between_;
+  bool is_symmetric_;
+  std::vector<double> gathered_, inverse_diagonal_;  // of the symmetric form
   std::unique_ptr<ComponentMultigrid> multigrid_;
   std::vector<FaceRow> face_rows_;
   std::unique_ptr<RigidCoarseSpace> coarse_;

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/elasticity/elasticity.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// The edges with which three-cornered faces share their strain. The tangential part of a face's gradient is
+/// the constant strain of its three vertices, which locks in bending; the mean over the faces round an edge
+/// does not:
+///   E = sum_f (1 - t) V_f W(e_f) + sum_E V_E W(e_E),   V_E = sum_{f at E} t V_f / 3,
+///   e_E = sum_{f at E} (t V_f / 3) e_f / V_E
+/// Zero modes appear at t = 1 only. Edges between materials are one a material. On a symmetry plane the mean
+/// holds the mirror images, too: no shear across the plane.
+class SharedEdges {
+ public:
+  static constexpr double share = 0.9;
+  static constexpr int size = 6;  ///< xx, yy, zz, xy, yz, xz
+  static constexpr int stride = 8;
+
+  /// `faces`: the three-cornered ones of this rank, each face on one rank alone; `volume`: V_f of each.
+  /// Collective.
+  SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
+              std::span<const double> volume);
+
+  std::size_t n_faces() const { return edges_of_.size(); }
+  const std::array<Index, 3>& edges_of(std::size_t face) const { return edges_of_[face]; }
+  void clear() { std::fill(value_.begin(), value_.end(), 0.0); }
+  double* at(Index edge) { return value_.data() + std::size_t(edge) * stride; }
+  /// After all faces have added (t V_f / 3) e_f: over the ranks, divided by V_E, mirrored. Collective.
+  void finish_means();
+  /// Strains (engineering shear halved) become stresses of the edge's own constants.
+  void to_stress();
+
+ private:
+  struct Key;
+  void number(const Mesh& mesh, std::span<const Index> faces);
+  void find_mirrors(const Mesh& mesh, const ElasticOperator& rows);
+
+  std::vector<std::array<Index, 3>> edges_of_;
+  IndexMap map_;
+  bool parallel_ = false;
+  std::vector<double> value_, inverse_volume_;
+  std::vector<LameConstants> lame_;                     // one a material's edge, or one in all
+  std::vector<std::pair<Index, Vec3>> mirrors_;         // edges on symmetry planes, with the normal
+  std::vector<std::array<GlobalIndex, 2>> end_points_;  // while it is made
+};
+
+}  // namespace couplet

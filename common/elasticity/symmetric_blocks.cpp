@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/elasticity/symmetric_blocks.hpp"
+
+#include "common/elasticity/elastic_nodes.hpp"
+
+namespace couplet {
+
+template <int D>
+std::vector<FaceBlock<D>> make_blocks(const Mesh& mesh, const ElasticOperator& rows,
+                                      std::span<const Index> faces) {
+  constexpr int width = FaceBlock<D>::width;
+  std::vector<FaceBlock<D>> result((faces.size() + width - 1) / width);
+  for (std::size_t i = 0; i < result.size() * width; ++i) {
+    FaceBlock<D>& block = result[i / width];
+    const std::size_t k = i % width;
+    const bool is_filling = i >= faces.size();
+    const Index f = faces[is_filling ? 0 : i];
+    const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
+    const LameConstants whole = face_lame(mesh, rows, f);
+    const LameConstants lame = rows.volume_by_cells() ? deviatoric(whole) : whole;
+    const double scale = is_filling ? 0 : face.volume * face.inverse * face.inverse;
+    block.mu[k] = lame.mu * scale;
+    block.lambda[k] = lame.lambda * scale;
+    block.from[k] = mesh.owner[f];
+    block.to[k] = f < mesh.n_interior ? mesh.neighbour[f] : mesh.cells.n_local() + f - mesh.n_interior;
+    for (int a = 0; a < D; ++a) {
+      block.vector[0][a][k] = is_filling ? 0 : face.area[a];
+      for (int j = 0; j < D - 1; ++j) block.vector[j + 1][a][k] = is_filling ? 0 : face.across[j][a];
+    }
+    for (int j = 0; j < D - 1; ++j) {
+      block.plus[j][k] = face.plus[j];
+      block.minus[j][k] = face.minus[j];
+    }
+  }
+  return result;
+}
+
+template std::vector<FaceBlock<2>> make_blocks<2>(const Mesh&, const ElasticOperator&,
+                                                  std::span<const Index>);
+template std::vector<FaceBlock<3>> make_blocks<3>(const Mesh&, const ElasticOperator&,
+                                                  std::span<const Index>);
+
+}  // namespace couplet

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/elasticity/symmetric_matrix.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "common/elasticity/elastic_nodes.hpp"
+#include "common/elasticity/symmetric_faces.hpp"
+#include "common/fv/nodes.hpp"
+
+namespace couplet {
+namespace {
+
+/// One node's part of a face's gradient: G = sum_i (T_i u_i) b_i^T.
+struct Term {
+  Index node;
+  Vec3 b;
+  Tensor3 turn;  // T: I, a projector, a mirror
+};
+
+class Assembly {
+ public:
+  Assembly(const Mesh& mesh, const ElasticOperator& rows)
+      : mesh_(mesh), rows_(rows), number_(number_nodes(mesh, rows.unknown_faces())) {}
+
+  template <int D>
+  void add_face(Index f);
+  void add_volumes();
+  void add_support(Index f);
+  void add_diagonal(GlobalIndex node, double value) {
+    for (int a = 0; a < mesh_.dim; ++a) add(node * mesh_.dim + a, node * mesh_.dim + a, value);
+  }
+  GlobalIndex number(Index node) const { return number_[node]; }
+  Index node_of(Index f) const { return mesh_.cells.n_local() + f - mesh_.n_interior; }
+
+  std::vector<GlobalIndex> row, column;
+  std::vector<double> value;
+
+ private:
+  void add(GlobalIndex i, GlobalIndex j, double v) {
+    row.push_back(i);
+    column.push_back(j);
+    value.push_back(v);
+  }
+  void add_block(Index i, Index j, const Tensor3& block) {
+    for (int a = 0; a < mesh_.dim; ++a)
+      for (int b = 0; b < mesh_.dim; ++b)
+        add(number_[i] * mesh_.dim + a, number_[j] * mesh_.dim + b, block(a, b));
+  }
+  void take(Index node, const Vec3& b, const Tensor3& turn);
+  void take_boundary(Index f, const Vec3& b);
+  void take_point(Index v, const Vec3& b);
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  std::vector<GlobalIndex> number_;
+  std::vector<Term> terms_;
+  std::map<Index, std::vector<std::pair<Index, Vec3>>>
+      volume_of_;  // of cells: volume strain times V, by nodes
+};
+
+void Assembly::take(Index node, const Vec3& b, const Tensor3& turn) {
+  if (number_[node] < 0) return;  // known
+  for (Term& t : terms_)
+    if (t.node == node && t.turn == turn) {
+      t.b += b;
+      return;
+    }
+  terms_.push_back({node, b, turn});
+}
+
+void Assembly::take_boundary(Index f, const Vec3& b) {
+  const Tensor3 identity = Tensor3::Identity();
+  take(node_of(f), b,
+       rows_.condition(f) == ElasticCondition::support ? Tensor3(identity - rows_.support(f).known)
+                                                       : identity);
+}
+
+void Assembly::take_point(Index v, const Vec3& b) {
+  const VertexConstraints& constraints = rows_.constraints();
+  if (constraints.is_fixed(v)) return;
+  const auto nodes = rows_.vertices().nodes(v);
+  const auto weights = rows_.vertices().weights(v);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    Tensor3 turn = constraints.free_part(v);
+    const Index f = nodes[i] - mesh_.cells.n_local() + mesh_.n_interior;
+    if (nodes[i] >= mesh_.cells.n_local() && rows_.condition(f) == ElasticCondition::support)
+      turn = (turn * (Tensor3::Identity() - rows_.support(f).known)).eval();
+    take(nodes[i], weights[i] * b, turn);
+  }
+}
+
+// V [lambda b_i b_j^T + mu (b_i . b_j I + b_j b_i^T)] between each two nodes.
+template <int D>
+void Assembly::add_face(Index f) {
+  const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, f);
+  const auto scaled = [&](const std::array<double, D>& from) {
+    Vec3 b = Vec3::Zero();
+    for (int a = 0; a < D; ++a) b[a] = from[a] * face.inverse;
+    return b;
+  };
+  terms_.clear();
+  const Vec3 s = scaled(face.area);
+  const Tensor3 identity = Tensor3::Identity();
+  take(mesh_.owner[f], -s, identity);
+  if (f < mesh_.n_interior) {
+    take(mesh_.neighbour[f], s, identity);
+  } else if (rows_.condition(f) == ElasticCondition::symmetry) {
+    const Vec3 n = mesh_.reference.face_area[f].normalized();
+    take(mesh_.owner[f], s, identity - 2 * n * n.transpose());
+  } else {
+    take_boundary(f, s);
+  }
+  for (int i = 0; i < D - 1; ++i) {
+    take_point(face.plus[i], scaled(face.across[i]));
+    take_point(face.minus[i], -scaled(face.across[i]));
+  }
+  const LameConstants whole = face_lame(mesh_, rows_, f);
+  const auto [mu, lambda] = rows_.volume_by_cells() ? deviatoric(whole) : whole;
+  if (rows_.volume_by_cells()) {
+    const auto [here, there] = pyramids(mesh_, f);
+    for (const Term& t : terms_) {
+      volume_of_[mesh_.owner[f]].push_back({t.node, here * (t.turn.transpose() * t.b)});
+      if (f < mesh_.n_interior)
+        volume_of_[mesh_.neighbour[f]].push_back({t.node, there * (t.turn.transpose() * t.b)});
+    }
+  }
+  for (const Term& i : terms_)
+    for (const Term& j : terms_) {
+      const Tensor3 block =
+          lambda * i.b * j.b.transpose() + mu * (i.b.dot(j.b) * identity + j.b * i.b.transpose());
+      add_block(i.node, j.node, face.volume * (i.turn.transpose() * block * j.turn));
+    }
+}
+
+/// K / V g g^T with the g of V tr e = g . u, of this rank's faces.
+void Assembly::add_volumes() {
+  for (auto& [c, terms] : volume_of_) {
+    std::ranges::sort(terms, {}, &std::pair<Index, Vec3>::first);
+    std::vector<std::pair<Index, Vec3>> merged;
+    for (const auto& t : terms)
+      if (!merged.empty() && merged.back().first == t.first)
+        merged.back().second += t.second;
+      else
+        merged.push_back(t);
+    const double bulk = bulk_modulus(rows_.lame(c)) / mesh_.reference.volume[c];
+    for (const auto& [i, g] : merged)
+      for (const auto& [j, h] : merged) add_block(i, j, bulk * g * h.transpose());
+  }
+  volume_of_.clear();
+}
+
+/// s P on the rows of supports; springs at the face's node alone, which a preconditioner may.
+void Assembly::add_support(Index f) {
+  const ElasticSupport& s = rows_.support(f);
+  const LameConstants lame = rows_.lame(mesh_.owner[f]);
+  const FaceLine line = face_line(mesh_, mesh_.reference, f);
+  const Tensor3 open = Tensor3::Identity() - s.known;
+  add_block(node_of(f), node_of(f),
+            (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * s.known +
+                line.area * open * s.spring * open);
+}
+
+}  // namespace
+
+SparseMatrix symmetric_matrix(const Mesh& mesh, const ElasticOperator& rows,
+                              std::span<const double> of_nodes) {
+  Assembly assembly(mesh, rows);
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    if (mesh.owner[f] >= mesh.cells.n_owned()) continue;
+    if (mesh.dim == 2)
+      assembly.add_face<2>(f);
+    else
+      assembly.add_face<3>(f);
+  }
+  assembly.add_volumes();
+  for (const Index f : rows.known_faces())
+    if (rows.condition(f) == ElasticCondition::support) assembly.add_support(f);
+  for (Index c = 0; c < mesh.cells.n_owned() && !of_nodes.empty(); ++c)
+    assembly.add_diagonal(assembly.number(c), of_nodes[c]);
+  for (std::size_t i = 0; i < rows.unknown_faces().size() && !of_nodes.empty(); ++i)
+    assembly.add_diagonal(assembly.number(assembly.node_of(rows.unknown_faces()[i])),
+                          of_nodes[std::size_t(mesh.cells.n_owned()) + i]);
+  SparseMatrix matrix(mesh.comm, static_cast<GlobalIndex>(rows.n_unknowns()), std::move(assembly.row),
+                      std::move(assembly.column), mesh.dim);
+  matrix.fill(assembly.value);
+  return matrix;
+}
+
+}  // namespace couplet

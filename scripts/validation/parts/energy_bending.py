@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the symmetric face gradient in bending and near incompressibility: Cook's membrane, the elliptic plate."""
+from validation.job import Bar
+from validation.parts.solid_cases import probe
+
+SYMMETRIC = "participants.solid.solution-method={face-gradient: symmetric, relative-tolerance: 1e-10}"
+# Upper corner [mm] at E = 250 MPa, plane strain, by quadratic finite elements refined to convergence.
+CORNER = {1 / 3: 9.044, 0.45: 8.223, 0.48: 7.959, 0.49: 7.866, 0.499: 7.781, 0.4999: 7.771}
+
+
+def corner(job, n, shape, modulus, nu, extra=()):
+    return 1e3 * probe(job, "cook", ("participants.solid.mesh-parameters={n: %d, shape: %d}" % (n, shape),
+                                     f"participants.solid.material.youngs-modulus={modulus}",
+                                     f"participants.solid.material.poissons-ratio={nu}", SYMMETRIC, *extra), "corner y [m]")
+
+
+def meshes(limits):
+    def measure(job):
+        errors = [100 * (corner(job, n, 0, 70e6, 1 / 3) / 32.3007 - 1) for n in (8, 16, 32)]
+        return ", ".join(f"{e:+.2f} %" for e in errors), all(abs(e) <= limit for e, limit in zip(errors, limits))
+    return measure
+
+
+def ratios(shape, limit):
+    def measure(job):
+        errors = [100 * (corner(job, 32, shape, 250e6, nu) / wanted - 1) for nu, wanted in CORNER.items()]
+        return ", ".join(f"{nu:.4g}: {e:+.2f} %" for nu, e in zip(CORNER, errors)), all(abs(e) <= limit for e in errors)
+    return measure
+
+
+def plate(limits):
+    def measure(job):
+        nine = job.beside("configs/elliptic-plate/nine_points.py")
+        got = []
+        for mesh in ((16, 24, 12), (32, 48, 24)):
+            folder, _ = job.solve("solid_solver", "elliptic-plate",
+                                  ("participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d}" % mesh,
+                                   "participants.solid.solution-method={face-gradient: symmetric, relative-tolerance: 1e-8}"))
+            got.append([100 * e for e in nine.errors(folder / "solid")[:2]])
+        return ("; ".join(f"u {u:.3f} %, stress {s:.3f} %" for u, s in got),
+                all(u <= limit for (u, _), limit in zip(got, limits)))
+    return measure
+
+
+BARS = [
+    Bar("Cook, nu 1/3, quadrilaterals 8, 16, 32 a side", "within 0.3, 0.15, 0.05 % of 32.3007 mm", meshes((0.3, 0.15, 0.05))),
+    Bar("Cook from nu 1/3 to 0.4999, 32x32 quadrilaterals", "within 0.4 %", ratios(0, 0.4)),
+    Bar("Cook from nu 1/3 to 0.4999, 32x32 pairs of triangles", "within 0.4 %", ratios(1, 0.4)),
+    Bar("plate B, hexahedra 16x24x12 and 32x48x24: displacement at the nine points", "within 0.45 and 0.15 %", plate((0.45, 0.15))),
+]

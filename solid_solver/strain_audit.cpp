@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// A solution judged by its own energy: work against strain energy, and one face gradient against another.
+#include "solid_solver/strain_audit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/log/doubt.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/solid.hpp"
+
+namespace couplet {
+namespace {
+
+Vec3 at(std::span<const double> values, Index i, int dim) {
+  Vec3 u = Vec3::Zero();
+  for (int a = 0; a < dim; ++a) u[a] = values[std::size_t(i) * dim + a];
+  return u;
+}
+
+/// From the owner to the node across.
+Vec3 line_of(const Mesh& mesh, Index f) {
+  const Geometry& g = mesh.reference;
+  const Vec3 across =
+      f < mesh.n_interior ? Vec3(g.cell_centre[mesh.neighbour[f]] + mesh.shift(f)) : g.face_centre[f];
+  return across - g.cell_centre[mesh.owner[f]];
+}
+
+double product(const Tensor3& a, const Tensor3& b) { return a.cwiseProduct(b).sum(); }
+
+FaceGradientScheme other_scheme(FaceGradientScheme scheme) {
+  return scheme == FaceGradientScheme::corrected ? FaceGradientScheme::thesis : FaceGradientScheme::corrected;
+}
+
+}  // namespace
+
+double StrainAudit::mismatch() const {
+  return strain_energy > 0 ? std::abs(stress_work - strain_energy) / strain_energy : 0;
+}
+
+bool StrainAudit::is_doubtful() const {
+  return mismatch() > most_mismatch || (compares_gradients && gradient_difference > most_difference);
+}
+
+std::string StrainAudit::text() const {
+  std::string text =
+      fmt::format("half the work of the loads is {:.6g} J, the strain energy {:.6g} J ({:.2g} % apart)",
+                  stress_work, strain_energy, 100 * mismatch());
+  if (compares_gradients)
+    text +=
+        fmt::format("; the strains of the two face gradients differ by {:.2g} %", 100 * gradient_difference);
+  return text;
+}
+
+std::string EnergyAudit::text() const {
+  return fmt::format(
+      "the solid holds {:.6g} J of kinetic and strain energy where loads and initial motion brought in "
+      "{:.6g} J",
+      held, given);
+}
+
+/// Of a displacement in all local cells, boundary faces and points. Collective.
+StrainAudit Solid::audit_strain(std::span<const double> points, bool compare) const {
+  const int dim = mesh_.dim;
+  StrainAudit audit;
+  audit.compares_gradients = compare;
+  std::vector<std::array<float, 6>> strains(compare ? mesh_.n_flux_faces() : 0);
+  const std::vector<double> unknowns = unknowns_of(state_.cell_u, state_.face_u);
+  const std::vector<double> known = known_of(state_.face_u, points);
+  const auto is_mine = [&](Index f) { return mesh_.owner[f] < mesh_.cells.n_owned(); };
+  const auto volume = [&](Index f) {
+    return std::abs(mesh_.reference.face_area[f].dot(line_of(mesh_, f))) / dim;
+  };
+  double energy = 0, work = 0, difference = 0, size = 0;
+  kernel_.face_gradients(
+      unknowns, known,
+      [&](Index f, const Tensor3& gradient) {
+        if (!is_mine(f)) return;  // another rank's
+        const Index owner = mesh_.owner[f];
+        const Tensor3 stress = elastic_.stress(owner, gradient);
+        energy += 0.5 * volume(f) * product(stress, gradient);
+        Vec3 force = stress * mesh_.reference.face_area[f];
+        const Vec3 here = at(state_.cell_u, owner, dim);
+        if (f < mesh_.n_interior)
+          work += 0.5 * force.dot(at(state_.cell_u, mesh_.neighbour[f], dim) - here);
+        else if (elastic_.condition(f) == ElasticCondition::symmetry)
+          work -= 0.5 * mesh_.reference.face_area[f].dot(force) * mesh_.reference.face_area[f].dot(here) /
+                  mesh_.reference.face_area[f].squaredNorm();
+        else
+          work += 0.5 * force.dot(at(state_.face_u, f - mesh_.n_interior, dim) - here);
+        if (!compare) return;
+        const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
+        size += volume(f) * elastic_.lame(owner).mu * symmetric.squaredNorm();
+        const PackedTensor strain = pack(symmetric);
+        std::ranges::copy(strain, strains[f].begin());
+      },
+      0, mesh_.n_flux_faces());
+  if (compare) {
+    ElasticKernel(mesh_, elastic_, other_scheme(kernel_.scheme()))
+        .face_gradients(
+            unknowns, known,
+            [&](Index f, const Tensor3& gradient) {
+              if (!is_mine(f)) return;
+              PackedTensor gap = pack(0.5 * (gradient + gradient.transpose()));
+              for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= strains[f][i];
+              difference += volume(f) * elastic_.lame(mesh_.owner[f]).mu * unpack(gap).squaredNorm();
+            },
+            0, mesh_.n_flux_faces());
+    difference = sum(mesh_.comm, difference);
+    size = sum(mesh_.comm, size);
+  }
+  if (kernel_.is_symmetric()) {
+    const ElasticField u{unknowns, known};
+    energy = 0.5 * kernel_.product(ElasticPart::stiffness, u, u);
+    work = energy + 0.5 * residual_work(unknowns);
+  }
+  audit.strain_energy = sum(mesh_.comm, energy);
+  audit.stress_work = sum(mesh_.comm, work);
+  if (size > 0) audit.gradient_difference = std::sqrt(difference / size);
+  return audit;
+}
+
+/// What equilibrium misses, times the displacement: where nothing is missing, a symmetric operator's strain
+/// energy is half of the loads' work. Static solves; this rank's part.
+double Solid::residual_work(std::span<const double> unknowns) const {
+  if (is_dynamic() || rhs_.size() != unknowns.size()) return 0;
+  std::vector<double> force(unknowns.size());
+  kernel_.apply(unknowns, {}, force);
+  double work = 0;
+  for (std::size_t i = 0; i < force.size(); ++i) work += unknowns[i] * (rhs_[i] - force[i]);
+  return work;
+}
+
+/// Of the accepted state; a doubtful one is told once, loudly. Collective.
+void Solid::audit_answer() {
+  const std::vector<double> points = point_displacement();
+  const StrainAudit strain = audit_strain(points, !is_dynamic());
+  if (!audit_ || strain.is_doubtful() || !audit_->is_doubtful()) audit_ = strain;
+  if (strain.is_doubtful() && !strain_doubted_) {
+    strain_doubted_ = true;
+    log::doubt(
+        comm_rank(mesh_.comm),
+        fmt::format(
+            "t = {:g} s: the displacement is not to be trusted: {}. Mesh finer, most of all across what "
+            "bends; cells long in the direction of bending, few tetrahedra or prisms across and nu near "
+            "0.5 are what does this.",
+            state_.time, strain.text()));
+  }
+  if (!is_dynamic() || !effects_.empty() || !prescribed_.is_zero()) return;
+  energy_audit_.given = sum(mesh_.comm, state_.energies.initial_kinetic) + sum(mesh_.comm, state_.load_work);
+  energy_audit_.held = sum(mesh_.comm, kinetic_energy(state_, known_rate_accepted_)) +
+                       std::max(0.0, std::min(strain.strain_energy, strain.stress_work));
+  energy_audit_.scale = std::max(energy_audit_.scale, std::abs(energy_audit_.given));
+  if (energy_audit_.is_doubtful() && !energy_doubted_) {
+    energy_doubted_ = true;
+    log::doubt(
+        comm_rank(mesh_.comm),
+        fmt::format(
+            "t = {:g} s: {}: the motion grows out of nothing. 'time-scheme: {{type: bathe}}' or a little "
+            "'damping: {{stiffness: ...}}' takes it out, 'output: {{spectrum: true}}' tells its rate on "
+            "a coarse mesh of the same kind.",
+            state_.time, energy_audit_.text()));
+  }
+}
+
+}  // namespace couplet

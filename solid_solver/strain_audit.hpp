@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace couplet {
+
+/// What a displacement that was found says of itself; over all ranks.
+struct StrainAudit {
+  /// sum_f V_f epsilon_f : C : epsilon_f / 2 [J], V_f = |S . d| / dim the volume between a face and the nodes
+  /// beside it.
+  double strain_energy = 0;
+  /// Half of what the loads, prescribed motions and thermal strains did [J]: sum_f (C : epsilon_f) S . (u_N -
+  /// u_P) / 2, which equilibrium turns into half of their products with the displacements.
+  double stress_work = 0;
+  /// Norm sqrt(sum V_f mu |epsilon|^2) of the difference of the strains of two face gradients over that of
+  /// the one in use (mu alone: near nu = 1/2 the volume strain is nothing beside it).
+  double gradient_difference = 0;
+  bool compares_gradients = false;
+
+  /// Part of the strain energy by which it misses the work; a symmetric operator has none.
+  double mismatch() const;
+  /// Above these the answer is not to be trusted (docs/theory.md, "Does the answer fit itself?").
+  static constexpr double most_mismatch = 0.35, most_difference = 1.0;
+  bool is_doubtful() const;
+  /// One sentence with the numbers.
+  std::string text() const;
+};
+
+/// Energy that a dynamic run has found beside what it was given [J]; over all ranks.
+struct EnergyAudit {
+  double held = 0;   ///< kinetic and strain energy
+  double given = 0;  ///< initial energy and work of the loads
+  double scale = 0;  ///< most that was given so far
+  double created() const { return scale > 0 ? (held - given) / scale : 0; }
+  /// Above this, motion grows out of nothing.
+  static constexpr double most_created = 0.2;
+  bool is_doubtful() const { return created() > most_created; }
+  std::string text() const;
+};
+
+}  // namespace couplet

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// A run judges its own answer: the guards fire where it is nonsense and are silent where it is sound.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/log/doubt.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+/// Cook's membrane of n x n quadrilaterals, E = 250 MPa, sheared by 6.25 MPa.
+std::unique_ptr<Solid> cook(int n, double nu, FaceGradient gradient) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+  for (Vec3& x : raw.points) x = Vec3(0.048 * x[0], 0.044 * x[0] + (0.044 - 0.028 * x[0]) * x[1], 0);
+  SolidParameters p = box_parameters(2);
+  p.material = {1000, 250e6, nu};
+  p.method.face_gradient = gradient;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmax"] = boundary(Type::traction, {"0", "6.25e6"});
+  auto solid = make_solid(raw, p);
+  step(*solid, 1);
+  return solid;
+}
+
+std::unique_ptr<Solid> beam(BoxCells cells, const std::array<int, 3>& n, double length,
+                            FaceGradient gradient) {
+  SolidParameters p = box_parameters(3);
+  p.material = {1000, 1e6, 0.3};
+  p.method.face_gradient = gradient;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.boundaries["xmax"] = boundary(Type::traction, {"0", "100", "0"});
+  auto solid = make_solid(make_box(cells, n, Vec3::Zero(), Vec3(length, 1, 1)), p);
+  step(*solid, 1);
+  return solid;
+}
+
+void report(const char* what, const StrainAudit& audit) { fmt::print("{}: {}\n", what, audit.text()); }
+
+TEST(Audit, fires_on_cook_at_nu_0_49_with_the_corrected_gradient) {
+  const int before = log::doubts();
+  const auto wrong = cook(16, 0.49, FaceGradient::corrected);
+  report("Cook, nu 0.49, corrected", *wrong->last_audit());
+  EXPECT_TRUE(wrong->last_audit()->is_doubtful());
+  EXPECT_EQ(log::doubts(), before + 1);
+}
+
+TEST(Audit, is_silent_on_cook_with_the_symmetric_gradient_and_at_nu_one_third) {
+  const int before = log::doubts();
+  for (const double nu : {1. / 3, 0.49, 0.4999}) {
+    const auto sound = cook(16, nu, FaceGradient::symmetric);
+    report("Cook, symmetric", *sound->last_audit());
+    EXPECT_LT(sound->last_audit()->mismatch(), 1e-6) << nu;  // a symmetric operator is never convicted by it
+  }
+  const auto sound = cook(16, 1. / 3, FaceGradient::corrected);
+  report("Cook, nu 1/3, corrected", *sound->last_audit());
+  EXPECT_FALSE(sound->last_audit()->is_doubtful());
+  EXPECT_EQ(log::doubts(), before);
+}
+
+TEST(Audit, fires_on_two_long_tetrahedra_across_a_slender_beam) {
+  const auto wrong = beam(BoxCells::tetrahedra, {16, 2, 2}, 40, FaceGradient::corrected);
+  report("tetrahedra two across 40:1, corrected", *wrong->last_audit());
+  EXPECT_TRUE(wrong->last_audit()->is_doubtful());
+  const auto sound = beam(BoxCells::hexahedra, {40, 4, 4}, 10, FaceGradient::corrected);
+  report("hexahedra four across 10:1, corrected", *sound->last_audit());
+  EXPECT_FALSE(sound->last_audit()->is_doubtful());
+}
+
+// Stretched cells: stiff, and said by the difference of the gradients.
+TEST(Audit, says_that_stretched_tetrahedra_are_stiff) {
+  const auto stiff = beam(BoxCells::tetrahedra, {4, 4, 4}, 10, FaceGradient::symmetric);
+  const auto sound = beam(BoxCells::tetrahedra, {40, 4, 4}, 10, FaceGradient::symmetric);
+  report("tetrahedra 10:1 cells, symmetric", *stiff->last_audit());
+  report("tetrahedra 1:1 cells, symmetric", *sound->last_audit());
+  EXPECT_GT(stiff->last_audit()->gradient_difference, 2 * sound->last_audit()->gradient_difference);
+}
+
+/// A sheet that swings freely for a while.
+std::unique_ptr<Solid> swing(FaceGradient gradient, int steps, double dt) {
+  SolidParameters p = box_parameters(2);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.material = {2600, 1e7, 0.3};
+  p.time_scheme.type = TimeScheme::trapezoidal;
+  p.method.face_gradient = gradient;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.initial_velocity = {{"0.1*x*sin(40*y)*cos(30*x)"}, {"0.2*x*x*sin(35*x)"}};
+  RawMesh raw = make_box(BoxCells::triangles, {20, 4, 1}, Vec3::Zero(), Vec3(10, 1, 0));
+  perturb_interior(raw, 0.3, 3);
+  auto solid = make_solid(raw, p);
+  for (int i = 0; i < steps; ++i) step(*solid, dt);
+  solid->write_output(solid->state().time, 0);
+  return solid;
+}
+
+TEST(Audit, fires_on_undamped_motion_that_grows_out_of_nothing) {
+  const int before = log::doubts();
+  const auto grows = swing(FaceGradient::corrected, 3000, 0.01);
+  fmt::print("corrected: {}\n", grows->energy_audit().text());
+  EXPECT_TRUE(grows->energy_audit().is_doubtful());
+  EXPECT_GT(log::doubts(), before);
+  const auto stays = swing(FaceGradient::symmetric, 300, 0.01);
+  fmt::print("symmetric: {}\n", stays->energy_audit().text());
+  EXPECT_LT(std::abs(stays->energy_audit().created()), 1e-6);
+}
+
+}  // namespace
+}  // namespace couplet::testing
