@@ -51,7 +51,7 @@ const std::vector<std::string>& values() {
                                     "1/0",
                                     "sqrt(-1)",
                                     brackets + "x",
-                                    "x" + std::string(3000, '+') + "1",
+                                    std::string("x").append(3000, '+') + "1",
                                     "table(t, 0, 0, 1, 1)",
                                     "table(t, 0",
                                     "'table(t, \"no.csv\")'",
