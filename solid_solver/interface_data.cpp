@@ -32,10 +32,11 @@ Patch patch_of(Index face, std::span<const Vec3> centres) {
   // Weighted by the inverse squared distance, so that near faces decide.
   Eigen::VectorXd weight = offsets.rowwise().squaredNorm().cwiseInverse();
   const Eigen::MatrixX3d weighted = weight.asDiagonal() * offsets;
+  Patch patch{std::move(others), Eigen::Matrix3Xd::Zero(3, Eigen::Index(n))};
+  if (n == 0) return patch;  // a single face: its value everywhere
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(weighted, Eigen::ComputeThinU | Eigen::ComputeThinV);
   svd.setThreshold(0.05);
-  Patch patch{std::move(others), Eigen::Matrix3Xd::Zero(3, Eigen::Index(n))};
-  if (n > 0) patch.gradient = svd.solve(Eigen::MatrixXd(weight.asDiagonal()));
+  patch.gradient = svd.solve(Eigen::MatrixXd(weight.asDiagonal()));
   return patch;
 }
 

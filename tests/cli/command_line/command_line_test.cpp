@@ -78,7 +78,7 @@ TEST(CommandLine, a_wrong_command_line_leaves_with_code_2_and_says_why) {
   EXPECT_EQ(message({"a.yaml", "--set"}), "--set: 1 required a.b=v missing");
   EXPECT_EQ(message({"a.yaml", "-v", "-q"}), "Give --verbose or --quiet, not both.");
   EXPECT_EQ(message({"a.yaml", "--check", "--docs"}),
-            "Give one of --check, --docs, --schema and --print-config, not several.");
+            "Give one of --check, --docs, --schema, --print-config, --explain and --effects, not several.");
 }
 
 }  // namespace

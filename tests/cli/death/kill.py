@@ -15,10 +15,10 @@ said = {
     "initialise": (1, "last heard of in initialise"),
     "begin_step": (2, "last heard of in begin_step at t = 0.1"),
     "solve": (4, "last heard of in solve at t = 0."),
-    "waiting": (6, "last heard of in waiting at t = 0."),
+    "waiting": (6, "last heard of in waiting at t = 0"),
     "accept": (3, "last heard of in accept at t = 0."),
-    "save": (1, "last heard of in save at t = 1.0"),
-    "finalise": (1, "last heard of in finalise at t = 1.0"),
+    "save": (1, "last heard of in save at t = 1"),
+    "finalise": (1, "last heard of in finalise at t = 1"),
 }
 for phase in phases:
     count, line = said[phase]
