@@ -9,7 +9,7 @@ def cases(Case, run):
     right = [tank("right tank", "", exit_code=0)]
     wrong = [
         tank("fluid that is not known", """
-case.yaml:7:13: participants.tank.fluid.type: 'solar-slat' is not one of: solar-salt, caloria-ht43, custom. Did you mean 'solar-salt'?
+case.yaml:7:13: participants.tank.fluid.type: 'solar-slat' is not one of: solar-salt, caloria-ht43, air, custom. Did you mean 'solar-salt'?
 """, ("type: solar-salt", "type: solar-slat")),
         tank("fluid of one's own with lists of different length", """
 case.yaml:7:88: participants.tank.fluid.conductivity: has 1 values, 'temperature' has 2.

@@ -211,7 +211,7 @@ TEST(SolidMethods, a_solve_that_does_not_converge_names_method_iterations_residu
               ::testing::ThrowsMessage<Error>(
                   AllOf(HasSubstr("did not converge"), HasSubstr("after 1 iterations, residual "),
                         HasSubstr("The method is block-coupled (BiCGStab, ILU), thesis's face gradient."),
-                        HasSubstr("'direct'"))));
+                        HasSubstr("linear-solver: direct"))));
 }
 
 }  // namespace
