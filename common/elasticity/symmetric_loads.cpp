@@ -189,6 +189,7 @@ std::vector<Vec3> SymmetricKernel<D>::holding_forces(std::span<const double> unk
   for (double& f : point_force_) f = -f;
   fill(unknowns, known);
   internal_forces();
+  add_springs(known);  // at a vertex that a support shares the support takes their part along what it knows
   std::vector<Vec3> result(mesh_.patches.size(), Vec3::Zero());
   const std::vector<Index> patch_of = mesh_.patch_of_boundary();
   std::vector<std::vector<std::pair<Index, Vec3>>> planes(mesh_.points.n_local());
@@ -216,7 +217,6 @@ std::vector<Vec3> SymmetricKernel<D>::holding_forces(std::span<const double> unk
     }
   }
   // What the free part of the points' forces leaves at nodes that are held.
-  add_springs(known);
   points_to_nodes();
   for (Index b = 0; b < mesh_.boundary.n_local(); ++b) {
     const Index f = mesh_.n_interior + b;
