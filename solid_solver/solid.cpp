@@ -78,13 +78,14 @@ void Solid::check_supports() const {
 }
 
 void Solid::find_mass() {
-  if (kernel_.is_symmetric())
-    for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
-      if (elastic_.condition(f) == ElasticCondition::zero_gradient)
-        throw Error(
-            "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no "
-            "energy, so that "
-            "this gradient cannot have it; use 'symmetry' or 'frictionless', or 'face-gradient: corrected'.");
+  bool has_no_energy = false;
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+    has_no_energy = has_no_energy || elastic_.condition(f) == ElasticCondition::zero_gradient;
+  if (kernel_.is_symmetric() && any(mesh_.comm, has_no_energy))
+    throw Error(
+        "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no "
+        "energy, so that "
+        "this gradient cannot have it; use 'symmetry' or 'frictionless', or 'face-gradient: corrected'.");
   if (kernel_.is_symmetric() && any(mesh_.comm, has_loose_vertex(mesh_, elastic_)))
     throw Error(
         "solution-method.face-gradient: symmetric: a part of a patch holds components of the displacement and ends "
