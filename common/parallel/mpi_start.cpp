@@ -52,9 +52,14 @@ void prepare_mpi_start() {
   const bool alone = all == nullptr && !has_variable_like("PMIX_") && !has_variable_like("PMI_") &&
                      std::getenv("SLURM_PROCID") == nullptr;
   if ((!alone && !on_one_machine) || user_has_chosen()) return;
-  if (alone) ::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  if (alone) {
+    ::setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    // All isolated programs of a user are job 0 and would share one session folder, which the first to end removes
+    // while the next one starts in it; a program alone needs neither that folder nor shared memory.
+    ::setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
+  }
   ::setenv("OMPI_MCA_pml", "ob1", 0);
-  ::setenv("OMPI_MCA_btl", "self,vader", 0);
+  ::setenv("OMPI_MCA_btl", alone ? "self" : "self,vader", 0);
 }
 
 }  // namespace couplet

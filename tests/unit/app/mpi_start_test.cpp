@@ -51,7 +51,14 @@ TEST_F(MpiStart, a_program_alone_starts_no_daemon) {
   start({});
   EXPECT_EQ(value("OMPI_MCA_ess_singleton_isolated"), "1");
   EXPECT_EQ(value("OMPI_MCA_pml"), "ob1");
-  EXPECT_EQ(value("OMPI_MCA_btl"), "self,vader");
+  EXPECT_EQ(value("OMPI_MCA_btl"), "self");
+}
+
+TEST_F(MpiStart, a_program_alone_shares_no_folder_with_others) {
+  start({});
+  EXPECT_EQ(value("OMPI_MCA_orte_create_session_dirs"), "0");
+  start({{"OMPI_COMM_WORLD_SIZE", "4"}, {"OMPI_COMM_WORLD_LOCAL_SIZE", "4"}});
+  EXPECT_EQ(value("OMPI_MCA_orte_create_session_dirs"), "-");
 }
 
 TEST_F(MpiStart, a_job_on_one_machine_uses_shared_memory) {
