@@ -40,14 +40,37 @@ V judge_walls(const S&, const E& e) {
 
 // Density changes go with the Mach number squared over two: 5 % at 0.3. The speed of sound is that of air at
 // 20 degC for what is as light as a gas, else that of water.
+bool is_gas(const S& s) { return s.parameters.density < 50; }
+double speed_of_sound(const S& s) { return is_gas(s) ? 343 : 1480; }
+
 V judge_compressibility(const S& s, const E& e) {
   if (std::isnan(e.largest_speed)) return {};
-  const bool gas = s.parameters.density < 50;
-  const double sound = gas ? 343 : 1480, mach = e.largest_speed / sound;
+  const bool gas = is_gas(s);
+  const double mach = e.largest_speed / speed_of_sound(s);
   return EffectVerdict{"", mach, 0.3,
                        fmt::format("the largest speed, {:.3g} m/s, is {:.2g} of that of sound in {}",
                                    e.largest_speed, mach, gas ? "air" : "water"),
                        "density would change by more than 5 %, which this program does not know"};
+}
+
+// Where flow is stopped or driven faster than waves cross the domain the pressure rises as rho c du or rho L
+// du/dt, whatever the Mach number; the density follows by dp/(rho c^2).
+V judge_waves(const S& s, const E& e) {
+  if (std::isnan(e.pressure_range)) return {};
+  const double c = speed_of_sound(s), change = e.pressure_range / (s.parameters.density * c * c);
+  return EffectVerdict{
+      "", change, 0.05,
+      fmt::format("pressures {:.3g} Pa apart would change the density of {} by {:.2g} of it",
+                  e.pressure_range, is_gas(s) ? "air" : "water", change),
+      "flow changes faster here than waves of pressure would let it; this program knows no waves"};
+}
+
+V judge_still_mesh(const S& s, const E& e) {
+  if (s.moving_mesh || std::isnan(e.wall_displacement)) return {};
+  return EffectVerdict{"", e.wall_displacement, 0.1,
+                       fmt::format("the interface moves by up to {:.2g} of the height of the cell beside it",
+                                   e.wall_displacement),
+                       "give the case a mesh mover: 'coupling: {mesh: {participant: ...}}'"};
 }
 
 const std::array cards{
@@ -70,10 +93,18 @@ const std::array cards{
               {},
               "largest speed over that of sound, 0.3",
               judge_compressibility},
+    FluidCard{"waves of pressure",
+              "not available here",
+              [](const S&) { return std::string(); },
+              {},
+              "density change by the range of pressure, 0.05",
+              judge_waves},
     FluidCard{"mesh motion",
               "a mesh mover in `coupling.mesh`",
               [](const S& s) { return when(s.moving_mesh, "coupling.mesh"); },
-              {"points, swept volumes, geometry of each step; the process mesh_mover", 0, 0}},
+              {"points, swept volumes, geometry of each step; the process mesh_mover", 0, 0},
+              "of an interface: largest displacement over the cell's height, 0.1",
+              judge_still_mesh},
     FluidCard{"coupling load",
               "a boundary of `type: interface`",
               [](const S& s) { return when(s.coupled && has_interface(s), "a boundary of type interface"); },

@@ -22,6 +22,9 @@ struct FluidEvidence {
   double largest_peclet = unknown;  ///< cell Reynolds number
   double largest_yplus = unknown;   ///< of walls; 0 without walls
   double largest_speed = unknown;   ///< [m/s]
+  double pressure_range = unknown;  ///< largest minus smallest pressure [Pa]
+  /// Of an interface on a mesh that stands still: largest displacement in heights of the cell there.
+  double wall_displacement = unknown;
 };
 
 using FluidCard = EffectCard<FluidScene, FluidEvidence>;

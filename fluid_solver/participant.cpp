@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "common/base/error.hpp"
@@ -168,6 +169,28 @@ Vectors<D> FluidParticipant<D>::wall_velocity(const Exchange& in) const {
   return w;
 }
 
+/// Of the faces of the interface: largest mean displacement over the height of the cell beside them.
+/// Collective.
+template <int D>
+double FluidParticipant<D>::wall_displacement(const Exchange& in) const {
+  const auto given = in.find("displacement");
+  const std::vector<double> at_points =
+      interface_->scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, D);
+  const std::vector<Index>& faces = interface_->faces();
+  double largest = 0;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto vertices = interface_vertices_[static_cast<Index>(i)];
+    Vec<D> mean = Vec<D>::Zero();
+    for (const Index v : vertices) mean += Eigen::Map<const Vec<D>>(at_points.data() + std::size_t(v) * D);
+    mean /= static_cast<double>(vertices.size());
+    const Geometry& g = mesh_.reference;
+    const Vec3 arm = g.face_centre[faces[i]] - g.cell_centre[mesh_.owner[faces[i]]];
+    const double height = 2 * std::abs(arm.dot(g.face_area[faces[i]].normalized()));
+    largest = std::max(largest, mean.norm() / height);
+  }
+  return max(mesh_.comm, largest);
+}
+
 template <int D>
 std::vector<Vec3> FluidParticipant<D>::receive_points() {
   if (prescribed_) return prescribed_->places(mesh_.reference_points, step_.time + step_.dt);
@@ -234,6 +257,7 @@ Exchange FluidParticipant<D>::solve(const Exchange& in) {
   const Vectors<D> w = wall_velocity(in);
   prepare(w);
   fluid_->solve_pressure(w);
+  if (stands_still()) trial_displacement_ = wall_displacement(in);
   return forces();
 }
 
@@ -248,6 +272,7 @@ StepReport FluidParticipant<D>::accept_step() {
     return fluid_->statistics().pressure_iterations + fluid_->statistics().viscous_iterations;
   };
   const long before = effort();
+  displacement_ = trial_displacement_;
   fluid_->accept();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), step_.dt);
@@ -279,7 +304,7 @@ void FluidParticipant<D>::write_monitors(double time) {
 }
 
 template <int D>
-std::vector<std::string> FluidParticipant<D>::judge_left_out_effects() {
+std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
   FluidEvidence evidence{.largest_peclet = fluid_->largest_peclet(), .largest_yplus = 0};
   for (const Patch& patch : mesh_.patches)
     if (is_wall(fluid_->parameters().boundaries.at(patch.name).type))
@@ -287,10 +312,20 @@ std::vector<std::string> FluidParticipant<D>::judge_left_out_effects() {
   double speed = 0;
   for (const Vec<D>& u : fluid_->state().u) speed = std::max(speed, u.squaredNorm());
   evidence.largest_speed = std::sqrt(max(mesh_.comm, speed));
+  if (const auto& latest = fluid_->state().pressure[0]) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+      low = std::min(low, latest->p[c]), high = std::max(high, latest->p[c]);
+    evidence.pressure_range = max(mesh_.comm, high) - min(mesh_.comm, low);
+  }
+  if (stands_still()) evidence.wall_displacement = displacement_;
   const FluidScene scene{fluid_->parameters(), fluid_->moving(), step_.scheme != Scheme::standalone};
+  return couplet::audit(fluid_effect_cards(), scene, evidence);
+}
+
+template <int D>
+std::vector<std::string> FluidParticipant<D>::finish() {
   std::vector<std::string> sentences;
-  for (const EffectVerdict& verdict : audit(fluid_effect_cards(), scene, evidence))
-    sentences.push_back(text(verdict));
   if (steps_ > 0)
     sentences.push_back(fmt::format(
         "Semi-implicit coupling: friction was computed anew with a better wall velocity in {} of {} steps; "

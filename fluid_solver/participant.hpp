@@ -45,12 +45,15 @@ class FluidParticipant final : public Participant {
   void load(CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<std::string> judge_left_out_effects() override;
+  std::vector<EffectVerdict> audit() const override;
+  std::vector<std::string> finish() override;
 
   const Fluid<D>& fluid() const { return *fluid_; }
 
  private:
   Vectors<D> wall_velocity(const Exchange& in) const;
+  double wall_displacement(const Exchange& in) const;
+  bool stands_still() const { return interface_ && !motion_ && step_.scheme != Scheme::standalone; }
   void prepare(const Vectors<D>& w);
   double contraction(const Vectors<D>& w);
   bool needs_renewal(double contraction) const;
@@ -73,6 +76,8 @@ class FluidParticipant final : public Participant {
   bool renewed_ = false;      // its prediction
   Vectors<D> last_w_;         // of the pass before
   double last_change_ = 0;    // of w between the two passes before [m/s]
+  // Of the interface on a mesh that stands still: largest displacement over the height of the cell there.
+  double displacement_ = 0, trial_displacement_ = 0;
   long steps_ = 0, renewed_steps_ = 0;
   double largest_unseen_ = 0;  // share of the load, of the accepted steps
 };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
+#include "plate_modal/effect_cards.hpp"
 #include "plate_modal/structure.hpp"
 
 int main(int argc, char** argv) {
@@ -13,6 +14,11 @@ int main(int argc, char** argv) {
             return std::make_unique<couplet::plate::Structure>(
                 parameters,
                 couplet::plate::PlateContext{c.comm, c.name, c.case_folder, c.output_folder, c.restart_time});
+          },
+      .effects =
+          [&](const couplet::EffectScene& scene) {
+            return couplet::effects_of(couplet::plate::plate_effect_cards(),
+                                       couplet::plate::PlateScene{parameters, scene.coupled});
           }};
   return couplet::run_program(argc, argv, program);
 }

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/on_root.hpp"
+#include "plate_modal/effect_cards.hpp"
 #include "plate_modal/results.hpp"
 
 namespace couplet::plate {
@@ -16,6 +18,22 @@ namespace {
 
 /// A side of the plate: faces whose normal is within 60 degrees of that of the plate.
 constexpr double least_cosine = 0.5;
+
+/// Thickness over half the length of a bending wave of this frequency in the thickest part of a plate:
+/// D k^4 = rho h omega^2.
+double thickness_over_wave(const Parameters& p, double omega) {
+  double largest = 0;
+  const auto of = [&](double h, double density, double youngs_modulus) {
+    const double d =
+        youngs_modulus * h * h * h / (12 * (1 - p.material.poissons_ratio * p.material.poissons_ratio));
+    largest = std::max(largest, h * std::pow(density * h * omega * omega / d, 0.25) / std::numbers::pi);
+  };
+  of(p.thickness, p.material.density, p.material.youngs_modulus);
+  for (const auto& [name, zone] : p.zones)
+    of(zone.thickness.value_or(p.thickness), zone.density.value_or(p.material.density),
+       zone.youngs_modulus.value_or(p.material.youngs_modulus));
+  return largest;
+}
 
 }  // namespace
 
@@ -98,6 +116,25 @@ void Structure::add_pressure(double t, std::span<double> load) const {
   share_->add_load(force, load);
 }
 
+/// Kinetic, strain and contact energy without what the scheme made, or the work of the loads: whichever is more.
+double Structure::true_energy(const ModalState& state) const {
+  const Energies& e = state.energies;
+  return std::max(e.kinetic + e.strain + e.contact - std::max(0.0, e.mismatch()), std::abs(e.load_work));
+}
+
+/// A scheme that has made more energy than the structure ever had moves something else than the structure.
+void Structure::refuse_made_energy() const {
+  const double made = trial_.energies.mismatch(), had = std::max(largest_true_, true_energy(trial_));
+  if (!(made > had)) return;
+  throw SolveFailure(
+      "At t = {:g} s the time scheme has made {:.3g} J, more than the {:.3g} J that the structure had at most: the "
+      "motion is the scheme's, not the structure's. Take {}.",
+      step_.time + step_.dt, made, had,
+      parameters_.contact && parameters_.contact->rule == ContactRule::midpoint
+          ? "'contact.rule: conserving', or 'simulation.time-step' below a twentieth of a contact"
+          : "a smaller 'simulation.time-step'");
+}
+
 Exchange Structure::solve(const Exchange& in) {
   std::vector<double> fluid(share_->n_modes(), 0);
   for (const char* name : {"pressure-force", "viscous-force"}) {
@@ -115,6 +152,7 @@ Exchange Structure::solve(const Exchange& in) {
       for (std::size_t m = 0; m < fluid.size(); ++m) total[m] += fluid[m];
     };
     oscillators_->step(state_, step_.dt, load, trial_);
+    refuse_made_energy();
   } else if (parameters_.analysis == Parameters::Analysis::static_) {
     solve_static(step_.time + step_.dt, fluid);
   }
@@ -134,6 +172,7 @@ StepReport Structure::accept_step() {
   largest_ = std::max(largest_, trial_largest_);
   const Energies& e = state_.energies;
   worst_mismatch_ = std::max(worst_mismatch_, std::abs(e.mismatch()));
+  largest_true_ = std::max(largest_true_, true_energy(state_));
   largest_exchange_ = std::max({largest_exchange_, e.kinetic + e.strain + e.contact, std::abs(e.load_work)});
   return {.dt = step_.dt, .iterations = oscillators_->newton_iterations(), .energy = e.total()};
 }
@@ -146,35 +185,31 @@ std::vector<double> Structure::displacement() const {
 void Structure::write_output(double time, int) { results_->write_fields(time); }
 void Structure::write_monitors(double time) { results_->write_series(time); }
 
-std::vector<std::string> Structure::judge_left_out_effects() {
-  std::vector<std::string> sentences;
-  double size = 0;
-  for (const Vec3& x : built_.model.vertices)
-    size = std::max(size, (x - built_.model.vertices.front()).norm());
-  if (largest_ > 0.25 * size && share_->omega().front() > 0)  // a body that moves as a whole may go far
-    sentences.push_back(
-        fmt::format("large displacements: up to {:.3g} m of a structure of {:.3g} m; modes are linear and "
-                    "know no rotations beyond "
-                    "a few tenths. Judge the result with care or take a program for finite strain.",
-                    largest_, size));
-  if (built_.held_all_round && largest_ > 0.5 * parameters_.thickness)
-    sentences.push_back(
-        fmt::format("stretch: the plate is held all round and deflects by {:.3g} m, {:.2g} of its thickness; "
-                    "its stretch, which is "
-                    "left out, would stiffen it noticeably.",
-                    largest_, largest_ / parameters_.thickness));
-  if (parameters_.analysis != Parameters::Analysis::dynamic || !(largest_exchange_ > 0)) return sentences;
-  const double share = worst_mismatch_ / largest_exchange_;
-  sentences.push_back(
+std::vector<EffectVerdict> Structure::audit() const {
+  // What rank 0 knows of the whole surface decides on all ranks alike.
+  std::vector<double> seen(3, PlateEvidence::unknown);
+  if (comm_rank(context_.comm) == 0) {
+    double size = 0;
+    for (const Vec3& x : built_.model.vertices)
+      size = std::max(size, (x - built_.model.vertices.front()).norm());
+    // A body that moves as a whole may go far.
+    if (share_->omega().front() > 0) seen[0] = largest_ / size;
+    if (built_.held_all_round) seen[1] = largest_ / parameters_.thickness;
+    if (parameters_.mesh) seen[2] = thickness_over_wave(parameters_, share_->omega().back());
+  }
+  broadcast(context_.comm, seen);
+  PlateEvidence evidence{seen[0], seen[1], seen[2], PlateEvidence::unknown};
+  if (parameters_.analysis == Parameters::Analysis::dynamic && largest_exchange_ > 0)
+    evidence.energy_mismatch = worst_mismatch_ / largest_exchange_;
+  return couplet::audit(plate_effect_cards(), PlateScene{parameters_}, evidence);
+}
+
+std::vector<std::string> Structure::finish() {
+  if (parameters_.analysis != Parameters::Analysis::dynamic || !(largest_exchange_ > 0)) return {};
+  return {
       fmt::format("energy: the balance of the structure (4.29-4.31) is off by at most {:.2e} J, {:.2g} % of "
                   "the largest energy.",
-                  worst_mismatch_, 100 * share));
-  if (share > 0.01)
-    sentences.push_back(
-        "The time scheme took or made more than 1 % of the energy: take a smaller step, or 'trapezoidal' "
-        "with "
-        "'contact.rule: conserving'.");
-  return sentences;
+                  worst_mismatch_, 100 * worst_mismatch_ / largest_exchange_)};
 }
 
 void Structure::save(CheckpointWriter& file) const {
@@ -186,9 +221,9 @@ void Structure::save(CheckpointWriter& file) const {
                                      {"v-old", &state_.v_old}})
     file.write(name, *values);
   const Energies& e = state_.energies;
-  file.write("energies",
-             std::vector<double>{e.kinetic, e.strain, e.gravity, e.contact, e.initial, e.load_work,
-                                 e.impact_work, e.damping_loss, worst_mismatch_, largest_exchange_});
+  file.write("energies", std::vector<double>{e.kinetic, e.strain, e.gravity, e.contact, e.initial,
+                                             e.load_work, e.impact_work, e.damping_loss, worst_mismatch_,
+                                             largest_exchange_, largest_true_});
   file.write_scalar("dt", state_.dt);
 }
 
@@ -205,12 +240,12 @@ void Structure::load(CheckpointReader& file) {
                                      {"q-old", &state_.q_old},
                                      {"v-old", &state_.v_old}})
     file.read(name, *values);
-  std::vector<double> kept(10);
+  std::vector<double> kept(11);
   file.read("energies", kept);
   Energies& e = state_.energies;
   int i = 0;
   for (double* part : {&e.kinetic, &e.strain, &e.gravity, &e.contact, &e.initial, &e.load_work,
-                       &e.impact_work, &e.damping_loss, &worst_mismatch_, &largest_exchange_})
+                       &e.impact_work, &e.damping_loss, &worst_mismatch_, &largest_exchange_, &largest_true_})
     *part = kept[i++];
   state_.dt = file.read_scalar("dt");
   trial_ = state_;

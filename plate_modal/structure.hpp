@@ -32,7 +32,8 @@ class Structure final : public Participant {
   void load(CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<std::string> judge_left_out_effects() override;
+  std::vector<EffectVerdict> audit() const override;
+  std::vector<std::string> finish() override;
 
   const Parameters& parameters() const { return parameters_; }
   const PlateContext& context() const { return context_; }
@@ -53,6 +54,8 @@ class Structure final : public Participant {
   std::vector<double> damping() const;
   ModalState initial_state() const;
   void add_pressure(double t, std::span<double> load) const;
+  double true_energy(const ModalState& state) const;
+  void refuse_made_energy() const;
   void solve_static(double t, std::span<const double> fluid);
   std::vector<double> direct_deflection(double t) const;
 
@@ -69,6 +72,7 @@ class Structure final : public Participant {
   std::optional<Deflection> deflection_;
   Step step_;
   double worst_mismatch_ = 0, largest_exchange_ = 0;
+  double largest_true_ = 0;  // largest energy that the scheme did not make, or work of the loads [J]
   double largest_ = 0, trial_largest_ = 0;  // displacement of any vertex [m], on rank 0
   std::unique_ptr<PlateResults> results_;
 };

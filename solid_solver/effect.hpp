@@ -50,7 +50,7 @@ class SolidEffect {
   virtual void add_fields(std::vector<OutputField>& /*fields*/) {}
   /// Adds what it has seen, for the verdicts on what was left out. Collective.
   virtual void add_evidence(SolidEvidence& /*evidence*/) const {}
-  /// For Participant::judge_left_out_effects(), beside the verdicts of the cards.
+  /// For Participant::finish(), beside the verdicts of the cards.
   virtual void judge(std::vector<std::string>& /*sentences*/) const {}
 };
 

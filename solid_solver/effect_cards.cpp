@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "solid_solver/solution_method.hpp"
 
@@ -45,9 +46,21 @@ V judge_inertia(const P& p, const E& e) {
 V judge_geometry(const P& p, const E& e) {
   if (!is_elastic(p)) return {};
   const double g = e.largest_gradient;
-  return verdict(g, 0.02, fmt::format("the largest displacement gradient seen is {:.2g}", g),
+  const std::string parts = std::isnan(e.largest_strain)
+                                ? ""
+                                : fmt::format(" (last: strain {:.2g}, rotation {:.2g} degrees)",
+                                              e.largest_strain, 57.29578 * e.largest_rotation);
+  return verdict(g, 0.02, fmt::format("the largest displacement gradient seen is {:.2g}{}", g, parts),
                  g < 0.1 ? "errors of some per cent are to be expected"
                          : "it would matter: the result is that of the linear theory, not of the body");
+}
+
+V judge_yield(const P& p, const E& e) {
+  if (!is_elastic(p)) return {};
+  return verdict(
+      e.share_of_yield, 1,
+      fmt::format("the largest equivalent stress is {:.2g} of the yield strength", e.share_of_yield),
+      "the body would yield there: the result is that of an elastic body, this program knows no other");
 }
 
 V judge_incompressibility(const P& p, const E&) {
@@ -91,6 +104,12 @@ const std::array cards{
               {},
               "largest displacement gradient, 0.02",
               judge_geometry},
+    SolidCard{"yielding",
+              "not available here",
+              [](const P&) { return std::string(); },
+              {},
+              "where `yield-strength` is given: equivalent stress over it, 1",
+              judge_yield},
     SolidCard{"near incompressibility",
               "`solution-method: {face-gradient: symmetric, volume-strain: cells}`",
               [](const P& p) { return when(has_volume_strain_of_cells(p), "one volume strain a cell"); },

@@ -13,6 +13,9 @@ namespace couplet {
 struct SolidEvidence {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double largest_gradient = unknown;   ///< Frobenius norm of the displacement gradient, over space and time
+  double largest_strain = unknown;     ///< of the same; at the last look only
+  double largest_rotation = unknown;   ///< angle of a face's surroundings [rad]; at the last look only
+  double share_of_yield = unknown;     ///< largest equivalent stress over the yield strength
   double inertia_over_load = unknown;  ///< of a static run with several steps
   double coupling_number = unknown;    ///< stiffening by the heat of deformation, thesis (2.27)
   double temperature_range = unknown;  ///< of a run that knows a temperature [K]

@@ -135,10 +135,35 @@ Vec3 Solid::total_load() const {
 }
 
 double Solid::largest_gradient(std::span<const double> points) const {
-  double largest = 0;
-  visit_gradients(state_.cell_u, state_.face_u, points,
-                  [&](Index, const Tensor3& g) { largest = std::max(largest, g.squaredNorm()); });
-  return max(mesh_.comm, std::sqrt(largest));
+  return deformation(points).largest_gradient;
+}
+
+SolidEvidence Solid::deformation(std::span<const double> points) const {
+  double gradient = 0, strain = 0, rotation = 0;
+  visit_gradients(state_.cell_u, state_.face_u, points, [&](Index, const Tensor3& g) {
+    gradient = std::max(gradient, g.squaredNorm());
+    strain = std::max(strain, (0.5 * (g + g.transpose())).squaredNorm());
+    rotation = std::max(rotation, (0.5 * (g - g.transpose())).squaredNorm());
+  });
+  // The skew part of a rotation by a small angle phi holds phi twice.
+  return {.largest_gradient = max(mesh_.comm, std::sqrt(gradient)),
+          .largest_strain = max(mesh_.comm, std::sqrt(strain)),
+          .largest_rotation = max(mesh_.comm, std::sqrt(rotation / 2))};
+}
+
+/// Largest equivalent stress (von Mises) over the yield strength, where that is known; else NaN. Collective.
+double Solid::share_of_yield(std::span<const double> points) const {
+  if (std::ranges::none_of(materials_, [](const SolidMaterial& m) { return m.yield_strength.has_value(); }))
+    return SolidEvidence::unknown;
+  const std::vector<Tensor3> stress = face_stress(0, mesh_.n_flux_faces(), points);
+  double share = 0;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const auto& yield = materials_[mesh_.material_of(mesh_.owner[f])].yield_strength;
+    if (!yield) continue;
+    const Tensor3 deviator = stress[f] - stress[f].trace() / 3 * Tensor3::Identity();
+    share = std::max(share, std::sqrt(1.5) * deviator.norm() / *yield);
+  }
+  return max(mesh_.comm, share);
 }
 
 void Solid::judge_inertia() {
@@ -156,18 +181,22 @@ void Solid::judge_inertia() {
   if (load > 0) inertia_over_load_ = std::max(inertia_over_load_, inertia.norm() / load);
 }
 
-std::vector<std::string> Solid::judge_left_out_effects() {
-  largest_gradient_ = std::max(largest_gradient_, largest_gradient(point_displacement()));
-  SolidEvidence evidence{.largest_gradient = largest_gradient_};
+std::vector<EffectVerdict> Solid::audit() const {
+  const std::vector<double> points = point_displacement();
+  SolidEvidence evidence = deformation(points);
+  evidence.share_of_yield = share_of_yield(points);
+  evidence.largest_gradient = std::max(largest_gradient_, evidence.largest_gradient);
   if (!is_dynamic() && state_.steps > 1) evidence.inertia_over_load = inertia_over_load_;
   for (const auto& effect : effects_) effect->add_evidence(evidence);
+  return couplet::audit(solid_effect_cards(), parameters_, evidence);
+}
+
+std::vector<std::string> Solid::finish() {
   std::vector<std::string> sentences;
   if (is_dynamic()) audit_answer();
   if (audit_)
     sentences.push_back(fmt::format("error indicator: {}{}.", audit_->text(),
                                     audit_->is_doubtful() ? "; NOT to be trusted" : ""));
-  for (const EffectVerdict& verdict : audit(solid_effect_cards(), parameters_, evidence))
-    sentences.push_back(text(verdict));
   if (is_dynamic() && !parameters_.damping && !kernel_.is_symmetric())
     sentences.push_back(
         "structural damping left out: free vibration does not decay, and modes that the time step resolves "

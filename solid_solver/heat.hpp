@@ -70,7 +70,7 @@ class Heat final {
   std::vector<PatchHeat> patch_heat() const;
   /// Heat stored in the whole solid, from an arbitrary level on [J]. Collective.
   double stored_heat() const;
-  /// What was left out, for Participant::judge_left_out_effects(). Collective.
+  /// What was left out, for Participant::finish(). Collective.
   void judge(std::vector<std::string>& sentences) const;
 
  private:

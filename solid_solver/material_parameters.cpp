@@ -12,6 +12,10 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   needed(s.value("poissons-ratio", m.poissons_ratio)
              .range(-0.99, 0.49999)
              .doc("Poisson's ratio; from 0.4 up the symmetric face gradient is the default"));
+  s.value("yield-strength", m.yield_strength)
+      .unit("Pa")
+      .positive()
+      .doc("the run says where the equivalent stress reaches it; changes nothing else");
   declare(s, m.heat);
 }
 

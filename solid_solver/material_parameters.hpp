@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct SolidMaterial {
   double youngs_modulus = 0;  // [Pa]
   double poissons_ratio = 0;
   HeatMaterial heat{};
+  std::optional<double> yield_strength{};  // [Pa]; for the verdict on yielding alone
 };
 
 /// One of several materials.

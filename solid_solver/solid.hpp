@@ -92,7 +92,8 @@ class Solid final : public Participant {
   void load(CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<std::string> judge_left_out_effects() override;
+  std::vector<EffectVerdict> audit() const override;
+  std::vector<std::string> finish() override;
 
   const Mesh& mesh() const { return mesh_; }
   const SolidParameters& parameters() const { return parameters_; }
@@ -132,8 +133,11 @@ class Solid final : public Participant {
   std::vector<std::complex<double>> eigenvalues() const;
   /// All loads of the last solve: tractions, pressures, interface, body forces. Collective.
   Vec3 total_load() const;
+  /// Largest displacement gradient, strain and rotation at any face. Collective.
+  SolidEvidence deformation(std::span<const double> points) const;
   /// Largest norm of the displacement gradient at any face. Collective.
   double largest_gradient(std::span<const double> points) const;
+  double share_of_yield(std::span<const double> points) const;
 
  private:
   struct System;

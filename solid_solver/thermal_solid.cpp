@@ -77,7 +77,7 @@ void ThermalSolid::write_heat(double time) {
   heat_series_->row(row);
 }
 
-std::vector<std::string> ThermalSolid::judge_left_out_effects() {
+std::vector<std::string> ThermalSolid::finish() {
   std::vector<std::string> sentences;
   heat_->judge(sentences);
   return sentences;

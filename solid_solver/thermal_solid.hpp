@@ -36,7 +36,7 @@ class ThermalSolid final : public Participant {
   void load(CheckpointReader& file) override { heat_->load(file); }
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<std::string> judge_left_out_effects() override;
+  std::vector<std::string> finish() override;
 
   const Mesh& mesh() const { return mesh_; }
   const Heat& heat() const { return *heat_; }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/effect_cards.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cmath>
 
 namespace couplet::thermocline {
 namespace {
@@ -13,11 +16,41 @@ std::string when(const P& p, bool on, const char* reason) {
   return p.type == ElementParameters::Type::tank && on ? reason : "";
 }
 
+using E = Evidence;
+using V = std::optional<EffectVerdict>;
+
+// One temperature a grain takes a parabola inside it (linear driving force): 1/h becomes (1 + Bi/5)/h. Its own
+// error is a small part of Bi/5, the share of the grain in the resistance.
+V judge_grains(const P&, const E& e) {
+  if (std::isnan(e.largest_biot)) return {};
+  return EffectVerdict{
+      "", e.largest_biot / 5, 0.2,
+      fmt::format("the grains' inside has {:.2g} of the film's resistance (Biot number {:.2g})",
+                  e.largest_biot / 5, e.largest_biot),
+      "give 'bed.shells': five resolve the grains"};
+}
+
+V judge_yield(const P&, const E& e) {
+  if (std::isnan(e.share_of_yield)) return {};
+  return EffectVerdict{
+      "", e.share_of_yield, 1,
+      fmt::format("the wall's largest equivalent stress is {:.2g} of its yield strength", e.share_of_yield),
+      "the wall would yield: its stress and that of the grains are those of an elastic wall"};
+}
+
 const std::array cards{
     Card{"resolved grains",
          "`bed.shells` above 1",
          [](const P& p) { return when(p, p.tank.bed.shells > 1, "bed.shells"); },
-         {"a temperature a shell of the grains of each cell", 0, 0}},
+         {"a temperature a shell of the grains of each cell", 0, 0},
+         "Biot number of the grains over 5, 0.2",
+         judge_grains},
+    Card{"yielding of the wall",
+         "not available here",
+         [](const P&) { return std::string(); },
+         {},
+         "equivalent stress over the yield strength, 1",
+         judge_yield},
     Card{"shell",
          "`shell`",
          [](const P& p) { return when(p, p.tank.shell.has_value(), "shell"); },

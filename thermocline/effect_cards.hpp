@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <span>
 
 #include "common/effects/card.hpp"
@@ -8,8 +9,12 @@
 
 namespace couplet::thermocline {
 
-/// The verdicts of a tank are sentences of tank_effects.cpp.
-struct Evidence {};
+/// What a run of a tank has seen; the rest is told as sentences, see tank_effects.cpp. NaN: not seen.
+struct Evidence {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double largest_biot = unknown;    ///< film d / (2 conductivity) of the grains at the largest flow
+  double share_of_yield = unknown;  ///< largest equivalent stress of the wall over its yield strength
+};
 using Card = EffectCard<ElementParameters, Evidence>;
 std::span<const Card> effect_cards();
 

@@ -166,7 +166,7 @@ class ElementParticipant final : public Participant {
   void load(CheckpointReader& file) override { accepted_.restore(file.read("element")); }
   void write_output(double, int) override {}
   void write_monitors(double) override {}
-  std::vector<std::string> judge_left_out_effects() override { return {accepted_.books()}; }
+  std::vector<std::string> finish() override { return {accepted_.books()}; }
 
  private:
   std::unique_ptr<Weather> weather_;

@@ -34,7 +34,8 @@ class Tank final : public Participant {
   void load(CheckpointReader& file) override;
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
-  std::vector<std::string> judge_left_out_effects() override;
+  std::vector<EffectVerdict> audit() const override;
+  std::vector<std::string> finish() override;
 
   const TankModel& model() const { return accepted_; }
   const Speed& speed() const { return speed_; }

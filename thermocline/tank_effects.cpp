@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/log/log.hpp"
+#include "thermocline/effect_cards.hpp"
 #include "thermocline/tank.hpp"
 
 namespace couplet::thermocline {
@@ -32,6 +33,22 @@ void lumped_grains(const TankModel& m, Lines& lines) {
       "grains: shells: 1 takes one temperature a grain and a parabola inside it (linear driving force); "
       "grains of {:.3g} mm follow changes slower than {:.3g} s, five shells are within 2 % of all",
       1e3 * largest, largest * largest * filler.volumetric() / (60 * filler.conductivity)));
+}
+
+/// Of the layers of grains, at the largest flow and the bed's mean temperature.
+double largest_biot(const TankModel& m, double peak_flow) {
+  const std::span<const double> fluid = m.bed().fluid();
+  double mean = 0, largest = 0;
+  for (const double t : fluid) mean += t / double(fluid.size());
+  for (const auto& run : m.bed().grid().runs) {
+    if (run.layer.porosity >= 1 || run.layer.melting) continue;
+    const Filler& filler = run.layer.filler ? *run.layer.filler : m.setup().filler;
+    const LayerClosure closure(m.setup().parameters.bed.closures, m.setup().fluid, filler, run.layer.porosity,
+                               run.layer.diameter);
+    const double film = closure.at(mean, MassFlux(peak_flow / m.bed().area())).film;
+    largest = std::max(largest, film * run.layer.diameter / (2 * filler.conductivity));
+  }
+  return largest;
 }
 
 void fluid(const TankModel& m, double peak_flow, Lines& lines) {
@@ -142,7 +159,23 @@ void speed(const Speed& speed, int cells, Lines& lines) {
 
 }  // namespace
 
-std::vector<std::string> Tank::judge_left_out_effects() {
+std::vector<EffectVerdict> Tank::audit() const {
+  const TankModel& m = accepted_;
+  Evidence evidence;
+  if (m.bed().shells() == 1 && peak_flow_ > 0) evidence.largest_biot = largest_biot(m, peak_flow_);
+  if (m.shell() && !m.stress().yield.empty()) {
+    const WallStress& stress = m.stress();
+    evidence.share_of_yield = 0;
+    for (std::size_t i = 0; i < stress.equivalent.size(); ++i)
+      evidence.share_of_yield = std::max(evidence.share_of_yield, stress.equivalent[i] / stress.yield[i]);
+  }
+  ElementParameters scene;
+  scene.type = ElementParameters::Type::tank;
+  scene.tank = m.setup().parameters;
+  return couplet::audit(effect_cards(), scene, evidence);
+}
+
+std::vector<std::string> Tank::finish() {
   for (const auto& observer : observers_) observer->finish();
   Lines lines;
   const TankModel& m = accepted_;

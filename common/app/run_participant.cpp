@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/app/run_audit.hpp"
 #include "common/app/run_report.hpp"
 #include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
@@ -75,8 +76,9 @@ class Bookkeeping {
   double processor_since_ = 0;
 };
 
-void closing_words(const Job& job, Participant& participant, double seconds) {
-  const std::vector<std::string> sentences = participant.judge_left_out_effects();
+void closing_words(const Job& job, Participant& participant, RunAudit& audit, double seconds) {
+  std::vector<std::string> sentences = participant.finish();
+  for (std::string& line : audit.closing_lines()) sentences.push_back(std::move(line));
   const double mine = RunReport::peak_memory();
   const double most = max(job.comm, mine), all = sum(job.comm, mine);
   if (job.rank != 0) return;
@@ -89,8 +91,8 @@ void closing_words(const Job& job, Participant& participant, double seconds) {
 /// Commands to the participant from its own loop, with the same bookkeeping as in a coupled run.
 class OwnCommands {
  public:
-  OwnCommands(const Job& job, Participant& participant, RunReport& run)
-      : job_(job), participant_(participant), run_(run), books_(job, run) {}
+  OwnCommands(const Job& job, Participant& participant, RunReport& run, RunAudit& audit)
+      : job_(job), participant_(participant), run_(run), audit_(audit), books_(job, run) {}
   Reply operator()(const Command& command) {
     books_.received(command);
     const Reply reply = carry_out(command, participant_, job_.name, job_.comm);
@@ -101,6 +103,7 @@ class OwnCommands {
       report_ = reply.report;
       report_.seconds = std::exchange(seconds_, 0.0);
       run_.accepted(command.time, reply.report);
+      audit_.accepted(command.time, command.output >= 0);
     }
     return reply;
   }
@@ -129,6 +132,7 @@ class OwnCommands {
   const Job& job_;
   Participant& participant_;
   RunReport& run_;
+  RunAudit& audit_;
   Bookkeeping books_;
   StepReport report_;
   double seconds_ = 0;  // since the last accepted step
@@ -156,7 +160,8 @@ class Console {
 
 int run_alone(const Job& job, Participant& participant) {
   RunReport run(job);
-  OwnCommands command(job, participant, run);
+  RunAudit audit(job.rank, participant);
+  OwnCommands command(job, participant, run, audit);
   StepLoop loop(job.comm, job.simulation, Scheme::standalone, job.checkpoints);
   Console console(job.simulation);
   command.must({Op::initialise, {}, {}, 0, -1, ""});
@@ -178,7 +183,7 @@ int run_alone(const Job& job, Participant& participant) {
   actions.advised_dt = [&] { return command.advised_dt(); };
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);
-  closing_words(job, participant, console.seconds());
+  closing_words(job, participant, audit, console.seconds());
   run.finish(console.seconds(), problem);
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
@@ -188,6 +193,7 @@ int run_alone(const Job& job, Participant& participant) {
 int run_coupled(const Job& job, MPI_Comm coupler, Participant& participant) {
   const auto start = Clock::now();
   RunReport run(job);
+  RunAudit audit(job.rank, participant);
   Bookkeeping books(job, run);
   ServeObserver observer;
   observer.waiting = [&] { books.waiting(); };
@@ -195,12 +201,13 @@ int run_coupled(const Job& job, MPI_Comm coupler, Participant& participant) {
     books.waited();
     books.received(command);
     if (command.op != Op::finalise) return;
-    closing_words(job, participant, seconds_since(start));
+    closing_words(job, participant, audit, seconds_since(start));
     run.finish(seconds_since(start), "");
   };
   observer.done = [&](const Command& command) { books.done(command); };
   observer.accepted = [&](const Command& command, const StepReport& report) {
     run.accepted(command.time, report);
+    audit.accepted(command.time, command.output >= 0);
   };
   serve(coupler, job.comm, job.name, participant, observer);
   return 0;

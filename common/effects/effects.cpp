@@ -28,11 +28,20 @@ std::string text(const EffectVerdict& v) {
 std::vector<EffectVerdict> AuditTrail::news(const std::vector<EffectVerdict>& verdicts) {
   std::vector<EffectVerdict> result;
   for (const EffectVerdict& v : verdicts) {
+    keep(v);
     if (v.sound() || std::ranges::find(told_, v.effect) != told_.end()) continue;
     told_.push_back(v.effect);
     result.push_back(v);
   }
   return result;
+}
+
+void AuditTrail::keep(const EffectVerdict& v) {
+  const auto known = std::ranges::find(worst_, v.effect, &EffectVerdict::effect);
+  if (known == worst_.end())
+    worst_.push_back(v);
+  else if (!(v.number / v.threshold <= known->number / known->threshold))  // NaN is worse than any number
+    *known = v;
 }
 
 std::string summary(const std::vector<Effect>& effects) {

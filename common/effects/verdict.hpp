@@ -23,18 +23,23 @@ struct EffectVerdict {
 /// recommendation.
 std::string text(const EffectVerdict& verdict);
 
-/// Which effects have become unsound since the last look; each is told once. A run asks at its outputs, so
-/// that a long one does not hide its bad news until its end.
+/// Which effects have become unsound since the last look; each is told once. A run asks now and then, so that a
+/// long one does not hide its bad news until its end, and what was bad in its midst is still known there.
 class AuditTrail {
  public:
   /// The verdicts that are unsound for the first time.
   std::vector<EffectVerdict> news(const std::vector<EffectVerdict>& verdicts);
+  /// Of each effect the verdict with the largest number so far, in the order of their first appearance.
+  const std::vector<EffectVerdict>& worst() const { return worst_; }
   bool all_sound() const { return told_.empty(); }
   /// Names of all that were unsound so far.
   const std::vector<std::string>& unsound() const { return told_; }
 
  private:
+  void keep(const EffectVerdict& verdict);
+
   std::vector<std::string> told_;
+  std::vector<EffectVerdict> worst_;
 };
 
 }  // namespace couplet

@@ -43,7 +43,7 @@ def main():
         table.write("kappa [N/m],dt [s],steps a contact,conserving largest,conserving last,midpoint largest,midpoint last\n")
         for (kappa, dt), values in sorted(points.items()):
             table.write(f"{kappa:g},{dt:g},{np.pi / np.sqrt(kappa) / dt:.3g},{','.join(map(str, values))}\n")
-    figure, axes = plt.subplots(1, 2, figsize=(11, 4.2), dpi=120, constrained_layout=True)
+    figure, axes = plt.subplots(1, 2, figsize=(11, 4.6), dpi=120, constrained_layout=True)
     for ax, first, name in zip(axes, (0, 2), ("conserving", "midpoint")):
         grid = np.array([[max(points[k, d][first], -points[k, d][first + 1], 1e-16) for k in kappas] for d in steps])
         image = ax.imshow(np.log10(grid), origin="lower", cmap="RdYlGn_r", vmin=-14, vmax=1, aspect="auto")
@@ -55,7 +55,7 @@ def main():
         ax.set(xticks=range(len(kappas)), xticklabels=[f"{k:g}" for k in kappas], yticks=range(len(steps)),
                yticklabels=[f"{d:g}" for d in steps], xlabel="contact stiffness / mass [1/s2]", ylabel="step [s]",
                title=f"rule: {name}")
-    figure.colorbar(image, ax=axes, label="log10 of the energy made or lost in 1000 bounces, over the start's")
+    figure.colorbar(image, ax=axes, label="energy made or lost in 1000 bounces, log10")
     figure.savefig(picture)
     print(f"picture: {picture}, table: {picture.with_suffix('.csv')}")
 

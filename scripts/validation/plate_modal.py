@@ -95,7 +95,7 @@ def frequency_bar(job):
 def seconds_of(log, name):
     """Seconds in 'solve' of a participant's closing table."""
     part = log[log.index(f"time of '{name}'"):]
-    return float(re.search(r"solve\s+([\d.]+) s", part).group(1))
+    return float(re.search(r"^solve\s+([\d.]+)\s", part, flags=re.M).group(1))
 
 
 def cost_bar(job):

@@ -25,7 +25,7 @@ ALLOWED = {
     "effects": ["base"],
     "io": ["fv", "mesh", "linalg", "parallel", "config", "log", "base"],
     "modes": ["io", "mesh", "linalg", "parallel", "log", "base"],
-    "coupling": ["io", "mesh", "parallel", "config", "log", "base"],
+    "coupling": ["io", "mesh", "parallel", "effects", "config", "log", "base"],
     "app": ["coupling", "effects", "io", "fv", "mesh", "linalg", "parallel", "config", "log", "base"],
 }
 NOT_FOR = {"coupler": ["mesh", "fv"]}

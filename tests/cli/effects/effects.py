@@ -45,8 +45,38 @@ with tempfile.TemporaryDirectory() as folder:
     assert out.returncode == 0, out.stdout + out.stderr
     assert re.search(r"effects: .*left out: .*turbulence model", out.stdout), out.stdout
 
+# What a run leaves out is judged while it runs: a traction that grows for ten steps passes the limit of the linear theory
+# in its midst, that is said once, with the time; --strict makes it the run's failure, a small load does not.
+def pulled(load, *more):
+    with tempfile.TemporaryDirectory() as folder:
+        sets = (f"simulation.output.folder={folder}", "simulation.end-time=10", "participants.solid.mesh-parameters={n_length: 10, n_side: 1}",
+                f"participants.solid.boundaries.tip.value=['{load}*t', 0, 0]", *more)
+        strict = [s for s in sets if s.startswith("--")]
+        keys = [f"--set={s}" for s in sets if not s.startswith("--")]
+        return subprocess.run([str(programs / "solid_solver"), str(cantilever), *keys, *strict], capture_output=True, text=True,
+                              timeout=100)
+
+
+large, small = "1e5", "1e3"  # of E = 1e7 Pa: 0.01 and 0.0001 a second
+told = r"t = (\S+) s: geometric non-linearity left out: the largest displacement gradient seen is"
+run = pulled(large)
+assert run.returncode == 0, run.stdout + run.stderr
+times = [float(t) for t in re.findall(told, run.stdout)]
+assert len(times) == 1 and 1 < times[0] < 5, (times, run.stdout)
+assert "yielding left out:" not in run.stdout, run.stdout
+run = pulled(large, "--strict")
+assert run.returncode == 1 and "--strict: the result is in doubt" in run.stdout + run.stderr, run.stdout + run.stderr
+run = pulled(small, "--strict")
+assert run.returncode == 0 and not re.search(told, run.stdout), run.stdout + run.stderr
+assert "geometric non-linearity left out: the largest displacement gradient seen is" in run.stdout, run.stdout
+
+# Yielding is judged where the strength is known; the uniaxial stress at the end is 1e4 Pa, at the clamp some more.
+for strength, code in (("30 kPa", 0), ("9 kPa", 1)):
+    run = pulled(small, f"participants.solid.material.yield-strength={strength}", "--strict")
+    assert run.returncode == code and "yielding left out: the largest equivalent stress" in run.stdout, run.stdout + run.stderr
+
 # Every program lists its cards.
-for program in ("solid_solver", "fluid_solver", "mesh_mover", "thermocline"):
+for program in ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal"):
     rows = [line for line in ask(program, "--effects").splitlines() if line.startswith("| ")]
     assert len(rows) >= 4, (program, rows)
 print("effects: as expected")

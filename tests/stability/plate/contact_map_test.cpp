@@ -10,22 +10,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "plate_modal/oscillators.hpp"
+#include "tests/verification/plate/bounce.hpp"
 
 namespace couplet::plate {
 namespace {
-
-ModalModel mass() {
-  ModalModel model;
-  model.vertices = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}};
-  model.faces.push_row(std::array<Index, 4>{0, 1, 2, 3});
-  model.frequency = {0};
-  for (int v = 0; v < 4; ++v) model.vertex_shape.insert(model.vertex_shape.end(), {0, 0, 1});
-  model.participation = {0, 0, 1};
-  model.mass = 1;
-  average_faces(model);
-  return model;
-}
 
 /// Largest and last energy over the first, minus 1, in `bounces` bounces (or as long as they would take).
 struct Drift {
@@ -34,24 +22,16 @@ struct Drift {
 
 Drift drift(ContactRule rule, double kappa, double dt, int bounces) {
   const double g = 9.81, speed = 1;
-  ContactParameters p;
-  p.stiffness = kappa;
-  p.rule = rule;
-  const Share share(MPI_COMM_SELF, mass());
-  const Contact contact(share, p, Vec3::UnitZ(), 0);
-  Oscillators body({0}, {0}, {-g}, {TimeScheme::trapezoidal}, &contact);
-  ModalState now = body.start({0}, {speed}), next = now;
-  const Oscillators::LoadAt no_load = [](double, std::span<double> load) { load[0] = 0; };
-  const double first = now.energies.total();
+  test::Bounce one(kappa, 0, speed, rule, -g);
+  const double first = one.now.energies.total();
   const long most = std::lround(bounces * (2 * speed / g + std::numbers::pi / std::sqrt(kappa)) / dt);
   Drift result;
   int done = 0;
   for (long i = 0; i < most && done < bounces && result.largest < 100; ++i) {
-    const double before = now.v[0];
-    body.step(now, dt, no_load, next);
-    std::swap(now, next);
-    if (before < 0 && now.v[0] > 0) ++done;
-    result.last = now.energies.total() / first - 1;
+    const double before = one.now.v[0];
+    one.step(dt);
+    if (before < 0 && one.now.v[0] > 0) ++done;
+    result.last = one.now.energies.total() / first - 1;
     result.largest = std::max(result.largest, result.last);
   }
   return result;

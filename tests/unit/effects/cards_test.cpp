@@ -4,7 +4,9 @@
 
 #include "common/effects/card.hpp"
 #include "fluid_solver/effect_cards.hpp"
+#include "plate_modal/effect_cards.hpp"
 #include "solid_solver/effect_cards.hpp"
+#include "thermocline/effect_cards.hpp"
 
 namespace couplet::testing {
 namespace {
@@ -63,6 +65,8 @@ TEST(EffectCards, solid_verdicts_turn_at_their_thresholds) {
   EXPECT_FALSE(sound("thermal strain", {.largest_gradient = 0.01, .temperature_range = 21}, p));
   EXPECT_TRUE(sound("thermoelastic coupling", {.coupling_number = 0.049}, p));
   EXPECT_FALSE(sound("thermoelastic coupling", {.coupling_number = 0.051}, p));
+  EXPECT_TRUE(sound("yielding", {.share_of_yield = 0.99}, p));
+  EXPECT_FALSE(sound("yielding", {.share_of_yield = 1.01}, p));
   SolidParameters rubber = p;
   rubber.method.face_gradient = MethodParameters::FaceGradient::corrected;
   rubber.material.poissons_ratio = 0.451;
@@ -96,8 +100,56 @@ TEST(EffectCards, fluid_verdicts_turn_at_their_thresholds) {
   EXPECT_FALSE(sound("resolved walls", {.largest_yplus = 2.1}, model));
   EXPECT_TRUE(sound("compressibility", {.largest_speed = 102}, air));
   EXPECT_FALSE(sound("compressibility", {.largest_speed = 104}, air));
+  // 0.05 rho c^2 of air: 1.2 x 343^2 / 20 = 7059 Pa; of water 1000 x 1480^2 / 20 = 1.0952e8 Pa.
+  fluid::FluidScene water;
+  water.parameters.density = 1000;
+  EXPECT_TRUE(sound("waves of pressure", {.pressure_range = 7050}, air));
+  EXPECT_FALSE(sound("waves of pressure", {.pressure_range = 7070}, air));
+  EXPECT_TRUE(sound("waves of pressure", {.pressure_range = 1.09e8}, water));
+  EXPECT_FALSE(sound("waves of pressure", {.pressure_range = 1.10e8}, water));
+  EXPECT_TRUE(sound("mesh motion", {.wall_displacement = 0.099}, air));
+  EXPECT_FALSE(sound("mesh motion", {.wall_displacement = 0.101}, air));
+  fluid::FluidScene moving = air;
+  moving.moving_mesh = true;
+  EXPECT_FALSE(verdict_on("mesh motion", fluid::fluid_effect_cards(), moving,
+                          fluid::FluidEvidence{.wall_displacement = 10}));
   EXPECT_FALSE(verdict_on("turbulence model", fluid::fluid_effect_cards(), model,
                           fluid::FluidEvidence{.largest_peclet = 1e4}));
+}
+
+TEST(EffectCards, plate_verdicts_turn_at_their_thresholds) {
+  const auto sound = [](const char* effect, const plate::PlateEvidence& e) {
+    const auto v = verdict_on(effect, plate::plate_effect_cards(), plate::PlateScene{}, e);
+    EXPECT_TRUE(v.has_value()) << effect;
+    return v && v->sound();
+  };
+  EXPECT_TRUE(sound("large rotation", {.displacement_over_size = 0.249}));
+  EXPECT_FALSE(sound("large rotation", {.displacement_over_size = 0.251}));
+  EXPECT_TRUE(sound("stretch of the mid-surface", {.displacement_over_thickness = 0.49}));
+  EXPECT_FALSE(sound("stretch of the mid-surface", {.displacement_over_thickness = 0.51}));
+  EXPECT_TRUE(sound("shear and rotary inertia", {.thickness_over_wave = 0.099}));
+  EXPECT_FALSE(sound("shear and rotary inertia", {.thickness_over_wave = 0.101}));
+  EXPECT_TRUE(sound("balance of the energies", {.energy_mismatch = 0.0099}));
+  EXPECT_FALSE(sound("balance of the energies", {.energy_mismatch = 0.0101}));
+  EXPECT_THAT(audit(plate::plate_effect_cards(), plate::PlateScene{}, plate::PlateEvidence{}), IsEmpty());
+}
+
+TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
+  thermocline::ElementParameters tank;
+  tank.type = thermocline::ElementParameters::Type::tank;
+  tank.tank.bed.shells = 1;
+  const auto sound = [&](const char* effect, const thermocline::Evidence& e) {
+    const auto v = verdict_on(effect, thermocline::effect_cards(), tank, e);
+    EXPECT_TRUE(v.has_value()) << effect;
+    return v && v->sound();
+  };
+  EXPECT_TRUE(sound("resolved grains", {.largest_biot = 0.99}));
+  EXPECT_FALSE(sound("resolved grains", {.largest_biot = 1.01}));
+  EXPECT_TRUE(sound("yielding of the wall", {.share_of_yield = 0.99}));
+  EXPECT_FALSE(sound("yielding of the wall", {.share_of_yield = 1.01}));
+  tank.tank.bed.shells = 5;
+  EXPECT_FALSE(verdict_on("resolved grains", thermocline::effect_cards(), tank,
+                          thermocline::Evidence{.largest_biot = 10}));
 }
 
 TEST(EffectCards, a_verdict_says_number_threshold_and_cure) {
@@ -120,6 +172,10 @@ TEST(AuditTrail, tells_bad_news_once) {
   EXPECT_EQ(trail.news({v}).size(), 1u);
   EXPECT_THAT(trail.news({v}), IsEmpty());
   EXPECT_THAT(trail.unsound(), ElementsAre("inertia"));
+  v.number = 0.001;  // what was bad in the midst of a run is still known at its end
+  EXPECT_THAT(trail.news({v}), IsEmpty());
+  ASSERT_EQ(trail.worst().size(), 1u);
+  EXPECT_EQ(trail.worst().front().number, 0.02);
 }
 
 }  // namespace

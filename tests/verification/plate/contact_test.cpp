@@ -4,51 +4,13 @@
 
 #include "common/base/error.hpp"
 #include "plate_modal/structure.hpp"
+#include "tests/verification/plate/bounce.hpp"
 #include "tests/verification/plate/plates.hpp"
 
 namespace couplet::plate {
 namespace {
 
 using namespace test;
-
-/// A square of 1 kg that can only rise and fall: one face of 1 m^2 looks down.
-ModalModel block() {
-  ModalModel model;
-  model.vertices = {{0, 0, 0}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}};
-  model.faces.push_row(std::array<Index, 4>{0, 1, 2, 3});
-  model.frequency = {0};
-  for (int v = 0; v < 4; ++v) model.vertex_shape.insert(model.vertex_shape.end(), {0, 0, 1});
-  model.participation = {0, 0, 1};
-  model.mass = 1;
-  average_faces(model);
-  return model;
-}
-
-struct Bounce {
-  Share share;
-  Contact contact;
-  Oscillators body;
-  ModalState now, next;
-
-  Bounce(double stiffness, double gap, double v, ContactRule rule, double gravity = 0)
-      : share(MPI_COMM_SELF, block()),
-        contact(share, parameters(stiffness, gap, rule), Vec3::UnitZ(), 0),
-        body({0}, {0}, {gravity}, {TimeScheme::trapezoidal}, &contact),
-        now(body.start({0}, {v})),
-        next(now) {}
-  static ContactParameters parameters(double stiffness, double gap, ContactRule rule) {
-    ContactParameters p;
-    p.height.text = fmt::format("{}", -gap);
-    p.stiffness = stiffness;
-    p.rule = rule;
-    return p;
-  }
-  void step(double dt) {
-    body.step(
-        now, dt, [](double, std::span<double> load) { load[0] = 0; }, next);
-    std::swap(now, next);
-  }
-};
 
 /// Relative error of the speed after one bounce.
 double rebound_error(ContactRule rule, double dt) {
@@ -205,6 +167,36 @@ TEST(PlateContact, a_plate_with_modes_keeps_its_energy_through_an_impact_and_the
     }
     EXPECT_GT(deepest, 0.01 * plate.state().energies.initial) << where;
     EXPECT_LT(worst, 1e-8 * plate.state().energies.initial) << where;
+  }
+}
+
+// No wrong answer passes in silence: the rule that makes energy ends the run before it has doubled it.
+TEST(PlateContact, a_run_whose_scheme_makes_more_energy_than_there_was_is_refused) {
+  for (const ContactRule rule : {ContactRule::midpoint, ContactRule::conserving}) {
+    Parameters p = reed_like();
+    p.contact.emplace();
+    p.contact->height.text = "-0.006";
+    p.contact->rule = rule;
+    p.initial_amplitudes = {0.003};
+    const RawMesh raw = square(4);
+    Structure plate(p, PlateContext{}, &raw);
+    const double dt = 2 * std::numbers::pi / plate.share().omega()[0] / 30;
+    double most = 0;
+    const auto run = [&] {
+      for (int i = 0; i < 20000; ++i) {
+        plate.begin_step({i * dt, dt, Scheme::standalone, i, false});
+        plate.solve({});
+        plate.accept_step();
+        most = std::max(most, plate.state().energies.total());
+      }
+    };
+    if (rule == ContactRule::conserving) {
+      EXPECT_NO_THROW(run());
+      EXPECT_LT(most, plate.state().energies.initial * (1 + 1e-8));
+    } else {
+      EXPECT_THROW(run(), SolveFailure);
+      EXPECT_LT(most, 3 * plate.state().energies.initial);
+    }
   }
 }
 

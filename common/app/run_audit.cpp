@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/run_audit.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <chrono>
+
+#include "common/log/doubt.hpp"
+#include "common/log/timer.hpp"
+
+namespace couplet {
+
+void RunAudit::accepted(double time, bool output) {
+  ++steps_;
+  time_ = time;
+  if (output || std::has_single_bit(static_cast<unsigned long>(steps_)) || steps_ % 100 == 0) look();
+}
+
+std::vector<std::string> RunAudit::closing_lines() {
+  look();
+  std::vector<std::string> lines;
+  for (const EffectVerdict& verdict : trail_.worst()) lines.push_back(text(verdict));
+  return lines;
+}
+
+void RunAudit::look() {
+  const auto start = std::chrono::steady_clock::now();
+  for (const EffectVerdict& verdict : trail_.news(participant_.audit()))
+    log::doubt(rank_, fmt::format("t = {:g} s: {}", time_, text(verdict)));
+  log::timers().add("audit", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+}
+
+}  // namespace couplet

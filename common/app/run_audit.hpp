@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/coupling/participant.hpp"
+
+namespace couplet {
+
+/// Asks a participant during its run what it left out. What has become unsound is a doubt (common/log/doubt):
+/// told at once, and the end of a run with --strict.
+class RunAudit {
+ public:
+  RunAudit(int rank, const Participant& participant) : rank_(rank), participant_(participant) {}
+  /// After an accepted step. Asks at outputs, after 1, 2, 4, 8 ... steps and after each hundredth: a part of a
+  /// per cent of a run, and early where it matters most. Collective.
+  void accepted(double time, bool output);
+  /// Asks a last time; a line for each verdict, the worst of the run. Collective.
+  std::vector<std::string> closing_lines();
+
+ private:
+  void look();
+
+  int rank_;
+  const Participant& participant_;
+  long steps_ = 0;
+  double time_ = 0;
+  AuditTrail trail_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "common/effects/card.hpp"
+#include "plate_modal/parameters.hpp"
+
+namespace couplet::plate {
+
+/// What the cards look at: the parameters, and whether a coupler gives the forces of a fluid.
+struct PlateScene {
+  Parameters parameters;
+  bool coupled = false;
+};
+
+/// What a run has seen. NaN: not seen, or no question for this structure.
+struct PlateEvidence {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double displacement_over_size = unknown;       ///< of a structure that is held
+  double displacement_over_thickness = unknown;  ///< of a plate that is held all round
+  double thickness_over_wave = unknown;  ///< thickness over half the wave length of the highest mode kept
+  double energy_mismatch = unknown;      ///< of the largest energy, thesis (4.29)-(4.31)
+};
+
+using PlateCard = EffectCard<PlateScene, PlateEvidence>;
+/// All that a modal structure can simulate beside its modes, in the order in which it is told.
+std::span<const PlateCard> plate_effect_cards();
+
+}  // namespace couplet::plate

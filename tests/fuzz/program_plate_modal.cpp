@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/parameters.hpp"
+#include "tests/fuzz/program.hpp"
+
+namespace couplet::fuzz {
+
+std::string ProgramUnderTest::name() const { return "plate_modal"; }
+
+ProgramKind ProgramUnderTest::fresh() const {
+  return {name(), "", false,
+          with_fresh<plate::Parameters>([](config::Section& s, plate::Parameters& p) { declare(s, p); })};
+}
+
+}  // namespace couplet::fuzz
