@@ -68,36 +68,6 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
       true);
 }
 
-void declare_motion(config::Section& s, MotionParameters& m) {
-  s.value("translation", m.translation).unit("m").doc("one expression of t [s] a component; absent: none");
-  s.value("angle", m.angle).doc("of the rotation about 'centre' [rad], expression of t [s]");
-  s.value("centre", m.centre)
-      .unit("m")
-      .doc("of the rotation and of the radii, in the reference configuration");
-  s.value("axis", m.axis).size(3).doc("of the rotation, 3-D; a plane scene turns about z");
-  s.value("displacement", m.displacement)
-      .unit("m")
-      .doc(
-          "any field besides: one expression of x, y, z [m] in the reference configuration and t [s] a "
-          "component");
-  s.value("inner-radius", m.inner_radius)
-      .unit("m")
-      .not_negative()
-      .doc("with outer-radius: what lies within this distance of the centre moves like one body");
-  s.value("outer-radius", m.outer_radius)
-      .unit("m")
-      .positive()
-      .doc("beyond it the mesh rests, between the radii it follows smoothly; absent: the whole mesh moves");
-  s.check(
-      [&m] {
-        if (m.outer_radius && *m.outer_radius <= m.inner_radius)
-          return std::string("'outer-radius' must be larger than 'inner-radius'");
-        if (!(m.axis.norm() > 0)) return std::string("'axis' must not be zero");
-        return std::string();
-      },
-      "outer-radius");
-}
-
 void declare_coefficients(config::Section& s, CoefficientParameters& c) {
   s.value("patches", c.patches).required().doc("walls whose forces are added");
   s.value("speed", c.speed)
@@ -229,7 +199,8 @@ void declare(config::Section& s, FluidParameters& p) {
       },
       "body", "rigid bodies in a mesh that does not know them; needs an outlet and a mesh at rest");
   s.optional_section<MotionParameters>(
-      "motion", p.motion, declare_motion,
+      "motion", p.motion,
+      [](config::Section& m, MotionParameters& motion) { couplet::declare(m, motion, true); },
       "prescribed motion of the mesh, of all of it or about a body, without a mesh mover; it starts from the "
       "reference configuration; absent: none");
   s.optional_section<TurbulenceParameters>(

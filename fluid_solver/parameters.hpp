@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
+#include "common/fv/prescribed_motion.hpp"
 
 namespace couplet::fluid {
 
@@ -61,16 +62,6 @@ struct BodyParameters {
   std::vector<config::ExpressionText> velocity;  // [m/s]; empty: at rest
 };
 
-/// A prescribed motion of the mesh; absent: none.
-struct MotionParameters {
-  std::vector<config::ExpressionText> translation;   // [m], of t
-  config::ExpressionText angle;                      // [rad], of t
-  std::vector<config::ExpressionText> displacement;  // [m], of the reference place and t
-  Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]; of the rotation
-  double inner_radius = 0;                           // [m]
-  std::optional<double> outer_radius;                // [m]; absent: the whole mesh moves
-};
-
 /// Running means from a time on; absent: none.
 struct StatisticsParameters {
   double start = 0;  // [s]
@@ -111,7 +102,7 @@ struct FluidParameters {
   std::optional<StatisticsParameters> statistics;
   FluidOutputParameters output;
   std::map<std::string, BodyParameters> bodies;
-  std::optional<MotionParameters> motion;
+  std::optional<MotionParameters> motion;  // of the mesh; absent: none
   ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   Projection projection = Projection::flux_memory;
   std::map<std::string, ProbeParameters> probes;

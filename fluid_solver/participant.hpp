@@ -12,7 +12,6 @@
 #include "common/coupling/participant.hpp"
 #include "fluid_solver/fluid.hpp"
 #include "fluid_solver/output.hpp"
-#include "fluid_solver/prescribed_motion.hpp"
 
 namespace couplet::fluid {
 

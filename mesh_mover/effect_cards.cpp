@@ -15,6 +15,11 @@ bool slips(const P& p) {
                              [](const auto& b) { return b.second.motion == BoundaryMotion::slip; });
 }
 
+bool moves(const P& p) {
+  return std::ranges::any_of(p.boundaries,
+                             [](const auto& b) { return b.second.motion == BoundaryMotion::moving; });
+}
+
 const std::array cards{
     Card{"volume stiffening",
          "`stiffening` above 0",
@@ -24,6 +29,26 @@ const std::array cards{
          "a boundary of `type: slip`",
          [](const P& p) { return when(slips(p), "a boundary of type slip"); },
          {"a matrix of its own for each direction that is held differently", 0, 0}},
+    Card{"elastic mesh motion",
+         "`method: pseudo-solid`",
+         [](const P& p) { return when(p.method == Method::pseudo_solid, "method: pseudo-solid"); },
+         {"an elastic body of all cells, one coupled solve a motion", 0, 0}},
+    Card{"rotations carried into the mesh",
+         "`method: rotations`",
+         [](const P& p) { return when(p.method == Method::rotations, "method: rotations"); },
+         {"a second Laplacian; none solved where all moves as one rigid body", 0, 0}},
+    Card{"incremental mesh motion",
+         "`form: incremental`",
+         [](const P& p) { return when(p.form == Form::incremental, "form: incremental"); },
+         {"a second mesh; matrix and factors anew in each step", 0, 0}},
+    Card{"prescribed motion of patches",
+         "a boundary of `type: moving`",
+         [](const P& p) { return when(moves(p), "a boundary of type moving"); },
+         {"its expressions at the patch's points", 0, 0}},
+    Card{"limits on the shape of cells",
+         "a limit in `guard`",
+         [](const P& p) { return when(p.guard.judges_shape(), "guard"); },
+         {"the measures of all cells in each solve", 0, 0}},
     Card{"least volume of a cell", "`smallest-volume-ratio` above 0",
          [](const P& p) { return when(p.smallest_volume_ratio > 0, "smallest-volume-ratio"); }},
     Card{"third dimension", "`dimension: 3`",

@@ -9,7 +9,7 @@
 namespace couplet::mesh_mover {
 namespace {
 
-constexpr double axis_tolerance = 1e-6;
+constexpr double axis_tolerance = 1e-6, least_cosine = 0.02;
 
 /// The axis a patch is normal to. Collective.
 int normal_axis(const Mesh& mesh, const Patch& patch) {
@@ -21,9 +21,8 @@ int normal_axis(const Mesh& mesh, const Patch& patch) {
   for (int c = 0; c < mesh.dim; ++c)
     if (max(mesh.comm, off[c]) < axis_tolerance) return c;
   throw Error(
-      "Patch '{}' slides (type: slip) but is not a plane normal to a coordinate axis. Use type: fixed, or "
-      "turn the mesh "
-      "so that the plane is.",
+      "Patch '{}' slides (type: slip) but is not a plane normal to a coordinate axis. Use type: fixed, turn "
+      "the mesh so that the plane is, or use 'method: pseudo-solid', which slides along any plane.",
       patch.name);
 }
 
@@ -36,14 +35,14 @@ struct Laplacian::Equation {
   std::vector<double> diagonal;
 };
 
-Laplacian::Laplacian(const Mesh& mesh, const Parameters& parameters)
+Laplacian::Laplacian(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes)
     : mesh_(mesh),
       dim_(mesh.dim),
       relative_tolerance_(parameters.linear.relative_tolerance),
       cell_displacement_(std::size_t(mesh.cells.n_local()) * mesh.dim, 0.0) {
   set_kinds(parameters);
   set_weights();
-  set_coefficients(parameters.stiffening);
+  set_coefficients(parameters.stiffening, volumes.empty() ? mesh.reference.volume : volumes);
 
   for (int c = 0; c < dim_; ++c) {
     for (int same = 0; same < c && !equation_[c]; ++same) {
@@ -91,7 +90,8 @@ void Laplacian::set_kinds(const Parameters& parameters) {
     const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
     const int axis = motion == BoundaryMotion::slip ? normal_axis(mesh_, patch) : -1;
     std::array<bool, 3> held{};
-    for (int c = 0; c < dim_; ++c) held[c] = motion != BoundaryMotion::slip || c == axis;
+    const bool slides = motion == BoundaryMotion::slip || motion == BoundaryMotion::free;
+    for (int c = 0; c < dim_; ++c) held[c] = !slides || c == axis;
     held_.push_back(held);
     for (int c = 0; c < dim_; ++c) anything_held[c] = anything_held[c] || held[c];
     for (const auto& [first, count] :
@@ -102,16 +102,16 @@ void Laplacian::set_kinds(const Parameters& parameters) {
         for (const Index v : mesh_.face_points[f])
           for (int c = 0; c < dim_; ++c) {
             PointKind& kind = kind_[v][c];
-            if (motion == BoundaryMotion::interface && kind == PointKind::interior)
-              kind = PointKind::interface;
-            if (motion != BoundaryMotion::interface && held[c]) kind = PointKind::fixed;
+            if (is_given(motion) && kind == PointKind::interior) kind = PointKind::interface;
+            if (!is_given(motion) && held[c]) kind = PointKind::fixed;
           }
       }
   }
   for (int c = 0; c < dim_; ++c)
     if (!anything_held[c])
-      throw Error("No patch holds the mesh in direction {}: at least one needs type: fixed or interface.",
-                  "xyz"[c]);
+      throw Error(
+          "No patch holds the mesh in direction {}: at least one needs type: fixed, moving or interface.",
+          "xyz"[c]);
   for (Index v = 0; v < mesh_.points.n_local(); ++v)
     for (int c = 0; c < dim_; ++c)
       if (kind_[v][c] == PointKind::interface) {
@@ -143,19 +143,21 @@ void Laplacian::set_weights() {
   }
 }
 
-void Laplacian::set_coefficients(double stiffening) {
+void Laplacian::set_coefficients(double stiffening, std::span<const double> volumes) {
   const Geometry& g = mesh_.reference;
   double volume = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) volume += g.volume[c];
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) volume += volumes[c];
   const double mean = sum(mesh_.comm, volume) / static_cast<double>(mesh_.cells.n_global());
-  const auto stiffness = [&](Index c) { return std::pow(g.volume[c] / mean, -stiffening); };  // (4.12)
+  const auto stiffness = [&](Index c) { return std::pow(volumes[c] / mean, -stiffening); };  // (4.12)
   coefficient_.resize(mesh_.n_flux_faces());
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const bool interior = f < mesh_.n_interior;
     const Index p = mesh_.owner[f];
     const Vec3 d = (interior ? g.cell_centre[mesh_.neighbour[f]] : g.face_centre[f]) - g.cell_centre[p];
     const double e = interior ? (stiffness(p) + stiffness(mesh_.neighbour[f])) / 2 : stiffness(p);
-    coefficient_[f] = e * g.face_area[f].squaredNorm() / g.face_area[f].dot(d);
+    // A mesh that was moved (incremental form) may have faces that lean over: no negative coefficient.
+    const double area = g.face_area[f].norm();
+    coefficient_[f] = e * area * area / std::max(g.face_area[f].dot(d), least_cosine * area * d.norm());
   }
 }
 

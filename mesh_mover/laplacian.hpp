@@ -10,6 +10,7 @@
 #include "common/linalg/linear_solver.hpp"
 #include "common/mesh/mesh.hpp"
 #include "mesh_mover/affine.hpp"
+#include "mesh_mover/motion_method.hpp"
 #include "mesh_mover/parameters.hpp"
 
 namespace couplet::mesh_mover {
@@ -25,27 +26,28 @@ namespace couplet::mesh_mover {
 ///
 /// Where all that moves moves like one rigid body the displacement is a sum of dim + 1 fields a component,
 /// solved for once, when the first such motion is met.
-class Laplacian {
+class Laplacian final : public MotionMethod {
  public:
-  /// Throws Error if no patch holds the mesh or a slip patch is not normal to an axis.
-  Laplacian(const Mesh& mesh, const Parameters& parameters);
+  /// `volumes`: V of (4.12) per local cell; empty: those of the mesh. Throws Error if no patch holds the mesh
+  /// or a slip patch is not normal to an axis.
+  Laplacian(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes = {});
 
-  /// `prescribed`: dim values per local point, read on interface patches. Result: dim values per local point
-  /// [m], ghosts up to date. Collective.
-  std::vector<double> solve(std::span<const double> prescribed);
-  /// Local points on interface patches.
+  std::vector<double> solve(std::span<const double> prescribed) override;
+  /// Local points on patches whose displacement is given.
   const std::vector<Index>& interface_points() const { return interface_points_; }
   /// dim per local cell: the initial guess of the next solve, for checkpoints.
   std::vector<double>& cell_displacement() { return cell_displacement_; }
   const std::vector<double>& cell_displacement() const { return cell_displacement_; }
-  const SolveStatistics& last() const { return last_; }
+  SolveStatistics last() const override { return last_; }
+  void save(CheckpointWriter& file) const override { file.write("cell-displacement", cell_displacement_); }
+  void load(CheckpointReader& file) override { file.read("cell-displacement", cell_displacement_); }
 
  private:
   enum class PointKind : char { interior, fixed, interface };
   struct Equation;  // matrix and solver of one set of held patches
   void set_kinds(const Parameters& parameters);
   void set_weights();
-  void set_coefficients(double stiffening);
+  void set_coefficients(double stiffening, std::span<const double> volumes);
   double boundary_value(Index face, int component, std::span<const double> prescribed) const;
   /// One component in the cells / at the points / both, for prescribed values that an AffineFit explains.
   void solve_cells(int component, std::span<const double> prescribed, std::vector<double>& cells);

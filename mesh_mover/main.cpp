@@ -7,7 +7,8 @@ int main(int argc, char** argv) {
   couplet::mesh_mover::Parameters parameters;
   couplet::Program program{
       .name = "mesh_mover",
-      .description = "moves the points of a fluid mesh with the interface (Laplacian with volume stiffening)",
+      .description =
+          "moves the points of a mesh with its interface or as the case says, as a Laplacian, an elastic body or by rotations",
       .declare = [&](couplet::config::Section& s) { couplet::mesh_mover::declare(s, parameters); },
       .make =
           [&](const couplet::ParticipantContext& context) {

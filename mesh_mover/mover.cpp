@@ -5,9 +5,12 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
-#include "common/mesh/quality.hpp"
 #include "common/parallel/collective.hpp"
+#include "mesh_mover/laplacian.hpp"
+#include "mesh_mover/pseudo_solid.hpp"
+#include "mesh_mover/rotations.hpp"
 
 namespace couplet::mesh_mover {
 namespace {
@@ -24,7 +27,8 @@ Mesh load_checked(const Parameters& parameters, const ParticipantContext& contex
   for (const Patch& p : mesh.patches)
     if (!parameters.boundaries.contains(p.name))
       throw Error(
-          "participants.{}.boundaries: patch '{}' has no entry; give it type: interface, fixed or slip.",
+          "participants.{}.boundaries: patch '{}' has no entry; give it type: interface, moving, fixed, slip or "
+          "free.",
           context.name, p.name);
   return mesh;
 }
@@ -40,41 +44,125 @@ std::vector<std::string> interface_patches(const Parameters& parameters) {
 
 Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
     : name_(context.name),
+      parameters_(parameters),
       mesh_(load_checked(parameters, context)),
-      smallest_volume_ratio_(parameters.smallest_volume_ratio),
-      laplacian_(mesh_, parameters),
+      guard_(mesh_, parameters),
       interface_(mesh_, interface_patches(parameters)),
-      displacement_(std::size_t(mesh_.points.n_local()) * mesh_.dim, 0.0) {
+      displacement_(std::size_t(mesh_.points.n_local()) * mesh_.dim, 0.0),
+      accepted_(displacement_) {
+  set_up_moving();
+  if (!context.coupled && moving_.empty() && context.mesh_peer == MPI_COMM_NULL &&
+      interface_.points().empty())
+    log::warn("participant '{}': no patch moves (type: moving, or interface in a coupled job).", name_);
+  make_method();
+  if (parameters.form == Form::automatic && comm_rank(mesh_.comm) == 0)
+    log::info(
+        "mesh motion: displacements from the reference mesh (form: total), so that the same interface always "
+        "gives the same mesh");
   if (context.mesh_peer != MPI_COMM_NULL) sink_ = make_mesh_motion_sink(context.mesh_peer, mesh_);
-  if (comm_rank(mesh_.comm) == 0)
-    quality_ = std::make_unique<Series>(context.output_folder / "quality.csv",
-                                        std::vector<std::string>{"time [s]", "least volume ratio [1]"},
-                                        context.restart_time);
+  if (!context.coupled && !context.output_folder.empty())
+    fields_ = std::make_unique<FieldWriter>(mesh_, context.output_folder, name_, true, context.restart_time);
+  if (comm_rank(mesh_.comm) != 0) return;
+  std::vector<std::string> columns{"time [s]"};
+  columns.insert(columns.end(), measure_names.begin(), measure_names.end());
+  for (const char* column :
+       {"cell with the least scaled Jacobian [-]", "its x [m]", "its y [m]", "its z [m]"})
+    columns.push_back(column);
+  quality_ = std::make_unique<Series>(context.output_folder / "quality.csv", columns, context.restart_time);
+}
+
+void Mover::set_up_moving() {
+  for (const Patch& patch : mesh_.patches) {
+    const Boundary& boundary = parameters_.boundaries.at(patch.name);
+    if (boundary.motion != BoundaryMotion::moving) continue;
+    Moving moving{{}, PrescribedMotion(boundary.prescribed, mesh_.dim)};
+    for (const auto& [first, count] :
+         {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
+      for (Index f = first; f < first + count; ++f)
+        moving.points.insert(moving.points.end(), mesh_.face_points[f].begin(), mesh_.face_points[f].end());
+    std::ranges::sort(moving.points);
+    moving.points.erase(std::unique(moving.points.begin(), moving.points.end()), moving.points.end());
+    moving_.push_back(std::move(moving));
+  }
+}
+
+/// On the reference mesh, or on that of the last accepted step.
+void Mover::make_method() {
+  const Mesh* on = &mesh_;
+  if (incremental()) {
+    if (!base_) base_ = std::make_unique<Mesh>(mesh_);
+    base_->reference_points = points_of(accepted_);
+    base_->reference = compute_geometry(mesh_, base_->reference_points);
+    on = base_.get();
+  }
+  const std::vector<double>& volumes = parameters_.stiffening_volumes == StiffeningVolumes::current
+                                           ? on->reference.volume
+                                           : mesh_.reference.volume;
+  switch (parameters_.method) {
+    case Method::laplacian:
+      method_ = std::make_unique<Laplacian>(*on, parameters_, volumes);
+      break;
+    case Method::pseudo_solid:
+      method_ = std::make_unique<PseudoSolid>(*on, parameters_, volumes);
+      break;
+    case Method::rotations:
+      method_ = std::make_unique<Rotations>(*on, parameters_, volumes);
+      break;
+  }
 }
 
 Interface Mover::initialise() {
   Interface interface = interface_.describe();
-  interface.takes = {{"displacement", "m", Interface::Place::vertices}};
+  if (!interface.empty()) interface.takes = {{"displacement", "m", Interface::Place::vertices}};
   return interface;
 }
 
 void Mover::begin_step(const Step& step) { step_ = step; }
 
-Exchange Mover::solve(const Exchange& in) {
+/// dim values per local point, of points on patches that move; relative to the mesh of the method.
+std::vector<double> Mover::prescribed(const Exchange& in) const {
   const int dim = mesh_.dim;
+  std::vector<double> values(displacement_.size(), 0.0);
+  for (const Moving& moving : moving_) {
+    std::vector<Vec3> reference;
+    for (const Index v : moving.points) reference.push_back(mesh_.reference_points[v]);
+    const std::vector<Vec3> places = moving.motion.places(reference, step_.time + step_.dt);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      for (int c = 0; c < dim; ++c)
+        values[std::size_t(moving.points[i]) * dim + c] = places[i][c] - reference[i][c];
+  }
   const auto given = in.find("displacement");
   const std::vector<double> at_interface =
       interface_.scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, dim);
-  std::vector<double> prescribed(displacement_.size(), 0.0);
   for (std::size_t i = 0; i < interface_.points().size(); ++i)
     for (int c = 0; c < dim; ++c)
-      prescribed[std::size_t(interface_.points()[i]) * dim + c] = at_interface[i * dim + c];
+      values[std::size_t(interface_.points()[i]) * dim + c] = at_interface[i * dim + c];
+  if (incremental())
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] -= accepted_[i];
+  return values;
+}
+
+std::vector<Vec3> Mover::points_of(const std::vector<double>& displacement) const {
+  std::vector<Vec3> points = mesh_.reference_points;
+  for (std::size_t v = 0; v < points.size(); ++v)
+    for (int c = 0; c < mesh_.dim; ++c) points[v][c] += displacement[v * mesh_.dim + c];
+  return points;
+}
+
+Exchange Mover::solve(const Exchange& in) {
   try {
-    displacement_ = laplacian_.solve(prescribed);
-    std::vector<Vec3> points = mesh_.reference_points;
-    for (std::size_t v = 0; v < points.size(); ++v)
-      for (int c = 0; c < dim; ++c) points[v][c] += displacement_[v * dim + c];
-    refuse_bad_cells(compute_geometry(mesh_, points));
+    displacement_ = method_->solve(prescribed(in));
+    if (incremental())
+      for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += accepted_[i];
+    const std::vector<Vec3> points = points_of(displacement_);
+    const std::string refusal = guard_.refusal(compute_geometry(mesh_, points), points);
+    if (!refusal.empty())
+      throw SolveFailure(
+          "participant '{}': the mesh motion from t = {:.6g} s {}{}", name_, step_.time, refusal,
+          incremental() || parameters_.method == Method::rotations
+              ? ""
+              : " 'form: incremental' with 'stiffening-volumes: current' bears larger motions, but "
+                "its mesh depends on the path.");
   } catch (const SolveFailure&) {
     if (sink_) sink_->send_failure();
     throw;
@@ -83,38 +171,55 @@ Exchange Mover::solve(const Exchange& in) {
   return {};
 }
 
-void Mover::refuse_bad_cells(const Geometry& moved) {
-  if (const auto trouble = find_inverted(mesh_, moved))
-    throw SolveFailure(
-        "participant '{}': the mesh motion from t = {:.6g} s inverts cell {} at ({:.6g}, {:.6g}, {:.6g}) "
-        "(volume {:.3e} "
-        "m^3). Try a smaller step, more stiffening, or a coarser mesh there.",
-        name_, step_.time, trouble->cell_id, trouble->centre.x(), trouble->centre.y(), trouble->centre.z(),
-        trouble->volume);
-  double least = 1e300;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    least = std::min(least, moved.volume[c] / mesh_.reference.volume[c]);
-  least_volume_ratio_ = min(mesh_.comm, least);
-  if (least_volume_ratio_ < smallest_volume_ratio_)
-    throw SolveFailure(
-        "participant '{}': the mesh motion from t = {:.6g} s leaves a cell {:.3g} of its volume; "
-        "smallest-volume-ratio is "
-        "{:.3g}.",
-        name_, step_.time, least_volume_ratio_, smallest_volume_ratio_);
+StepReport Mover::accept_step() {
+  const StepReport report{.dt = step_.dt, .iterations = method_->last().iterations};
+  accepted_ = displacement_;
+  if (incremental()) make_method();
+  return report;
+}
+
+MeshState Mover::state() const {
+  const std::vector<Vec3> points = points_of(displacement_);
+  return guard_.measure(compute_geometry(mesh_, points), points);
 }
 
 void Mover::save(CheckpointWriter& file) const {
-  file.write("displacement", displacement_);
-  file.write("cell-displacement", laplacian_.cell_displacement());
+  file.write("displacement", accepted_);
+  if (!incremental()) method_->save(file);  // else it starts from nothing in each step
 }
 
 void Mover::load(CheckpointReader& file) {
-  file.read("displacement", displacement_);
-  file.read("cell-displacement", laplacian_.cell_displacement());
+  file.read("displacement", accepted_);
+  displacement_ = accepted_;
+  if (incremental())
+    make_method();
+  else
+    method_->load(file);
 }
 
 void Mover::write_monitors(double time) {
-  if (quality_) quality_->row(std::vector<double>{time, least_volume_ratio_});
+  const MeshState now = state();
+  if (!quality_) return;
+  std::vector<double> row{time};
+  for (const Worst& worst : now.worst) row.push_back(worst.value);
+  const Worst& worst = now.worst[MeshState::scaled_jacobian];
+  row.insert(row.end(), {double(worst.cell), worst.place.x(), worst.place.y(), worst.place.z()});
+  quality_->row(row);
+}
+
+void Mover::write_output(double time, int) {
+  if (!fields_) return;
+  const std::vector<Vec3> points = points_of(displacement_);
+  const Geometry moved = compute_geometry(mesh_, points);
+  using Place = OutputField::Place;
+  const std::vector<double> volume = guard_.of_cells(MeshState::volume_ratio, moved, points),
+                            jacobian = guard_.of_cells(MeshState::scaled_jacobian, moved, points),
+                            edges = guard_.of_cells(MeshState::edge_ratio, moved, points);
+  fields_->write(time, points,
+                 {{"displacement", "m", Place::points, mesh_.dim, displacement_},
+                  {"volume-ratio", "1", Place::cells, 1, volume},
+                  {"scaled-jacobian", "1", Place::cells, 1, jacobian},
+                  {"edge-ratio", "1", Place::cells, 1, edges}});
 }
 
 }  // namespace couplet::mesh_mover

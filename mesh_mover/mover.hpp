@@ -2,21 +2,27 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "common/app/program.hpp"
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/fv/prescribed_motion.hpp"
+#include "common/io/field_writer.hpp"
 #include "common/io/series.hpp"
-#include "mesh_mover/laplacian.hpp"
+#include "mesh_mover/guard.hpp"
+#include "mesh_mover/motion_method.hpp"
 #include "mesh_mover/parameters.hpp"
 
 namespace couplet::mesh_mover {
 
-/// The mesh mover as a participant: takes "displacement" at the interface vertices and sends the displacement
-/// of every point to the fluid, rank to rank. The motion depends on the given displacement alone, so there is
-/// no state but the last accepted motion (a warm start).
+/// The mesh mover as a participant: takes "displacement" at the interface vertices, moves other patches as the
+/// case prescribes, and sends the displacement of every point to the fluid, rank to rank. Alone it writes the
+/// moved mesh. In the total form the motion depends on the given displacement alone, so there is no state but
+/// the last accepted motion (a warm start); in the incremental form each step starts from the accepted mesh.
 class Mover final : public Participant {
  public:
   Mover(const Parameters& parameters, const ParticipantContext& context);
@@ -24,29 +30,42 @@ class Mover final : public Participant {
   Interface initialise() override;
   void begin_step(const Step& step) override;
   Exchange solve(const Exchange& in) override;
-  StepReport accept_step() override { return {.dt = step_.dt, .iterations = laplacian_.last().iterations}; }
+  StepReport accept_step() override;
   void save(CheckpointWriter& file) const override;
   void load(CheckpointReader& file) override;
-  void write_output(double, int) override {}
+  void write_output(double time, int number) override;
   void write_monitors(double time) override;
 
   const Mesh& mesh() const { return mesh_; }
   /// dim values per local point, of the last solve [m].
   const std::vector<double>& displacement() const { return displacement_; }
+  /// Of the mesh of the last solve. Collective.
+  MeshState state() const;
 
  private:
-  void refuse_bad_cells(const Geometry& moved);
+  struct Moving {
+    std::vector<Index> points;  // local
+    PrescribedMotion motion;
+  };
+  bool incremental() const { return parameters_.form == Form::incremental; }
+  void set_up_moving();
+  void make_method();
+  std::vector<double> prescribed(const Exchange& in) const;
+  std::vector<Vec3> points_of(const std::vector<double>& displacement) const;
 
   std::string name_;
+  Parameters parameters_;
   Mesh mesh_;
-  double smallest_volume_ratio_;
-  Laplacian laplacian_;
+  std::unique_ptr<Mesh> base_;  // incremental: the mesh of the last step
+  Guard guard_;
+  std::unique_ptr<MotionMethod> method_;
   InterfaceMap interface_;
+  std::vector<Moving> moving_;
   std::unique_ptr<MeshMotionSink> sink_;
   Step step_;
-  std::vector<double> displacement_;
-  double least_volume_ratio_ = 1;
+  std::vector<double> displacement_, accepted_;
   std::unique_ptr<Series> quality_;
+  std::unique_ptr<FieldWriter> fields_;  // alone only
 };
 
 }  // namespace couplet::mesh_mover

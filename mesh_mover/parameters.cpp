@@ -2,42 +2,101 @@
 #include "mesh_mover/parameters.hpp"
 
 namespace couplet::mesh_mover {
+namespace {
+
+void declare_boundary(config::Section& s, Boundary& b) {
+  const auto nothing = [](config::Section&) {};
+  s.variant("type", b.motion,
+            {{"interface", BoundaryMotion::interface, nothing},
+             {"moving", BoundaryMotion::moving,
+              [&b](config::Section& v) {
+                v.section(
+                    "motion", [&b](config::Section& m) { couplet::declare(m, b.prescribed, false); },
+                    "the motion of the patch, relative to the reference mesh");
+              }},
+             {"fixed", BoundaryMotion::fixed, nothing},
+             {"slip", BoundaryMotion::slip, nothing},
+             {"free", BoundaryMotion::free, nothing}},
+            "interface: moves with the structure; moving: moves as 'motion' says; fixed: stays; slip: slides "
+            "along its plane; free: follows what is inside",
+            true);
+}
+
+void declare_guard(config::Section& s, GuardParameters& g) {
+  s.value("smallest-scaled-jacobian", g.smallest_scaled_jacobian)
+      .range(-1, 1)
+      .doc("of a cell's corners: 1 at right angles (equal angles in simplices), 0 where a corner is flat");
+  s.value("largest-edge-ratio", g.largest_edge_ratio)
+      .range(1, 1e6)
+      .doc("longest over shortest edge of a cell");
+  s.value("largest-angle", g.largest_angle)
+      .range(0, 90)
+      .doc("between a face's normal and the line of its cells' centres [degree]");
+  s.value("largest-area-change", g.largest_area_change)
+      .not_negative()
+      .doc("f_A = |log2(V/V0)| of Stein, Tezduyar and Benney, V0 of the reference mesh");
+  s.value("largest-shape-change", g.largest_shape_change)
+      .not_negative()
+      .doc("f_AR = |log2(AR/AR0)| of the same, AR = (longest edge)^dimension / V");
+}
+
+void declare_method(config::Section& s, Parameters& p) {
+  s.choice("method", p.method,
+           {{"laplacian", Method::laplacian},
+            {"pseudo-solid", Method::pseudo_solid},
+            {"rotations", Method::rotations}})
+      .doc(
+          "laplacian: each component by itself, cheapest; pseudo-solid: an elastic body, bears bending and "
+          "rotation; rotations: rotation and displacement of the surface are carried into the mesh, bears the "
+          "largest rotations");
+  s.choice("form", p.form,
+           {{"auto", Form::automatic}, {"total", Form::total}, {"incremental", Form::incremental}})
+      .doc(
+          "total: the displacement from the reference mesh is solved for, the same interface always gives the "
+          "same mesh; incremental: that from the last step's mesh, which depends on the path; auto: total");
+  s.value("stiffening", p.stiffening)
+      .range(0, 3)
+      .doc("chi: stiffness of a cell is its volume to the power -chi, so that small cells deform less");
+  s.choice("stiffening-volumes", p.stiffening_volumes,
+           {{"reference", StiffeningVolumes::reference}, {"current", StiffeningVolumes::current}})
+      .doc("whose volumes; current: those of the last step, for form: incremental");
+  s.value("poisson-ratio", p.poisson_ratio).range(-0.9, 0.45).doc("of the pseudo-solid");
+  s.check(
+      [&p] {
+        if (p.stiffening_volumes == StiffeningVolumes::current && p.form != Form::incremental)
+          return std::string("'stiffening-volumes: current' needs 'form: incremental'");
+        return std::string();
+      },
+      "stiffening-volumes");
+}
+
+}  // namespace
 
 void declare(config::Section& section, Parameters& p) {
   section.value("mesh", p.mesh).required().doc("mesh file of the fluid (.msh, or .geo to be meshed by gmsh)");
   section.value("mesh-parameters", p.mesh_parameters)
       .doc("numbers for names that the .geo defines by DefineConstant; the same as the fluid's");
   section.value("dimension", p.dimension).range(2, 3).required().doc("2 or 3");
-  section.value("stiffening", p.stiffening)
-      .range(0, 3)
-      .doc(
-          "chi: stiffness of a cell is its reference volume to the power -chi, so that small cells deform "
-          "less");
+  declare_method(section, p);
   section.value("smallest-volume-ratio", p.smallest_volume_ratio)
       .range(0, 1)
       .doc(
           "a motion that leaves a cell less than this share of its reference volume is refused (0: only "
           "inverted "
           "cells are)");
-  section.map<Boundary>(
-      "boundaries", p.boundaries,
-      [](config::Section& s, Boundary& b) {
-        s.choice("type", b.motion,
-                 {{"interface", BoundaryMotion::interface},
-                  {"fixed", BoundaryMotion::fixed},
-                  {"slip", BoundaryMotion::slip}})
-            .required()
-            .doc("interface: moves with the structure; fixed: stays; slip: slides along its plane");
-      },
-      "patch", "how the points of each patch of the mesh move; every patch needs an entry");
+  section.section(
+      "guard", [&p](config::Section& g) { declare_guard(g, p.guard); },
+      "further limits; a motion beyond one is refused with the cell and its place, so that the step is halved");
+  section.map<Boundary>("boundaries", p.boundaries, declare_boundary, "patch",
+                        "how the points of each patch of the mesh move; every patch needs an entry");
   section.section(
       "linear-solver",
       [&](config::Section& s) {
         s.choice("method", p.linear.method,
                  {{"direct", LinearMethod::direct_symmetric}, {"cg-multigrid", LinearMethod::cg_multigrid}})
             .doc(
-                "direct: one factorisation for the whole run (best below about 100 000 cells); cg-multigrid: "
-                "conjugate gradients with a kept multigrid preconditioner");
+                "direct: one factorisation for the whole run (best below about 100 000 cells; a pseudo-solid in 3-D "
+                "has none); cg-multigrid: conjugate gradients with a kept multigrid preconditioner");
         s.value("relative-tolerance", p.linear.relative_tolerance)
             .range(1e-14, 1e-1)
             .doc("of the residual, for cg-multigrid");

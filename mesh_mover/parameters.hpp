@@ -2,9 +2,11 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "common/config/section.hpp"
+#include "common/fv/prescribed_motion.hpp"
 #include "common/linalg/linear_solver.hpp"
 
 namespace couplet::mesh_mover {
@@ -12,22 +14,59 @@ namespace couplet::mesh_mover {
 /// How the points of a patch move.
 enum class BoundaryMotion {
   interface,  ///< with the displacement the coupler gives
+  moving,     ///< as the case prescribes
   fixed,      ///< not at all
-  slip,       ///< along the plane of the patch, whose normal must be a coordinate axis
+  slip,       ///< along the plane of the patch
+  free,       ///< with what is inside
 };
+/// The displacement of these is given.
+inline bool is_given(BoundaryMotion m) {
+  return m == BoundaryMotion::interface || m == BoundaryMotion::moving;
+}
 
 struct Boundary {
   BoundaryMotion motion = BoundaryMotion::fixed;
+  MotionParameters prescribed;  ///< of `moving`
+};
+
+enum class Method {
+  laplacian,     ///< thesis (4.11)
+  pseudo_solid,  ///< thesis (4.10)
+  rotations,     ///< Laplacian of the rotations of the surface and of what is left
+};
+/// What the displacement is relative to.
+enum class Form {
+  automatic,
+  total,        ///< the reference mesh: no drift
+  incremental,  ///< the mesh of the last step: the thesis's
+};
+/// Of which mesh the volumes of (4.12) are.
+enum class StiffeningVolumes { reference, current };
+
+/// What a moved mesh must keep; 0 or infinity: anything that is not inverted.
+struct GuardParameters {
+  double smallest_scaled_jacobian = -1;
+  std::optional<double> largest_edge_ratio, largest_angle, largest_area_change, largest_shape_change;
+  bool judges_shape() const {
+    return smallest_scaled_jacobian > -1 || largest_edge_ratio || largest_angle || largest_area_change ||
+           largest_shape_change;
+  }
 };
 
 struct Parameters {
   std::string mesh;
   std::map<std::string, double> mesh_parameters;
   int dimension = 3;
-  /// chi of thesis (4.12): stiffness V^-chi of the cells of the reference mesh.
+  Method method = Method::laplacian;
+  Form form = Form::automatic;
+  /// chi of thesis (4.12): stiffness V^-chi of the cells.
   double stiffening = 1.0;
+  StiffeningVolumes stiffening_volumes = StiffeningVolumes::reference;
+  /// Of the pseudo-solid.
+  double poisson_ratio = 0;
   /// Smallest volume a cell may keep, as a fraction of its reference volume.
   double smallest_volume_ratio = 0.0;
+  GuardParameters guard;
   std::map<std::string, Boundary> boundaries;
   LinearOptions linear{
       .method = LinearMethod::direct_symmetric, .relative_tolerance = 1e-10, .max_iterations = 500};

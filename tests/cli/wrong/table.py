@@ -372,10 +372,15 @@ case.yaml:41:15: coupling.predictor.order: 3 is out of range; expected a value f
 The coupler takes no --participant: it couples those that case.yaml names.
 """, arguments=["case.yaml", "--check", "--participant", "fluid"]),
     mover("unknown motion", """
-case.yaml:32:15: participants.mover.boundaries.right.type: 'free' is not one of: interface, fixed, slip.
-""", ("right: {type: fixed}", "right: {type: free}")),
+case.yaml:32:15: participants.mover.boundaries.right.type: 'loose' is not one of: interface, moving, fixed, slip, free.
+""", ("right: {type: fixed}", "right: {type: loose}")),
     mover("motion missing", "case.yaml:32:7: participants.mover.boundaries.right.type: this required key is missing (one of: "
-          "interface, fixed, slip).", ("right: {type: fixed}", "right: {}")),
+          "interface, moving, fixed, slip, free).", ("right: {type: fixed}", "right: {}")),
+    mover("limit of the guard out of range", """
+case.yaml:27:13: participants.mover.guard.largest-angle: 100 is out of range; expected a value from 0 to 90.
+""", ("  mover:\n", "  mover:\n    guard: {largest-angle: 100}\n")),
+    mover("current volumes in the total form", "case.yaml:27:5: participants.mover.stiffening-volumes: 'stiffening-volumes: current' needs 'form: incremental'.",
+          ("  mover:\n", "  mover:\n    stiffening-volumes: current\n")),
     mover("stiffening out of range", """
 case.yaml:27:5: participants.mover.stiffening: 5 is out of range; expected a value from 0 to 3.
 """, ("  mover:\n", "  mover:\n    stiffening: 5\n")),

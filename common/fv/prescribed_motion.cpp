@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "fluid_solver/prescribed_motion.hpp"
+#include "common/fv/prescribed_motion.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
-namespace couplet::fluid {
+#include "common/base/error.hpp"
+
+namespace couplet {
 namespace {
 
 // Of the step, for the difference quotient: its error is 1e-6 of a second order scheme's.
@@ -17,11 +19,53 @@ std::vector<Expression> expressions(const std::vector<config::ExpressionText>& t
 
 }  // namespace
 
+void declare(config::Section& s, MotionParameters& m, bool with_radii) {
+  s.value("translation", m.translation).unit("m").doc("one expression of t [s] a component; absent: none");
+  s.value("angle", m.angle).doc("of the rotation about 'centre' [rad], expression of t [s]");
+  s.value("centre", m.centre)
+      .unit("m")
+      .doc("of the rotation and of the radii, in the reference configuration");
+  s.value("axis", m.axis).size(3).doc("of the rotation, 3-D; a plane scene turns about z");
+  s.value("displacement", m.displacement)
+      .unit("m")
+      .doc(
+          "any field besides: one expression of x, y, z [m] in the reference configuration and t [s] a "
+          "component");
+  if (with_radii) {
+    s.value("inner-radius", m.inner_radius)
+        .unit("m")
+        .not_negative()
+        .doc("with outer-radius: what lies within this distance of the centre moves like one body");
+    s.value("outer-radius", m.outer_radius)
+        .unit("m")
+        .positive()
+        .doc("beyond it the mesh rests, between the radii it follows smoothly; absent: the whole mesh moves");
+  }
+  s.check(
+      [&m] {
+        if (m.outer_radius && *m.outer_radius <= m.inner_radius)
+          return std::string("'outer-radius' must be larger than 'inner-radius'");
+        if (!(m.axis.norm() > 0)) return std::string("'axis' must not be zero");
+        return std::string();
+      },
+      with_radii ? "outer-radius" : "axis");
+}
+
 PrescribedMotion::PrescribedMotion(const MotionParameters& parameters, int dim)
     : parameters_(parameters),
       translation_(expressions(parameters.translation, dim, "motion.translation")),
       displacement_(expressions(parameters.displacement, dim, "motion.displacement")),
-      angle_(parameters.angle, "motion.angle") {}
+      angle_(parameters.angle, "motion.angle") {
+  const auto refuse = [](const Expression& e, const char* key) {
+    if (e.uses_space())
+      throw Error(
+          "motion.{}: '{}' depends on the place, but it is one value for all points. Use 'displacement' for "
+          "a motion that differs from place to place.",
+          key, e.text());
+  };
+  refuse(angle_, "angle");
+  for (const Expression& e : translation_) refuse(e, "translation");
+}
 
 /// 1 - 10 q^3 + 15 q^4 - 6 q^5 between the radii: no kink at either.
 double PrescribedMotion::share(const Vec3& x) const {
@@ -72,4 +116,4 @@ double PrescribedMotion::largest_displacement(std::span<const Vec3> reference, d
   return largest;
 }
 
-}  // namespace couplet::fluid
+}  // namespace couplet

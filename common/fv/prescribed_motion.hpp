@@ -1,15 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "common/config/section.hpp"
 #include "common/fv/expression.hpp"
-#include "fluid_solver/parameters.hpp"
 
-namespace couplet::fluid {
+namespace couplet {
 
-/// A motion that the case prescribes, of the whole mesh or of a body in its midst:
+/// Keys of a prescribed motion.
+struct MotionParameters {
+  std::vector<config::ExpressionText> translation;   // [m], of t
+  config::ExpressionText angle;                      // [rad], of t
+  std::vector<config::ExpressionText> displacement;  // [m], of the reference place and t
+  Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]; of the rotation
+  double inner_radius = 0;                           // [m]
+  std::optional<double> outer_radius;                // [m]; absent: everything moves
+};
+
+/// `with_radii`: the keys inner-radius and outer-radius, too.
+void declare(config::Section& section, MotionParameters& parameters, bool with_radii);
+
+/// A motion that the case prescribes, of points: a whole mesh, a body in its midst, or a wall:
 ///   X(x, t) = c + R(s phi(t)) (x - c) + s [T(t) + d(x, t)]
 /// about the centre c, by the angle phi, the translation T and the displacement field d. s = 1 everywhere
 /// (rigid mesh, d apart), or 1 up to the inner radius about c and smoothly 0 from the outer one on: the body
@@ -34,4 +48,4 @@ class PrescribedMotion {
   Expression angle_;
 };
 
-}  // namespace couplet::fluid
+}  // namespace couplet

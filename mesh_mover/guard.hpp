@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/mesh/mesh.hpp"
+#include "mesh_mover/parameters.hpp"
+
+namespace couplet::mesh_mover {
+
+/// One number about the mesh and the cell that has it.
+struct Worst {
+  double value = 0;
+  GlobalIndex cell = 0;
+  Vec3 place = Vec3::Zero();  ///< [m]
+};
+
+/// How a moved mesh compares with its reference.
+struct MeshState {
+  enum Measure { volume_ratio, scaled_jacobian, edge_ratio, angle, area_change, shape_change, n_measures };
+  std::array<Worst, n_measures> worst;
+};
+/// Names and units for files and messages, in the order of the measures.
+extern const std::array<const char*, MeshState::n_measures> measure_names;
+
+/// Measures of moved cells: volume over that of the reference; least scaled Jacobian of the corners
+/// [knupp2000], 1 where they are at right angles (in simplices: where all angles are equal); longest over shortest edge; angle
+/// between face normals and the lines of the cells' centres [degree]; f_A = |log2(V/V0)| and
+/// f_AR = |log2(AR/AR0)|, AR = (longest edge)^dim / V [stein2003].
+class Guard {
+ public:
+  Guard(const Mesh& mesh, const Parameters& parameters);
+
+  /// Collective.
+  MeshState measure(const Geometry& moved, std::span<const Vec3> points) const;
+  /// Per local cell, of one measure but the angle.
+  std::vector<double> of_cells(MeshState::Measure measure, const Geometry& moved,
+                               std::span<const Vec3> points) const;
+  /// What is beyond a limit, as a sentence; empty: nothing. Inverted cells, cells that cross themselves, and what
+  /// the parameters ask for. Collective.
+  std::string refusal(const Geometry& moved, std::span<const Vec3> points) const;
+
+ private:
+  struct Shape {
+    double longest = 0, shortest = 0, jacobian = 0;
+  };
+  Shape shape(Index cell, std::span<const Vec3> points) const;
+  double value(MeshState::Measure measure, Index cell, const Geometry& moved, const Shape& shape) const;
+  double largest_angle(const Geometry& moved, Index& cell) const;
+
+  const Mesh& mesh_;
+  double smallest_volume_ratio_;
+  GuardParameters limits_;
+  std::vector<float> longest_;  // edge of each owned cell in the reference mesh [m]
+};
+
+}  // namespace couplet::mesh_mover

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_mover/pseudo_solid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/elasticity/symmetric_matrix.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::mesh_mover {
+namespace {
+
+ElasticCondition condition_of(BoundaryMotion motion) {
+  switch (motion) {
+    case BoundaryMotion::slip:
+      return ElasticCondition::symmetry;
+    case BoundaryMotion::free:
+      return ElasticCondition::traction;
+    default:
+      return ElasticCondition::prescribed;
+  }
+}
+
+// (4.12), relative to the mean volume; mu and lambda of E and nu in plane strain or three dimensions.
+std::vector<LameConstants> stiffness(const Mesh& mesh, const Parameters& p, std::span<const double> volumes) {
+  double volume = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += volumes[c];
+  const double mean = sum(mesh.comm, volume) / static_cast<double>(mesh.cells.n_global());
+  const double nu = p.poisson_ratio;
+  std::vector<LameConstants> lame(mesh.cells.n_local());
+  for (std::size_t c = 0; c < lame.size(); ++c) {
+    const double e = std::pow(volumes[c] / mean, -p.stiffening);
+    lame[c] = {e / (2 * (1 + nu)), e * nu / ((1 + nu) * (1 - 2 * nu))};
+  }
+  return lame;
+}
+
+}  // namespace
+
+PseudoSolid::PseudoSolid(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes)
+    : mesh_(mesh),
+      dim_(mesh.dim),
+      options_{parameters.linear.relative_tolerance, parameters.linear.max_iterations, true},
+      given_point_(mesh.points.n_local(), 0),
+      given_face_(mesh.boundary.n_local(), 0) {
+  std::vector<ElasticCondition> conditions;
+  bool held = false;
+  for (const Patch& patch : mesh.patches) {
+    const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
+    conditions.push_back(condition_of(motion));
+    held = held || conditions.back() == ElasticCondition::prescribed;
+    if (!is_given(motion)) continue;
+    for (const auto& [first, count] :
+         {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
+      for (Index f = first; f < first + count; ++f) {
+        given_face_[f - mesh.n_interior] = 1;
+        for (const Index v : mesh.face_points[f]) given_point_[v] = 1;
+      }
+  }
+  if (!held) throw Error("No patch holds the mesh: at least one needs type: fixed, moving or interface.");
+  // A point on several patches: what holds it wins over what moves it, so that corners stay closed.
+  for (const Patch& patch : mesh.patches)
+    if (parameters.boundaries.at(patch.name).motion == BoundaryMotion::fixed)
+      for (const auto& [first, count] :
+           {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
+        for (Index f = first; f < first + count; ++f)
+          for (const Index v : mesh.face_points[f]) given_point_[v] = 0;
+  ElasticBody body;
+  body.lame = stiffness(mesh, parameters, volumes.empty() ? std::span(mesh.reference.volume) : volumes);
+  rows_ = std::make_unique<ElasticOperator>(mesh, boundary_of_patches(mesh, conditions), std::move(body));
+  kernel_ = std::make_unique<ElasticKernel>(mesh, *rows_, FaceGradientScheme::symmetric);
+  unknowns_.assign(rows_->n_unknowns(), 0.0);
+  make_solver(parameters.linear);
+}
+
+void PseudoSolid::make_solver(const LinearOptions& options) {
+  if (options.method == LinearMethod::direct_symmetric && dim_ == 2) {
+    matrix_ = std::make_unique<SparseMatrix>(symmetric_matrix(mesh_, *rows_, {}));
+    LinearOptions of_factors;
+    of_factors.method = LinearMethod::direct_planar;
+    factors_ = std::make_unique<LinearSolver>("the mesh displacement", *matrix_, of_factors);
+  } else {
+    ElasticPreconditioner::Options of_multigrid;
+    of_multigrid.scheme = FaceGradientScheme::symmetric;
+    multigrid_ =
+        std::make_unique<ElasticPreconditioner>(mesh_, *rows_, std::span<const double>{}, of_multigrid);
+  }
+  krylov_ = std::make_unique<KrylovSolver>(
+      "the mesh displacement", mesh_.comm, unknowns_.size(),
+      [this](std::span<const double> x, std::span<double> y) { kernel_->apply(x, {}, y); },
+      [this](std::span<const double> r, std::span<double> z) {
+        if (multigrid_) return multigrid_->apply(r, z);
+        factors_->solve(r, z);
+      });
+}
+
+std::vector<double> PseudoSolid::known(std::span<const double> prescribed) const {
+  std::vector<double> values(rows_->n_known() * dim_, 0.0);
+  const std::vector<Index>& points = rows_->constraints().points();
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (given_point_[points[i]])
+      std::copy_n(prescribed.data() + std::size_t(points[i]) * dim_, dim_, values.data() + i * dim_);
+  for (const Index f : rows_->known_faces()) {
+    if (!given_face_[f - mesh_.n_interior]) continue;
+    double* value = values.data() + std::size_t(rows_->known_of_face(f)) * dim_;
+    const auto corners = mesh_.face_points[f];
+    for (const Index v : corners)
+      for (int c = 0; c < dim_ && given_point_[v]; ++c)
+        value[c] += prescribed[std::size_t(v) * dim_ + c] / static_cast<double>(corners.size());
+  }
+  return values;
+}
+
+std::vector<double> PseudoSolid::solve(std::span<const double> prescribed) {
+  last_ = {};
+  std::vector<double> displacement(std::size_t(mesh_.points.n_local()) * dim_, 0.0);
+  const std::vector<double> g = known(prescribed);
+  const bool moves = any(mesh_.comm, std::ranges::any_of(g, [](double v) { return v != 0; }));
+  if (!moves) {
+    std::ranges::fill(unknowns_, 0.0);
+    return displacement;
+  }
+  std::vector<double> b(unknowns_.size(), 0.0);
+  const std::vector<double> none(unknowns_.size(), 0.0);
+  kernel_->apply(none, g, b);
+  for (double& value : b) value = -value;
+  last_ = krylov_->solve(b, unknowns_, options_);
+  kernel_->point_values(unknowns_, g, displacement);
+  mesh_.points.update_ghosts(displacement, dim_);
+  return displacement;
+}
+
+}  // namespace couplet::mesh_mover

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_mover/rotations.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::mesh_mover {
+namespace {
+
+constexpr double turn = 2 * std::numbers::pi;
+// r2 / r1 below which nothing can turn in between.
+constexpr double least_room = 1.05;
+
+/// Rotation vector of the rotation next to M; of all that mean it (the angle plus whole turns) the one next to
+/// `before`.
+Vec3 rotation_vector(const Tensor3& m, const Vec3& before) {
+  const Eigen::JacobiSVD<Tensor3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Tensor3 sign = Tensor3::Identity();
+  if ((svd.matrixU() * svd.matrixV().transpose()).determinant() < 0) sign(2, 2) = -1;
+  const Tensor3 r = svd.matrixU() * sign * svd.matrixV().transpose();
+  const Eigen::AngleAxisd of(r);
+  Vec3 axis = of.axis();
+  double angle = of.angle();
+  if (axis.dot(before) < 0) {
+    axis = -axis;
+    angle = -angle;
+  }
+  angle += turn * std::round((before.dot(axis) - angle) / turn);
+  return angle * axis;
+}
+
+std::vector<Index> points_of(const Mesh& mesh, const Patch& patch) {
+  std::vector<Index> points;
+  for (const auto& [first, count] :
+       {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
+    for (Index f = first; f < first + count; ++f)
+      points.insert(points.end(), mesh.face_points[f].begin(), mesh.face_points[f].end());
+  std::ranges::sort(points);
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+}  // namespace
+
+Rotations::Rotations(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes)
+    : mesh_(mesh), dim_(mesh.dim), rest_(mesh, parameters, volumes) {
+  find_bodies(parameters);
+  find_room(parameters);
+}
+
+void Rotations::find_bodies(const Parameters& parameters) {
+  for (const Patch& patch : mesh_.patches) {
+    if (!is_given(parameters.boundaries.at(patch.name).motion)) continue;
+    Body body;
+    body.name = patch.name;
+    body.points = points_of(mesh_, patch);
+    double sums[4] = {};
+    for (const Index v : body.points)
+      if (v < mesh_.points.n_owned()) {
+        for (int c = 0; c < 3; ++c) sums[c] += mesh_.reference_points[v][c];
+        sums[3] += 1;
+      }
+    MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+    body.centre = Vec3(sums[0], sums[1], sums[2]) / std::max(sums[3], 1.0);
+    for (const Index v : body.points)
+      body.inner = std::max(body.inner, (mesh_.reference_points[v] - body.centre).norm());
+    body.inner = max(mesh_.comm, body.inner);
+    bodies_.push_back(std::move(body));
+  }
+}
+
+void Rotations::find_room(const Parameters& parameters) {
+  for (Body& body : bodies_) {
+    double nearest = std::numeric_limits<double>::max();
+    for (const Patch& patch : mesh_.patches)
+      if (patch.name != body.name && parameters.boundaries.at(patch.name).motion != BoundaryMotion::free)
+        for (const Index v : points_of(mesh_, patch))
+          nearest = std::min(nearest, (mesh_.reference_points[v] - body.centre).norm());
+    body.outer = min(mesh_.comm, nearest);
+    if (!(body.outer > least_room * body.inner))
+      throw Error(
+          "method: rotations: patch '{}' reaches {:.3g} m from its centre ({:.4g}, {:.4g}, {:.4g}) m, and "
+          "another patch comes as near as {:.3g} m: it has no room to turn. Use 'method: pseudo-solid'.",
+          body.name, body.inner, body.centre.x(), body.centre.y(), body.centre.z(), body.outer);
+    body.outer = std::min(body.outer, 10 * body.inner);
+  }
+  for (const Body& a : bodies_)  // what turns with one body must not turn with another
+    for (const Body& b : bodies_)
+      if (a.name < b.name && (a.centre - b.centre).norm() < a.outer + b.outer)
+        throw Error(
+            "method: rotations: the surroundings of patches '{}' and '{}' overlap; use 'method: pseudo-solid', or "
+            "one name for both if they move as one body.",
+            a.name, b.name);
+}
+
+Vec3 Rotations::best_rotation(const Body& body, std::span<const double> prescribed) const {
+  const auto given = [&](Index v) {
+    Vec3 d = Vec3::Zero();
+    for (int c = 0; c < dim_; ++c) d[c] = prescribed[std::size_t(v) * dim_ + c];
+    return d;
+  };
+  double sums[4] = {};
+  for (const Index v : body.points)
+    if (v < mesh_.points.n_owned()) {
+      const Vec3 d = given(v);
+      for (int c = 0; c < 3; ++c) sums[c] += d[c];
+      sums[3] += 1;
+    }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  const Vec3 shift = Vec3(sums[0], sums[1], sums[2]) / std::max(sums[3], 1.0);
+  Tensor3 m = Tensor3::Zero();
+  for (const Index v : body.points)
+    if (v < mesh_.points.n_owned()) {
+      const Vec3 r = mesh_.reference_points[v] - body.centre;
+      m += (r + given(v) - shift) * r.transpose();
+    }
+  MPI_Allreduce(MPI_IN_PLACE, m.data(), 9, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  if (dim_ == 3) return rotation_vector(m, body.theta);
+  const double angle = std::atan2(m(1, 0) - m(0, 1), m(0, 0) + m(1, 1));
+  return {0, 0, angle + turn * std::round((body.theta.z() - angle) / turn)};
+}
+
+std::vector<double> Rotations::turned() const {
+  std::vector<double> displacement(std::size_t(mesh_.points.n_local()) * dim_, 0.0);
+  for (const Body& body : bodies_) {
+    const double angle = body.theta.norm();
+    if (angle == 0) continue;
+    const Vec3 axis = body.theta / angle;
+    for (Index v = 0; v < mesh_.points.n_local(); ++v) {
+      const Vec3 r = mesh_.reference_points[v] - body.centre;
+      const double distance = r.norm();
+      if (distance >= body.outer) continue;
+      const double share =
+          distance <= body.inner ? 1 : std::log(body.outer / distance) / std::log(body.outer / body.inner);
+      const Vec3 d = Eigen::AngleAxisd(share * angle, axis) * r - r;
+      for (int c = 0; c < dim_; ++c) displacement[std::size_t(v) * dim_ + c] = d[c];
+    }
+  }
+  return displacement;
+}
+
+std::vector<double> Rotations::solve(std::span<const double> prescribed) {
+  for (Body& body : bodies_) body.theta = best_rotation(body, prescribed);
+  std::vector<double> displacement = turned(), rest(displacement.size(), 0.0);
+  for (const Index v : rest_.interface_points())
+    for (int c = 0; c < dim_; ++c) {
+      const std::size_t i = std::size_t(v) * dim_ + c;
+      rest[i] = prescribed[i] - displacement[i];
+    }
+  const std::vector<double> d = rest_.solve(rest);
+  for (std::size_t i = 0; i < d.size(); ++i) displacement[i] += d[i];
+  return displacement;
+}
+
+void Rotations::save(CheckpointWriter& file) const {
+  rest_.save(file);
+  for (const Body& body : bodies_)
+    for (int c = 0; c < 3; ++c)
+      file.write_scalar("rotation-" + std::to_string(c) + "-" + body.name, body.theta[c]);
+}
+
+void Rotations::load(CheckpointReader& file) {
+  rest_.load(file);
+  for (Body& body : bodies_)
+    for (int c = 0; c < 3; ++c)
+      body.theta[c] = file.read_scalar("rotation-" + std::to_string(c) + "-" + body.name);
+}
+
+}  // namespace couplet::mesh_mover

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: Apache-2.0
+// Far motions: elastic body, rotations, total and incremental form, the guard; a plate in a square and boxes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "common/base/error.hpp"
+#include "common/mesh/load.hpp"
+#include "common/mesh/quality.hpp"
+#include "common/parallel/collective.hpp"
+#include "mesh_mover/mover.hpp"
+#include "mesh_mover/pseudo_solid.hpp"
+#include "plate_case.hpp"
+
+namespace couplet::mesh_mover::test {
+namespace {
+
+using std::numbers::pi;
+using Field = std::function<Vec3(const Vec3&)>;
+
+Parameters all_patches(const Mesh& mesh, BoundaryMotion motion) {
+  Parameters p;
+  p.dimension = mesh.dim;
+  for (const Patch& patch : mesh.patches) p.boundaries[patch.name].motion = motion;
+  return p;
+}
+
+Mesh box(BoxCells cells, int n, MPI_Comm comm = MPI_COMM_WORLD) {
+  RawMesh raw = make_box(cells, {n, n, n}, Vec3::Zero(), Vec3::Ones());
+  perturb_interior(raw, 0.2, 7);
+  return distribute(comm, raw);
+}
+
+std::vector<double> at_points(const Mesh& mesh, const Field& f) {
+  std::vector<double> values;
+  for (const Vec3& x : mesh.reference_points) {
+    const Vec3 d = f(x);
+    values.insert(values.end(), d.data(), d.data() + mesh.dim);
+  }
+  return values;
+}
+
+/// Patch test: a body without stiffness gradients takes a linear field over from its boundary, whatever its cells.
+TEST(PseudoSolid, carries_a_linear_field_into_the_mesh_exactly) {
+  for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                               BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed}) {
+    const Mesh mesh = box(cells, 4);
+    Parameters p = all_patches(mesh, BoundaryMotion::interface);
+    p.stiffening = 0;
+    p.poisson_ratio = 0.2;
+    PseudoSolid solid(mesh, p);
+    const auto linear = at_points(mesh, [&](const Vec3& x) {
+      return Vec3(0.1 * x.x() - 0.2 * x.y() + 0.3, 0.15 * x.x() + 0.05 * x.y(),
+                  mesh.dim == 3 ? 0.1 * x.z() : 0);
+    });
+    EXPECT_LT(largest_difference(mesh.comm, solid.solve(linear), linear), 1e-8) << int(cells);
+    EXPECT_GT(solid.last().iterations, 0);
+  }
+}
+
+TEST(PseudoSolid, slides_along_a_plane_of_any_direction) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {8, 6, 1}, Vec3::Zero(), Vec3::Ones());
+  const double angle = 0.4;
+  const Vec3 along(std::cos(angle), std::sin(angle), 0), across(-std::sin(angle), std::cos(angle), 0);
+  for (Vec3& x : raw.points) x = x.x() * along + x.y() * across;
+  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  Parameters p = all_patches(mesh, BoundaryMotion::slip);
+  p.boundaries["xmin"].motion = BoundaryMotion::fixed;
+  p.boundaries["xmax"].motion = BoundaryMotion::interface;
+  PseudoSolid solid(mesh, p);
+  const auto pushed = at_points(
+      mesh, [&](const Vec3& x) { return x.dot(along) > 0.999 ? Vec3(0.2 * along) : Vec3(Vec3::Zero()); });
+  const auto d = solid.solve(pushed);
+  // Without Poisson's ratio a uniform body stretches along the push alone.
+  const auto stretched = at_points(mesh, [&](const Vec3& x) { return Vec3(0.2 * x.dot(along) * along); });
+  EXPECT_LT(largest_difference(mesh.comm, d, stretched), 1e-8);
+}
+
+/// Small cells are stiffer by (V/V')^-chi: a column of cells is a chain of springs.
+TEST(PseudoSolid, stiffening_is_the_volume_to_the_power_of_minus_chi) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {24, 1, 1}, Vec3::Zero(), Vec3(1, 0.05, 1));
+  for (Vec3& x : raw.points) x.x() = x.x() < 0.5 ? x.x() / 2 : 0.25 + 1.5 * (x.x() - 0.5);  // widths 1:3
+  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
+  const auto pushed = at_points(mesh, [](const Vec3& x) { return Vec3(x.x() < 1e-9 ? 0.2 : 0.0, 0, 0); });
+  for (const double chi : {1.0, 2.0}) {
+    Parameters p = all_patches(mesh, BoundaryMotion::slip);
+    p.boundaries["xmin"].motion = BoundaryMotion::interface;
+    p.boundaries["xmax"].motion = BoundaryMotion::fixed;
+    p.stiffening = chi;
+    PseudoSolid solid(mesh, p);
+    const auto d = solid.solve(pushed);
+    // Strain e of the small cells, 3^chi e of the large ones: e (0.25 + 0.75 3^chi) = -0.2; the cell pair where they
+    // meet smears it.
+    const double strain = -0.2 / (0.25 + 0.75 * std::pow(3, chi));
+    for (Index v = 0; v < mesh.points.n_local(); ++v) {
+      const double x = mesh.reference_points[v].x();
+      if (x < 0.2) {
+        EXPECT_NEAR(d[2 * v], 0.2 + strain * x, 0.02 * 0.2) << "chi " << chi << " x " << x;
+      }
+    }
+  }
+}
+
+TEST(Rotations, an_eighth_of_a_turn_keeps_the_shape_of_the_body_and_all_cells_valid) {
+  Parameters p = plate_in_a_square(Method::rotations, Form::total);
+  p.mesh_parameters["n"] = 24;
+  turn_by(p, "pi/4*t");
+  Mover mover(p, context());
+  mover.initialise();
+  run(mover, 0, 1, 4);  // path does not matter: four steps serve as well as fifty
+  const MeshState s = mover.state();
+  EXPECT_GT(s.worst[MeshState::volume_ratio].value, 0.3);
+  EXPECT_GT(s.worst[MeshState::scaled_jacobian].value, 0.1);
+  // Cells at the plate turn with it.
+  const Mesh& mesh = mover.mesh();
+  double worst = 0;
+  for (Index v = 0; v < mesh.points.n_local(); ++v) {
+    const Vec3& x = mesh.reference_points[v];
+    if (x.norm() > 0.5) continue;
+    const double k = std::sqrt(0.5);
+    const Vec3 d(k * (x.x() - x.y()) - x.x(), k * (x.x() + x.y()) - x.y(), 0);
+    for (int c = 0; c < 2; ++c) worst = std::max(worst, std::abs(mover.displacement()[2 * v + c] - d[c]));
+  }
+  EXPECT_LT(max(mesh.comm, worst), 1e-12);
+}
+
+TEST(Rotations, go_on_beyond_half_a_turn) {
+  Parameters p = plate_in_a_square(Method::rotations, Form::total);
+  p.mesh_parameters = {{"n", 20}, {"half", 0.1}};
+  turn_by(p, "1.1*pi*t");
+  Mover mover(p, context());
+  mover.initialise();
+  run(mover, 0, 1, 6);
+  const Mesh& mesh = mover.mesh();
+  // Halfway (in ln r) between the radii of body and wall by more than a quarter of a turn, not backwards by less.
+  const double r1 = std::hypot(0.1, 0.01);
+  double r2 = 10 * r1;
+  for (const Vec3& x : mesh.reference_points)
+    if (std::max(std::abs(x.x()), std::abs(x.y())) > 0.999) r2 = std::min(r2, x.norm());
+  r2 = min(mesh.comm, r2);
+  double worst = 0, turned = 0;
+  for (Index v = 0; v < mesh.points.n_local(); ++v) {
+    const Vec3& x = mesh.reference_points[v];
+    if (x.norm() < 0.2 || x.norm() > 0.6) continue;
+    const double angle = 1.1 * pi * std::log(r2 / x.norm()) / std::log(r2 / r1);
+    const Vec3 d(std::cos(angle) * x.x() - std::sin(angle) * x.y() - x.x(),
+                 std::sin(angle) * x.x() + std::cos(angle) * x.y() - x.y(), 0);
+    turned = std::max(turned, angle);
+    for (int c = 0; c < 2; ++c) worst = std::max(worst, std::abs(mover.displacement()[2 * v + c] - d[c]));
+  }
+  EXPECT_LT(max(mesh.comm, worst), 1e-9);
+  EXPECT_GT(max(mesh.comm, turned), 0.6 * pi);
+}
+
+TEST(Rotations, a_body_without_room_is_refused_by_name) {
+  Parameters p = plate_in_a_square(Method::rotations, Form::total);
+  p.boundaries["floor"].motion = BoundaryMotion::moving;
+  try {
+    Mover mover(p, context());
+    FAIL() << "accepted";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("patch 'floor' reaches"));
+  }
+}
+
+class EveryMethod : public testing::TestWithParam<std::pair<Method, Form>> {};
+
+/// Half a swing and back: the total form forgets the path, the incremental one does not.
+TEST_P(EveryMethod, returns_to_the_reference_mesh_with_the_body) {
+  const auto [method, form] = GetParam();
+  Parameters p = plate_in_a_square(method, form);
+  turn_by(p, "0.35*sin(pi*t)");
+  p.boundaries["plate"].prescribed.translation = {{"0"}, {"0.1*sin(pi*t)"}};
+  Mover mover(p, context());
+  mover.initialise();
+  run(mover, 0, 0.5, 5);
+  const std::vector<double> out = mover.displacement();
+  EXPECT_GT(max(MPI_COMM_WORLD, *std::ranges::max_element(out)), 0.2);
+  run(mover, 0.5, 1, 5);
+  const double left =
+      largest_difference(MPI_COMM_WORLD, mover.displacement(), std::vector<double>(out.size()));
+  if (form == Form::total)
+    EXPECT_LT(left, 1e-10 / 16);  // of the edges
+  else
+    EXPECT_GT(left, 1e-6);
+}
+
+/// What is swept by the faces is what the cells gain.
+TEST_P(EveryMethod, swept_volumes_are_the_change_of_volume) {
+  const auto [method, form] = GetParam();
+  Parameters p = plate_in_a_square(method, form);
+  turn_by(p, "0.3*t");
+  Mover mover(p, context());
+  mover.initialise();
+  const Mesh& mesh = mover.mesh();
+  const auto placed = [&] {
+    std::vector<Vec3> points = mesh.reference_points;
+    for (std::size_t v = 0; v < points.size(); ++v)
+      for (int c = 0; c < 2; ++c) points[v][c] += mover.displacement()[2 * v + c];
+    return points;
+  };
+  run(mover, 0, 0.5, 2);
+  const std::vector<Vec3> from = placed();
+  run(mover, 0.5, 1, 2);
+  const std::vector<Vec3> to = placed();
+  const std::vector<double> swept = swept_volumes(mesh, from, to);
+  const Geometry before = compute_geometry(mesh, from), after = compute_geometry(mesh, to);
+  std::vector<double> gained(mesh.cells.n_local(), 0.0);
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    gained[mesh.owner[f]] += swept[f];
+    if (f < mesh.n_interior) gained[mesh.neighbour[f]] -= swept[f];
+  }
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    EXPECT_NEAR(gained[c], after.volume[c] - before.volume[c], 1e-14 * 4);  // of the domain
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
+                         testing::Values(std::pair{Method::laplacian, Form::total},
+                                         std::pair{Method::laplacian, Form::incremental},
+                                         std::pair{Method::pseudo_solid, Form::total},
+                                         std::pair{Method::pseudo_solid, Form::incremental},
+                                         std::pair{Method::rotations, Form::total}));
+
+TEST(Guard, measures_of_a_sheared_and_stretched_cell) {
+  const Mesh mesh =
+      distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {2, 1, 1}, Vec3::Zero(), Vec3(2, 1, 1)));
+  Parameters p = all_patches(mesh, BoundaryMotion::fixed);
+  const Guard guard(mesh, p);
+  std::vector<Vec3> points = mesh.reference_points;
+  for (Vec3& x : points)
+    if (x.x() < 0.5) x.x() -= 3;  // the left cell: 4 x 1
+  const Geometry moved = compute_geometry(mesh, points);
+  const MeshState s = guard.measure(moved, points);
+  EXPECT_DOUBLE_EQ(s.worst[MeshState::volume_ratio].value, 1);
+  EXPECT_DOUBLE_EQ(s.worst[MeshState::edge_ratio].value, 4);
+  EXPECT_DOUBLE_EQ(s.worst[MeshState::scaled_jacobian].value, 1);
+  EXPECT_DOUBLE_EQ(s.worst[MeshState::area_change].value, 2);   // log2(4)
+  EXPECT_DOUBLE_EQ(s.worst[MeshState::shape_change].value, 2);  // 4^2 / 4 over 1
+  EXPECT_EQ(s.worst[MeshState::edge_ratio].cell, s.worst[MeshState::area_change].cell);
+  EXPECT_NEAR(s.worst[MeshState::edge_ratio].place.x(), -1, 1e-12);
+  for (Vec3& x : points) x.x() += x.y();  // sheared by 45 degrees
+  const MeshState t = guard.measure(compute_geometry(mesh, points), points);
+  EXPECT_NEAR(t.worst[MeshState::scaled_jacobian].value, std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(t.worst[MeshState::angle].value, 45, 1e-9);
+}
+
+TEST(Guard, ideal_cells_have_a_scaled_jacobian_of_one_and_turned_over_ones_below_zero) {
+  for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed,
+                               BoxCells::triangles, BoxCells::quadrilaterals}) {
+    const Mesh mesh = distribute(MPI_COMM_SELF, make_box(cells, {2, 2, 2}, Vec3::Zero(), Vec3::Ones()));
+    const Guard guard(mesh, all_patches(mesh, BoundaryMotion::fixed));
+    const MeshState s = guard.measure(mesh.reference, mesh.reference_points);
+    EXPECT_GT(s.worst[MeshState::scaled_jacobian].value, 0.3) << int(cells);
+    EXPECT_LE(s.worst[MeshState::scaled_jacobian].value, 1 + 1e-12);
+    std::vector<Vec3> mirrored = mesh.reference_points;
+    for (Vec3& x : mirrored) x.x() = -x.x();
+    const MeshState m = guard.measure(compute_geometry(mesh, mirrored), mirrored);
+    EXPECT_LT(m.worst[MeshState::scaled_jacobian].value, 0) << int(cells);
+  }
+}
+
+TEST(Guard, each_limit_refuses_with_its_key_and_the_cell_and_lets_a_small_motion_pass) {
+  const std::vector<std::pair<std::string, std::function<void(Parameters&)>>> limits{
+      {"smallest-volume-ratio", [](Parameters& p) { p.smallest_volume_ratio = 0.9; }},
+      {"guard.smallest-scaled-jacobian", [](Parameters& p) { p.guard.smallest_scaled_jacobian = 0.45; }},
+      {"guard.largest-edge-ratio", [](Parameters& p) { p.guard.largest_edge_ratio = 2.22; }},
+      {"guard.largest-angle", [](Parameters& p) { p.guard.largest_angle = 35; }},
+      {"guard.largest-area-change", [](Parameters& p) { p.guard.largest_area_change = 0.1; }},
+      {"guard.largest-shape-change", [](Parameters& p) { p.guard.largest_shape_change = 0.1; }}};
+  for (const auto& [key, set] : limits) {
+    Parameters p = plate_in_a_square(Method::laplacian, Form::total);
+    set(p);
+    p.boundaries["plate"].prescribed.translation = {{"0"}, {"t"}};
+    Mover mover(p, context());
+    mover.initialise();
+    mover.begin_step({0, 1e-4, Scheme::standalone, 0});
+    EXPECT_NO_THROW(mover.solve({})) << key;
+    mover.begin_step({0, 0.3, Scheme::standalone, 0});
+    try {
+      mover.solve({});
+      ADD_FAILURE() << key << " let it pass";
+    } catch (const SolveFailure& e) {
+      EXPECT_THAT(e.what(), testing::AllOf(testing::HasSubstr(key),
+                                           testing::ContainsRegex("leaves cell [0-9]+ at \\(")));
+    }
+  }
+}
+
+TEST(MovingPatches, a_translation_that_depends_on_the_place_is_refused_by_key) {
+  Parameters p = plate_in_a_square(Method::laplacian, Form::total);
+  p.boundaries["plate"].prescribed.translation = {{"x*t"}, {"0"}};
+  try {
+    Mover mover(p, context());
+    FAIL() << "accepted";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("motion.translation: 'x*t' depends on the place"));
+  }
+}
+
+}  // namespace
+}  // namespace couplet::mesh_mover::test

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every way to move a mesh on one rank and several, and from a checkpoint.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "common/io/checkpoint.hpp"
+#include "plate_case.hpp"
+
+namespace couplet::mesh_mover::test {
+namespace {
+
+class EveryMethod : public testing::TestWithParam<std::pair<Method, Form>> {};
+
+TEST_P(EveryMethod, goes_on_from_a_checkpoint_bit_for_bit) {
+  const auto [method, form] = GetParam();
+  Parameters p = plate_in_a_square(method, form);
+  turn_by(p, "0.5*t");
+  p.boundaries["plate"].prescribed.displacement = {{"0.1*t*y"}, {"0.1*t*x^2"}};
+  Mover mover(p, context());
+  mover.initialise();
+  run(mover, 0, 0.4, 2);
+  const auto file = std::filesystem::temp_directory_path() /
+                    ("couplet-motion-" + std::to_string(comm_size(MPI_COMM_WORLD)) + ".h5");
+  {
+    CheckpointWriter writer(MPI_COMM_WORLD, file);
+    mover.save(writer);
+    writer.close();
+  }
+  const std::vector<double> then = mover.displacement();
+  run(mover, 0.4, 1, 2);
+  const std::vector<double> end = mover.displacement();
+  EXPECT_NE(end, then);
+  CheckpointReader reader(MPI_COMM_WORLD, file);
+  mover.load(reader);
+  EXPECT_EQ(mover.displacement(), then);
+  run(mover, 0.4, 1, 2);
+  EXPECT_EQ(mover.displacement(), end);
+}
+
+TEST_P(EveryMethod, is_the_same_on_any_number_of_ranks) {
+  const auto [method, form] = GetParam();
+  Parameters p = plate_in_a_square(method, form);
+  turn_by(p, "0.4*t");
+  p.boundaries["plate"].prescribed.displacement = {{"0"}, {"0.1*t*x^2"}};
+  ParticipantContext alone = context();
+  alone.comm = MPI_COMM_SELF;
+  alone.output_folder =
+      std::filesystem::temp_directory_path() / ("alone-" + std::to_string(comm_rank(MPI_COMM_WORLD)));
+  std::filesystem::create_directories(alone.output_folder);
+  Mover mover(p, context()), reference(p, alone);
+  mover.initialise();
+  reference.initialise();
+  run(mover, 0, 1, 3);
+  run(reference, 0, 1, 3);
+  std::vector<double> by_id(reference.displacement().size());
+  for (Index v = 0; v < reference.mesh().points.n_local(); ++v)
+    for (int c = 0; c < 2; ++c)
+      by_id[2 * reference.mesh().point_id[v] + c] = reference.displacement()[2 * v + c];
+  double worst = 0;
+  for (Index v = 0; v < mover.mesh().points.n_local(); ++v)
+    for (int c = 0; c < 2; ++c)
+      worst = std::max(worst,
+                       std::abs(by_id[2 * mover.mesh().point_id[v] + c] - mover.displacement()[2 * v + c]));
+  EXPECT_LT(max(MPI_COMM_WORLD, worst), 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
+                         testing::Values(std::pair{Method::laplacian, Form::incremental},
+                                         std::pair{Method::pseudo_solid, Form::total},
+                                         std::pair{Method::pseudo_solid, Form::incremental},
+                                         std::pair{Method::rotations, Form::total}));
+
+}  // namespace
+}  // namespace couplet::mesh_mover::test
