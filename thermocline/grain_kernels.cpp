@@ -2,6 +2,7 @@
 #include "thermocline/grain_kernels.hpp"
 
 #include <array>
+#include <type_traits>
 
 namespace couplet::thermocline {
 namespace {
@@ -51,29 +52,36 @@ template <int N>
   }
 }
 
+/// Calls f with the number of shells as a constant where that unrolls the loops over them; 0: as many as the grain says.
+template <typename F>
+[[gnu::always_inline]] inline void with_shells(int n, F&& f) {
+  switch (n) {
+    case 1:
+      return f(std::integral_constant<int, 1>{});
+    case 2:
+      return f(std::integral_constant<int, 2>{});
+    case 3:
+      return f(std::integral_constant<int, 3>{});
+    case 4:
+      return f(std::integral_constant<int, 4>{});
+    case 5:
+      return f(std::integral_constant<int, 5>{});
+    case 6:
+      return f(std::integral_constant<int, 6>{});
+    case 8:
+      return f(std::integral_constant<int, 8>{});
+    default:
+      return f(std::integral_constant<int, 0>{});
+  }
+}
+
 }  // namespace
 
 [[gnu::target_clones("avx2", "default")]] void gather_grains(const GrainElimination& e, const GrainCells& c,
                                                              const double* shells, const double* extra,
                                                              double* fluid, double* sums) {
-  switch (e.n) {
-    case 1:
-      return gather<1>(e, c, shells, extra, fluid, sums);
-    case 2:
-      return gather<2>(e, c, shells, extra, fluid, sums);
-    case 3:
-      return gather<3>(e, c, shells, extra, fluid, sums);
-    case 4:
-      return gather<4>(e, c, shells, extra, fluid, sums);
-    case 5:
-      return gather<5>(e, c, shells, extra, fluid, sums);
-    case 6:
-      return gather<6>(e, c, shells, extra, fluid, sums);
-    case 8:
-      return gather<8>(e, c, shells, extra, fluid, sums);
-    default:
-      return gather<0>(e, c, shells, extra, fluid, sums);
-  }
+  with_shells(
+      e.n, [&](auto n) __attribute__((always_inline)) { gather<n()>(e, c, shells, extra, fluid, sums); });
 }
 
 [[gnu::target_clones("avx2", "default")]] void gather_sums(const GrainCells& c, const double* extra,
@@ -86,24 +94,8 @@ template <int N>
 [[gnu::target_clones("avx2", "default")]] void scatter_grains(const GrainElimination& e, const GrainCells& c,
                                                               const double* shells, const double* fluid,
                                                               double* to, double* sums) {
-  switch (e.n) {
-    case 1:
-      return scatter<1>(e, c, shells, fluid, to, sums);
-    case 2:
-      return scatter<2>(e, c, shells, fluid, to, sums);
-    case 3:
-      return scatter<3>(e, c, shells, fluid, to, sums);
-    case 4:
-      return scatter<4>(e, c, shells, fluid, to, sums);
-    case 5:
-      return scatter<5>(e, c, shells, fluid, to, sums);
-    case 6:
-      return scatter<6>(e, c, shells, fluid, to, sums);
-    case 8:
-      return scatter<8>(e, c, shells, fluid, to, sums);
-    default:
-      return scatter<0>(e, c, shells, fluid, to, sums);
-  }
+  with_shells(
+      e.n, [&](auto n) __attribute__((always_inline)) { scatter<n()>(e, c, shells, fluid, to, sums); });
 }
 
 }  // namespace couplet::thermocline
