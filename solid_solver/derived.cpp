@@ -73,6 +73,11 @@ std::vector<std::complex<double>> Solid::eigenvalues() const {
                   [&](std::span<const double> x, std::span<double> y) { kernel_.apply(x, still, y); });
 }
 
+std::optional<SolidProblem> Solid::vibration() const {
+  if (!has_mass_) return {};
+  return SolidProblem{mesh_, elastic_, {}, kernel_, 0};
+}
+
 const PointTensors& Solid::point_tensors() const {
   if (!point_tensors_) {
     std::vector<bool> is_symmetry;

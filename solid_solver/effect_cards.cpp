@@ -155,6 +155,13 @@ const std::array cards{
               "`output.energies: true`",
               [](const P& p) { return when(p.output.energies, "output.energies"); },
               {"energies.csv, work of the step summed over the faces", 0, 0}},
+    SolidCard{
+        "free vibrations",
+        "`output.modes` above 0",
+        [](const P& p) { return when(p.output.modes > 0, "output.modes"); },
+        {"modes.csv and modes.h5, found once at the start: a preconditioner for K + M/t^2 and some forty solutions with "
+         "it",
+         0, 0}},
 };
 
 }  // namespace

@@ -24,6 +24,8 @@ class SolidOutput {
   void write_series(double time, std::span<const double> points);
   /// spectrum.csv and a sentence in the log, for steps of dt. Collective.
   void write_spectrum(double dt);
+  /// modes.csv and, of a body in space, modes.h5. Collective.
+  void write_modes();
 
  private:
   void write_probes(double time, std::span<const double> points);
@@ -34,7 +36,7 @@ class SolidOutput {
   const Solid& solid_;
   const SolidContext& context_;
   SolidProbes probes_;
-  bool spectrum_written_ = false;
+  bool spectrum_written_ = false, modes_written_ = false;
   std::optional<FieldWriter> fields_;
   // On rank 0.
   std::optional<Series> probe_series_, reaction_series_, solver_series_, energy_series_;

@@ -45,6 +45,11 @@ void declare(config::Section& s, SolidOutputParameters& o) {
           "write the eigenvalues of M^-1 K of a dynamic analysis to spectrum.csv at the start and tell how "
           "fast free "
           "vibration grows; for small meshes");
+  s.value("modes", o.modes)
+      .range(0, 1000)
+      .doc(
+          "so many of the lowest free vibrations of a dynamic analysis (face-gradient: symmetric) are found at the start: "
+          "modes.csv, and modes.h5, which plate_modal reads; 0: none");
 }
 
 }  // namespace couplet

@@ -24,6 +24,7 @@ struct SolidOutputParameters {
   bool acceleration = false;
   bool energies = false;
   bool spectrum = false;
+  int modes = 0;  // frequencies and shapes that are asked for
 };
 
 void declare(config::Section& section, SolidProbe& probe);

@@ -161,6 +161,7 @@ void Solid::begin_step(const Step& step) {
   if (!(step.dt > 0)) throw Error("The solid was asked for a step of {} s; time must go on.", step.dt);
   if (!interface_temperature_) prepare_stages();
   if (parameters_.output.spectrum && is_dynamic() && step.number == 0) output_->write_spectrum(step.dt);
+  if (parameters_.output.modes > 0 && step.number == 0) output_->write_modes();
   if (prescribed_.is_zero()) return;
   const double end = step.time + step.dt;
   prescribed_.evaluate(end, known_);

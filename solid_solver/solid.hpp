@@ -131,6 +131,8 @@ class Solid final : public Participant {
   const EnergyAudit& energy_audit() const { return energy_audit_; }
   /// Eigenvalues of M^-1 K [1/s^2] on rank 0, see spectrum.hpp. Collective.
   std::vector<std::complex<double>> eigenvalues() const;
+  /// K of free vibrations, with a kernel that has M; none where the kernel has no mass of its own.
+  std::optional<SolidProblem> vibration() const;
   /// All loads of the last solve: tractions, pressures, interface, body forces. Collective.
   Vec3 total_load() const;
   /// Largest displacement gradient, strain and rotation at any face. Collective.

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Free vibrations found without factors of a matrix: the lowest ones of the dense eigenproblem, none missed, with the
+// shapes on the surface that plate_modal takes.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/parallel/collective.hpp"
+#include "solid_solver/modal_analysis.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+SolidParameters vibrating(int dim) {
+  SolidParameters p = box_parameters(dim);
+  p.method.face_gradient = FaceGradient::symmetric;
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.material = {2000, 1e6, 0.3};
+  return p;
+}
+
+std::vector<double> cell_mass(const Solid& solid) {
+  std::vector<double> mass;
+  for (Index c = 0; c < solid.mesh().cells.n_owned(); ++c)
+    mass.push_back(solid.density(c) * solid.mesh().reference.volume[c]);
+  return mass;
+}
+
+class SolidModes : public ::testing::TestWithParam<BoxCells> {};
+
+TEST_P(SolidModes, are_the_lowest_of_the_dense_problem_with_equal_ones) {
+  const BoxCells cells = GetParam();
+  const int dim = dimension_of(cells);
+  SolidParameters p = vibrating(dim);
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+  const auto solid =
+      make_solid(make_box(cells, {6, 2, dim == 3 ? 2 : 1}, Vec3::Zero(), Vec3(6, 1, dim == 3 ? 1 : 0)), p);
+  std::vector<double> dense;
+  for (const auto& value : solid->eigenvalues()) dense.push_back(value.real());
+  std::ranges::sort(dense);
+  constexpr int n = 8;
+  const EigenModes found = solid_modes(*solid->vibration(), p.method, cell_mass(*solid), n);
+  ASSERT_EQ(found.eigenvalue.size(), std::size_t(n));
+  for (int m = 0; m < n && !dense.empty(); ++m)  // rank 0 has the dense ones
+    EXPECT_NEAR(found.eigenvalue[m], dense[m], 1e-7 * dense[m]) << m;
+  EXPECT_LT(found.worst_residual, 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Solid, SolidModes,
+                         ::testing::Values(BoxCells::quadrilaterals, BoxCells::hexahedra,
+                                           BoxCells::tetrahedra, BoxCells::prisms));
+
+TEST(SolidModesOfAFreeBody, carry_its_whole_mass_and_move_its_surface_rigidly) {
+  SolidParameters p = vibrating(3);
+  const auto solid = make_solid(make_box(BoxCells::hexahedra, {4, 3, 3}, Vec3::Zero(), Vec3(2, 1, 1)), p);
+  const EigenModes found = solid_modes(*solid->vibration(), p.method, cell_mass(*solid), 8);
+  const ModalModel model = modal_model(*solid->vibration(), found);
+  if (comm_rank(MPI_COMM_WORLD) != 0) return;
+  ASSERT_EQ(model.n_modes(), 8u);
+  EXPECT_EQ(problem_of(model), "");
+  EXPECT_EQ(model.vertices.size(), 5u * 4u * 4u - 3u * 2u * 2u);  // less those inside
+  EXPECT_EQ(model.faces.size(), 2 * (9 + 12 + 12));
+  for (int m = 0; m < 6; ++m) EXPECT_EQ(model.frequency[m], 0) << m;
+  EXPECT_GT(model.frequency[6], 0);
+  for (int a = 0; a < 3; ++a) {
+    double mass = 0;
+    for (int m = 0; m < 6; ++m) mass += std::pow(model.participation[std::size_t(a) * 8 + m], 2);
+    EXPECT_NEAR(mass, 4000, 1e-4) << a;
+  }
+  // Volume by the faces' outward turn: 2 m^3.
+  double volume = 0;
+  const std::vector<Vec3> areas = face_areas(model), centres = face_centres(model);
+  for (std::size_t f = 0; f < areas.size(); ++f) volume += areas[f].dot(centres[f]) / 3;
+  EXPECT_NEAR(volume, 2, 1e-12);
+}
+
+TEST(SolidModesOfABeam, are_those_of_euler_and_bernoulli_and_converge_at_second_order) {
+  // Plane stress, 20 : 1, E and rho of vibrating(); f_1 = 3.5160/(2 pi L^2) sqrt(E h^2/(12 rho)), less 0.3 % of shear.
+  SolidParameters p = vibrating(2);
+  p.plane = SolidParameters::Plane::stress;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  const auto first = [&](int n) {
+    const auto solid =
+        make_solid(make_box(BoxCells::quadrilaterals, {10 * n, n, 1}, Vec3::Zero(), Vec3(20, 1, 0)), p);
+    const EigenModes found = solid_modes(*solid->vibration(), p.method, cell_mass(*solid), 1);
+    return std::sqrt(found.eigenvalue[0]) / (2 * std::numbers::pi);
+  };
+  const double coarse = first(2), middle = first(4), fine = first(8);
+  const double slender = 3.5160 / (2 * std::numbers::pi * 400) * std::sqrt(1e6 / (12 * 2000.0));
+  const double limit = fine + (fine - middle) / 3;
+  EXPECT_NEAR(limit, slender, 0.006 * slender);
+  const double slope = std::log2((coarse - middle) / (middle - fine));
+  RecordProperty("slope", std::to_string(slope));
+  EXPECT_GT(slope, 1.7);
+}
+
+TEST(SolidModesOfABeam, are_refused_without_a_mass_of_the_kernel) {
+  SolidParameters p = vibrating(2);
+  p.method.face_gradient = FaceGradient::corrected;
+  const auto solid =
+      make_solid(make_box(BoxCells::quadrilaterals, {4, 2, 1}, Vec3::Zero(), Vec3(2, 1, 0)), p);
+  EXPECT_FALSE(solid->vibration());
+}
+
+}  // namespace
+}  // namespace couplet::testing
