@@ -153,11 +153,6 @@ void Solid::apply_stiffness() {
 void Solid::begin_step(const Step& step) {
   step_ = step;
   effort_ = {};
-  if (failed_ && failed_->time == step.time && !is_dynamic() && step.scheme == Scheme::standalone)
-    throw Error(
-        "The static step from t = {:g} s could not be solved, and a shorter one meets the same equations: {}",
-        step.time, failed_->reason);
-  failed_.reset();
   if (!(step.dt > 0)) throw Error("The solid was asked for a step of {} s; time must go on.", step.dt);
   if (!interface_temperature_) prepare_stages();
   if (parameters_.output.spectrum && is_dynamic() && step.number == 0) output_->write_spectrum(step.dt);
@@ -204,8 +199,10 @@ Exchange Solid::solve(const Exchange& in) {
   try {
     for (std::size_t i = 0; i < stages_.size(); ++i) solve_stage(stages_[i], load, i == 0);
   } catch (const SolveFailure& failure) {
-    failed_ = {step_.time, failure.what()};
-    throw;
+    // Linear equations: a shorter step meets the same ones.
+    if (is_dynamic() || step_.scheme != Scheme::standalone) throw;
+    throw SchemeFailure("The static step could not be solved, and a shorter one meets the same equations: {}",
+                        failure.what());
   }
   trial_.time = step_.time + step_.dt;
   trial_.dt = step_.dt;

@@ -244,11 +244,6 @@ class Solid final : public Participant {
   double largest_gradient_ = 0, inertia_over_load_ = 0;
   std::optional<StrainAudit> audit_;
   EnergyAudit energy_audit_;
-  struct Failed {
-    double time;
-    std::string reason;
-  };
-  std::optional<Failed> failed_;  // the step that was tried last
   bool strain_doubted_ = false, energy_doubted_ = false;
   std::unique_ptr<SolidOutput> output_;
   mutable std::unique_ptr<PointTensors> point_tensors_;  // made when first asked for

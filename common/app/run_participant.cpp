@@ -107,11 +107,12 @@ class OwnCommands {
     }
     return reply;
   }
-  std::optional<std::string> attempt(const Step& step) {
+  std::optional<StepFailure> attempt(const Step& step) {
     Command command{Op::begin_step, step, {}, 0, -1, ""};
     for (const Op op : {Op::begin_step, Op::solve}) {
       command.op = op;
-      if (const Reply reply = (*this)(command); reply.status == Reply::Status::failure) return reply.text;
+      if (const Reply reply = (*this)(command); reply.status == Reply::Status::failure)
+        return StepFailure(reply.text, reply.shorter_helps);
     }
     return {};
   }

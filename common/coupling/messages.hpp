@@ -42,7 +42,8 @@ struct Reply {
   };
   Status status = Status::ok;
   std::string text;
-  double seconds = 0;                                             ///< spent on the command
+  bool shorter_helps = true;  ///< failure: a shorter step may be solved; not sent
+  double seconds = 0;         ///< spent on the command
   double suggested_dt = std::numeric_limits<double>::infinity();  ///< initialise, accept_step, load
   Exchange data;                                                  ///< solve: the output
   Interface interface;                                            ///< initialise

@@ -6,9 +6,29 @@
 namespace couplet {
 
 template <int D>
+void set_geometry(const Mesh& mesh, const SymmetricFace<D>& face, Index f, std::size_t k, bool is_filling,
+                  BlockGeometry<D>& block) {
+  block.from[k] = mesh.owner[f];
+  block.to[k] = f < mesh.n_interior ? mesh.neighbour[f] : mesh.cells.n_local() + f - mesh.n_interior;
+  for (int a = 0; a < D; ++a) {
+    block.vector[0][a][k] = is_filling ? 0 : face.area[a];
+    for (int j = 0; j < D - 1; ++j) block.vector[j + 1][a][k] = is_filling ? 0 : face.across[j][a];
+  }
+  for (int j = 0; j < D - 1; ++j) {
+    block.plus[j][k] = face.plus[j];
+    block.minus[j][k] = face.minus[j];
+  }
+}
+
+template void set_geometry<2>(const Mesh&, const SymmetricFace<2>&, Index, std::size_t, bool,
+                              BlockGeometry<2>&);
+template void set_geometry<3>(const Mesh&, const SymmetricFace<3>&, Index, std::size_t, bool,
+                              BlockGeometry<3>&);
+
+template <int D>
 std::vector<FaceBlock<D>> make_blocks(const Mesh& mesh, const ElasticOperator& rows,
                                       std::span<const Index> faces) {
-  constexpr int width = FaceBlock<D>::width;
+  constexpr int width = BlockGeometry<D>::width;
   std::vector<FaceBlock<D>> result((faces.size() + width - 1) / width);
   for (std::size_t i = 0; i < result.size() * width; ++i) {
     FaceBlock<D>& block = result[i / width];
@@ -21,16 +41,7 @@ std::vector<FaceBlock<D>> make_blocks(const Mesh& mesh, const ElasticOperator& r
     const double scale = is_filling ? 0 : face.volume * face.inverse * face.inverse;
     block.mu[k] = lame.mu * scale;
     block.lambda[k] = lame.lambda * scale;
-    block.from[k] = mesh.owner[f];
-    block.to[k] = f < mesh.n_interior ? mesh.neighbour[f] : mesh.cells.n_local() + f - mesh.n_interior;
-    for (int a = 0; a < D; ++a) {
-      block.vector[0][a][k] = is_filling ? 0 : face.area[a];
-      for (int j = 0; j < D - 1; ++j) block.vector[j + 1][a][k] = is_filling ? 0 : face.across[j][a];
-    }
-    for (int j = 0; j < D - 1; ++j) {
-      block.plus[j][k] = face.plus[j];
-      block.minus[j][k] = face.minus[j];
-    }
+    set_geometry<D>(mesh, face, f, k, is_filling, block);
   }
   return result;
 }

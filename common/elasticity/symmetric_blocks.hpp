@@ -10,21 +10,26 @@
 
 namespace couplet {
 
-/// Four faces side by side: the kernel's arithmetic is on one number of each at a time.
+/// Four faces side by side: the kernels' arithmetic is on one number of each at a time.
 template <int D>
-struct FaceBlock {
+struct BlockGeometry {
   static constexpr int width = 4;
   using Wide [[gnu::vector_size(32)]] = double;
   double vector[D][D][width];                          ///< S, c_0 (, c_1): components of each face
-  double mu[width], lambda[width];                     ///< Lame's constants times V / (S . d)^2
   std::array<Index, width> from, to;                   ///< nodes
   std::array<Index, width> plus[D - 1], minus[D - 1];  ///< points
+};
+
+/// With Hooke's law.
+template <int D>
+struct FaceBlock : BlockGeometry<D> {
+  double mu[4], lambda[4];  ///< Lame's constants times V / (S . d)^2
 };
 
 namespace blocks {
 
 template <int D>
-using Wide = typename FaceBlock<D>::Wide;
+using Wide = typename BlockGeometry<D>::Wide;
 
 [[gnu::always_inline]] inline lanes::Lane<3> wide(const double* from) { return lanes::load<3>(from); }
 
@@ -89,7 +94,7 @@ template <int D>
 
 /// H = (u_Q - u_P) S^T + sum_i (u_plus - u_minus) c_i^T, entry (k, j) of the displacement's component k.
 template <int D>
-[[gnu::always_inline]] inline void stretch(const FaceBlock<D>& block, const double* nodes,
+[[gnu::always_inline]] inline void stretch(const BlockGeometry<D>& block, const double* nodes,
                                            const double* points, lanes::Lane<3> (&h)[D][D]) {
   lanes::Lane<3> u[D][D], other[D];
   gather<D>(nodes, block.to, u[0]);
@@ -109,7 +114,7 @@ template <int D>
 
 /// The forces of a stress (times V / (S . d)) on nodes and points: dE/du.
 template <int D>
-[[gnu::always_inline]] inline void push(const FaceBlock<D>& block, const lanes::Lane<3> (&stress)[D][D],
+[[gnu::always_inline]] inline void push(const BlockGeometry<D>& block, const lanes::Lane<3> (&stress)[D][D],
                                         double* nodes, double* points) {
   for (int k = 0; k < D; ++k) {
     lanes::Lane<3> force[D];
@@ -148,5 +153,10 @@ template <int D>
 template <int D>
 std::vector<FaceBlock<D>> make_blocks(const Mesh& mesh, const ElasticOperator& rows,
                                       std::span<const Index> faces);
+
+/// Puts face f into place k of a block, or, as filling, without area.
+template <int D>
+void set_geometry(const Mesh& mesh, const SymmetricFace<D>& face, Index f, std::size_t k, bool is_filling,
+                  BlockGeometry<D>& block);
 
 }  // namespace couplet

@@ -9,29 +9,14 @@ namespace couplet {
 
 template <int D>
 SymmetricKernel<D>::SymmetricKernel(const Mesh& mesh, const ElasticOperator& rows)
-    : mesh_(mesh),
-      rows_(rows),
-      nodes_(mesh, rows),
-      vertices_(mesh, rows),
-      points_(std::size_t(mesh.points.n_local()) * stride, 0.0),
-      force_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * stride, 0.0),
-      point_force_(points_.size(), 0.0) {
-  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
-    if (rows.condition(f) == ElasticCondition::symmetry)
-      symmetry_.emplace_back(f, mesh.reference.face_area[f].normalized());
+    : mesh_(mesh), rows_(rows), space_(mesh, rows) {
   make_faces();
-  // Warped faces: the pyramids fill the cell only nearly.
-  volume_.assign(mesh.cells.n_owned(), 0);
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const auto [here, there] = pyramids(mesh, f);
-    if (mesh.owner[f] < mesh.cells.n_owned()) volume_[mesh.owner[f]] += here;
-    if (f < mesh.n_interior && mesh.neighbour[f] < mesh.cells.n_owned()) volume_[mesh.neighbour[f]] += there;
-  }
   if (!rows.volume_by_cells()) return;
   volumes_ = make_volumes(mine_);
   shared_volumes_ = make_volumes(shared_mine_);
-  pressure_.assign(force_.size() / stride, 0);
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) bulk_.push_back(bulk_modulus(rows.lame(c)) / volume_[c]);
+  pressure_.assign(space_.n_nodes(), 0);
+  const std::vector<double> volume = pyramid_volumes(mesh);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) bulk_.push_back(bulk_modulus(rows.lame(c)) / volume[c]);
 }
 
 template <int D>
@@ -88,33 +73,11 @@ void SymmetricKernel<D>::make_faces() {
   }
 }
 
-template <int D>
-Vec3 SymmetricKernel<D>::vector(const double* at) const {
-  Vec3 v = Vec3::Zero();
-  for (int a = 0; a < D; ++a) v[a] = at[a];
-  return v;
-}
-
-template <int D>
-inline void SymmetricKernel<D>::interpolate_free() {
-  using lanes::Lane;
-  const double* nodes = nodes_[0];
-  double* points = points_.data();
-  for (const Index v : vertices_.free) {
-    const auto index = rows_.vertices().nodes(v);
-    const auto weight = rows_.vertices().weights(v);
-    Lane<D> sum = {};
-    for (std::size_t i = 0; i < index.size(); ++i)
-      sum += weight[i] * lanes::load<D>(nodes + std::size_t(index[i]) * stride);
-    lanes::store<D>(points + std::size_t(v) * stride, sum);
-  }
-}
-
 // V / (S . d) sigma of four faces, and what it does to their nodes and points.
 template <int D>
 inline void SymmetricKernel<D>::faces_loop() {
-  const double *nodes = nodes_[0], *points = points_.data();
-  double *force = force_.data(), *point_force = point_force_.data();
+  const double *nodes = space_.nodes(), *points = space_.points();
+  double *force = space_.forces(), *point_force = space_.point_forces();
   for (const FaceBlock<D>& block : blocks_) {
     V h[D][D], stress[D][D];
     blocks::stretch<D>(block, nodes, points, h);
@@ -145,7 +108,7 @@ inline void SymmetricKernel<D>::add_volumes(const std::vector<FaceBlock<D>>& blo
                                             const std::vector<VolumeBlock>& volumes) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     V h[D][D];
-    blocks::stretch<D>(blocks[i], nodes_[0], points_.data(), h);
+    blocks::stretch<D>(blocks[i], space_.nodes(), space_.points(), h);
     V trace = h[0][0];
     for (int a = 1; a < D; ++a) trace += h[a][a];
     for (int k = 0; k < 4; ++k) {
@@ -165,7 +128,7 @@ inline void SymmetricKernel<D>::volumes_loop() {
 template <int D>
 inline void SymmetricKernel<D>::shared_first_loop() {
   if constexpr (D == 3) {
-    const double *nodes = nodes_[0], *points = points_.data();
+    const double *nodes = space_.nodes(), *points = space_.points();
     constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
     const double own = 1 - SharedEdges::share;
     for (std::size_t i = 0; i < shared_blocks_.size(); ++i) {
@@ -196,7 +159,7 @@ inline void SymmetricKernel<D>::shared_first_loop() {
 template <int D>
 inline void SymmetricKernel<D>::shared_second_loop() {
   if constexpr (D == 3) {
-    double *force = force_.data(), *point_force = point_force_.data();
+    double *force = space_.forces(), *point_force = space_.point_forces();
     constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
     for (std::size_t i = 0; i < shared_blocks_.size(); ++i) {
       const SharedBlock& shared = shared_[i];
@@ -219,31 +182,9 @@ inline void SymmetricKernel<D>::shared_second_loop() {
   }
 }
 
-// The weights' transpose.
-template <int D>
-inline void SymmetricKernel<D>::to_nodes_loop() {
-  using lanes::Lane;
-  double* force = force_.data();
-  for (const Index v : vertices_.free) {
-    const auto index = rows_.vertices().nodes(v);
-    const auto weight = rows_.vertices().weights(v);
-    const Lane<D> here = lanes::load<D>(point_force_.data() + std::size_t(v) * stride);
-    for (std::size_t i = 0; i < index.size(); ++i)
-      lanes::add<D>(force + std::size_t(index[i]) * stride, weight[i] * here);
-  }
-}
-
 namespace {
 
 // The loops for several generations of processors; the right one is picked when the program starts.
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
-    SymmetricKernel<3>& kernel) {
-  kernel.interpolate_free();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
-    SymmetricKernel<2>& kernel) {
-  kernel.interpolate_free();
-}
 [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
     SymmetricKernel<3>& kernel) {
   kernel.faces_loop();
@@ -260,14 +201,6 @@ namespace {
     SymmetricKernel<3>& kernel) {
   kernel.shared_second_loop();
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void to_nodes_pass(
-    SymmetricKernel<3>& kernel) {
-  kernel.to_nodes_loop();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void to_nodes_pass(
-    SymmetricKernel<2>& kernel) {
-  kernel.to_nodes_loop();
-}
 [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void volumes_pass(
     SymmetricKernel<3>& kernel) {
   kernel.volumes_loop();
@@ -280,25 +213,6 @@ void shared_first_pass(SymmetricKernel<2>&) {}
 void shared_second_pass(SymmetricKernel<2>&) {}
 
 }  // namespace
-
-/// All that stands before the faces. At symmetry planes the face's node is the mirror image of its cell.
-template <int D>
-void SymmetricKernel<D>::fill(std::span<const double> unknowns, std::span<const double> known) {
-  nodes_.fill(unknowns, known, true);
-  for (const auto& [f, n] : symmetry_) {
-    const Vec3 u = vector(nodes_[mesh_.owner[f]]), image = u - 2 * n.dot(u) * n;
-    double* at = nodes_.value(node_of_face(f));
-    for (int a = 0; a < D; ++a) at[a] = image[a];
-  }
-  vertices_pass(*this);
-  vertices_.constrain<D>(points_, stride, known);
-}
-
-template <int D>
-void SymmetricKernel<D>::clear_forces() {
-  std::ranges::fill(force_, 0.0);
-  std::ranges::fill(point_force_, 0.0);
-}
 
 template <int D>
 void SymmetricKernel<D>::find_pressures() {
@@ -322,97 +236,22 @@ void SymmetricKernel<D>::internal_forces() {
   shared_second_pass(*this);
 }
 
-/// F_V takes what the constraints hold.
-template <int D>
-void SymmetricKernel<D>::constrain_point_forces() {
-  for (const Index v : vertices_.constrained) {
-    Eigen::Map<Vec<D>> f(point_force(v));
-    f = (rows_.constraints().free_part(v).template topLeftCorner<D, D>() * f).eval();
-  }
-}
-
-template <int D>
-void SymmetricKernel<D>::points_to_nodes() {
-  constrain_point_forces();
-  to_nodes_pass(*this);
-}
-
-/// From points and mirror images to the nodes, over the ranks, and both sides of bonded faces into one.
-template <int D>
-void SymmetricKernel<D>::collect() {
-  points_to_nodes();
-  for (const auto& [f, n] : symmetry_) {
-    double* image = force(node_of_face(f));
-    const Vec3 there = vector(image);
-    add(force(mesh_.owner[f]), there - 2 * n.dot(there) * n);
-    std::fill_n(image, D, 0.0);
-  }
-  const std::size_t n_cells = std::size_t(mesh_.cells.n_local()) * stride;
-  const std::span<double> all(force_);
-  mesh_.cells.add_to_owners(all.first(n_cells), stride);
-  const std::span<double> faces = all.subspan(n_cells);
-  mesh_.boundary.add_to_owners(faces, stride);
-  if (mesh_.twin.empty()) return;
-  std::fill(faces.begin() + std::ptrdiff_t(mesh_.boundary.n_owned()) * stride, faces.end(), 0.0);
-  for (Index b = 0; b < mesh_.boundary.n_owned(); ++b) {
-    const Index first = mesh_.twin[b];
-    if (first < 0 || mesh_.boundary_id[first] > mesh_.boundary_id[b]) continue;
-    for (int a = 0; a < D; ++a) faces[std::size_t(first) * stride + a] += faces[std::size_t(b) * stride + a];
-  }
-  mesh_.boundary.add_to_owners(faces, stride);
-}
-
-/// The rows that ElasticOperator defines. `unknowns` empty: of loads, to which supports add no rows of their
-/// own.
-template <int D>
-void SymmetricKernel<D>::take_rows(std::span<const double> unknowns, std::span<const double> known,
-                                   std::span<double> result) {
-  const Index n_owned = mesh_.cells.n_owned();
-  for (Index c = 0; c < n_owned; ++c) std::copy_n(force(c), D, result.data() + std::size_t(c) * D);
-  const auto& open = rows_.unknown_faces();
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    const Index f = open[i];
-    const std::size_t row = (std::size_t(n_owned) + i) * D;
-    Vec3 own = vector(force(node_of_face(f)));
-    if (rows_.condition(f) == ElasticCondition::support) {
-      const ElasticSupport& s = rows_.support(f);
-      own -= (s.known * own).eval();
-      if (!unknowns.empty()) {
-        Vec3 jump = Vec3::Zero();
-        for (int a = 0; a < D; ++a)
-          jump[a] =
-              unknowns[row + a] - (known.empty() ? 0 : known[std::size_t(rows_.known_of_face(f)) * D + a]);
-        const LameConstants lame = rows_.lame(mesh_.owner[f]);
-        const FaceLine line = face_line(mesh_, mesh_.reference, f);
-        own += (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * (s.known * jump);
-      }
-    }
-    for (int a = 0; a < D; ++a) result[row + a] = own[a];
-  }
-}
-
-template <int D>
-void SymmetricKernel<D>::add_springs(std::span<const double> known) {
-  for (const Index f : rows_.known_faces())
-    if (rows_.condition(f) == ElasticCondition::support)
-      visit_spring(f, known, [&](double* at, const Vec3& pull) { add(at, pull); });
-}
-
 template <int D>
 void SymmetricKernel<D>::apply(std::span<const double> unknowns, std::span<const double> known,
                                std::span<double> result) {
-  fill(unknowns, known);
-  clear_forces();
+  space_.fill(unknowns, known);
+  space_.clear_forces();
   internal_forces();
-  add_springs(known);
-  collect();
-  take_rows(unknowns, known, result);
+  space_.add_springs(known);
+  space_.collect();
+  space_.take_rows(unknowns, known, result);
 }
 
 template <int D>
 void SymmetricKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
                                         const ElasticKernel::TakeGradient& take, Index first, Index end) {
-  fill(unknowns, known);
+  space_.fill(unknowns, known);
+  const auto node = [&](Index n) { return space_.nodes() + std::size_t(n) * stride; };
   if (edges_) {
     edges_->clear();
     shared_first_pass(*this);
@@ -421,15 +260,14 @@ void SymmetricKernel<D>::face_gradients(std::span<const double> unknowns, std::s
   if (!pressure_.empty()) find_pressures();
   for (Index f = first; f < end; ++f) {
     const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, f);
-    const double* across = nodes_[f < mesh_.n_interior ? mesh_.neighbour[f] : node_of_face(f)];
-    const double* here = nodes_[mesh_.owner[f]];
+    const double *across = node(space_.node_across(f)), *here = node(mesh_.owner[f]);
     Tensor3 gradient = Tensor3::Zero();
     for (int j = 0; j < D; ++j)
       for (int k = 0; k < D; ++k) {
         double h = (across[k] - here[k]) * face.area[j];
         for (int i = 0; i < D - 1; ++i)
-          h += (points_[std::size_t(face.plus[i]) * stride + k] -
-                points_[std::size_t(face.minus[i]) * stride + k]) *
+          h += (space_.points()[std::size_t(face.plus[i]) * stride + k] -
+                space_.points()[std::size_t(face.minus[i]) * stride + k]) *
                face.across[i][j];
         gradient(j, k) = h * face.inverse;
       }
@@ -461,9 +299,9 @@ void SymmetricKernel<D>::face_gradients(std::span<const double> unknowns, std::s
 template <int D>
 void SymmetricKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
                                       std::span<double> points) {
-  fill(unknowns, known);
-  vertices_.visit([&](Index v) {
-    std::copy_n(points_.data() + std::size_t(v) * stride, D, points.data() + std::size_t(v) * D);
+  space_.fill(unknowns, known);
+  space_.visit_points([&](Index v) {
+    std::copy_n(space_.points() + std::size_t(v) * stride, D, points.data() + std::size_t(v) * D);
   });
 }
 

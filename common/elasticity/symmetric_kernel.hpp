@@ -7,9 +7,9 @@
 
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elastic_nodes.hpp"
-#include "common/elasticity/elastic_vertices.hpp"
 #include "common/elasticity/shared_edges.hpp"
 #include "common/elasticity/symmetric_blocks.hpp"
+#include "common/elasticity/symmetric_space.hpp"
 
 namespace couplet {
 
@@ -18,7 +18,7 @@ namespace couplet {
 /// positive, exact for linear fields, without resultant on any mesh whose cells lie behind their faces. With
 /// sigma_f = C : sym G_f and r = 1/dim
 ///   f_P -= r sigma_f S,   f_Q += r sigma_f S,   f_plus_i += r sigma_f c_i,   f_minus_i -= r sigma_f c_i,
-/// then the vertices' forces go to their nodes by the transposed weights, f_j += w_ij F_i f_i. Three-cornered
+/// then the vertices' forces go to their nodes by the transposed weights (SymmetricSpace). Three-cornered
 /// faces in space share their strain with their edges (SharedEdges). Loads and mass use the same trial
 /// functions.
 ///
@@ -46,11 +46,9 @@ class SymmetricKernel final : public ElasticKernel::Implementation {
                                    const ElasticLoads& loads) override;
 
   // The loops; public for the clones by processor.
-  [[gnu::always_inline]] inline void interpolate_free();
   [[gnu::always_inline]] inline void faces_loop();
   [[gnu::always_inline]] inline void shared_first_loop();
   [[gnu::always_inline]] inline void shared_second_loop();
-  [[gnu::always_inline]] inline void to_nodes_loop();
   [[gnu::always_inline]] inline void volumes_loop();
 
  private:
@@ -71,70 +69,21 @@ class SymmetricKernel final : public ElasticKernel::Implementation {
                                                  const std::vector<VolumeBlock>& volumes);
   [[gnu::always_inline]] inline V pressure_on(const FaceBlock<D>& block, const VolumeBlock& volume) const;
   void make_faces();
-  void sort_boundary();
-  void fill(std::span<const double> unknowns, std::span<const double> known);
-  void clear_forces();
   void internal_forces();
   void find_pressures();
-  void add_mass_forces(double factor);
-  void add_springs(std::span<const double> known);
-  void spread_face_forces(std::span<const double> forces);
-  void spread_cell_forces(std::span<const double> forces);
   void spread_pressure(std::span<const double> pressure);
-  void constrain_point_forces();
-  void points_to_nodes();
-  void spread_over_base(Index f, const Vec3& force_on_base);
-  void add_collected(std::span<double> rhs);
-  /// Force k (u - g) of the springs on the mean of the trace of a face, in which its node has the part 1/dim
-  /// and its points the rest; back to them by the same parts: take(place of the force, value).
-  template <class Take>
-  void visit_spring(Index f, std::span<const double> known, const Take& take);
-  void collect();
-  void take_rows(std::span<const double> unknowns, std::span<const double> known, std::span<double> result);
-  Index node_of_face(Index f) const { return mesh_.cells.n_local() + f - mesh_.n_interior; }
-  double* force(Index node) { return force_.data() + std::size_t(node) * stride; }
-  double* point_force(Index v) { return point_force_.data() + std::size_t(v) * stride; }
-  Vec3 vector(const double* at) const;
-  void add(double* at, const Vec3& value) const {
-    for (int a = 0; a < D; ++a) at[a] += value[a];
-  }
 
   const Mesh& mesh_;
   const ElasticOperator& rows_;
-  ElasticNodes<D> nodes_;
-  ElasticVertices vertices_;
+  SymmetricSpace<D> space_;
   std::vector<Index> mine_;          // faces that this rank computes, in the order of the blocks
   std::vector<Index> shared_mine_;   // those that share with their edges
   std::vector<Index> shared_index_;  // of each flux face in edges_, -1: it shares nothing
   std::vector<FaceBlock<D>> blocks_, shared_blocks_;
   std::vector<SharedBlock> shared_;
   std::unique_ptr<SharedEdges> edges_;
-  std::vector<double> points_, force_, point_force_;
-  std::vector<std::pair<Index, Vec3>> symmetry_;       // faces and normals
   std::vector<VolumeBlock> volumes_, shared_volumes_;  // empty: the volume strain is the faces'
-  std::vector<double> volume_;                         // sum of the pyramids of each owned cell
   std::vector<double> pressure_, bulk_;                // of nodes; K / V of owned cells [Pa/m^3]
-  std::vector<double> node_mass_, point_mass_;         // empty: none
 };
-
-template <int D>
-template <class Take>
-void SymmetricKernel<D>::visit_spring(Index f, std::span<const double> known, const Take& take) {
-  const ElasticSupport& s = rows_.support(f);
-  if (s.spring.isZero(0)) return;
-  const Tensor3 open = Tensor3::Identity() - s.known, spring = open * s.spring * open;
-  Vec3 g = Vec3::Zero();
-  if (!known.empty()) g = vector(known.data() + std::size_t(rows_.known_of_face(f)) * D);
-  const Index node = node_of_face(f);
-  const auto shares = point_shares(mesh_, f);
-  const auto points = mesh_.face_points[f];
-  Vec3 mean = vector(nodes_[node]) / D;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    mean += (1 - 1.0 / D) * shares[i] * vector(points_.data() + std::size_t(points[i]) * stride);
-  const Vec3 pull = mesh_.reference.face_area[f].norm() * (spring * (mean - g));
-  take(force(node), pull / D);
-  for (std::size_t i = 0; i < points.size(); ++i)
-    take(point_force(points[i]), (1 - 1.0 / D) * shares[i] * pull);
-}
 
 }  // namespace couplet

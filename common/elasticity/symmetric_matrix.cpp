@@ -7,23 +7,20 @@
 #include <unordered_map>
 
 #include "common/elasticity/elastic_nodes.hpp"
+#include "common/elasticity/face_stencil.hpp"
 #include "common/elasticity/symmetric_faces.hpp"
 #include "common/fv/nodes.hpp"
 
 namespace couplet {
 namespace {
 
-/// One node's part of a face's gradient: G = sum_i (T_i u_i) b_i^T.
-struct Term {
-  Index node;
-  Vec3 b;
-  Tensor3 turn;  // T: I, a projector, a mirror
-};
-
 class Assembly {
  public:
   Assembly(const Mesh& mesh, const ElasticOperator& rows)
-      : mesh_(mesh), rows_(rows), number_(number_nodes(mesh, rows.unknown_faces())) {}
+      : mesh_(mesh),
+        rows_(rows),
+        number_(number_nodes(mesh, rows.unknown_faces())),
+        stencil_(mesh, rows, number_) {}
 
   template <int D>
   void add_face(Index f);
@@ -45,14 +42,11 @@ class Assembly {
       blocks_[at->second] += block;
     }
   }
-  void take(Index node, const Vec3& b, const Tensor3& turn);
-  void take_boundary(Index f, const Vec3& b);
-  void take_point(Index v, const Vec3& b);
 
   const Mesh& mesh_;
   const ElasticOperator& rows_;
   std::vector<GlobalIndex> number_;
-  std::vector<Term> terms_;
+  FaceStencil stencil_;
   std::unordered_map<std::uint64_t, std::size_t> slot_of_;  // of a pair of nodes
   std::vector<std::pair<Index, Index>> pairs_;
   std::vector<Tensor3> blocks_;
@@ -60,74 +54,24 @@ class Assembly {
       volume_of_;  // of cells: volume strain times V, by nodes
 };
 
-void Assembly::take(Index node, const Vec3& b, const Tensor3& turn) {
-  if (number_[node] < 0) return;  // known
-  for (Term& t : terms_)
-    if (t.node == node && t.turn == turn) {
-      t.b += b;
-      return;
-    }
-  terms_.push_back({node, b, turn});
-}
-
-void Assembly::take_boundary(Index f, const Vec3& b) {
-  const Tensor3 identity = Tensor3::Identity();
-  take(node_of(f), b,
-       rows_.condition(f) == ElasticCondition::support ? Tensor3(identity - rows_.support(f).known)
-                                                       : identity);
-}
-
-void Assembly::take_point(Index v, const Vec3& b) {
-  const VertexConstraints& constraints = rows_.constraints();
-  if (constraints.is_fixed(v)) return;
-  const auto nodes = rows_.vertices().nodes(v);
-  const auto weights = rows_.vertices().weights(v);
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    Tensor3 turn = constraints.free_part(v);
-    const Index f = nodes[i] - mesh_.cells.n_local() + mesh_.n_interior;
-    if (nodes[i] >= mesh_.cells.n_local() && rows_.condition(f) == ElasticCondition::support)
-      turn = (turn * (Tensor3::Identity() - rows_.support(f).known)).eval();
-    take(nodes[i], weights[i] * b, turn);
-  }
-}
-
 // V [lambda b_i b_j^T + mu (b_i . b_j I + b_j b_i^T)] between each two nodes.
 template <int D>
 void Assembly::add_face(Index f) {
   const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, f);
-  const auto scaled = [&](const std::array<double, D>& from) {
-    Vec3 b = Vec3::Zero();
-    for (int a = 0; a < D; ++a) b[a] = from[a] * face.inverse;
-    return b;
-  };
-  terms_.clear();
-  const Vec3 s = scaled(face.area);
   const Tensor3 identity = Tensor3::Identity();
-  take(mesh_.owner[f], -s, identity);
-  if (f < mesh_.n_interior) {
-    take(mesh_.neighbour[f], s, identity);
-  } else if (rows_.condition(f) == ElasticCondition::symmetry) {
-    const Vec3 n = mesh_.reference.face_area[f].normalized();
-    take(mesh_.owner[f], s, identity - 2 * n * n.transpose());
-  } else {
-    take_boundary(f, s);
-  }
-  for (int i = 0; i < D - 1; ++i) {
-    take_point(face.plus[i], scaled(face.across[i]));
-    take_point(face.minus[i], -scaled(face.across[i]));
-  }
+  const std::vector<FaceStencil::Term>& terms = stencil_.of<D>(face, f);
   const LameConstants whole = face_lame(mesh_, rows_, f);
   const auto [mu, lambda] = rows_.volume_by_cells() ? deviatoric(whole) : whole;
   if (rows_.volume_by_cells()) {
     const auto [here, there] = pyramids(mesh_, f);
-    for (const Term& t : terms_) {
+    for (const FaceStencil::Term& t : terms) {
       volume_of_[mesh_.owner[f]].push_back({t.node, here * (t.turn.transpose() * t.b)});
       if (f < mesh_.n_interior)
         volume_of_[mesh_.neighbour[f]].push_back({t.node, there * (t.turn.transpose() * t.b)});
     }
   }
-  for (const Term& i : terms_)
-    for (const Term& j : terms_) {
+  for (const FaceStencil::Term& i : terms)
+    for (const FaceStencil::Term& j : terms) {
       const Tensor3 block =
           lambda * i.b * j.b.transpose() + mu * (i.b.dot(j.b) * identity + j.b * i.b.transpose());
       add_block(i.node, j.node, face.volume * (i.turn.transpose() * block * j.turn));
