@@ -12,6 +12,9 @@ namespace {
 
 Tensor3 symmetric(const Tensor3& gradient) { return 0.5 * (gradient + gradient.transpose()); }
 
+/// Green's strain (F^T F - I) / 2; entry (i, j) of the gradient is d u_j / d x_i.
+Tensor3 green(const Tensor3& gradient) { return symmetric(gradient) + 0.5 * gradient * gradient.transpose(); }
+
 }  // namespace
 
 /// Those of all flux faces. `cells`, `faces`, `points`: of all local ones. Collective.
@@ -31,6 +34,7 @@ std::vector<Tensor3> Solid::face_gradients(Index first, Index count, std::span<c
 }
 
 std::vector<Tensor3> Solid::face_stress(Index first, Index count, std::span<const double> points) const {
+  if (finite_) return finite_face_stress(first, count);
   std::vector<Tensor3> stress = face_gradients(first, count, state_.cell_u, state_.face_u, points);
   for (Index i = 0; i < count; ++i) stress[i] = elastic_.stress(mesh_.owner[first + i], stress[i]);
   for (const auto& effect : effects_) effect->add_face_stress(first, stress);
@@ -39,17 +43,18 @@ std::vector<Tensor3> Solid::face_stress(Index first, Index count, std::span<cons
 
 std::vector<Tensor3> Solid::face_strain(Index first, Index count, std::span<const double> points) const {
   std::vector<Tensor3> strain = face_gradients(first, count, state_.cell_u, state_.face_u, points);
-  for (Tensor3& e : strain) e = symmetric(e);
+  for (Tensor3& e : strain) e = finite_ ? green(e) : symmetric(e);
   return strain;
 }
 
 std::vector<Tensor3> Solid::cell_strain(std::span<const double> points) const {
   std::vector<Tensor3> strain = cell_gradient(points);
-  for (Tensor3& e : strain) e = symmetric(e);
+  for (Tensor3& e : strain) e = finite_ ? green(e) : symmetric(e);
   return strain;
 }
 
 std::vector<Tensor3> Solid::cell_stress(std::span<const double> points) const {
+  if (finite_) return finite_cell_stress();
   std::vector<Tensor3> stress = cell_gradient(points);
   for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = elastic_.stress(Index(c), stress[c]);
   for (const auto& effect : effects_) effect->add_cell_stress(stress);

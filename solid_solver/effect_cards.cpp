@@ -44,7 +44,7 @@ V judge_inertia(const P& p, const E& e) {
 // The stretch along a fibre that turns by an angle phi without straining is off by phi^2/2 in the linear
 // theory; a gradient of 0.02 is a fiftieth of that in the strain itself.
 V judge_geometry(const P& p, const E& e) {
-  if (!is_elastic(p)) return {};
+  if (!is_elastic(p) || has_finite_strain(p)) return {};
   const double g = e.largest_gradient;
   const std::string parts = std::isnan(e.largest_strain)
                                 ? ""
@@ -52,7 +52,8 @@ V judge_geometry(const P& p, const E& e) {
                                               e.largest_strain, 57.29578 * e.largest_rotation);
   return verdict(g, 0.02, fmt::format("the largest displacement gradient seen is {:.2g}{}", g, parts),
                  g < 0.1 ? "errors of some per cent are to be expected"
-                         : "it would matter: the result is that of the linear theory, not of the body");
+                         : "it would matter: the result is that of the linear theory, not of the body; "
+                           "'kinematics: finite-strain' takes it into account");
 }
 
 V judge_yield(const P& p, const E& e) {
@@ -99,9 +100,9 @@ const std::array cards{
               "inertia over load, 0.01",
               judge_inertia},
     SolidCard{"geometric non-linearity",
-              "not available here",
-              [](const P&) { return std::string(); },
-              {},
+              "`kinematics: finite-strain`",
+              [](const P& p) { return when(has_finite_strain(p), "kinematics: finite-strain"); },
+              {"F and the derivatives of the law a face, Newton's method", 0, 0},
               "largest displacement gradient, 0.02",
               judge_geometry},
     SolidCard{"yielding",

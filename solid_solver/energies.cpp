@@ -123,6 +123,7 @@ void Solid::add_work(const StageWork& work, const SolidState& before) {
 
 /// The same with the symmetric kernel, whose own products these are: all that acts by its trial functions.
 void Solid::add_symmetric_work(const StageWork& work, const SolidState& before) {
+  if (finite_) return add_finite_work(work, before);
   SolidEnergies& energies = trial_.energies;
   std::vector<double> change = unknowns_of(trial_.cell_u, trial_.face_u);
   const std::vector<double> start = unknowns_of(before.cell_u, before.face_u);
@@ -212,6 +213,11 @@ SolidEnergies Solid::energies(std::span<const double> points) const {
   e.conserving = parameters_.time_scheme.type == TimeScheme::trapezoidal;
   if (kernel_.is_symmetric()) {
     const std::vector<double> unknowns = unknowns_of(state_.cell_u, state_.face_u);
+    if (finite_) {
+      e = summed(e);
+      e.strain = finite_->energy(unknowns, known_accepted_);
+      return e;
+    }
     const ElasticField u{unknowns, known_accepted_};
     e.strain = 0.5 * kernel_.product(ElasticPart::stiffness, u, u);
     return summed(e);

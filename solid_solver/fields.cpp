@@ -82,8 +82,9 @@ std::vector<double> Solid::point_acceleration() const {
 std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
   std::vector<PatchForce> forces;
   if (kernel_.is_symmetric()) {
-    const std::vector<Vec3> held =
-        kernel_.holding_forces(unknowns_of(state_.cell_u, state_.face_u), known_accepted_, loads_now());
+    const std::vector<double> u = unknowns_of(state_.cell_u, state_.face_u);
+    const std::vector<Vec3> held = finite_ ? finite_->kernel().holding_forces(u, known_accepted_, loads_now())
+                                           : kernel_.holding_forces(u, known_accepted_, loads_now());
     for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
       if (!boundaries_.holds(p)) continue;
       Vec3 force = held[p];
@@ -267,7 +268,7 @@ void Solid::save(CheckpointWriter& file) const {
 void Solid::save_projections(CheckpointWriter& file) const {
   std::vector<double> factors;
   for (const auto& system : systems_) {
-    const ResidualProjection* projection = system->method->projection();
+    const ResidualProjection* projection = projection_of(*system);
     if (!projection) continue;
     file.write(fmt::format("projection-{}", factors.size()), projection->values());
     factors.push_back(system->mass_factor);
@@ -282,7 +283,7 @@ void Solid::load_projections(CheckpointReader& file) {
     System& system = system_for(file.read_scalar(fmt::format("projection-{}-mass-factor", i)));
     const SolidProblem problem = problem_of(system);
     const auto apply = [&](std::span<const double> x, std::span<double> y) { problem.apply(x, y); };
-    if (ResidualProjection* projection = system.method->projection())
+    if (ResidualProjection* projection = projection_of(system))
       projection->set_values(file.read(fmt::format("projection-{}", i)), apply);
   }
 }

@@ -1,7 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/material_parameters.hpp"
 
+#include <fmt/format.h>
+
+#include "common/base/text.hpp"
+#include "solid_solver/laws/laws.hpp"
+
 namespace couplet {
+namespace {
+
+void declare_law(config::Section& s, SolidMaterial& m) {
+  std::string doc = "of finite strain, Young's modulus and Poisson's ratio being those at small strain: " +
+                    join(laws::names());
+  s.value("law", m.law).doc(doc);
+  s.check(
+      [&m]() -> std::string {
+        if (m.law.empty() || laws::find(m.law)) return "";
+        return fmt::format("there is no law '{}'. {} The laws are {}", m.law,
+                           did_you_mean(m.law, laws::names(), "laws"), join(laws::names()));
+      },
+      "law");
+  std::string wanted;
+  for (const laws::Entry& e : laws::all())
+    if (e.n_coefficients > 0)
+      wanted += fmt::format("{}{}: {}", wanted.empty() ? "" : "; ", e.name, e.coefficients);
+  s.value("law-coefficients", m.law_coefficients).doc("what a law wants beside them; " + wanted);
+  s.check(
+      [&m]() -> std::string {
+        const laws::Entry* law = laws::of(m.law);
+        if (!law || m.law_coefficients.size() <= law->n_coefficients) return "";
+        return law->n_coefficients == 0
+                   ? fmt::format("the law '{}' takes none", law->name)
+                   : fmt::format("{} numbers are given where the law '{}' takes at most {}: {}",
+                                 m.law_coefficients.size(), law->name, law->n_coefficients,
+                                 law->coefficients);
+      },
+      "law-coefficients");
+}
+
+}  // namespace
 
 void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   s.value("density", m.density).unit("kg/m^3").positive().required().doc("density");
@@ -16,6 +53,7 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
       .unit("Pa")
       .positive()
       .doc("the run says where the equivalent stress reaches it; changes nothing else");
+  if (is_elastic) declare_law(s, m);
   declare(s, m.heat);
 }
 

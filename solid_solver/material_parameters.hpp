@@ -17,6 +17,8 @@ struct SolidMaterial {
   double poissons_ratio = 0;
   HeatMaterial heat{};
   std::optional<double> yield_strength{};  // [Pa]; for the verdict on yielding alone
+  std::string law{};                       // of finite strain, see laws/; empty: Saint Venant-Kirchhoff
+  std::vector<double> law_coefficients{};  // beside E and nu
 };
 
 /// One of several materials.

@@ -54,7 +54,8 @@ double heaviness(const SolidProblem& problem) {
   return sum(mesh.comm, inertia) / sum(mesh.comm, stiffness);
 }
 
-/// Row sums of the kernel's mass times its factor, one an unknown node; empty: static.
+}  // namespace
+
 std::vector<double> node_inertia(const SolidProblem& problem) {
   if (problem.mass_factor == 0) return {};
   const std::size_t n = problem.elastic.n_unknowns(), dim = problem.mesh.dim;
@@ -63,8 +64,6 @@ std::vector<double> node_inertia(const SolidProblem& problem) {
   for (std::size_t i = 0; i < n; ++i) result[i / dim] = std::max(result[i / dim], row[i]);
   return result;
 }
-
-}  // namespace
 
 NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters)
     : problem_(problem),

@@ -34,4 +34,7 @@ class NewtonKrylov final : public SolutionMethod {
   std::unique_ptr<KrylovSolver> krylov_;
 };
 
+/// Row sums of the kernel's mass times its factor, one an unknown node; empty: static.
+std::vector<double> node_inertia(const SolidProblem& problem);
+
 }  // namespace couplet

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "common/fv/expression.hpp"
+#include "solid_solver/laws/laws.hpp"
 
 namespace couplet {
 namespace {
@@ -141,6 +142,44 @@ void check_together(config::Section& s, SolidParameters& p) {
       "time-step-control");
 }
 
+/// What finite strain cannot have, each with the key to change.
+void check_finite_strain(config::Section& s, SolidParameters& p) {
+  using Method = MethodParameters;
+  const auto refuse = [&](const char* key, bool is_wrong, const char* why) {
+    s.check(
+        [&p, is_wrong, why] { return has_finite_strain(p) && is_wrong ? std::string(why) : std::string(); },
+        key);
+  };
+  const bool is_dynamic = p.analysis == SolidParameters::Analysis::dynamic;
+  refuse("plane", p.dimension == 2 && p.plane == SolidParameters::Plane::stress,
+         "finite strain knows plane strain only; model the sheet in 3-D");
+  refuse("thermal-expansion", p.expansion.has_value(), "finite strain has no thermal strain");
+  refuse("damping", is_dynamic && p.damping && p.damping->stiffness > 0,
+         "'stiffness' damps rigid rotations at finite strain; use 'mass', or the losses of 'time-scheme'");
+  refuse("time-step-control", p.step_control.has_value(), "it estimates the error of the linear solid only");
+  refuse(
+      "solution-method",
+      p.method.type == Method::Type::segregated || p.method.type == Method::Type::block_coupled ||
+          p.method.face_gradient == Method::FaceGradient::thesis ||
+          p.method.face_gradient == Method::FaceGradient::corrected,
+      "finite strain is solved by Newton's method on 'face-gradient: symmetric' ('type: newton-krylov' or 'auto')");
+  bool has_tables = false;
+  for (const SolidMaterial& m : materials_of(p))
+    has_tables = has_tables || m.heat.youngs_modulus || m.heat.poissons_ratio;
+  s.check(
+      [&p]() -> std::string {
+        for (const SolidMaterial& m : materials_of(p))
+          if (!has_finite_strain(p) && (!m.law.empty() || !m.law_coefficients.empty()))
+            return "a law has an effect with 'kinematics: finite-strain' only";
+        return "";
+      },
+      p.materials.empty() ? "material" : "materials");
+  refuse("material", has_tables,
+         "finite strain takes no tables of the elastic constants over the temperature");
+  refuse("output", p.output.spectrum || p.output.modes > 0,
+         "'spectrum' and 'modes' are those of the linear solid; use small-strain");
+}
+
 }  // namespace
 
 void declare(config::Section& s, SolidParameters& p) {
@@ -155,6 +194,12 @@ void declare(config::Section& s, SolidParameters& p) {
   s.choice("analysis", p.analysis,
            {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}, {"thermal", Analysis::thermal}})
       .doc("static leaves out inertia; thermal conducts heat only");
+  using Kinematics = SolidParameters::Kinematics;
+  s.choice("kinematics", p.kinematics,
+           {{"small-strain", Kinematics::small_strain}, {"finite-strain", Kinematics::finite_strain}})
+      .doc(
+          "finite-strain: large rotations and strains, material.law by an energy, Newton's method on the symmetric "
+          "face gradient");
   const bool is_elastic = p.analysis != SolidParameters::Analysis::thermal;
   s.optional_section<bool>(
       "material", p.material_given,
@@ -202,6 +247,7 @@ void declare(config::Section& s, SolidParameters& p) {
   s.section(
       "output", [&](config::Section& o) { declare(o, p.output); }, "fields written at the output interval");
   check_together(s, p);
+  check_finite_strain(s, p);
 }
 
 std::vector<SolidMaterial> materials_of(const SolidParameters& p) {
@@ -241,7 +287,10 @@ bool volume_by_cells(const SolidParameters& p) {
   using VolumeStrain = MethodParameters::VolumeStrain;
   if (p.method.volume_strain != VolumeStrain::automatic) return p.method.volume_strain == VolumeStrain::cells;
   const bool plane_stress = p.dimension == 2 && p.plane == SolidParameters::Plane::stress;
-  return !plane_stress && largest_poissons_ratio(p) >= nearly_incompressible;
+  if (plane_stress || largest_poissons_ratio(p) < nearly_incompressible) return false;
+  return !has_finite_strain(p) || std::ranges::all_of(materials_of(p), [](const SolidMaterial& m) {
+    return laws::of(m.law)->make({1, 1}, {})->has_bulk();
+  });
 }
 
 ElasticBody elastic_body(const SolidParameters& p, const Mesh& mesh) {

@@ -21,11 +21,13 @@ namespace couplet {
 struct SolidParameters {
   enum class Analysis { static_, dynamic, thermal };
   enum class Plane { strain, stress };
+  enum class Kinematics { small_strain, finite_strain };
   std::string mesh;
   std::map<std::string, double> mesh_parameters;
   int dimension = 3;
   Plane plane = Plane::strain;
   Analysis analysis = Analysis::dynamic;
+  Kinematics kinematics = Kinematics::small_strain;
   SolidMaterial material;
   std::optional<bool> material_given;  // `material` stands in the YAML
   ZoneMaterials materials;             // by zone of the mesh
@@ -59,6 +61,10 @@ inline LameConstants lame_constants(const SolidParameters& parameters) {
   return lame_constants(parameters, parameters.material);
 }
 
+inline bool has_finite_strain(const SolidParameters& p) {
+  return p.kinematics == SolidParameters::Kinematics::finite_strain &&
+         p.analysis != SolidParameters::Analysis::thermal;
+}
 /// From here up the volume strain of faces locks.
 inline constexpr double nearly_incompressible = 0.4;
 double largest_poissons_ratio(const SolidParameters& parameters);

@@ -43,6 +43,7 @@ Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
       kernel_(mesh_, elastic_, face_gradient_scheme(parameters_)),
       prescribed_(mesh_, boundaries_, elastic_) {
   check_supports();
+  if (has_finite_strain(parameters_)) finite_ = std::make_unique<FiniteStrain>(mesh_, elastic_, parameters_);
   find_mass();
   if (!boundaries_.interface_patches().empty()) {
     interface_ = std::make_unique<InterfaceMap>(mesh_, boundaries_.interface_patches());
@@ -101,6 +102,7 @@ void Solid::find_mass() {
   std::vector<double> densities;
   for (Index c = 0; c < mesh_.cells.n_local(); ++c) densities.push_back(density(c));
   has_mass_ = kernel_.set_density(densities);
+  if (finite_) finite_->set_density(densities);
 }
 
 void Solid::start_from_rest() {
@@ -200,7 +202,7 @@ Exchange Solid::solve(const Exchange& in) {
     for (std::size_t i = 0; i < stages_.size(); ++i) solve_stage(stages_[i], load, i == 0);
   } catch (const SolveFailure& failure) {
     // Linear equations: a shorter step meets the same ones.
-    if (is_dynamic() || step_.scheme != Scheme::standalone) throw;
+    if (is_dynamic() || finite_ || step_.scheme != Scheme::standalone) throw;
     throw SchemeFailure("The static step could not be solved, and a shorter one meets the same equations: {}",
                         failure.what());
   }
@@ -229,11 +231,15 @@ void Solid::update_trial_ghosts() {
   elastic_.join_twins(trial_.face_v);
 }
 
+ResidualProjection* Solid::projection_of(const System& system) {
+  return system.method ? system.method->projection() : nullptr;
+}
+
 StepReport Solid::accept_step() {
   if (!is_dynamic()) judge_inertia();
   for (const auto& effect : effects_) effect->accept_step();
   for (const StageWork& work : stages_)
-    if (ResidualProjection* projection = work.system->method->projection()) projection->accept();
+    if (ResidualProjection* projection = projection_of(*work.system)) projection->accept();
   std::swap(state_, trial_);
   std::swap(known_accepted_, known_);
   std::swap(known_rate_accepted_, known_rate_);

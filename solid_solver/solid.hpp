@@ -19,6 +19,7 @@
 #include "solid_solver/boundaries.hpp"
 #include "solid_solver/effect.hpp"
 #include "solid_solver/energies.hpp"
+#include "solid_solver/finite_strain.hpp"
 #include "solid_solver/parameters.hpp"
 #include "solid_solver/solution_method.hpp"
 #include "solid_solver/strain_audit.hpp"
@@ -103,6 +104,8 @@ class Solid final : public Participant {
   double density(Index cell) const { return materials_[mesh_.material_of(cell)].density; }
   const std::vector<std::unique_ptr<SolidEffect>>& effects() const { return effects_; }
   const SolverEffort& effort() const { return effort_; }
+  /// Of the last solve at large strain.
+  const std::vector<NewtonIterate>& newton() const { return finite_->iterates(); }
   /// Packed values of all local points at the accepted time. Collective.
   std::vector<double> point_displacement() const;
   std::vector<double> point_velocity() const;
@@ -148,6 +151,13 @@ class Solid final : public Participant {
   struct Placed {
     std::vector<double> cells, faces, points;
   };
+  // Of large strain, finite_fields.cpp.
+  SolveStatistics solve_finite(const StageWork& work);
+  void linearise_accepted() const;
+  std::vector<Tensor3> finite_face_stress(Index first, Index count) const;
+  std::vector<Tensor3> finite_cell_stress() const;
+  void add_finite_work(const StageWork& work, const SolidState& before);
+  void audit_finite();
   bool is_dynamic() const { return parameters_.analysis == SolidParameters::Analysis::dynamic; }
   /// The acceleration is written or watched, so that it is kept.
   bool wants_acceleration() const;
@@ -174,6 +184,8 @@ class Solid final : public Participant {
   void apply_stiffness();
   std::vector<Stage> stages_of(double dt) const;
   System& system_for(double mass_factor);
+  /// Null: it has none.
+  static ResidualProjection* projection_of(const System& system);
   void announce(const System& system);
   void prepare_stage(StageWork& work);
   void subtract_prescribed(StageWork& work);
@@ -218,8 +230,9 @@ class Solid final : public Participant {
   const std::vector<SolidMaterial> materials_;
   SolidBoundaries boundaries_;
   ElasticOperator elastic_;
-  ElasticKernel kernel_;   // the rows of elastic_ with the face gradient that was chosen
-  bool has_mass_ = false;  // the kernel has its own, and all its nodes inertia
+  ElasticKernel kernel_;                  // the rows of elastic_ with the face gradient that was chosen
+  std::unique_ptr<FiniteStrain> finite_;  // large strain: in place of the kernel's Hooke's law; null: small
+  bool has_mass_ = false;                 // the kernel has its own, and all its nodes inertia
   PrescribedDisplacement prescribed_;
   std::unique_ptr<InterfaceMap> interface_;  // none: no interface patch
   Interface description_;

@@ -94,6 +94,7 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
 
 FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters) {
   using FaceGradient = MethodParameters::FaceGradient;
+  if (has_finite_strain(parameters)) return FaceGradientScheme::symmetric;
   switch (parameters.method.face_gradient) {
     case FaceGradient::symmetric:
       return FaceGradientScheme::symmetric;

@@ -8,6 +8,7 @@
 #include "common/log/log.hpp"
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/newton_krylov.hpp"
 #include "solid_solver/solid.hpp"
 #include "solid_solver/system.hpp"
 
@@ -69,8 +70,12 @@ Solid::System& Solid::system_for(double mass_factor) {
   if (mass_factor > 0)
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
       system->inertia.push_back(mass_factor * density(c) * mesh_.reference.volume[c]);
-  system->method = make_solution_method(problem_of(*system), parameters_.method);
-  elastic_.forget_faces();  // what the method needs of them it has by now
+  if (finite_) {
+    system->node_inertia = node_inertia(problem_of(*system));
+  } else {
+    system->method = make_solution_method(problem_of(*system), parameters_.method);
+    elastic_.forget_faces();  // what the method needs of them it has by now
+  }
   announce(*system);
   systems_.insert(systems_.begin(), std::move(system));
   return *systems_.front();
@@ -81,7 +86,7 @@ SolidProblem Solid::problem_of(const System& system) const {
 }
 
 void Solid::announce(const System& system) {
-  const std::string chosen = system.method->name();
+  const std::string chosen = finite_ ? finite_->name() : system.method->name();
   if (chosen == method_announced_) return;
   method_announced_ = chosen;
   log::info("Solution method: {}", chosen);
@@ -123,6 +128,7 @@ void Solid::subtract_prescribed(StageWork& work) {
     if (!work.known_change.empty()) work.known_change[i] = change;
     work.known[i] = start[i] + (place + beta / work.stage.dt) * change;
   }
+  if (finite_) return;  // it takes the known values themselves
   std::vector<double> still(work.rhs.size(), 0), force(work.rhs.size());
   kernel_.apply(still, work.known, force);
   for (std::size_t i = 0; i < force.size(); ++i) work.rhs[i] -= force[i];
@@ -197,7 +203,8 @@ void Solid::solve_stage(const StageWork& work, std::span<const double> interface
   guess(work, now);
   {
     const log::ScopedTimer timer(log::timers(), "solid: linear solver");
-    const SolveStatistics statistics = work.system->method->solve(rhs_, unknowns_);
+    const SolveStatistics statistics =
+        finite_ ? solve_finite(work) : work.system->method->solve(rhs_, unknowns_);
     effort_ = {effort_.solves + 1, effort_.iterations + statistics.iterations,
                effort_.inner_iterations + statistics.inner_iterations, statistics.residual};
   }
@@ -219,6 +226,13 @@ void Solid::solve_stage(const StageWork& work, std::span<const double> interface
     add_symmetric_work(work, before);
   else
     add_work(work, before);
+}
+
+/// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
+SolveStatistics Solid::solve_finite(const StageWork& work) {
+  FiniteStrain::Load load{rhs_, work.known, {}, work.system->mass_factor};
+  if (!is_dynamic() && !work.known.empty()) load.before = known_accepted_;
+  return finite_->solve(load, work.system->node_inertia, unknowns_);
 }
 
 void Solid::add_inertia(const StageWork& work, const SolidState& now) {

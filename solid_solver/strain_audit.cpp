@@ -136,6 +136,7 @@ double Solid::residual_work(std::span<const double> unknowns) const {
 
 /// Of the accepted state; a doubtful one is told once, loudly. Collective.
 void Solid::audit_answer() {
+  if (finite_) return audit_finite();
   const std::vector<double> points = point_displacement();
   const StrainAudit strain = audit_strain(points, !is_dynamic());
   if (!audit_ || strain.is_doubtful() || !audit_->is_doubtful()) audit_ = strain;

@@ -12,9 +12,10 @@ namespace couplet {
 
 /// What belongs to one size of the inertia term: factors and preconditioners are made once for it.
 struct Solid::System {
-  double mass_factor;           ///< (d + alpha c) / s, see Solid [1/s^2]; 0: static
-  std::vector<double> inertia;  ///< per owned cell: mass factor times mass [N/m]; empty: static
-  std::unique_ptr<SolutionMethod> method;
+  double mass_factor;                      ///< (d + alpha c) / s, see Solid [1/s^2]; 0: static
+  std::vector<double> inertia;             ///< per owned cell: mass factor times mass [N/m]; empty: static
+  std::unique_ptr<SolutionMethod> method;  ///< null: finite strain has its own
+  std::vector<double> node_inertia;        ///< of finite strain: of the unknown nodes; empty: static
 };
 
 /// A stage of the step under way, with all that does not depend on the interface load.

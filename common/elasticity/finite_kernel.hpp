@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/finite_law.hpp"
+
+namespace couplet {
+
+/// The symmetric face gradient at large strain, total Lagrangian: with F_f = I + G_f(u),
+///   E(u) = sum_f V_f W(F_f),   inner forces dE/du,   tangent d2E/du2 = sum_f V_f B_f^T (dP/dF) B_f,
+/// P = dW/dF. The tangent is symmetric on any mesh and for any law. One volume ratio a cell (near
+/// incompressibility, ElasticOperator::volume_by_cells): the bulk part of the law sees the mean
+///   J_P = sum_f V_fP det F_f / V_P,   E = sum_f V_f [W - U](F_f) + sum_P V_P U(J_P).
+/// Three-cornered faces share 0.9 of their energy with their edges, which see the mean of the faces' F round
+/// them (SharedEdges). Rows, known columns, springs and mass: as SymmetricKernel has them.
+class FiniteKernel {
+ public:
+  virtual ~FiniteKernel() = default;
+  /// Of the local cells [kg/m^3]; without it there is no mass.
+  virtual void set_density(std::span<const double> of_cells) = 0;
+  /// result = dE/du (u) + springs + mass_factor M u; keeps what the tangent there needs. Collective.
+  virtual void linearise(std::span<const double> unknowns, std::span<const double> known, double mass_factor,
+                         std::span<double> result) = 0;
+  /// result = [d2E/du2 + springs + mass_factor M] v at the u of the last linearise(); `known`: changes of the known
+  /// columns, empty: zeros. Collective.
+  virtual void apply_tangent(std::span<const double> v, std::span<const double> known, double mass_factor,
+                             std::span<double> result) = 0;
+  /// E of the last linearise(), this rank's part [J]; springs are not counted.
+  virtual double energy() const = 0;
+
+  /// The smallest det F of the last linearise() on this rank, and the face where it is.
+  struct Worst {
+    double ratio = 1;
+    Index face = -1;
+  };
+  virtual Worst worst() const = 0;
+  /// Takes (flux face, F, P) of the last linearise(), those of this rank (its owner's cell is); F(i, j) =
+  /// d x_i / d X_j, and with edges what the face's share of them makes of it.
+  using Take = std::function<void(Index, const Tensor3&, const Tensor3&)>;
+  virtual void visit(const Take& take) = 0;
+  /// Of a local node (cells, then boundary faces) at the last linearise(), or what was applied since.
+  virtual Vec3 displacement(Index node) const = 0;
+  /// As ElasticKernel::holding_forces(), of displacements `unknowns`. Collective.
+  virtual std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                           const ElasticLoads& loads) = 0;
+};
+
+/// `of_materials`: one law a material of the mesh (one: of all); kept by reference like mesh and rows.
+/// Collective.
+std::unique_ptr<FiniteKernel> make_finite_kernel(const Mesh& mesh, const ElasticOperator& rows,
+                                                 std::vector<const FiniteLaw*> of_materials);
+
+}  // namespace couplet

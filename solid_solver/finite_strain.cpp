@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/finite_strain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/laws/laws.hpp"
+#include "solid_solver/solution_method.hpp"
+
+namespace couplet {
+namespace {
+
+// Iterations after which a shorter load step is the cheaper way.
+constexpr int most_iterations = 20;
+// A step may multiply the residual by this much, of a residual of at least `small` of the load's.
+constexpr double growth = 30, small = 1e-3;
+// The first iteration of a step may do more: it goes through the linear theory's idea of the new state.
+constexpr double first = 1e6;
+// Of the step length: below it the direction is useless.
+constexpr double shortest = 1. / 128;
+// Forcing of the linear solves.
+constexpr double loosest = 0.05, tightest = 1e-4;
+constexpr std::size_t solvers_kept = 2;
+// Of a stiffness, in a residual that is nothing but rounding.
+constexpr double last_digits = 2e-15;
+// A correction of this size beside the displacement is rounding.
+constexpr double rounding = 1e-14;
+
+}  // namespace
+
+FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters)
+    : mesh_(mesh),
+      rows_(rows),
+      tolerance_(parameters.method.relative_tolerance),
+      most_linear_(parameters.method.max_iterations) {
+  bool has_triangles = false;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
+    has_triangles = has_triangles || (mesh.dim == 3 && mesh.face_points[f].size() == 3);
+  if (any(mesh.comm, has_triangles))
+    throw Error(
+        "kinematics: finite-strain: the mesh has three-cornered faces (tetrahedra, prisms), which this version does "
+        "not take at large strain; mesh with hexahedra.");
+  std::vector<const FiniteLaw*> all;
+  for (const SolidMaterial& material : materials_of(parameters)) {
+    const laws::Entry& law = *laws::of(material.law);
+    laws_.push_back(law.make(lame_constants(parameters, material), material.law_coefficients));
+    all.push_back(laws_.back().get());
+    if (rows.volume_by_cells() && !laws_.back()->has_bulk())
+      throw Error(
+          "solution-method.volume-strain: cells: the law '{}' has no part of the volume alone that could be one a "
+          "cell; take 'volume-strain: faces' or another law.",
+          law.name);
+  }
+  kernel_ = make_finite_kernel(mesh, rows, all);
+  r_.resize(rows.n_unknowns());
+  trial_ = du_ = r_;
+  noise_ = noise();
+}
+
+TangentSolver& FiniteStrain::solver_for(double mass_factor, const std::vector<double>& node_inertia) {
+  const auto same = [&](const std::unique_ptr<TangentSolver>& s) {
+    return std::abs(s->mass_factor() - mass_factor) <= 1e-10 * mass_factor;
+  };
+  const auto found = std::ranges::find_if(solvers_, same);
+  if (found != solvers_.end()) {
+    std::rotate(solvers_.begin(), found, found + 1);
+    return *solvers_.front();
+  }
+  if (solvers_.size() == solvers_kept) solvers_.pop_back();
+  solvers_.insert(solvers_.begin(),
+                  std::make_unique<TangentSolver>(mesh_, rows_, *kernel_, mass_factor, node_inertia));
+  return *solvers_.front();
+}
+
+/// What rounding leaves in the rows at least: some last digits of the stiffness times the area of a face.
+double FiniteStrain::noise() const {
+  double square = 0;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;
+    const LameConstants lame = rows_.lame(mesh_.owner[f]);
+    const double force = (2 * lame.mu + lame.lambda) * mesh_.reference.face_area[f].norm();
+    square += 2 * force * force;
+  }
+  return last_digits * std::sqrt(sum(mesh_.comm, square));
+}
+
+/// r = b - A(u) and its norm; infinite where a face is inside out.
+double FiniteStrain::residual(const Load& load, std::span<const double> u, double& ratio) {
+  kernel_->linearise(u, load.known, load.mass_factor, r_);
+  ratio = min(mesh_.comm, kernel_->worst().ratio);
+  if (!(ratio > 0)) return std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = load.rows[i] - r_[i];
+  const double size = norm(mesh_.comm, r_);
+  return std::isfinite(size) ? size : std::numeric_limits<double>::infinity();
+}
+
+/// The motion of what is known goes into the body by one linear step: left to the first guess it would be a jump
+/// in the cells beside it.
+void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::span<double> u) {
+  std::vector<double> change(load.known.begin(), load.known.end());
+  double size = 0;
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    change[i] -= load.before[i];
+    size = std::max(size, std::abs(change[i]));
+  }
+  if (!(max(mesh_.comm, size) > 0)) return;
+  double ratio = 1;
+  if (!std::isfinite(residual({load.rows, load.before, {}, load.mass_factor}, u, ratio))) return;
+  solver.follow(true);
+  const std::vector<double> still(u.size(), 0);
+  kernel_->apply_tangent(still, change, load.mass_factor, trial_);
+  for (std::size_t i = 0; i < r_.size(); ++i) r_[i] -= trial_[i];
+  solver.solve(r_, du_, tightest, most_linear_);
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] += du_[i];
+}
+
+/// The face with the smallest det F of all ranks, in words.
+std::string FiniteStrain::where_worst() const {
+  struct Place {
+    double ratio, x[3];
+  };
+  const FiniteKernel::Worst worst = kernel_->worst();
+  Place here{worst.ratio, {0, 0, 0}};
+  if (worst.face >= 0)
+    for (int a = 0; a < 3; ++a) here.x[a] = mesh_.reference.cell_centre[mesh_.owner[worst.face]][a];
+  const std::vector<Place> all = all_gather(mesh_.comm, std::vector<Place>{here});
+  const Place& w = *std::ranges::min_element(all, {}, &Place::ratio);
+  if (!(w.ratio < 1)) return "No cell is compressed.";
+  return fmt::format("The worst cell is at ({:.4g}, {:.4g}, {:.4g}) m (undeformed), where det F = {:.3g}.",
+                     w.x[0], w.x[1], w.x[2], w.ratio);
+}
+
+/// u + s du with the largest s of 1, 1/2, ... that leaves det F positive and the residual below `most`.
+bool FiniteStrain::search(const Load& load, std::span<double> u, NewtonIterate& now, double most) {
+  for (double s = 1; s >= shortest; s *= 0.5) {
+    for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + s * du_[i];
+    const double size = residual(load, trial_, now.ratio);
+    now.length = s;
+    now.residual = size;
+    if (!(size <= most)) continue;
+    std::ranges::copy(trial_, u.begin());
+    return true;
+  }
+  return false;
+}
+
+SolveStatistics FiniteStrain::solve(const Load& load, const std::vector<double>& node_inertia,
+                                    std::span<double> u) {
+  TangentSolver& solver = solver_for(load.mass_factor, node_inertia);
+  SolveStatistics statistics;
+  iterates_.clear();
+  if (!load.before.empty()) follow_known(load, solver, u);
+  NewtonIterate now;
+  now.residual = residual(load, u, now.ratio);
+  if (!std::isfinite(now.residual))
+    throw SolveFailure("The first guess of the step turns a cell inside out. {}", where_worst());
+  const double scale = std::max(norm(mesh_.comm, load.rows), now.residual);
+  double before = now.residual;
+  for (;;) {
+    iterates_.push_back(now);
+    iterates_.back().residual /= scale > 0 ? scale : 1;
+    if (now.residual <= std::max(tolerance_ * scale, noise_)) break;
+    if (statistics.iterations == most_iterations)
+      throw SolveFailure(
+          "Newton's method did not find the equilibrium: after {} iterations the residual is {:.2g} of the load "
+          "({:.0e} wanted). {}",
+          statistics.iterations, now.residual / scale, tolerance_, where_worst());
+    const double ratio = statistics.iterations == 0 ? 1 : now.residual / before;
+    const double wanted = 0.5 * tolerance_ * scale / now.residual;
+    const double eta =
+        std::max(std::clamp(0.9 * ratio * ratio, tightest, loosest), std::min(wanted, loosest));
+    solver.follow(statistics.iterations % 2 == 0);
+    now.linear = solver.solve(r_, du_, eta, most_linear_).iterations;
+    ++statistics.iterations;
+    statistics.inner_iterations += now.linear;
+    before = now.residual;
+    const double correction = norm(mesh_.comm, du_), size = norm(mesh_.comm, u);
+    if (!search(load, u, now,
+                (statistics.iterations == 1 ? first : growth) * std::max(before, small * scale)))
+      throw SolveFailure(
+          "Newton's method found no way on: steps down to {:.3f} of its length turn a cell inside out or raise the "
+          "residual more than {:g}-fold. {}",
+          now.length, growth, where_worst());
+    if (correction <= rounding * size && now.residual < small * scale) {
+      iterates_.push_back(now);
+      iterates_.back().residual /= scale;
+      break;
+    }
+  }
+  statistics.residual = iterates_.back().residual;
+  log::debug("{}", text());
+  return statistics;
+}
+
+std::string FiniteStrain::text() const {
+  std::string residuals;
+  int linear = 0;
+  for (const NewtonIterate& i : iterates_) {
+    residuals += fmt::format("{}{:.1e}", residuals.empty() ? "" : " ", i.residual);
+    linear += i.linear;
+  }
+  return fmt::format("Newton: residuals {}, {} linear iterations, smallest det F {:.3g}", residuals, linear,
+                     iterates_.empty() ? 1.0 : iterates_.back().ratio);
+}
+
+double FiniteStrain::energy(std::span<const double> unknowns, std::span<const double> known) {
+  std::vector<double> rows(rows_.n_unknowns());
+  kernel_->linearise(unknowns, known, 0, rows);
+  return sum(mesh_.comm, kernel_->energy());
+}
+
+}  // namespace couplet

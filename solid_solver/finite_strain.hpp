@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/elasticity/finite_kernel.hpp"
+#include "solid_solver/parameters.hpp"
+#include "solid_solver/tangent_solver.hpp"
+
+namespace couplet {
+
+/// One iterate of Newton's method.
+struct NewtonIterate {
+  double residual = 0;  ///< norm over that of the load
+  double length = 1;    ///< of the step that led here
+  double ratio = 1;     ///< smallest det F of any face
+  int linear = 0;       ///< iterations of the linear solver
+};
+
+/// The equilibrium of a body at large strain, inertia included: M m u + dE/du(u) = b. Newton's method with the
+/// consistent tangent, solved as exactly as the last step deserves [eisenstat1996] (formula 2.6: eta =
+/// 0.9 (r / r_before)^2, between 1e-4 and 0.05), and a line search that keeps det F positive. The residual may
+/// grow on the way: a beam that is bent passes states whose membrane forces are far larger than those at either
+/// end.
+class FiniteStrain {
+ public:
+  /// Throws Error for what finite strain cannot have. Mesh and rows by reference. Collective.
+  FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters);
+
+  FiniteKernel& kernel() { return *kernel_; }
+  /// For the log.
+  static std::string name() { return "Newton's method at large strain, symmetric face gradient"; }
+  const FiniteLaw& law(std::size_t material) const { return *laws_[material]; }
+  /// Of the local cells; dynamic analyses.
+  void set_density(std::span<const double> of_cells) { kernel_->set_density(of_cells); }
+  struct Load {
+    std::span<const double> rows;   ///< b
+    std::span<const double> known;  ///< columns of the operator; empty: zeros
+    std::span<const double>
+        before;              ///< the known columns of the first guess, from which a first linear step leads
+                             ///< to `known`; empty: the guess has them already
+    double mass_factor = 0;  ///< m
+  };
+  /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then. Collective.
+  SolveStatistics solve(const Load& load, const std::vector<double>& node_inertia, std::span<double> u);
+  /// Of the last solve.
+  const std::vector<NewtonIterate>& iterates() const { return iterates_; }
+  /// "3 iterations of Newton's method, ...", of the last solve.
+  std::string text() const;
+  /// E of a displacement over all ranks [J]. Collective.
+  double energy(std::span<const double> unknowns, std::span<const double> known);
+
+ private:
+  double residual(const Load& load, std::span<const double> u, double& ratio);
+  bool search(const Load& load, std::span<double> u, NewtonIterate& now, double most);
+  void follow_known(const Load& load, TangentSolver& solver, std::span<double> u);
+  double noise() const;
+  TangentSolver& solver_for(double mass_factor, const std::vector<double>& node_inertia);
+  std::string where_worst() const;
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  double tolerance_, noise_;
+  int most_linear_;
+  std::vector<std::unique_ptr<FiniteLaw>> laws_;
+  std::unique_ptr<FiniteKernel> kernel_;
+  std::vector<std::unique_ptr<TangentSolver>> solvers_;  // by size of the inertia, latest first
+  std::vector<double> r_, trial_, du_;
+  std::vector<NewtonIterate> iterates_;
+};
+
+}  // namespace couplet

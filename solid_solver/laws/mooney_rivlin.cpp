@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/laws/law_of.hpp"
+#include "solid_solver/laws/laws.hpp"
+
+namespace couplet::laws {
+namespace {
+
+/// W = c10 (i1 - 3) + c01 (i2 - 3) + K/2 (J - 1)^2 with the isochoric invariants i1, i2 and the shear modulus
+/// 2 (c10 + c01) at small strain.
+struct MooneyRivlin {
+  static constexpr bool has_bulk = true, has_second_invariant = true;
+  double c10, c01, K;
+
+  template <class T>
+  EnergyOf<T> shape(const T& I1, const T& I2, const T& J) const {
+    const Isochoric<T> iso(I1, I2, J);
+    EnergyOf<T> psi;
+    psi.w = c10 * (iso.i1 - 3.0) + c01 * (iso.i2 - 3.0);
+    psi.w1 = c10 + 0.0 * J;
+    psi.w2 = c01 + 0.0 * J;
+    return iso.energy(psi);
+  }
+  template <class T>
+  BulkOf<T> bulk(const T& J) const {
+    return quadratic_bulk(K, J);
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<FiniteLaw> mooney_rivlin(const LameConstants& lame, std::span<const double> coefficients) {
+  const double share = coefficients.empty() ? 0 : coefficients[0];
+  return std::make_unique<LawOf<MooneyRivlin>>(
+      MooneyRivlin{lame.mu / 2 * (1 - share), lame.mu / 2 * share, bulk_modulus(lame)});
+}
+
+}  // namespace couplet::laws

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/elasticity/current_rigid_modes.hpp"
+#include "common/elasticity/elastic_preconditioner.hpp"
+#include "common/elasticity/finite_kernel.hpp"
+#include "common/linalg/krylov.hpp"
+
+namespace couplet {
+
+/// Solves K(u) du = r for the tangent of a deformed body by conjugate gradients. Preconditioner: the compact
+/// component-wise operator of the undeformed body, made once and applied in the frame that turns with each
+/// cell (residuals turned back, corrections turned forth), and rigid motions of aggregates about their present
+/// places where the body is not small.
+class TangentSolver {
+ public:
+  /// `node_inertia`: mass factor times mass of the unknown nodes [N/m]; empty: static. All by reference.
+  /// Collective.
+  TangentSolver(const Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel, double mass_factor,
+                const std::vector<double>& node_inertia);
+
+  double mass_factor() const { return mass_factor_; }
+  /// The preconditioner follows the body: frames, and `with_modes` also the rigid motions. At the last
+  /// linearise() of the kernel. Collective.
+  void follow(bool with_modes);
+  /// du holds the correction. Throws SolveFailure. Collective.
+  SolveStatistics solve(std::span<const double> r, std::span<double> du, double relative_tolerance,
+                        int max_iterations);
+
+ private:
+  void precondition(std::span<const double> r, std::span<double> z);
+  void find_frames(std::span<const Tensor3> gradient);
+  void turn(std::span<const double> from, bool back, std::span<double> to) const;
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  FiniteKernel& kernel_;
+  double mass_factor_;
+  std::unique_ptr<ElasticPreconditioner> compact_;
+  std::unique_ptr<CurrentRigidModes> modes_;  // null: the body is small
+  std::vector<Tensor3> frame_;                // of the unknown nodes
+  std::vector<double> turned_, correction_;
+  std::unique_ptr<KrylovSolver> krylov_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Large strain: bending against converged references, rigid rotation, Newton's tail, ranks, restart, refusals.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <numbers>
+
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+constexpr double E = 15.293e6, side = 0.2, length = 2;
+
+/// Case E: a cantilever of square section, its tip pulled along the diagonal by K E I / L^2, L = 10 sides.
+SolidParameters bent(const std::string& law, double K) {
+  SolidParameters p = box_parameters(3);
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.material = {1000, E, 0.3};
+  p.material.law = law;
+  p.boundaries["zmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  const double inertia = std::pow(side, 4) / 12, force = K * E * inertia / (length * length);
+  const std::string pull = fmt::format("t*{:.17g}", force / (side * side) / std::sqrt(2.0));
+  p.boundaries["zmax"] = boundary(Type::traction, {pull, pull, "0"});
+  return p;
+}
+
+RawMesh beam(BoxCells cells, int n, int along) {
+  return make_box(cells, {n, n, along}, Vec3(-side / 2, -side / 2, 0), Vec3(side / 2, side / 2, length));
+}
+
+std::unique_ptr<Solid> make(const RawMesh& raw, const SolidParameters& p, MPI_Comm comm = MPI_COMM_WORLD) {
+  return std::make_unique<Solid>(distribute(comm, raw), p, SolidContext{});
+}
+
+/// Of the middle of the tip, over the length, on all ranks.
+double deflection(const Solid& solid) {
+  const std::vector<double> u = solid.point_displacement();
+  double most = 0;
+  for (std::size_t i = 0; i < u.size(); i += 3)
+    if ((solid.mesh().reference_points[i / 3] - Vec3(0, 0, length)).norm() < 1e-9)
+      most = std::hypot(u[i], u[i + 1]);
+  return max(solid.mesh().comm, most) / length;
+}
+
+TEST(FiniteStrain, bends_as_converged_finite_elements_do) {
+  const auto svk = make(beam(BoxCells::hexahedra, 2, 20), bent("saint-venant-kirchhoff", 1.6));
+  step(*svk, 1);
+  EXPECT_NEAR(deflection(*svk), 0.43134, 0.01 * 0.43134);
+  const auto neo = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1.6));
+  step(*neo, 1);
+  EXPECT_NEAR(deflection(*neo), 0.430758, 0.01 * 0.43);
+}
+
+TEST(FiniteStrain, equals_small_strain_under_small_loads) {
+  SolidParameters p = bent("", 1e-6);
+  const auto large = make(beam(BoxCells::hexahedra, 2, 20), p);
+  p.kinematics = SolidParameters::Kinematics::small_strain;
+  p.method.face_gradient = FaceGradient::symmetric;
+  const auto small = make(beam(BoxCells::hexahedra, 2, 20), p);
+  step(*large, 1);
+  step(*small, 1);
+  EXPECT_NEAR(deflection(*large), deflection(*small), 1e-5 * deflection(*small));
+}
+
+// Residuals square from one iteration to the next near the end, less what the inexact solves leave.
+TEST(FiniteStrain, newton_ends_superlinearly) {
+  const auto solid = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1));
+  step(*solid, 1);
+  const auto& tail = solid->newton();
+  ASSERT_GE(tail.size(), 4U);
+  EXPECT_LE(tail.size(), 12U);
+  bool seen = false;
+  for (std::size_t i = 1; i < tail.size(); ++i) seen = seen || tail[i].residual < 2e-3 * tail[i - 1].residual;
+  EXPECT_TRUE(seen);
+}
+
+TEST(FiniteStrain, ranks_agree) {
+  const RawMesh raw = beam(BoxCells::hexahedra, 2, 20);
+  const auto whole = make(raw, bent("neo-hookean", 1), MPI_COMM_SELF),
+             parts = make(raw, bent("neo-hookean", 1));
+  step(*whole, 1);
+  step(*parts, 1);
+  EXPECT_NEAR(deflection(*parts), deflection(*whole), 1e-8 * deflection(*whole));
+}
+
+// All faces turn by 720 degrees about an oblique place: no stress, whatever the angle.
+TEST(FiniteStrain, rigid_rotation_makes_no_stress) {
+  SolidParameters p = box_parameters(3);
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  const std::string turn = fmt::format("({:.17g}*t)", 4 * std::numbers::pi);
+  for (const char* name : {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"})
+    p.boundaries[name] =
+        boundary(Type::fixed_displacement, {"(cos(" + turn + ")-1)*x - sin(" + turn + ")*(y-3)",
+                                            "sin(" + turn + ")*x + (cos(" + turn + ")-1)*(y-3)", "0"});
+  for (const BoxCells cells : {BoxCells::hexahedra}) {
+    RawMesh raw = make_box(cells, {3, 3, 3}, Vec3::Zero(), Vec3::Ones());
+    perturb_interior(raw, 0.2, 5);
+    for (const char* law : {"saint-venant-kirchhoff", "neo-hookean"}) {
+      p.material.law = law;
+      const auto solid = make(raw, p);
+      double most = 0;
+      for (int i = 0; i < 24; ++i) {
+        step(*solid, 1. / 24);
+        for (const Tensor3& s : solid->cell_stress(solid->point_displacement()))
+          most = std::max(most, s.cwiseAbs().maxCoeff());
+      }
+      EXPECT_LT(max(solid->mesh().comm, most), 1e-9 * p.material.youngs_modulus) << law;
+    }
+  }
+}
+
+/// A homogeneous deformation is met exactly on any cells, and the stress is the law's.
+TEST(FiniteStrain, homogeneous_deformation_is_exact) {
+  SolidParameters p = box_parameters(3);
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.material = {1000, 1e6, 0.3};
+  p.material.law = "nearly-incompressible-neo-hookean";
+  Tensor3 g;
+  g << 0.3, 0.1, 0, -0.2, 0.1, 0.05, 0.1, 0, -0.2;
+  const auto row = [&](int a) { return fmt::format("{}*x + {}*y + {}*z", g(a, 0), g(a, 1), g(a, 2)); };
+  for (const char* name : {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"})
+    p.boundaries[name] = boundary(Type::fixed_displacement, {row(0), row(1), row(2)});
+  const Tensor3 f = Tensor3::Identity() + g, b = f * f.transpose();
+  const double j = f.determinant(), mu = 1e6 / 2.6, K = 1e6 / 1.2;
+  const Tensor3 wanted = K * (j - 1) * Tensor3::Identity() +
+                         mu * std::pow(j, -5. / 3) * (b - b.trace() / 3 * Tensor3::Identity());
+  for (const auto volume : {MethodParameters::VolumeStrain::faces, MethodParameters::VolumeStrain::cells})
+    for (const BoxCells cells : {BoxCells::hexahedra}) {
+      p.method.volume_strain = volume;
+      RawMesh raw = make_box(cells, {3, 3, 3}, Vec3::Zero(), Vec3::Ones());
+      perturb_interior(raw, 0.15, 7);
+      const auto solid = make(raw, p);
+      step(*solid, 1);
+      for (const Tensor3& s : solid->cell_stress(solid->point_displacement()))
+        EXPECT_LT((s - wanted).cwiseAbs().maxCoeff(), 1e-8 * wanted.norm());
+    }
+}
+
+TEST(FiniteStrain, restart_in_the_middle_of_the_load_is_bit_for_bit) {
+  const Mesh mesh = distribute(MPI_COMM_WORLD, beam(BoxCells::hexahedra, 2, 20));
+  const auto another = [&] { return std::make_unique<Solid>(mesh, bent("neo-hookean", 4), SolidContext{}); };
+  const auto through = another(), before = another(), after = another();
+  step(*through, 0.25);
+  step(*before, 0.25);
+  int number = getpid();
+  MPI_Bcast(&number, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("finite-strain-{}.h5", number);
+  {
+    CheckpointWriter writer(MPI_COMM_WORLD, file);
+    before->save(writer);
+    writer.close();
+  }
+  CheckpointReader reader(MPI_COMM_WORLD, file);
+  after->load(reader);
+  step(*through, 0.5);
+  step(*after, 0.5);
+  EXPECT_EQ(through->state().cell_u, after->state().cell_u);
+  EXPECT_EQ(through->state().face_u, after->state().face_u);
+}
+
+TEST(FiniteStrain, failed_load_names_the_worst_cell_and_leaves_the_state) {
+  const auto solid = make(beam(BoxCells::hexahedra, 2, 20), bent("saint-venant-kirchhoff", 1));
+  step(*solid, 0.5);
+  const std::vector<double> kept = solid->state().cell_u;
+  solid->begin_step({0.5, 400, Scheme::standalone, 1});
+  EXPECT_THAT([&] { solid->solve({}); }, ThrowsMessage<SolveFailure>(HasSubstr("where det F =")));
+  EXPECT_EQ(solid->state().cell_u, kept);
+  step(*solid, 0.1);
+}
+
+TEST(FiniteStrain, reactions_balance_the_load) {
+  const auto solid = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 3));
+  step(*solid, 1);
+  const auto reactions = solid->reactions(solid->point_displacement());
+  const Vec3 load = solid->total_load();
+  ASSERT_EQ(reactions.size(), 1U);
+  EXPECT_LT((reactions[0].force + load).norm(), 1e-8 * load.norm());
+}
+
+}  // namespace
+}  // namespace couplet::testing
