@@ -99,7 +99,7 @@ void reduce(MPI_Comm comm, int measure, Worst& worst, bool any_here) {
 Guard::Guard(const Mesh& mesh, const Parameters& parameters)
     : mesh_(mesh), smallest_volume_ratio_(parameters.smallest_volume_ratio), limits_(parameters.guard) {
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    longest_.push_back(static_cast<float>(shape(c, mesh.reference_points).longest));
+    longest_.push_back(shape(c, mesh.reference_points).longest);
 }
 
 Guard::Shape Guard::shape(Index cell, std::span<const Vec3> points) const {

@@ -55,7 +55,7 @@ class Guard {
   const Mesh& mesh_;
   double smallest_volume_ratio_;
   GuardParameters limits_;
-  std::vector<float> longest_;  // edge of each owned cell in the reference mesh [m]
+  std::vector<double> longest_;  // edge of each owned cell in the reference mesh [m]
 };
 
 }  // namespace couplet::mesh_mover

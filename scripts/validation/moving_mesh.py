@@ -1,0 +1,225 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of meshes that move far and of bodies that move as told."""
+import math
+
+import numpy as np
+
+import couplet_series as couplet
+from validation.job import Bar
+
+SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "common/elasticity", "mesh_mover",
+           "fluid_solver", "configs/moving-mesh", "configs/oscillating-cylinder", "configs/cylinder")
+PLATE = "configs/moving-mesh/case.yaml"
+BEND = ("sin(pi*t*x)/(pi*t) - y*sin(pi*t*x) - x", "(cos(pi*t*x)-1)/(-pi*t) + y*cos(pi*t*x) - y")
+MOTIONS = {
+    "shift by 0.5": {"translation": ["0", "0.5*t"]}, "turn by 45 degrees": {"angle": "pi/4*t"},
+    "turn by 60 degrees": {"angle": "pi/3*t"}, "turn by 90 degrees": {"angle": "pi/2*t"}, "bend to a half circle": {"displacement": BEND}}
+
+
+def yaml_of(motion):
+    return "{" + ", ".join(f"{k}: " + (f'"{v}"' if isinstance(v, str) else "[" + ", ".join(f'"{e}"' for e in v) + "]")
+                           for k, v in motion.items()) + "}"
+
+
+def move(job, name, motion, more=(), steps=50, end=1, timeout=900):
+    """Rows of quality.csv of the mover on its own, and whether it came to the end. `motion`: of the plate."""
+    def make():
+        folder = job.scratch / ("move-" + name.replace(" ", "-"))
+        command = [job.build / "bin" / "mesh_mover", job.root / PLATE]
+        for key in (f"simulation.output.folder={folder}", f"simulation.end-time={end}", f"simulation.time-step={end / steps}",
+                    f"simulation.output.interval={end}", "simulation.max-step-halvings=0", "simulation.checkpoint.interval=0",
+                    f"participants.mover.boundaries.plate.motion={yaml_of(motion)}", *more):
+            command += ["--set", key]
+        result = job.run(command, timeout)
+        file = folder / "mover" / "quality.csv"
+        if not file.exists():
+            raise RuntimeError((result.stderr or result.stdout)[-300:])
+        return couplet.read_csv(file), result.returncode == 0, folder / "mover"
+    return job.once(("move", name), make)
+
+
+def keys(method, form, chi, volumes="reference"):
+    return [f"participants.mover.{k}={v}" for k, v in
+            (("method", method), ("form", form), ("stiffening", chi), ("stiffening-volumes", volumes))]
+
+
+def end_of(rows):
+    return (f"edge ratio {rows['largest edge ratio [1]'][-1]:.2f}, scaled Jacobian {rows['least scaled Jacobian [1]'][-1]:.3f}, "
+            f"V/V0 {rows['least volume ratio [1]'][-1]:.3f}, f_A {rows['largest f_A [1]'][-1]:.2f}, f_AR {rows['largest f_AR [1]'][-1]:.2f}")
+
+
+def plate(motion, method, chi, holds=True, form="incremental", volumes="current"):
+    """One mesh of the thesis's table: valid to the end or not."""
+    def measure(job):
+        name = f"{motion} {method} {form} {chi} {volumes}"
+        rows, valid, _ = move(job, name, MOTIONS[motion], keys(method, form, chi, volumes))
+        got = f"all cells valid; {end_of(rows)}" if valid else f"refused at {100 * rows['time [s]'][-1]:.0f} % of the way"
+        return got, valid == holds
+    return measure
+
+
+def f_ar(job):
+    values = {chi: move(job, f"shift by 0.5 pseudo-solid incremental {chi} current", MOTIONS["shift by 0.5"],
+                        keys("pseudo-solid", "incremental", chi, "current"))[0] for chi in (0, 1, 2)}
+    at = min(v["time [s]"][-1] for v in values.values())
+    got = {chi: float(v["largest f_AR [1]"][np.argmin(abs(v["time [s]"] - at))]) for chi, v in values.items()}
+    return f"at {at:.2f} of the way {got[0]:.2f} (chi 0), {got[1]:.2f} (1), {got[2]:.2f} (2)", got[1] < got[0] and got[2] < got[0]
+
+
+def last_displacement(folder):
+    import h5py
+    with h5py.File(next(folder.glob("*.h5"))) as file:
+        last = file["steps"][sorted(file["steps"])[-1]]
+        return float(np.max(np.abs(last["coordinates"][...] - file["mesh/coordinates"][...])))
+
+
+def back(method, form, chi, limit=None):
+    """+0.5 and back by -0.5; the shortest edge is 0.01 m."""
+    def measure(job):
+        volumes = "current" if form == "incremental" else "reference"
+        rows, valid, folder = move(job, f"return {method} {form} {chi}", {"translation": ["0", "t < 1 ? 0.5*t : 0.5*(2-t)"]},
+                                   keys(method, form, chi, volumes), steps=100, end=2)
+        left = last_displacement(folder) / 0.01 if valid else math.inf
+        return f"largest displacement left over the shortest edge {left:.1e}", valid and (limit is None or left <= limit)
+    return measure
+
+
+def cycles(method, form, degrees, n=100, chi=0.5, limit=1e-6):
+    """Least scaled Jacobian at the outer ends of the first and the last swing."""
+    def measure(job):
+        angle = f"{math.radians(degrees)}*sin(2*pi*t)"
+        volumes = "current" if form == "incremental" else "reference"
+        rows, valid, folder = move(job, f"cycles {method} {form} {degrees}", {"angle": angle}, keys(method, form, chi, volumes),
+                                   steps=20 * n, end=n, timeout=1800)
+        t, j = rows["time [s]"], rows["least scaled Jacobian [1]"]
+        if not valid:
+            return f"refused after {t[-1]:.2f} cycles", False
+        first, last = j[t < 1.001].min(), j[t > n - 1.001].min()
+        return (f"least scaled Jacobian {first:.4f} in the first cycle, {last:.4f} in the last; left at the end "
+                f"{last_displacement(folder) / 0.01:.1e} of the shortest edge"), limit is None or abs(last - first) <= limit
+    return measure
+
+
+def in_space(mesh, boundaries, method, chi):
+    def measure(job):
+        rows, valid, _ = move(job, f"{mesh} {method}", {}, [
+            f"participants.mover.mesh={mesh}.geo", "participants.mover.dimension=3", *keys(method, "total", chi),
+            f"participants.mover.boundaries={boundaries}"], steps=10)
+        return f"all cells valid; {end_of(rows)}" if valid else f"refused at {100 * rows['time [s]'][-1]:.0f} % of the way", valid
+    return measure
+
+
+SPHERE = '{walls: {type: fixed}, sphere: {type: moving, motion: {translation: ["t", "0", "0"]}}}'
+FLAP = ('{flap: {type: moving, motion: {displacement: ["(1-cos(pi/8*t*y))/(pi/8*t) + (x-2)*(cos(pi/8*t*y)-1)", '
+        '"sin(pi/8*t*y)/(pi/8*t) - y - (x-2)*sin(pi/8*t*y)", "0"]}}, floor: {type: fixed}, '
+        'front: {type: slip}, back: {type: slip}, lid: {type: slip}, ends: {type: slip}}')
+
+
+def tested(executable, pattern):
+    def measure(job):
+        tests, _ = job.gtest(executable, pattern)
+        return f"{sum(t['passed'] for t in tests.values())} of {len(tests)} tests passed", all(t["passed"] for t in tests.values())
+    return measure
+
+
+def ranks(pattern):
+    def measure(job):
+        passed, total, _, _ = job.ctest(pattern)
+        return f"{passed} of {total} passed", total >= 3 and passed == total
+    return measure
+
+
+def swinging(job, frame):
+    motion = ['participants.fluid.motion={translation: ["-5/(2*pi)*sin(2*pi*0.2*t)", 0]}'] if frame else []
+    folder, _ = job.solve("fluid_solver", "oscillating-cylinder", ("simulation.time-step=0.02", *motion))
+    return job.beside("configs/oscillating-cylinder/morison.py"), folder / "fluid"
+
+
+def morison(frame):
+    def measure(job):
+        module, folder = swinging(job, frame)
+        drag, mass = module.averages(folder)
+        fitted = module.fit(folder)
+        return (f"c_d {drag:.4f}, c_m {mass:.4f} by Fourier averages; {fitted[0]:.4f}, {fitted[1]:.4f} by least squares",
+                abs(drag / 2.09 - 1) <= 0.02 and abs(mass / 1.45 - 1) <= 0.02)
+    return measure
+
+
+def both_frames(job):
+    values = []
+    for frame in (False, True):
+        module, folder = swinging(job, frame)
+        values.append(module.averages(folder))
+    gaps = [abs(a / b - 1) for a, b in zip(*values)]
+    return f"c_d {100 * gaps[0]:.1e} %, c_m {100 * gaps[1]:.1e} % apart", max(gaps) <= 0.01
+
+
+def steady_coefficients(job):
+    """2D-1 by output.coefficients on 5.5 k cells."""
+    cell = "{cylinder: {patches: [cylinder], speed: 0.2, area: 0.1, centre: [0.2, 0.2, 0], length: 0.1}}"
+    folder, _ = job.solve("fluid_solver", "cylinder", (
+        "participants.fluid.mesh-parameters.n=24", "participants.fluid.boundaries.inlet.velocity=[\"1.2*y*(0.41-y)/0.41^2\", 0]",
+        "simulation.end-time=8", "simulation.output.interval=8", "simulation.time-step=0.033333333333",
+        f"participants.fluid.output.coefficients={cell}"))
+    rows = couplet.read_csv(folder / "fluid" / "coefficients.csv")
+    drag, lift = rows["cylinder drag [-]"][-1], rows["cylinder lift [-]"][-1]
+    return f"c_d {drag:.4f}, c_l {lift:.5f}", abs(drag / 5.57953523 - 1) <= 0.005 and abs(lift / 0.010618948 - 1) <= 0.1
+
+
+def pulse(job):
+    """2D-3: one pulse of the inlet."""
+    cell = "{cylinder: {patches: [cylinder], speed: 1, area: 0.1}}"
+    folder, _ = job.solve("fluid_solver", "cylinder", (
+        "participants.fluid.mesh-parameters.n=34", "participants.fluid.boundaries.inlet.velocity=[\"6*y*(0.41-y)/0.41^2*sin(pi*t/8)\", 0]",
+        "simulation.end-time=8", "simulation.output.interval=8", "simulation.time-step=0.004",
+        f"participants.fluid.output.coefficients={cell}"))
+    rows, probes = couplet.read_csv(folder / "fluid" / "coefficients.csv"), couplet.read_csv(folder / "fluid" / "probes.csv")
+    lift, drag = float(np.max(rows["cylinder lift [-]"])), float(np.max(rows["cylinder drag [-]"]))
+    difference = float((probes["front pressure [Pa]"] - probes["back pressure [Pa]"])[-1])
+    return (f"largest lift {lift:.4f} ({100 * (lift / 0.47795 - 1):+.1f} %), drag {drag:.4f} (2.95092), dp(8 s) {difference:.4f} (-0.1116)",
+            abs(lift / 0.47795 - 1) <= 0.03)
+
+
+def unbuilt(why):
+    def measure(job):
+        raise NotImplementedError(why)
+    return measure
+
+
+STATED = ("E of the volumes that cells have now, the thesis's V^n, on the mesh of the last step: form incremental, "
+          "stiffening-volumes current")
+BARS = [
+    *(Bar(f"plate in a square, {motion}: pseudo-solid, chi {chi}", "all cells valid in 50 steps", plate(motion, "pseudo-solid", chi))
+      for motion in ("shift by 0.5", "bend to a half circle", "turn by 45 degrees", "turn by 90 degrees") for chi in (1, 2)),
+    *(Bar(f"plate in a square, {motion}: {method}, chi {chi}", "refused: the mesh turns over", plate(motion, method, chi, False))
+      for motion, method, chi in (("shift by 0.5", "pseudo-solid", 0), ("shift by 0.5", "laplacian", 0),
+                                  ("bend to a half circle", "laplacian", 2), ("bend to a half circle", "pseudo-solid", 0),
+                                  ("turn by 90 degrees", "laplacian", 2), ("turn by 90 degrees", "pseudo-solid", 0))),
+    *(Bar(f"plate in a square, shift by 0.5: laplacian, chi {chi}", "all cells valid in 50 steps", plate("shift by 0.5", "laplacian", chi))
+      for chi in (1, 2)),
+    *(Bar(f"plate in a square, {motion}: rotations", "all cells valid in 50 steps, total form",
+          plate(motion, "rotations", 1, form="total", volumes="reference"))
+      for motion in ("turn by 45 degrees", "turn by 60 degrees", "turn by 90 degrees")),
+    Bar("plate in a square, shift by 0.5: f_AR of the pseudo-solid", "chi 1 and 2 below chi 0, where all three are valid", f_ar),
+    *(Bar(f"plate, +0.5 and back: {method}, total form", "every vertex to 1e-10 of the edge", back(method, "total", 0.5, 1e-10),
+          but="chi 0.5, with which the total form holds that far") for method in ("laplacian", "pseudo-solid")),
+    Bar("plate, +0.5 and back: pseudo-solid, incremental form", "reported", back("pseudo-solid", "incremental", 1)),
+    *(Bar(f"plate, 100 cycles of +-{degrees} degrees: rotations, total form", "scaled Jacobian of the last cycle within 1e-6 of the first",
+          cycles("rotations", "total", degrees)) for degrees in (30, 60)),
+    Bar("plate, 100 cycles of +-30 degrees: pseudo-solid, total form", "scaled Jacobian of the last cycle within 1e-6 of the first",
+        cycles("pseudo-solid", "total", 30, chi=1), long=True),
+    Bar("plate, 10 cycles of +-30 degrees: pseudo-solid, incremental form", "reported",
+        cycles("pseudo-solid", "incremental", 30, n=10, chi=1, limit=None), long=True),
+    Bar("sphere moved by its radius in tetrahedra: pseudo-solid, total form", "all cells valid", in_space("sphere", SPHERE, "pseudo-solid", 0.5)),
+    Bar("bending flap in 3-D, tip turned by 22.5 degrees: pseudo-solid, total form", "all cells valid", in_space("flap", FLAP, "pseudo-solid", 1)),
+    Bar("swept volumes are the change of volume", "to 1e-14 x domain, tests pass", tested("verification_mover_motion", "*swept*")),
+    Bar("every method on 1, 2 and 3 ranks, and from a checkpoint", "tests pass", ranks("^verification_mover_ranks")),
+    Bar("limits of the guard", "tests pass", tested("verification_mover_motion", "Guard*")),
+    Bar("oscillating cylinder, mesh follows: Morison coefficients", "within 2 % of c_d 2.09, c_m 1.45", morison(False),
+        but="by Fourier averages; those of a least-squares fit stand beside them"),
+    Bar("oscillating cylinder, the whole mesh moves", "within 2 % of c_d 2.09, c_m 1.45", morison(True),
+        but="by Fourier averages; those of a least-squares fit stand beside them"),
+    Bar("oscillating cylinder, the two meshes", "coefficients within 1 % of each other", both_frames),
+    Bar("force coefficients of 2D-1 by output.coefficients", "c_d within 0.5 % of 5.57954, c_l within 10 % of 0.010619", steady_coefficients),
+    Bar("2D-3 on 11 k cells: largest lift", "within 3 % of 0.47795", pulse, long=True),
+]
