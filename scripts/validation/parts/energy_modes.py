@@ -17,9 +17,9 @@ def frequencies(job, case, name, *overrides):
 
 
 def beam(job, length, side):
-    found = frequencies(job, "vibrating-cantilever", "solid", "--set", f"participants.solid.mesh-parameters={{n_length: {length}, n_side: {side}}}",
-                        "--set", "participants.solid.solution-method.face-gradient=symmetric", "--set", "participants.solid.output.modes=2",
-                        "--set", "simulation.end-time=1e-3", "--set", "simulation.time-step=1e-3")
+    found = frequencies(job, "vibrating-cantilever", "solid", f"participants.solid.mesh-parameters={{n_length: {length}, n_side: {side}}}",
+                        "participants.solid.solution-method.face-gradient=symmetric", "participants.solid.output.modes=2",
+                        "simulation.end-time=1e-3", "simulation.time-step=1e-3")
     return 1 / found[0]
 
 
@@ -35,8 +35,8 @@ def first_period(job):
 
 
 def plate(job, n, m):
-    found = frequencies(job, "free-plate", "plate", "--set", f"participants.plate.mesh-parameters={{n: {n}, m: {m}}}",
-                        "--set", "participants.plate.solution-method.preconditioner=factors")
+    found = frequencies(job, "free-plate", "plate", f"participants.plate.mesh-parameters={{n: {n}, m: {m}}}",
+                        "participants.plate.solution-method.preconditioner=factors")
     return [2 * math.pi * f / SCALE for f in found[6:9]]
 
 
