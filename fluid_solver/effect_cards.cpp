@@ -65,6 +65,16 @@ V judge_waves(const S& s, const E& e) {
       "flow changes faster here than waves of pressure would let it; this program knows no waves"};
 }
 
+// The guard ends a run that grows at once; what grows slowly is said.
+V judge_energy(const S&, const E& e) {
+  if (std::isnan(e.energy_excess)) return {};
+  return EffectVerdict{
+      "", e.energy_excess, 0.1,
+      fmt::format("the flow has {:.2g} of its kinetic energy from no work of boundaries and forces",
+                  e.energy_excess),
+      "the time scheme makes it: leave 'time-step' out or make it smaller"};
+}
+
 V judge_still_mesh(const S& s, const E& e) {
   if (s.moving_mesh || std::isnan(e.wall_displacement)) return {};
   return EffectVerdict{"", e.wall_displacement, 0.1,
@@ -86,6 +96,13 @@ const std::array cards{
               {},
               "with a turbulence model: largest y+, 2",
               judge_walls,
+              true},
+    FluidCard{"balance of the kinetic energy",
+              "always",
+              [](const S&) { return std::string("always"); },
+              {"a loop over the boundary", 0, 0},
+              "kinetic energy that no work explains, over all, 0.1",
+              judge_energy,
               true},
     FluidCard{"compressibility",
               "not available here",

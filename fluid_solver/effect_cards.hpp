@@ -23,6 +23,7 @@ struct FluidEvidence {
   double largest_yplus = unknown;   ///< of walls; 0 without walls
   double largest_speed = unknown;   ///< [m/s]
   double pressure_range = unknown;  ///< largest minus smallest pressure [Pa]
+  double energy_excess = unknown;   ///< kinetic energy that no work explains, of that of late (EnergyGuard)
   /// Of an interface on a mesh that stands still: largest displacement in heights of the cell there.
   double wall_displacement = unknown;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 #include "common/mesh/load.hpp"
+#include "fluid_solver/auto_effects.hpp"
 #include "fluid_solver/effect_cards.hpp"
 #include "fluid_solver/participant.hpp"
 
@@ -29,6 +30,12 @@ int main(int argc, char** argv) {
             return couplet::effects_of(
                 couplet::fluid::fluid_effect_cards(),
                 couplet::fluid::FluidScene{parameters, scene.has_mover, scene.coupled});
+          },
+      .choose =
+          [&](const couplet::ChoiceScene& scene) {
+            return couplet::fluid::choose_effects(
+                parameters,
+                couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters), scene);
           }};
   return couplet::run_program(argc, argv, program);
 }

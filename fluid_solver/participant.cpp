@@ -319,6 +319,8 @@ std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
     evidence.pressure_range = max(mesh_.comm, high) - min(mesh_.comm, low);
   }
   if (stands_still()) evidence.wall_displacement = displacement_;
+  if (const EnergyLedger& ledger = fluid_->state().ledger; ledger.reference > 0)
+    evidence.energy_excess = ledger.excess / ledger.reference;
   const FluidScene scene{fluid_->parameters(), fluid_->moving(), step_.scheme != Scheme::standalone};
   return couplet::audit(fluid_effect_cards(), scene, evidence);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 #include "common/mesh/load.hpp"
+#include "solid_solver/auto_effects.hpp"
 #include "solid_solver/effect_cards.hpp"
 #include "solid_solver/solid.hpp"
 #include "solid_solver/thermal_solid.hpp"
@@ -24,6 +25,12 @@ int main(int argc, char** argv) {
       .effects =
           [&](const couplet::EffectScene&) {
             return couplet::effects_of(couplet::solid_effect_cards(), parameters);
+          },
+      .choose =
+          [&](const couplet::ChoiceScene& scene) {
+            return couplet::choose_effects(
+                parameters,
+                couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters), scene);
           }};
   return couplet::run_program(argc, argv, program);
 }

@@ -147,6 +147,25 @@ std::string problem_of_expression(const config::ExpressionText& text) {
   return problem;
 }
 
+/// `effects: auto`: what the case leaves open is set in the document as if it stood there; what stands there wins.
+void choose(const CommandLine& command_line, const ProgramKind& kind, CaseFile& result) {
+  ChoiceScene scene;
+  scene.folder = command_line.case_file.parent_path();
+  scene.end_time = result.simulation.end_time;
+  scene.time_step = result.simulation.time_step;
+  scene.coupled = result.coupled;
+  scene.has_mover =
+      result.coupled && config::text_of(*result.document, "coupling.mesh.participant").has_value();
+  result.choices = kind.choose(scene);
+  const std::string section = "participants." + result.participant;
+  const std::vector<std::string> there = config::keys_of(*result.document, section);
+  for (EffectChoice& choice : result.choices) {
+    choice.given = !choice.key.empty() && std::ranges::find(there, choice.key) != there.end();
+    if (!choice.given && !choice.value.empty())
+      result.document->set(fmt::format("{}.{}={}", section, choice.key, choice.value));
+  }
+}
+
 void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
   to.insert(to.end(), more.begin(), more.end());
 }
@@ -167,15 +186,24 @@ CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
   try {
     result.document.emplace(config::Document::read(command_line.case_file));
     for (const std::string& assignment : command_line.overrides) result.document->set(assignment);
+    result.hash = result.document->hash();
     check_top_level(*result.document, result);
     list_expected(*result.document, result);
     check_roles(*result.document, result);
     append(result.errors, config::load(*result.document, "simulation",
                                        [&](config::Section& s) { declare(s, result.simulation); }));
     result.participant = find_participant(command_line, kind, result);
-    append(result.errors,
-           config::load(*result.document, kind.is_coupler ? "coupling" : "participants." + result.participant,
-                        section_of(kind), problem_of_expression));
+    const auto load = [&] {
+      return config::load(*result.document,
+                          kind.is_coupler ? "coupling" : "participants." + result.participant,
+                          section_of(kind), problem_of_expression);
+    };
+    std::vector<std::string> problems = load();
+    if (result.simulation.choose_effects && kind.choose && result.errors.empty()) {
+      choose(command_line, kind, result);  // a first look may miss keys that are chosen now
+      problems = load();
+    }
+    append(result.errors, problems);
   } catch (const Error& error) {
     result.errors.emplace_back(error.what());
   }

@@ -11,6 +11,7 @@
 #include "common/app/simulation.hpp"
 #include "common/config/load.hpp"
 #include "common/effects/card.hpp"
+#include "common/effects/choice.hpp"
 
 namespace couplet {
 
@@ -22,6 +23,8 @@ struct ProgramKind {
   config::Section::Declare declare;  ///< its keys, without `program`
   /// What it can simulate, with the parameters that were read; empty: not told.
   std::function<std::vector<Effect>(const EffectScene&)> effects = {};
+  /// What `simulation.effects: auto` decides, with the parameters that were read; empty: nothing.
+  std::function<std::vector<EffectChoice>(const ChoiceScene&)> choose = {};
 };
 
 /// The YAML file as one program sees it: what it could read, and all that is wrong with it.
@@ -31,6 +34,8 @@ struct CaseFile {
   SimulationParameters simulation;
   std::vector<Expected> expected;  ///< the coupler first, if there is a `coupling` section
   bool coupled = false;
+  std::size_t hash = 0;               ///< of the file with the overrides, as all programs see it
+  std::vector<EffectChoice> choices;  ///< of `effects: auto`
   std::vector<std::string> errors;
 };
 

@@ -40,7 +40,7 @@ Attendant introduce(const CommandLine& command_line, const ProgramKind& kind, co
   self.program = kind.name;
   self.participant = file.participant;
   self.case_file = command_line.case_file.string();
-  self.case_hash = file.document ? file.document->hash() : 0;
+  self.case_hash = file.hash;
   self.restart = command_line.restart_folder.string();
   self.named = !command_line.participant.empty();
   self.application = application_number();
@@ -150,6 +150,7 @@ int attend(const CommandLine& command_line, const ProgramKind& kind,
     job.alone = verdict.alone;
     job.document = &*file.document;
     job.simulation = file.simulation;
+    job.choices = file.choices;
     prepare(job, command_line, kind.is_coupler);
     job.enter(Phase::initialise);
     watch.limit_silence(job.simulation.hang_timeout);

@@ -59,6 +59,7 @@ int run(const Job& job, const Program& program) {
   write_effective(job, program);
   log::info("{} runs '{}' with {} rank{}", program.name, job.name, comm_size(job.comm),
             comm_size(job.comm) == 1 ? "" : "s");
+  for (const EffectChoice& choice : job.choices) log::info("{}", text(choice));
   if (program.effects) {
     const bool has_mover = config::text_of(*job.document, "coupling.mesh.participant").has_value();
     log::info("{}", summary(program.effects({!job.alone, !job.alone && has_mover})));
@@ -70,7 +71,8 @@ int run(const Job& job, const Program& program) {
 }  // namespace
 
 int run_program(int argc, char** argv, const Program& program) {
-  const ProgramKind kind{program.name, program.description, false, program.declare, program.effects};
+  const ProgramKind kind{program.name,    program.description, false,
+                         program.declare, program.effects,     program.choose};
   return run_job(argc, argv, kind, [&](const Job& job) { return run(job, program); });
 }
 

@@ -14,6 +14,7 @@
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/effects/card.hpp"
+#include "common/effects/choice.hpp"
 
 namespace couplet {
 
@@ -42,6 +43,8 @@ struct Program {
   std::function<std::unique_ptr<Participant>(const ParticipantContext&)> make;
   /// What the program can simulate, looked at with the parameters that `declare` filled; empty: not told.
   std::function<std::vector<Effect>(const EffectScene&)> effects = {};
+  /// What `simulation.effects: auto` decides where the YAML leaves it open; empty: nothing.
+  std::function<std::vector<EffectChoice>(const ChoiceScene&)> choose = {};
 };
 
 /// main() of a physics program:

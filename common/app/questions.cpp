@@ -53,6 +53,7 @@ int explain(const CommandLine& command_line, const ProgramKind& kind) {
   const bool has_mover = config::text_of(*file.document, "coupling.mesh.participant").has_value();
   fmt::print("{} as '{}' of {}:\n", kind.name, kind.is_coupler ? "coupler" : file.participant,
              command_line.case_file.string());
+  for (const EffectChoice& choice : file.choices) fmt::print("  {}\n", text(choice));
   if (kind.effects) fmt::print("{}", explanation(kind.effects({file.coupled, file.coupled && has_mover})));
   std::string job;
   for (const Expected& e : file.expected)

@@ -18,6 +18,10 @@ void declare(config::Section& section, SimulationParameters& p) {
   section.value("max-step-halvings", p.max_step_halvings)
       .range(0, 20)
       .doc("a step that could not be solved is halved at most this often before the run stops");
+  section.choice("effects", p.choose_effects, {{"as-given", false}, {"auto", true}})
+      .doc(
+          "auto: dimension, inertia, turbulence model and viscous treatment that the case does not name are decided by "
+          "estimates, each told with its reason");
   section.value("hang-timeout", p.hang_timeout)
       .unit("s")
       .not_negative()

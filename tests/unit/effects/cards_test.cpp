@@ -109,6 +109,8 @@ TEST(EffectCards, fluid_verdicts_turn_at_their_thresholds) {
   EXPECT_FALSE(sound("waves of pressure", {.pressure_range = 1.10e8}, water));
   EXPECT_TRUE(sound("mesh motion", {.wall_displacement = 0.099}, air));
   EXPECT_FALSE(sound("mesh motion", {.wall_displacement = 0.101}, air));
+  EXPECT_TRUE(sound("balance of the kinetic energy", {.energy_excess = 0.09}, air));
+  EXPECT_FALSE(sound("balance of the kinetic energy", {.energy_excess = 0.11}, air));
   fluid::FluidScene moving = air;
   moving.moving_mesh = true;
   EXPECT_FALSE(verdict_on("mesh motion", fluid::fluid_effect_cards(), moving,

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/effects/choice.hpp"
+
+#include <fmt/format.h>
+
+namespace couplet {
+
+std::string text(const EffectChoice& c) {
+  if (c.given) return fmt::format("auto: {}: as given; auto would take {} ({})", c.key, c.what, c.reason);
+  return fmt::format("auto: {}{}{} ({})", c.key, c.key.empty() ? "" : ": ", c.what, c.reason);
+}
+
+}  // namespace couplet

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace couplet {
+
+/// What `simulation.effects: auto` knows of a scene beside the participant's own parameters.
+struct ChoiceScene {
+  std::filesystem::path folder{};  ///< of the YAML
+  double end_time = 0, time_step = 0;
+  bool coupled = false;
+  bool has_mover = false;  ///< `coupling.mesh` names one
+};
+
+/// One decision of `effects: auto`. A key that the YAML has is never replaced.
+struct EffectChoice {
+  std::string key;     ///< of the participant, "analysis"; empty: nothing to set, only told
+  std::string value;   ///< as YAML; empty: the key stays away
+  std::string what;    ///< "static"
+  std::string reason;  ///< one line with the numbers that decided
+  bool given = false;  ///< the YAML says it: the choice was not made
+};
+
+/// "auto: analysis: static (nothing changes in time)", or that the key was given.
+std::string text(const EffectChoice& choice);
+
+}  // namespace couplet

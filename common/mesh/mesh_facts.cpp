@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mesh/mesh_facts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <regex>
+
+namespace couplet {
+
+double MeshFacts::smallest_side() const { return dim == 2 ? std::min(size[0], size[1]) : size.minCoeff(); }
+double MeshFacts::largest_side() const { return size.maxCoeff(); }
+
+MeshFacts facts_of(const RawMesh& raw) {
+  MeshFacts facts;
+  facts.dim = raw.dim;
+  facts.cells = raw.cell_type.size();
+  if (raw.points.empty() || facts.cells == 0) return facts;
+  Vec3 low = raw.points.front(), high = low;
+  for (const Vec3& x : raw.points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  facts.size = high - low;
+  double volume = 1;
+  for (int a = 0; a < raw.dim; ++a) volume *= facts.size[a];
+  facts.mean_cell = std::pow(volume / double(facts.cells), 1.0 / raw.dim);
+  double shortest = std::numeric_limits<double>::infinity();
+  for (Index c = 0; c < Index(facts.cells); ++c) {
+    const auto points = raw.cell_points[c];
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t j = i + 1; j < points.size(); ++j)
+        shortest = std::min(shortest, (raw.points[points[i]] - raw.points[points[j]]).squaredNorm());
+  }
+  facts.shortest_edge = std::sqrt(shortest);
+  return facts;
+}
+
+MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters) {
+  if (file.extension() != ".geo") return facts_of(read_msh(file));
+  std::ifstream in(file);
+  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  const int dim = std::regex_search(text, std::regex("Physical\\s+Volume")) ? 3 : 2;
+  return facts_of(read_msh(mesh_geo(file, dim, parameters)));
+}
+
+}  // namespace couplet

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/effects/choice.hpp"
+#include "common/mesh/mesh_facts.hpp"
+#include "fluid_solver/parameters.hpp"
+
+namespace couplet::fluid {
+
+/// `effects: auto` of a fluid: its dimension, laminar or large-eddy, how the viscous term is stepped, and whether the mesh moves.
+/// The speed is the largest that boundaries, profiles and the start name; the Reynolds number stands on the smallest side of
+/// the mesh's box.
+std::vector<EffectChoice> choose_effects(const FluidParameters& parameters, const MeshFacts& mesh,
+                                         const ChoiceScene& scene);
+
+}  // namespace couplet::fluid

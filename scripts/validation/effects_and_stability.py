@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the effects (cards, audit, price) and of the atlas of stability."""
+import csv
+import re
+import time
+
+import numpy as np
+
+import couplet_series as series
+from validation.job import Bar
+
+SOURCES = ("common/effects", "common/app", "common/time", "solid_solver", "fluid_solver", "thermocline", "plate_modal", "coupler",
+           "scripts/couplet_atlas", "docs/stability")
+MAPS = ("solid-energy", "solid-stretch", "solid-nu", "fluid-diffusion", "fluid-convection", "fluid-aspect", "coupling-mass",
+        "tank-front", "tank-biot", "plate-contact")
+
+
+# -- effects ----------------------------------------------------------------------------------------------------------
+def tests(name, pattern, least=1):
+    def measure(job):
+        found, _ = job.gtest(name)
+        chosen = [v for k, v in found.items() if re.search(pattern, k)]
+        return f"{sum(v['passed'] for v in chosen)} of {len(chosen)} tests passed", len(chosen) >= least and all(v["passed"] for v in chosen)
+    return measure
+
+
+def ctest(pattern, least=1):
+    def measure(job):
+        passed, total, skipped, _ = job.ctest(pattern)
+        return f"{passed} of {total} passed, {skipped} skipped", passed == total and total >= least
+    return measure
+
+
+def pairs(job):
+    """Effects whose verdict is tested just inside and just outside of validity, by the test's own text."""
+    text = (job.root / "tests/unit/effects/cards_test.cpp").read_text()
+    inside = set(re.findall(r'EXPECT_TRUE\(sound\("([^"]+)"', text))
+    both = inside & set(re.findall(r'EXPECT_FALSE\(sound\("([^"]+)"', text))
+    _, passed = tests("unit_effects", "turn_at_their_thresholds", 4)(job)
+    return f"{len(both)} effects", passed and len(both) >= 12
+
+
+# -- prices -----------------------------------------------------------------------------------------------------------
+SCENES = {  # name: (program, case, what is switched on, one at a time)
+    "static bracket": ("solid_solver", "cantilever", (), {
+        "gravity": ["participants.solid.gravity=[0, -9.81, 0]"],
+        "energies": ["participants.solid.output={energies: true}"],
+        "inertia": ["participants.solid.analysis=dynamic"]}),
+    "channel": ("fluid_solver", "cavity", ("simulation.end-time=2",), {
+        "turbulence model": ["participants.fluid.turbulence={model: wale}"],
+        "running statistics": ["participants.fluid.statistics={start: 0}"],
+        "body force": ["participants.fluid.body-force=[0, 1e-3]"]}),
+    "tank": ("thermocline", "schumann", (), {"resolved grains": ["participants.tank.bed.shells=5"]}),
+    "sheet on a seat": ("plate_modal", "plate-drop", (), {
+        "without contact": ["participants.sheet.contact="],
+        "damping": ["participants.sheet.damping={ratio: 0.01}"]}),
+}
+
+
+def price(job, scene):
+    """Processor seconds and memory of the scene, and what each effect adds to it."""
+    program, case, base, effects = SCENES[scene]
+
+    def cost(sets):
+        runs = [job.solve_run(program, case, (*base, *sets, f"simulation.name=price{i}")) for i in range(2)]
+        return min(r.cost.cpu for r in runs), min(r.cost.memory for r in runs)
+    seconds, memory = cost(())
+    words = [f"{seconds:.2f} s, {memory:.0f} MB"]
+    for name, sets in effects.items():
+        s, m = cost(sets)
+        words.append(f"{name} {s - seconds:+.2f} s {m - memory:+.0f} MB")
+    return "; ".join(words), None
+
+
+# -- two dimensions against one cell of three --------------------------------------------------------------------------
+def solid_2d(job):
+    return component_ratio(job, "solid", 0.5)
+
+
+def component_ratio(job, which, most):
+    """Processor seconds of the same scene in 2-D and one cell thick in 3-D, the less of three each, turn by turn."""
+    geo = """DefineConstant [ n = 96 ]; lc = 1;
+Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {1, 1, 0}; Point(4) = {0, 1, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};
+Transfinite Curve {1:4} = n + 1; Curve Loop(1) = {1:4}; Plane Surface(1) = {1}; Transfinite Surface {1}; Recombine Surface {1};
+"""
+    flat = geo + 'Physical Curve("bottom") = {1}; Physical Curve("right") = {2}; Physical Curve("top") = {3}; Physical Curve("left") = {4};\n' \
+        'Physical Surface("body") = {1};\n'
+    thick = geo + 'o() = Extrude {0, 0, 1 / n} { Surface {1}; Layers {1}; Recombine; };\nPhysical Surface("bottom") = {o(2)};\n' \
+        'Physical Surface("right") = {o(3)}; Physical Surface("top") = {o(4)}; Physical Surface("left") = {o(5)};\n' \
+        'Physical Surface("sides") = {1, o(0)}; Physical Volume("body") = {o(1)};\n'
+    seconds = {}
+    for turn in range(3):
+        for dim, text in ((2, flat), (3, thick)):
+            folder = job.scratch / f"component-{which}-{dim}-{turn}"
+            folder.mkdir()
+            (folder / "mesh.geo").write_text(text)
+            (folder / "case.yaml").write_text(scene_of(which, dim))
+            result = job.run([job.build / "bin" / f"{which}_solver", folder / "case.yaml"], 900, cwd=folder)
+            if result.returncode != 0:
+                raise RuntimeError(result.stdout[-300:] + result.stderr[-300:])
+            part = result.stdout[result.stdout.index(f"time of '{which}'"):]
+            spent = float(re.search(r"^solve\s+([\d.]+)\s", part, flags=re.M).group(1))
+            seconds[dim] = min(seconds.get(dim, spent), spent)
+    ratio = seconds[2] / seconds[3]
+    return f"{seconds[2]:.2f} s against {seconds[3]:.2f} s: {ratio:.2f}", ratio <= most
+
+
+def scene_of(which, dim):
+    zero = "[0, 0]" if dim == 2 else "[0, 0, 0]"
+    if which == "solid":
+        pull = "[0, 1e3]" if dim == 2 else "[0, 1e3, 0]"
+        sides = "      sides: {type: symmetry}\n" if dim == 3 else ""
+        return f"""simulation: {{end-time: 1e-4, time-step: 1e-6, output: {{folder: out}}}}
+participants:
+  solid:
+    program: solid_solver
+    mesh: mesh.geo
+    dimension: {dim}
+    analysis: dynamic
+    material: {{density: 1000, youngs-modulus: 1e9, poissons-ratio: 0.3}}
+    boundaries:
+      left: {{type: fixed-displacement, value: {zero}}}
+      right: {{type: traction, value: {pull}}}
+      top: {{type: free}}
+      bottom: {{type: free}}
+{sides}"""
+    lid = "[1, 0]" if dim == 2 else "[1, 0, 0]"
+    sides = "      sides: {type: symmetry}\n" if dim == 3 else ""
+    return f"""simulation: {{end-time: 0.5, time-step: 0.005, output: {{folder: out}}}}
+participants:
+  fluid:
+    program: fluid_solver
+    mesh: mesh.geo
+    dimension: {dim}
+    density: 1
+    viscosity: 0.01
+    boundaries:
+      left: {{type: no-slip}}
+      right: {{type: no-slip}}
+      bottom: {{type: no-slip}}
+      top: {{type: moving-wall, velocity: {lid}}}
+{sides}"""
+
+
+# -- structure: energies over many steps --------------------------------------------------------------------------------
+def swing(job, name, scheme, gradient, courant, steps, lean=0.5):
+    """Growth of the energy of the atlas's swinging beam."""
+    from couplet_atlas import solid
+    from couplet_atlas.atlas import Runner
+
+    def make():
+        kept, solid.STEPS = solid.STEPS, steps
+        try:
+            return solid.energy(f"{scheme}, {gradient}", courant, lean, Runner(job.build, job.scratch / name))
+        finally:
+            solid.STEPS = kept
+    return job.once(("swing", name), make)
+
+
+def structure(name, scheme, gradient, courant, steps, most):
+    def measure(job):
+        growth, code, doubted = swing(job, name, scheme, gradient, courant, steps)
+        return f"{growth:+.2e}, exit code {code}", code == 0 and growth <= most
+    return measure
+
+
+# -- maps ----------------------------------------------------------------------------------------------------------------
+def table(job, name):
+    with open(job.root / "docs/stability" / f"{name}.csv", newline="") as rows:
+        return list(csv.DictReader(rows))
+
+
+def no_red(job):
+    squares = [(name, r) for name in MAPS for r in table(job, name)]
+    red = [f"{n}: {r['panel']}" for n, r in squares if r["outcome"].startswith("wrong")]
+    return f"{len(red)} red of {len(squares)} squares on {len(MAPS)} maps" + (f" ({', '.join(sorted(set(red))[:3])})" if red else ""), not red
+
+
+def pictures(job):
+    there = [n for n in MAPS if (job.root / "docs/stability" / f"{n}.png").exists() and table(job, n)]
+    return f"{len(there)} of {len(MAPS)} with picture and table", len(there) == len(MAPS)
+
+
+def limit(panel, factor):
+    """The viscous limit of the program between the last step that holds and the first that does not, on the square cells of the atlas:
+    bisection by runs to 1 %; theory: nu dt/h^2 = factor/8."""
+    def measure(job):
+        from couplet_atlas import fluid
+        from couplet_atlas.atlas import Runner
+        runner = Runner(job.build, job.scratch / f"limit-{panel[:9]}")
+        low, high = 0.9 * factor / 8, 1.1 * factor / 8
+        for _ in range(6):
+            middle = (low + high) / 2
+            growth, code, _ = fluid.diffusion(panel, middle, 0.0, runner)
+            low, high = (middle, high) if code == 0 and growth < 1.05 else (low, middle)
+        return f"{low:.5f} to {high:.5f}, theory {factor / 8:.5f}", abs(low / (factor / 8) - 1) <= 0.02 or abs(high / (factor / 8) - 1) <= 0.02
+    return measure
+
+
+def added_mass_limit(job):
+    """Largest added mass over mass with which explicit coupling is bounded, by bisection with the programs; theory: 1."""
+    from couplet_atlas import coupling
+    from couplet_atlas.atlas import Runner
+    kept, coupling.STEPS = coupling.STEPS, 200
+    try:
+        runner, low, high = Runner(job.build, job.scratch / "added-mass"), 0.7, 1.5
+        for _ in range(6):
+            middle = (low * high) ** 0.5
+            number, code, _ = coupling.run("explicit, predictor 1", middle, 0.1, runner)
+            low, high = (low, middle) if code == 0 and number < 3 else (middle, high)
+    finally:
+        coupling.STEPS = kept
+    return f"bounded from mass over added mass {low:.4f} to {high:.4f}, theory 1", abs((low * high) ** 0.5 - 1) <= 0.05
+
+
+def implicit_range(job):
+    """Implicit, Aitken, mass over added mass 0.01 to 100."""
+    from couplet_atlas import coupling
+    from couplet_atlas.atlas import Runner
+    runner, failed = Runner(job.build, job.scratch / "implicit"), []
+    ratios = (0.01, 0.1, 1, 10, 100)
+    for ratio in ratios:
+        number, code, _ = coupling.run("implicit, Aitken", ratio, 0.1, runner)
+        if code != 0 or not number < 3:
+            failed.append(ratio)
+    return f"{len(ratios) - len(failed)} of {len(ratios)} hold" + (f"; not {failed}" if failed else ""), not failed
+
+
+BARS = [
+    Bar("effects: verdicts just inside and just outside of validity", "right for at least 12 effects", pairs),
+    Bar("effects: a verdict that turns bad is told once, in the midst of the run; --strict fails the run", "pass", ctest("^cli_effects$")),
+    Bar("effects: off, the plate's seat, damping and gravity allocate nothing and take no step of their own", "tests pass",
+        tests("verification_plate_effects", "Effects")),
+    *[Bar(f"price: {scene}", "reported: processor seconds and memory, and what each effect adds", lambda job, s=scene: price(job, s), long=True)
+      for scene in SCENES],
+    Bar("two components against three, one cell thick: solid", "at most 0.5 of the time", solid_2d, but="seconds in 'solve', the less of three runs"),
+    Bar("two components against three, one cell thick: fluid", "at most 0.8 of the time", lambda job: component_ratio(job, "fluid", 0.8),
+        but="seconds in 'solve', the less of three runs"),
+    Bar("structure: trapezoidal, symmetric, 1e5 steps at C 0.01", "growth <= 0.1 %", structure("slow", "trapezoidal", "symmetric", 0.01, 100000, 1e-3), long=True),
+    Bar("structure: Bathe, symmetric, 1e4 steps at C 1000", "growth <= 0.1 %", structure("fast", "bathe", "symmetric", 1000, 10000, 1e-3)),
+    Bar("structure: Bathe, corrected, 1e4 steps at C 1000", "growth <= 0.1 %", structure("fast-c", "bathe", "corrected", 1000, 10000, 1e-3)),
+    Bar("structure: trapezoidal, corrected, 1e5 steps at C 0.01, beside", "reported",
+        lambda job: (f"{swing(job, 'beside', 'trapezoidal', 'corrected', 0.01, 100000)[0]:+.2e}", None), long=True),
+    Bar("fluid: limit of the explicit viscous step, Adams-Bashforth", "within 2 % of theory", limit("explicit, Adams-Bashforth", 1.0)),
+    Bar("fluid: limit of the explicit viscous step, Runge-Kutta", "within 2 % of theory", limit("explicit, Runge-Kutta", 2.51)),
+    Bar("coupling: limit of the explicit scheme, by bisection with the programs", "within 5 % of theory", added_mass_limit),
+    Bar("coupling: implicit, Aitken, mass over added mass 0.01 to 100", "all hold within 200 passes", implicit_range),
+    Bar("tests of label stability", "pass", ctest("^stability_", 4), long=True),
+    Bar("maps: each a picture and a table", "all", pictures),
+    Bar("maps: wrong answers with exit code 0 and without a word", "none", no_red),
+]
