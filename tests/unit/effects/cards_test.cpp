@@ -145,13 +145,13 @@ TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
     EXPECT_TRUE(v.has_value()) << effect;
     return v && v->sound();
   };
-  EXPECT_TRUE(sound("resolved grains", {.largest_biot = 0.99}));
-  EXPECT_FALSE(sound("resolved grains", {.largest_biot = 1.01}));
+  EXPECT_TRUE(sound("resolved grains", {.largest_biot = 19.9}));
+  EXPECT_FALSE(sound("resolved grains", {.largest_biot = 20.1}));
   EXPECT_TRUE(sound("yielding of the wall", {.share_of_yield = 0.99}));
   EXPECT_FALSE(sound("yielding of the wall", {.share_of_yield = 1.01}));
   tank.tank.bed.shells = 5;
   EXPECT_FALSE(verdict_on("resolved grains", thermocline::effect_cards(), tank,
-                          thermocline::Evidence{.largest_biot = 10}));
+                          thermocline::Evidence{.largest_biot = 1e3}));
 }
 
 TEST(EffectCards, a_verdict_says_number_threshold_and_cure) {
