@@ -2,12 +2,14 @@
 #include "common/app/job.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "coupler/effect_cards.hpp"
 #include "coupler/exchange_run.hpp"
 
 namespace {
 
 int run(const couplet::Job& job, const couplet::CouplingParameters& parameters) {
   using namespace couplet;
+  log::info("{}", summary(effects_of(coupling_effect_cards(), parameters)));
   std::map<std::string, MPI_Comm> peers;
   for (const Member& m : job.members)
     if (m.participant != coupler_name) peers[m.participant] = job.connect(m.participant);
@@ -46,6 +48,9 @@ int main(int argc, char** argv) {
   const couplet::ProgramKind kind{
       "coupler",
       "couples a fluid, a structure and a mesh mover, or participants of any kind, each a program of its own",
-      true, [&](couplet::config::Section& section) { declare(section, parameters); }};
+      true, [&](couplet::config::Section& section) { declare(section, parameters); },
+      [&](const couplet::EffectScene&) {
+        return couplet::effects_of(couplet::coupling_effect_cards(), parameters);
+      }};
   return couplet::run_job(argc, argv, kind, [&](const couplet::Job& job) { return run(job, parameters); });
 }

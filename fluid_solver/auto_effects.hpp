@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/effects/choice.hpp"
+#include "common/effects/expected.hpp"
 #include "common/mesh/mesh_facts.hpp"
 #include "fluid_solver/parameters.hpp"
 
@@ -14,5 +15,8 @@ namespace couplet::fluid {
 /// the mesh's box.
 std::vector<EffectChoice> choose_effects(const FluidParameters& parameters, const MeshFacts& mesh,
                                          const ChoiceScene& scene);
+
+/// By the numbers of configs/cavity and taylor-green-3d on one rank.
+ExpectedCost expected_cost(const FluidParameters& parameters, const MeshFacts& mesh);
 
 }  // namespace couplet::fluid

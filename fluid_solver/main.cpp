@@ -36,6 +36,12 @@ int main(int argc, char** argv) {
             return couplet::fluid::choose_effects(
                 parameters,
                 couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters), scene);
+          },
+      .expected =
+          [&](const couplet::ChoiceScene& scene) {
+            return couplet::fluid::expected_cost(
+                parameters,
+                couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters));
           }};
   return couplet::run_program(argc, argv, program);
 }

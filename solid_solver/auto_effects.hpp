@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/effects/choice.hpp"
+#include "common/effects/expected.hpp"
 #include "common/mesh/mesh_facts.hpp"
 #include "solid_solver/parameters.hpp"
 
@@ -14,5 +15,8 @@ namespace couplet {
 /// which the loads change: an undamped oscillator under a ramp of length tau overshoots by up to T/(pi tau).
 std::vector<EffectChoice> choose_effects(const SolidParameters& parameters, const MeshFacts& mesh,
                                          const ChoiceScene& scene);
+
+/// By the numbers of configs/cantilever and cook on one rank.
+ExpectedCost expected_cost(const SolidParameters& parameters, const MeshFacts& mesh);
 
 }  // namespace couplet

@@ -31,6 +31,11 @@ int main(int argc, char** argv) {
             return couplet::choose_effects(
                 parameters,
                 couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters), scene);
+          },
+      .expected =
+          [&](const couplet::ChoiceScene& scene) {
+            return couplet::expected_cost(parameters, couplet::facts_of_file(scene.folder / parameters.mesh,
+                                                                             parameters.mesh_parameters));
           }};
   return couplet::run_program(argc, argv, program);
 }

@@ -12,6 +12,7 @@
 #include "common/config/load.hpp"
 #include "common/effects/card.hpp"
 #include "common/effects/choice.hpp"
+#include "common/effects/expected.hpp"
 
 namespace couplet {
 
@@ -25,6 +26,8 @@ struct ProgramKind {
   std::function<std::vector<Effect>(const EffectScene&)> effects = {};
   /// What `simulation.effects: auto` decides, with the parameters that were read; empty: nothing.
   std::function<std::vector<EffectChoice>(const ChoiceScene&)> choose = {};
+  /// Memory and time of a step to be expected, for --explain; empty: not told.
+  std::function<ExpectedCost(const ChoiceScene&)> expected = {};
 };
 
 /// The YAML file as one program sees it: what it could read, and all that is wrong with it.

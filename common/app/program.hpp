@@ -15,6 +15,7 @@
 #include "common/coupling/participant.hpp"
 #include "common/effects/card.hpp"
 #include "common/effects/choice.hpp"
+#include "common/effects/expected.hpp"
 
 namespace couplet {
 
@@ -45,6 +46,8 @@ struct Program {
   std::function<std::vector<Effect>(const EffectScene&)> effects = {};
   /// What `simulation.effects: auto` decides where the YAML leaves it open; empty: nothing.
   std::function<std::vector<EffectChoice>(const ChoiceScene&)> choose = {};
+  /// Memory and time of a step to be expected, for --explain; empty: not told.
+  std::function<ExpectedCost(const ChoiceScene&)> expected = {};
 };
 
 /// main() of a physics program:

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "common/app/check_files.hpp"
+#include "common/base/error.hpp"
 
 namespace couplet {
 namespace {
@@ -43,6 +44,17 @@ int check(const CommandLine& command_line, const ProgramKind& kind, bool print) 
 
 namespace {
 
+/// Without its mesh nothing can be expected; what is wrong with it a run will say.
+void print_expected(const CommandLine& command_line, const ProgramKind& kind) {
+  ChoiceScene scene;
+  scene.folder = command_line.case_file.parent_path();
+  try {
+    fmt::print("expected:         {}\n", text(kind.expected(scene)));
+  } catch (const Error& error) {
+    fmt::print("expected:         not known: {}\n", error.what());
+  }
+}
+
 /// The effects of the scene and the launch line, without running anything.
 int explain(const CommandLine& command_line, const ProgramKind& kind) {
   const CaseFile file = read_case(command_line, kind);
@@ -55,6 +67,7 @@ int explain(const CommandLine& command_line, const ProgramKind& kind) {
              command_line.case_file.string());
   for (const EffectChoice& choice : file.choices) fmt::print("  {}\n", text(choice));
   if (kind.effects) fmt::print("{}", explanation(kind.effects({file.coupled, file.coupled && has_mover})));
+  if (kind.expected) print_expected(command_line, kind);
   std::string job;
   for (const Expected& e : file.expected)
     job += fmt::format("{} -n 1 {} {}", job.empty() ? "mpirun" : " :", e.program,

@@ -29,8 +29,19 @@ text = ask("fluid_solver", flap, "--explain")
 assert effects(text)["mesh motion"] and effects(text)["coupling load"] and not effects(text)["turbulence model"], text
 for program in ("coupler", "fluid_solver", "solid_solver", "mesh_mover"):
     assert re.search(rf"mpirun .*-n 1 {program} ", text), text
+text = ask("coupler", flap, "--explain")
+assert effects(text)["iteration of pressure and structure"] and effects(text)["guards that stop"], text
+assert not effects(ask("coupler", flap, "--explain", "--set", "coupling.scheme=explicit"))["relaxation by Aitken"]
 text = ask("solid_solver", cantilever, "--explain")
 assert "mpirun" not in text and "mesh_mover" not in text, text
+
+# What it expects of memory is near what a run then takes.
+for program, case, sets in (("solid_solver", cantilever, ()), ("fluid_solver", root / "configs/cavity/case.yaml", ("--set", "simulation.end-time=0.04"))):
+    shown = ask(program, case, "--explain", *sets)
+    expected = float(re.search(r"expected: +\d+ cells: about (\d+) MB, \S+ m?s a step", shown).group(1))
+    with tempfile.TemporaryDirectory() as folder:
+        taken = float(re.search(r"peak memory of .*: (\d+) MB on the rank", ask(program, case, *sets, "--set", f"simulation.output.folder={folder}")).group(1))
+    assert abs(expected / taken - 1) < 0.2, (program, expected, taken)
 
 # A key of the command line switches an effect on in what is explained.
 assert not effects(ask("solid_solver", cantilever, "--explain"))["energies"]
@@ -92,7 +103,7 @@ with tempfile.TemporaryDirectory() as folder:
     assert out.returncode == 0 and "auto: analysis: static" in out.stdout and "auto: dimension: 3" in out.stdout, out.stdout + out.stderr
 
 # Every program lists its cards.
-for program in ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal"):
+for program in ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal", "coupler"):
     rows = [line for line in ask(program, "--effects").splitlines() if line.startswith("| ")]
     assert len(rows) >= 4, (program, rows)
 print("effects: as expected")

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/effect_cards.hpp"
+
+#include <array>
+
+namespace couplet {
+namespace {
+
+using P = CouplingParameters;
+using Acceleration = AccelerationParameters::Type;
+using Mapping = MappingParameters::Type;
+
+std::string when(bool on, const char* reason) { return on ? reason : ""; }
+bool has_roles(const P& p) { return !p.exchange; }
+bool iterates(const P& p) { return has_roles(p) && p.scheme != Scheme::explicit_; }
+bool is_quasi_newton(const P& p) {
+  return p.acceleration.type == Acceleration::iqn_ils || p.acceleration.type == Acceleration::iqn_mvj;
+}
+
+const std::array cards{
+    CouplingCard{"exchange once a step",
+                 "`exchange`",
+                 [](const P& p) { return when(p.exchange.has_value(), "exchange"); },
+                 {"no iteration, no guards of the interface's motion", 0, 0}},
+    CouplingCard{
+        "iteration of the whole step",
+        "`scheme: implicit`",
+        [](const P& p) { return when(has_roles(p) && p.scheme == Scheme::implicit, "scheme: implicit"); },
+        {"all of fluid, structure and mesh motion once a pass", 0, 0}},
+    CouplingCard{
+        "iteration of pressure and structure",
+        "`scheme: semi-implicit`",
+        [](const P& p) {
+          return when(has_roles(p) && p.scheme == Scheme::semi_implicit, "scheme: semi-implicit");
+        },
+        {"a pressure solve and a structure's step a pass; mesh motion and predictor once a step", 0, 0}},
+    CouplingCard{"relaxation by Aitken",
+                 "`acceleration.type: aitken`",
+                 [](const P& p) {
+                   return when(iterates(p) && p.acceleration.type == Acceleration::aitken,
+                               "acceleration.type: aitken");
+                 },
+                 {"two vectors of the interface", 0, 0}},
+    CouplingCard{"quasi-Newton of the interface",
+                 "`acceleration.type: iqn-ils` or `iqn-mvj`",
+                 [](const P& p) { return when(iterates(p) && is_quasi_newton(p), "acceleration.type"); },
+                 {"three vectors of the interface for each of at most `maximum-columns` differences", 0, 0}},
+    CouplingCard{"prediction",
+                 "`predictor.order` above 0",
+                 [](const P& p) { return when(has_roles(p) && p.predictor_order > 0, "predictor.order"); },
+                 {"the motion of two earlier steps", 0, 0}},
+    CouplingCard{"mapping between surfaces that do not match",
+                 "`mapping.type` other than `matched`",
+                 [](const P& p) { return when(p.mapping.type != Mapping::matched, "mapping.type"); },
+                 {"a sparse matrix over the interface, made once", 0, 0}},
+    CouplingCard{"mesh motion",
+                 "`mesh`",
+                 [](const P& p) { return when(p.mesh.has_value(), "mesh"); },
+                 {"the process mesh_mover", 0, 0}},
+    CouplingCard{
+        "guards that stop",
+        "`on-divergence: stop`",
+        [](const P& p) {
+          return when(has_roles(p) && p.on_divergence == P::OnDivergence::stop, "on-divergence: stop");
+        },
+        {"a few sums over the interface a step", 0, 0},
+        "motion that the coupling itself makes: swings that grow, work that parts, iterations that diverge"},
+};
+
+}  // namespace
+
+std::span<const CouplingCard> coupling_effect_cards() { return cards; }
+
+}  // namespace couplet
