@@ -50,7 +50,7 @@ def energy(panel, courant, lean, runner):
         return float("nan"), code, doubted
     rows = series.read_csv(folder / "out" / "solid" / "energies.csv")
     kinetic, work = rows["kinetic [J]"], rows["internal work [J]"]
-    first = kinetic[0] + work[0] + rows["lost by the scheme [J]"][0]
+    first = kinetic[0] + rows["strain [J]"][0] + rows["lost by the scheme [J]"][0]  # at the start: what is lost is so defined
     # Where the operator is not symmetric its work is no energy: the smaller of work and strain energy counts.
     held = kinetic + np.maximum(0, np.minimum(work, rows["strain [J]"]))
     return float(np.max(held) / first - 1), code, doubted
