@@ -107,7 +107,7 @@ def coupled_restart(job):
     def make():
         result = job.run(["/usr/bin/python3", job.root / "tests/coupling/plate/restart.py", "coupled", job.root / "configs",
                           job.build / "bin"])
-        if result.returncode != 0:
+        if result.returncode != 0 and "apart by" not in result.stdout:
             raise RuntimeError((result.stdout + result.stderr).strip().splitlines()[-1])
         return result.stdout
     return job.once("coupled-restart", make)
@@ -120,8 +120,7 @@ def contact_in_flow(job):
 
 def restart_coupled(job):
     apart = max(map(float, re.findall(r"apart by (\S+) of", coupled_restart(job))))
-    why = "" if apart == 0 else "; the fluid's multigrid in 3-D starts anew, solid_solver in place of the plate differs alike"
-    return f"apart by {apart:.1e} of the largest value{why}", apart == 0
+    return f"apart by {apart:.1e} of the largest value", apart == 0
 
 
 PLATES = (("clamped circle", "clamped_circle"), ("hinged circle", "simply_supported_circle"),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A plate that is stopped in the middle of a contact and continued gives the same bytes as one that was not stopped. With a
-fluid in three dimensions, whose multigrid starts anew, the same to 1e-8 of the largest value.
+"""A plate that is stopped in the middle of a contact and continued gives the same bytes as one that was not stopped, alone and with
+a fluid in three dimensions.
 Usage: restart.py alone|coupled CONFIGS BIN"""
 import csv
 import pathlib
@@ -72,9 +72,8 @@ def main():
 
 
 def compare(file, whole, again):
-    if KIND == "alone":
-        if whole != again:
-            sys.exit(f"{file} differs after the restart")
+    if whole == again:
+        print(f"{file}: apart by 0 of its largest value")
         return
     a, b = (list(csv.reader(text.splitlines())) for text in (whole, again))
     if a[0] != b[0] or len(a) != len(b):
@@ -82,8 +81,7 @@ def compare(file, whole, again):
     size = max(abs(float(v)) for row in a[1:] for v in row[1:])
     apart = max(abs(float(x) - float(y)) for row, other in zip(a[1:], b[1:]) for x, y in zip(row, other))
     print(f"{file}: apart by {apart / size:.1e} of its largest value")
-    if apart > 1e-8 * size:
-        sys.exit(f"{file} differs after the restart")
+    sys.exit(f"{file} differs after the restart")
 
 
 main()
