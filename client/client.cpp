@@ -37,16 +37,19 @@ struct couplet_client {
   int rank = 0;
   Surface surface;
   std::vector<Datum> takes, gives;
+  std::vector<std::int64_t> vertex_cut, face_cut;
+  std::vector<Peer> peers;
   // of the command under way
   Command command;
   bool pending = false;
-  std::map<std::string, std::vector<double>> output;
+  std::map<std::string, std::vector<double>> input, output;
   std::int64_t status = 0;
   std::string text, checkpoint;
   double time = 0, dt = 0;  // of the step that began last
   double advised = std::numeric_limits<double>::infinity();
   std::int64_t iterations = 0;
   double error = NAN, energy = NAN, started = 0;
+  bool described = false;
 };
 
 namespace {
@@ -62,42 +65,95 @@ const Datum* find(const std::vector<Datum>& list, const std::string& name) {
   return nullptr;
 }
 
-void send_reply(couplet_client& c) {
-  if (c.rank != 0) return;
-  const bool first = c.command.op == initialise;
-  const Surface nothing;
-  const Surface& s = first ? c.surface : nothing;
-  const bool has_corners = !s.corners.empty();
-  Packer out;
-  out.integers({reply_mark, version, c.status});
-  out.text(c.text);
-  out.real(MPI_Wtime() - c.started);
-  out.real(c.advised);
-  out.table(c.status == 0 ? c.output : std::map<std::string, std::vector<double>>{});
-  out.integers({s.dim, 0});  // not a closed fluid
-  out.points(s.xyz);
-  out.points(s.centres);
-  out.points(s.areas);
-  out.list(has_corners ? s.first : std::vector<std::int64_t>{});
-  out.list(s.corners);
-  out.data(first ? c.takes : std::vector<Datum>{});
-  out.data(first ? c.gives : std::vector<Datum>{});
-  out.real(c.dt);
-  out.integers({c.iterations});
-  out.real(c.error);
-  out.real(c.energy);
-  send(c.coupler, 0, reply_tag, out.bytes(), MPI_BYTE);
+std::vector<std::int64_t> cut(MPI_Comm comm, std::size_t n) {
+  int size = 0;
+  MPI_Comm_size(comm, &size);
+  std::vector<std::int64_t> counts(static_cast<std::size_t>(size)), starts{0};
+  const auto mine = std::int64_t(n);
+  MPI_Allgather(&mine, 1, MPI_INT64_T, counts.data(), 1, MPI_INT64_T, comm);
+  for (const std::int64_t count : counts) starts.push_back(starts.back() + count);
+  return starts;
 }
 
-/// All data must be known and have the announced length.
-void check_input(const couplet_client& c) {
-  for (const auto& [name, values] : c.command.data) {
+/// The reply to initialise: the head, then the places to those coupler ranks that get a part of them.
+void describe(couplet_client& c) {
+  MPI_Bcast(&c.surface.dim, 1, MPI_INT, 0, c.comm);
+  c.vertex_cut = cut(c.comm, c.surface.vertices());
+  c.face_cut = cut(c.comm, c.surface.faces());
+  int ranks = 0;
+  MPI_Comm_remote_size(c.coupler, &ranks);
+  c.peers = peers_of(c.vertex_cut, c.face_cut, c.rank, ranks);
+  c.described = true;
+}
+
+void send_reply(couplet_client& c) {
+  const bool first = c.command.op == initialise;
+  if (first) describe(c);
+  if (c.rank == 0) {
+    Packer head;
+    head.integers({reply_mark, version, c.status});
+    head.text(c.text);
+    head.real(MPI_Wtime() - c.started);
+    head.real(c.advised);
+    head.real(c.dt);
+    head.integers({c.iterations});
+    head.real(c.error);
+    head.real(c.energy);
+    head.names(c.output);
+    head.integers({c.surface.dim, 0, 0});  // dimension, an answer like those before, no named parts
+    head.data(first ? c.takes : std::vector<Datum>{});
+    head.data(first ? c.gives : std::vector<Datum>{});
+    head.list(first ? c.vertex_cut : std::vector<std::int64_t>{0});
+    head.list(first ? c.face_cut : std::vector<std::int64_t>{0});
+    send(c.coupler, 0, reply_tag, head.bytes(), MPI_BYTE);
+  }
+  if (first)
+    for (const Peer& p : c.peers) send(c.coupler, p.rank, places_tag, c.surface.cut_out(p), MPI_BYTE);
+  if (c.command.op == solve && c.status == 0)
+    for (const Peer& p : c.peers) {
+      std::vector<double> values;
+      for (const auto& [name, all] : c.output) {  // by name
+        const Datum* d = find(c.gives, name);
+        const auto n = std::size_t(d->size(c.surface.dim));
+        const std::size_t at = n * (d->place == COUPLET_VERTICES ? p.first_vertex : p.first_face),
+                          count = n * (d->place == COUPLET_VERTICES ? p.vertices : p.faces);
+        values.insert(values.end(), all.begin() + std::ptrdiff_t(at),
+                      all.begin() + std::ptrdiff_t(at + count));
+      }
+      if (!values.empty()) send(c.coupler, p.rank, output_tag, values, MPI_DOUBLE);
+    }
+  c.output.clear();
+  c.status = 0;
+  c.text.clear();
+}
+
+void receive_input(couplet_client& c) {
+  c.input.clear();
+  std::vector<const Datum*> present;
+  for (const std::string& name : c.command.data) {
     const Datum* d = find(c.takes, name);
     if (d == nullptr)
       end_the_job("the coupler sent '" + name + "', which '" + c.participant + "' does not take.");
-    if (c.rank == 0 && values.size() != entries(c, *d))
-      end_the_job("the coupler sent " + std::to_string(values.size()) + " values of '" + name + "' where " +
-                  std::to_string(entries(c, *d)) + " were announced.");
+    present.push_back(d);
+    if (entries(c, *d) > 0) c.input[name].resize(entries(c, *d));
+  }
+  for (const Peer& p : c.peers) {
+    std::size_t total = 0;
+    for (const Datum* d : present)
+      total += std::size_t(d->size(c.surface.dim)) * (d->place == COUPLET_VERTICES ? p.vertices : p.faces);
+    if (total == 0) continue;
+    const std::vector<double> values = receive<double>(c.coupler, p.rank, input_tag, MPI_DOUBLE);
+    if (values.size() != total) end_the_job("a message with values has another length than announced.");
+    std::size_t at = 0;
+    for (const Datum* d : present) {
+      const auto n = std::size_t(d->size(c.surface.dim));
+      const std::size_t first = n * (d->place == COUPLET_VERTICES ? p.first_vertex : p.first_face),
+                        count = n * (d->place == COUPLET_VERTICES ? p.vertices : p.faces);
+      if (count == 0) continue;
+      std::copy_n(values.begin() + std::ptrdiff_t(at), count,
+                  c.input[d->name].begin() + std::ptrdiff_t(first));
+      at += count;
+    }
   }
 }
 
@@ -114,18 +170,13 @@ void receive_command(couplet_client& c) {
   c.iterations = 0;
   c.error = c.energy = NAN;
   c.checkpoint = c.command.folder + "/" + c.participant;
-  c.output.clear();
-  c.status = 0;
-  c.text.clear();
-  if (c.rank != 0)
-    for (auto& entry : c.command.data) entry.second.clear();
-  check_input(c);
+  if (c.command.op == solve) receive_input(c);
   c.pending = true;
 }
 
 /// What was announced must be given, whole.
 void check_output(couplet_client& c) {
-  if (c.rank != 0 || c.command.op != solve || c.status != 0) return;
+  if (c.command.op != solve || c.status != 0) return;
   for (const Datum& d : c.gives)
     if (!c.output.count(d.name))
       end_the_job("'" + c.participant + "' did not give '" + d.name + "' before couplet_next.");
@@ -212,8 +263,8 @@ const char* couplet_checkpoint(const couplet_client* c) { return c->checkpoint.c
 
 const double* couplet_read(const couplet_client* c, const char* datum) {
   if (!find(c->takes, datum)) end_the_job(std::string("'") + datum + "' was not announced by couplet_takes.");
-  const auto found = c->command.data.find(datum);
-  return found == c->command.data.end() || found->second.empty() ? nullptr : found->second.data();
+  const auto found = c->input.find(datum);
+  return found == c->input.end() ? nullptr : found->second.data();
 }
 
 void couplet_write(couplet_client* c, const char* datum, const double* values) {
@@ -222,8 +273,8 @@ void couplet_write(couplet_client* c, const char* datum, const double* values) {
   c->output[datum].assign(values, values + entries(*c, *d));
 }
 
-void couplet_fail(couplet_client* c, const char* why) {
-  c->status = 1;
+void couplet_fail(couplet_client* c, const char* why, int halving_helps) {
+  c->status = halving_helps ? 1 : 2;
   c->text = why;
 }
 

@@ -3,7 +3,7 @@
  *
  *   MPI_Init(...);
  *   couplet_client* c = couplet_join("solid", "my_solver");     all processes of the participant
- *   couplet_vertices(c, ...); couplet_faces(c, ...);             all of the interface, by process 0 of the participant
+ *   couplet_vertices(c, ...); couplet_faces(c, ...);             each process what it owns, or process 0 all
  *   couplet_takes(c, "pressure-force", "N", COUPLET_FACES, 0); couplet_gives(c, ...);
  *   while ((event = couplet_next(c)) != COUPLET_END) switch (event) ...
  *   couplet_leave(c); MPI_Finalize();
@@ -40,11 +40,12 @@ couplet_client* couplet_join(const char* participant, const char* program);
 /* The processes of this participant. */
 MPI_Comm couplet_comm(const couplet_client* c);
 
-/* The interface, before the first couplet_next; process 0 speaks for all of the participant. `xyz`: 3 n coordinates [m], reference
+/* The interface, before the first couplet_next: what this process owns. `xyz`: 3 n coordinates [m], reference
  * configuration. `dimension`: 2 (z = 0, areas per metre of depth) or 3. */
 void couplet_vertices(couplet_client* c, int dimension, int n, const double* xyz);
 /* `areas`: vectors out of this participant [m^2]. `first` (n + 1) and `vertices` (first[n]): the vertices of face f
- * are vertices[first[f]] up to vertices[first[f + 1]]; both may be NULL, the coupler guesses them then. */
+ * are vertices[first[f]] up to vertices[first[f + 1]], positions in the list of all processes' vertices, process by
+ * process; both may be NULL, there is no work in the coupler's balance then. */
 void couplet_faces(couplet_client* c, int n, const double* centres, const double* areas, const int64_t* first,
                    const int64_t* vertices);
 /* `components`: values a place; 0: one a dimension (a vector). */
@@ -58,13 +59,13 @@ double couplet_time(const couplet_client* c); /* BEGIN, SOLVE: t^n; ACCEPT, OUTP
 double couplet_dt(const couplet_client* c);
 int couplet_output(const couplet_client* c);            /* ACCEPT, OUTPUT: number of the output that is due, or -1 */
 const char* couplet_checkpoint(const couplet_client* c); /* SAVE, LOAD: folder of the checkpoint + /<participant> */
-/* SOLVE: values of a datum that is taken, place by place, on process 0; NULL if nobody has given it yet, and on the
- * other processes. Valid until the next couplet_next. */
+/* SOLVE: values of a datum that is taken, place by place, this process's; NULL if nobody has given it yet or this
+ * process owns no such place. Valid until the next couplet_next. */
 const double* couplet_read(const couplet_client* c, const char* datum);
-/* SOLVE: values of a datum that is given; those of process 0 count. */
+/* SOLVE: values of a datum that is given. */
 void couplet_write(couplet_client* c, const char* datum, const double* values);
-/* SOLVE: instead of writing: the step could not be solved, by process 0; the coupler tries a shorter one. */
-void couplet_fail(couplet_client* c, const char* why);
+/* SOLVE: instead of writing: the step could not be solved; `halving_helps`: a shorter one may be. */
+void couplet_fail(couplet_client* c, const char* why, int halving_helps);
 /* The largest step that is advised from now on [s]. */
 void couplet_advise(couplet_client* c, double dt);
 /* ACCEPT: what the accepted step was like: iterations of solvers, estimated time error, energy [J]; NAN: unknown. */

@@ -55,7 +55,9 @@ class Client {
                                   std::to_string(values.size()));
     couplet_write(client_, datum.c_str(), values.data());
   }
-  void fail(const std::string& why) { couplet_fail(client_, why.c_str()); }
+  void fail(const std::string& why, bool halving_helps = true) {
+    couplet_fail(client_, why.c_str(), halving_helps);
+  }
   void advise(double dt) { couplet_advise(client_, dt); }
 
  private:

@@ -7,6 +7,15 @@
 namespace couplet_wire {
 namespace {
 
+/// My entries [low, high) of n, of which coupler rank r of R has [n r / R, n (r + 1) / R).
+template <class Take>
+void for_overlaps(std::int64_t low, std::int64_t high, std::int64_t n, int ranks, Take take) {
+  for (int r = 0; r < ranks; ++r) {
+    const std::int64_t first = std::max(low, n * r / ranks), end = std::min(high, n * (r + 1) / ranks);
+    if (first < end) take(r, std::size_t(first - low), std::size_t(end - first));
+  }
+}
+
 class Reader {
  public:
   explicit Reader(const std::vector<char>& bytes) : bytes_(bytes) {}
@@ -18,16 +27,6 @@ class Reader {
     std::string value(bytes_.data() + at_, std::size_t(n));
     at_ += std::size_t(n);
     return value;
-  }
-
-  std::vector<double> reals() {
-    const std::int64_t n = integer();
-    if (n < 0 || std::size_t(n) > (bytes_.size() - at_) / 8)
-      throw std::runtime_error("a command is cut short.");
-    std::vector<double> values(static_cast<std::size_t>(n));
-    if (n > 0) std::memcpy(values.data(), bytes_.data() + at_, 8 * values.size());
-    at_ += 8 * values.size();
-    return values;
   }
 
  private:
@@ -78,6 +77,44 @@ std::vector<std::string> roll_call(const std::string& mine, int size) {
 
 }  // namespace
 
+std::vector<Peer> peers_of(const std::vector<std::int64_t>& vertex_cut,
+                           const std::vector<std::int64_t>& face_cut, int rank, int coupler_ranks) {
+  std::map<int, Peer> peers;
+  const auto r = std::size_t(rank);
+  for_overlaps(vertex_cut[r], vertex_cut[r + 1], vertex_cut.back(), coupler_ranks,
+               [&](int to, std::size_t first, std::size_t count) {
+                 peers[to].first_vertex = first, peers[to].vertices = count;
+               });
+  for_overlaps(face_cut[r], face_cut[r + 1], face_cut.back(), coupler_ranks,
+               [&](int to, std::size_t first, std::size_t count) {
+                 peers[to].first_face = first, peers[to].faces = count;
+               });
+  std::vector<Peer> list;
+  for (auto& [to, peer] : peers) {
+    peer.rank = to;
+    list.push_back(peer);
+  }
+  return list;
+}
+
+std::vector<char> Surface::cut_out(const Peer& p) const {
+  Packer out;
+  out.integers({std::int64_t(p.vertices)});
+  for (std::size_t v = p.first_vertex; v < p.first_vertex + p.vertices; ++v) {
+    out.integers({std::int64_t(v)});
+    out.raw(&xyz[3 * v], 24);
+  }
+  out.integers({std::int64_t(p.faces)});
+  for (std::size_t f = p.first_face; f < p.first_face + p.faces; ++f) {
+    out.integers({std::int64_t(f)});
+    out.raw(&centres[3 * f], 24);
+    out.raw(&areas[3 * f], 24);
+    out.integers({0, first[f + 1] - first[f]});  // part, number of vertices
+    for (std::int64_t k = first[f]; k < first[f + 1]; ++k) out.integers({corners[std::size_t(k)]});
+  }
+  return out.bytes();
+}
+
 Command unpack(const std::vector<char>& head) {
   Reader in(head);
   if (in.integer() != command_mark) throw std::runtime_error("a message of the coupler is no command.");
@@ -90,13 +127,12 @@ Command unpack(const std::vector<char>& head) {
   c.dt = in.real();
   c.scheme = in.integer();
   c.number = in.integer();
+  c.sub_steps = in.integer();
+  c.waveform = in.integer();
   c.accepted = in.real();
   c.output = in.integer();
   c.folder = in.text();
-  for (std::int64_t n = in.integer(); n > 0; --n) {
-    const std::string name = in.text();
-    c.data[name] = in.reals();
-  }
+  for (std::int64_t n = in.integer(); n > 0; --n) c.data.push_back(in.text());
   return c;
 }
 

@@ -19,9 +19,10 @@
 
 namespace couplet_wire {
 
-constexpr std::int64_t version = 3, command_mark = 0x434f4d4d, reply_mark = 0x5245504c,
+constexpr std::int64_t version = 4, command_mark = 0x434f4d4d, reply_mark = 0x5245504c,
                        hello_mark = 0x434f55504c4554;
-constexpr int join_tag = 100, command_tag = 101, reply_tag = 102;
+constexpr int join_tag = 100, command_tag = 101, reply_tag = 102, input_tag = 103, places_tag = 104,
+              output_tag = 105;
 enum Operation : std::int64_t { initialise = 1, begin = 2, solve = 3, accept = 4, finalise = 8 };
 
 struct Datum {
@@ -30,12 +31,21 @@ struct Datum {
   int size(int dim) const { return components > 0 ? components : dim; }
 };
 
+/// A rank of the coupler and the part of this rank's places that it has.
+struct Peer {
+  int rank = 0;
+  std::size_t first_vertex = 0, vertices = 0, first_face = 0, faces = 0;
+};
+std::vector<Peer> peers_of(const std::vector<std::int64_t>& vertex_cut,
+                           const std::vector<std::int64_t>& face_cut, int rank, int coupler_ranks);
+
 struct Surface {
   int dim = 3;
   std::vector<double> xyz, centres, areas;
   std::vector<std::int64_t> first{0}, corners;
   std::size_t vertices() const { return xyz.size() / 3; }
   std::size_t faces() const { return centres.size() / 3; }
+  std::vector<char> cut_out(const Peer& p) const;
 };
 
 class Packer {
@@ -54,21 +64,9 @@ class Packer {
     integers({std::int64_t(value.size())});
     raw(value.data(), value.size());
   }
-  void reals(const std::vector<double>& values) {
-    integers({std::int64_t(values.size())});
-    raw(values.data(), 8 * values.size());
-  }
-  /// Three coordinates each.
-  void points(const std::vector<double>& values) {
-    integers({std::int64_t(values.size() / 3)});
-    raw(values.data(), 8 * values.size());
-  }
-  void table(const std::map<std::string, std::vector<double>>& data) {
+  void names(const std::map<std::string, std::vector<double>>& data) {
     integers({std::int64_t(data.size())});
-    for (const auto& [name, values] : data) {
-      text(name);
-      reals(values);
-    }
+    for (const auto& entry : data) text(entry.first);
   }
   void data(const std::vector<Datum>& list) {
     integers({std::int64_t(list.size())});
@@ -85,10 +83,10 @@ class Packer {
 };
 
 struct Command {
-  std::int64_t op = 0, scheme = 0, number = 0, output = -1;
+  std::int64_t op = 0, scheme = 0, number = 0, sub_steps = 1, waveform = 1, output = -1;
   double time = 0, dt = 0, accepted = 0;
   std::string folder;
-  std::map<std::string, std::vector<double>> data;
+  std::vector<std::string> data;
 };
 /// Throws std::runtime_error if the bytes are no command of this version.
 Command unpack(const std::vector<char>& head);

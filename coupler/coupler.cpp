@@ -5,89 +5,160 @@
 #include <limits>
 
 #include "common/base/error.hpp"
-#include "common/io/checkpoint.hpp"
+#include "common/base/text.hpp"
 #include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+#include "coupler/places.hpp"
 
 namespace couplet {
+namespace {
+
+/// Columns of balance.csv speak of roles where there are such.
+std::vector<std::string> labels_of(const CouplingParameters& p, const std::vector<Partner>& partners) {
+  std::vector<std::string> labels;
+  for (const Partner& partner : partners) {
+    const std::string& name = partner.name();
+    labels.push_back(!p.exchange && p.fluid && name == p.fluid->participant           ? "fluid"
+                     : !p.exchange && p.structure && name == p.structure->participant ? "structure"
+                                                                                      : name);
+  }
+  return labels;
+}
+
+}  // namespace
+
+Coupler::Coupler(MPI_Comm comm, const CouplingParameters& parameters, const SimulationParameters& simulation,
+                 std::vector<std::unique_ptr<Channel>> channels, CouplerFolders folders)
+    : comm_(comm),
+      parameters_(parameters),
+      simulation_(simulation),
+      schedule_(schedule_of(parameters)),
+      folders_(std::move(folders)),
+      loop_(comm, simulation, parameters.scheme, folders_.checkpoints),
+      oscillation_guard_(comm) {
+  if (schedule_.iterates) accelerator_ = make_accelerator(parameters.acceleration, comm);
+  for (const std::string& name : schedule_.everyone()) {
+    const auto found = std::ranges::find_if(channels, [&](const auto& c) { return c && c->name() == name; });
+    if (found == channels.end()) throw Error("The coupler has no channel to '{}'.", name);
+    Partner& partner = partners_.emplace_back();
+    partner.channel = std::move(*found);
+    partner.sub_steps = schedule_.sub_steps_of(name);
+  }
+  for (const std::string& name : schedule_.group) group_.push_back(index_of(name));
+  given_.resize(partners_.size());
+  taken_.resize(partners_.size());
+}
+
+namespace {
+
+CouplingParameters with_roles(CouplingParameters p, const CouplerChannels& c) {
+  p.fluid = {c.fluid->name()};
+  p.structure = {c.structure->name()};
+  if (c.mesh) p.mesh = {c.mesh->name()};
+  return p;
+}
+
+std::vector<std::unique_ptr<Channel>> list(CouplerChannels c) {
+  std::vector<std::unique_ptr<Channel>> channels;
+  for (auto* one : {&c.fluid, &c.structure, &c.mesh}) channels.push_back(std::move(*one));
+  return channels;
+}
+
+}  // namespace
 
 Coupler::Coupler(const CouplingParameters& parameters, const SimulationParameters& simulation,
                  CouplerChannels channels, CouplerFolders folders)
-    : parameters_(parameters),
-      simulation_(simulation),
-      folders_(std::move(folders)),
-      loop_(MPI_COMM_SELF, simulation, parameters.scheme, folders_.checkpoints),
-      accelerator_(make_accelerator(parameters.acceleration, MPI_COMM_SELF)) {
-  fluid_.channel = std::move(channels.fluid);
-  structure_.channel = std::move(channels.structure);
-  mesh_.channel = std::move(channels.mesh);
+    // Braces: the names are read before the channels are taken away.
+    : Coupler{MPI_COMM_SELF, with_roles(parameters, channels), simulation, list(std::move(channels)),
+              std::move(folders)} {}
+
+std::size_t Coupler::index_of(const std::string& name) const {
+  for (std::size_t i = 0; i < partners_.size(); ++i)
+    if (partners_[i].channel && partners_[i].name() == name) return i;
+  throw Error("'{}' is no participant of this coupling.", name);
 }
 
 std::vector<Partner*> Coupler::everyone() {
-  // The mesh mover first: the fluid waits for its motion.
-  if (mesh_.channel) return {&mesh_, &fluid_, &structure_};
-  return {&fluid_, &structure_};
+  std::vector<Partner*> all;
+  for (Partner& p : partners_) all.push_back(&p);
+  return all;
 }
 
 void Coupler::initialise() {
   enter_(Phase::initialise, {});
-  const std::vector<Partner*> partners = everyone();
-  std::vector<Interface> interfaces = initialise_all(partners);
-  std::vector<Side> sides;
-  for (std::size_t i = 0; i < partners.size(); ++i)
-    sides.push_back({partners[i]->name(), std::move(interfaces[i])});
-  check_places(sides);
-  std::optional<Side> mesh;
-  if (mesh_.channel) mesh = sides.front();
-  wiring_.emplace(sides[sides.size() - 2], sides.back(), mesh, parameters_.mapping);
-  for (const std::string& note : wiring_->notes()) log::info("{}", note);
-  history_.now.displacement.assign(wiring_->n_unknowns(), 0.);
-  history_.now.velocity.assign(wiring_->n_unknowns(), 0.);
-  fluid_wall_ = history_.now.displacement;
+  std::vector<Interface> interfaces = initialise_all(everyone());
+  for (std::size_t i = 0; i < partners_.size(); ++i)
+    sides_.emplace_back(comm_, partners_[i].name(), std::move(interfaces[i]));
+  links_.emplace(comm_, sides_, parameters_.mapping);
+  for (const std::string& note : links_->notes()) log::info("{}", note);
+  check_roles(parameters_, sides_);
+  check_places(comm_, sides_, *links_, parameters_.mapping);
+  unknown_.emplace(comm_, sides_, *links_, group_, schedule_.side_by_side);
+  mechanics_.emplace(comm_, sides_, *links_, labels_of(parameters_, partners_));
+  if (unknown_->start_at_rest(given_)) history_.now = unknown_->gather(given_);
 }
 
-void Coupler::check_places(const std::vector<Side>& sides) {
-  const Side &fluid = sides[sides.size() - 2], &structure = sides.back();
-  const bool nearest = parameters_.mapping.type != MappingParameters::Type::matched;
-  if (const std::string text = problem_of_closed_fluid(fluid.interface, fluid.name); !text.empty())
-    throw Error("{}", text);
-  for (const Side& side : sides) {
-    if (&side == &structure) continue;
-    const PlaceReport report =
-        judge_places(structure.interface, structure.name, side.interface, side.name, nearest);
-    if (!report.problem.empty()) throw Error("{}", report.problem);
-    for (const std::string& note : report.notes) log::warn("{}", note);
-  }
+void Coupler::ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh) {
+  // The moved one blocks until the mesh has been moved: the mover's command goes out first.
+  const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
+  if (with_mover) partners_.front().send({Op::solve, {}, links_->input(0, known), 0, -1, ""});
+  taken_[i] = links_->input(i, known);
+  partners_[i].send({Op::solve, {}, taken_[i], 0, -1, ""});
 }
 
-InterfaceState Coupler::pass(const InterfaceState& x, bool move_mesh) {
-  // The fluid blocks until the mesh has been moved: its command goes out before any reply is awaited.
-  if (move_mesh) mesh_.send({Op::solve, {}, wiring_->to_mesh(x), 0, -1, ""});
-  fluid_.send({Op::solve, {}, wiring_->to_fluid(x), 0, -1, ""});
-  // A failed motion makes the fluid fail too; the mover knows the reason. Both replies are always taken.
+void Coupler::answer(std::size_t i, Exchange& given, bool move_mesh) {
+  const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
+  // A failed motion makes the moved one fail too; the mover knows the reason. Both replies are always taken.
   std::optional<SolveFailure> mover_failed;
-  if (move_mesh) {
+  if (with_mover) {
     try {
-      mesh_.receive();
+      partners_.front().receive();
     } catch (const SolveFailure& failure) {
       mover_failed = failure;
     }
   }
   try {
-    last_given_ = fluid_.receive().data;
+    Reply reply = partners_[i].receive();
+    given = std::move(reply.data);
+    answered_anew_ = answered_anew_ || reply.anew;
   } catch (const SolveFailure&) {
     if (!mover_failed) throw;
   }
   if (mover_failed) throw SolveFailure(*mover_failed);
-  require_finite(last_given_, wiring_->fluid().interface, wiring_->fluid().interface.gives, fluid_.name());
-  last_load_ = wiring_->to_structure(last_given_);
-  structure_.send({Op::solve, {}, last_load_, 0, -1, ""});
-  return wiring_->from_structure(structure_.receive().data);
+  require_finite(comm_, given, sides_[i].interface, sides_[i].interface.gives, partners_[i].name());
+}
+
+std::vector<Exchange> Coupler::pass(std::vector<Exchange> known, bool move_mesh) {
+  ++iterations_;
+  answered_anew_ = false;
+  if (!schedule_.side_by_side) {
+    for (const std::size_t i : group_) {
+      ask(i, known, move_mesh);
+      answer(i, known[i], move_mesh);
+    }
+    return known;
+  }
+  for (const std::size_t i : group_) ask(i, known, move_mesh);
+  std::vector<Exchange> given = known;
+  std::string failures;
+  bool hopeless = false;
+  for (const std::size_t i : group_) {
+    try {
+      answer(i, given[i], move_mesh);
+    } catch (const SolveFailure& failure) {
+      failures += (failures.empty() ? "" : " ") + std::string(failure.what());
+      hopeless = hopeless || dynamic_cast<const SchemeFailure*>(&failure);
+    }
+  }
+  if (hopeless) throw SchemeFailure(failures);
+  if (!failures.empty()) throw SolveFailure(failures);
+  return given;
 }
 
 std::optional<StepFailure> Coupler::attempt(const Step& step) {
   if (!diverged_.empty()) return StepFailure(diverged_, false);
   enter_(Phase::begin_step, step.time);
-  for (Partner* p : everyone()) p->seconds = 0;
+  for (Partner& p : partners_) p.seconds = 0;
   try {
     solve(step);
   } catch (const SchemeFailure& failure) {
@@ -103,95 +174,93 @@ std::optional<StepFailure> Coupler::attempt(const Step& step) {
 }
 
 void Coupler::solve(const Step& step) {
-  ask_all(everyone(), {Op::begin_step, step, {}, 0, -1, ""});
+  Step begun = step;
+  begun.waveform = schedule_.waveform;
+  ask_all(everyone(), {Op::begin_step, begun, {}, 0, -1, ""});
   enter_(Phase::solve, step.time);
-  InterfaceState guess = predict(history_, step.dt, parameters_.predictor_order);
-  const bool move_always = parameters_.scheme != Scheme::semi_implicit;
-  const bool constant = parameters_.acceleration.type == AccelerationParameters::Type::constant;
-  iteration_guard_.start_step();
   bool first = true;
-  const FixedPointMap map = [&](const InterfaceState& x) {
-    ++iterations_;
-    const bool move_mesh = mesh_.channel && (first || move_always);
+  std::vector<Exchange> outputs;
+  const auto pass_from = [&](std::vector<Exchange> known) {
+    const bool move_mesh = schedule_.mover && (first || schedule_.moves_in_each_pass);
     first = false;
-    return pass(x, move_mesh);
+    outputs = pass(std::move(known), move_mesh);
   };
-  const IterationObserver observer = [&](int k, const Residual& residual, double omega) {
-    monitor_->iteration(step, k, residual, omega);
-    iteration_guard_.pass(residual.absolute, omega, constant);
+  const FixedPointMap map = [&](const Iterate& x) {
+    std::vector<Exchange> known(partners_.size());
+    unknown_->scatter(x, known);
+    pass_from(std::move(known));
+    if (answered_anew_ && accelerator_) accelerator_->map_changed();
+    return unknown_->gather(outputs);
   };
-  ConvergenceParameters convergence = parameters_.convergence;
-  if (parameters_.scheme == Scheme::explicit_) {
-    // One pass, whatever its residual.
-    convergence.max_iterations = 1;
-    convergence.relative = std::numeric_limits<double>::infinity();
+  const bool begins =
+      history_.now.unknown.empty() && history_.now.rider.empty() && !unknown_->parts().empty();
+  if (begins || unknown_->parts().empty()) {
+    // Data that nobody has given yet are missing from this first pass.
+    pass_from(std::vector<Exchange>(partners_.size()));
+    if (!unknown_->scaled()) unknown_->scale(outputs);
+    last_ = {unknown_->gather(outputs), unknown_->gather(outputs), {}, 1};
   }
-  last_ = solve_fixed_point(std::move(guess), wiring_->dim(), map, convergence, *accelerator_, observer);
+  if (!begins) last_.x = predict(*unknown_, history_, step.dt, schedule_.predictor);
+  if (!schedule_.iterates) {
+    if (!begins && !unknown_->parts().empty()) {
+      last_.image = map(last_.x);
+      last_.residual = worst(unknown_->measure(last_.x, last_.image));
+      last_.iterations = 1;
+    }
+    monitor_->iteration(step, 1, last_.residual, std::numeric_limits<double>::quiet_NaN());
+  } else if (!unknown_->parts().empty()) {
+    const bool constant = parameters_.acceleration.type == AccelerationParameters::Type::constant;
+    iteration_guard_.start_step();
+    const IterationObserver observer = [&](int k, const Residual& residual, double omega) {
+      monitor_->iteration(step, k, residual, omega);
+      if (!converged(residual, parameters_.convergence))
+        iteration_guard_.pass(residual.absolute, omega, constant);
+    };
+    const ResidualMeasure measure = [&](const Iterate& x, const Iterate& image) {
+      return unknown_->measure(x, image);
+    };
+    last_ =
+        solve_fixed_point(std::move(last_.x), map, measure, parameters_.convergence, *accelerator_, observer);
+  }
+  given_ = std::move(outputs);
   last_dt_ = step.dt;
 }
 
 void Coupler::accept(double time, int output) {
   enter_(Phase::accept, {});
-  const std::vector<double> before = history_.now.displacement;
   ask_all(everyone(), {Op::accept_step, {}, {}, time, output, ""});
   enter_(Phase::accept, time);
-  // Each side's work is its load times the way of its own wall: the fluid's is where its last pass put it,
-  // which in the explicit scheme is the guess.
-  const auto increment = [&](const std::vector<double>& now, const std::vector<double>& old) {
-    std::vector<double> result(now.size());
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = now[i] - old[i];
-    return result;
-  };
-  const Balance fluid =
-      wiring_->fluid_balance(last_given_, wiring_->at_fluid(increment(last_.x.displacement, fluid_wall_)));
-  const Balance structure =
-      wiring_->structure_balance(last_load_, increment(last_.image.displacement, before));
-  monitor_->balance(time, fluid, structure);
-  fluid_wall_ = last_.x.displacement;
-  history_.old_velocity = std::move(history_.now.velocity);
-  history_.now = last_.image;
-  history_.old_dt = last_dt_;
-  const auto parted = work_guard_.accepted(fluid.work, structure.work, parameters_.scheme);
-  auto reason = oscillation_guard_.accepted(history_.now.displacement, last_dt_, parameters_.scheme);
-  if (!reason) reason = parted;
+  // Scales are found after the first step, and hold from then on.
+  if (!unknown_->scaled() && unknown_->complete(given_)) {
+    unknown_->scale(given_);
+    last_.image = unknown_->gather(given_);
+    history_ = {};
+    // What it has learnt was in other scales.
+    if (accelerator_) accelerator_ = make_accelerator(parameters_.acceleration, comm_);
+  }
+  history_.accepted(last_.image, last_dt_, schedule_.predictor);
+  const std::vector<SideBalance> balances = mechanics_->accepted(given_, taken_);
+  if (!balances.empty()) monitor_->balance(time, balances);
+  if (parameters_.exchange) monitor_->amounts(time, links_->amounts(given_));
+  if (output >= 0 && interface_output_) interface_output_->write(time, output, given_, taken_);
+  watch(time, balances);
+}
+
+void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
+  double given = 0, taken = 0;
+  for (const SideBalance& side : balances) (side.gives ? given : taken) += side.balance.work;
+  std::optional<std::string> reason =
+      oscillation_guard_.accepted(unknown_->motion(last_.image), last_dt_, parameters_.scheme);
+  if (!balances.empty() && mechanics_->knows_work()) {
+    const auto parted = work_guard_.accepted(given, taken, parameters_.scheme);
+    if (!reason) reason = parted;
+  }
   if (!reason || !diverged_.empty()) return;
   if (parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
     diverged_ = *reason;
   else if (!warned_)
     log::warn("t = {:g} s: {}", time, *reason);
   warned_ = true;
-}
-
-void Coupler::save(const std::filesystem::path& folder) {
-  enter_(Phase::save, {});
-  ask_all(everyone(), {Op::save, {}, {}, 0, -1, folder.string()});
-  CheckpointWriter file(MPI_COMM_SELF, folder / "coupler.h5");
-  file.write("displacement", history_.now.displacement);
-  file.write("velocity", history_.now.velocity);
-  file.write("old-velocity", history_.old_velocity);
-  file.write_scalar("old-dt", history_.old_dt);
-  file.write("fluid-wall", fluid_wall_);
-  file.write("work", work_guard_.totals());
-  accelerator_->save(file);
-  file.close();
-}
-
-void Coupler::load() {
-  enter_(Phase::load, {});
-  CheckpointReader file(MPI_COMM_SELF, folders_.restart / "coupler.h5");
-  file.read("displacement", history_.now.displacement);
-  file.read("velocity", history_.now.velocity);
-  history_.old_velocity = file.read("old-velocity");
-  history_.old_dt = file.read_scalar("old-dt");
-  file.read("fluid-wall", fluid_wall_);
-  std::array<double, 4> work{};
-  file.read("work", work);
-  work_guard_.restore(work);
-  accelerator_->load(file);
-  const RunState state = read_run_state(folders_.restart);
-  loop_.restart(state);
-  ask_all(everyone(), {Op::load, {}, {}, state.time, -1, folders_.restart.string()});
-  log::info("continues from {} at t = {:g} s", folders_.restart.string(), state.time);
 }
 
 void Coupler::finalise() {
@@ -209,17 +278,18 @@ std::string Coupler::run() {
     load();
     restart_time = read_run_state(folders_.restart).time;
   }
-  monitor_.emplace(folders_.output, wiring_->dim(), simulation_.end_time, restart_time);
+  std::vector<std::string> names;
+  for (const Partner& p : partners_) names.push_back(p.name());
+  monitor_.emplace(comm_, folders_.output, names, mechanics_->labels(), mechanics_->dim(),
+                   simulation_.end_time, restart_time);
+  if (parameters_.interface_output)
+    interface_output_.emplace(comm_, folders_.output / "interface", sides_, restart_time);
   StepActions actions;
   actions.attempt = [&](const Step& step) { return attempt(step); };
   actions.accept = [&](double time, int output) { accept(time, output); };
   actions.write_start = [&](int output) { ask_all(everyone(), {Op::write_output, {}, {}, 0, output, ""}); };
   actions.save = [&](const std::filesystem::path& folder) { save(folder); };
-  actions.report = [&](const Step& step, double time) {
-    std::vector<Partner*> partners{&fluid_, &structure_};
-    if (mesh_.channel) partners.push_back(&mesh_);
-    monitor_->step(step, time, last_, seconds_of(partners));
-  };
+  actions.report = [&](const Step& step, double time) { monitor_->step(step, time, last_, partners_); };
   actions.advised_dt = [&] { return advised_dt(everyone()); };
   std::string problem = loop_.run(actions);
   finalise();

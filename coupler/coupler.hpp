@@ -8,33 +8,43 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/app/step_loop.hpp"
 #include "common/app/watch.hpp"
 #include "coupler/accelerator.hpp"
 #include "coupler/fixed_point.hpp"
 #include "coupler/guards.hpp"
+#include "coupler/interface_output.hpp"
+#include "coupler/mechanics.hpp"
 #include "coupler/monitor.hpp"
 #include "coupler/parameters.hpp"
 #include "coupler/partners.hpp"
-#include "coupler/wiring.hpp"
+#include "coupler/schedule.hpp"
+#include "coupler/unknown.hpp"
 
 namespace couplet {
 
-struct CouplerChannels {
-  std::unique_ptr<Channel> fluid, structure, mesh;  ///< mesh may be empty
-};
-
 struct CouplerFolders {
-  std::filesystem::path output;       ///< for residuals.csv and balance.csv
+  std::filesystem::path output;       ///< for the coupler's own files
   std::filesystem::path checkpoints;  ///< of the whole job
   std::filesystem::path restart;      ///< the checkpoint to continue from; empty: fresh start
 };
 
-/// Drives fluid, structure and mesh mover from start to end: Dirichlet-Neumann coupling whose unknown is the
-/// displacement of the structure's interface vertices at t^{n+1}.
+/// Channels by role, for callers without configuration: the roles take the channels' names.
+struct CouplerChannels {
+  std::unique_ptr<Channel> fluid, structure, mesh;  ///< mesh may be empty
+};
+
+/// Drives any number of participants from start to end: Links say who gives what to whom, the Schedule in
+/// which order and how often, the Accelerator how the next guess follows. All its ranks do the same with
+/// their own parts of the interfaces.
 class Coupler {
  public:
+  /// `channels`: to everyone of the schedule, in any order.
+  Coupler(MPI_Comm comm, const CouplingParameters& parameters, const SimulationParameters& simulation,
+          std::vector<std::unique_ptr<Channel>> channels, CouplerFolders folders);
+  /// In one process.
   Coupler(const CouplingParameters& parameters, const SimulationParameters& simulation,
           CouplerChannels channels, CouplerFolders folders);
   /// Called when the coupler turns to another phase, with the time if there is one.
@@ -42,42 +52,53 @@ class Coupler {
   /// Initialises, runs, finalises. Returns an empty text, or why the run stopped before its end.
   std::string run();
 
-  int steps() const { return loop_.steps(); }
+  GlobalIndex steps() const { return loop_.steps(); }
   int halvings() const { return loop_.halvings(); }
   long iterations() const { return iterations_; }
-  /// The accepted interface motion.
-  const InterfaceState& interface_state() const { return history_.now; }
+  /// What each has given in the last pass, in the order of the schedule's everyone().
+  const std::vector<Exchange>& given() const { return given_; }
+  const Exchange& given_by(const std::string& name) const { return given_[index_of(name)]; }
 
  private:
+  std::size_t index_of(const std::string& name) const;
+  std::vector<Partner*> everyone();
   void initialise();
   void load();
   void save(const std::filesystem::path& folder);
   std::optional<StepFailure> attempt(const Step& step);
   void solve(const Step& step);
-  void check_places(const std::vector<Side>& sides);
-  /// One pass: motion to mesh mover and fluid, load to the structure, its motion back.
-  InterfaceState pass(const InterfaceState& x, bool move_mesh);
+  /// One pass through the group from what is known to what all give.
+  std::vector<Exchange> pass(std::vector<Exchange> known, bool move_mesh);
+  void ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh);
+  void answer(std::size_t i, Exchange& given, bool move_mesh);
   void accept(double time, int output);
+  void watch(double time, const std::vector<SideBalance>& balances);
   void finalise();
-  std::vector<Partner*> everyone();
 
+  MPI_Comm comm_;
   CouplingParameters parameters_;
   SimulationParameters simulation_;
+  Schedule schedule_;
   CouplerFolders folders_;
-  Partner fluid_, structure_, mesh_;
-  std::optional<Wiring> wiring_;
+  std::vector<Partner> partners_;   // in the order of the schedule's everyone()
+  std::vector<std::size_t> group_;  // of these
+  std::vector<Side> sides_;
+  std::optional<Links> links_;
+  std::optional<Unknown> unknown_;
+  std::optional<Mechanics> mechanics_;
   std::optional<Monitor> monitor_;
+  std::optional<InterfaceOutput> interface_output_;  // none: not asked for
   StepLoop loop_;
-  std::unique_ptr<Accelerator> accelerator_;
-  InterfaceHistory history_;
-  FixedPointResult last_;            // of the step just solved
-  Exchange last_load_, last_given_;  // to the structure and from the fluid in its last pass
-  std::vector<double> fluid_wall_;   // displacement that the fluid had in the last accepted step
+  std::unique_ptr<Accelerator> accelerator_;  // none: one pass a step
+  History history_;                           // of accepted steps; empty before all has been given
+  FixedPointResult last_;                     // of the step just solved
+  std::vector<Exchange> given_, taken_;       // by each in its last pass
   IterationGuard iteration_guard_;
   OscillationGuard oscillation_guard_;
   WorkGuard work_guard_;
   std::string diverged_;  // empty: no guard has fired
   bool warned_ = false;
+  bool answered_anew_ = false;  // somebody in the last pass
   double last_dt_ = 0;
   long iterations_ = 0;
   std::function<void(Phase, std::optional<double>)> enter_ = [](Phase, std::optional<double>) {};

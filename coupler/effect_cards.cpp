@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "coupler/schedule.hpp"
+
 namespace couplet {
 namespace {
 
@@ -11,28 +13,26 @@ using Acceleration = AccelerationParameters::Type;
 using Mapping = MappingParameters::Type;
 
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
-bool has_roles(const P& p) { return !p.exchange; }
-bool iterates(const P& p) { return has_roles(p) && p.scheme != Scheme::explicit_; }
+bool iterates(const P& p) { return p.scheme != Scheme::explicit_; }
+/// Whether participants see the motion of the guess before the structure has given its own.
+bool predicts(const P& p) { return schedule_of(p).predictor > 0; }
 bool is_quasi_newton(const P& p) {
   return p.acceleration.type == Acceleration::iqn_ils || p.acceleration.type == Acceleration::iqn_mvj;
 }
 
 const std::array cards{
-    CouplingCard{"exchange once a step",
+    CouplingCard{"exchange among any participants",
                  "`exchange`",
                  [](const P& p) { return when(p.exchange.has_value(), "exchange"); },
-                 {"no iteration, no guards of the interface's motion", 0, 0}},
-    CouplingCard{
-        "iteration of the whole step",
-        "`scheme: implicit`",
-        [](const P& p) { return when(has_roles(p) && p.scheme == Scheme::implicit, "scheme: implicit"); },
-        {"all of fluid, structure and mesh motion once a pass", 0, 0}},
+                 {"sums of the amounts that go over", 0, 0}},
+    CouplingCard{"iteration of the whole step",
+                 "`scheme: implicit`",
+                 [](const P& p) { return when(p.scheme == Scheme::implicit, "scheme: implicit"); },
+                 {"all participants and the mesh motion once a pass", 0, 0}},
     CouplingCard{
         "iteration of pressure and structure",
         "`scheme: semi-implicit`",
-        [](const P& p) {
-          return when(has_roles(p) && p.scheme == Scheme::semi_implicit, "scheme: semi-implicit");
-        },
+        [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
         {"a pressure solve and a structure's step a pass; mesh motion and predictor once a step", 0, 0}},
     CouplingCard{"relaxation by Aitken",
                  "`acceleration.type: aitken`",
@@ -47,7 +47,7 @@ const std::array cards{
                  {"three vectors of the interface for each of at most `maximum-columns` differences", 0, 0}},
     CouplingCard{"prediction",
                  "`predictor.order` above 0",
-                 [](const P& p) { return when(has_roles(p) && p.predictor_order > 0, "predictor.order"); },
+                 [](const P& p) { return when(predicts(p), "predictor.order"); },
                  {"the motion of two earlier steps", 0, 0}},
     CouplingCard{"mapping between surfaces that do not match",
                  "`mapping.type` other than `matched`",
@@ -57,12 +57,18 @@ const std::array cards{
                  "`mesh`",
                  [](const P& p) { return when(p.mesh.has_value(), "mesh"); },
                  {"the process mesh_mover", 0, 0}},
+    CouplingCard{"sub-steps",
+                 "`sub-steps`",
+                 [](const P& p) { return when(!p.sub_steps.empty(), "sub-steps"); },
+                 {"state n of who takes them, in memory; that many of its steps a pass", 0, 0}},
+    CouplingCard{"interface data for ParaView",
+                 "`interface-output: true`",
+                 [](const P& p) { return when(p.interface_output, "interface-output"); },
+                 {"a file of each interface with each output", 0, 0}},
     CouplingCard{
         "guards that stop",
         "`on-divergence: stop`",
-        [](const P& p) {
-          return when(has_roles(p) && p.on_divergence == P::OnDivergence::stop, "on-divergence: stop");
-        },
+        [](const P& p) { return when(p.on_divergence == P::OnDivergence::stop, "on-divergence: stop"); },
         {"a few sums over the interface a step", 0, 0},
         "motion that the coupling itself makes: swings that grow, work that parts, iterations that diverge"},
 };

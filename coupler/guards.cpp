@@ -5,20 +5,19 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet {
 namespace {
 
-double norm(const std::vector<double>& values) {
-  double square = 0;
-  for (const double v : values) square += v * v;
-  return std::sqrt(square);
+double dot_over(MPI_Comm comm, const std::vector<double>& a, const std::vector<double>& b) {
+  double total = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) total += a[i] * b[i];
+  return sum(comm, total);
 }
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
+double norm(MPI_Comm comm, const std::vector<double>& values) {
+  return std::sqrt(dot_over(comm, values, values));
 }
 
 const char* cure_of_oscillation(Scheme scheme) {
@@ -99,11 +98,11 @@ std::optional<std::string> OscillationGuard::accepted(const std::vector<double>&
     jump = velocity;
     for (std::size_t i = 0; i < x.size(); ++i) jump[i] -= velocity_[i];
   }
-  const double size = norm(jump), old_size = norm(jump_);
-  speed_.push_back(norm(velocity));
+  const double size = norm(comm_, jump), old_size = norm(comm_, jump_);
+  speed_.push_back(norm(comm_, velocity));
   if (speed_.size() > 4) speed_.pop_front();
   // It turns round: most of the shape is the last one's with the other sign.
-  const bool turned = levels_ >= 3 && dot(jump, jump_) < -0.3 * size * old_size;
+  const bool turned = levels_ >= 3 && dot_over(comm_, jump, jump_) < -0.3 * size * old_size;
   if (turned) {
     if (turns_ == 0) sizes_.assign(1, old_size);
     ++turns_;

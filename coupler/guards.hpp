@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mpi.h>
+
 #include <array>
 #include <deque>
 #include <limits>
@@ -40,7 +42,10 @@ class IterationGuard {
 /// velocity).
 class OscillationGuard {
  public:
-  /// The motion x of an accepted step of length dt. A reason if it oscillates, else nothing.
+  /// `comm`: over whose ranks the motion is cut.
+  explicit OscillationGuard(MPI_Comm comm = MPI_COMM_SELF) : comm_(comm) {}
+  /// The motion x of an accepted step of length dt, this rank's part. A reason if it oscillates, else
+  /// nothing.
   std::optional<std::string> accepted(const std::vector<double>& x, double dt, Scheme scheme);
   /// After a step that failed: a reason if the accepted steps before it had begun to swing, else nothing.
   std::optional<std::string> suspects(Scheme scheme) const;
@@ -48,6 +53,7 @@ class OscillationGuard {
   int turns() const { return turns_; }
 
  private:
+  MPI_Comm comm_;
   std::vector<double> x_, velocity_, jump_;
   int turns_ = 0, levels_ = 0;  // levels: accepted states that are known
   std::vector<double> sizes_;   // of the differences since the turning began
@@ -83,23 +89,5 @@ class WorkGuard {
   };
   std::vector<Window> windows_;  // the last three
 };
-
-/// Throws SolveFailure naming datum, entry and place if one of the values is not finite.
-void require_finite(const Exchange& data, const Interface& interface, const std::vector<Interface::Datum>& of,
-                    const std::string& who);
-
-/// What is wrong with two coupled surfaces that need not match, as far as their places tell.
-struct PlaceReport {
-  std::string problem;             ///< empty: none
-  std::vector<std::string> notes;  ///< what the user should know
-};
-/// `from` gives motion or loads to `to`: distances are judged against the local face size of both sides, the
-/// extents against each other; several vertices that follow one (a staircase) are said.
-PlaceReport judge_places(const Interface& from, const std::string& from_name, const Interface& to,
-                         const std::string& to_name, bool nearest);
-
-/// A fluid without outlet can take no net volume: empty if `fluid` has an outlet or its interface is closed
-/// in itself (a body that moves through it), else why the run cannot start and what helps.
-std::string problem_of_closed_fluid(const Interface& fluid, const std::string& name);
 
 }  // namespace couplet

@@ -2,9 +2,11 @@
 #include "coupler/links.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/parallel/collective.hpp"
 #include "coupler/map_projection.hpp"
 
 namespace couplet {
@@ -13,43 +15,30 @@ namespace {
 using Datum = Interface::Datum;
 using Place = Interface::Place;
 
-bool is_amount(const Datum& datum) { return datum.unit == "N" || datum.unit == "W"; }
-
-PointSet places(const Side& side, Place place) {
-  const Interface& i = side.interface;
-  PointSet set{(place == Place::vertices ? "vertices of '" : "faces of '") + side.name + "'",
-               place == Place::vertices ? i.vertices : i.face_centres,
-               {},
-               place == Place::vertices || !i.face_areas.empty() ? &i : nullptr};
-  if (place == Place::faces)
-    for (const Vec3& area : i.face_areas) set.sizes.push_back(area.norm());
-  return set;
-}
-
 struct Source {
   std::size_t giver;
   const Datum* datum;
 };
 
-/// The one participant other than `taker` that gives `wanted`.
-Source source_of(const Datum& wanted, std::size_t taker, const std::vector<Side>& sides) {
+const Datum* find(const std::vector<Datum>& list, const std::string& name) {
+  const auto found = std::ranges::find(list, name, &Datum::name);
+  return found == list.end() ? nullptr : &*found;
+}
+
+/// The participants other than `taker` that give `wanted`.
+std::vector<Source> sources_of(const Datum& wanted, std::size_t taker, const std::vector<Side>& sides) {
   std::vector<Source> found;
   std::vector<std::string> all;
   for (std::size_t g = 0; g < sides.size(); ++g) {
     if (g == taker) continue;
-    for (const Datum& datum : sides[g].interface.gives) {
+    for (const Datum& datum : sides[g].interface.gives)
       all.push_back("'" + datum.name + "' by '" + sides[g].name + "'");
-      if (datum.name == wanted.name) found.push_back({g, &datum});
-    }
+    if (const Datum* datum = find(sides[g].interface.gives, wanted.name)) found.push_back({g, datum});
   }
-  const std::string& name = sides[taker].name;
   if (found.empty())
-    throw Error("'{}' takes '{}', which nobody gives. Given are: {}.", name, wanted.name,
+    throw Error("'{}' takes '{}', which nobody gives. Given are: {}.", sides[taker].name, wanted.name,
                 all.empty() ? "no data at all" : join(all));
-  if (found.size() > 1)
-    throw Error("'{}' takes '{}', which both '{}' and '{}' give: only one of them may.", name, wanted.name,
-                sides[found[0].giver].name, sides[found[1].giver].name);
-  return found.front();
+  return found;
 }
 
 void check_same(const Datum& wanted, const Side& taker, const Datum& given, const Side& giver) {
@@ -62,73 +51,162 @@ void check_same(const Datum& wanted, const Side& taker, const Datum& given, cons
                 giver.name, m);
 }
 
-double sum(const std::vector<double>& values, int components, int component) {
+PointSet part_of(const PointSet& set, const std::vector<std::size_t>& choice, std::size_t chosen) {
+  PointSet part{set.what, {}, {}, set.surface, {}, {}, set.starts};
+  for (std::size_t i = 0; i < set.points.size(); ++i) {
+    if (choice[i] != chosen) continue;
+    part.points.push_back(set.points[i]);
+    part.positions.push_back(set.positions[i]);
+    part.ids.push_back(set.ids[i]);
+    if (!set.sizes.empty()) part.sizes.push_back(set.sizes[i]);
+  }
+  return part;
+}
+
+/// For each place of `set` the one of `others` that is nearest. Two that are equally near share the place:
+/// that is `problem`'s text.
+std::vector<std::size_t> nearest_of(MPI_Comm comm, const PointSet& set, const std::vector<PointSet>& others,
+                                    const std::string& problem) {
+  if (others.size() == 1) return std::vector<std::size_t>(set.points.size(), 0);
+  std::vector<std::size_t> choice(set.points.size(), 0);
+  std::vector<double> least(set.points.size(), std::numeric_limits<double>::infinity()), second = least;
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    const std::vector<Neighbour> found = nearest(comm, set.points, others[k]);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const double d = found[i].distance;
+      if (d < least[i])
+        second[i] = least[i], least[i] = d, choice[i] = k;
+      else
+        second[i] = std::min(second[i], d);
+    }
+  }
+  bool unclear = false;
+  for (std::size_t i = 0; i < set.points.size(); ++i) unclear = unclear || !(second[i] > 1.5 * least[i]);
+  // One corner that two bodies share is no reason; all places being so is.
+  const GlobalIndex doubtful = sum(comm, GlobalIndex(unclear));
+  if (doubtful > 0) throw Error("{}", problem);
+  return choice;
+}
+
+std::vector<std::size_t> takers_of(const Datum& datum, const std::vector<Side>& sides) {
+  std::vector<std::size_t> list;
+  for (std::size_t t = 0; t < sides.size(); ++t)
+    if (find(sides[t].interface.takes, datum.name)) list.push_back(t);
+  return list;
+}
+
+/// Of the places of giver `g` those that taker `t` is nearest to: an amount goes to one taker.
+PointSet share_of(MPI_Comm comm, const PointSet& places, const Datum& given, std::size_t g, std::size_t t,
+                  const std::vector<std::size_t>& takers, const std::vector<Side>& sides) {
+  std::vector<PointSet> theirs;
+  std::size_t here = 0;
+  for (const std::size_t other : takers) {
+    if (other == t) here = theirs.size();
+    theirs.push_back(sides[other].places(find(sides[other].interface.takes, given.name)->place));
+  }
+  const auto taker_of =
+      nearest_of(comm, places, theirs,
+                 fmt::format("'{}' and '{}' both take '{}' of '{}' in the same place: it would count twice.",
+                             sides[takers[0]].name, sides[takers[1]].name, given.name, sides[g].name));
+  return part_of(places, taker_of, here);
+}
+
+double sum_of(MPI_Comm comm, const std::vector<double>& values, int components, int component) {
   double total = 0;
   for (std::size_t i = std::size_t(component); i < values.size(); i += std::size_t(components))
     total += values[i];
-  return total;
+  return sum(comm, total);
 }
 
 }  // namespace
 
-Links::Links(const std::vector<Side>& sides, const MappingParameters& mapping) {
+Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParameters& mapping) : comm_(comm) {
   for (const Side& side : sides) {
     names_.push_back(side.name);
-    check_corners(side.interface, side.name);
+    if (comm_size(comm) == 1) check_corners(side.interface, side.name);
+    entries_.push_back({side.entries(Place::vertices), side.entries(Place::faces)});
   }
   for (std::size_t t = 0; t < sides.size(); ++t)
     for (const Datum& wanted : sides[t].interface.takes) {
-      const auto [g, given] = source_of(wanted, t, sides);
-      check_same(wanted, sides[t], *given, sides[g]);
-      const auto kind = is_amount(*given) ? Mapping::Kind::conservative : Mapping::Kind::consistent;
-      links_.push_back(
-          {g, t, *given, given->size(sides[g].interface.dim),
-           Mapping(kind, places(sides[g], given->place), places(sides[t], wanted.place), mapping)});
-      notes_.push_back(given->name + ": " + links_.back().mapping.summary());
+      const std::vector<Source> sources = sources_of(wanted, t, sides);
+      const PointSet to = sides[t].places(wanted.place);
+      std::vector<PointSet> from;
+      for (const auto& [g, given] : sources) {
+        check_same(wanted, sides[t], *given, sides[g]);
+        from.push_back(sides[g].places(given->place));
+      }
+      const std::string both =
+          sources.size() < 2
+              ? ""
+              : fmt::format(
+                    "'{}' takes '{}', which both '{}' and '{}' give in the same place: only one of "
+                    "them may.",
+                    names_[t], wanted.name, names_[sources[0].giver], names_[sources[1].giver]);
+      const auto giver_of = nearest_of(comm, to, from, both);
+      for (std::size_t s = 0; s < sources.size(); ++s) {
+        const auto& [g, given] = sources[s];
+        PointSet mine = from[s];
+        const auto takers = takers_of(*given, sides);
+        if (is_amount(*given) && takers.size() > 1) mine = share_of(comm, mine, *given, g, t, takers, sides);
+        const bool whole = sources.size() == 1 && !(is_amount(*given) && takers.size() > 1);
+        const auto same = std::ranges::find_if(links_, [&, g = g, given = given](const Link& l) {
+          return whole && l.whole && l.giver == g && l.taker == t && l.datum.place == given->place &&
+                 l.to == wanted.place && is_amount(l.datum) == is_amount(*given);
+        });
+        const int components = given->size(sides[g].interface.dim);
+        if (same != links_.end()) {
+          const auto known = same->mapping;  // the vector may move
+          links_.push_back({g, t, *given, components, wanted.place, known, whole});
+          continue;
+        }
+        const auto kind = is_amount(*given) ? Mapping::Kind::conservative : Mapping::Kind::consistent;
+        links_.push_back(
+            {g, t, *given, components, wanted.place,
+             std::make_shared<const Mapping>(comm, kind, mine, part_of(to, giver_of, s), mapping), whole});
+        notes_.push_back(given->name + ": " + links_.back().mapping->summary());
+      }
     }
+  for (const Side& side : sides)
+    for (const Datum& datum : side.interface.gives)
+      if (takers_of(datum, sides).empty())
+        notes_.push_back(fmt::format("note: nobody takes '{}' of '{}'", datum.name, side.name));
 }
 
 std::vector<double> Links::carried(const Link& link, const std::vector<Exchange>& given) const {
   const auto found = given[link.giver].find(link.datum.name);
   if (found == given[link.giver].end()) return {};
-  if (found->second.size() != link.mapping.n_from() * std::size_t(link.components))
+  const std::size_t places = entries_[link.giver][link.datum.place == Place::vertices ? 0 : 1];
+  if (found->second.size() != places * std::size_t(link.components))
     throw Error("'{}' gave {} values of '{}' where its {} places of {} components had been announced.",
-                names_[link.giver], found->second.size(), link.datum.name, link.mapping.n_from(),
-                link.components);
-  return link.mapping.apply(found->second, link.components);
+                names_[link.giver], found->second.size(), link.datum.name, places, link.components);
+  return link.mapping->apply(found->second, link.components);
 }
 
 Exchange Links::input(std::size_t taker, const std::vector<Exchange>& given) const {
   Exchange data;
   for (const Link& link : links_) {
-    if (link.taker != taker) continue;
-    std::vector<double> values = carried(link, given);
-    if (!values.empty()) data[link.datum.name] = std::move(values);
+    if (link.taker != taker || !given[link.giver].contains(link.datum.name)) continue;
+    const std::vector<double> values = carried(link, given);
+    // Places that have another giver got nothing.
+    std::vector<double>& all = data[link.datum.name];
+    all.resize(values.size(), 0.);
+    for (std::size_t i = 0; i < values.size(); ++i) all[i] += values[i];
   }
   return data;
-}
-
-std::vector<std::string> Links::given_by(std::size_t giver) const {
-  std::vector<std::string> names;
-  for (const Link& link : links_)
-    if (link.giver == giver && std::ranges::find(names, link.datum.name) == names.end())
-      names.push_back(link.datum.name);
-  return names;
 }
 
 std::vector<Links::Amount> Links::amounts(const std::vector<Exchange>& given) const {
   std::vector<Amount> result;
   for (const Link& link : links_) {
-    if (!is_amount(link.datum)) continue;
+    if (!is_amount(link.datum) || !given[link.giver].contains(link.datum.name)) continue;
     const std::vector<double> taken = carried(link, given);
-    if (taken.empty()) continue;
     for (int c = 0; c < link.components; ++c) {
       const std::string what = link.datum.name +
                                (link.components > 1 ? std::string(" ") + "xyz"[c % 3] : std::string()) +
                                " [" + link.datum.unit + "]";
       result.push_back({names_[link.giver] + " gives " + what,
-                        sum(given[link.giver].at(link.datum.name), link.components, c)});
-      result.push_back({names_[link.taker] + " takes " + what, sum(taken, link.components, c)});
+                        sum_of(comm_, given[link.giver].at(link.datum.name), link.components, c)});
+      result.push_back({names_[link.taker] + " takes " + what, sum_of(comm_, taken, link.components, c)});
     }
   }
   return result;

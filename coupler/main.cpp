@@ -3,41 +3,25 @@
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "coupler/effect_cards.hpp"
-#include "coupler/exchange_run.hpp"
 
 namespace {
 
 int run(const couplet::Job& job, const couplet::CouplingParameters& parameters) {
   using namespace couplet;
   log::info("{}", summary(effects_of(coupling_effect_cards(), parameters)));
-  std::map<std::string, MPI_Comm> peers;
+  std::vector<std::unique_ptr<Channel>> channels;
   for (const Member& m : job.members)
-    if (m.participant != coupler_name) peers[m.participant] = job.connect(m.participant);
-  const auto channel = [&](const std::string& name) -> std::unique_ptr<Channel> {
-    return std::make_unique<MpiChannel>(name, peers.at(name));
-  };
-  const auto on_phase = [&](Phase phase, std::optional<double> time) {
+    if (m.participant != coupler_name)
+      channels.push_back(std::make_unique<MpiChannel>(m.participant, job.connect(m.participant), job.comm));
+  Coupler coupler(job.comm, parameters, job.simulation, std::move(channels),
+                  {job.output_folder, job.checkpoints, job.restart_folder});
+  coupler.on_phase([&](Phase phase, std::optional<double> time) {
     if (time) job.watch->set_time(*time);
     job.enter(phase);
-  };
-  const CouplerFolders folders{job.output_folder, job.checkpoints, job.restart_folder};
-  std::string problem;
-  if (parameters.exchange) {
-    std::vector<std::unique_ptr<Channel>> channels;
-    for (const std::string& name : parameters.exchange->participants) channels.push_back(channel(name));
-    ExchangeRun exchange(parameters, job.simulation, std::move(channels), folders);
-    exchange.on_phase(on_phase);
-    problem = exchange.run();
-  } else {
-    CouplerChannels channels{channel(parameters.fluid->participant),
-                             channel(parameters.structure->participant), nullptr};
-    if (parameters.mesh) channels.mesh = channel(parameters.mesh->participant);
-    Coupler coupler(parameters, job.simulation, std::move(channels), folders);
-    coupler.on_phase(on_phase);
-    problem = coupler.run();
-  }
+  });
+  const std::string problem = coupler.run();
   if (problem.empty()) return 0;
-  log::error("{}", problem);
+  if (job.rank == 0) log::error("{}", problem);
   return 1;
 }
 

@@ -2,150 +2,223 @@
 #include "coupler/mapping.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
 #include "coupler/map_projection.hpp"
-#include "coupler/point_tree.hpp"
 
 namespace couplet {
 namespace {
 
-struct Neighbours {
-  std::vector<Index> index;
-  std::vector<double> distance;  // [m]
-};
-
-/// For each of `points` the nearest of `among`.
-Neighbours nearest(const std::vector<Vec3>& points, const std::vector<Vec3>& among) {
-  Neighbours result;
-  const PointTree tree(among);
-  for (const Vec3& p : points) {
-    const PointTree::Found found = tree.nearest(p);
-    result.index.push_back(found.index);
-    result.distance.push_back(found.distance);
+double extent(MPI_Comm comm, const std::vector<Vec3>& points) {
+  double square = 0;
+  for (int c = 0; c < 3; ++c) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec3& p : points) low = std::min(low, p[c]), high = std::max(high, p[c]);
+    low = min(comm, low), high = max(comm, high);
+    if (high > low) square += (high - low) * (high - low);
   }
-  return result;
+  return std::sqrt(square);
 }
 
-double extent(const std::vector<Vec3>& points) {
-  Vec3 low = points.front(), high = points.front();
-  for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  return (high - low).norm();
-}
+GlobalIndex count(MPI_Comm comm, const PointSet& set) { return sum(comm, GlobalIndex(set.points.size())); }
 
-/// Up to five points of `set` that are further than `tolerance` from every point of `other`.
-std::string without_twin(const PointSet& set, const Neighbours& to_other, const PointSet& other,
-                         double tolerance) {
-  std::string list;
-  std::size_t count = 0;
+/// Points of `set` that are further than `tolerance` from every point of `other`, up to five of them by
+/// place.
+std::string without_twin(MPI_Comm comm, const PointSet& set, const std::vector<Neighbour>& to_other,
+                         const PointSet& other, double tolerance) {
+  struct Lone {
+    Vec3 point;
+    double distance;
+  };
+  std::vector<Lone> lone;
+  GlobalIndex all = 0;
   for (std::size_t i = 0; i < set.points.size(); ++i) {
-    if (to_other.distance[i] <= tolerance) continue;
-    const Vec3& p = set.points[i];
-    if (++count <= 5)
-      list += fmt::format("\n  ({:.9g}, {:.9g}, {:.9g}): the nearest is {:.3g} m away", p.x(), p.y(), p.z(),
-                          to_other.distance[i]);
+    if (to_other[i].distance <= tolerance) continue;
+    if (++all <= 5) lone.push_back({set.points[i], to_other[i].distance});
   }
-  if (count == 0) return "";
-  if (count > 5) list += fmt::format("\n  and {} more", count - 5);
-  return fmt::format("{} of {} {} have no twin among the {} {} within {:.3g} m:{}", count, set.points.size(),
-                     set.what, other.points.size(), other.what, tolerance, list);
+  all = sum(comm, all);
+  if (all == 0) return "";
+  lone = all_gather(comm, lone);
+  std::string list;
+  for (std::size_t i = 0; i < std::min<std::size_t>(5, lone.size()); ++i)
+    list += fmt::format("\n  ({:.9g}, {:.9g}, {:.9g}): the nearest is {:.3g} m away", lone[i].point.x(),
+                        lone[i].point.y(), lone[i].point.z(), lone[i].distance);
+  if (all > 5) list += fmt::format("\n  and {} more", all - 5);
+  const GlobalIndex n = count(comm, set), m = count(comm, other);
+  return fmt::format("{} of {} {} have no twin among the {} {} within {:.3g} m:{}", all, n, set.what, m,
+                     other.what, tolerance, list);
 }
 
-void require_twins(const PointSet& from, const PointSet& to, const MappingParameters& parameters) {
-  const double tolerance =
-      parameters.tolerance.value_or(1e-6 * std::max(extent(from.points), extent(to.points)));
+/// Whether two points of `found` follow the same one.
+bool some_twice(MPI_Comm comm, const std::vector<Neighbour>& found, const Starts& starts) {
+  std::vector<std::vector<GlobalIndex>> used(std::size_t(comm_size(comm)));
+  for (const Neighbour& n : found) used[std::size_t(owner_of(starts, n.position))].push_back(n.position);
+  std::vector<GlobalIndex> mine;
+  for (const auto& part : all_to_all(comm, used)) mine.insert(mine.end(), part.begin(), part.end());
+  std::ranges::sort(mine);
+  return any(comm, std::ranges::adjacent_find(mine) != mine.end());
+}
+
+void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                   const std::vector<Neighbour>& forth, const std::vector<Neighbour>& back,
+                   const MappingParameters& parameters) {
+  const double widest = std::max(extent(comm, from.points), extent(comm, to.points));
+  const double tolerance = parameters.tolerance.value_or(1e-6 * widest);
   const std::string advice =
       "\nGive both meshes the same points on the interface, or set `coupling.mapping.type: nearest`.";
-  const Neighbours forth = nearest(to.points, from.points);
-  if (const std::string text = without_twin(to, forth, from, tolerance); !text.empty())
+  if (const std::string text = without_twin(comm, to, forth, from, tolerance); !text.empty())
     throw Error("{}{}", text, advice);
-  const Neighbours back = nearest(from.points, to.points);
-  if (const std::string text = without_twin(from, back, to, tolerance); !text.empty())
+  if (const std::string text = without_twin(comm, from, back, to, tolerance); !text.empty())
     throw Error("{}{}", text, advice);
-  std::vector<Index> used = forth.index;
-  std::sort(used.begin(), used.end());
-  const auto twice = std::adjacent_find(used.begin(), used.end());
-  if (twice == used.end() && from.points.size() == to.points.size()) return;
-  const Vec3& p = from.points[twice == used.end() ? 0 : *twice];
+  if (!some_twice(comm, forth, from.starts) && count(comm, from) == count(comm, to)) return;
   throw Error(
-      "Several {} lie within {:.3g} m of each other or of the same one of the {}, for instance near ({:.9g}, "
-      "{:.9g}, "
-      "{:.9g}): the twins are not clear. Set a smaller `coupling.mapping.tolerance`.",
-      to.what, tolerance, from.what, p.x(), p.y(), p.z());
-}
-
-SparseMap take_nearest(const Neighbours& found, std::size_t n_from) {
-  SparseMap map;
-  map.n_from = n_from;
-  const double one = 1;
-  for (const Index i : found.index) map.push_row({&i, 1}, {&one, 1});
-  return map;
+      "Several {} lie within {:.3g} m of each other or of the same one of the {}: the twins are not clear. "
+      "Set "
+      "a smaller `coupling.mapping.tolerance`.",
+      to.what, tolerance, from.what);
 }
 
 /// Shares of the targets that a source is nearest to, by their size; a source that is nearest to no target
 /// gives all to its own nearest one. So a finer target takes smooth loads and a coarser one takes all of
 /// them.
-SparseMap share_out_nearest(const PointSet& from, const PointSet& to, const Neighbours& forth) {
-  const Neighbours back = nearest(from.points, to.points);
-  const auto size = [&](Index target) { return to.sizes.empty() ? 1.0 : to.sizes[target]; };
-  std::vector<std::vector<Index>> targets(from.points.size());
-  for (std::size_t t = 0; t < to.points.size(); ++t) targets[forth.index[t]].push_back(Index(t));
-  SparseMap gather;
-  gather.n_from = to.points.size();
-  for (std::size_t s = 0; s < targets.size(); ++s) {
-    if (targets[s].empty()) targets[s] = {back.index[s]};
-    double total = 0;
-    for (const Index t : targets[s]) total += size(t);
-    std::vector<double> shares;
-    for (const Index t : targets[s]) shares.push_back(size(t) / total);
-    gather.push_row(targets[s], shares);
+std::vector<Transfer::Entry> shares(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                                    const std::vector<Neighbour>& forth, const std::vector<Neighbour>& back) {
+  std::vector<std::vector<Transfer::Entry>> by_source(std::size_t(comm_size(comm)));
+  for (std::size_t i = 0; i < to.points.size(); ++i)
+    by_source[std::size_t(owner_of(from.starts, forth[i].position))].push_back(
+        {to.positions[i], forth[i].position, to.sizes.empty() ? 1. : to.sizes[i]});
+  std::vector<Transfer::Entry> entries;
+  for (const auto& part : all_to_all(comm, by_source))
+    entries.insert(entries.end(), part.begin(), part.end());
+  const GlobalIndex first = from.starts[std::size_t(comm_rank(comm))],
+                    end = from.starts[std::size_t(comm_rank(comm)) + 1];
+  std::vector<double> total(std::size_t(end - first), 0.);
+  for (const auto& e : entries) total[std::size_t(e.source - first)] += e.weight;
+  for (auto& e : entries) e.weight /= total[std::size_t(e.source - first)];
+  for (std::size_t i = 0; i < from.points.size(); ++i)
+    if (total[std::size_t(from.positions[i] - first)] == 0)
+      entries.push_back({back[i].position, from.positions[i], 1});
+  return entries;
+}
+
+/// The whole list on every rank: the maps below look at neighbourhoods of unknown width when they are built.
+PointSet gathered(MPI_Comm comm, const PointSet& set) {
+  if (comm_size(comm) == 1) return set;
+  PointSet all = set;
+  all.points = all_gather(comm, set.points);
+  all.positions = all_gather(comm, set.positions);
+  return all;
+}
+
+Interface gathered(MPI_Comm comm, const Interface& part) {
+  Interface all;
+  all.dim = part.dim;
+  all.vertices = all_gather(comm, part.vertices);
+  all.face_centres = all_gather(comm, part.face_centres);
+  all.face_areas = all_gather(comm, part.face_areas);
+  all.face_vertices = all_gather(comm, part.face_vertices);
+  if (all.face_vertices.empty()) return all;
+  std::vector<Index> counts;
+  for (std::size_t f = 0; f + 1 < part.face_offset.size(); ++f)
+    counts.push_back(part.face_offset[f + 1] - part.face_offset[f]);
+  all.face_offset.push_back(0);
+  for (const Index n : all_gather(comm, counts)) all.face_offset.push_back(all.face_offset.back() + n);
+  return all;
+}
+
+/// Entries of a map between whole surfaces (`whole`), of which those between the given parts count.
+std::vector<Transfer::Entry> entries_of(MPI_Comm comm, const SparseMap& map, const PointSet& from,
+                                        const PointSet& to, bool whole) {
+  std::vector<Transfer::Entry> entries;
+  std::vector<char> wanted(map.n_from, whole ? 0 : 1);
+  if (whole)
+    for (const GlobalIndex p : from.positions) wanted[std::size_t(p)] = 1;
+  const auto add = [&](std::size_t row, GlobalIndex target) {
+    for (std::size_t k = map.offset[row]; k < map.offset[row + 1]; ++k) {
+      const auto source = std::size_t(map.source[k]);
+      if (wanted[source])
+        entries.push_back({target, whole ? GlobalIndex(source) : from.positions[source], map.weight[k]});
+    }
+  };
+  const GlobalIndex first = to.starts[std::size_t(comm_rank(comm))],
+                    end = to.starts[std::size_t(comm_rank(comm)) + 1];
+  for (std::size_t row = 0; row < map.n_to(); ++row) {
+    const GlobalIndex target = whole ? GlobalIndex(row) : to.positions[row];
+    if (target >= first && target < end) add(row, target);
   }
-  return gather.transposed();
+  return entries;
 }
 
 /// Projection and radial functions.
-SparseMap second_order(Mapping::Kind kind, const PointSet& from, const PointSet& to,
-                       MappingParameters::Type type) {
+std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, const PointSet& from,
+                                          const PointSet& to, MappingParameters::Type type) {
   const bool projection = type == MappingParameters::Type::projection;
   const int dim = from.surface != nullptr ? from.surface->dim : 3;
   const std::size_t k = dim == 2 ? (projection ? 3 : 5) : (projection ? 5 : 10);
-  if (kind == Mapping::Kind::conservative && from.surface != nullptr && to.surface != nullptr)
-    return shared_out(*from.surface, *to.surface, k);
-  const bool at_vertices = from.surface != nullptr && from.points.size() == from.surface->vertices.size();
-  if (projection && at_vertices && kind == Mapping::Kind::consistent)
-    return nearest_projection(*from.surface, to.points);
-  return kind == Mapping::Kind::consistent ? local_interpolation(from.points, to.points, k)
-                                           : local_interpolation(to.points, from.points, k).transposed();
+  const bool alone = comm_size(comm) == 1;
+  Interface all_from, all_to;
+  if (!alone && from.surface) all_from = gathered(comm, *from.surface);
+  if (!alone && to.surface) all_to = gathered(comm, *to.surface);
+  const Interface *source = alone          ? from.surface
+                            : from.surface ? &all_from
+                                           : nullptr,
+                  *target = alone        ? to.surface
+                            : to.surface ? &all_to
+                                         : nullptr;
+  const PointSet sources = gathered(comm, from), targets = gathered(comm, to);
+  if (kind == Mapping::Kind::conservative && source && target)
+    return entries_of(comm, shared_out(*source, *target, k), sources, to, true);
+  const bool at_vertices = source && from.starts.back() == GlobalIndex(source->vertices.size());
+  if (projection && at_vertices && kind == Mapping::Kind::consistent) {
+    PointSet whole = sources;
+    whole.positions.resize(source->vertices.size());
+    for (std::size_t v = 0; v < whole.positions.size(); ++v) whole.positions[v] = GlobalIndex(v);
+    return entries_of(comm, nearest_projection(*source, to.points), whole, to, false);
+  }
+  return entries_of(comm,
+                    kind == Mapping::Kind::consistent
+                        ? local_interpolation(sources.points, to.points, k)
+                        : local_interpolation(targets.points, sources.points, k).transposed(),
+                    sources, kind == Mapping::Kind::consistent ? to : targets, false);
 }
 
 }  // namespace
 
-Mapping::Mapping(Kind kind, const PointSet& from, const PointSet& to, const MappingParameters& parameters)
-    : n_from_(from.points.size()), n_to_(to.points.size()) {
-  if (n_from_ == 0 || n_to_ == 0)
+Mapping::Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
+                 const MappingParameters& parameters) {
+  const GlobalIndex n_from = count(comm, from), n_to = count(comm, to);
+  n_from_ = std::size_t(n_from), n_to_ = std::size_t(n_to);
+  if (n_from == 0 || n_to == 0)
     throw Error(
         "There are {} {} and {} {}: an interface needs some on both sides. Check which patches are of type "
         "interface.",
-        n_from_, from.what, n_to_, to.what);
-  if (parameters.type == MappingParameters::Type::matched) require_twins(from, to, parameters);
-  const Neighbours found = nearest(to.points, from.points);
-  const bool nearest_only = parameters.type == MappingParameters::Type::matched ||
-                            parameters.type == MappingParameters::Type::nearest;
-  if (!nearest_only)
-    map_ = second_order(kind, from, to, parameters.type);
-  else if (kind == Kind::consistent)
-    map_ = take_nearest(found, n_from_);
+        n_from, from.what, n_to, to.what);
+  const bool matched = parameters.type == MappingParameters::Type::matched;
+  const std::vector<Neighbour> forth = nearest(comm, to.points, from);
+  std::vector<Neighbour> back;
+  const bool by_nearest = matched || parameters.type == MappingParameters::Type::nearest;
+  if (matched || (by_nearest && kind == Kind::conservative)) back = nearest(comm, from.points, to);
+  if (matched) require_twins(comm, from, to, forth, back, parameters);
+  std::vector<Transfer::Entry> entries;
+  if (!by_nearest)
+    entries = second_order(comm, kind, from, to, parameters.type);
+  else if (kind == Kind::conservative)
+    entries = shares(comm, from, to, forth, back);
   else
-    map_ = share_out_nearest(from, to, found);
-  for (const double d : found.distance) {
-    max_distance_ = std::max(max_distance_, d);
-    mean_distance_ += d / double(n_to_);
-  }
-  summary_ = fmt::format("{} {} to {} {}, distance at most {:.3g} m, mean {:.3g} m", n_from_, from.what,
-                         n_to_, to.what, max_distance_, mean_distance_);
+    for (std::size_t i = 0; i < to.points.size(); ++i)
+      entries.push_back({to.positions[i], forth[i].position, 1});
+  double total = 0;
+  for (const Neighbour& n : forth) max_distance_ = std::max(max_distance_, n.distance), total += n.distance;
+  if (!back.empty() && kind == Kind::conservative && n_from > n_to)
+    for (const Neighbour& n : back) max_distance_ = std::max(max_distance_, n.distance);
+  max_distance_ = max(comm, max_distance_);
+  mean_distance_ = sum(comm, total) / double(n_to);
+  transfer_ = Transfer(comm, to.starts, from.starts, std::move(entries));
+  summary_ = fmt::format("{} {} to {} {}, distance at most {:.3g} m, mean {:.3g} m", n_from, from.what, n_to,
+                         to.what, max_distance_, mean_distance_);
 }
 
 }  // namespace couplet

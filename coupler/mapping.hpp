@@ -4,22 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "common/coupling/participant.hpp"
 #include "coupler/parameters.hpp"
-#include "coupler/sparse_map.hpp"
+#include "coupler/search.hpp"
+#include "coupler/transfer.hpp"
 
 namespace couplet {
 
-/// Points of one side of the interface; `what` names them in messages: "vertices of 'fluid'".
-struct PointSet {
-  std::string what;
-  std::vector<Vec3> points;
-  std::vector<double> sizes{};         ///< areas of faces [m^2], for shares; empty: all alike
-  const Interface* surface = nullptr;  ///< that these are the vertices or the face centres of; for projection
-};
-
-/// How values go from one set of points to another, as a sparse matrix built once on the reference
-/// configuration. By type of `coupling.mapping`:
+/// How values go from one set of points to another, as a sparse matrix over the coupler's ranks, built once
+/// on the reference configuration. By type of `coupling.mapping`:
 ///   matched     twins, weight 1
 ///   nearest     as below
 ///   projection  at vertices: the value at the nearest point of the other surface; at faces: local
@@ -27,7 +19,7 @@ struct PointSet {
 ///               through few neighbours
 ///   rbf         local interpolants by compact radial functions through more neighbours
 /// Both of the latter carry linear fields exactly; their forces are cut over each face and shared out with
-/// the transposed weights, so that force and moment are kept.
+/// the transposed weights, so that force and moment are kept. All calls are collective.
 class Mapping {
  public:
   enum class Kind {
@@ -37,13 +29,18 @@ class Mapping {
   };
   /// matched: throws Error naming points without a twin, with place and distance; nearest: any distance is
   /// good.
-  Mapping(Kind kind, const PointSet& from, const PointSet& to, const MappingParameters& parameters);
+  Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
+          const MappingParameters& parameters);
 
+  /// On one rank.
+  Mapping(Kind kind, const PointSet& from, const PointSet& to, const MappingParameters& parameters)
+      : Mapping(MPI_COMM_SELF, kind, whole_set(from), whole_set(to), parameters) {}
+
+  /// Values at this rank's part of the whole source list to its part of the whole target list.
   std::vector<double> apply(const std::vector<double>& values, int components) const {
-    return map_.apply(values, components);
+    return transfer_.apply(values, components);
   }
-
-  std::size_t n_from() const { return n_from_; }
+  std::size_t n_from() const { return n_from_; }  ///< on all ranks
   std::size_t n_to() const { return n_to_; }
   double max_distance() const { return max_distance_; }
   double mean_distance() const { return mean_distance_; }
@@ -51,8 +48,8 @@ class Mapping {
   std::string summary() const { return summary_; }
 
  private:
-  std::size_t n_from_, n_to_;
-  SparseMap map_;
+  std::size_t n_from_ = 0, n_to_ = 0;
+  Transfer transfer_;
   double max_distance_ = 0, mean_distance_ = 0;
   std::string summary_;
 };

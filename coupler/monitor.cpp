@@ -7,79 +7,128 @@
 
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet {
 namespace {
 
-std::vector<std::string> balance_columns(int dim) {
+// Forces and work as ever, moments after them.
+std::vector<std::string> balance_columns(const std::vector<std::string>& sides, int dim) {
   std::vector<std::string> columns{"time [s]"};
-  for (const char* side : {"fluid", "structure"}) {
+  for (const std::string& side : sides) {
     for (int c = 0; c < dim; ++c) columns.push_back(fmt::format("{} force {} [N]", side, "xyz"[c]));
     columns.push_back(fmt::format("{} work of the step [J]", side));
   }
+  for (const std::string& side : sides)
+    for (int c = dim == 2 ? 2 : 0; c < 3; ++c)
+      columns.push_back(fmt::format("{} moment {} [N m]", side, "xyz"[c]));
+  return columns;
+}
+
+std::vector<std::string> participant_columns(const std::vector<std::string>& names) {
+  std::vector<std::string> columns{"time [s]", "step", "coupling iterations", "wall clock [s]"};
+  for (const std::string& name : names)
+    for (const char* what : {"working [s]", "waiting [s]", "linear iterations", "time error", "energy [J]"})
+      columns.push_back(name + " " + what);
   return columns;
 }
 
 }  // namespace
 
-Monitor::Monitor(const std::filesystem::path& folder, int dim, double end_time, double restart_time)
-    : residuals_(folder / "residuals.csv",
-                 {"time [s]", "dt [s]", "step", "iteration", "relative residual", "absolute residual [m]",
-                  "relaxation"},
-                 restart_time),
-      balance_(folder / "balance.csv", balance_columns(dim), restart_time),
+Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names,
+                 const std::vector<std::string>& balanced, int dim, double end_time, double restart_time)
+    : folder_(std::move(folder)),
+      writes_(comm_rank(comm) == 0),
+      names_(std::move(names)),
       dim_(dim),
       end_time_(end_time),
-      start_time_(std::isnan(restart_time) ? 0. : restart_time) {}
-
-void Monitor::iteration(const Step& step, int number, const Residual& residual, double omega) {
-  residuals_.row(std::array<double, 7>{step.time + step.dt, step.dt, double(step.number + 1), double(number),
-                                       residual.relative, residual.absolute, omega});
+      restart_time_(restart_time),
+      start_time_(std::isnan(restart_time) ? 0. : restart_time),
+      worked_(names_.size(), 0.) {
+  if (!writes_) return;
+  residuals_.emplace(folder_ / "residuals.csv",
+                     std::vector<std::string>{"time [s]", "dt [s]", "step", "iteration", "relative residual",
+                                              "absolute residual [m]", "relaxation"},
+                     restart_time);
+  participants_.emplace(folder_ / "participants.csv", participant_columns(names_), restart_time);
+  if (!balanced.empty())
+    balance_.emplace(folder_ / "balance.csv", balance_columns(balanced, dim), restart_time);
 }
 
-void Monitor::balance(double time, const Balance& fluid, const Balance& structure) {
+void Monitor::iteration(const Step& step, int number, const Residual& residual, double omega) {
+  if (!writes_) return;
+  residuals_->row(std::array<double, 7>{step.time + step.dt, step.dt, double(step.number + 1), double(number),
+                                        residual.relative, residual.absolute, omega});
+}
+
+void Monitor::balance(double time, const std::vector<SideBalance>& sides) {
+  if (!balance_) return;
   std::vector<double> row{time};
-  for (const Balance* side : {&fluid, &structure}) {
-    for (int c = 0; c < dim_; ++c) row.push_back(side->force[c]);
-    row.push_back(side->work);
+  for (const SideBalance& side : sides) {
+    for (int c = 0; c < dim_; ++c) row.push_back(side.balance.force[c]);
+    row.push_back(side.balance.work);
   }
-  balance_.row(row);
+  for (const SideBalance& side : sides)
+    for (int c = dim_ == 2 ? 2 : 0; c < 3; ++c) row.push_back(side.balance.moment[c]);
+  balance_->row(row);
+}
+
+void Monitor::amounts(double time, const std::vector<Links::Amount>& amounts) {
+  if (!writes_ || amounts.empty()) return;
+  if (!amounts_) {
+    std::vector<std::string> columns{"time [s]"};
+    for (const auto& amount : amounts) columns.push_back(amount.column);
+    amounts_.emplace(folder_ / "amounts.csv", columns, restart_time_);
+  }
+  std::vector<double> row{time};
+  for (const auto& amount : amounts) row.push_back(amount.value);
+  amounts_->row(row);
 }
 
 void Monitor::step(const Step& step, double time, const FixedPointResult& result,
-                   const std::vector<std::pair<std::string, double>>& seconds) {
+                   const std::vector<Partner>& partners) {
   const auto now = Clock::now();
   const double wall = std::chrono::duration<double>(now - step_start_).count();
   step_start_ = now;
+  wall_ += wall;
   ++steps_;
   iterations_ += result.iterations;
   most_iterations_ = std::max<long>(most_iterations_, result.iterations);
-  if (total_.empty()) total_.resize(seconds.size());
+  std::vector<double> row{time, double(step.number + 1), double(result.iterations), wall};
   std::string text;
-  for (std::size_t i = 0; i < seconds.size(); ++i) {
-    text += fmt::format("  {} {:.2f} s", seconds[i].first, seconds[i].second);
-    total_[i].first = seconds[i].first;
-    total_[i].second += seconds[i].second;
+  double longest = 0;
+  for (std::size_t i = 0; i < partners.size(); ++i) {
+    const double worked = partners[i].report.seconds;
+    worked_[i] += worked;
+    longest = std::max(longest, worked);
+    text += fmt::format("  {} {:.2f} s", partners[i].name(), worked);
+    row.insert(row.end(), {worked, std::max(0., wall - worked), double(partners[i].report.iterations),
+                           partners[i].report.error, partners[i].report.energy});
   }
-  const double waited = std::max(0., wall - seconds[0].second - seconds[1].second);
-  waited_ += waited;
-  log::info("t={:.6g}/{:g} s  step {}{}  {} its  |r|={:.1e}{}  wait {:.2f} s  {}", time, end_time_,
-            step.number + 1, step.scheme == Scheme::explicit_ ? " (explicit)" : "", result.iterations,
-            result.residual.relative, text, waited,
+  if (!writes_) return;
+  participants_->row(row);
+  if (step.scheme == Scheme::explicit_ && std::chrono::duration<double>(now - last_line_).count() < 0.5 &&
+      time < end_time_)
+    return;
+  last_line_ = now;
+  log::info("t={:.6g}/{:g} s  step {}{}  {} its  |r|={:.1e}{}  {}", time, end_time_, step.number + 1,
+            step.scheme == Scheme::explicit_ ? " (explicit)" : "", result.iterations,
+            result.residual.relative, text,
             log::eta(time - start_time_, end_time_ - start_time_,
                      std::chrono::duration<double>(now - start_).count()));
 }
 
 std::string Monitor::summary(int halvings) const {
-  std::string text =
-      fmt::format("{} steps, {} halvings; coupling iterations: {:.2f} on average, {} at most", steps_,
-                  halvings, steps_ > 0 ? double(iterations_) / double(steps_) : 0., most_iterations_);
-  for (const auto& [name, seconds] : total_)
-    text += fmt::format("\n  {:<20} {:>9.2f} s {:>9.3f} ms a step", name, seconds,
-                        1e3 * seconds / double(steps_));
-  if (steps_ > 0)
-    text += fmt::format("\n  {:<20} {:>9.2f} s {:>9.3f} ms a step", "coupler and waiting", waited_,
-                        1e3 * waited_ / double(steps_));
+  const double steps = double(std::max(1L, steps_));
+  std::string text = fmt::format(
+      "{} steps, {} halvings in {:.2f} s; coupling iterations: {:.2f} on average, {} at most\n  {:<20} "
+      "{:>11} {:>11} "
+      "{:>15}",
+      steps_, halvings, wall_, double(iterations_) / steps, most_iterations_, "", "working", "waiting",
+      "working");
+  for (std::size_t i = 0; i < names_.size(); ++i)
+    text += fmt::format("\n  {:<20} {:>9.2f} s {:>9.2f} s {:>9.3f} ms a step", names_[i], worked_[i],
+                        std::max(0., wall_ - worked_[i]), 1e3 * worked_[i] / steps);
   return text;
 }
 

@@ -1,43 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mpi.h>
+
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/coupling/participant.hpp"
 #include "common/io/series.hpp"
 #include "coupler/fixed_point.hpp"
-#include "coupler/wiring.hpp"
+#include "coupler/links.hpp"
+#include "coupler/mechanics.hpp"
+#include "coupler/partners.hpp"
 
 namespace couplet {
 
-/// The coupler's own output: residuals.csv (a row an iteration), balance.csv (a row a step), the console line
-/// of each step and the closing summary.
+/// The coupler's own output, by its rank 0: residuals.csv (a row a pass), participants.csv (a row a step:
+/// what each worked and waited, what it says of its step), balance.csv (forces, moments and work),
+/// amounts.csv (sums that go over), the console line of each step and the closing summary.
 class Monitor {
  public:
-  /// restart_time: NaN for a fresh start.
-  Monitor(const std::filesystem::path& folder, int dim, double end_time, double restart_time);
+  /// `names`: of everyone; `balanced`: of those in balance.csv. restart_time: NaN for a fresh start.
+  Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names,
+          const std::vector<std::string>& balanced, int dim, double end_time, double restart_time);
 
   void iteration(const Step& step, int number, const Residual& residual, double omega);
-  void balance(double time, const Balance& fluid, const Balance& structure);
-  /// `seconds`: spent in each participant over the step, by name; the first two work one after the other, the
-  /// rest at the same time as the first.
+  void balance(double time, const std::vector<SideBalance>& sides);
+  void amounts(double time, const std::vector<Links::Amount>& amounts);
   void step(const Step& step, double time, const FixedPointResult& result,
-            const std::vector<std::pair<std::string, double>>& seconds);
+            const std::vector<Partner>& partners);
   /// Mean and largest number of iterations, time by participant.
   std::string summary(int halvings) const;
 
  private:
   using Clock = std::chrono::steady_clock;
-  Series residuals_, balance_;
+  std::filesystem::path folder_;
+  bool writes_;
+  std::vector<std::string> names_;
+  std::optional<Series> residuals_, participants_, balance_, amounts_;
   int dim_;
-  double end_time_, start_time_;
-  Clock::time_point start_ = Clock::now(), step_start_ = Clock::now();
+  double end_time_, restart_time_, start_time_;
+  Clock::time_point start_ = Clock::now(), step_start_ = Clock::now(), last_line_{};
   long steps_ = 0, iterations_ = 0, most_iterations_ = 0;
-  std::vector<std::pair<std::string, double>> total_;
-  double waited_ = 0;
+  std::vector<double> worked_;  // seconds of each over the run
+  double wall_ = 0;
 };
 
 }  // namespace couplet

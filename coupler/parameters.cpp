@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace couplet {
 namespace {
 
@@ -31,10 +34,17 @@ void declare(config::Section& section, CouplingParameters::Exchange& p) {
 /// Either fluid and structure, or an exchange.
 std::string problem_of_roles(const CouplingParameters& p) {
   if (p.exchange) {
-    if (p.fluid || p.structure || p.mesh)
-      return "an exchange has no fluid, structure or mesh beside it; take one or the other";
-    if (p.exchange->participants.size() < 2) return "an exchange needs two participants or more";
-    return p.scheme == Scheme::explicit_ ? "" : "an exchange is made with 'scheme: explicit' only";
+    const auto& list = p.exchange->participants;
+    if (p.structure)
+      return "an exchange has no structure beside it: it is one of its participants; take one or the other";
+    if (bool(p.fluid) != bool(p.mesh))
+      return "beside an exchange stand either both `fluid` and `mesh` (whose mesh is moved, and by whom) or "
+             "neither";
+    if (p.fluid && std::ranges::find(list, p.fluid->participant) == list.end())
+      return "`fluid` beside an exchange must be one of its participants";
+    if (p.mesh && std::ranges::find(list, p.mesh->participant) != list.end())
+      return "`mesh` serves the fluid alone and is not one of the exchange's participants";
+    return list.size() < 2 ? "an exchange needs two participants or more" : "";
   }
   if (!p.fluid || !p.structure)
     return fmt::format(
@@ -44,6 +54,29 @@ std::string problem_of_roles(const CouplingParameters& p) {
   return p.fluid->participant != p.structure->participant
              ? ""
              : "fluid and structure must be two different participants";
+}
+
+/// Whole numbers, of participants that there are; the mesh mover's follow the fluid's.
+std::string problem_of_sub_steps(const CouplingParameters& p) {
+  std::vector<std::string> names;
+  if (p.exchange) names = p.exchange->participants;
+  if (p.fluid) names.push_back(p.fluid->participant);
+  if (p.structure) names.push_back(p.structure->participant);
+  for (const auto& [name, n] : p.sub_steps) {
+    if (std::ranges::find(names, name) == names.end())
+      return fmt::format("there is no participant '{}' that could take sub-steps", name);
+    if (n != std::round(n) || n < 1 || n > 10000)
+      return fmt::format("'{}' takes a whole number of sub-steps from 1 to 10000", name);
+    if (n == 1 || !p.fluid || name != p.fluid->participant) continue;
+    if (p.scheme == Scheme::semi_implicit)
+      return "the fluid takes no sub-steps in the semi-implicit scheme, which splits its step in two; take "
+             "`scheme: implicit` or `explicit`";
+    if (p.mesh)
+      return "a fluid whose mesh is moved takes no sub-steps: a motion that fails half-way would leave the "
+             "mover "
+             "waiting; give the sub-steps to the structure";
+  }
+  return "";
 }
 
 void declare(config::Section& section, AccelerationParameters& p) {
@@ -150,12 +183,33 @@ void declare(config::Section& section, CouplingParameters& p) {
             .doc(
                 "first guess of a step: 0 the last displacement; 1 with the last velocity; 2 with the last "
                 "two, which "
-                "keeps the semi-implicit scheme second order");
+                "keeps the semi-implicit scheme second order; data without a velocity by a polynomial of "
+                "this order. "
+                "By default 2, and 0 in an explicit exchange");
       },
       "the first guess of a step");
+  section.value("sub-steps", p.sub_steps)
+      .doc("steps that a participant takes within each coupling step, by its name: {fluid: 4}; by default 1");
+  using Waveform = CouplingParameters::Waveform;
+  section.choice("waveform", p.waveform, {{"linear", Waveform::linear}, {"constant", Waveform::constant}})
+      .doc(
+          "what sub-steps see: linear: the line in time through the last values and the new ones (second "
+          "order); "
+          "constant: the new ones");
+  section.check([&] { return problem_of_sub_steps(p); }, "sub-steps");
+  using Order = CouplingParameters::Exchange::Order;
+  section.choice("order", p.order, {{"serial", Order::serial}, {"parallel", Order::parallel}})
+      .doc(
+          "of fluid and structure: serial: the structure with the load of the same pass (Gauss-Seidel); "
+          "parallel: both "
+          "at the same time (Jacobi)");
   section.section(
       "mapping", [&](config::Section& s) { declare(s, p.mapping); },
       "between the two sides of the interface");
+  section.value("interface-output", p.interface_output)
+      .doc(
+          "with each output the data of all interfaces are written for ParaView, too: "
+          "coupler/interface/<name>.pvd");
   using OnDivergence = CouplingParameters::OnDivergence;
   section
       .choice("on-divergence", p.on_divergence, {{"stop", OnDivergence::stop}, {"warn", OnDivergence::warn}})

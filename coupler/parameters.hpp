@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -45,8 +46,13 @@ struct CouplingParameters {
   std::optional<Exchange> exchange;
   AccelerationParameters acceleration;
   ConvergenceParameters convergence;
-  int predictor_order = 2;
+  /// Without exchange: fluid and structure one after the other, or side by side.
+  Exchange::Order order = Exchange::Order::serial;
+  std::optional<double> predictor_order;
+  std::map<std::string, double> sub_steps;  // by participant
+  enum class Waveform { linear, constant } waveform = Waveform::linear;
   MappingParameters mapping;
+  bool interface_output = false;  // for ParaView
   /// What follows when a guard finds that the coupling itself makes the motion.
   enum class OnDivergence { stop, warn } on_divergence = OnDivergence::stop;
 };

@@ -13,8 +13,8 @@ Reply Partner::receive() {
   Reply reply = channel->receive();
   seconds += reply.seconds;
   seconds_since_accepted += reply.seconds;
-  if (reply.status == Reply::Status::failure)
-    throw SolveFailure(fmt::format("'{}' says: {}", name(), reply.text));
+  if (reply.status == Reply::Status::hopeless) throw SchemeFailure("'{}' says: {}", name(), reply.text);
+  if (reply.status == Reply::Status::failure) throw SolveFailure("'{}' says: {}", name(), reply.text);
   return reply;
 }
 
@@ -57,12 +57,6 @@ double advised_dt(const std::vector<Partner*>& partners) {
   double dt = std::numeric_limits<double>::infinity();
   for (const Partner* p : partners) dt = std::min(dt, p->advised_dt);
   return dt;
-}
-
-std::vector<std::pair<std::string, double>> seconds_of(const std::vector<Partner*>& partners) {
-  std::vector<std::pair<std::string, double>> seconds;
-  for (const Partner* p : partners) seconds.emplace_back(p->name(), p->seconds);
-  return seconds;
 }
 
 }  // namespace couplet

@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "common/coupling/channel.hpp"
@@ -13,14 +12,19 @@ namespace couplet {
 /// A participant as the coupler talks to it.
 struct Partner {
   std::unique_ptr<Channel> channel;
+  int sub_steps = 1;   ///< within a coupling step
   double seconds = 0;  ///< it has spent in the step under way
   double seconds_since_accepted = 0;
-  StepReport report{};  ///< of the last accepted step
+  StepReport report;  ///< of the last accepted step
   double advised_dt = 0;
 
   const std::string& name() const { return channel->name(); }
-  void send(const Command& command) { channel->send(command); }
-  /// Throws SolveFailure naming the participant if the reply is a failure.
+  void send(Command command) {
+    command.step.sub_steps = sub_steps;
+    channel->send(command);
+  }
+  /// Throws SolveFailure (SchemeFailure if a smaller step would not help) naming the participant if the reply
+  /// is a failure.
   Reply receive();
 };
 
@@ -33,6 +37,5 @@ std::vector<Interface> initialise_all(const std::vector<Partner*>& partners);
 void finalise_all(const std::vector<Partner*>& partners);
 /// The smallest step that somebody advises [s].
 double advised_dt(const std::vector<Partner*>& partners);
-std::vector<std::pair<std::string, double>> seconds_of(const std::vector<Partner*>& partners);
 
 }  // namespace couplet

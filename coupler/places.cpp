@@ -1,168 +1,214 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the places of two coupled surfaces tell before the first step, and of data that arrive.
+#include "coupler/places.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <nanoflann.hpp>
+#include <limits>
+#include <set>
 
 #include "common/base/error.hpp"
-#include "coupler/guards.hpp"
+#include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+#include "coupler/transfer.hpp"
 
 namespace couplet {
 namespace {
 
 using Place = Interface::Place;
 
-struct Cloud {
-  const std::vector<Vec3>& points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t d) const { return points[i][Eigen::Index(d)]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, Index>;
-
-const std::vector<Vec3>& places_of(const Interface& interface) {
-  return interface.vertices.empty() ? interface.face_centres : interface.vertices;
-}
-
 struct Box {
   Vec3 low, high;
-  explicit Box(const std::vector<Vec3>& points) : low(points.front()), high(points.front()) {
+  Box(MPI_Comm comm, const std::vector<Vec3>& points) {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    low.setConstant(far), high.setConstant(-far);
     for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, comm);
+    MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, comm);
   }
+  double extent() const { return (high - low).norm(); }
   std::string text() const {
     return fmt::format("({:.4g}, {:.4g}, {:.4g}) to ({:.4g}, {:.4g}, {:.4g})", low.x(), low.y(), low.z(),
                        high.x(), high.y(), high.z());
   }
 };
 
-/// Edge length of a face of this area [m]; in 2-D areas are lengths.
-double edge(const Vec3& area, int dim) { return dim == 2 ? area.norm() : std::sqrt(area.norm()); }
-
-/// For each of `points`: distance to the nearest of `among`, and which one.
-std::vector<std::pair<double, Index>> nearest(const std::vector<Vec3>& points,
-                                              const std::vector<Vec3>& among) {
-  const Cloud cloud{among};
-  Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
-  tree.buildIndex();
-  std::vector<std::pair<double, Index>> result;
-  for (const Vec3& p : points) {
-    Index index = 0;
-    double square = 0;
-    tree.knnSearch(p.data(), 1, &index, &square);
-    result.emplace_back(std::sqrt(square), index);
+/// Extent of each face of this rank [m]: between corners where these are known (a face may be long and thin),
+/// else the edge of a square of its area; in 2-D areas are lengths. Collective.
+std::vector<double> extents(MPI_Comm comm, const Side& side) {
+  const Interface& i = side.interface;
+  const Starts corners =
+      starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(i.face_vertices.size())}));
+  std::vector<Transfer::Entry> entries;
+  for (std::size_t k = 0; k < i.face_vertices.size(); ++k)
+    entries.push_back({corners[std::size_t(comm_rank(comm))] + GlobalIndex(k), i.face_vertices[k], 1.});
+  std::vector<double> xyz, at_corners;
+  for (const Vec3& v : i.vertices) xyz.insert(xyz.end(), v.data(), v.data() + 3);
+  if (corners.back() > 0) at_corners = Transfer(comm, corners, side.vertices, entries).apply(xyz, 3);
+  std::vector<double> result;
+  for (std::size_t f = 0; f < i.face_centres.size(); ++f) {
+    const double area = i.face_areas[f].norm();
+    double extent = i.dim == 2 ? area : std::sqrt(area);
+    for (Index k = i.face_offset.empty() ? 0 : i.face_offset[f];
+         !i.face_offset.empty() && k < i.face_offset[f + 1]; ++k)
+      extent = std::max(
+          extent, 2 * (Eigen::Map<const Vec3>(&at_corners[3 * std::size_t(k)]) - i.face_centres[f]).norm());
+    result.push_back(extent);
   }
   return result;
 }
 
-/// Size of the face nearest to each point [m].
-std::vector<double> local_size(const std::vector<Vec3>& points, const Interface& interface) {
+/// Extent of the face nearest to each point [m].
+std::vector<double> local_size(MPI_Comm comm, const std::vector<Vec3>& points, const Side& side) {
+  PointSet faces = side.places(Place::faces);
+  faces.sizes = extents(comm, side);
   std::vector<double> sizes;
-  for (const auto& [distance, face] : nearest(points, interface.face_centres))
-    sizes.push_back(edge(interface.face_areas[std::size_t(face)], interface.dim));
+  for (const Neighbour& n : nearest(comm, points, faces)) sizes.push_back(n.size);
   return sizes;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+double mean(MPI_Comm comm, const std::vector<double>& values) {
+  double total = 0;
+  for (const double v : values) total += v;
+  return sum(comm, total) / std::max(1., sum(comm, double(values.size())));
 }
 
-/// Both boxes must be the same within a tenth of the larger and two faces of either side.
-std::string other_extent(const Interface& from, const std::string& from_name, const Interface& to,
-                         const std::string& to_name, double face) {
-  const Box a(places_of(from)), b(places_of(to));
-  const double extent = std::min((a.high - a.low).norm(), (b.high - b.low).norm());
-  const double allowed = 0.1 * extent + 2 * std::min(face, extent);
+/// The first text of any rank, on all.
+std::string first_text(MPI_Comm comm, const std::string& text) {
+  if (comm_size(comm) == 1 || !any(comm, !text.empty())) return text;
+  const std::vector<char> all = all_gather(comm, std::vector<char>(text.begin(), text.end()));
+  return {all.begin(), all.end()};
+}
+
+/// Both boxes must be the same within a tenth of the smaller and two faces of the coarser side.
+std::string other_extent(const Box& a, const std::string& from, const Box& b, const std::string& to,
+                         double face) {
+  const double least = std::min(a.extent(), b.extent());
+  const double allowed = 0.1 * least + 2 * std::min(face, least);
   const double off = std::max((a.low - b.low).cwiseAbs().maxCoeff(), (a.high - b.high).cwiseAbs().maxCoeff());
   if (off <= allowed) return "";
-  const double ratio = (a.high - a.low).norm() / std::max((b.high - b.low).norm(), 1e-300);
+  const double ratio = a.extent() / std::max(b.extent(), 1e-300);
   return fmt::format(
       "The interface of '{}' reaches from {} m and that of '{}' from {} m: they are not in the same place{}. "
-      "Check the "
-      "meshes' units and positions and which patches are of type interface.",
-      from_name, a.text(), to_name, b.text(),
+      "Check "
+      "the meshes' units and positions and which patches are of type interface.",
+      from, a.text(), to, b.text(),
       ratio > 5 || ratio < 0.2
           ? fmt::format(", one is {:.3g} times as large as the other", std::max(ratio, 1 / ratio))
           : "");
 }
 
+/// Most targets that follow one source.
+int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const Starts& starts) {
+  std::vector<std::vector<GlobalIndex>> used(std::size_t(comm_size(comm)));
+  for (const Neighbour& n : found) used[std::size_t(owner_of(starts, n.position))].push_back(n.position);
+  std::vector<GlobalIndex> mine;
+  for (const auto& part : all_to_all(comm, used)) mine.insert(mine.end(), part.begin(), part.end());
+  std::ranges::sort(mine);
+  int most = 0;
+  for (std::size_t i = 0; i < mine.size();) {
+    const std::size_t first = i;
+    while (i < mine.size() && mine[i] == mine[first]) ++i;
+    most = std::max(most, int(i - first));
+  }
+  return int(max(comm, double(most)));
+}
+
 }  // namespace
 
-PlaceReport judge_places(const Interface& from, const std::string& from_name, const Interface& to,
-                         const std::string& to_name, bool nearest_points) {
+PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
   PlaceReport report;
-  // Lumped participants (a point with an area) have no extent that could be compared.
-  if (!nearest_points || from.face_centres.size() < 2 || to.face_centres.size() < 2) return report;
-  const std::vector<Vec3>&source = places_of(from), &target = places_of(to);
-  const std::vector<double> source_size = local_size(source, from), target_size = local_size(target, to);
-  report.problem =
-      other_extent(from, from_name, to, to_name, std::max(median(source_size), median(target_size)));
+  // Lumped participants (points with areas) have no extent that could be compared.
+  if (from.faces.back() < 2 || to.faces.back() < 2 || from.vertices.back() < 2 || to.vertices.back() < 2)
+    return report;
+  const PointSet source = from.places(Place::vertices), target = to.places(Place::vertices);
+  const std::vector<double> target_size = local_size(comm, target.points, to),
+                            source_size = local_size(comm, source.points, from);
+  report.problem = other_extent(Box(comm, source.points), from.name, Box(comm, target.points), to.name,
+                                std::max(mean(comm, source_size), mean(comm, target_size)));
   if (!report.problem.empty()) return report;
-  const auto found = nearest(target, source);
-  std::map<Index, int> followers;
-  for (std::size_t i = 0; i < target.size(); ++i) {
-    const auto [distance, s] = found[i];
-    ++followers[s];
-    const double size = std::max(source_size[std::size_t(s)], target_size[i]);
-    if (distance <= 2 * size) continue;
-    const Vec3& p = target[i];
+  const std::vector<Neighbour> found = nearest(comm, target.points, source);
+  const std::vector<double> there =
+      local_size(comm, target.points, from);  // of the source's faces at the targets
+  for (std::size_t i = 0; i < target.points.size() && report.problem.empty(); ++i) {
+    const double size = std::max(there[i], target_size[i]);
+    if (found[i].distance <= 2 * size) continue;
+    const Vec3& p = target.points[i];
     report.problem = fmt::format(
         "The point ({:.6g}, {:.6g}, {:.6g}) of '{}' is {:.3g} m away from the nearest of '{}', where the "
-        "faces "
-        "are {:.3g} m: "
-        "the two interfaces are not the same surface. Check the meshes and which patches are of type "
+        "faces are "
+        "{:.3g} m: the two interfaces are not the same surface. Check the meshes and which patches are of "
+        "type "
         "interface.",
-        p.x(), p.y(), p.z(), to_name, distance, from_name, size);
-    return report;
+        p.x(), p.y(), p.z(), to.name, found[i].distance, from.name, size);
   }
-  int most = 0;
-  for (const auto& [s, n] : followers) most = std::max(most, n);
-  if (most >= 3 && !from.vertices.empty() && !to.vertices.empty())
+  report.problem = first_text(comm, report.problem);
+  if (!report.problem.empty()) return report;
+  if (const int most = most_followers(comm, found, source.starts); most >= 3)
     report.notes.push_back(
         fmt::format("note: '{}' is much coarser than '{}': up to {} vertices follow the same one, so the "
                     "motion arrives in "
-                    "stairs. `mapping.type: nearest-projection` carries it without them.",
-                    from_name, to_name, most));
+                    "stairs. `mapping.type: projection` carries it without them.",
+                    from.name, to.name, most));
   return report;
 }
 
-void require_finite(const Exchange& data, const Interface& interface, const std::vector<Interface::Datum>& of,
-                    const std::string& who) {
+void require_finite(MPI_Comm comm, const Exchange& data, const Interface& interface,
+                    const std::vector<Interface::Datum>& of, const std::string& who) {
+  std::string problem;
   for (const auto& datum : of) {
     const auto found = data.find(datum.name);
-    if (found == data.end()) continue;
+    if (found == data.end() || !problem.empty()) continue;
     const auto& values = found->second;
     const auto bad = std::ranges::find_if(values, [](double v) { return !std::isfinite(v); });
     if (bad == values.end()) continue;
     const auto entry = std::size_t(bad - values.begin()) / std::size_t(datum.size(interface.dim));
     const bool at_vertices = datum.place == Place::vertices;
     const std::vector<Vec3>& places = at_vertices ? interface.vertices : interface.face_centres;
+    const std::vector<GlobalIndex>& ids = at_vertices ? interface.vertex_ids : interface.face_ids;
     const Vec3 p = entry < places.size() ? places[entry] : Vec3::Zero().eval();
-    throw SolveFailure("'{}' gave a '{}' that is not finite at {} {}, ({:.6g}, {:.6g}, {:.6g}).", who,
-                       datum.name, at_vertices ? "vertex" : "face", entry, p.x(), p.y(), p.z());
+    problem = fmt::format("'{}' gave a '{}' that is not finite at {} {}, ({:.6g}, {:.6g}, {:.6g}).", who,
+                          datum.name, at_vertices ? "vertex" : "face",
+                          entry < ids.size() ? ids[entry] : GlobalIndex(entry), p.x(), p.y(), p.z());
+  }
+  if (const std::string text = first_text(comm, problem); !text.empty()) throw SolveFailure("{}", text);
+}
+
+void check_roles(const CouplingParameters& parameters, const std::vector<Side>& sides) {
+  if (parameters.exchange) return;
+  const auto side = [&](const std::string& name) -> const Side& {
+    return *std::ranges::find(sides, name, &Side::name);
+  };
+  const Side& structure = side(parameters.structure->participant);
+  for (const Side& other : sides)
+    if (other.interface.dim != structure.interface.dim)
+      throw Error("'{}' has {} dimensions and '{}' has {}: both must have the same.", other.name,
+                  other.interface.dim, structure.name, structure.interface.dim);
+  for (const std::string motion : {"displacement", "velocity"}) {
+    const auto& gives = structure.interface.gives;
+    const auto found = std::ranges::find(gives, motion, &Interface::Datum::name);
+    if (found == gives.end() || found->place != Place::vertices)
+      throw Error("The structure '{}' does not give '{}' at vertices, which is part of the coupling unknown.",
+                  structure.name, motion);
   }
 }
 
-std::string problem_of_closed_fluid(const Interface& fluid, const std::string& name) {
-  if (!fluid.closed || fluid.face_areas.empty()) return "";
-  Vec3 sum = Vec3::Zero();
-  double all = 0;
-  for (const Vec3& area : fluid.face_areas) sum += area, all += area.norm();
-  // A surface closed in itself: a body that moves through the fluid displaces nothing in all.
-  if (sum.norm() <= 1e-6 * all) return "";
-  return fmt::format(
-      "'{}' is closed: none of its boundaries lets fluid out, so it cannot make room for an interface that "
-      "moves "
-      "(incompressible: the net volume through the interface must be 0, and the level of the pressure is "
-      "free). "
-      "Give it an outlet or a boundary with a given pressure.",
-      name);
+void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
+                  const MappingParameters& mapping) {
+  std::set<std::pair<std::size_t, std::size_t>> judged;
+  std::vector<int> givers(sides.size(), 0);
+  for (const auto& link : links.all())
+    if (link.datum.name == "displacement") ++givers[link.taker];
+  for (const auto& link : links.all()) {
+    if (link.datum.name != "displacement") continue;
+    const Side &from = sides[link.giver], &to = sides[link.taker];
+    // With several bodies each has a part of the fluid's surface only; the matched map has its own check.
+    if (mapping.type == MappingParameters::Type::matched || givers[link.taker] > 1) continue;
+    if (!judged.insert({link.giver, link.taker}).second) continue;
+    const PlaceReport report = judge_places(comm, from, to);
+    if (!report.problem.empty()) throw Error("{}", report.problem);
+    if (mapping.type == MappingParameters::Type::nearest)
+      for (const std::string& note : report.notes) log::warn("{}", note);
+  }
 }
 
 }  // namespace couplet

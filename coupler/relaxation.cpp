@@ -21,12 +21,6 @@ Iterate relaxed(const Iterate& x, double omega, const Iterate& image) {
   return {relaxed(x.unknown, omega, image.unknown), relaxed(x.rider, omega, image.rider)};
 }
 
-std::vector<double> residual_of(const Iterate& x, const Iterate& image) {
-  std::vector<double> r(x.unknown.size());
-  for (std::size_t i = 0; i < r.size(); ++i) r[i] = image.unknown[i] - x.unknown[i];
-  return r;
-}
-
 }  // namespace
 
 double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
@@ -54,6 +48,21 @@ void AitkenRelaxation::start_step() {
   last_residual_.reset();
   omega_ = first_;
   second_pass_ = false;
+}
+
+std::vector<double> AitkenRelaxation::residual_of(const Iterate& x, const Iterate& image) {
+  const std::size_t n = x.unknown.size(), m = x.rider.size();
+  std::vector<double> r(n + m);
+  for (std::size_t i = 0; i < n; ++i) r[i] = image.unknown[i] - x.unknown[i];
+  for (std::size_t i = 0; i < m; ++i) r[n + i] = image.rider[i] - x.rider[i];
+  if (!last_residual_) {
+    std::array<double, 2> squares{};
+    for (std::size_t i = 0; i < n + m; ++i) squares[i < n ? 0 : 1] += r[i] * r[i];
+    sum_over(comm_, squares);
+    rider_weight_ = squares[1] > 0 ? std::sqrt(squares[0] / squares[1]) : 0;
+  }
+  for (std::size_t i = n; i < n + m; ++i) r[i] *= rider_weight_;
+  return r;
 }
 
 void AitkenRelaxation::learn(std::span<const double> residual) {

@@ -29,7 +29,10 @@ class ConstantRelaxation final : public Accelerator {
 /// sign is free: a map of slope above 1 needs a negative one). The first factor of a step is what the second
 /// pass of the last step found out, i.e. the best factor for a first residual, between a thousandth and
 /// `maximum-relaxation`; the later ones belong to the modes that were left over and would start a step too
-/// small or too large.
+/// small or too large. r holds the velocities that ride along, scaled to the size of the unknown by the first
+/// residual of the step: a structure whose velocity is not the same function of its displacement as the guess's
+/// (one that takes sub-steps) has errors that the displacement alone does not show, and a factor from these would
+/// feed them.
 class AitkenRelaxation final : public Accelerator {
  public:
   AitkenRelaxation(const AccelerationParameters& parameters, MPI_Comm comm);
@@ -42,10 +45,12 @@ class AitkenRelaxation final : public Accelerator {
   void load(CheckpointReader& file) override;
 
  private:
+  std::vector<double> residual_of(const Iterate& x, const Iterate& image);
   void learn(std::span<const double> residual);
   AccelerationParameters parameters_;
   MPI_Comm comm_;
   double omega_, first_;                              // in use; for the first update of the next step
+  double rider_weight_ = 0;                           // of this step, from its first residual
   bool second_pass_ = false;                          // of this step comes next
   std::optional<std::vector<double>> last_residual_;  // none at the start of a step
 };

@@ -144,7 +144,7 @@ void FluidParticipant<D>::begin_step(const Step& step) {
   if (step.number == 0 && step.scheme != Scheme::standalone) refuse_trapped_volume(*fluid_);
   step_ = step;
   passes_ = 0;
-  renewed_ = false;
+  renewed_ = renewed_now_ = false;
   fluid_->begin_step(step.time, step.dt);
 }
 
@@ -240,6 +240,7 @@ bool FluidParticipant<D>::needs_renewal(double contraction) const {
 template <int D>
 void FluidParticipant<D>::prepare(const Vectors<D>& w) {
   ++passes_;
+  renewed_now_ = false;
   if (step_.scheme != Scheme::semi_implicit || passes_ == 1) {
     points_ = receive_points();
     fluid_->prepare(points_, w);
@@ -248,7 +249,7 @@ void FluidParticipant<D>::prepare(const Vectors<D>& w) {
     return;
   }
   if (!needs_renewal(contraction(w))) return;
-  renewed_ = true;
+  renewed_ = renewed_now_ = true;
   fluid_->prepare(points_, w);
 }
 

@@ -39,6 +39,7 @@ class FluidParticipant final : public Participant {
   Interface initialise() override;
   void begin_step(const Step& step) override;
   Exchange solve(const Exchange& in) override;
+  bool answered_anew() const override { return renewed_now_; }
   StepReport accept_step() override;
   void save(CheckpointWriter& file) const override;
   void load(CheckpointReader& file) override;
@@ -73,6 +74,7 @@ class FluidParticipant final : public Participant {
   std::vector<Vec3> points_;  // of the first guess; semi-implicit only
   int passes_ = 0;            // of the step under way
   bool renewed_ = false;      // its prediction
+  bool renewed_now_ = false;  // in the last pass
   Vectors<D> last_w_;         // of the pass before
   double last_change_ = 0;    // of w between the two passes before [m/s]
   // Of the interface on a mesh that stands still: largest displacement over the height of the cell there.

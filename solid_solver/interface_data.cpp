@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/parallel/collective.hpp"
+
 namespace couplet {
 namespace {
 
@@ -94,20 +96,11 @@ std::vector<Interface::Datum> taken(const InterfaceData& data) {
   return list;
 }
 
-InterfaceTemperature::InterfaceTemperature(MPI_Comm comm, std::vector<Vec3> centres)
-    : comm_(comm), centres_(std::move(centres)) {
-  int n = static_cast<int>(centres_.size());
-  MPI_Bcast(&n, 1, MPI_INT, 0, comm_);
-  centres_.resize(n);
-  MPI_Bcast(centres_.data(), 3 * n, MPI_DOUBLE, 0, comm_);
-}
+InterfaceTemperature::InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3>& centres)
+    : comm_(comm), centres_(all_gather(comm, centres)) {}
 
-std::vector<double> InterfaceTemperature::broadcast(std::vector<double> on_root) const {
-  int n = static_cast<int>(on_root.size());
-  MPI_Bcast(&n, 1, MPI_INT, 0, comm_);
-  on_root.resize(n);
-  MPI_Bcast(on_root.data(), n, MPI_DOUBLE, 0, comm_);
-  return on_root;
+std::vector<double> InterfaceTemperature::everywhere(const std::vector<double>& here) const {
+  return all_gather(comm_, here);
 }
 
 }  // namespace couplet

@@ -48,13 +48,13 @@ class FaceInterpolation {
 /// so thin, or so well insulated, that they have one temperature through their thickness.
 class InterfaceTemperature final {
  public:
-  /// `centres`: of the interface's faces, on rank 0. Collective.
-  InterfaceTemperature(MPI_Comm comm, std::vector<Vec3> centres);
+  /// `centres`: of this rank's faces of the interface. Collective.
+  InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3>& centres);
 
   std::size_t n_faces() const { return centres_.size(); }
   FaceInterpolation at(std::span<const Vec3> points) const { return {centres_, points}; }
-  /// `on_root`: a value a face on rank 0, empty if nothing was given yet; on every rank after the call.
-  std::vector<double> broadcast(std::vector<double> on_root) const;
+  /// `here`: a value a face of this rank, empty if nothing was given yet; those of all ranks after the call.
+  std::vector<double> everywhere(const std::vector<double>& here) const;
 
  private:
   MPI_Comm comm_;

@@ -185,7 +185,7 @@ void Solid::prepare_stages() {
 void Solid::take_temperature(const Exchange& in) {
   const auto found = in.find("temperature");
   const std::vector<double> faces =
-      interface_temperature_->broadcast(found == in.end() ? std::vector<double>{} : found->second);
+      interface_temperature_->everywhere(found == in.end() ? std::vector<double>{} : found->second);
   if (!faces.empty() && faces.size() != interface_temperature_->n_faces())
     throw Error("The solid was given {} temperatures; its interface has {} faces.", faces.size(),
                 interface_temperature_->n_faces());

@@ -161,25 +161,24 @@ std::vector<double> Solid::body_forces(double t) const {
 std::vector<double> Solid::interface_load(const Exchange& in) const {
   if (!interface_) return {};
   const int dim = mesh_.dim;
-  std::vector<double> on_root(comm_rank(mesh_.comm) == 0 ? description_.face_centres.size() * dim : 0, 0.0);
+  std::vector<double> total(description_.face_centres.size() * dim, 0.0);
   for (const auto& [name, values] : in) {
     if (name == "temperature" && interface_temperature_) continue;
     if (std::ranges::none_of(description_.takes, [&](const auto& datum) { return datum.name == name; }))
       throw Error("The solid was given '{}', which it does not take.", name);
-    if (comm_rank(mesh_.comm) != 0) continue;
-    if (name == "pressure" && values.size() * dim == on_root.size()) {
+    if (name == "pressure" && values.size() * dim == total.size()) {
       // A normal force on each face; the areas point out of the solid.
       for (std::size_t i = 0; i < values.size(); ++i)
-        for (int a = 0; a < dim; ++a) on_root[i * dim + a] -= values[i] * description_.face_areas[i][a];
+        for (int a = 0; a < dim; ++a) total[i * dim + a] -= values[i] * description_.face_areas[i][a];
       continue;
     }
-    if (values.size() != on_root.size())
+    if (values.size() != total.size())
       throw Error("The solid was given {} values of '{}'; its interface has {} faces of {} components.",
                   values.size(), name, description_.face_centres.size(), dim);
-    for (std::size_t i = 0; i < values.size(); ++i) on_root[i] += values[i];
+    for (std::size_t i = 0; i < values.size(); ++i) total[i] += values[i];
   }
   std::vector<double> force(std::size_t(mesh_.boundary.n_owned()) * dim, 0);
-  const std::vector<double> local = interface_->scatter_faces(on_root, dim);
+  const std::vector<double> local = interface_->scatter_faces(total, dim);
   for (std::size_t i = 0; i < interface_->faces().size(); ++i)
     for (int a = 0; a < dim; ++a)
       force[std::size_t(interface_->faces()[i] - mesh_.n_interior) * dim + a] += local[i * dim + a];

@@ -2,7 +2,7 @@
 """A Python program as a participant of a Couplet job, over mpi4py and numpy alone; the protocol is docs/protocol.md.
 
     c = couplet.Client("solid", "my_solver")            # all processes of the participant
-    c.vertices(xyz, dimension=2)                        # (n, 3), by process 0 of the participant, which speaks for all
+    c.vertices(xyz, dimension=2)                        # (n, 3): what this process owns, or process 0 all
     c.faces(centres, areas, corners)                    # corners: for each face the positions of its vertices
     c.takes("pressure-force", "N", "faces"); c.gives("displacement", "m", "vertices")
     for event in c:                                     # "begin", "solve", "accept", "output", "save", "load"
@@ -16,8 +16,8 @@ import time
 import numpy
 from mpi4py import MPI
 
-VERSION, COMMAND, REPLY, HELLO = 3, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
-JOIN_TAG, COMMAND_TAG, REPLY_TAG = 100, 101, 102
+VERSION, COMMAND, REPLY, HELLO = 4, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
+JOIN_TAG, COMMAND_TAG, REPLY_TAG, INPUT_TAG, PLACES_TAG, OUTPUT_TAG = 100, 101, 102, 103, 104, 105
 EVENTS = {2: "begin", 3: "solve", 4: "accept", 5: "output", 6: "save", 7: "load"}
 INITIALISE, SOLVE, FINALISE = 1, 3, 8
 
@@ -51,12 +51,6 @@ def _list(values):
     return _integers(len(values), *values)
 
 
-def _array(values, components=1):
-    """Number of entries and the reals."""
-    values = numpy.ascontiguousarray(values, float)
-    return _integers(values.size // components) + values.tobytes()
-
-
 class _Reader:
     def __init__(self, data):
         self.data, self.at = data, 0
@@ -70,11 +64,6 @@ class _Reader:
         n = self.take("q")
         self.at += n
         return bytes(self.data[self.at - n:self.at]).decode()
-
-    def reals(self):
-        n = self.take("q")
-        self.at += 8 * n
-        return numpy.frombuffer(self.data, "f8", n, self.at - 8 * n)
 
 
 class Client:
@@ -146,7 +135,7 @@ class Client:
                 return EVENTS[self.operation]
 
     def read(self, datum):
-        """(places, components) on process 0; zeros if nobody has given it yet, and on the other processes."""
+        """(places, components) of this process; zeros if nobody has given it yet."""
         entry = next(d for d in self._takes if d[0] == datum)
         return self._input.get(datum, numpy.zeros(self._shape(entry)))
 
@@ -154,9 +143,9 @@ class Client:
         entry = next(d for d in self._gives if d[0] == datum)
         self._output[datum] = numpy.ascontiguousarray(values, float).reshape(self._shape(entry))
 
-    def fail(self, why):
-        """Instead of writing: the step could not be solved; the coupler tries a shorter one."""
-        self._status, self._why = 1, why
+    def fail(self, why, halving_helps=True):
+        """Instead of writing: the step could not be solved."""
+        self._status, self._why = (1 if halving_helps else 2), why
 
     def advise(self, dt):
         self._advised = dt
@@ -197,39 +186,81 @@ class Client:
         step = r.take("d"), r.take("d")
         if self.operation == 2:
             self._begun, self.dt = step
-        self.scheme, self.number = r.take("q"), r.take("q")
+        self.scheme, self.number, self.sub_steps, self.waveform = (r.take("q") for _ in range(4))
         accepted, self.output, self.folder = r.take("d"), r.take("q"), r.text()
         self.time = accepted if self.operation in (4, 5) else self._begun
+        names = [r.text() for _ in range(r.take("q"))]
         self._input, self._output, self._status, self._why = {}, {}, 0, ""
-        for _ in range(r.take("q")):
-            name = r.text()
-            values = r.reals()
-            entry = next((d for d in self._takes if d[0] == name), None)
-            if entry is None or (self.comm.rank == 0 and values.size != math.prod(self._shape(entry))):
-                self._end(f"the coupler sent '{name}' in a way that was not announced")
-            if self.comm.rank == 0:
-                self._input[name] = values.reshape(self._shape(entry))
         self._started, self._pending = time.monotonic(), True
+        if self.operation == SOLVE:
+            self._receive_input(names)
+
+    def _cut(self, n):
+        counts = numpy.zeros(self.comm.size, "i8")
+        self.comm.Allgather(numpy.array([n], "i8"), counts)
+        return [0, *(int(c) for c in counts.cumsum())]
+
+    def _peers(self):
+        """(rank of the coupler, slice of my vertices, slice of my faces) for all that share some."""
+        ranks, mine = self._coupler.Get_remote_size(), self.comm.rank
+        list_ = []
+        for c in range(ranks):
+            slices = []
+            for cut in (self._vertex_cut, self._face_cut):
+                first, end = max(cut[mine], cut[-1] * c // ranks), min(cut[mine + 1], cut[-1] * (c + 1) // ranks)
+                slices.append(slice(first - cut[mine], max(first, end) - cut[mine]))
+            if any(s.stop > s.start for s in slices):
+                list_.append((c, slices))
+        return list_
+
+    def _receive_input(self, names):
+        entries = [next(d for d in self._takes if d[0] == name) for name in names]
+        for entry in entries:
+            if self._shape(entry)[0] > 0:
+                self._input[entry[0]] = numpy.zeros(self._shape(entry))
+        for rank, slices in self._peers():
+            parts = [(e[0], slices[e[2]]) for e in entries if slices[e[2]].stop > slices[e[2]].start]
+            if not parts:
+                continue
+            values, at = numpy.frombuffer(self._receive(rank, INPUT_TAG), "f8"), 0
+            for name, part in parts:
+                to = self._input[name][part]
+                to[...] = values[at:at + to.size].reshape(to.shape)
+                at += to.size
+
+    def _places(self, vertices, faces):
+        out = _integers(vertices.stop - vertices.start)
+        for v in range(vertices.start, vertices.stop):
+            out += _integers(v) + _reals(*self._xyz[v])
+        out += _integers(faces.stop - faces.start)
+        for f in range(faces.start, faces.stop):
+            out += _integers(f) + _reals(*self._centres[f], *self._areas[f]) + _integers(0) + _list(self._corners[f])
+        return out
 
     def _send_reply(self):
-        first, self._pending = self.operation == INITIALISE, False
-        if self.comm.rank != 0:
-            return
+        first = self.operation == INITIALISE
+        if first:
+            self._dimension = self.comm.bcast(self._dimension, 0)
+            self._vertex_cut, self._face_cut = self._cut(len(self._xyz)), self._cut(len(self._centres))
         if self.operation == SOLVE and self._status == 0 and (missing := {d[0] for d in self._gives} - set(self._output)):
             self._end(f"'{self.participant}' did not give {', '.join(sorted(missing))}")
-        nothing = numpy.zeros((0, 3))
-        xyz, centres, areas = (self._xyz, self._centres, self._areas) if first else (nothing,) * 3
-        corners = self._corners if first and any(self._corners) else []
         names = sorted(self._output) if self._status == 0 else []
-        reply = _integers(REPLY, VERSION, self._status) + _text(self._why)
-        reply += _reals(time.monotonic() - self._started, self._advised)
-        reply += _integers(len(names)) + b"".join(_text(n) + _array(self._output[n]) for n in names)
-        reply += _integers(self._dimension, 0) + _array(xyz, 3) + _array(centres, 3) + _array(areas, 3)
-        offsets = [0, *numpy.cumsum([len(c) for c in corners]).tolist()] if corners else []
-        reply += _list(offsets) + _list([v for c in corners for v in c])
-        for data in (self._takes, self._gives):
-            reply += _integers(len(data) if first else 0)
-            for name, unit, place, components in data if first else []:
-                reply += _text(name) + _text(unit) + _integers(place, components)
-        reply += _reals(self.dt) + _integers(0) + _reals(math.nan, math.nan)
-        self._send(reply, 0, REPLY_TAG)
+        if self.comm.rank == 0:
+            head = _integers(REPLY, VERSION, self._status) + _text(self._why)
+            head += _reals(time.monotonic() - self._started, self._advised, self.dt) + _integers(0) + _reals(math.nan, math.nan)
+            head += _integers(len(names)) + b"".join(map(_text, names)) + _integers(self._dimension, 0, 0)
+            for data in (self._takes, self._gives):
+                head += _integers(len(data) if first else 0)
+                for name, unit, place, components in data if first else []:
+                    head += _text(name) + _text(unit) + _integers(place, components)
+            head += _list(self._vertex_cut if first else [0]) + _list(self._face_cut if first else [0])
+            self._send(head, 0, REPLY_TAG)
+        for rank, slices in self._peers() if first or names else []:
+            if first:
+                self._send(self._places(*slices), rank, PLACES_TAG)
+                continue
+            parts = [self._output[n][slices[next(d for d in self._gives if d[0] == n)[2]]].ravel() for n in names]
+            values = numpy.concatenate(parts)
+            if values.size:
+                self._send(values, rank, OUTPUT_TAG, MPI.DOUBLE)
+        self._pending = False

@@ -58,7 +58,7 @@ std::string launch_line(const std::vector<Attendant>& attendants, const std::vec
   for (const Expected& e : expected) ++users[e.program];
   std::string line = "mpirun";
   for (const Expected& e : expected) {
-    const int n = e.participant == coupler_name ? 1 : std::max(1, ranks[e.participant]);
+    const int n = std::max(1, ranks[e.participant]);
     line += fmt::format("{} -n {} {} {}", &e == &expected.front() ? "" : " :", n, e.program,
                         attendants.front().case_file);
     if (users[e.program] > 1) line += " --participant " + e.participant;
@@ -114,11 +114,9 @@ std::string attendance(const std::vector<Attendant>& attendants, const std::vect
   std::string text;
   std::map<std::string, std::set<int>> parts;
   std::map<std::string, std::set<std::string>> programs;
-  std::map<std::string, int> ranks;
   for (const Attendant& a : attendants) {
     parts[a.participant].insert(a.application);
     programs[a.participant].insert(a.program);
-    ++ranks[a.participant];
   }
   for (const Expected& e : expected)
     if (!parts.count(e.participant))
@@ -138,8 +136,6 @@ std::string attendance(const std::vector<Attendant>& attendants, const std::vect
     if (!known)
       text += fmt::format("\n  '{}' was started, but the YAML file does not ask for it.", participant);
   }
-  if (ranks[coupler_name] > 1)
-    text += fmt::format("\n  the coupler was started with {} ranks: it runs with one.", ranks[coupler_name]);
   return text;
 }
 

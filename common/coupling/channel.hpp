@@ -11,7 +11,8 @@
 namespace couplet {
 
 /// How the coupler talks to one participant. A command is sent, then its reply received; several participants
-/// may be sent to before the first reply is received, so they work at the same time.
+/// may be sent to before the first reply is received, so they work at the same time. Collective over the
+/// coupler's ranks: data and places are each rank's own part, all else is the same on all.
 class Channel {
  public:
   virtual ~Channel() = default;
@@ -20,35 +21,51 @@ class Channel {
   virtual Reply receive() = 0;
 };
 
-/// To another program, rank 0 to rank 0 of the intercommunicator.
+/// To another program: heads from rank 0 to rank 0 of the intercommunicator, values from rank to rank. The
+/// participant's vertices and faces are cut anew, evenly, over the coupler's ranks.
 class MpiChannel final : public Channel {
  public:
-  MpiChannel(std::string name, MPI_Comm peers) : name_(std::move(name)), peers_(peers) {}
+  /// `comm`: the coupler's ranks.
+  MpiChannel(std::string name, MPI_Comm peers, MPI_Comm comm)
+      : name_(std::move(name)), peers_(peers), comm_(comm) {}
   const std::string& name() const override { return name_; }
   void send(const Command& command) override;
   Reply receive() override;
 
  private:
+  void receive_places(Interface& interface);
+  void receive_values(Exchange& data);
+
   std::string name_;
-  MPI_Comm peers_;
+  MPI_Comm peers_, comm_;
   Op pending_ = Op::initialise;
+  int dim_ = 0;
+  std::vector<Interface::Datum> takes_, gives_;
+  Cut theirs_, mine_;  // the same list of places, cut over the participant's and the coupler's ranks
 };
 
 /// To a participant inside this process: a function call.
 class LocalChannel final : public Channel {
  public:
   /// The participant must outlive the channel.
-  LocalChannel(std::string name, Participant& participant, MPI_Comm comm = MPI_COMM_SELF)
-      : name_(std::move(name)), participant_(participant), comm_(comm) {}
+  LocalChannel(std::string name, Participant& participant, MPI_Comm comm = MPI_COMM_SELF);
+  ~LocalChannel() override;
   const std::string& name() const override { return name_; }
   void send(const Command& command) override;
   Reply receive() override { return std::move(reply_); }
 
  private:
   std::string name_;
-  Participant& participant_;
+  std::unique_ptr<class SubStepping> participant_;
   MPI_Comm comm_;
   Reply reply_;
 };
+
+/// Which rank of the other side takes or gives which of my places, both kinds at once.
+struct Exchanged {
+  int rank;
+  Slice slice;
+};
+std::vector<Exchanged> exchanged(const Cut& mine, int rank, const Cut& theirs);
 
 }  // namespace couplet

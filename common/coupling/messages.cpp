@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/coupling/messages.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "common/base/error.hpp"
@@ -20,24 +21,19 @@ class Packer {
     put(std::int64_t(text.size()));
     raw(text.data(), text.size());
   }
-  void put(const std::vector<double>& values) {
-    put(std::int64_t(values.size()));
-    raw(values.data(), values.size() * sizeof(double));
-  }
-  void put(const std::vector<Vec3>& points) {
-    put(std::int64_t(points.size()));
-    for (const Vec3& p : points) raw(p.data(), 3 * sizeof(double));
-  }
-  void put(const std::vector<Index>& values) {
-    put(std::int64_t(values.size()));
-    for (const Index value : values) put(std::int64_t(value));
-  }
+  void put(const Vec3& point) { raw(point.data(), 3 * sizeof(double)); }
+  /// Names alone: the values go from rank to rank.
   void put(const Exchange& data) {
     put(std::int64_t(data.size()));
-    for (const auto& [name, values] : data) {
-      put(name);
-      put(values);
-    }
+    for (const auto& [name, values] : data) put(name);
+  }
+  void put(const std::vector<GlobalIndex>& values) {
+    put(std::int64_t(values.size()));
+    raw(values.data(), values.size() * sizeof(GlobalIndex));
+  }
+  void put(const std::vector<std::string>& texts) {
+    put(std::int64_t(texts.size()));
+    for (const std::string& text : texts) put(text);
   }
   void put(const std::vector<Interface::Datum>& list) {
     put(std::int64_t(list.size()));
@@ -60,7 +56,8 @@ class Packer {
 
 class Unpacker {
  public:
-  Unpacker(std::span<const char> bytes, std::int64_t mark, const char* what) : bytes_(bytes), what_(what) {
+  Unpacker(std::span<const char> bytes, const char* what) : bytes_(bytes), what_(what) {}
+  Unpacker(std::span<const char> bytes, std::int64_t mark, const char* what) : Unpacker(bytes, what) {
     if (integer() != mark) throw Error("A message between programs is not the {} that was expected.", what_);
     const std::int64_t version = integer();
     if (version != protocol_version)
@@ -75,27 +72,24 @@ class Unpacker {
     raw(value.data(), value.size());
     return value;
   }
-  std::vector<double> reals() {
-    std::vector<double> values(length(sizeof(double)));
-    raw(values.data(), values.size() * sizeof(double));
+  Vec3 point() {
+    Vec3 p;
+    raw(p.data(), 3 * sizeof(double));
+    return p;
+  }
+  std::vector<GlobalIndex> integers() {
+    std::vector<GlobalIndex> values(length(sizeof(GlobalIndex)));
+    raw(values.data(), values.size() * sizeof(GlobalIndex));
     return values;
   }
-  std::vector<Vec3> points() {
-    std::vector<Vec3> values(length(3 * sizeof(double)));
-    for (Vec3& p : values) raw(p.data(), 3 * sizeof(double));
-    return values;
-  }
-  std::vector<Index> indices() {
-    std::vector<Index> values(length(sizeof(std::int64_t)));
-    for (Index& value : values) value = static_cast<Index>(integer());
-    return values;
+  std::vector<std::string> texts() {
+    std::vector<std::string> list;
+    for (std::int64_t n = integer(); n > 0; --n) list.push_back(text());
+    return list;
   }
   Exchange exchange() {
     Exchange data;
-    for (std::int64_t n = integer(); n > 0; --n) {
-      const std::string name = text();
-      data[name] = reals();
-    }
+    for (std::int64_t n = integer(); n > 0; --n) data[text()];
     return data;
   }
   std::vector<Interface::Datum> data() {
@@ -170,6 +164,8 @@ std::vector<char> pack(const Command& c) {
   out.put(c.step.dt);
   out.put(std::int64_t(c.step.scheme));
   out.put(std::int64_t(c.step.number));
+  out.put(std::int64_t(c.step.sub_steps));
+  out.put(std::int64_t(c.step.waveform));
   out.put(c.time);
   out.put(std::int64_t(c.output));
   out.put(c.folder);
@@ -185,6 +181,8 @@ Command unpack_command(std::span<const char> bytes) {
   c.step.dt = in.real();
   c.step.scheme = Scheme(in.integer());
   c.step.number = in.integer();
+  c.step.sub_steps = int(in.integer());
+  c.step.waveform = in.integer() != 0;
   c.time = in.real();
   c.output = int(in.integer());
   c.folder = in.text();
@@ -193,7 +191,7 @@ Command unpack_command(std::span<const char> bytes) {
   return c;
 }
 
-std::vector<char> pack(const Reply& r) {
+std::vector<char> pack(const Reply& r, const Cut& cut) {
   Packer out;
   out.put(reply_mark);
   out.put(protocol_version);
@@ -201,46 +199,132 @@ std::vector<char> pack(const Reply& r) {
   out.put(r.text);
   out.put(r.seconds);
   out.put(r.suggested_dt);
-  out.put(r.data);
-  out.put(std::int64_t(r.interface.dim));
-  out.put(std::int64_t(r.interface.closed));
-  out.put(r.interface.vertices);
-  out.put(r.interface.face_centres);
-  out.put(r.interface.face_areas);
-  out.put(r.interface.face_offset);
-  out.put(r.interface.face_vertices);
-  out.put(r.interface.takes);
-  out.put(r.interface.gives);
   out.put(r.report.dt);
   out.put(std::int64_t(r.report.iterations));
   out.put(r.report.error);
   out.put(r.report.energy);
+  out.put(r.data);
+  out.put(std::int64_t(r.interface.dim));
+  out.put(std::int64_t(r.anew));
+  out.put(r.interface.parts);
+  out.put(r.interface.takes);
+  out.put(r.interface.gives);
+  out.put(cut.vertices);
+  out.put(cut.faces);
   return out.take();
 }
 
-Reply unpack_reply(std::span<const char> bytes) {
+Reply unpack_reply(std::span<const char> bytes, Cut& cut) {
   Unpacker in(bytes, reply_mark, "reply");
   Reply r;
   r.status = Reply::Status(in.integer());
   r.text = in.text();
   r.seconds = in.real();
   r.suggested_dt = in.real();
-  r.data = in.exchange();
-  r.interface.dim = int(in.integer());
-  r.interface.closed = in.integer() != 0;
-  r.interface.vertices = in.points();
-  r.interface.face_centres = in.points();
-  r.interface.face_areas = in.points();
-  r.interface.face_offset = in.indices();
-  r.interface.face_vertices = in.indices();
-  r.interface.takes = in.data();
-  r.interface.gives = in.data();
   r.report.dt = in.real();
   r.report.iterations = long(in.integer());
   r.report.error = in.real();
   r.report.energy = in.real();
+  r.data = in.exchange();
+  r.interface.dim = int(in.integer());
+  r.anew = in.integer() != 0;
+  r.interface.parts = in.texts();
+  r.interface.takes = in.data();
+  r.interface.gives = in.data();
+  cut.vertices = in.integers();
+  cut.faces = in.integers();
   in.finish();
   return r;
+}
+
+std::vector<Interface::Datum> present(const Exchange& data, const std::vector<Interface::Datum>& announced,
+                                      const std::string& whose) {
+  std::vector<Interface::Datum> list;
+  for (const auto& [name, values] : data) {
+    const auto found = std::ranges::find(announced, name, &Interface::Datum::name);
+    if (found == announced.end())
+      throw Error("'{}' is no datum that '{}' had announced at its interface.", name, whose);
+    list.push_back(*found);
+  }
+  return list;
+}
+
+std::vector<double> cut_out(const Exchange& data, const std::vector<Interface::Datum>& of, int dim,
+                            const Slice& slice, const std::string& whose) {
+  std::vector<double> values;
+  for (const auto& datum : of) {
+    const std::vector<double>& from = data.at(datum.name);
+    const bool at_vertices = datum.place == Interface::Place::vertices;
+    const auto n = std::size_t(datum.size(dim));
+    const std::size_t first = n * (at_vertices ? slice.first_vertex : slice.first_face),
+                      count = n * (at_vertices ? slice.vertices : slice.faces);
+    if (first + count > from.size())
+      throw Error("'{}' gave {} values of '{}' where its interface has {} {} of {} components.", whose,
+                  from.size(), datum.name, (first + count) / n, at_vertices ? "vertices" : "faces", n);
+    values.insert(values.end(), from.begin() + std::ptrdiff_t(first),
+                  from.begin() + std::ptrdiff_t(first + count));
+  }
+  return values;
+}
+
+void put_back(std::span<const double> values, const std::vector<Interface::Datum>& of, int dim,
+              const Slice& slice, Exchange& data) {
+  std::size_t at = 0;
+  for (const auto& datum : of) {
+    const bool at_vertices = datum.place == Interface::Place::vertices;
+    const auto n = std::size_t(datum.size(dim));
+    const std::size_t first = n * (at_vertices ? slice.first_vertex : slice.first_face),
+                      count = n * (at_vertices ? slice.vertices : slice.faces);
+    if (at + count > values.size()) throw Error("A message with values of '{}' is cut short.", datum.name);
+    std::copy_n(values.begin() + std::ptrdiff_t(at), count,
+                data.at(datum.name).begin() + std::ptrdiff_t(first));
+    at += count;
+  }
+  if (at != values.size()) throw Error("A message with interface values is longer than its content.");
+}
+
+// Vertices: number, ids, places. Faces: number, ids, centres, areas, parts, numbers of vertices, their
+// positions.
+std::vector<char> cut_out(const Interface& i, const Slice& s) {
+  Packer out;
+  out.put(std::int64_t(s.vertices));
+  for (std::size_t v = s.first_vertex; v < s.first_vertex + s.vertices; ++v) {
+    out.put(i.vertex_ids.empty() ? std::int64_t(v) : std::int64_t(i.vertex_ids[v]));
+    out.put(i.vertices[v]);
+  }
+  out.put(std::int64_t(s.faces));
+  for (std::size_t f = s.first_face; f < s.first_face + s.faces; ++f) {
+    out.put(i.face_ids.empty() ? std::int64_t(f) : std::int64_t(i.face_ids[f]));
+    out.put(i.face_centres[f]);
+    out.put(i.face_areas[f]);
+    out.put(std::int64_t(i.face_part.empty() ? 0 : i.face_part[f]));
+    if (i.face_offset.empty()) {
+      out.put(std::int64_t(0));
+      continue;
+    }
+    out.put(std::int64_t(i.face_offset[f + 1] - i.face_offset[f]));
+    for (Index k = i.face_offset[f]; k < i.face_offset[f + 1]; ++k)
+      out.put(std::int64_t(i.face_vertices[std::size_t(k)]));
+  }
+  return out.take();
+}
+
+void put_back(std::span<const char> bytes, Interface& i) {
+  Unpacker in(bytes, "description of an interface");
+  for (std::int64_t n = in.integer(); n > 0; --n) {
+    i.vertex_ids.push_back(in.integer());
+    i.vertices.push_back(in.point());
+  }
+  if (i.face_offset.empty()) i.face_offset.push_back(0);
+  for (std::int64_t n = in.integer(); n > 0; --n) {
+    i.face_ids.push_back(in.integer());
+    i.face_centres.push_back(in.point());
+    i.face_areas.push_back(in.point());
+    i.face_part.push_back(int(in.integer()));
+    for (std::int64_t k = in.integer(); k > 0; --k) i.face_vertices.push_back(Index(in.integer()));
+    i.face_offset.push_back(Index(i.face_vertices.size()));
+  }
+  in.finish();
 }
 
 }  // namespace couplet

@@ -7,11 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "common/coupling/blocks.hpp"
 #include "common/coupling/participant.hpp"
 
 namespace couplet {
 
-/// What a coupler can ask of a participant. The numbers are part of the protocol (docs/coupling.md).
+/// What a coupler can ask of a participant. The numbers are part of the protocol (docs/protocol.md).
 enum class Op : std::int64_t {
   initialise = 1,
   begin_step = 2,
@@ -28,7 +29,7 @@ const char* name(Op op);
 struct Command {
   Op op = Op::initialise;
   Step step;           ///< begin_step
-  Exchange data;       ///< solve: the input
+  Exchange data;       ///< solve: the input, this rank's entries
   double time = 0;     ///< accept_step, write_output: the accepted time t^{n+1} [s]
   int output = -1;     ///< accept_step, write_output: number of the output that is due; -1: none
   std::string folder;  ///< save, load: the checkpoint's folder; the participant's file in it is <name>.h5
@@ -38,25 +39,54 @@ struct Command {
 struct Reply {
   enum class Status : std::int64_t {
     ok = 0,
-    failure = 1,  ///< the step could not be solved (`text` says why); state n is as it was
+    failure = 1,   ///< the step could not be solved (`text` says why); state n is as it was
+    hopeless = 2,  ///< the same, and a smaller step would not help
   };
   Status status = Status::ok;
   std::string text;
   bool shorter_helps = true;  ///< failure: a shorter step may be solved; not sent
   double seconds = 0;         ///< spent on the command
   double suggested_dt = std::numeric_limits<double>::infinity();  ///< initialise, accept_step, load
-  Exchange data;                                                  ///< solve: the output
-  Interface interface;                                            ///< initialise
-  StepReport report;                                              ///< accept_step; its seconds are not sent
+  StepReport report;                                              ///< accept_step
+  Exchange data;                                                  ///< solve: the output, this rank's entries
+  bool anew = false;                                              ///< solve: Participant::answered_anew()
+  Interface interface;                                            ///< initialise: this rank's entries
 };
 
-std::vector<char> pack(const Command& command);
-std::vector<char> pack(const Reply& reply);
-/// Throw Error if the bytes are not such a message of this version of the protocol.
-Command unpack_command(std::span<const char> bytes);
-Reply unpack_reply(std::span<const char> bytes);
+/// How a participant's surface is cut over its ranks: part of the reply to initialise.
+struct Cut {
+  Starts vertices{0}, faces{0};
+};
 
-inline constexpr std::int64_t protocol_version = 3;
-inline constexpr int command_tag = 101, reply_tag = 102;
+/// Heads of messages: all but the values at vertices and faces, of which they hold the names. From rank 0 to
+/// rank 0.
+std::vector<char> pack(const Command& command);
+std::vector<char> pack(const Reply& reply, const Cut& cut);
+/// Throw Error if the bytes are not such a message of this version of the protocol. The data are there by
+/// name, empty.
+Command unpack_command(std::span<const char> bytes);
+Reply unpack_reply(std::span<const char> bytes, Cut& cut);
+
+/// What one rank has of a participant's values, cut further for another rank: all data of `names` one after
+/// the other, each the part at vertices or faces. Throws Error if an array has not the announced length.
+struct Slice {
+  std::size_t first_vertex = 0, vertices = 0, first_face = 0, faces = 0;  ///< within this rank's entries
+  bool empty() const { return vertices == 0 && faces == 0; }
+};
+std::vector<double> cut_out(const Exchange& data, const std::vector<Interface::Datum>& of, int dim,
+                            const Slice& slice, const std::string& whose);
+/// The reverse: into arrays that have their full length.
+void put_back(std::span<const double> values, const std::vector<Interface::Datum>& of, int dim,
+              const Slice& slice, Exchange& data);
+/// Those of `announced` whose names are in `data`, by name; throws Error if a name was not announced.
+std::vector<Interface::Datum> present(const Exchange& data, const std::vector<Interface::Datum>& announced,
+                                      const std::string& whose);
+
+/// The places themselves, once, the same way.
+std::vector<char> cut_out(const Interface& interface, const Slice& slice);
+void put_back(std::span<const char> bytes, Interface& interface);
+
+inline constexpr std::int64_t protocol_version = 4;
+inline constexpr int command_tag = 101, reply_tag = 102, input_tag = 103, places_tag = 104, output_tag = 105;
 
 }  // namespace couplet

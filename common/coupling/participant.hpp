@@ -16,9 +16,9 @@ class CheckpointReader;
 
 enum class Scheme : int { standalone, explicit_, semi_implicit, implicit };
 
-/// What a participant shows of itself at its interface. Filled on rank 0 of the participant only: every
-/// vertex and face once, in an order that does not depend on the number of ranks (see InterfaceMap). 2-D: z =
-/// 0, no duplicate layer.
+/// What a participant shows of itself at its interface: each of its ranks has the vertices and faces that it
+/// owns, each once (see InterfaceMap); a small participant may leave all of them to its rank 0. 2-D: z = 0,
+/// no duplicate layer.
 struct Interface {
   enum class Place : int { vertices, faces };
   struct Datum {
@@ -33,16 +33,23 @@ struct Interface {
   std::vector<Vec3> face_centres;  ///< reference configuration [m]
   std::vector<Vec3> face_areas;    ///< out of this participant [m^2]
   std::vector<Datum> takes, gives;
-  /// A fluid that nothing can leave: it has no room for an interface that displaces volume.
-  bool closed = false;
-  /// Corners of face f, in their order around it: face_vertices[face_offset[f]] .. [face_offset[f + 1] - 1].
-  /// Both empty if they are not known.
+  /// Corners of face f, in their order around it, as positions in the list of all ranks' vertices, rank by
+  /// rank: face_vertices[face_offset[f]] .. [face_offset[f + 1] - 1]. Both empty if they are not known.
   std::vector<Index> face_offset{}, face_vertices{};
+  /// Numbers that do not depend on how the mesh is cut over ranks. Empty: the position is the number.
+  std::vector<GlobalIndex> vertex_ids{}, face_ids{};
+  /// Names of its parts (patches), and of which part each face is. May be empty.
+  std::vector<std::string> parts{};
+  std::vector<int> face_part{};
   bool empty() const { return vertices.empty() && face_centres.empty(); }
 };
 
-/// Interface values by name: entries x dim (or the datum's own number of components), entry by entry. On rank
-/// 0 of the participant; empty on its other ranks.
+/// Whether sums of it are kept when it is carried over: forces and heats. They are means over a step, all
+/// else is taken at its end.
+inline bool is_amount(const Interface::Datum& datum) { return datum.unit == "N" || datum.unit == "W"; }
+
+/// Interface values by name: entries x dim (or the datum's own number of components), entry by entry, of the
+/// entries that this rank owns; a rank that owns none has no such name.
 ///   displacement  vertices  t^{n+1}, relative to the reference configuration [m]
 ///   velocity      vertices  t^{n+1}, the structure's own [m/s]
 ///   pressure-force, viscous-force  faces  mean over the step (t^{n+1/2}), acting on the receiver [N] (per
@@ -54,6 +61,8 @@ struct Step {
   double dt = 0;
   Scheme scheme = Scheme::standalone;
   GlobalIndex number = 0;
+  int sub_steps = 1;     ///< that the participant takes within this coupling step (see SubStepping)
+  bool waveform = true;  ///< they see their input as a line in time; false: as constant
   bool is_last = false;  ///< accepted, it ends the run; false in a coupled job
 };
 
@@ -85,6 +94,9 @@ class Participant {
   virtual double suggest_dt() { return std::numeric_limits<double>::infinity(); }
   virtual void begin_step(const Step& step) = 0;
   virtual Exchange solve(const Exchange& in) = 0;
+  /// Whether the last solve() has begun to answer otherwise than those before it in this step (a prediction that
+  /// was renewed): what was learnt from differences to them holds no more.
+  virtual bool answered_anew() const { return false; }
   /// Cannot fail: what can, fails in solve().
   virtual StepReport accept_step() = 0;
   virtual void save(CheckpointWriter& file) const = 0;

@@ -5,6 +5,8 @@
 #include <filesystem>
 
 #include "common/base/error.hpp"
+#include "common/coupling/channel.hpp"
+#include "common/coupling/sub_stepping.hpp"
 #include "common/coupling/wait.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
@@ -25,6 +27,7 @@ void dispatch(const Command& command, Participant& participant, const std::strin
       return;
     case Op::solve:
       reply.data = participant.solve(command.data);
+      reply.anew = participant.answered_anew();
       return;
     case Op::accept_step:
       reply.report = participant.accept_step();
@@ -54,6 +57,84 @@ void dispatch(const Command& command, Participant& participant, const std::strin
               static_cast<long>(command.op));
 }
 
+Cut cut_of(MPI_Comm comm, const Interface& interface) {
+  const auto cut = [&](std::size_t n) {
+    return starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
+  };
+  return {cut(interface.vertices.size()), cut(interface.face_centres.size())};
+}
+
+/// This rank's end of the values and places that go from rank to rank.
+class Ranks {
+ public:
+  Ranks(MPI_Comm coupler, MPI_Comm comm, std::string name)
+      : coupler_(coupler), comm_(comm), name_(std::move(name)) {}
+
+  /// `announced`: dimension and data as rank 0 has them.
+  void send_places(const Interface& interface, const Interface& announced, const Cut& cut) {
+    interface_ = announced;
+    mine_ = cut;
+    int ranks = 0;
+    MPI_Comm_remote_size(coupler_, &ranks);
+    plan_ = exchanged(mine_, comm_rank(comm_),
+                      {even_starts(mine_.vertices.back(), ranks), even_starts(mine_.faces.back(), ranks)});
+    for (const auto& [other, slice] : plan_)
+      send_bytes(coupler_, other, places_tag, cut_out(interface, slice), "the coupler to take places");
+  }
+
+  /// Values for the names that the head has announced. A rank without places gets none.
+  void receive(Exchange& data) const {
+    const auto list = present(data, interface_.takes, name_);
+    const auto rank = std::size_t(comm_rank(comm_));
+    for (const auto& datum : list) {
+      const Starts& starts = datum.place == Interface::Place::vertices ? mine_.vertices : mine_.faces;
+      const auto entries = std::size_t(starts[rank + 1] - starts[rank]);
+      if (entries == 0)
+        data.erase(datum.name);
+      else
+        data[datum.name].resize(entries * std::size_t(datum.size(interface_.dim)));
+    }
+    for (const auto& [other, slice] : plan_) {
+      std::size_t n = 0;
+      for (const auto& datum : list)
+        n += std::size_t(datum.size(interface_.dim)) *
+             (datum.place == Interface::Place::vertices ? slice.vertices : slice.faces);
+      if (n == 0) continue;
+      const std::vector<double> values =
+          receive_doubles(coupler_, other, input_tag, n, "the coupler to send values");
+      std::vector<Interface::Datum> here;
+      for (const auto& datum : list)
+        if (data.contains(datum.name)) here.push_back(datum);
+      put_back(values, here, interface_.dim, slice, data);
+    }
+  }
+
+  void send(const Exchange& data) const {
+    const auto list = present(data, interface_.gives, name_);
+    const auto rank = std::size_t(comm_rank(comm_));
+    for (const auto& datum : list) {
+      const Starts& starts = datum.place == Interface::Place::vertices ? mine_.vertices : mine_.faces;
+      const auto wanted =
+          std::size_t(starts[rank + 1] - starts[rank]) * std::size_t(datum.size(interface_.dim));
+      if (data.at(datum.name).size() != wanted)
+        throw Error("'{}' gave {} values of '{}' where its interface has room for {}.", name_,
+                    data.at(datum.name).size(), datum.name, wanted);
+    }
+    SendAll sending(coupler_);
+    for (const auto& [other, slice] : plan_)
+      if (auto values = cut_out(data, list, interface_.dim, slice, name_); !values.empty())
+        sending.add(other, output_tag, std::move(values));
+    sending.wait("the coupler to take values");
+  }
+
+ private:
+  MPI_Comm coupler_, comm_;
+  std::string name_;
+  Interface interface_;  // takes and gives alone
+  Cut mine_;
+  std::vector<Exchanged> plan_;
+};
+
 }  // namespace
 
 Reply carry_out(const Command& command, Participant& participant, const std::string& name, MPI_Comm comm) {
@@ -63,7 +144,8 @@ Reply carry_out(const Command& command, Participant& participant, const std::str
     dispatch(command, participant, name, comm, reply);
   } catch (const SolveFailure& failure) {
     reply = Reply{};
-    reply.status = Reply::Status::failure;
+    reply.status =
+        dynamic_cast<const SchemeFailure*>(&failure) ? Reply::Status::hopeless : Reply::Status::failure;
     reply.text = failure.what();
     reply.shorter_helps = dynamic_cast<const SchemeFailure*>(&failure) == nullptr;
   }
@@ -74,17 +156,29 @@ Reply carry_out(const Command& command, Participant& participant, const std::str
 void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant& participant,
            const ServeObserver& observer) {
   const bool root = comm_rank(comm) == 0;
+  SubStepping stepping(participant);
+  Ranks ranks(coupler, comm, name);
   for (;;) {
     observer.waiting();
-    std::vector<char> bytes;
-    if (root) bytes = receive_bytes(coupler, 0, command_tag, "");
-    broadcast_bytes(comm, bytes, "");
-    const Command command = unpack_command(bytes);
+    std::vector<char> head;
+    if (root) head = receive_bytes(coupler, 0, command_tag, "");
+    broadcast_bytes(comm, head, "");
+    Command command = unpack_command(head);
+    if (command.op == Op::initialise) stepping.set(command.step.sub_steps);
+    if (command.op == Op::solve) ranks.receive(command.data);
     observer.received(command);
-    const Reply reply = carry_out(command, participant, name, comm);
+    const Reply reply = carry_out(command, stepping, name, comm);
     observer.done(command);
     if (command.op == Op::accept_step) observer.accepted(command, reply.report);
-    if (root) send_bytes(coupler, 0, reply_tag, pack(reply), "the coupler to take a reply");
+    const bool described = reply.status == Reply::Status::ok && command.op == Op::initialise;
+    Cut cut = described ? cut_of(comm, reply.interface) : Cut{};
+    if (root) head = pack(reply, cut), send_bytes(coupler, 0, reply_tag, head, "the coupler to take a reply");
+    if (described) {
+      // Participants that describe all on rank 0 leave the rest of the description to it, too.
+      broadcast_bytes(comm, head, "");
+      ranks.send_places(reply.interface, unpack_reply(head, cut).interface, cut);
+    }
+    if (reply.status == Reply::Status::ok && command.op == Op::solve) ranks.send(reply.data);
     if (command.op == Op::finalise) return;
   }
 }

@@ -58,6 +58,27 @@ std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::st
   return bytes;
 }
 
+std::vector<double> receive_doubles(MPI_Comm peers, int from, int tag, std::size_t count,
+                                    const std::string& what) {
+  std::vector<double> values(count);
+  MPI_Request request;
+  MPI_Irecv(values.data(), static_cast<int>(count), MPI_DOUBLE, from, tag, peers, &request);
+  wait_politely(request, what);
+  return values;
+}
+
+void SendAll::add(int to, int tag, std::vector<double> values) {
+  values_.push_back(std::move(values));
+  MPI_Isend(values_.back().data(), static_cast<int>(values_.back().size()), MPI_DOUBLE, to, tag, peers_,
+            &requests_.emplace_back());
+}
+
+void SendAll::wait(const std::string& what) {
+  for (MPI_Request& request : requests_) wait_politely(request, what);
+  requests_.clear();
+  values_.clear();
+}
+
 void broadcast_bytes(MPI_Comm comm, std::vector<char>& bytes, const std::string& what) {
   if (comm_size(comm) == 1) return;
   MPI_Request request;

@@ -34,6 +34,23 @@ void wait_politely(MPI_Request& request, const std::string& what);
 void send_bytes(MPI_Comm peers, int to, int tag, std::span<const char> bytes, const std::string& what);
 std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::string& what);
 
+/// Doubles whose number is known.
+std::vector<double> receive_doubles(MPI_Comm peers, int from, int tag, std::size_t count,
+                                    const std::string& what);
+
+/// Several messages on their way at once; they are kept until wait().
+class SendAll {
+ public:
+  explicit SendAll(MPI_Comm peers) : peers_(peers) {}
+  void add(int to, int tag, std::vector<double> values);
+  void wait(const std::string& what);
+
+ private:
+  MPI_Comm peers_;
+  std::vector<std::vector<double>> values_;
+  std::vector<MPI_Request> requests_;
+};
+
 /// Rank 0's bytes to all ranks; the others wait politely. Collective.
 void broadcast_bytes(MPI_Comm comm, std::vector<char>& bytes, const std::string& what);
 

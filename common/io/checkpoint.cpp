@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstring>
 #include <exception>
 
@@ -75,8 +76,10 @@ CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& f
   hdf5::write_attribute(state_->id, "set", stamp);
 }
 
+CheckpointWriter::CheckpointWriter(StateInMemory& memory) : memory_(&memory) {}
+
 CheckpointWriter::~CheckpointWriter() {
-  if (state_->id < 0) return;
+  if (memory_ || state_->id < 0) return;
   // Closing a file is collective: never while unwinding, when the other ranks may be elsewhere.
   if (std::uncaught_exceptions() > state_->exceptions) {
     state_->id.release();
@@ -88,6 +91,10 @@ CheckpointWriter::~CheckpointWriter() {
 }
 
 void CheckpointWriter::write(const std::string& name, std::span<const double> values) {
+  if (memory_) {
+    memory_->arrays_[name].assign(values.begin(), values.end());
+    return;
+  }
   if (hdf5::exists(state_->id, array_path(name)))
     throw Error("The checkpoint '{}' got the array '{}' twice.", state_->file.string(), name);
   const hdf5::Rows rows = hdf5::distribute_rows(state_->comm, values.size(), 1);
@@ -97,6 +104,10 @@ void CheckpointWriter::write(const std::string& name, std::span<const double> va
 }
 
 void CheckpointWriter::write_scalar(const std::string& name, double value) {
+  if (memory_) {
+    memory_->arrays_[scalar_path(name)] = {value};
+    return;
+  }
   MPI_Bcast(&value, 1, MPI_DOUBLE, 0, state_->comm);
   const bool root = comm_rank(state_->comm) == 0;
   hdf5::write_table(state_->id, scalar_path(name), hdf5::distribute_rows(state_->comm, root ? 1 : 0, 1),
@@ -104,7 +115,7 @@ void CheckpointWriter::write_scalar(const std::string& name, double value) {
 }
 
 void CheckpointWriter::close() {
-  if (state_->id < 0) return;
+  if (memory_ || state_->id < 0) return;
   std::string trouble;
   {
     const hdf5::Quiet quiet;
@@ -248,7 +259,23 @@ CheckpointReader::CheckpointReader(MPI_Comm comm, const std::filesystem::path& f
 // The file was opened by this rank alone, so closing it is local.
 CheckpointReader::~CheckpointReader() = default;
 
+CheckpointReader::CheckpointReader(const StateInMemory& memory) : memory_(&memory) {}
+
+const std::vector<double>& CheckpointReader::in_memory(const std::string& name) const {
+  const auto found = memory_->arrays_.find(name);
+  if (found == memory_->arrays_.end()) throw Error("The state in memory has no '{}'.", name);
+  return found->second;
+}
+
 void CheckpointReader::read(const std::string& name, std::span<double> values) {
+  if (memory_) {
+    const std::vector<double>& kept = in_memory(name);
+    if (kept.size() != values.size())
+      throw Error("The state in memory holds {} values of '{}', but {} are expected.", kept.size(), name,
+                  values.size());
+    std::copy(kept.begin(), kept.end(), values.begin());
+    return;
+  }
   const auto [rows, wanted] = state_->rows_of(name);
   std::string trouble;
   if (rows.count != values.size())
@@ -261,6 +288,7 @@ void CheckpointReader::read(const std::string& name, std::span<double> values) {
 }
 
 std::vector<double> CheckpointReader::read(const std::string& name) {
+  if (memory_) return in_memory(name);
   const auto [rows, wanted] = state_->rows_of(name);
   std::vector<double> values(rows.count);
   state_->fill(name, rows, wanted, values);
@@ -268,6 +296,7 @@ std::vector<double> CheckpointReader::read(const std::string& name) {
 }
 
 double CheckpointReader::read_scalar(const std::string& name) {
+  if (memory_) return in_memory(scalar_path(name)).front();
   std::string trouble;
   double value = 0;
   try {

@@ -4,6 +4,7 @@
 #include <mpi.h>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,12 +12,25 @@
 
 namespace couplet {
 
+/// A state kept in memory, each rank its own part: what a checkpoint writer puts in, a reader gets out.
+class StateInMemory {
+ public:
+  void clear() { arrays_.clear(); }
+
+ private:
+  friend class CheckpointWriter;
+  friend class CheckpointReader;
+  std::map<std::string, std::vector<double>> arrays_;
+};
+
 /// One participant's state at an accepted time, one HDF5 file. Arrays are written rank by rank as they are
 /// (bit for bit on equal ranks). Written under a temporary name, flushed and renamed in close(), so the last
 /// good file is never lost.
 class CheckpointWriter {
  public:
   CheckpointWriter(MPI_Comm comm, const std::filesystem::path& file);
+  /// No file: into memory.
+  explicit CheckpointWriter(StateInMemory& memory);
   ~CheckpointWriter();
   CheckpointWriter(const CheckpointWriter&) = delete;
   /// Collective: every rank writes its own part.
@@ -28,6 +42,7 @@ class CheckpointWriter {
  private:
   struct State;
   std::unique_ptr<State> state_;
+  StateInMemory* memory_ = nullptr;
 };
 
 /// Throws Error naming the file and what is wrong: missing, truncated, not a checkpoint, other number of
@@ -35,6 +50,7 @@ class CheckpointWriter {
 class CheckpointReader {
  public:
   CheckpointReader(MPI_Comm comm, const std::filesystem::path& file);
+  explicit CheckpointReader(const StateInMemory& memory);
   ~CheckpointReader();
   CheckpointReader(const CheckpointReader&) = delete;
   /// Fills `values`, whose size must be what this rank wrote.
@@ -46,6 +62,8 @@ class CheckpointReader {
  private:
   struct State;
   std::unique_ptr<State> state_;
+  const std::vector<double>& in_memory(const std::string& name) const;
+  const StateInMemory* memory_ = nullptr;
 };
 
 }  // namespace couplet

@@ -1,10 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the coupler: divergence is named; programs of other people."""
+"""Bars of the coupler: schedules, several bodies, ranks, scale, programs of other people."""
+import csv
+
 import numpy as np
 
 import couplet_series as couplet
 from validation.job import Bar
-from validation.main_job import FLAP, registered
+from validation.main_job import FLAP, registered, steps_of
+
+
+def unit(executable, pattern, key, met=None):
+    """A property that a test records; met if the tests passed and `met` of the values, reported without it."""
+    def measure(job):
+        values, passed = job.recorded(executable, pattern, key)
+        return ", ".join(f"{v:g}" for v in values), bool(passed and met(values)) if met else None
+    return measure
 
 
 def passed(executable, pattern):
@@ -25,6 +35,32 @@ def flap(job, name, *sets, ranks=(1, 1, 1, 1)):
 def tips(folder):
     probes = couplet.read_csv(folder / "solid" / "probes.csv")
     return np.array(probes["tip x [m]"])
+
+
+def jacobi_against_gauss_seidel(job):
+    acceleration = ("coupling.scheme=implicit", "coupling.acceleration.type=iqn-ils", "coupling.convergence.relative=1e-7")
+    one = flap(job, "serial", *acceleration)
+    other = flap(job, "parallel", *acceleration, "coupling.order=parallel")
+    gap = np.abs(tips(one) - tips(other)).max() / np.abs(tips(one)).max()
+    counts = [steps_of(f)[:, 0].mean() for f in (one, other)]
+    return f"{gap:.1e} apart; {counts[0]:.2f} and {counts[1]:.2f} passes a step", bool(gap <= 1e-4)
+
+
+def coupler_ranks(job):
+    one = flap(job, "ranks-1")
+    gaps = []
+    for n in (2, 3):
+        gaps.append(np.abs(tips(one) - tips(flap(job, f"ranks-{n}", ranks=(n, 1, 1, 1)))).max() / np.abs(tips(one)).max())
+    return f"{max(gaps):.1e} apart", bool(max(gaps) <= 1e-10)
+
+
+def own_share(job):
+    """Wall clock of the steps less what fluid and structure, one after the other, worked."""
+    with open(flap(job, "ranks-1") / "coupler" / "participants.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))[1:]
+    wall = sum(float(r["wall clock [s]"]) for r in rows)
+    worked = sum(float(r[f"{name} working [s]"]) for r in rows for name in ("fluid", "solid"))
+    return f"{100 * (1 - worked / wall):.1f} % of {len(rows)} steps, waiting for the machine included", wall - worked < 0.03 * wall
 
 
 def refused(job, *sets):
@@ -64,7 +100,20 @@ RUNS = [
     Bar("flap semi-implicit, rho_s 1, mu 1, ramp 0.4 s: holds since friction is renewed, or the swing is named",
         "end reached, or refused with the reason", viscous_swing),
     Bar("guards: each fires and does not", "all tests", passed("unit_coupler", "Guard")),
-    Bar("strangers: C++, C, Python with the real fluid; two ranks of the fluid; restart bit for bit", "all", registered("^client_examples$")),
+    Bar("sub-steps 7 and 4, waveform linear: order in time", ">= 1.8",
+        unit("coupling_groups", "keeps_the_second_order", "slope_linear", lambda v: min(v) >= 1.8)),
+    Bar("sub-steps 7 and 4, waveform constant: order in time", "first order shown",
+        unit("coupling_groups", "keeps_the_second_order", "slope_constant", lambda v: max(v) < 1.4)),
+    Bar("two bodies in one fluid, serial and parallel", "monolithic solution to 1e-9, restart bit for bit",
+        passed("coupling_groups", "Groups.")),
+    Bar("flap implicit: Jacobi against Gauss-Seidel", "same tip to 1e-4", jacobi_against_gauss_seidel),
+    Bar("coupler on 1, 2, 3 ranks: the flap", "same to 1e-10", coupler_ranks),
+    Bar("coupler's own share of a flap step", "< 3 %", own_share),
+    Bar("set-up of 1e5 vertices (maps, checks, balance)", "< 2 s cpu",
+        unit("coupling_groups", "set_up_of_a_large", "setup_seconds_1e5", lambda v: max(v) < 2)),
+    Bar("mapping of 1e5 3-vectors, one rank [ms]", "reported", unit("coupling_groups", "set_up_of_a_large", "map_milliseconds_1e5")),
+    Bar("maps over 1, 2, 3 ranks", "as on one", registered("^unit_coupler_maps")),
+    Bar("strangers: C++, C, Python with the real fluid; ranks of fluid and coupler; restart bit for bit", "all", registered("^client_examples$")),
     Bar("strangers: installed library by CMake and pkg-config, Python module", "all", registered("^client_install$")),
     Bar("strangers: a wrong guest is named, the job ends", "named", registered("^client_handshake$")),
 ]

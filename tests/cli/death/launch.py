@@ -30,8 +30,9 @@ suite.scenario("wrong program", mpmd(coupler, piston, "1 toy_piston case.yaml --
 suite.scenario("program that nobody asked for", mpmd(coupler, spring, piston),
                {"case.yaml": text.replace("toy_piston", "fluid_solver")}, 2,
                ["none of them is run by the program 'toy_piston'"])
-suite.scenario("two couplers", mpmd("2 coupler case.yaml", piston, spring), case, 2,
-               ["the coupler was started with 2 ranks: it runs with one."])
+suite.scenario("a coupler of two ranks", mpmd("2 coupler case.yaml", piston, spring), case, 0, ["t=1/1 s  step 10"])
+suite.scenario("two couplers", mpmd(coupler, coupler, piston, spring), case, 2,
+               ["2 programs were started as participant 'coupler' (coupler)"])
 suite.scenario("different YAML files", mpmd(coupler, piston, "1 toy_spring other.yaml"),
                {"case.yaml": text, "other.yaml": case_text(solid=", vertices: 3")}, 2,
                ["'coupler' reads case.yaml and 'solid' reads other.yaml, and what they read differs."])

@@ -341,15 +341,17 @@ case.yaml:16:3: participants.solid: this participant has no role in `coupling` (
 case.yaml:38:3: coupling.structure: fluid and structure must be two different participants.
 """, ("structure: {participant: solid}", "structure: {participant: fluid}")),
     coupler("exchange beside a fluid", """
-case.yaml:40:3: coupling.exchange: an exchange has no fluid, structure or mesh beside it; take one or the other.
+case.yaml:40:3: coupling.exchange: an exchange has no structure beside it: it is one of its participants; take one or the other.
 """, ("  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  exchange: {participants: [fluid, solid]}\n")),
     coupler("exchange with a stranger", """
 case.yaml:37:14: coupling.exchange.participants: there is no participant 'slid'. Did you mean 'solid'?
 case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
 """, ("  scheme: implicit\n  fluid: {participant: fluid}\n  structure: {participant: solid}\n  mesh: {participant: mover}\n", "  scheme: explicit\n  exchange: {participants: [fluid, slid, mover]}\n")),
-    coupler("exchange that is implicit", """
-case.yaml:37:3: coupling.exchange: an exchange is made with 'scheme: explicit' only.
-""", ("  fluid: {participant: fluid}\n  structure: {participant: solid}\n  mesh: {participant: mover}\n", "  exchange: {participants: [fluid, solid, mover]}\n")),
+    coupler("exchange with a fluid whose mesh nobody moves", """
+case.yaml:38:3: coupling.exchange: beside an exchange stand either both `fluid` and `mesh` (whose mesh is moved, and by whom) or neither.
+""", ("  structure: {participant: solid}\n  mesh: {participant: mover}\n", "  exchange: {participants: [fluid, solid, mover]}\n")),
+    coupler("sub-steps of nobody", "\ncase.yaml:40:3: coupling.sub-steps: there is no participant 'slid' that could take sub-steps.\n", (
+        "  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  sub-steps: {slid: 2}\n")),
     coupler("unknown scheme", """
 case.yaml:36:3: coupling.scheme: 'semiimplicit' is not one of: explicit, semi-implicit, implicit. Did you mean 'semi-implicit'?
 """, ("scheme: implicit", "scheme: semiimplicit")),

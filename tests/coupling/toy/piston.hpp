@@ -50,9 +50,11 @@ class Piston final : public Participant {
     // From right to left: the mapping has something to do.
     for (int i = p_.vertices - 1; comm_rank(comm_) == 0 && i >= 0; --i) {
       line.vertices.emplace_back(i * h, p_.shift, 0);
+      line.face_offset.push_back(2 * (p_.vertices - 1 - i));
       if (i == 0) continue;
       line.face_centres.emplace_back((i - 0.5) * h, p_.shift, 0);
       line.face_areas.emplace_back(0, -h, 0);
+      line.face_vertices.insert(line.face_vertices.end(), {p_.vertices - 1 - i, p_.vertices - i});
     }
     return line;
   }

@@ -32,6 +32,8 @@ class Spring final : public Participant {
       const double h = 1. / (p_.vertices - 1);
       line.vertices.emplace_back(i * h, 0, 0);
       if (i > 0) line.face_centres.emplace_back((i - 0.5) * h, 0, 0), line.face_areas.emplace_back(0, h, 0);
+      if (i > 0) line.face_vertices.insert(line.face_vertices.end(), {i - 1, i});
+      line.face_offset.push_back(2 * i);
     }
     return line;
   }

@@ -10,7 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
-#include "coupler/exchange_run.hpp"
+#include "coupler/coupler.hpp"
 
 namespace couplet {
 namespace {
@@ -68,7 +68,7 @@ struct Pair {
   Lump hot{3, 400, 0.5}, cold{2, 300, 0};
   fs::path folder = fs::temp_directory_path() / ("couplet-exchange-" + std::to_string(::getpid()));
   fs::path restart;
-  int halvings = 0;
+  double iterations = 0;
 
   Pair() {
     spdlog::set_level(spdlog::level::off);
@@ -86,9 +86,12 @@ struct Pair {
     std::vector<std::unique_ptr<Channel>> channels;
     channels.push_back(std::make_unique<LocalChannel>("cold", cold));
     channels.push_back(std::make_unique<LocalChannel>("hot", hot));
-    ExchangeRun exchange(coupling, simulation, std::move(channels),
-                         {folder, folder / "checkpoints", restart});
-    return exchange.run();
+    coupling.exchange->participants = {"cold", "hot"};
+    Coupler coupler(MPI_COMM_SELF, coupling, simulation, std::move(channels),
+                    {folder, folder / "checkpoints", restart});
+    const std::string problem = coupler.run();
+    iterations = double(coupler.iterations()) / double(std::max<GlobalIndex>(1, coupler.steps()));
+    return problem;
   }
   double difference() const { return hot.temperature() - cold.temperature(); }
 };
@@ -152,7 +155,7 @@ std::vector<Side> sides() {
     }
     return i;
   };
-  Side bed{"bed", line(8)}, wall{"wall", line(2)};
+  Side bed{MPI_COMM_SELF, "bed", line(8)}, wall{MPI_COMM_SELF, "wall", line(2)};
   bed.interface.gives = {{"heat", "W", Place::faces, 1}, {"film-temperature", "K", Place::faces, 1}};
   wall.interface.takes = bed.interface.gives;
   return {bed, wall};
@@ -165,7 +168,7 @@ MappingParameters nearest() {
 }
 
 TEST(Links, amounts_keep_their_sum_and_states_their_value) {
-  const Links links(sides(), nearest());
+  const Links links(MPI_COMM_SELF, sides(), nearest());
   const std::vector<Exchange> given{
       {{"heat", {1, 2, 3, 4, 5, 6, 7, 8}}, {"film-temperature", std::vector<double>(8, 300.)}}, {}};
   const Exchange taken = links.input(1, given);
@@ -179,14 +182,14 @@ TEST(Links, amounts_keep_their_sum_and_states_their_value) {
 }
 
 TEST(Links, data_not_yet_given_are_left_out) {
-  const Links links(sides(), nearest());
+  const Links links(MPI_COMM_SELF, sides(), nearest());
   EXPECT_TRUE(links.input(1, {{}, {}}).empty());
 }
 
 TEST(Links, what_does_not_fit_is_named) {
   const auto message = [](const std::vector<Side>& s) -> std::string {
     try {
-      const Links links(s, nearest());
+      const Links links(MPI_COMM_SELF, s, nearest());
       return "";
     } catch (const Error& e) {
       return e.what();

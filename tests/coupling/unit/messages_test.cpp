@@ -14,6 +14,8 @@ Command some_command() {
   Command c;
   c.op = Op::solve;
   c.step = {1.5, 0.25, Scheme::implicit, 7};
+  c.step.sub_steps = 3;
+  c.step.waveform = false;
   c.data = {{"displacement", {1, -2.5e-300, NAN}}, {"velocity", {}}};
   c.time = 1.75;
   c.output = 3;
@@ -28,12 +30,8 @@ Reply some_reply() {
   r.seconds = 0.125;
   r.data = {{"pressure-force", {1, 2}}};
   r.interface.dim = 2;
-  r.interface.closed = true;
-  r.interface.vertices = {{1, 2, 0}, {3, 4, 0}};
-  r.interface.face_centres = {{2, 3, 0}};
-  r.interface.face_areas = {{0, 1, 0}};
-  r.interface.face_offset = {0, 2};
-  r.interface.face_vertices = {1, 0};
+  r.anew = true;
+  r.interface.parts = {"flap", "root"};
   r.interface.takes = {{"displacement", "m", Interface::Place::vertices}};
   r.interface.gives = {{"pressure-force", "N", Interface::Place::faces}};
   r.report = {.dt = 0.25, .iterations = 17, .energy = 3e-9};
@@ -50,26 +48,27 @@ TEST(Messages, commands_arrive_as_they_were_sent) {
   EXPECT_EQ(got.time, sent.time);
   EXPECT_EQ(got.output, sent.output);
   EXPECT_EQ(got.folder, sent.folder);
-  ASSERT_EQ(got.data.size(), 2u);
-  EXPECT_EQ(got.data.at("displacement")[1], -2.5e-300);
-  EXPECT_TRUE(std::isnan(got.data.at("displacement")[2]));
-  EXPECT_TRUE(got.data.at("velocity").empty());
+  EXPECT_EQ(got.step.sub_steps, 3);
+  EXPECT_FALSE(got.step.waveform);
+  // Names alone: the values go from rank to rank.
+  EXPECT_EQ(got.data, (Exchange{{"displacement", {}}, {"velocity", {}}}));
 }
 
+const Cut some_cut{{0, 5, 7}, {0, 0, 9}};
+
 TEST(Messages, replies_arrive_as_they_were_sent) {
-  const Reply sent = some_reply(), got = unpack_reply(pack(sent));
+  Cut cut;
+  const Reply sent = some_reply(), got = unpack_reply(pack(sent, some_cut), cut);
+  EXPECT_EQ(cut.vertices, some_cut.vertices);
+  EXPECT_EQ(cut.faces, some_cut.faces);
   EXPECT_EQ(got.status, sent.status);
   EXPECT_EQ(got.text, sent.text);
   EXPECT_EQ(got.seconds, sent.seconds);
   EXPECT_TRUE(std::isinf(got.suggested_dt));
-  EXPECT_EQ(got.data, sent.data);
+  EXPECT_EQ(got.data, (Exchange{{"pressure-force", {}}}));
   EXPECT_EQ(got.interface.dim, 2);
-  EXPECT_TRUE(got.interface.closed);
-  EXPECT_EQ(got.interface.vertices, sent.interface.vertices);
-  EXPECT_EQ(got.interface.face_centres, sent.interface.face_centres);
-  EXPECT_EQ(got.interface.face_areas, sent.interface.face_areas);
-  EXPECT_EQ(got.interface.face_offset, sent.interface.face_offset);
-  EXPECT_EQ(got.interface.face_vertices, sent.interface.face_vertices);
+  EXPECT_TRUE(got.anew);
+  EXPECT_EQ(got.interface.parts, sent.interface.parts);
   ASSERT_EQ(got.interface.gives.size(), 1u);
   EXPECT_EQ(got.interface.gives[0].name, "pressure-force");
   EXPECT_EQ(got.interface.gives[0].unit, "N");
@@ -81,25 +80,94 @@ TEST(Messages, replies_arrive_as_they_were_sent) {
 }
 
 TEST(Messages, a_message_cut_anywhere_is_refused) {
-  const std::vector<char> command = pack(some_command()), reply = pack(some_reply());
+  const std::vector<char> command = pack(some_command()), reply = pack(some_reply(), some_cut);
+  Cut cut;
   for (std::size_t n = 0; n < command.size(); ++n)
     EXPECT_THROW(unpack_command({command.data(), n}), Error) << n << " of " << command.size() << " bytes";
   for (std::size_t n = 0; n < reply.size(); ++n)
-    EXPECT_THROW(unpack_reply({reply.data(), n}), Error) << n << " of " << reply.size() << " bytes";
+    EXPECT_THROW(unpack_reply({reply.data(), n}, cut), Error) << n << " of " << reply.size() << " bytes";
 }
 
 TEST(Messages, another_kind_or_version_is_refused) {
-  std::vector<char> bytes = pack(some_reply());
+  std::vector<char> bytes = pack(some_reply(), some_cut);
+  Cut cut;
   EXPECT_THROW(unpack_command(bytes), Error);
   bytes[8] = 99;  // the version follows the 8-byte mark
   try {
-    unpack_reply(bytes);
+    unpack_reply(bytes, cut);
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_STREQ(
         error.what(),
-        "A reply has protocol version 99, this program speaks version 3: use programs of one version.");
+        "A reply has protocol version 99, this program speaks version 4: use programs of one version.");
   }
+}
+
+Interface two_faces() {
+  Interface i;
+  i.dim = 2;
+  i.vertices = {{0, 0, 0}, {1, 0, 0}, {2, 1, 0}};
+  i.face_centres = {{0.5, 0, 0}, {1.5, 0.5, 0}};
+  i.face_areas = {{0, 1, 0}, {-1, 1, 0}};
+  i.vertex_ids = {10, 11, 12};
+  i.face_ids = {20, 21};
+  i.face_part = {0, 1};
+  i.face_offset = {0, 2, 4};
+  i.face_vertices = {0, 1, 1, 2};
+  i.takes = {{"displacement", "m", Interface::Place::vertices}, {"heat", "W", Interface::Place::faces, 1}};
+  return i;
+}
+
+TEST(Messages, places_cut_in_pieces_are_put_together_again) {
+  const Interface whole = two_faces();
+  Interface again;
+  for (const Slice& s : {Slice{0, 1, 0, 0}, Slice{1, 2, 0, 1}, Slice{0, 0, 1, 1}})
+    put_back(cut_out(whole, s), again);
+  EXPECT_EQ(again.vertices, whole.vertices);
+  EXPECT_EQ(again.face_centres, whole.face_centres);
+  EXPECT_EQ(again.face_areas, whole.face_areas);
+  EXPECT_EQ(again.vertex_ids, whole.vertex_ids);
+  EXPECT_EQ(again.face_ids, whole.face_ids);
+  EXPECT_EQ(again.face_part, whole.face_part);
+  EXPECT_EQ(again.face_offset, whole.face_offset);
+  EXPECT_EQ(again.face_vertices, whole.face_vertices);
+  const std::vector<char> bytes = cut_out(whole, {0, 3, 0, 2});
+  for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_THROW(put_back({bytes.data(), n}, again), Error) << n;
+}
+
+TEST(Messages, values_cut_in_pieces_are_put_together_again_and_wrong_lengths_are_named) {
+  const Interface i = two_faces();
+  const Exchange whole{{"displacement", {1, 2, 3, 4, 5, 6}}, {"heat", {7, 8}}};
+  const auto data = present(whole, i.takes, "solid");
+  Exchange again{{"displacement", std::vector<double>(6)}, {"heat", std::vector<double>(2)}};
+  for (const Slice& s : {Slice{0, 1, 0, 1}, Slice{1, 2, 1, 1}})
+    put_back(cut_out(whole, data, 2, s, "solid"), data, 2, s, again);
+  EXPECT_EQ(again, whole);
+  EXPECT_THROW(put_back(std::vector<double>(2), data, 2, {0, 1, 0, 1}, again), Error);
+  EXPECT_THROW(put_back(std::vector<double>(4), data, 2, {0, 1, 0, 1}, again), Error);
+  try {
+    cut_out({{"displacement", {1, 2}}, {"heat", {7, 8}}}, data, 2, {0, 3, 0, 2}, "solid");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "'solid' gave 2 values of 'displacement' where its interface has 3 vertices of 2 components.");
+  }
+  EXPECT_THROW(present({{"colour", {}}}, i.takes, "solid"), Error);
+}
+
+TEST(Blocks, a_list_cut_in_two_ways_overlaps_where_it_should) {
+  const Starts mine{0, 4, 10}, theirs{0, 3, 3, 7, 10};
+  const auto list = overlaps(mine, 1, theirs);
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0].rank, 2);
+  EXPECT_EQ(list[0].first, 0u);
+  EXPECT_EQ(list[0].count, 3u);
+  EXPECT_EQ(list[1].rank, 3);
+  EXPECT_EQ(list[1].first, 3u);
+  EXPECT_EQ(list[1].count, 3u);
+  EXPECT_EQ(owner_of(theirs, 3), 2) << "not the empty one";
+  EXPECT_EQ(even_starts(10, 3), (Starts{0, 3, 6, 10}));
 }
 
 }  // namespace

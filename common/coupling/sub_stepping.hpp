@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/coupling/participant.hpp"
+#include "common/io/checkpoint.hpp"
+
+namespace couplet {
+
+/// A participant that takes several steps of its own within a coupling step, whatever it is: it is put back
+/// to state n by save and load in memory before each further pass. Input is taken as a line in time through
+/// the values of the last accepted step and those at hand (waveform: linear), so that the coupling keeps its
+/// second order, or as constant. Of what it gives, amounts (N, W) are means over its steps, all else is the
+/// last. With one step a coupling step (the rule) it hands everything through and keeps nothing.
+class SubStepping final : public Participant {
+ public:
+  explicit SubStepping(Participant& inner) : inner_(inner) {}
+  /// Steps within a coupling step; to be known before load.
+  void set(int steps) { steps_ = steps; }
+
+  Interface initialise() override;
+  double suggest_dt() override { return steps_ * inner_.suggest_dt(); }
+  void begin_step(const Step& step) override;
+  Exchange solve(const Exchange& in) override;
+  bool answered_anew() const override { return inner_.answered_anew(); }
+  StepReport accept_step() override;
+  void save(CheckpointWriter& file) const override;
+  void load(CheckpointReader& file) override;
+  void write_output(double time, int number) override { inner_.write_output(time, number); }
+  void write_monitors(double time) override { inner_.write_monitors(time); }
+  std::vector<EffectVerdict> audit() const override { return inner_.audit(); }
+  std::vector<std::string> finish() override { return inner_.finish(); }
+
+ private:
+  Exchange input_at(double share) const;
+  void back_to_start();
+  bool is_mean(const std::string& name) const;
+
+  Participant& inner_;
+  int steps_ = 1;
+  Step step_;
+  std::vector<Interface::Datum> takes_, gives_;
+  StateInMemory start_;            // state n
+  bool has_start_ = false;         // it is in start_
+  mutable bool moved_on_ = false;  // the participant has accepted steps beyond it
+  Exchange before_, given_;        // input of the accepted step before, of the pass under way
+  long iterations_ = 0;
+};
+
+}  // namespace couplet

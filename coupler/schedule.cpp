@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/schedule.hpp"
+
+#include <cmath>
+
+namespace couplet {
+
+std::vector<std::string> Schedule::everyone() const {
+  std::vector<std::string> all;
+  if (mover) all.push_back(*mover);
+  all.insert(all.end(), group.begin(), group.end());
+  return all;
+}
+
+int Schedule::sub_steps_of(const std::string& name) const {
+  const auto found = sub_steps.find(name);
+  return found == sub_steps.end() ? 1 : found->second;
+}
+
+Schedule schedule_of(const CouplingParameters& p) {
+  Schedule s;
+  s.scheme = p.scheme;
+  s.iterates = p.scheme != Scheme::explicit_;
+  s.moves_in_each_pass = p.scheme != Scheme::semi_implicit;
+  s.waveform = p.waveform == CouplingParameters::Waveform::linear;
+  for (const auto& [name, steps] : p.sub_steps) s.sub_steps[name] = int(std::lround(steps));
+  if (p.exchange) {
+    s.group = p.exchange->participants;
+    s.side_by_side = p.exchange->order == CouplingParameters::Exchange::Order::parallel;
+  } else {
+    s.group = {p.fluid->participant, p.structure->participant};
+    s.side_by_side = p.order == CouplingParameters::Exchange::Order::parallel;
+  }
+  // Without motion in it, an exchange takes what was given last.
+  s.predictor = p.predictor_order.value_or(p.exchange && !s.iterates ? 0 : 2);
+  if (!p.mesh) return s;
+  s.mover = p.mesh->participant;
+  s.moved = p.fluid->participant;
+  return s;
+}
+
+}  // namespace couplet

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <string>
+#include <vector>
+
+#include "common/coupling/blocks.hpp"
+#include "common/coupling/participant.hpp"
+
+namespace couplet {
+
+/// Some places of one side of the interface: this rank's part of a list that is cut over the coupler's ranks.
+struct PointSet {
+  std::string what;  ///< for messages: "vertices of 'fluid'"
+  std::vector<Vec3> points;
+  std::vector<double> sizes{};  ///< of faces [m^2] (2-D: [m]), for shares; empty: all alike
+  const Interface* surface =
+      nullptr;  ///< that these are vertices or faces of, this rank's part; for projection
+  std::vector<GlobalIndex> positions{};  ///< of these points in the whole list
+  std::vector<GlobalIndex> ids{};        ///< the same on any number of ranks: decide between equals
+  Starts starts{};                       ///< of the whole list
+};
+/// Fills in positions, ids and starts of a list that lives on one rank.
+PointSet whole_set(PointSet set);
+
+struct Neighbour {
+  double distance;       ///< [m]; infinity: there is none
+  GlobalIndex position;  ///< in the whole list
+  GlobalIndex id;
+  double size;  ///< of the neighbour, if its set has sizes
+  Vec3 point;
+};
+
+/// For each point of `points` on this rank the nearest of `among` on any rank; of equals the one of the
+/// smallest id. No rank sees more of `among` than its own part. Collective.
+std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among);
+
+}  // namespace couplet

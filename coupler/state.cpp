@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the coupler keeps over a restart.
+#include "common/io/checkpoint.hpp"
+#include "common/log/log.hpp"
+#include "coupler/coupler.hpp"
+
+namespace couplet {
+namespace {
+
+void write(CheckpointWriter& file, const std::string& name, const Iterate& x) {
+  file.write(name, x.unknown);
+  file.write(name + "-rider", x.rider);
+}
+
+Iterate read(CheckpointReader& file, const std::string& name) {
+  return {file.read(name), file.read(name + "-rider")};
+}
+
+}  // namespace
+
+void Coupler::save(const std::filesystem::path& folder) {
+  enter_(Phase::save, {});
+  ask_all(everyone(), {Op::save, {}, {}, 0, -1, folder.string()});
+  CheckpointWriter file(comm_, folder / "coupler.h5");
+  write(file, "now", history_.now);
+  write(file, "old", history_.old);
+  write(file, "older", history_.older);
+  file.write_scalar("old-dt", history_.old_dt);
+  file.write_scalar("older-dt", history_.older_dt);
+  file.write("weights", unknown_->weights());
+  for (std::size_t i = 0; i < mechanics_->walls().size(); ++i)
+    file.write("wall-" + std::to_string(i), mechanics_->walls()[i]);
+  file.write("work", work_guard_.totals());
+  if (accelerator_) accelerator_->save(file);
+  file.close();
+}
+
+void Coupler::load() {
+  enter_(Phase::load, {});
+  CheckpointReader file(comm_, folders_.restart / "coupler.h5");
+  history_.now = read(file, "now");
+  history_.old = read(file, "old");
+  history_.older = read(file, "older");
+  history_.old_dt = file.read_scalar("old-dt");
+  history_.older_dt = file.read_scalar("older-dt");
+  unknown_->restore_weights(file.read("weights"));
+  for (std::size_t i = 0; i < mechanics_->walls().size(); ++i)
+    file.read("wall-" + std::to_string(i), mechanics_->walls()[i]);
+  std::array<double, 4> work{};
+  file.read("work", work);
+  work_guard_.restore(work);
+  if (accelerator_) accelerator_->load(file);
+  const RunState state = read_run_state(folders_.restart);
+  loop_.restart(state);
+  ask_all(everyone(), {Op::load, {}, {}, state.time, -1, folders_.restart.string()});
+  log::info("continues from {} at t = {:g} s", folders_.restart.string(), state.time);
+}
+
+}  // namespace couplet

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/transfer.hpp"
+
+#include <algorithm>
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+/// Every entry on the rank that has its target, by target and source.
+std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const Starts& targets,
+                                      std::vector<Transfer::Entry> entries) {
+  if (comm_size(comm) > 1) {
+    std::vector<std::vector<Transfer::Entry>> to(std::size_t(comm_size(comm)));
+    for (const auto& e : entries) to[std::size_t(owner_of(targets, e.target))].push_back(e);
+    entries.clear();
+    for (const auto& part : all_to_all(comm, to)) entries.insert(entries.end(), part.begin(), part.end());
+  }
+  std::ranges::sort(entries, [](const auto& a, const auto& b) {
+    return a.target != b.target ? a.target < b.target : a.source < b.source;
+  });
+  return entries;
+}
+
+}  // namespace
+
+Transfer::Transfer(MPI_Comm comm, const Starts& targets, const Starts& sources, std::vector<Entry> entries)
+    : comm_(comm), alone_(comm_size(comm) == 1) {
+  const auto rank = std::size_t(comm_rank(comm));
+  entries = by_owner(comm, targets, std::move(entries));
+  n_sources_ = std::size_t(sources[rank + 1] - sources[rank]);
+  std::vector<GlobalIndex> foreign;
+  for (const Entry& e : entries)
+    if (owner_of(sources, e.source) != int(rank)) foreign.push_back(e.source);
+  std::ranges::sort(foreign);
+  foreign.erase(std::unique(foreign.begin(), foreign.end()), foreign.end());
+  const std::size_t n_targets = std::size_t(targets[rank + 1] - targets[rank]);
+  first_.assign(n_targets + 1, 0);
+  for (const Entry& e : entries) {
+    ++first_[std::size_t(e.target - targets[rank]) + 1];
+    const bool mine = e.source >= sources[rank] && e.source < sources[rank + 1];
+    column_.push_back(mine ? std::size_t(e.source - sources[rank])
+                           : n_sources_ +
+                                 std::size_t(std::ranges::lower_bound(foreign, e.source) - foreign.begin()));
+    weight_.push_back(e.weight);
+  }
+  for (std::size_t t = 0; t < n_targets; ++t) first_[t + 1] += first_[t];
+  if (alone_) return;
+  // Foreign positions are ascending, so they come rank by rank.
+  std::vector<std::vector<GlobalIndex>> wanted(std::size_t(comm_size(comm)));
+  for (const GlobalIndex s : foreign) wanted[std::size_t(owner_of(sources, s))].push_back(s);
+  for (const auto& list : wanted) take_.push_back(int(list.size()));
+  for (const auto& list : all_to_all(comm, wanted)) {
+    auto& mine = give_.emplace_back();
+    for (const GlobalIndex s : list) mine.push_back(std::size_t(s - sources[rank]));
+  }
+}
+
+std::vector<double> Transfer::fetch(std::span<const double> values, int components) const {
+  const auto n = std::size_t(components);
+  std::vector<double> all(values.begin(), values.end()), out;
+  std::vector<int> out_counts, out_first, in_counts, in_first;
+  for (const auto& list : give_) {
+    out_first.push_back(int(out.size()));
+    for (const std::size_t s : list)
+      out.insert(out.end(), values.begin() + std::ptrdiff_t(s * n),
+                 values.begin() + std::ptrdiff_t((s + 1) * n));
+    out_counts.push_back(int(out.size()) - out_first.back());
+  }
+  int total = 0;
+  for (const int count : take_) {
+    in_first.push_back(total);
+    in_counts.push_back(count * components);
+    total += in_counts.back();
+  }
+  all.resize(n_sources_ * n + std::size_t(total));
+  MPI_Alltoallv(out.data(), out_counts.data(), out_first.data(), MPI_DOUBLE, all.data() + n_sources_ * n,
+                in_counts.data(), in_first.data(), MPI_DOUBLE, comm_);
+  return all;
+}
+
+std::vector<double> Transfer::apply(std::span<const double> values, int components) const {
+  const std::vector<double> fetched = alone_ ? std::vector<double>{} : fetch(values, components);
+  const double* from = alone_ ? values.data() : fetched.data();
+  const auto n = std::size_t(components);
+  std::vector<double> result((first_.size() - 1) * n, 0.);
+  for (std::size_t t = 0; t + 1 < first_.size(); ++t)
+    for (std::size_t e = first_[t]; e < first_[t + 1]; ++e)
+      for (std::size_t c = 0; c < n; ++c) result[t * n + c] += weight_[e] * from[column_[e] * n + c];
+  return result;
+}
+
+}  // namespace couplet

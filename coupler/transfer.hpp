@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <span>
+#include <vector>
+
+#include "common/coupling/blocks.hpp"
+
+namespace couplet {
+
+/// A sparse matrix between two lists of places that are cut over the coupler's ranks. It is built once; what
+/// a rank needs of the others' values it asks for once, too.
+class Transfer {
+ public:
+  struct Entry {
+    GlobalIndex target, source;  ///< positions in the lists
+    double weight;
+  };
+  Transfer() = default;
+  /// Entries may be given on any rank; equal ones add up. Collective.
+  Transfer(MPI_Comm comm, const Starts& targets, const Starts& sources, std::vector<Entry> entries);
+
+  /// Values at this rank's sources to this rank's targets, `components` each. Collective.
+  std::vector<double> apply(std::span<const double> values, int components) const;
+
+ private:
+  std::vector<double> fetch(std::span<const double> values, int components) const;
+
+  MPI_Comm comm_ = MPI_COMM_SELF;
+  std::size_t n_sources_ = 0;
+  std::vector<std::size_t> first_{0};  // of each target's entries
+  std::vector<std::size_t> column_;    // this rank's sources, then those that are fetched
+  std::vector<double> weight_;
+  std::vector<std::vector<std::size_t>> give_;  // by rank: which of my sources it needs
+  std::vector<int> take_;                       // by rank: how many I get from it
+  bool alone_ = true;
+};
+
+}  // namespace couplet

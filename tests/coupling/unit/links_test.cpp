@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/links.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/base/error.hpp"
+#include "coupler/balance.hpp"
+#include "coupler/mechanics.hpp"
+#include "coupler/places.hpp"
+
+namespace couplet {
+namespace {
+
+using Place = Interface::Place;
+using Data = std::vector<Interface::Datum>;
+using testing::HasSubstr;
+
+const Data motion{{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
+const Data load{{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}};
+
+/// Three vertices and two faces on a line, 2-D; the fluid's run the other way.
+Interface solid(double shift = 0) {
+  Interface i{2,
+              {{shift, 0, 0}, {shift + 1, 0, 0}, {shift + 2, 0, 0}},
+              {{shift + 0.5, 0, 0}, {shift + 1.5, 0, 0}},
+              {{0, 1, 0}, {0, 1, 0}},
+              load,
+              motion};
+  i.face_offset = {0, 2, 4};
+  i.face_vertices = {0, 1, 1, 2};
+  return i;
+}
+Interface fluid() {
+  Interface i{
+      2,   {{2, 0, 0}, {1, 0, 0}, {0, 0, 0}}, {{1.5, 0, 0}, {0.5, 0, 0}}, {{0, -1, 0}, {0, -1, 0}}, motion,
+      load};
+  i.face_offset = {0, 2, 4};
+  i.face_vertices = {0, 1, 1, 2};
+  return i;
+}
+Side side(const std::string& name, const Interface& interface) { return {MPI_COMM_SELF, name, interface}; }
+Links links(const Interface& f, const Interface& s) {
+  return {MPI_COMM_SELF, {side("fluid", f), side("solid", s)}, {}};
+}
+
+template <class F>
+std::string message(const F& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Links, motion_goes_to_the_fluid_and_load_to_the_structure) {
+  const Links l = links(fluid(), solid());
+  const Exchange from_fluid{{"pressure-force", {1, 2, 3, 4}}, {"viscous-force", {5, 6, 7, 8}}};
+  const Exchange from_solid{{"displacement", {1, 2, 3, 4, 5, 6}}, {"velocity", {10, 20, 30, 40, 50, 60}}};
+  const Exchange given = l.input(0, {from_fluid, from_solid}), taken = l.input(1, {from_fluid, from_solid});
+  EXPECT_EQ(given.at("displacement"), (std::vector<double>{5, 6, 3, 4, 1, 2}));
+  EXPECT_EQ(given.at("velocity"), (std::vector<double>{50, 60, 30, 40, 10, 20}));
+  EXPECT_EQ(taken.at("pressure-force"), (std::vector<double>{3, 4, 1, 2}));
+  EXPECT_EQ(taken.at("viscous-force"), (std::vector<double>{7, 8, 5, 6}));
+}
+
+TEST(Links, a_side_gets_only_what_it_takes) {
+  Interface mover = fluid();
+  mover.takes = {motion[0]};
+  mover.gives = {};
+  const Links l(MPI_COMM_SELF, {side("mover", mover), side("fluid", fluid()), side("solid", solid())}, {});
+  const Exchange from_solid{{"displacement", std::vector<double>(6)}, {"velocity", std::vector<double>(6)}};
+  EXPECT_EQ(l.input(0, {{}, {}, from_solid}).size(), 1u);
+}
+
+TEST(Links, two_bodies_in_one_fluid_get_their_own_part_of_it) {
+  Interface both = fluid();
+  for (const auto& v : fluid().vertices) both.vertices.push_back(v + Vec3(10, 0, 0));
+  for (const auto& c : fluid().face_centres) both.face_centres.push_back(c + Vec3(10, 0, 0));
+  both.face_areas.insert(both.face_areas.end(), 2, {0, -1, 0});
+  for (const Index v : fluid().face_vertices)
+    both.face_vertices.push_back(v + Index(fluid().vertices.size()));
+  for (const Index end : {6, 8}) both.face_offset.push_back(end);
+  const std::vector<Side> sides{side("fluid", both), side("left", solid()), side("right", solid(10))};
+  MappingParameters nearest_map;
+  nearest_map.type = MappingParameters::Type::nearest;
+  const Links l(MPI_COMM_SELF, sides, nearest_map);
+  const Exchange from_fluid{{"pressure-force", {1, 2, 3, 4, 5, 6, 7, 8}},
+                            {"viscous-force", std::vector<double>(8)}};
+  const Exchange left{{"displacement", {1, 2, 3, 4, 5, 6}}, {"velocity", std::vector<double>(6)}};
+  const Exchange right{{"displacement", {7, 8, 9, 10, 11, 12}}, {"velocity", std::vector<double>(6)}};
+  const std::vector<Exchange> given{from_fluid, left, right};
+  EXPECT_EQ(l.input(0, given).at("displacement"),
+            (std::vector<double>{5, 6, 3, 4, 1, 2, 11, 12, 9, 10, 7, 8}));
+  EXPECT_EQ(l.input(1, given).at("pressure-force"), (std::vector<double>{3, 4, 1, 2}));
+  EXPECT_EQ(l.input(2, given).at("pressure-force"), (std::vector<double>{7, 8, 5, 6}));
+}
+
+TEST(Links, a_datum_that_nobody_gives_or_in_other_units_is_named) {
+  Interface f = fluid();
+  f.takes.push_back({"temperature", "K", Place::vertices});
+  EXPECT_THAT(message([&] { links(f, solid()); }),
+              HasSubstr("'fluid' takes 'temperature', which nobody gives."));
+  f = fluid();
+  f.takes[0].unit = "mm";
+  EXPECT_EQ(message([&] { links(f, solid()); }),
+            "'fluid' takes 'displacement' in mm, but 'solid' gives it in m.");
+  f = fluid();
+  f.dim = 3;
+  EXPECT_THAT(message([&] { links(f, solid()); }),
+              HasSubstr("with 3 components, but 'solid' gives it with 2."));
+}
+
+TEST(Links, a_load_that_nobody_takes_is_noted_and_data_of_the_wrong_length_are_refused) {
+  Interface s = solid();
+  s.takes.pop_back();
+  EXPECT_THAT(links(fluid(), s).notes(), testing::Contains("note: nobody takes 'viscous-force' of 'fluid'"));
+  EXPECT_THROW(links(fluid(), solid()).input(1, {{{"pressure-force", {1, 2}}}, {}}), Error);
+}
+
+TEST(Roles, a_structure_that_does_not_move_and_other_dimensions_are_refused) {
+  CouplingParameters p;
+  p.fluid = {"fluid"}, p.structure = {"solid"};
+  Interface s = solid();
+  EXPECT_EQ(message([&] { check_roles(p, {side("fluid", fluid()), side("solid", s)}); }), "");
+  s.gives.pop_back();
+  EXPECT_EQ(
+      message([&] {
+        check_roles(p, {side("fluid", fluid()), side("solid", s)});
+      }),
+      "The structure 'solid' does not give 'velocity' at vertices, which is part of the coupling unknown.");
+  Interface f = fluid();
+  f.dim = 3;
+  EXPECT_EQ(message([&] {
+              check_roles(p, {side("fluid", f), side("solid", solid())});
+            }),
+            "'fluid' has 3 dimensions and 'solid' has 2: both must have the same.");
+}
+
+TEST(Balance, sums_forces_moments_and_their_work) {
+  const Balancing balancing(MPI_COMM_SELF, side("solid", solid()));
+  const Exchange data{{"pressure-force", {0, 1, 0, 2}}, {"viscous-force", {0.5, 0, 0, 0}}};
+  // Increment of the structure's vertices: (0, 0), (0, 1), (2, 1): faces move by (0, 0.5) and (1, 1).
+  const Balance b = balancing(data, load, {0, 0, 0, 1, 2, 1});
+  EXPECT_DOUBLE_EQ(b.force.x(), 0.5);
+  EXPECT_DOUBLE_EQ(b.force.y(), 3);
+  EXPECT_DOUBLE_EQ(b.moment.z(), 0.5 * 1 + 1.5 * 2);
+  EXPECT_DOUBLE_EQ(b.work, 1 * 0.5 + 2 * 1 + 0.5 * 0);
+  Interface lumped = solid();
+  lumped.face_offset.clear(), lumped.face_vertices.clear();
+  EXPECT_FALSE(Balancing(MPI_COMM_SELF, side("solid", lumped)).knows_work());
+}
+
+// Explicit: the fluid's wall is where it was put, not where the structure went.
+TEST(Balance, each_side_counts_the_way_of_its_own_wall) {
+  const std::vector<Side> sides{side("fluid", fluid()), side("solid", solid())};
+  const Links l(MPI_COMM_SELF, sides, {});
+  Mechanics mechanics(MPI_COMM_SELF, sides, l, {"fluid", "structure"});
+  const Exchange force{{"pressure-force", {0, 1, 0, 1}}, {"viscous-force", std::vector<double>(4)}};
+  const auto at = [](double y) { return Exchange{{"displacement", {0, y, 0, y, 0, y}}}; };
+  const auto work = [&](double guess, double moved) {
+    const auto sides_now = mechanics.accepted({force, at(moved)}, {at(guess), force});
+    return std::pair{sides_now[0].balance.work, sides_now[1].balance.work};
+  };
+  EXPECT_EQ(work(0.5, 1), (std::pair{1., 2.}));
+  EXPECT_EQ(work(1.5, 2), (std::pair{2., 2.})) << "from its own 0.5, not from the structure's 1";
+}
+
+}  // namespace
+}  // namespace couplet
