@@ -172,10 +172,20 @@ ElasticBoundary SolidBoundaries::elastic() const {
   return result;
 }
 
-void SolidBoundaries::add_forces(double t, std::span<double> forces) const {
+std::vector<double> SolidBoundaries::pressures(double t) const {
+  std::vector<double> pressure(mesh_->boundary.n_owned(), 0);
+  for (const Condition& c : conditions_) {
+    if (c.type != Type::pressure) continue;
+    for (const Index f : c.faces)
+      pressure[f - mesh_->n_interior] = c.pressure(mesh_->reference.face_centre[f], t);
+  }
+  return pressure;
+}
+
+void SolidBoundaries::add_forces(double t, std::span<double> forces, bool with_pressure) const {
   const int dim = mesh_->dim;
   for (const Condition& c : conditions_) {
-    if (c.traction.empty() && c.type != Type::pressure) continue;
+    if (c.traction.empty() && (c.type != Type::pressure || !with_pressure)) continue;
     for (const Index f : c.faces) {
       const Vec3& x = mesh_->reference.face_centre[f];
       const Vec3& area = mesh_->reference.face_area[f];

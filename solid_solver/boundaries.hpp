@@ -27,7 +27,9 @@ class SolidBoundaries {
 
   /// Adds tractions and pressures at time t as forces [N] on the boundary faces of owned cells (`dim` values
   /// a face): thesis (2.64), reference configuration.
-  void add_forces(double t, std::span<double> forces) const;
+  void add_forces(double t, std::span<double> forces, bool with_pressure = true) const;
+  /// Pressures at time t on the boundary faces of owned cells [Pa].
+  std::vector<double> pressures(double t) const;
 
  private:
   friend class PrescribedDisplacement;

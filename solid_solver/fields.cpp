@@ -83,6 +83,7 @@ std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
   std::vector<PatchForce> forces;
   if (kernel_.is_symmetric()) {
     const std::vector<double> u = unknowns_of(state_.cell_u, state_.face_u);
+    if (finite_) finite_->kernel().set_pressure(boundaries_.pressures(state_.time));
     const std::vector<Vec3> held = finite_ ? finite_->kernel().holding_forces(u, known_accepted_, loads_now())
                                            : kernel_.holding_forces(u, known_accepted_, loads_now());
     for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
@@ -118,7 +119,7 @@ std::vector<PatchForce> Solid::reactions(std::span<const double> points) const {
 ElasticLoads Solid::loads_now() const {
   ElasticLoads loads;
   loads.faces.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
-  boundaries_.add_forces(state_.time, loads.faces);
+  boundaries_.add_forces(state_.time, loads.faces, !finite_);
   for (std::size_t i = 0; i < last_interface_load_.size(); ++i) loads.faces[i] += last_interface_load_[i];
   loads.cells = body_forces(state_.time);
   for (const auto& effect : effects_) {
@@ -131,6 +132,7 @@ ElasticLoads Solid::loads_now() const {
 
 Vec3 Solid::total_load() const {
   Vec3 load = body_load_ + face_load_;
+  if (finite_) load += finite_->kernel().pressure_force();
   for (int a = 0; a < 3; ++a) load[a] = sum(mesh_.comm, load[a]);
   return load;
 }

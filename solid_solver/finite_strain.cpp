@@ -39,13 +39,6 @@ FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const 
       rows_(rows),
       tolerance_(parameters.method.relative_tolerance),
       most_linear_(parameters.method.max_iterations) {
-  bool has_triangles = false;
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f)
-    has_triangles = has_triangles || (mesh.dim == 3 && mesh.face_points[f].size() == 3);
-  if (any(mesh.comm, has_triangles))
-    throw Error(
-        "kinematics: finite-strain: the mesh has three-cornered faces (tetrahedra, prisms), which this version does "
-        "not take at large strain; mesh with hexahedra.");
   std::vector<const FiniteLaw*> all;
   for (const SolidMaterial& material : materials_of(parameters)) {
     const laws::Entry& law = *laws::of(material.law);

@@ -156,6 +156,8 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
   refuse("thermal-expansion", p.expansion.has_value(), "finite strain has no thermal strain");
   refuse("damping", is_dynamic && p.damping && p.damping->stiffness > 0,
          "'stiffness' damps rigid rotations at finite strain; use 'mass', or the losses of 'time-scheme'");
+  refuse("interface", p.interface_data && p.interface_data->load == InterfaceData::Load::pressure,
+         "finite strain takes forces; 'load: pressure' would not follow the surface");
   refuse("time-step-control", p.step_control.has_value(), "it estimates the error of the linear solid only");
   refuse(
       "solution-method",

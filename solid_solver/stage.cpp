@@ -107,7 +107,7 @@ void Solid::prepare_stage(StageWork& work) {
   work.face_force.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
   add_body_forces(work.place_time, work.rhs);
   for (const auto& effect : effects_) effect->add_loads(work.place_time, kernel_, work.rhs);
-  boundaries_.add_forces(work.place_time, work.face_force);
+  boundaries_.add_forces(work.place_time, work.face_force, !finite_);
   if (parameters_.output.energies) {
     work.loads = work.rhs;
     work.known.assign(known_.size(), 0);
@@ -229,6 +229,7 @@ void Solid::solve_stage(const StageWork& work, std::span<const double> interface
 
 /// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
 SolveStatistics Solid::solve_finite(const StageWork& work) {
+  finite_->kernel().set_pressure(boundaries_.pressures(work.place_time));
   FiniteStrain::Load load{rhs_, work.known, {}, work.system->mass_factor};
   if (!is_dynamic() && !work.known.empty()) load.before = known_accepted_;
   return finite_->solve(load, work.system->node_inertia, unknowns_);

@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric_faces.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet {
 namespace {
@@ -76,6 +77,7 @@ void TangentSolver::find_frames(std::span<const Tensor3> gradient) {
 }
 
 void TangentSolver::follow(bool with_modes) {
+  is_unsymmetric_ = any(mesh_.comm, kernel_.has_pressure());
   DeformedBody body;
   body.gradient.assign(mesh_.n_flux_faces(), Tensor3::Identity());
   kernel_.visit([&](Index f, const Tensor3& deformation, const Tensor3&) { body.gradient[f] = deformation; });
@@ -107,10 +109,11 @@ void TangentSolver::precondition(std::span<const double> r, std::span<double> z)
 SolveStatistics TangentSolver::solve(std::span<const double> r, std::span<double> du,
                                      double relative_tolerance, int max_iterations) {
   std::ranges::fill(du, 0.0);
-  KrylovOptions options{relative_tolerance, max_iterations, true};
+  KrylovOptions options{relative_tolerance, max_iterations, !is_unsymmetric_};
   try {
     return krylov_->solve(r, du, options);
   } catch (const SolveFailure&) {
+    if (!options.is_symmetric) throw;
     // Not positive away from equilibrium, perhaps: what does not need it.
     std::ranges::fill(du, 0.0);
     options.is_symmetric = false;

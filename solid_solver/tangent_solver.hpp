@@ -40,6 +40,7 @@ class TangentSolver {
   const ElasticOperator& rows_;
   FiniteKernel& kernel_;
   double mass_factor_;
+  bool is_unsymmetric_ = false;  // a pressure follows the surface
   std::unique_ptr<ElasticPreconditioner> compact_;
   std::unique_ptr<CurrentRigidModes> modes_;  // null: the body is small
   std::vector<Tensor3> frame_;                // of the unknown nodes

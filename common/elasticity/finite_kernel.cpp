@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 
+#include "common/elasticity/finite_edges.hpp"
 #include "common/elasticity/finite_strain.hpp"
+#include "common/elasticity/follower_pressure.hpp"
 #include "common/elasticity/symmetric_blocks.hpp"
 #include "common/elasticity/symmetric_space.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet {
 namespace {
@@ -29,6 +32,8 @@ struct Group {
   const FiniteLaw* law;
   std::vector<FiniteBlock<D>> blocks;
   std::vector<finite::State> states;
+  double own = 1;                                          ///< share of their energy that is not the edges'
+  std::vector<std::array<std::array<Index, 3>, 4>> edges;  ///< of each block; empty: they share nothing
 };
 
 template <int D>
@@ -47,8 +52,8 @@ template <int D>
 
 template <int D>
 [[gnu::always_inline]] inline void push_stress(const FiniteBlock<D>& block, const Four (&p)[3][3],
-                                               double* forces, double* point_forces) {
-  const Four weight = blocks::wide(block.weight);
+                                               double share, double* forces, double* point_forces) {
+  const Four weight = share * blocks::wide(block.weight);
   Four scaled[D][D];
   for (int a = 0; a < D; ++a)
     for (int b = 0; b < D; ++b) scaled[a][b] = weight * p[a][b];
@@ -93,9 +98,9 @@ template <int D, bool HasSecond>
 [[gnu::always_inline]] inline void stress_loop(Group<D>& group, const Values<D>& at) {
   for (std::size_t i = 0; i < group.blocks.size(); ++i) {
     Four p[3][3];
-    if (at.of_cells) group.states[i].wj += between<D>(group.blocks[i], at.of_cells);
+    if (at.of_cells) group.states[i].wj += between<D>(group.blocks[i], at.of_cells) / group.own;
     finite::stress<HasSecond>(group.states[i], p);
-    push_stress<D>(group.blocks[i], p, at.forces, at.point_forces);
+    push_stress<D>(group.blocks[i], p, group.own, at.forces, at.point_forces);
   }
 }
 
@@ -121,9 +126,39 @@ template <int D, bool HasSecond>
     const FiniteBlock<D>& block = group.blocks[i];
     Four df[3][3], dp[3][3];
     deformation<D>(block, block.inverse, at.nodes, at.points, true, df);
-    const Four dpressure = at.of_cells ? between<D>(block, at.of_cells) : Four{};
+    const Four dpressure = at.of_cells ? between<D>(block, at.of_cells) / group.own : Four{};
     finite::tangent<HasSecond>(group.states[i], df, dpressure, dp);
-    push_stress<D>(block, dp, at.forces, at.point_forces);
+    push_stress<D>(block, dp, group.own, at.forces, at.point_forces);
+  }
+}
+
+/// t V / 3 (F - I), or its change, to the edges. `nodes` null: from the states.
+template <int D>
+void to_edges(const Group<D>& group, const Values<D>& at, bool is_change, FiniteEdges& edges) {
+  if constexpr (D == 3)
+    for (std::size_t i = 0; i < group.edges.size(); ++i) {
+      Four df[3][3];
+      deformation<D>(group.blocks[i], group.blocks[i].inverse, at.nodes, at.points, is_change, df);
+      const double one = is_change ? 0 : 1;
+      for (int k = 0; k < 4; ++k) {
+        const double part = SharedEdges::share / 3 * group.blocks[i].volume[k];
+        for (const Index e : group.edges[i][k])
+          for (int a = 0; a < 3; ++a)
+            for (int b = 0; b < 3; ++b) edges.at(e)[a * 3 + b] += part * (df[a][b][k] - (a == b ? one : 0));
+      }
+    }
+}
+
+/// What the edges' stress does to the nodes.
+template <int D>
+void from_edges(const Group<D>& group, const Values<D>& at, FiniteEdges& edges) {
+  for (std::size_t i = 0; i < group.edges.size(); ++i) {
+    Four p[3][3] = {};
+    for (int k = 0; k < 4; ++k)
+      for (const Index e : group.edges[i][k])
+        for (int a = 0; a < 3; ++a)
+          for (int b = 0; b < 3; ++b) p[a][b][k] += edges.at(e)[a * 3 + b];
+    push_stress<D>(group.blocks[i], p, SharedEdges::share / 3, at.forces, at.point_forces);
   }
 }
 
@@ -166,6 +201,9 @@ class Implementation final : public FiniteKernel {
  public:
   Implementation(const Mesh& mesh, const ElasticOperator& rows, std::vector<const FiniteLaw*> laws);
 
+  void set_pressure(std::span<const double> of_faces) override { pressure_.set(mesh_, of_faces); }
+  bool has_pressure() const override { return !pressure_.empty(); }
+  Vec3 pressure_force() const override { return pressure_force_; }
   void set_density(std::span<const double> of_cells) override {
     space_.set_density(of_cells), massive_ = true;
   }
@@ -185,6 +223,8 @@ class Implementation final : public FiniteKernel {
                                    const ElasticLoads& loads) override;
 
  private:
+  void make_group(std::size_t material, bool shares, std::span<const Index> edge_index);
+  void make_edges(std::vector<Index>& edge_index);
   void internal_forces();
   void deform(Group<D>& group);
   void find_pressures();
@@ -198,6 +238,9 @@ class Implementation final : public FiniteKernel {
   SymmetricSpace<D> space_;
   std::vector<const FiniteLaw*> laws_;
   std::vector<Group<D>> groups_;
+  std::unique_ptr<FiniteEdges> edges_;  // none: no three-cornered faces in space
+  FollowerPressure<D> pressure_;
+  Vec3 pressure_force_ = Vec3::Zero();
   bool massive_ = false;
   double energy_ = 0;
   Worst worst_;
@@ -229,24 +272,60 @@ template <int D>
 Implementation<D>::Implementation(const Mesh& mesh, const ElasticOperator& rows,
                                   std::vector<const FiniteLaw*> laws)
     : mesh_(mesh), rows_(rows), space_(mesh, rows), laws_(std::move(laws)) {
+  std::vector<Index> edge_index;
+  make_edges(edge_index);
   for (std::size_t m = 0; m < laws_.size(); ++m) {
-    Group<D> group{laws_[m], {}, {}};
-    Index last = -1;
-    std::size_t n = 0;
-    for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-      if (mesh.owner[f] >= mesh.cells.n_owned()) continue;  // another rank's
-      if (laws_.size() > 1 && std::size_t(mesh.material_of(mesh.owner[f])) != m) continue;
-      add_face<D>(mesh, rows, f, n % 4, false, place(group.blocks, n));
-      ++n, last = f;
-    }
-    for (; n % 4 != 0; ++n) add_face<D>(mesh, rows, last, n % 4, true, group.blocks.back());
-    group.states.resize(group.blocks.size());
-    groups_.push_back(std::move(group));
+    make_group(m, false, edge_index);
+    if (edges_) make_group(m, true, edge_index);
   }
   if (!rows.volume_by_cells()) return;
   of_cells_.assign(space_.n_nodes(), 0);
   volume_ = pyramid_volumes(mesh);
   modulus_.assign(volume_.size(), 0);
+}
+
+/// Faces of one material, those that share with edges or the others.
+template <int D>
+void Implementation<D>::make_group(std::size_t material, bool shares, std::span<const Index> edge_index) {
+  Group<D> group{laws_[material], {}, {}, shares ? 1 - SharedEdges::share : 1, {}};
+  Index last = -1;
+  std::size_t n = 0;
+  const auto add = [&](Index f, bool is_filling) {
+    if (shares && n % 4 == 0) group.edges.emplace_back();
+    add_face<D>(mesh_, rows_, f, n % 4, is_filling, place(group.blocks, n));
+    if (shares) group.edges.back()[n % 4] = edges_->edges_of(std::size_t(edge_index[f]));
+    ++n;
+  };
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;  // another rank's
+    if (laws_.size() > 1 && std::size_t(mesh_.material_of(mesh_.owner[f])) != material) continue;
+    if ((edges_ && edge_index[f] >= 0) != shares) continue;
+    add(f, false);
+    last = f;
+  }
+  while (n % 4 != 0) add(last, true);
+  group.states.resize(group.blocks.size());
+  groups_.push_back(std::move(group));
+}
+
+/// `edge_index`: of each flux face among those that share, -1: it does not. Collective.
+template <int D>
+void Implementation<D>::make_edges(std::vector<Index>& edge_index) {
+  if (D == 2) return;
+  std::vector<Index> faces, elsewhere;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
+    if (mesh_.face_points[f].size() == 3)
+      (mesh_.owner[f] < mesh_.cells.n_owned() ? faces : elsewhere).push_back(f);
+  if (!any(mesh_.comm, !faces.empty())) return;
+  const std::size_t n_mine = faces.size();
+  faces.insert(faces.end(), elsewhere.begin(), elsewhere.end());
+  std::vector<double> volume(faces.size(), 0);
+  edge_index.assign(mesh_.n_flux_faces(), -1);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    edge_index[faces[i]] = Index(i);
+    if (i < n_mine) volume[i] = symmetric_face<D>(mesh_, rows_, faces[i]).volume;
+  }
+  edges_ = std::make_unique<FiniteEdges>(mesh_, rows_, faces, volume, laws_);
 }
 
 template <int D>
@@ -271,7 +350,7 @@ void Implementation<D>::deform(Group<D>& group) {
     group.law->evaluate({found.data(), n}, of_cells_.empty(), {energy.data(), n});
     for (std::size_t i = 0; i < n; ++i) {
       finite::keep(energy[i], group.states[first + i]);
-      for (int k = 0; k < 4; ++k) energy_ += here[i].volume[k] * energy[i].w[k];
+      for (int k = 0; k < 4; ++k) energy_ += group.own * here[i].volume[k] * energy[i].w[k];
     }
   }
 }
@@ -296,10 +375,22 @@ void Implementation<D>::internal_forces() {
   worst_ = {};
   std::ranges::fill(of_cells_, 0.0);
   for (Group<D>& group : groups_) deform(group);
+  if (edges_) {
+    edges_->clear();
+    for (const Group<D>& group : groups_) to_edges<D>(group, values(), false, *edges_);
+    edges_->finish_means();
+    if (worst_.ratio > 0) {
+      const double least = edges_->to_stress(of_cells_.empty(), energy_);
+      if (!(least >= worst_.ratio)) worst_.ratio = least;
+    }
+  }
   // Inside out somewhere: the forces are not used, but the other ranks wait.
   if (!of_cells_.empty()) find_pressures();
   if (!(worst_.ratio > 0)) return;
-  for (Group<D>& group : groups_) stress_pass(group, values());
+  for (Group<D>& group : groups_) {
+    stress_pass(group, values());
+    if (edges_) from_edges<D>(group, values(), *edges_);
+  }
 }
 
 template <int D>
@@ -308,6 +399,7 @@ void Implementation<D>::linearise(std::span<const double> unknowns, std::span<co
   space_.fill(unknowns, known);
   space_.clear_forces();
   internal_forces();
+  pressure_force_ = pressure_.add_forces(space_, 1);
   space_.add_springs(known);
   if (massive_ && mass_factor > 0) space_.add_mass_forces(mass_factor);
   space_.collect();
@@ -328,12 +420,21 @@ void Implementation<D>::apply_tangent(std::span<const double> v, std::span<const
     mesh_.cells.update_ghosts(cells);
   }
   for (const Group<D>& group : groups_) tangent_pass(group, values());
+  if (edges_) {
+    edges_->clear();
+    for (const Group<D>& group : groups_) to_edges<D>(group, values(), true, *edges_);
+    edges_->finish_means();
+    edges_->to_tangent();
+    for (const Group<D>& group : groups_) from_edges<D>(group, values(), *edges_);
+  }
+  pressure_.add_tangent(space_, 1);
   space_.add_springs(known);
   if (massive_ && mass_factor > 0) space_.add_mass_forces(mass_factor);
   space_.collect();
   space_.take_rows(v, known, result);
 }
 
+/// With edges: what the face's share of them makes of both.
 template <int D>
 void Implementation<D>::visit(const Take& take) {
   for (const Group<D>& group : groups_)
@@ -345,8 +446,16 @@ void Implementation<D>::visit(const Take& take) {
         Tensor3 deformation, stress;
         for (int a = 0; a < 3; ++a)
           for (int b = 0; b < 3; ++b) {
-            deformation(a, b) = group.states[i].f[a][b][k];
-            stress(a, b) = p[a][b][k];
+            double f = group.states[i].f[a][b][k], s = group.own * p[a][b][k];
+            if (!group.edges.empty()) {
+              f = group.own * f + (a == b ? SharedEdges::share : 0);
+              for (const Index edge : group.edges[i][std::size_t(k)]) {
+                f += SharedEdges::share / 3 * edges_->gradient(edge)[a * 3 + b];
+                s += SharedEdges::share / 3 * edges_->at(edge)[a * 3 + b];
+              }
+            }
+            deformation(a, b) = f;
+            stress(a, b) = s;
           }
         take(group.blocks[i].face[k], deformation, stress);
       }
@@ -363,6 +472,7 @@ std::vector<Vec3> Implementation<D>::holding_forces(std::span<const double> unkn
   space_.negate_forces();
   space_.fill(unknowns, known);
   internal_forces();
+  pressure_force_ = pressure_.add_forces(space_, 1);
   space_.add_springs(known);
   return space_.held(known);
 }

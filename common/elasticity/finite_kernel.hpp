@@ -23,6 +23,12 @@ class FiniteKernel {
   virtual ~FiniteKernel() = default;
   /// Of the local cells [kg/m^3]; without it there is no mass.
   virtual void set_density(std::span<const double> of_cells) = 0;
+  /// A pressure [Pa] on boundary faces of owned cells, one each, that follows the surface (FollowerPressure): its
+  /// forces count as inner ones with the opposite sign, until other values are given.
+  virtual void set_pressure(std::span<const double> of_faces) = 0;
+  virtual bool has_pressure() const = 0;
+  /// Resultant of that pressure at the last linearise(), this rank's [N].
+  virtual Vec3 pressure_force() const = 0;
   /// result = dE/du (u) + springs + mass_factor M u; keeps what the tangent there needs. Collective.
   virtual void linearise(std::span<const double> unknowns, std::span<const double> known, double mass_factor,
                          std::span<double> result) = 0;

@@ -149,6 +149,21 @@ void SharedEdges::finish_means() {
   }
 }
 
+void SharedEdges::finish_gradients(std::span<double> values) const {
+  if (parallel_) {
+    map_.add_to_owners(values, gradient_stride);
+    map_.update_ghosts(values, gradient_stride);
+  }
+  for (std::size_t e = 0; e < inverse_volume_.size(); ++e)
+    for (int i = 0; i < 9; ++i) values[e * gradient_stride + i] *= inverse_volume_[e];
+  for (const auto& [e, n] : mirrors_) {
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> g(values.data() +
+                                                               std::size_t(e) * gradient_stride);
+    const Tensor3 turn = Tensor3::Identity() - 2 * n * n.transpose(), here = g;
+    g = 0.5 * (here + turn * here * turn);
+  }
+}
+
 void SharedEdges::to_stress() {
   const std::size_t step = lame_.size() == 1 ? 0 : 1;
   for (std::size_t e = 0; e < inverse_volume_.size(); ++e) {

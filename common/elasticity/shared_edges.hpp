@@ -23,6 +23,7 @@ class SharedEdges {
   static constexpr double share = 0.9;
   static constexpr int size = 6;  ///< xx, yy, zz, xy, yz, xz
   static constexpr int stride = 8;
+  static constexpr int gradient_stride = 12;  ///< of finish_gradients()
 
   /// `faces`: the three-cornered ones of this rank, each face on one rank alone; `volume`: V_f of each.
   /// Collective.
@@ -35,6 +36,11 @@ class SharedEdges {
   double* at(Index edge) { return value_.data() + std::size_t(edge) * stride; }
   /// After all faces have added (t V_f / 3) e_f: over the ranks, divided by V_E, mirrored. Collective.
   void finish_means();
+  /// The same of gradients in an array of the caller's: entry a * 3 + b of an edge. Collective.
+  void finish_gradients(std::span<double> values) const;
+  std::size_t n_edges() const { return inverse_volume_.size(); }
+  double volume(Index edge) const { return 1 / inverse_volume_[edge]; }
+  bool is_owned(Index edge) const { return !parallel_ || edge < map_.n_owned(); }
   /// Strains (engineering shear halved) become stresses of the edge's own constants.
   void to_stress();
 

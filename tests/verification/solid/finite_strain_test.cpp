@@ -102,7 +102,8 @@ TEST(FiniteStrain, rigid_rotation_makes_no_stress) {
     p.boundaries[name] =
         boundary(Type::fixed_displacement, {"(cos(" + turn + ")-1)*x - sin(" + turn + ")*(y-3)",
                                             "sin(" + turn + ")*x + (cos(" + turn + ")-1)*(y-3)", "0"});
-  for (const BoxCells cells : {BoxCells::hexahedra}) {
+  for (const BoxCells cells :
+       {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed}) {
     RawMesh raw = make_box(cells, {3, 3, 3}, Vec3::Zero(), Vec3::Ones());
     perturb_interior(raw, 0.2, 5);
     for (const char* law : {"saint-venant-kirchhoff", "neo-hookean"}) {
@@ -135,7 +136,8 @@ TEST(FiniteStrain, homogeneous_deformation_is_exact) {
   const Tensor3 wanted = K * (j - 1) * Tensor3::Identity() +
                          mu * std::pow(j, -5. / 3) * (b - b.trace() / 3 * Tensor3::Identity());
   for (const auto volume : {MethodParameters::VolumeStrain::faces, MethodParameters::VolumeStrain::cells})
-    for (const BoxCells cells : {BoxCells::hexahedra}) {
+    for (const BoxCells cells :
+         {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed}) {
       p.method.volume_strain = volume;
       RawMesh raw = make_box(cells, {3, 3, 3}, Vec3::Zero(), Vec3::Ones());
       perturb_interior(raw, 0.15, 7);
