@@ -16,6 +16,7 @@ namespace couplet {
 /// The kernel at the accepted displacement. Collective.
 void Solid::linearise_accepted() const {
   std::vector<double> rows(elastic_.n_unknowns());
+  finite_->kernel().forget_start();
   finite_->kernel().linearise(unknowns_of(state_.cell_u, state_.face_u), known_accepted_, 0, rows);
 }
 

@@ -204,6 +204,7 @@ std::string FiniteStrain::text() const {
 
 double FiniteStrain::energy(std::span<const double> unknowns, std::span<const double> known) {
   std::vector<double> rows(rows_.n_unknowns());
+  kernel_->forget_start();
   kernel_->linearise(unknowns, known, 0, rows);
   return sum(mesh_.comm, kernel_->energy());
 }

@@ -158,6 +158,15 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
          "'stiffness' damps rigid rotations at finite strain; use 'mass', or the losses of 'time-scheme'");
   refuse("interface", p.interface_data && p.interface_data->load == InterfaceData::Load::pressure,
          "finite strain takes forces; 'load: pressure' would not follow the surface");
+  s.check(
+      [&p]() -> std::string {
+        const bool fits = has_finite_strain(p) && p.analysis == SolidParameters::Analysis::dynamic &&
+                          p.time_scheme.type == TimeScheme::trapezoidal;
+        return p.energy_momentum && !fits
+                   ? "it needs 'kinematics: finite-strain', 'analysis: dynamic' and 'time-scheme: {type: trapezoidal}'"
+                   : "";
+      },
+      "energy-momentum");
   refuse("time-step-control", p.step_control.has_value(), "it estimates the error of the linear solid only");
   refuse(
       "solution-method",
@@ -202,6 +211,10 @@ void declare(config::Section& s, SolidParameters& p) {
       .doc(
           "finite-strain: large rotations and strains, material.law by an energy, Newton's method on the symmetric "
           "face gradient");
+  s.value("energy-momentum", p.energy_momentum)
+      .doc(
+          "of dynamic finite strain with the trapezoidal rule: the stress of a step does exactly the work that the strain "
+          "energy changes by, so that energy and momenta are kept");
   const bool is_elastic = p.analysis != SolidParameters::Analysis::thermal;
   s.optional_section<bool>(
       "material", p.material_given,

@@ -28,6 +28,7 @@ struct SolidParameters {
   Plane plane = Plane::strain;
   Analysis analysis = Analysis::dynamic;
   Kinematics kinematics = Kinematics::small_strain;
+  bool energy_momentum = false;  // finite strain: the stress of a step is one that conserves
   SolidMaterial material;
   std::optional<bool> material_given;  // `material` stands in the YAML
   ZoneMaterials materials;             // by zone of the mesh

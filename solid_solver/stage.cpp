@@ -230,9 +230,13 @@ void Solid::solve_stage(const StageWork& work, std::span<const double> interface
 /// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
 SolveStatistics Solid::solve_finite(const StageWork& work) {
   finite_->kernel().set_pressure(boundaries_.pressures(work.place_time));
+  if (parameters_.energy_momentum)
+    finite_->kernel().set_start(unknowns_of(state_.cell_u, state_.face_u), known_accepted_);
   FiniteStrain::Load load{rhs_, work.known, {}, work.system->mass_factor};
   if (!is_dynamic() && !work.known.empty()) load.before = known_accepted_;
-  return finite_->solve(load, work.system->node_inertia, unknowns_);
+  const SolveStatistics statistics = finite_->solve(load, work.system->node_inertia, unknowns_);
+  finite_->kernel().forget_start();
+  return statistics;
 }
 
 void Solid::add_inertia(const StageWork& work, const SolidState& now) {

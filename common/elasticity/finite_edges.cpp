@@ -2,6 +2,7 @@
 #include "common/elasticity/finite_edges.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 namespace couplet {
 namespace {
@@ -34,7 +35,7 @@ FiniteEdges::FiniteEdges(const Mesh& mesh, const ElasticOperator& rows, std::spa
     for (std::size_t i = 0; i < faces.size(); ++i)
       for (const Index e : edges_.edges_of(i)) material[e] = mesh.material_of(mesh.owner[faces[i]]);
   for (std::size_t m = 0; m < laws.size(); ++m) {
-    Group group{laws[m], {}, {}, {}};
+    Group group{laws[m], {}, {}, {}, {}};
     Index last = -1;  // filling stands in the same block
     std::size_t n = 0;
     const auto add = [&](Index e, double of_edge) {
@@ -74,6 +75,29 @@ double FiniteEdges::to_stress(bool with_bulk, double& energy) {
       scatter(p, group.edges[i], value_.data());
     }
   return least;
+}
+
+void FiniteEdges::set_start(bool with_bulk) {
+  for (Group& group : groups_) {
+    group.start.resize(group.states.size());
+    for (std::size_t i = 0; i < group.states.size(); ++i) {
+      std::memcpy(group.start[i].f, group.states[i].f, sizeof group.start[i].f);
+      const Invariants at = finite::invariants(group.start[i].f);
+      Energy energy;
+      group.law->evaluate({&at, 1}, with_bulk, {&energy, 1});
+      group.start[i].energy = energy.w;
+    }
+  }
+}
+
+void FiniteEdges::to_conserving(bool with_bulk) {
+  for (const Group& group : groups_)
+    for (std::size_t i = 0; i < group.edges.size(); ++i) {
+      Four p[3][3];
+      finite::conserving_stress(*group.law, group.states[i].f, group.start[i].f, group.start[i].energy,
+                                with_bulk, Four{}, p);
+      scatter(p, group.edges[i], value_.data());
+    }
 }
 
 void FiniteEdges::to_tangent() {

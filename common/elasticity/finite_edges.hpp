@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/elasticity/finite_strain.hpp"
+#include "common/elasticity/discrete_gradient.hpp"
 #include "common/elasticity/shared_edges.hpp"
 
 namespace couplet {
@@ -20,6 +20,7 @@ class FiniteEdges {
     std::vector<std::array<Index, 4>> edges;
     std::vector<std::array<double, 4>> volume;  ///< of edges that this rank owns; 0: another rank counts them
     std::vector<finite::State> states;
+    std::vector<finite::Start> start;
   };
 
   /// `faces`: the three-cornered flux faces, this rank's first; `volume`: V_f of this rank's, 0 of the others;
@@ -35,6 +36,10 @@ class FiniteEdges {
   /// From means to stresses P of the states there. Gives the smallest det F, and whether the law was evaluated (it
   /// is not from an edge on that is inside out); adds to the energy.
   double to_stress(bool with_bulk, double& energy);
+  /// A step that conserves energy begins at the states of the last to_stress().
+  void set_start(bool with_bulk);
+  /// Its stress P* in place of that of the states.
+  void to_conserving(bool with_bulk);
   /// From means of changes to changes of P.
   void to_tangent();
   /// F of an edge at the last to_stress(), less I: entry a * 3 + b.

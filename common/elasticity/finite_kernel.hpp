@@ -23,6 +23,10 @@ class FiniteKernel {
   virtual ~FiniteKernel() = default;
   /// Of the local cells [kg/m^3]; without it there is no mass.
   virtual void set_density(std::span<const double> of_cells) = 0;
+  /// A step begins at this state: the forces of linearise(), whose u is then taken to be the middle of the step, are
+  /// those that keep energy and momenta over it (discrete_gradient.hpp), until forget_start(). Collective.
+  virtual void set_start(std::span<const double> unknowns, std::span<const double> known) = 0;
+  virtual void forget_start() = 0;
   /// A pressure [Pa] on boundary faces of owned cells, one each, that follows the surface (FollowerPressure): its
   /// forces count as inner ones with the opposite sign, until other values are given.
   virtual void set_pressure(std::span<const double> of_faces) = 0;

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Static bars of large strain: case E of the thesis, Turek and Hron's bar, Cook's membrane."""
+import math
+
+import couplet_series as couplet
+from validation.job import Bar
+
+S = "participants.solid."
+# u1 / L of converged three-dimensional finite elements (L = 10 sides).
+SVK = {0.2: 0.06639, 0.4: 0.13108, 0.8: 0.24992, 1.6: 0.43134}
+NEO = {5: 0.720308, 10: 0.823304}
+
+
+def last(run_folder, name="probes.csv"):
+    table = couplet.read_csv(run_folder / "solid" / name)
+    return {key: values[-1] for key, values in table.items()}
+
+
+def beam(job, across, along, law, load, length=2.0, steps=1):
+    """Deflection over the length and the iterations of each load step."""
+    pull = load * 15.293e6 * (0.2**4 / 12) / (0.04 * length**2) / math.sqrt(2)
+    run = job.solve_run("solid_solver", "bent-beam", (
+        "%smesh-parameters={n: %d, m: %d, L: %g}" % (S, across, along, length), f"{S}material.law={law}",
+        f"{S}boundaries.tip.value=[{pull!r}*t, {pull!r}*t, 0]", f"{S}probes={{tip: {{point: [0, 0, {length}]}}}}",
+        f"simulation.time-step={1 / steps!r}"))
+    tip = last(run.folder)
+    newton = couplet.read_csv(run.folder / "solid" / "solver.csv")["iterations"]
+    return math.hypot(tip["tip x [m]"], tip["tip y [m]"]) / length, newton
+
+
+def kirchhoff(across):
+    def measure(job):
+        errors = {K: 100 * (beam(job, across, 10 * across, "saint-venant-kirchhoff", K)[0] / u - 1) for K, u in SVK.items()}
+        return ", ".join(f"K {K}: {e:+.3f} %" for K, e in errors.items()), all(abs(e) <= 0.3 for e in errors.values())
+    return measure
+
+
+def hook(across, sides, wanted):
+    def measure(job):
+        u, newton = beam(job, across, sides * across, "neo-hookean", 10, 0.2 * sides)
+        error = 100 * (u / wanted - 1)
+        return f"{u:.5f}, {error:+.3f} %, {len(newton)} load steps that were accepted", abs(error) <= 0.3
+    return measure
+
+
+def slopes(job):
+    """Observed between meshes halved twice, against the converged value."""
+    errors = [abs(beam(job, n, 10 * n, "neo-hookean", 5)[0] - NEO[5]) for n in (2, 4, 8)]
+    orders = [math.log2(a / b) for a, b in zip(errors, errors[1:])]
+    return (", ".join(f"{100 * e / NEO[5]:.3f} %" for e in errors) + "; slopes " + ", ".join(f"{o:.2f}" for o in orders),
+            min(orders) >= 1.7)
+
+
+def thin(across, along):
+    def measure(job):
+        u, _ = beam(job, across, along, "saint-venant-kirchhoff", 1.6)
+        return f"{u:.5f}, {100 * (u / SVK[1.6] - 1):+.2f} % of the converged value", True
+    return measure
+
+
+def newton_steps(job):
+    worst = max(max(beam(job, n, 10 * n, "saint-venant-kirchhoff", 1.6)[1]) for n in (4, 8))
+    hooked = max(max(beam(job, n, 10 * n, "neo-hookean", 10, steps=4)[1]) for n in (4, 8))
+    return f"at most {worst:.0f} (Saint Venant-Kirchhoff, one step to K 1.6), {hooked:.0f} (neo-Hookean, four to K 10)", max(
+        worst, hooked) <= 10
+
+
+def bar(modulus, wanted):
+    def measure(job):
+        run = job.solve_run("solid_solver", "elastic-bar", (f"{S}material.youngs-modulus={modulus}",
+                                                            "%smesh-parameters={n: 8, m: 140}" % S))
+        tip = last(run.folder)
+        got = (1e3 * tip["A x [m]"], 1e3 * tip["A y [m]"])
+        errors = [100 * (g / w - 1) for g, w in zip(got, wanted)]
+        return f"{got[0]:.4f}, {got[1]:.3f} mm: {errors[0]:+.2f}, {errors[1]:+.2f} %", max(map(abs, errors)) <= 1
+    return measure
+
+
+def cook(law, wanted):
+    def measure(job):
+        run = job.solve_run("solid_solver", "cook", (
+            "%smesh-parameters={n: 32, shape: 0}" % S, f"{S}kinematics=finite-strain", f"{S}material.law={law}",
+            f"{S}material.youngs-modulus=1.0985e6", f"{S}material.poissons-ratio=0.3", "simulation.max-step-halvings=6",
+            f"{S}boundaries.loaded.value=[0, 62.5e3*t]", "%sprobes={mid: {point: [0.048, 0.052]}}" % S))
+        got = 1e3 * last(run.folder)["mid y [m]"]
+        return f"{got:.3f} mm, {100 * (got / wanted - 1):+.2f} %", abs(got / wanted - 1) <= 0.004
+    return measure
+
+
+BARS = [
+    Bar("E, Saint Venant-Kirchhoff, K 0.2 to 1.6, 8x8x80", "within 0.3 % of 0.06639, 0.13108, 0.24992, 0.43134", kirchhoff(8),
+        but="a mesh half as fine"),
+    Bar("E, Saint Venant-Kirchhoff, K 0.2 to 1.6, 16x16x160", "within 0.3 % of 0.06639, 0.13108, 0.24992, 0.43134", kirchhoff(16),
+        long=True),
+    Bar("E, neo-Hookean, K 10, L 10 sides, 8x8x80, one command", "within 0.3 % of 0.8233", hook(8, 10, 0.823304)),
+    Bar("E, neo-Hookean, K 10, L 20 sides, 4x4x80", "within 0.3 % of 0.8132", hook(4, 20, 0.813205)),
+    Bar("E, neo-Hookean, K 5: slope of u on 2x2x20, 4x4x40, 8x8x80", ">= 1.7", slopes),
+    Bar("E, cells thin across: Saint Venant-Kirchhoff to K 1.6 on 2x2x80", "reported: solved", thin(2, 80)),
+    Bar("E, cells thin across: Saint Venant-Kirchhoff to K 1.6 on 4x4x160", "reported: solved", thin(4, 160)),
+    Bar("E: iterations of Newton's method in a load step, 4x4x40 and 8x8x80", "<= 10", newton_steps),
+    Bar("CSM1 of Turek and Hron, 8x140", "within 1 % of -7.187, -66.10 mm", bar(1.4e6, (-7.187, -66.10))),
+    Bar("CSM2 of Turek and Hron, 8x140", "within 1 % of -0.4690, -16.97 mm", bar(5.6e6, (-0.4690, -16.97))),
+    Bar("Cook at large strain, law (2.31), 32x32: middle of the edge", "within 0.4 % of 14.51 mm", cook("neo-hookean", 14.509)),
+    Bar("Cook at large strain, K/2 (J-1)^2, 32x32: middle of the edge", "within 0.4 % of 14.72 mm",
+        cook("nearly-incompressible-neo-hookean", 14.72)),
+]

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of large strain in time: the swinging column, rigid rotation, restart and ranks."""
+import couplet_series as couplet
+from validation.job import Bar
+
+S = "participants.solid."
+MAXIMUM, MINIMUM = 2.873, -3.179  # u_x(A) [m], cubic spectral elements, refined
+
+
+def column(job, across, along, shape=0, sets=()):
+    run = job.solve_run("solid_solver", "bending-column",
+                        ("%smesh-parameters={n: %d, m: %d, shape: %d}" % (S, across, along, shape), *sets))
+    table = couplet.read_csv(run.folder / "solid" / "probes.csv")
+    energies = couplet.read_csv(run.folder / "solid" / "energies.csv")
+    whole = [k + s for k, s in zip(energies["kinetic [J]"], energies["strain [J]"])]
+    return max(table["A x [m]"]), min(table["A x [m]"]), whole[-1] / whole[0] - 1
+
+
+def swing(across, along, limit, shape=0, sets=()):
+    def measure(job):
+        most, least, drift = column(job, across, along, shape, sets)
+        errors = [100 * (most / MAXIMUM - 1), 100 * (least / MINIMUM - 1)]
+        text = f"{most:.3f}, {least:.3f} m: {errors[0]:+.2f}, {errors[1]:+.2f} %; energy {drift:+.1e}"
+        return text, None if limit is None else max(map(abs, errors)) <= limit
+    return measure
+
+
+def tested(name):
+    def measure(job):
+        result, _ = job.gtest("verification_solid_finite_strain", f"FiniteStrain.{name}")
+        passed = all(test["passed"] for test in result.values())
+        return "holds under test" if passed else "test fails", passed
+    return measure
+
+
+BARS = [
+    Bar("F, first maximum and minimum of u_x(A), 4x16x4", "within 0.7 % of 2.873, -3.179 m", swing(4, 16, 0.7),
+        but="a mesh half as fine"),
+    Bar("F, first maximum and minimum of u_x(A), 8x32x8", "within 0.7 % of 2.873, -3.179 m", swing(8, 32, 0.7), long=True),
+    Bar("F, tetrahedra, 4x16x4 prisms cut in three", "within 2 %", swing(4, 16, 2, 1), long=True),
+    Bar("F, Euler with the same step, 4x16x4: what its damping costs", "reported",
+        swing(4, 16, None, 0, ("%stime-scheme={type: euler}" % S,))),
+    Bar("rigid rotation through 720 degrees, all cell kinds: stress", "< 1e-9 E", tested("rigid_rotation_makes_no_stress")),
+    Bar("restart in the middle of the load", "bit for bit", tested("restart_in_the_middle_of_the_load_is_bit_for_bit")),
+]
