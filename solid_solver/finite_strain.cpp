@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/base/text.hpp"
+#include "common/elasticity/discrete_gradient.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/laws/laws.hpp"
@@ -104,7 +104,7 @@ void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::sp
   }
   if (!(max(mesh_.comm, size) > 0)) return;
   double ratio = 1;
-  if (!std::isfinite(residual({load.rows, load.before, {}, load.mass_factor}, u, ratio))) return;
+  if (!std::isfinite(residual({load.rows, load.before, {}, load.mass_factor, false}, u, ratio))) return;
   solver.follow(true);
   const std::vector<double> still(u.size(), 0);
   kernel_->apply_tangent(still, change, load.mass_factor, trial_);
@@ -143,6 +143,16 @@ bool FiniteStrain::search(const Load& load, std::span<double> u, NewtonIterate& 
   return false;
 }
 
+/// What a residual is measured by: the loads; in motion the inner forces, since b holds the inertia of the place itself,
+/// which is far larger than what accelerates the body.
+double FiniteStrain::scale_of(const Load& load, std::span<const double> u, double residual) {
+  if (load.mass_factor == 0) return std::max(norm(mesh_.comm, load.rows), residual);
+  kernel_->linearise(u, load.known, 0, trial_);
+  const double inner = norm(mesh_.comm, trial_);
+  kernel_->linearise(u, load.known, load.mass_factor, trial_);
+  return std::max(inner, residual);
+}
+
 SolveStatistics FiniteStrain::solve(const Load& load, const std::vector<double>& node_inertia,
                                     std::span<double> u) {
   TangentSolver& solver = solver_for(load.mass_factor, node_inertia);
@@ -153,12 +163,14 @@ SolveStatistics FiniteStrain::solve(const Load& load, const std::vector<double>&
   now.residual = residual(load, u, now.ratio);
   if (!std::isfinite(now.residual))
     throw SolveFailure("The first guess of the step turns a cell inside out. {}", where_worst());
-  const double scale = std::max(norm(mesh_.comm, load.rows), now.residual);
+  const double scale = scale_of(load, u, now.residual);
+  // Its difference quotients divide rounding by the change over the step.
+  const double floor = load.is_conserving ? 0.5 / finite::smallest_change * noise_ : noise_;
   double before = now.residual;
   for (;;) {
     iterates_.push_back(now);
     iterates_.back().residual /= scale > 0 ? scale : 1;
-    if (now.residual <= std::max(tolerance_ * scale, noise_)) break;
+    if (now.residual <= std::max(tolerance_ * scale, floor)) break;
     if (statistics.iterations == most_iterations)
       throw SolveFailure(
           "Newton's method did not find the equilibrium: after {} iterations the residual is {:.2g} of the load "

@@ -43,6 +43,7 @@ class FiniteStrain {
         before;              ///< the known columns of the first guess, from which a first linear step leads
                              ///< to `known`; empty: the guess has them already
     double mass_factor = 0;  ///< m
+    bool is_conserving = false;  ///< the kernel has a start (set_start)
   };
   /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then. Collective.
   SolveStatistics solve(const Load& load, const std::vector<double>& node_inertia, std::span<double> u);
@@ -57,6 +58,7 @@ class FiniteStrain {
   double residual(const Load& load, std::span<const double> u, double& ratio);
   bool search(const Load& load, std::span<double> u, NewtonIterate& now, double most);
   void follow_known(const Load& load, TangentSolver& solver, std::span<double> u);
+  double scale_of(const Load& load, std::span<const double> u, double residual);
   double noise() const;
   TangentSolver& solver_for(double mass_factor, const std::vector<double>& node_inertia);
   std::string where_worst() const;

@@ -19,7 +19,7 @@ struct alignas(32) Start {
 };
 
 /// Below this size of D the quotient is rounding, and what it would correct is smaller still.
-constexpr double smallest_change = 1e-5;
+constexpr double smallest_change = 1e-4;
 
 /// dX/dC of an energy by invariants: w1 I + w2 (i1 I - C) + wj J/2 C^-1.
 inline void by_c(const Tensor4& c, const Four& w1, const Four& w2, const Four& wj, const Four& j,

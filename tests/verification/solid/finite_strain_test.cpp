@@ -4,13 +4,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/finite_kernel.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/laws/laws.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
@@ -93,33 +96,6 @@ TEST(FiniteStrain, ranks_agree) {
   EXPECT_NEAR(deflection(*parts), deflection(*whole), 1e-8 * deflection(*whole));
 }
 
-// All faces turn by 720 degrees about an oblique place: no stress, whatever the angle.
-TEST(FiniteStrain, rigid_rotation_makes_no_stress) {
-  SolidParameters p = box_parameters(3);
-  p.kinematics = SolidParameters::Kinematics::finite_strain;
-  const std::string turn = fmt::format("({:.17g}*t)", 4 * std::numbers::pi);
-  for (const char* name : {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"})
-    p.boundaries[name] =
-        boundary(Type::fixed_displacement, {"(cos(" + turn + ")-1)*x - sin(" + turn + ")*(y-3)",
-                                            "sin(" + turn + ")*x + (cos(" + turn + ")-1)*(y-3)", "0"});
-  for (const BoxCells cells :
-       {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed}) {
-    RawMesh raw = make_box(cells, {3, 3, 3}, Vec3::Zero(), Vec3::Ones());
-    perturb_interior(raw, 0.2, 5);
-    for (const char* law : {"saint-venant-kirchhoff", "neo-hookean"}) {
-      p.material.law = law;
-      const auto solid = make(raw, p);
-      double most = 0;
-      for (int i = 0; i < 24; ++i) {
-        step(*solid, 1. / 24);
-        for (const Tensor3& s : solid->cell_stress(solid->point_displacement()))
-          most = std::max(most, s.cwiseAbs().maxCoeff());
-      }
-      EXPECT_LT(max(solid->mesh().comm, most), 1e-9 * p.material.youngs_modulus) << law;
-    }
-  }
-}
-
 /// A homogeneous deformation is met exactly on any cells, and the stress is the law's.
 TEST(FiniteStrain, homogeneous_deformation_is_exact) {
   SolidParameters p = box_parameters(3);
@@ -187,6 +163,81 @@ TEST(FiniteStrain, reactions_balance_the_load) {
   const Vec3 load = solid->total_load();
   ASSERT_EQ(reactions.size(), 1U);
   EXPECT_LT((reactions[0].force + load).norm(), 1e-8 * load.norm());
+}
+
+constexpr std::array kinds{BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                           BoxCells::tetrahedra,     BoxCells::prisms,    BoxCells::mixed};
+
+std::vector<double> noise(std::size_t n, double size, unsigned seed) {
+  std::vector<double> values(n);
+  for (std::size_t i = 0; i < n; ++i) values[i] = size * std::sin(12.9898 * double(i + 1) * seed + seed);
+  return values;
+}
+
+double dot(const std::vector<double>& a, const std::vector<double>& b) {
+  double here = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) here += a[i] * b[i];
+  return sum(MPI_COMM_WORLD, here);
+}
+
+/// Supports of several kinds, a pressure that follows the top.
+SolidParameters busy(int dim, MethodParameters::VolumeStrain volume) {
+  SolidParameters p = box_parameters(dim);
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.material = {1000, 1e6, 0.3};
+  p.material.law = "mooney-rivlin";
+  p.material.law_coefficients = {0.3};
+  p.method.volume_strain = volume;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+  p.boundaries["ymin"] = boundary(Type::symmetry);
+  p.boundaries["ymax"].type = Type::pressure;
+  p.boundaries["ymax"].pressure = {"1e5*t"};
+  return p;
+}
+
+// Forces are the energy's derivative, the tangent is the forces', and symmetric but for the pressure's rim.
+TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
+  for (const auto volume : {MethodParameters::VolumeStrain::faces, MethodParameters::VolumeStrain::cells})
+    for (const BoxCells cells : kinds) {
+      const int dim = dimension_of(cells);
+      RawMesh raw = make_box(cells, {3, 2, 3}, Vec3::Zero(), dim == 2 ? Vec3(1, 1, 0) : Vec3(1, 1, 1));
+      perturb_interior(raw, 0.1, 3);
+      const auto solid = make(raw, busy(dim, volume));
+      const auto law =
+          laws::find("mooney-rivlin")->make(lame_constants(solid->parameters()), std::vector{0.3});
+      const auto kernel = make_finite_kernel(solid->mesh(), solid->elastic(), {law.get()});
+      const std::size_t n = solid->elastic().n_unknowns();
+      const std::vector<double> u = noise(n, 0.02, 1), v = noise(n, 1, 2), w = noise(n, 1, 3);
+      const double h = 1e-6;
+      std::vector<double> up = u, down = u, force(n), ahead(n), behind(n), kv(n), kw(n);
+      for (std::size_t i = 0; i < n; ++i) up[i] += h * v[i], down[i] -= h * v[i];
+      const auto compare = [&] {
+        kernel->linearise(up, {}, 0, ahead);
+        kernel->linearise(down, {}, 0, behind);
+        kernel->linearise(u, {}, 0, force);
+        kernel->apply_tangent(v, {}, 0, kv);
+        double gap = 0, size = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+          gap += std::pow((ahead[i] - behind[i]) / (2 * h) - kv[i], 2);
+          size += kv[i] * kv[i];
+        }
+        EXPECT_LT(std::sqrt(sum(MPI_COMM_WORLD, gap)), 1e-6 * std::sqrt(sum(MPI_COMM_WORLD, size)));
+      };
+      compare();
+      kernel->apply_tangent(w, {}, 0, kw);
+      EXPECT_NEAR(dot(w, kv), dot(v, kw), 1e-10 * std::sqrt(dot(kv, kv) * dot(w, w)));
+      kernel->linearise(up, {}, 0, ahead);
+      const double most = sum(MPI_COMM_WORLD, kernel->energy());
+      kernel->linearise(down, {}, 0, behind);
+      const double least = sum(MPI_COMM_WORLD, kernel->energy());
+      EXPECT_NEAR((most - least) / (2 * h), dot(force, v), 1e-5 * std::sqrt(dot(force, force) * dot(v, v)));
+      std::vector<double> pressure(solid->mesh().boundary.n_owned(), 0);
+      for (Index f = solid->mesh().n_interior; f < solid->mesh().n_flux_faces(); ++f)
+        if (solid->mesh().reference.face_centre[f][1] > 1 - 1e-9)
+          pressure[f - solid->mesh().n_interior] = 3e5;
+      kernel->set_pressure(pressure);
+      compare();
+    }
 }
 
 }  // namespace

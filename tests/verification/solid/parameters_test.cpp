@@ -94,6 +94,32 @@ TEST(SolidParameters, rules_between_keys_are_checked) {
               Contains(AllOf(HasSubstr("case.yaml:6:"), HasSubstr("no effect in a static analysis"))));
 }
 
+TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
+  const std::string start = "mesh: a.msh\nboundaries: {root: {type: fixed-displacement, value: [0, 0, 0]}}\n",
+                    body = "density: 1, youngs-modulus: 1, poissons-ratio: 0.3",
+                    large = "kinematics: finite-strain\n";
+  const auto told = [&](const std::string& text, const std::string& wanted) {
+    SolidParameters p;
+    EXPECT_THAT(read(start + text, p), Contains(HasSubstr(wanted))) << text;
+  };
+  SolidParameters good;
+  EXPECT_THAT(read(start + large + "energy-momentum: true\nmaterial: {" + body +
+                       ", law: yeoh, law-coefficients: [0.1, 0.01]}\n",
+                   good),
+              ::testing::IsEmpty());
+  told(large + "material: {" + body + ", law: yeo}\n", "Did you mean 'yeoh'");
+  told(large + "material: {" + body + ", law: neo-hookean, law-coefficients: [1]}\n",
+       "the law 'neo-hookean' takes none");
+  told(large + "material: {" + body + ", law: mooney-rivlin, law-coefficients: [1, 2]}\n",
+       "c01 / (c10 + c01)");
+  told("material: {" + body + ", law: yeoh}\n", "with 'kinematics: finite-strain' only");
+  told("energy-momentum: true\nmaterial: {" + body + "}\n", "it needs 'kinematics: finite-strain'");
+  told(large + "damping: {stiffness: 1}\nmaterial: {" + body + "}\n", "damps rigid rotations");
+  told(large + "solution-method: {type: segregated}\nmaterial: {" + body + "}\n", "Newton's method");
+  told(large + "output: {spectrum: true}\nmaterial: {" + body + "}\n", "use small-strain");
+  told(large + "interface: {load: pressure}\nmaterial: {" + body + "}\n", "would not follow the surface");
+}
+
 TEST(SolidParameters, plane_stress_has_the_stiffness_of_a_thin_sheet) {
   SolidParameters p;
   p.material = {1, 1, 0.3};
