@@ -13,7 +13,7 @@ namespace couplet {
 namespace {
 
 // Cells below which the rigid motions of aggregates gain nothing, cells an aggregate, and most aggregates.
-constexpr GlobalIndex small_body = 300, cells_of_aggregate = 32;
+constexpr GlobalIndex small_body = 64, cells_of_aggregate = 32;
 constexpr GlobalIndex most_aggregates = 160;
 
 /// The rotation of F = R U by Higham's iteration; I where F is inside out.
