@@ -165,7 +165,8 @@ std::optional<StepFailure> Coupler::attempt(const Step& step) {
     return StepFailure(failure.what(), false);
   } catch (const SolveFailure& failure) {
     // What swings already is not saved by halving.
-    const auto swings = oscillation_guard_.suspects(parameters_.scheme);
+    auto swings = oscillation_guard_.suspects(parameters_.scheme);
+    if (!swings && mechanics_->knows_work()) swings = work_guard_.suspects(parameters_.scheme);
     if (swings && parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
       return StepFailure(fmt::format("{} Before that, {}", failure.what(), *swings), false);
     return failure.what();

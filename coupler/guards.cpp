@@ -132,6 +132,15 @@ std::optional<std::string> OscillationGuard::suspects(Scheme scheme) const {
   return swing(turns_, factor, std::pow(factor, 1. / double(sizes_.size() - 1)), scheme);
 }
 
+std::optional<std::string> WorkGuard::suspects(Scheme scheme) const {
+  if (scheme != Scheme::explicit_ || steps_ < 4 || !(std::abs(fluid_ - structure_) > 0.5 * exchanged_))
+    return {};
+  return fmt::format(
+      "the fluid gave {:.3g} J and the structure took {:.3g} J, more than half of all work apart: the added-mass "
+      "instability of the explicit scheme. `scheme: semi-implicit` or `implicit` iterates it.",
+      fluid_, structure_);
+}
+
 double WorkGuard::Window::apart() const { return std::abs(given - taken); }
 
 std::optional<std::string> WorkGuard::accepted(double fluid, double structure, Scheme scheme) {

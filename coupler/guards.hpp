@@ -65,6 +65,8 @@ class OscillationGuard {
 class WorkGuard {
  public:
   /// Work of a step on both sides [J]. A reason if the two have parted, else nothing.
+  /// When a step cannot be solved: whether the work so far says that the explicit scheme itself made the motion.
+  std::optional<std::string> suspects(Scheme scheme) const;
   std::optional<std::string> accepted(double fluid, double structure, Scheme scheme);
   /// For the end of the run: a sentence with numbers, and whether the balance is sound.
   struct Verdict {

@@ -175,6 +175,16 @@ PlaceReport judge(const Interface& solid, const Interface& fluid) {
   return judge_places(MPI_COMM_SELF, {MPI_COMM_SELF, "solid", solid}, {MPI_COMM_SELF, "fluid", fluid});
 }
 std::string problem(const Interface& solid, const Interface& fluid) { return judge(solid, fluid).problem; }
+TEST(WorkGuard, a_step_that_fails_after_work_has_parted_is_the_schemes_doing) {
+  WorkGuard parted, closed;
+  for (int i = 0; i < 5; ++i)
+    parted.accepted(i % 2 ? 50 : -60, 3, Scheme::explicit_), closed.accepted(4, 3.9, Scheme::explicit_);
+  EXPECT_FALSE(closed.suspects(Scheme::explicit_));
+  EXPECT_FALSE(parted.suspects(Scheme::implicit));
+  for (int i = 0; i < 5; ++i) parted.accepted(-900, 30, Scheme::explicit_);
+  EXPECT_THAT(parted.suspects(Scheme::explicit_).value_or(""), HasSubstr("added-mass instability"));
+}
+
 TEST(Places, surfaces_elsewhere_or_of_another_size_are_refused) {
   EXPECT_THAT(problem(line(10, 1, 0, 2), line(10, 1)), HasSubstr("are not in the same place"));
   EXPECT_THAT(problem(line(10, 1000), line(10, 1)), HasSubstr("one is 1e+03 times as large as the other"));
