@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the modal plate: frequencies, statics, time, contact, energy, coupling with a fluid."""
 import re
+import shutil
 
 import numpy as np
 
@@ -131,6 +132,24 @@ FREQUENCIES, STATICS, DYNAMICS, CONTACT, FILE = ("verification_plate_frequencies
                                                  "verification_plate_dynamics", "verification_plate_contact",
                                                  "verification_plate_modes_file")
 
+def contact_costs_nothing(job):
+    """Functions of the contact that callgrind sees in a run with a seat and in the same run without."""
+    called = {}
+    for name in ("with", "without"):
+        folder = job.scratch / f"callgrind-{name}"
+        folder.mkdir()
+        text = (job.root / "tests/cli/wrong/plate.yaml").read_text()
+        (folder / "case.yaml").write_text(text if name == "with" else re.sub(r".*contact:.*\n?", "", text))
+        shutil.copy(job.root / "tests/cli/wrong/square.msh", folder)
+        result = job.run(["valgrind", "--tool=callgrind", "--callgrind-out-file=counts", job.build / "bin/plate_modal", "case.yaml"], cwd=folder)
+        if result.returncode != 0:
+            raise RuntimeError(result.stderr[-300:])
+        called[name] = set(re.findall(r"couplet::plate::(Contact::\w+|seat_stiffness|Oscillators::solve_contact|PlateResults::write_contact)\(",
+                                      (folder / "counts").read_text()))
+    return f"{len(called['with'])} functions of the contact run with a seat, {len(called['without'])} without", \
+        len(called["with"]) >= 5 and not called["without"]
+
+
 BARS = [
     *[Bar(f"frequencies: {words}, 32 cells a side or rings, from 16", "worst <= 0.5 %, slope >= 1.8",
           lambda job, n=name: frequencies(job, n)) for words, name in PLATES],
@@ -175,6 +194,7 @@ BARS = [
     Bar("stability: the midpoint rule on the same map", "reported",
         lambda job: (f"up to {job.recorded('stability_plate_contact', 'Map', 'midpoint')[0][0]:.3g} times the energy made", None)),
     Bar("effects: damping and gravity off, no seat", "no allocation, no memory of theirs", passes("verification_plate_effects", "Effects")),
+    Bar("effects: no instruction of the contact without a seat (callgrind)", "none", contact_costs_nothing),
     Bar("wrong configurations: exact messages", "pass", ctest("^cli_wrong_configurations$", 1)),
     Bar("thin plate in the flow: first maximum of the tip, plate_modal against solid_solver", "<= 3 %", tip_bar, long=True),
     Bar("thin plate in the flow: frequency", "<= 2 %", frequency_bar, long=True),
