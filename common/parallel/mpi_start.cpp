@@ -58,6 +58,9 @@ void prepare_mpi_start() {
     // while the next one starts in it; a program alone needs neither that folder nor shared memory.
     ::setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   }
+  // Shared file pointers are not used; the default keeps one in the launcher's session folder, which is gone as soon as a
+  // process of the job dies: the others would fail when they open a file and end the job before the culprit is named.
+  ::setenv("OMPI_MCA_sharedfp", "individual", 0);
   ::setenv("OMPI_MCA_pml", "ob1", 0);
   ::setenv("OMPI_MCA_btl", alone ? "self" : "self,vader", 0);
 }

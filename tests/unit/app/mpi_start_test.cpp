@@ -65,6 +65,7 @@ TEST_F(MpiStart, a_job_on_one_machine_uses_shared_memory) {
   start({{"OMPI_COMM_WORLD_SIZE", "4"}, {"OMPI_COMM_WORLD_LOCAL_SIZE", "4"}, {"PMIX_RANK", "1"}});
   EXPECT_EQ(value("OMPI_MCA_ess_singleton_isolated"), "-");
   EXPECT_EQ(value("OMPI_MCA_btl"), "self,vader");
+  EXPECT_EQ(value("OMPI_MCA_sharedfp"), "individual");
 }
 
 TEST_F(MpiStart, a_job_over_several_machines_or_of_another_launcher_is_left_alone) {
