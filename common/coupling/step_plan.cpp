@@ -13,6 +13,10 @@ namespace {
 
 constexpr int least_patience = 2, most_patience = 64;
 
+// A rest of this part of a step is what the digits of the step leave, such as 0.0333333333 s: the last step takes it along. As
+// a step of its own it would be so short that its forces are noise.
+constexpr double rest_taken_along = 1e-6;
+
 /// Nominal steps to the end; what rounding adds to the quotient is no step of its own.
 GlobalIndex count(double end_time, double nominal_dt) {
   const double steps = end_time / nominal_dt;
@@ -20,7 +24,7 @@ GlobalIndex count(double end_time, double nominal_dt) {
     throw Error(
         "From 0 to {:g} s there are {:g} steps of {:g} s; at most {:g} are possible. Is a unit missing?",
         end_time, steps, nominal_dt, StepPlan::most_steps);
-  return static_cast<GlobalIndex>(std::ceil(steps * (1 - 1e-15) - 1e-9));
+  return static_cast<GlobalIndex>(std::ceil(steps * (1 - 1e-15) - rest_taken_along));
 }
 
 }  // namespace
@@ -40,8 +44,9 @@ double StepPlan::nominal_time(GlobalIndex i) const {
 }
 
 double StepPlan::nominal_length() const {
+  if (nominal_ + 1 < n_nominal_) return nominal_dt_;
   const double rest = end_time_ - double(nominal_) * nominal_dt_;
-  return rest < nominal_dt_ * (1 - 1e-9) ? rest : nominal_dt_;
+  return std::abs(rest - nominal_dt_) > 1e-9 * nominal_dt_ ? rest : nominal_dt_;
 }
 
 double StepPlan::time() const {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -35,6 +36,21 @@ TEST(StepPlan, last_step_is_shortened_to_the_end_time) {
   ASSERT_EQ(dt.size(), 3u);
   EXPECT_NEAR(dt[2], 0.05, 1e-15);
   EXPECT_EQ(plan.time(), 0.25);
+}
+
+TEST(StepPlan, last_step_takes_along_what_the_digits_of_the_step_leave) {
+  StepPlan plan(8, 0.033333333333, 6);
+  double sum = 0, least = 1;
+  int n = 0;
+  for (; !plan.finished(); ++n) {
+    sum += plan.dt();
+    least = std::min(least, plan.dt());
+    plan.accepted();
+  }
+  EXPECT_EQ(n, 240);
+  EXPECT_EQ(least, 0.033333333333);
+  EXPECT_NEAR(sum, 8, 1e-13);
+  EXPECT_EQ(plan.time(), 8);
 }
 
 TEST(StepPlan, more_steps_than_an_int_can_count) {
