@@ -66,6 +66,8 @@ class Fluid {
     return step_size_.largest_peclet();
   }
   bool moving() const { return moving_; }
+  /// What limits the steps that follow the accepted state. Collective.
+  StepLimiter step_limiter() { return step_size_.limiter(accepted_, accepted_.implicit); }
 
   /// Null: no immersed bodies.
   const ImmersedBodies<D>* bodies() const { return step_.bodies(); }

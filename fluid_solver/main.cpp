@@ -15,7 +15,8 @@ int main(int argc, char** argv) {
           [&](const couplet::ParticipantContext& context) {
             couplet::Mesh mesh =
                 couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                                   parameters.mesh_parameters, couplet::fluid::periodic_patches(parameters));
+                                   parameters.mesh_parameters, couplet::fluid::periodic_patches(parameters),
+                                   {}, false, parameters.mesh_scale);
             couplet::fluid::MotionLink link;
             if (context.mesh_peer != MPI_COMM_NULL)
               link = [peer = context.mesh_peer](const couplet::Mesh& m) {

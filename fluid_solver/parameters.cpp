@@ -120,6 +120,10 @@ std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& 
 
 void declare(config::Section& s, FluidParameters& p) {
   s.value("mesh", p.mesh).required().doc("mesh file, .msh or .geo, relative to the case's folder");
+  s.value("mesh-scale", p.mesh_scale)
+      .positive()
+      .doc(
+          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("numbers for names that the .geo defines by DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D scene is 1 m deep");

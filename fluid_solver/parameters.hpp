@@ -87,6 +87,7 @@ struct ProbeParameters {
 struct FluidParameters {
   std::string mesh;
   std::map<std::string, double> mesh_parameters;
+  double mesh_scale = 1;
   int dimension = 3;
   double density = 0;    // [kg/m^3]
   double viscosity = 0;  // dynamic [Pa s]

@@ -11,6 +11,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/derived.hpp"
 #include "fluid_solver/effect_cards.hpp"
@@ -26,6 +27,9 @@ constexpr int first_renewal = 3;
 constexpr double largest_unseen_share = 0.01, largest_in_third_pass = 0.05, slow = 0.1;
 // At the end of a step: what a growing oscillation reaches.
 constexpr double near_limit = 0.1;
+
+// Sub-steps of a step over those of the step last told in the log, or the other way round.
+constexpr double most_times_as_many = 2;
 
 // Of the area of an interface: up to here it surrounds a body (the rest is where that is clamped), beyond it
 // is the wall of a cavity.
@@ -262,6 +266,32 @@ Exchange FluidParticipant<D>::solve(const Exchange& in) {
   return forces();
 }
 
+/// One line where a step took many more parts than when it was last told, or many fewer, with the cell that
+/// asks for them.
+template <int D>
+void FluidParticipant<D>::tell_sub_steps() {
+  const int now = fluid_->statistics().sub_steps;
+  const bool as_told =
+      now < most_times_as_many * told_sub_steps_ && told_sub_steps_ < most_times_as_many * now;
+  if (as_told) return;
+  told_sub_steps_ = now;
+  const double end = step_.time + step_.dt;
+  if (const auto own = fluid_->parameters().time_step) {
+    if (comm_rank(mesh_.comm) == 0)
+      log::info("t = {:.6g} s: {} sub-steps of {:.3g} s: time-step is {:.3g} s", end, now, step_.dt / now,
+                *own);
+    return;
+  }
+  const StepLimiter limiter = fluid_->step_limiter();
+  if (comm_rank(mesh_.comm) == 0)
+    log::info(
+        "t = {:.6g} s: {} sub-steps of {:.3g} s; {} in cell {} at ({:.4g}, {:.4g}, {:.4g}) m allows {:.3g} s, of "
+        "which {:.0f} % are used",
+        end, now, step_.dt / now, limiter.friction ? "friction" : "convection", limiter.cell,
+        limiter.place.x(), limiter.place.y(), limiter.place.z(), limiter.limit,
+        100 * fluid_->parameters().safety_factor);
+}
+
 template <int D>
 StepReport FluidParticipant<D>::accept_step() {
   if (step_.scheme == Scheme::semi_implicit) {
@@ -275,6 +305,7 @@ StepReport FluidParticipant<D>::accept_step() {
   const long before = effort();
   displacement_ = trial_displacement_;
   fluid_->accept();
+  tell_sub_steps();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), step_.dt);
   return {.dt = step_.dt, .iterations = effort() - before, .energy = fluid_->state().ledger.energy};

@@ -61,6 +61,7 @@ class FluidParticipant final : public Participant {
   void add_body_velocity(Vectors<D>& w) const;
   std::vector<Vec3> receive_points();
   Exchange forces() const;
+  void tell_sub_steps();
 
   Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;
@@ -80,6 +81,7 @@ class FluidParticipant final : public Participant {
   // Of the interface on a mesh that stands still: largest displacement over the height of the cell there.
   double displacement_ = 0, trial_displacement_ = 0;
   long steps_ = 0, renewed_steps_ = 0;
+  int told_sub_steps_ = 1;     // in the log
   double largest_unseen_ = 0;  // share of the load, of the accepted steps
 };
 

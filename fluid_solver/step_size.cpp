@@ -202,6 +202,34 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
   return {round_down(least[0]), round_down(least[1])};
 }
 
+template <int D>
+StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
+  const Placement<D>& at = *s.placement;
+  add_rates(s, implicit);
+  StepLimiter found{infinity};
+  Index where = -1;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const double convection = rates_[c][0] / at.volume[c];
+    const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
+    const double diffusion = rates_[c][1] / at.volume[c] + eddy;
+    const double size = std::hypot(convection, diffusion);
+    double limit = size > 0 ? explicit_limit(std::atan2(convection, diffusion), scheme_) / size : infinity;
+    if (implicit) {
+      limit = convection > 0 ? implicit_convective_limit(4 / peclet_of_[c]) / convection : infinity;
+      if (eddy > 0)
+        limit = std::min(limit, explicit_limit(std::atan2(convection, eddy)) / std::hypot(convection, eddy));
+    }
+    if (limit >= found.limit) continue;
+    found = {limit, mesh_.cell_id[c], Vec3::Zero(), (implicit ? eddy : diffusion) > convection};
+    where = c;
+  }
+  if (where >= 0) found.place.template head<D>() = at.centre[where];
+  const std::vector<StepLimiter> all = all_gather(mesh_.comm, std::vector<StepLimiter>{found});
+  return *std::ranges::min_element(all, [](const StepLimiter& a, const StepLimiter& b) {
+    return a.limit != b.limit ? a.limit < b.limit : a.cell < b.cell;
+  });
+}
+
 template class StepSize<2>;
 template class StepSize<3>;
 

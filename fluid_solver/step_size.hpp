@@ -15,6 +15,14 @@ struct StepLimits {
   double implicit_viscous = 0;
 };
 
+/// The cell whose limit is the least, and why.
+struct StepLimiter {
+  double limit = 0;  ///< [s], before the safety factor
+  GlobalIndex cell = -1;
+  Vec3 place = Vec3::Zero();  ///< [m]
+  bool friction = false;      ///< else convection has the larger share in its rate
+};
+
 /// Eigenvalue bounds (Gershgorin) per cell, c = sum |phi - dV/dt| / (2 V) of convection and d = 2 nu sum g /
 /// V of diffusion, against the stability regions of AB2 or RK3 (all explicit) and of the modified
 /// Crank-Nicolson / AB2 pair. The same on any number of ranks: rounded to six digits. Collective.
@@ -24,6 +32,8 @@ class StepSize {
   StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
            ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
   StepLimits limits(const State<D>& state);
+  /// Of limits(), for one treatment of the viscous term; one more loop over faces and cells. Collective.
+  StepLimiter limiter(const State<D>& state, bool implicit);
   /// StepLimits::explicit_viscous < `size`? Where one face is stiff enough to say so nothing else is looked
   /// at. Collective.
   bool explicit_viscous_limit_is_below(double size, const State<D>& state);

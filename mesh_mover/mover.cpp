@@ -17,7 +17,7 @@ namespace {
 
 Mesh load_checked(const Parameters& parameters, const ParticipantContext& context) {
   Mesh mesh = load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                        parameters.mesh_parameters);
+                        parameters.mesh_parameters, {}, {}, false, parameters.mesh_scale);
   std::string patches;
   for (const Patch& p : mesh.patches) patches += (patches.empty() ? "'" : ", '") + p.name + "'";
   for (const auto& [name, boundary] : parameters.boundaries)

@@ -74,6 +74,10 @@ void declare_method(config::Section& s, Parameters& p) {
 
 void declare(config::Section& section, Parameters& p) {
   section.value("mesh", p.mesh).required().doc("mesh file of the fluid (.msh, or .geo to be meshed by gmsh)");
+  section.value("mesh-scale", p.mesh_scale)
+      .positive()
+      .doc(
+          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
   section.value("mesh-parameters", p.mesh_parameters)
       .doc("numbers for names that the .geo defines by DefineConstant; the same as the fluid's");
   section.value("dimension", p.dimension).range(2, 3).required().doc("2 or 3");

@@ -56,6 +56,7 @@ struct GuardParameters {
 struct Parameters {
   std::string mesh;
   std::map<std::string, double> mesh_parameters;
+  double mesh_scale = 1;
   int dimension = 3;
   Method method = Method::laplacian;
   Form form = Form::automatic;

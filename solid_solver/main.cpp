@@ -16,7 +16,8 @@ int main(int argc, char** argv) {
       .make = [&](const couplet::ParticipantContext& context) -> std::unique_ptr<couplet::Participant> {
         couplet::Mesh mesh =
             couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                               parameters.mesh_parameters, {}, couplet::zones_of(parameters.materials), true);
+                               parameters.mesh_parameters, {}, couplet::zones_of(parameters.materials), true,
+                               parameters.mesh_scale);
         const couplet::SolidContext where{context.name, context.output_folder, context.restart_time};
         if (parameters.analysis == couplet::SolidParameters::Analysis::thermal)
           return std::make_unique<couplet::ThermalSolid>(std::move(mesh), parameters, where);

@@ -197,6 +197,10 @@ void declare(config::Section& s, SolidParameters& p) {
   using Analysis = SolidParameters::Analysis;
   using Plane = SolidParameters::Plane;
   s.value("mesh", p.mesh).required().doc("mesh file, .msh or .geo, relative to the YAML");
+  s.value("mesh-scale", p.mesh_scale)
+      .positive()
+      .doc(
+          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("numbers for names that the .geo defines by DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");

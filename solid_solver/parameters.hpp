@@ -24,6 +24,7 @@ struct SolidParameters {
   enum class Kinematics { small_strain, finite_strain };
   std::string mesh;
   std::map<std::string, double> mesh_parameters;
+  double mesh_scale = 1;
   int dimension = 3;
   Plane plane = Plane::strain;
   Analysis analysis = Analysis::dynamic;

@@ -46,8 +46,8 @@ class FileCheck {
         check_patches(read_msh(file).patches);
       } else if (file.extension() == ".geo") {
         check_geo(read_geo(file));
-      } else {
-        report("mesh", fmt::format("'{}' is neither .msh nor .geo.", name));
+      } else if (const auto kind = file.extension(); kind != ".unv" && kind != ".med" && kind != ".cgns") {
+        report("mesh", fmt::format("'{}' is neither .msh nor .geo, .unv, .med or .cgns.", name));
       }
     } catch (const Error& error) {
       report("mesh", error.what());

@@ -3,6 +3,7 @@
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
+#include "common/mesh/gmsh.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/on_root.hpp"
 #include "common/mesh/quality.hpp"
@@ -27,25 +28,33 @@ RawMesh read_geo_mesh(const std::filesystem::path& geo, int dim, const MeshParam
 
 Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const MeshParameters& parameters,
                const std::vector<std::array<std::string, 2>>& periodic,
-               const std::vector<std::vector<std::string>>& materials, bool find_wide_points) {
+               const std::vector<std::vector<std::string>>& materials, bool find_wide_points, double scale) {
   RawMesh raw;
   on_root(comm, [&] {
     if (!std::filesystem::is_regular_file(file))
       throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
                   file.string());
     const std::string kind = file.extension().string();
-    if (kind != ".msh" && kind != ".geo")
+    const bool foreign = kind == ".unv" || kind == ".med" || kind == ".cgns";
+    if (kind == ".inp" || kind == ".vtk")
       throw Error(
-          "The mesh file '{}' is neither .msh nor .geo. Convert it with gmsh or meshio to .msh 4.1 with "
-          "physical names.",
+          "The mesh file '{}' cannot be read: gmsh writes {} but {}. Convert it with meshio to .msh 4.1 with physical "
+          "names, or have it written as .unv, whose groups become patches and zones.",
+          file.string(), kind, kind == ".inp" ? "does not read it" : "its parts have no names there");
+    if (kind != ".msh" && kind != ".geo" && !foreign)
+      throw Error(
+          "The mesh file '{}' is neither .msh nor .geo, .unv, .med or .cgns. Convert it with gmsh or meshio to .msh 4.1 "
+          "with physical names.",
           file.string());
-    if (kind == ".msh" && !parameters.empty())
+    if (kind != ".geo" && !parameters.empty())
       throw Error(
           "The mesh '{}' is finished, so 'mesh-parameters' cannot change it. Leave them out, or give the "
           ".geo "
           "it was made from.",
           file.string());
-    raw = kind == ".geo" ? read_geo_mesh(file, dim, parameters) : read_msh(file);
+    raw =
+        kind == ".geo" ? read_geo_mesh(file, dim, parameters) : read_msh(foreign ? convert_mesh(file) : file);
+    for (Vec3& x : raw.points) x *= scale;
     if (raw.cell_type.empty())
       throw Error("The mesh '{}' has no cells. Put the {} into a physical group, else gmsh does not save {}.",
                   file.string(), dim == 2 ? "surface" : "volume", dim == 2 ? "its triangles" : "its cells");

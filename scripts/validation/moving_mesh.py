@@ -159,7 +159,7 @@ def steady_coefficients(job):
     cell = "{cylinder: {patches: [cylinder], speed: 0.2, area: 0.1, centre: [0.2, 0.2, 0], length: 0.1}}"
     folder, _ = job.solve("fluid_solver", "cylinder", (
         "participants.fluid.mesh-parameters.n=24", "participants.fluid.boundaries.inlet.velocity=[\"1.2*y*(0.41-y)/0.41^2\", 0]",
-        "simulation.end-time=8", "simulation.output.interval=8", "simulation.time-step=0.033333333333",
+        "simulation.end-time=8", "simulation.output.interval=8", "simulation.time-step=0.032",
         f"participants.fluid.output.coefficients={cell}"))
     rows = couplet.read_csv(folder / "fluid" / "coefficients.csv")
     drag, lift = rows["cylinder drag [-]"][-1], rows["cylinder lift [-]"][-1]

@@ -114,11 +114,38 @@ TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
   EXPECT_EQ(error(folder / "none.msh", 3),
             "The mesh file '" + (folder / "none.msh").string() +
                 "' does not exist. The path is relative to the folder of the YAML file.");
-  EXPECT_THAT(error(write("mesh.vtk", ""), 3), HasSubstr("is neither .msh nor .geo."));
+  EXPECT_THAT(error(write("mesh.stl", ""), 3), HasSubstr("is neither .msh nor .geo, .unv, .med or .cgns."));
+  // gmsh would take both for scripts.
+  EXPECT_THAT(error(write("mesh.vtk", ""), 3), HasSubstr("its parts have no names there"));
+  EXPECT_THAT(error(write("mesh.inp", ""), 3), HasSubstr("gmsh writes .inp but does not read it"));
   EXPECT_THAT(error(test::data / "plane_41_ascii.msh", 3),
               HasSubstr("is 2-dimensional, but 'dimension: 3' is asked for."));
   EXPECT_THAT(error(write("bad.msh", "hello"), 3),
               HasSubstr("bad.msh:1: Expected a section such as $Nodes here"));
+}
+
+TEST_F(LoadMesh, reads_unv_by_gmsh_with_its_groups_as_patches_and_scales_lengths) {
+  const std::filesystem::path copy = folder / "millimetres.unv";
+  if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::copy(test::data / "millimetres.unv", copy);
+  MPI_Barrier(MPI_COMM_WORLD);
+  const Mesh mesh = load_mesh(MPI_COMM_WORLD, copy, 2, {}, {}, {}, false, 0.001);
+  EXPECT_EQ(mesh.cells.n_global(), 4);
+  ASSERT_EQ(mesh.patches.size(), 2u);
+  EXPECT_NE(mesh.find_patch("floor"), nullptr);
+  EXPECT_NE(mesh.find_patch("sides"), nullptr);
+  double volume = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
+  EXPECT_NEAR(sum(MPI_COMM_WORLD, volume), 1, 1e-12);  // 1000 mm x 1000 mm x 1 m
+  EXPECT_THAT(test::error_of([&] {
+                load_mesh(MPI_COMM_WORLD, copy, 2, {{"h", 1}});
+              }),
+              HasSubstr("'mesh-parameters' cannot change it"));
+}
+
+TEST_F(LoadMesh, a_format_that_this_gmsh_was_built_without_is_refused_before_gmsh_takes_it_for_a_script) {
+  const std::string text = error(write("mesh.med", "SystemCall \"touch intruder\";"), 2);
+  EXPECT_FALSE(text.empty());
+  EXPECT_FALSE(std::filesystem::exists("intruder"));
 }
 
 TEST_F(LoadMesh, tells_what_gmsh_did_not_understand) {
@@ -135,9 +162,10 @@ TEST_F(LoadMesh, tells_how_to_install_gmsh_when_it_is_missing) {
   setenv("PATH", folder.c_str(), 1);
   const std::string text = error(write("square.geo", "h = 0.3;\n" + square), 2);
   setenv("PATH", path.c_str(), 1);
-  EXPECT_EQ(text,
-            "A .geo is meshed by the program 'gmsh', which is not on the PATH. Install it (Debian: apt "
-            "install gmsh) or give a .msh file instead.");
+  EXPECT_EQ(
+      text,
+      "A mesh that is no .msh is read by the program 'gmsh', which is not on the PATH. Install it (Debian: "
+      "apt install gmsh) or give a .msh file instead.");
 }
 
 TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {

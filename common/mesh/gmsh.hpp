@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace couplet {
+
+/// Runs the gmsh program on `source` with these options; its .msh 4.1 gets the name `result` once it is whole. Several
+/// programs of a job may do so at the same time. `verb`: for messages, "mesh" or "read". Throws Error with gmsh's own
+/// complaints.
+void run_gmsh(const std::vector<std::string>& options, const std::filesystem::path& source,
+              const std::filesystem::path& result, const std::string& verb);
+
+/// A mesh of another program (.unv; .med and .cgns where the gmsh at hand was built with them) as .msh, kept beside it as
+/// <stem>.<hash>.cache.msh; groups become patches and zones. Throws Error for a format that gmsh does not read.
+std::filesystem::path convert_mesh(const std::filesystem::path& file);
+
+}  // namespace couplet
