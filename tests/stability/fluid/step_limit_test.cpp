@@ -82,5 +82,30 @@ TEST(StepLimit, of_a_cavity_keeps_it_steady_and_leaves_less_than_a_third_unused)
   EXPECT_GT(speed_in_cavity(1.3, ViscousTreatment::explicit_), 1.05);
 }
 
+/// Who is named as the cell that limits the step has the limit of the step, and is where the cells are small.
+TEST(StepLimit, the_cell_that_limits_the_step_is_named_with_its_place_and_the_reason) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {20, 4, 1}, Vec3::Zero(), Vec3(1, 1, 1));
+  for (Vec3& x : raw.points) x.x() = std::pow(x.x(), 2);  // small cells at x = 0
+  for (const bool viscous : {false, true}) {
+    FluidParameters p;
+    p.density = 1;
+    p.viscosity = viscous ? 1 : 1e-6;
+    p.viscous = ViscousTreatment::explicit_;
+    p.initial_velocity = {{"1"}, {"0"}};
+    p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"1", "0"});
+    p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+    p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::slip);
+    FluidCase<2> c(MPI_COMM_WORLD, raw, p);
+    StepSize<2> sizes(c.mesh(), c.fluid().boundary(), p.viscosity / p.density);
+    const double limit = sizes.limits(c.state()).explicit_viscous;
+    const StepLimiter found = sizes.limiter(c.state(), false);
+    EXPECT_NEAR(found.limit, limit, 1e-5 * limit);  // that is rounded down to six digits
+    EXPECT_LT(found.place.x(), 0.0026);             // in the first column of cells
+    EXPECT_EQ(found.friction, viscous);
+    const double implicit = sizes.limits(c.state()).implicit_viscous;
+    EXPECT_NEAR(sizes.limiter(c.state(), true).limit, implicit, 1e-5 * implicit);
+  }
+}
+
 }  // namespace
 }  // namespace couplet::fluid::test
