@@ -8,6 +8,7 @@
     for event in c:                                     # "begin", "solve", "accept", "output", "save", "load"
         if event == "solve": c.write("displacement", motion(c.read("pressure-force")))
 """
+import atexit
 import math
 import struct
 import sys
@@ -92,6 +93,14 @@ class Client:
         order = list(dict.fromkeys(participants))
         self.comm = world.Split(order.index(participant), world.rank)
         self._coupler = self.comm.Create_intercomm(0, world, participants.index("coupler"), JOIN_TAG)
+        self._over = False
+        atexit.register(self._leave)
+
+    def _leave(self):
+        """A program that ends before the job (an exception, sys.exit) takes the job along: MPI_Finalize would wait for ever."""
+        if not self._over and not MPI.Is_finalized():
+            sys.stdout.flush()
+            self._end(f"participant '{self.participant}' ended before the job was over")
 
     @staticmethod
     def _all_strings(world, mine):
@@ -129,6 +138,7 @@ class Client:
             if self._pending:
                 self._send_reply()
                 if self.operation == FINALISE:
+                    self._over = True
                     return None
             self._receive_command()
             if self.operation in EVENTS:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs of other people in a job: the examples in C++, C and Python with the real fluid, from the build and from an
 installed prefix, on several ranks of the coupler and over a restart; what goes wrong is said.
-Usage: run.py PROJECT BUILD MPIRUN... -- [examples | install | handshake]"""
+Usage: run.py PROJECT BUILD MPIRUN... -- [examples | install | handshake | fenicsx]"""
 import os
 import pathlib
 import shutil
@@ -121,6 +121,54 @@ def handshake():
         check("so is who is missing", "participant 'body' (spring_cylinder) is missing" in said.stderr + said.stdout)
 
 
-{"examples": examples, "install": install, "handshake": handshake}[what]()
+    with tempfile.TemporaryDirectory() as folder:
+        # A program of Python that fails in the middle: MPI_Finalize alone would wait for the others for ever.
+        broken = pathlib.Path(folder) / "broken.py"
+        text = (project / "client/examples/spring_cylinder.py").read_text()
+        broken.write_text(text.replace('if event == "solve":', 'if event == "solve":\n            1 / 0', 1))
+        parameters = ["body", *parameters[1:]]
+        said = run(folder, ["/usr/bin/python3", broken], code=1)
+        check("its traceback is there", "ZeroDivisionError" in said.stderr)
+        check("and who left", "participant 'body' ended before the job was over" in said.stderr)
+
+
+def fenicsx():
+    """The flap of FEniCSx instead of solid_solver, by the launch line alone."""
+    if subprocess.run(["/usr/bin/python3", "-c", "import dolfinx"], capture_output=True).returncode:
+        print("skipped: no DOLFINx here (Debian: python3-dolfinx)")
+        return
+    flap = project / "configs/perpendicular-flap"
+    guest = ["--set", "participants.solid={program: flap_fenicsx}"]
+    python = ["/usr/bin/python3", project / "client/examples/flap_fenicsx.py", "solid"]
+
+    def coupled(folder, solid, end, *options):
+        words = ["--set", f"simulation.end-time={end}", "--set", "simulation.checkpoint.interval=0.02", *options]
+        command = list(mpirun)
+        for program in ("coupler", "fluid_solver", "mesh_mover"):
+            command += ["-n", "1", build / "bin" / program, "case.yaml", *words, ":"]
+        command += ["-n", "1", *(solid or [build / "bin/solid_solver", "case.yaml", *words])]
+        for file in ("case.yaml", "fluid.geo", "solid.geo"):
+            shutil.copy(flap / file, folder)
+        done = subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, timeout=600, env=environment)
+        if done.returncode:
+            print(done.stdout[-3000:], done.stderr[-3000:])
+        check("exit code 0", done.returncode == 0, str(done.returncode))
+        return pathlib.Path(folder)
+
+    def tips(file):
+        return [float(line.split(",")[1]) for line in file.read_text().splitlines() if not line.startswith("time")]
+
+    with tempfile.TemporaryDirectory() as folder:
+        theirs = tips(coupled(folder, python, 0.03, *guest) / "solid.csv")
+        again = tips(coupled(folder, python, 0.03, *guest, "--restart", "out/checkpoints/step-00000002") / "solid.csv")
+        check("restart continues bit for bit", again == theirs[2:], f"{again} {theirs[2:]}")
+    with tempfile.TemporaryDirectory() as folder:
+        ours = tips(coupled(folder, None, 0.03) / "out/solid/probes.csv")[-1]
+        check("tip within 1 % of solid_solver", abs(theirs[-1] / ours - 1) < 0.01, f"{theirs[-1]} {ours}")
+    n = len((project / "client/examples/flap_fenicsx.py").read_text().splitlines())
+    check("flap_fenicsx.py takes less than 80 lines", n < 80, str(n))
+
+
+{"examples": examples, "install": install, "handshake": handshake, "fenicsx": fenicsx}[what]()
 print(f"{len(failed)} checks failed" if failed else "all checks passed")
 sys.exit(1 if failed else 0)
