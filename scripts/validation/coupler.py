@@ -8,6 +8,7 @@ import couplet_series as couplet
 from validation.job import Bar
 from validation.main_job import FLAP, steps_of
 from validation.parts.coupler_runs import RUNS
+from validation.parts.coupler_strangers import STRANGERS, TUBE_1D
 
 RAMP = ["participants.fluid.boundaries.inlet.ramp=0.4"]
 LIGHT = [*RAMP, "participants.solid.material.density=1", "simulation.output.interval=1", "simulation.checkpoint.interval=10"]
@@ -169,9 +170,9 @@ def not_run(job):
 
 
 TUBES = [
-    Bar("1-D tube: coupling error against the monolithic solution at the same step", "below 1e-4", not_run, long=True),
+    TUBE_1D,
     Bar("3-D tube, dt 1e-4 s, relative 1e-6: IQN-ILS with reuse", "at most 9.1 iterations on average", not_run, long=True),
     Bar("3-D tube with unequal meshes", "within 1 % of matching", not_run, long=True),
 ]
 
-BARS = [*ADDED_MASS, *STRING, *ACCELERATION, *MAPPING, *TUBES, *RUNS]
+BARS = [*ADDED_MASS, *STRING, *ACCELERATION, *MAPPING, *TUBES, *RUNS, *STRANGERS]

@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 
+OURS = ("solid_solver", "fluid_solver", "mesh_mover", "coupler", "plate_modal", "thermocline")
 configs, programs = map(pathlib.Path, sys.argv[1:3])
 cases = sorted(configs.glob("*/case.yaml"))
 failed = 0 if cases else 1
@@ -20,6 +21,9 @@ for case in cases:
     if re.search(r"^coupling:", text, flags=re.M):
         jobs.append(["coupler", str(case), "--check"])
     for job in jobs:
+        if not (programs / job[0]).exists() and job[0] not in OURS:
+            print(f"{case.parent.name}: {job[0]}: a program of somebody else")
+            continue
         result = subprocess.run([str(programs / job[0]), *job[1:]], capture_output=True, text=True)
         verdict = "valid" if result.returncode == 0 else f"exit code {result.returncode}\n{result.stdout}{result.stderr}"
         print(f"{case.parent.name}: {job[0]}: {verdict}")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs of other people in a job: the examples in C++, C and Python with the real fluid, from the build and from an
 installed prefix, on several ranks of the coupler and over a restart; what goes wrong is said.
-Usage: run.py PROJECT BUILD MPIRUN... -- [examples | install | handshake | fenicsx]"""
+Usage: run.py PROJECT BUILD MPIRUN... -- [examples | install | handshake | fenicsx | tube]"""
 import os
 import pathlib
 import shutil
@@ -169,6 +169,30 @@ def fenicsx():
     check("flap_fenicsx.py takes less than 80 lines", n < 80, str(n))
 
 
-{"examples": examples, "install": install, "handshake": handshake, "fenicsx": fenicsx}[what]()
+def tube():
+    """Both participants from elsewhere: the tube in one dimension against its monolithic solution; restart with the history
+    of the quasi-Newton method."""
+    sys.path.insert(0, str(project / "configs/tube-1d"))
+    import tube as model
+    wanted = model.monolithic(8)[:, 1]
+
+    def coupled(folder, *options):
+        done = subprocess.run([project / "configs/tube-1d/run", "--set", f"simulation.output.folder={folder}/out", "--set",
+                               "simulation.end-time=0.08", "--set", "simulation.checkpoint.interval=0.04", *options], cwd=folder,
+                              capture_output=True, text=True, timeout=300, env=dict(environment, COUPLET_BIN=str(build / "bin")))
+        if done.returncode:
+            print(done.stdout[-3000:], done.stderr[-3000:])
+        check("exit code 0", done.returncode == 0, str(done.returncode))
+        return [float(line.split(",")[1]) for line in (pathlib.Path(folder) / "tube.csv").read_text().splitlines()]
+
+    with tempfile.TemporaryDirectory() as folder:
+        pressure = coupled(folder)
+        off = max(abs(a - b) for a, b in zip(pressure, wanted)) / max(abs(wanted))
+        check("pressure of the monolithic solution", len(pressure) == 8 and off < 1e-4, f"{off:.1e}")
+        again = coupled(folder, "--restart", f"{folder}/out/checkpoints/step-00000004")
+        check("restart continues bit for bit", again == pressure[4:], f"{again} {pressure[4:]}")
+
+
+{"examples": examples, "install": install, "handshake": handshake, "fenicsx": fenicsx, "tube": tube}[what]()
 print(f"{len(failed)} checks failed" if failed else "all checks passed")
 sys.exit(1 if failed else 0)
