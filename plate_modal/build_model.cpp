@@ -52,7 +52,7 @@ std::string key_of(const PlateModel& plate, const Parameters& p) {
   const Midsurface& s = plate.surface();
   Key key;
   key.add(double(model_version));
-  key.add(double(p.n_modes));
+  key.add(double(p.n_modes()));
   for (const Vec2& x : s.points) key.add(x.x()), key.add(x.y());
   key.add(s.cells.offset);
   key.add(s.cells.index);
@@ -118,13 +118,13 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
     built.reused = true;
     return;
   }
-  const EigenModes modes = plate.modes(p.n_modes);
+  const EigenModes modes = plate.modes(p.n_modes());
   if (cuts_a_group(modes, 1e-3))
     built.note = fmt::format(
         "modes {} and {} have the same frequency, and only the first is kept: the plate answers differently "
         "in "
         "directions that should be alike. Keep one more or one less.",
-        p.n_modes, p.n_modes + 1);
+        p.n_modes(), p.n_modes() + 1);
   built.model = skin_of(plate, modes, p.placement, p.wetted, open_patches(plate.surface(), p));
   // Rigid motions come with the rounding of the stiffness: they are none.
   const double least = std::sqrt(1e-6 * plate.frequency_scale()) / (2 * std::numbers::pi);

@@ -16,6 +16,7 @@ struct PlateContext {
   std::string name = "plate";
   std::filesystem::path case_folder, output_folder;  ///< output empty: nothing is written
   double restart_time = std::numeric_limits<double>::quiet_NaN();
+  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< of the run; NaN: not known
 };
 
 /// What the configuration describes, on rank 0 (the model is empty elsewhere).

@@ -31,6 +31,19 @@ class Contact final {
   /// Energy, penetration and total alone, at rest in q. Collective.
   void look(std::span<const double> q, Result& result) const;
 
+  /// Where the structure stands deepest in the seat with the displacement q.
+  struct Place {
+    double depth = 0;            ///< [m]; not above 0: nowhere
+    Vec3 centre = Vec3::Zero();  ///< of the face, undeformed [m]
+  };
+  Place deepest(std::span<const double> q) const;  ///< Collective.
+  /// What an impact sees of the seat: kappa over mass [1/s^2] in the direction of its force on the modes, of the
+  /// faces that touch at either end of the step. 0: none. Collective.
+  double stiffness_of_impact(std::span<const double> from, std::span<const double> q,
+                             const Eigen::VectorXd& force) const;
+  /// The largest that any impact can see [1/s^2]: with all faces. Collective.
+  double largest_stiffness() const;
+
   std::size_t n_faces() const { return gap_.size(); }  ///< of this rank
   bool is_conserving() const { return rule_ == ContactRule::conserving; }
 
@@ -39,6 +52,8 @@ class Contact final {
 
   const Share& share_;
   ContactRule rule_;
+  void refuse_sliding(const Vec3& direction, std::span<const std::size_t> faces) const;
+  std::vector<Vec3> centre_;
   std::vector<double> gap_, kappa_, shape_;  // per face: at rest [m], [N/m], along the direction (modes)
   int n_modes_;
 };

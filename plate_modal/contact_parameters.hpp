@@ -20,6 +20,7 @@ struct ContactParameters {
   std::vector<double> direction;              ///< from the seat to the structure; empty: the plate's normal
   double scale = 1;                           ///< f_SI of (4.33)
   std::optional<double> stiffness;            ///< kappa per area [N/m^3]; absent: (4.33)
+  bool starts_inside = false;                 ///< the structure may stand in the seat at the start
   ContactRule rule = ContactRule::conserving;
 };
 

@@ -3,8 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+
+#include "plate_modal/build_model.hpp"
 
 namespace couplet::plate {
 namespace {
@@ -40,11 +44,70 @@ V judge_stretch(const S&, const E& e) {
 
 // Mindlin's plate against Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5 (1 - nu)))
 // of it, omega by 2 % where half a wave, pi / k, is ten thicknesses long.
-V judge_shear(const S&, const E& e) {
+V judge_shear(const S& s, const E& e) {
   return verdict(e.thickness_over_wave, 0.1,
-                 fmt::format("half a wave of the highest mode kept is {:.3g} thicknesses long",
-                             1 / std::max(e.thickness_over_wave, 1e-300)),
+                 fmt::format("the thickness is {:.2g} of half a wave of the highest mode {}",
+                             e.thickness_over_wave, is_dynamic(s) ? "with 1 % of the motion" : "kept"),
                  "such modes are softened by shear and rotary inertia: keep fewer, or take a volume");
+}
+
+// Ten steps a period make the trapezoidal rule's 3 % too long, and a mode that swings at another frequency than its
+// own answers a load as another structure would.
+V judge_step(const S&, const E& e) {
+  const StepEvidence& step = e.step;
+  if (!(step.coarse_share > 0))
+    return verdict(step.coarse_share, 0.1, "no mode that swings has less than ten steps a period", "");
+  return verdict(
+      step.coarse_share, 0.1,
+      fmt::format("modes with less than ten steps a period (first of all mode {}: {:.2g} steps) swing with "
+                  "{:.2g} of the displacement (rms)",
+                  step.coarse_mode, step.steps_a_period, step.coarse_share),
+      fmt::format("they swing at another frequency than the structure: take 'simulation.time-step: {:.2g} s'",
+                  step.recommended_step));
+}
+
+V judge_resonance(const S&, const E& e) {
+  const StepEvidence& step = e.step;
+  return verdict(
+      step.resonance_error, 0.1,
+      fmt::format("the load drives mode {} {:.2g} times as far as without inertia, where the step's error of "
+                  "its frequency makes {:.2g} of the displacement",
+                  step.resonant_mode, step.amplification, step.resonance_error),
+      fmt::format("take 'simulation.time-step: {:.2g} s'", step.resonant_step));
+}
+
+V judge_load(const S&, const E& e) {
+  return verdict(
+      e.step.load_apart, 0.1,
+      fmt::format("the load in the middle of a step and its mean over the step are {:.2g} of the load apart "
+                  "(rms)",
+                  e.step.load_apart),
+      "the step does not see how the load changes: take ten steps or more a period of the load");
+}
+
+// A body on a seat: the time of an impact is wrong by a third of a step and its speed after it by as much of the
+// impact; twenty steps a contact are 1 % (docs/plate.md).
+V judge_contact(const S&, const E& e) {
+  return verdict(
+      e.step.contact_share, 0.1,
+      fmt::format("an impact on the seat lasts {:.2g} s (pi sqrt(m / kappa)), a step {:.2g} of that",
+                  e.step.contact_time, e.step.contact_share),
+      fmt::format("the rebound is not resolved: take 'simulation.time-step: {:.2g} s', or a softer seat",
+                  e.step.contact_time / 20));
+}
+
+/// What a contact over the whole of a plate lasts at least, and the steps in it; modes of a file tell it in a run.
+std::string contact_asked_by(const S& s) {
+  const Parameters& p = s.parameters;
+  if (!p.contact) return "";
+  if (!p.mesh || !(p.thickness > 0) || std::isnan(s.time_step)) return "contact";
+  const double kappa = p.contact->stiffness.value_or(p.contact->scale * seat_stiffness(p));
+  double mass = p.material.density * p.thickness;
+  for (const auto& [name, zone] : p.zones)
+    mass = std::min(mass, zone.density.value_or(p.material.density) * zone.thickness.value_or(p.thickness));
+  const double shortest = std::numbers::pi * std::sqrt(mass / kappa);
+  return fmt::format("contact: an impact lasts {:.2g} s or longer, {:.2g} steps; twenty are good", shortest,
+                     shortest / s.time_step);
 }
 
 V judge_energy(const S&, const E& e) {
@@ -67,23 +130,51 @@ const std::array cards{
               "mismatch over the largest energy, 0.01",
               judge_energy,
               true},
+    PlateCard{"step that resolves the modes",
+              "`analysis: dynamic`",
+              [](const S& s) { return when(is_dynamic(s), "analysis: dynamic"); },
+              {},
+              "swings of modes with less than ten steps a period over the displacement, 0.1",
+              judge_step,
+              true},
+    PlateCard{"step near a resonance",
+              "`analysis: dynamic`",
+              [](const S& s) { return when(is_dynamic(s), "analysis: dynamic"); },
+              {},
+              "error of the frequency x 2 x amplification of a changing load, of the displacement, 0.1",
+              judge_resonance,
+              true},
+    PlateCard{"step that resolves the load",
+              "`load`",
+              [](const S& s) { return when(is_dynamic(s) && s.parameters.load.has_value(), "load"); },
+              {},
+              "load in the middle of a step against its mean over the step, 0.1",
+              judge_load,
+              true},
+    PlateCard{"step that resolves the contact",
+              "`contact`",
+              [](const S& s) { return when(s.parameters.contact.has_value(), "contact"); },
+              {},
+              "a step over the duration of an impact, 0.1",
+              judge_contact,
+              true},
     PlateCard{"large rotation",
-              "not available here",
+              "no key: not in the model",
               [](const S&) { return std::string(); },
               {},
               "largest displacement over the structure's size, 0.25",
               judge_rotation},
     PlateCard{"stretch of the mid-surface",
-              "not available here",
+              "no key: not in the model",
               [](const S&) { return std::string(); },
               {},
               "of a plate held all round: deflection over thickness, 0.5",
               judge_stretch},
     PlateCard{"shear and rotary inertia",
-              "not available here",
+              "no key: not in the model",
               [](const S&) { return std::string(); },
               {},
-              "thickness over half the wave of the highest mode kept, 0.1",
+              "thickness over half the wave of the highest mode with 1 % of the motion, 0.1",
               judge_shear},
     PlateCard{"damping",
               "`damping`",
@@ -96,7 +187,7 @@ const std::array cards{
     PlateCard{
         "contact with a seat",
         "`contact`",
-        [](const S& s) { return when(s.parameters.contact.has_value(), "contact"); },
+        contact_asked_by,
         {"the shapes of the faces that look at the seat, a full matrix of the modes; contact.csv", 0, 0}},
     PlateCard{"pressures of the case",
               "`load`",

@@ -6,6 +6,7 @@
 
 #include "common/effects/card.hpp"
 #include "plate_modal/parameters.hpp"
+#include "plate_modal/resolution.hpp"
 
 namespace couplet::plate {
 
@@ -13,6 +14,7 @@ namespace couplet::plate {
 struct PlateScene {
   Parameters parameters;
   bool coupled = false;
+  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: not known
 };
 
 /// What a run has seen. NaN: not seen, or no question for this structure.
@@ -20,8 +22,10 @@ struct PlateEvidence {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double displacement_over_size = unknown;       ///< of a structure that is held
   double displacement_over_thickness = unknown;  ///< of a plate that is held all round
-  double thickness_over_wave = unknown;  ///< thickness over half the wave length of the highest mode kept
-  double energy_mismatch = unknown;      ///< of the largest energy, thesis (4.29)-(4.31)
+  double thickness_over_wave =
+      unknown;  ///< over half the wave length of the highest mode that moves, or that is kept
+  double energy_mismatch = unknown;  ///< of the largest energy, thesis (4.29)-(4.31)
+  StepEvidence step{};
 };
 
 using PlateCard = EffectCard<PlateScene, PlateEvidence>;

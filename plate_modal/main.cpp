@@ -12,13 +12,14 @@ int main(int argc, char** argv) {
       .make =
           [&](const couplet::ParticipantContext& c) {
             return std::make_unique<couplet::plate::Structure>(
-                parameters,
-                couplet::plate::PlateContext{c.comm, c.name, c.case_folder, c.output_folder, c.restart_time});
+                parameters, couplet::plate::PlateContext{c.comm, c.name, c.case_folder, c.output_folder,
+                                                         c.restart_time, c.simulation.time_step});
           },
       .effects =
           [&](const couplet::EffectScene& scene) {
-            return couplet::effects_of(couplet::plate::plate_effect_cards(),
-                                       couplet::plate::PlateScene{parameters, scene.coupled});
+            return couplet::effects_of(
+                couplet::plate::plate_effect_cards(),
+                couplet::plate::PlateScene{parameters, scene.coupled, scene.time_step});
           }};
   return couplet::run_program(argc, argv, program);
 }

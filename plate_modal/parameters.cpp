@@ -73,9 +73,21 @@ void declare_modes(config::Section& s, Parameters& p) {
   s.section(
       "modes",
       [&](config::Section& m) {
-        m.value("number", p.n_modes).range(1, 10000).doc("of modes kept, the lowest first");
+        m.value("number", p.number)
+            .range(1, 10000)
+            .doc("of modes of a mesh that are kept, the lowest first; absent: 15");
+        m.check(
+            [&] { return p.number && *p.number != std::floor(*p.number) ? "a whole number is needed" : ""; },
+            "number");
         m.value("file", p.modes_file)
             .doc("modes that another program wrote (docs/formats.md), in place of 'mesh'");
+        m.check(
+            [&] {
+              return p.modes_file && !p.mesh && p.number
+                         ? "with 'modes.file' it is of no use: all modes of the file are taken"
+                         : "";
+            },
+            "number");
       },
       "modes of the structure; those of a mesh are kept in modes.h5 of the output folder and used again "
       "while "
@@ -110,6 +122,34 @@ void declare_loads(config::Section& s, Parameters& p) {
   s.optional_section<ContactParameters>(
       "contact", p.contact, [](config::Section& c, ContactParameters& v) { declare(c, v); },
       "a rigid seat under the structure");
+}
+
+/// What describes a plate says nothing about the modes of a file, which have their own surface, place and mass.
+void check_file_alone(config::Section& s, const Parameters& p) {
+  const auto of_no_use = [&](const char* key, const char* why, auto&& is_given) {
+    s.check(
+        [&p, why, is_given] {
+          return p.modes_file && !p.mesh && is_given()
+                     ? fmt::format("with 'modes.file' it is of no use: {}", why)
+                     : "";
+        },
+        key);
+  };
+  const char* inside = "the modes hold it already";
+  of_no_use("mesh-parameters", "there is no .geo", [&p] { return !p.mesh_parameters.empty(); });
+  of_no_use("material", inside, [&p] {
+    const Material m;
+    return p.material.density != m.density || p.material.youngs_modulus != m.youngs_modulus ||
+           p.material.poissons_ratio != m.poissons_ratio;
+  });
+  of_no_use("thickness", inside, [&p] { return p.thickness > 0; });
+  of_no_use("zones", inside, [&p] { return !p.zones.empty(); });
+  of_no_use("boundaries", inside, [&p] { return !p.boundaries.empty(); });
+  of_no_use("placement", "the surface of the file stands where the file says", [&p] {
+    const Placement here;
+    return p.placement.origin != here.origin || p.placement.x != here.x || p.placement.y != here.y;
+  });
+  of_no_use("wetted", "the interface is the surface of the file", [&p] { return p.wetted != Wetted::both; });
 }
 
 void check_together(config::Section& s, Parameters& p) {
@@ -162,9 +202,9 @@ void check_together(config::Section& s, Parameters& p) {
       "damping");
   s.check(
       [&] {
-        return std::ssize(p.initial_amplitudes) > p.n_modes
+        return p.mesh && std::ssize(p.initial_amplitudes) > p.n_modes()
                    ? fmt::format("{} amplitudes are given for {} modes", p.initial_amplitudes.size(),
-                                 p.n_modes)
+                                 p.n_modes())
                    : "";
       },
       "initial-amplitudes");
@@ -183,12 +223,19 @@ void declare(config::Section& s, ContactParameters& c) {
       .unit("N/m^3")
       .positive()
       .doc("force per area and penetration, in place of (4.33)");
+  s.value("starts-inside", c.starts_inside)
+      .doc(
+          "the structure may stand in the seat at the start, whose springs then push from there; false: an error");
   s.choice("rule", c.rule, {{"conserving", ContactRule::conserving}, {"midpoint", ContactRule::midpoint}})
       .doc(
           "conserving: a bounce keeps the energy to rounding; midpoint: the force where the scheme has "
           "equilibrium");
-  s.check([&] { return problem_of(c.height); }, "height");
-  s.check([&] { return problem_of(c.where); }, "where");
+  const auto problem = [](const config::ExpressionText& text) -> std::string {
+    if (std::string wrong = problem_of(text); !wrong.empty()) return wrong;
+    return Expression(text).uses_time() ? "a seat stands still: an expression of x, y, z, without t" : "";
+  };
+  s.check([&] { return problem(c.height); }, "height");
+  s.check([&] { return problem(c.where); }, "where");
   s.check(
       [&] {
         const auto& d = c.direction;
@@ -222,6 +269,7 @@ void declare(config::Section& s, Parameters& p) {
         o.value("fields", p.output.fields).doc("write the moving surface at the output interval");
       },
       "what is written");
+  check_file_alone(s, p);
   check_together(s, p);
 }
 

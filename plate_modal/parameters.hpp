@@ -56,7 +56,8 @@ struct Parameters {
   std::map<std::string, Edge> boundaries;
   Placement placement;
   Wetted wetted = Wetted::both;
-  int n_modes = 15;
+  std::optional<double> number;  // of modes of a mesh
+  int n_modes() const { return number ? static_cast<int>(*number) : 15; }
   TimeSchemeParameters time_scheme;
   std::optional<Damping> damping;
   std::vector<double> gravity;  // [m/s^2]; empty: none

@@ -159,7 +159,8 @@ void PlateResults::write_fields(double time) {
 }
 
 void PlateResults::write_series(double time) {
-  if (!active_ || structure_.parameters().analysis == Parameters::Analysis::modal) return;
+  if (!active_ || structure_.parameters().analysis == Parameters::Analysis::modal || structure_.repeats())
+    return;
   const std::vector<double> u = structure_.displacement();
   if (structure_.contact()) write_contact(time);
   if (!root_) return;

@@ -16,9 +16,6 @@
 namespace couplet::plate {
 namespace {
 
-/// A side of the plate: faces whose normal is within 60 degrees of that of the plate.
-constexpr double least_cosine = 0.5;
-
 /// Thickness over half the length of a bending wave of this frequency in the thickest part of a plate:
 /// D k^4 = rho h omega^2.
 double thickness_over_wave(const Parameters& p, double omega) {
@@ -33,6 +30,19 @@ double thickness_over_wave(const Parameters& p, double omega) {
     of(zone.thickness.value_or(p.thickness), zone.density.value_or(p.material.density),
        zone.youngs_modulus.value_or(p.material.youngs_modulus));
   return largest;
+}
+
+/// A seat in which the structure stands at the start has wound springs: energy that nobody asked for.
+void refuse_inside(const Contact& contact, const Share& share, std::span<const double> q) {
+  double size = 0;
+  for (const Vec3& x : share.centres()) size = std::max(size, (x - share.centres().front()).norm());
+  const Contact::Place place = contact.deepest(q);
+  if (place.depth <= 1e-9 * couplet::max(share.comm(), size)) return;
+  throw Error(
+      "contact: at the start the structure stands {:.3g} m deep in the seat, deepest at ({:g}, {:g}, {:g}). Lower "
+      "'height' (it counts from the origin along the direction, and a side of a plate is half a thickness from its "
+      "mid-surface), or say 'starts-inside: true' if these springs are meant to push from the start.",
+      place.depth, place.centre.x(), place.centre.y(), place.centre.z());
 }
 
 }  // namespace
@@ -55,18 +65,40 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
         "it.");
   gravity_.assign(share_->n_modes(), 0);
   if (!p.gravity.empty()) gravity_ = share_->participation(Vec3(p.gravity.data()));
-  if (p.contact)
-    contact_ = std::make_unique<Contact>(*share_, *p.contact, p.placement.normal(),
-                                         p.contact->stiffness ? 0 : seat_stiffness(p));
-  if (p.load && p.load->upper) upper_.emplace(*p.load->upper, "load.upper-pressure");
-  if (p.load && p.load->lower) lower_.emplace(*p.load->lower, "load.lower-pressure");
+  if (p.contact) make_contact();
+  if (p.load && (p.load->upper || p.load->lower))
+    pressure_ = std::make_unique<PressureLoad>(*share_, *p.load, p.placement.normal());
+  if (p.analysis == Parameters::Analysis::dynamic)
+    resolution_ = std::make_unique<Resolution>(share_->omega(), damping());
   oscillators_ =
       std::make_unique<Oscillators>(share_->omega(), damping(), gravity_, p.time_scheme, contact_.get());
   state_ = trial_ = initial_state();
+  if (contact_ && !p.contact->starts_inside) refuse_inside(*contact_, *share_, state_.q);
   results_ = std::make_unique<PlateResults>(*this);
 }
 
 Structure::~Structure() = default;
+
+/// The seat, and what a step should be for it.
+void Structure::make_contact() {
+  const Parameters& p = parameters_;
+  contact_ = std::make_unique<Contact>(*share_, *p.contact, p.placement.normal(),
+                                       p.contact->stiffness ? 0 : seat_stiffness(p));
+  const double shortest = std::numbers::pi / std::sqrt(contact_->largest_stiffness());
+  if (comm_rank(context_.comm) != 0) return;
+  const double steps = shortest / context_.time_step;
+  const std::string text = fmt::format(
+      "contact: one over all its faces lasts {:.3g} s (pi sqrt(m / kappa)), one over a part of them longer",
+      shortest);
+  if (std::isnan(steps))
+    log::info("{}.", text);
+  else if (steps >= 10)
+    log::info("{}: {:.3g} steps of it.", text, steps);
+  else
+    log::warn(
+        "{}: {:.2g} steps of it. Twenty find the speed after it to 1 %: 'simulation.time-step: {:.2g} s'.",
+        text, steps, shortest / 20);
+}
 
 std::vector<double> Structure::damping() const {
   const Damping d = parameters_.damping.value_or(Damping{});
@@ -102,20 +134,6 @@ Interface Structure::initialise() {
   return interface;
 }
 
-void Structure::add_pressure(double t, std::span<double> load) const {
-  const Vec3 normal = parameters_.placement.normal();
-  std::vector<double> force(3 * share_->n_faces(), 0);
-  for (std::size_t f = 0; f < share_->n_faces(); ++f) {
-    const Vec3& area = share_->areas()[f];
-    const double cosine = area.dot(normal) / area.norm();
-    const auto& side = cosine > least_cosine ? upper_ : lower_;
-    if (!side || std::abs(cosine) <= least_cosine) continue;
-    const double pressure = (*side)(share_->centres()[f], t);
-    for (int c = 0; c < 3; ++c) force[3 * f + c] = -pressure * area[c];
-  }
-  share_->add_load(force, load);
-}
-
 /// Kinetic, strain and contact energy without what the scheme made, or the work of the loads: whichever is more.
 double Structure::true_energy(const ModalState& state) const {
   const Energies& e = state.energies;
@@ -144,11 +162,10 @@ Exchange Structure::solve(const Exchange& in) {
   share_->sum(fluid);
   if (parameters_.analysis == Parameters::Analysis::dynamic) {
     const auto load = [&](double after, std::span<double> total) {
-      std::ranges::fill(total, 0);
-      if (upper_ || lower_) {
-        add_pressure(step_.time + after, total);
-        share_->sum(total);
-      }
+      if (pressure_)
+        pressure_->at(step_.time + after, total);
+      else
+        std::ranges::fill(total, 0);
       for (std::size_t m = 0; m < fluid.size(); ++m) total[m] += fluid[m];
     };
     oscillators_->step(state_, step_.dt, load, trial_);
@@ -167,8 +184,24 @@ Exchange Structure::solve(const Exchange& in) {
   return out;
 }
 
+/// Does the step that is accepted now (from trial_, before, to state_) resolve what it moves?
+void Structure::look_at_step() {
+  resolution_->accepted(trial_, state_, step_.dt);
+  // A load that differs from place to place costs an expression a face: not each time.
+  const long steps = resolution_->steps();
+  if (pressure_ && pressure_->changes_in_time() &&
+      (pressure_->is_uniform() || steps <= 16 || steps % 16 == 0))
+    resolution_->load(pressure_->seen(step_.time, step_.dt, 6 + int(steps % 5)));
+  const double work = state_.energies.impact_work - trial_.energies.impact_work;
+  if (contact_ && work != 0)
+    resolution_->impact(contact_->stiffness_of_impact(trial_.q, state_.q, oscillators_->seat().force), work,
+                        std::max(largest_exchange_, state_.energies.kinetic + state_.energies.strain),
+                        step_.dt);
+}
+
 StepReport Structure::accept_step() {
   std::swap(state_, trial_);
+  if (resolution_) look_at_step();
   largest_ = std::max(largest_, trial_largest_);
   const Energies& e = state_.energies;
   worst_mismatch_ = std::max(worst_mismatch_, std::abs(e.mismatch()));
@@ -187,7 +220,7 @@ void Structure::write_monitors(double time) { results_->write_series(time); }
 
 std::vector<EffectVerdict> Structure::audit() const {
   // What rank 0 knows of the whole surface decides on all ranks alike.
-  std::vector<double> seen(3, PlateEvidence::unknown);
+  std::vector<double> seen(2, PlateEvidence::unknown);
   if (comm_rank(context_.comm) == 0) {
     double size = 0;
     for (const Vec3& x : built_.model.vertices)
@@ -195,10 +228,14 @@ std::vector<EffectVerdict> Structure::audit() const {
     // A body that moves as a whole may go far.
     if (share_->omega().front() > 0) seen[0] = largest_ / size;
     if (built_.held_all_round) seen[1] = largest_ / parameters_.thickness;
-    if (parameters_.mesh) seen[2] = thickness_over_wave(parameters_, share_->omega().back());
   }
   broadcast(context_.comm, seen);
-  PlateEvidence evidence{seen[0], seen[1], seen[2], PlateEvidence::unknown};
+  PlateEvidence evidence{seen[0], seen[1], PlateEvidence::unknown, PlateEvidence::unknown, {}};
+  if (resolution_) evidence.step = resolution_->evidence(step_.is_last);
+  // Where nothing has moved yet, or nothing will, the modes themselves are the answer.
+  if (parameters_.mesh && !(resolution_ && std::isnan(evidence.step.last_mode_omega)))
+    evidence.thickness_over_wave = thickness_over_wave(
+        parameters_, resolution_ ? evidence.step.last_mode_omega : share_->omega().back());
   if (parameters_.analysis == Parameters::Analysis::dynamic && largest_exchange_ > 0)
     evidence.energy_mismatch = worst_mismatch_ / largest_exchange_;
   return couplet::audit(plate_effect_cards(), PlateScene{parameters_}, evidence);
@@ -225,6 +262,7 @@ void Structure::save(CheckpointWriter& file) const {
                                              e.load_work, e.impact_work, e.damping_loss, worst_mismatch_,
                                              largest_exchange_, largest_true_});
   file.write_scalar("dt", state_.dt);
+  if (resolution_) file.write("resolution", resolution_->state());
 }
 
 void Structure::load(CheckpointReader& file) {
@@ -248,6 +286,11 @@ void Structure::load(CheckpointReader& file) {
                        &e.impact_work, &e.damping_loss, &worst_mismatch_, &largest_exchange_, &largest_true_})
     *part = kept[i++];
   state_.dt = file.read_scalar("dt");
+  if (resolution_) {
+    std::vector<double> seen = resolution_->state();
+    file.read("resolution", seen);
+    resolution_->restore(seen);
+  }
   trial_ = state_;
 }
 

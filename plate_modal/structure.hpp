@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "common/coupling/participant.hpp"
-#include "common/fv/expression.hpp"
 #include "plate_modal/build_model.hpp"
 #include "plate_modal/contact.hpp"
 #include "plate_modal/oscillators.hpp"
+#include "plate_modal/pressure_load.hpp"
+#include "plate_modal/resolution.hpp"
 #include "plate_modal/share.hpp"
 
 namespace couplet::plate {
@@ -47,13 +48,15 @@ class Structure final : public Participant {
     double direct = 0, by_modes = 0, apart = 0;
   };
   const std::optional<Deflection>& deflection() const { return deflection_; }
+  bool repeats() const { return repeats_; }  ///< of a static analysis: the answer of the step before
   /// Displacement of every vertex now [m], 3 each, on rank 0. Collective.
   std::vector<double> displacement() const;
 
  private:
   std::vector<double> damping() const;
   ModalState initial_state() const;
-  void add_pressure(double t, std::span<double> load) const;
+  void make_contact();
+  void look_at_step();
   double true_energy(const ModalState& state) const;
   void refuse_made_energy() const;
   void solve_static(double t, std::span<const double> fluid);
@@ -65,11 +68,14 @@ class Structure final : public Participant {
   std::unique_ptr<Share> share_;
   std::unique_ptr<Contact> contact_;  // none: no seat in this scene
   std::unique_ptr<Oscillators> oscillators_;
-  std::optional<Expression> upper_, lower_;
+  std::unique_ptr<PressureLoad> pressure_;  // none: no pressures of the case
+  std::unique_ptr<Resolution> resolution_;  // of a dynamic analysis
   std::vector<double> gravity_;
   ModalState state_, trial_;
   std::vector<double> direct_;  // static deflection of the plate itself, 3 a vertex on rank 0
   std::optional<Deflection> deflection_;
+  std::vector<double> solved_;  // static analysis: the modes that direct_ and deflection_ belong to
+  bool repeats_ = false;
   Step step_;
   double worst_mismatch_ = 0, largest_exchange_ = 0;
   double largest_true_ = 0;  // largest energy that the scheme did not make, or work of the loads [J]

@@ -62,7 +62,8 @@ int run(const Job& job, const Program& program) {
   for (const EffectChoice& choice : job.choices) log::info("{}", text(choice));
   if (program.effects) {
     const bool has_mover = config::text_of(*job.document, "coupling.mesh.participant").has_value();
-    log::info("{}", summary(program.effects({!job.alone, !job.alone && has_mover})));
+    log::info("{}",
+              summary(program.effects({!job.alone, !job.alone && has_mover, job.simulation.time_step})));
   }
   const std::unique_ptr<Participant> participant = program.make(context);
   return job.alone ? run_alone(job, *participant) : run_coupled(job, coupler, *participant);

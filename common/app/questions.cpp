@@ -66,7 +66,9 @@ int explain(const CommandLine& command_line, const ProgramKind& kind) {
   fmt::print("{} as '{}' of {}:\n", kind.name, kind.is_coupler ? "coupler" : file.participant,
              command_line.case_file.string());
   for (const EffectChoice& choice : file.choices) fmt::print("  {}\n", text(choice));
-  if (kind.effects) fmt::print("{}", explanation(kind.effects({file.coupled, file.coupled && has_mover})));
+  if (kind.effects)
+    fmt::print("{}", explanation(
+                         kind.effects({file.coupled, file.coupled && has_mover, file.simulation.time_step})));
   if (kind.expected) print_expected(command_line, kind);
   std::string job;
   for (const Expected& e : file.expected)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "common/app/run_audit.hpp"
@@ -144,17 +145,23 @@ class OwnCommands {
 class Console {
  public:
   explicit Console(const SimulationParameters& simulation) : end_(simulation.end_time) {}
-  void step(const Step& step, double time, double start_time) {
+  void step(const Step& step, double time) {
+    if (!begun_) begun_ = {Clock::now(), time};
     if (seconds_since(last_) < 0.5 && time < end_) return;
     last_ = Clock::now();
-    log::info("t={:g}/{:g} s  step {}  dt={:g} s  {}", time, end_, step.number + 1, step.dt,
-              log::eta(time - start_time, end_ - start_time, seconds_since(start_)));
+    // What comes before the second step (meshes, factors, modes) is not what a step takes.
+    const std::string eta =
+        time < end_ && time == begun_->second
+            ? ""
+            : log::eta(time - begun_->second, end_ - begun_->second, seconds_since(begun_->first));
+    log::info("t={:g}/{:g} s  step {}  dt={:g} s  {}", time, end_, step.number + 1, step.dt, eta);
   }
   double seconds() const { return seconds_since(start_); }
 
  private:
   double end_;
   Clock::time_point start_ = Clock::now(), last_{};
+  std::optional<std::pair<Clock::time_point, double>> begun_;  // when the first step was done, and its time
 };
 
 }  // namespace
@@ -166,12 +173,10 @@ int run_alone(const Job& job, Participant& participant) {
   StepLoop loop(job.comm, job.simulation, Scheme::standalone, job.checkpoints);
   Console console(job.simulation);
   command.must({Op::initialise, {}, {}, 0, -1, ""});
-  double start_time = 0;
   if (!job.restart_folder.empty()) {
     command.must({Op::load, {}, {}, 0, -1, job.restart_folder.string()});
     loop.restart(read_run_state(job.restart_folder));
-    start_time = job.restart_time;
-    log::info("continues from {} at t = {:g} s", job.restart_folder.string(), start_time);
+    log::info("continues from {} at t = {:g} s", job.restart_folder.string(), job.restart_time);
   }
   StepActions actions;
   actions.attempt = [&](const Step& step) { return command.attempt(step); };
@@ -180,7 +185,7 @@ int run_alone(const Job& job, Participant& participant) {
   actions.save = [&](const std::filesystem::path& folder) {
     command.must({Op::save, {}, {}, 0, -1, folder.string()});
   };
-  actions.report = [&](const Step& step, double time) { console.step(step, time, start_time); };
+  actions.report = [&](const Step& step, double time) { console.step(step, time); };
   actions.advised_dt = [&] { return command.advised_dt(); };
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);

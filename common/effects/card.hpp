@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -39,13 +40,15 @@ struct Effect {
   std::string asked_by;  ///< empty: off
   EffectCost cost;
   std::string judged_by;
+  bool judged_when_on = false;
   bool on() const { return !asked_by.empty(); }
 };
 
 /// What the job around a participant decides about its effects.
 struct EffectScene {
   bool coupled = false;
-  bool has_mover = false;  ///< `coupling.mesh` names one
+  bool has_mover = false;                                       ///< `coupling.mesh` names one
+  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< [s]; NaN: not known
 };
 
 template <class Parameters, class Evidence>
@@ -53,7 +56,8 @@ std::vector<Effect> effects_of(std::span<const EffectCard<Parameters, Evidence>>
                                const Parameters& parameters) {
   std::vector<Effect> effects;
   for (const auto& card : cards)
-    effects.push_back({card.name, card.keys, card.asked_by(parameters), card.cost, card.judged_by});
+    effects.push_back(
+        {card.name, card.keys, card.asked_by(parameters), card.cost, card.judged_by, card.judged_when_on});
   return effects;
 }
 

@@ -61,7 +61,9 @@ std::string explanation(const std::vector<Effect>& effects) {
       if (e.on() == on)
         lines +=
             on ? fmt::format("  on   {}: asked for by {}; adds {}\n", e.name, e.asked_by, cost_text(e.cost))
-               : fmt::format("  off  {}: {}\n", e.name, e.keys);
+               : fmt::format(
+                     "  off  {}: {}{}\n", e.name, e.keys,
+                     e.judged_when_on || e.judged_by.empty() ? "" : "; a run judges it: " + e.judged_by);
   return lines;
 }
 

@@ -56,6 +56,93 @@ double largest_displacement(const ModalModel& model, std::size_t mode) {
   return largest;
 }
 
+namespace {
+
+/// Modal mass and participation along each axis, as the surface alone shows them: sum of face_density A |phi|^2 and
+/// of face_density A phi (without face densities: the mass spread evenly over the surface).
+struct SurfaceSums {
+  double modal_mass = 0, mass = 0;
+  Vec3 participation = Vec3::Zero();
+};
+std::vector<SurfaceSums> surface_sums(const ModalModel& model) {
+  const std::size_t n = model.n_modes();
+  std::vector<SurfaceSums> sums(n);
+  const std::vector<Vec3> areas = face_areas(model);
+  double all = 0;
+  for (const Vec3& area : areas) all += area.norm();
+  for (std::size_t f = 0; f < areas.size(); ++f) {
+    const double mass =
+        areas[f].norm() * (model.face_density.empty() ? model.mass / all : model.face_density[f]);
+    for (std::size_t m = 0; m < n; ++m) {
+      const double* phi = model.face_shape.data() + 3 * f * n + m;
+      const Vec3 shape(phi[0], phi[n], phi[2 * n]);
+      sums[m].modal_mass += mass * shape.squaredNorm();
+      sums[m].participation += mass * shape;
+      sums[m].mass += mass;
+    }
+  }
+  return sums;
+}
+
+}  // namespace
+
+std::string impossible_in(const ModalModel& model) {
+  const std::size_t n = model.n_modes();
+  if (!(model.mass > 0) || !std::isfinite(model.mass))
+    return fmt::format("the mass of the structure is {} kg; it must be above 0", model.mass);
+  for (std::size_t f = 0; f < model.face_density.size(); ++f)
+    if (model.face_density[f] < 0)
+      return fmt::format("the density of face {} is {} kg/m^2; it must not be negative", f + 1,
+                         model.face_density[f]);
+  for (std::size_t m = 0; m < n; ++m)
+    if (largest_displacement(model, m) == 0)
+      return fmt::format("the shape of mode {} is 0 everywhere", m + 1);
+  // Bessel: a uniform motion of the whole mass has at most its own length in the modes.
+  for (int c = 0; c < 3; ++c) {
+    double effective = 0;
+    for (std::size_t m = 0; m < n; ++m) {
+      effective += model.participation[c * n + m] * model.participation[c * n + m];
+      if (effective > 1.01 * model.mass)
+        return fmt::format(
+            "the effective masses (participation^2) of modes 1 to {} along {} add up to {:.4g} kg, more than the mass "
+            "of {:.4g} kg",
+            m + 1, "xyz"[c], effective, model.mass);
+    }
+  }
+  return "";
+}
+
+std::string scale_problem_of(const ModalModel& model) {
+  const std::vector<SurfaceSums> sums = surface_sums(model);
+  // With densities the surface stands for the mass near it; without them for as much as its share of the motion.
+  const double most = model.face_density.empty() ? 1e4 : 10;
+  double largest = 0;
+  for (std::size_t m = 0; m < sums.size(); ++m) {
+    largest = std::max(largest, sums[m].modal_mass);
+    if (sums[m].modal_mass > most)
+      return fmt::format(
+          "mode {} is not mass-normalised: the surface alone has a modal mass of {:.3g}; that of the structure must be 1 "
+          "kg",
+          m + 1, sums[m].modal_mass);
+    if (model.face_density.empty() || sums[m].mass < 0.5 * model.mass) continue;
+    for (int c = 0; c < 3; ++c) {
+      const double told = model.participation[c * sums.size() + m], seen = sums[m].participation[c];
+      if (told * told < 0.05 * model.mass || (seen / told > 0.3 && seen / told < 3)) continue;
+      return fmt::format(
+          "the participation of mode {} along {} is {:.3g} sqrt(kg), and the shape and mass of the surface give {:.3g}: "
+          "shapes and participation are not of the same modes",
+          m + 1, "xyz"[c], told, seen);
+    }
+  }
+  const double least =
+      model.face_density.empty() ? 1e-4 : (sums.front().mass < 0.5 * model.mass ? 1e-4 : 0.1);
+  if (largest < least)
+    return fmt::format(
+        "no mode is mass-normalised: the surface has modal masses up to {:.2g}; that of the structure must be 1 kg",
+        largest);
+  return "";
+}
+
 std::string problem_of(const ModalModel& model) {
   const std::size_t n = model.n_modes(), vertices = model.vertices.size(), faces = model.faces.size();
   if (n == 0) return "it holds no mode";

@@ -78,7 +78,8 @@ ModalModel read_model(hid_t id) {
     if (const std::string problem = problem_of(model); !problem.empty()) throw Error("{}", problem);
     average_faces(model);
   }
-  if (const std::string problem = problem_of(model); !problem.empty()) throw Error("{}", problem);
+  for (const auto look : {&problem_of, &impossible_in, &scale_problem_of})
+    if (const std::string problem = look(model); !problem.empty()) throw Error("{}", problem);
   return model;
 }
 

@@ -12,7 +12,7 @@ struct PlateFactory {
     plate::Parameters p;
     p.material = {3000, 4e6, 0.3};
     p.thickness = 0.1;
-    p.n_modes = 8;
+    p.number = 8;
     p.damping.emplace().ratio = 0.01;
     for (const char* side : {"xmin", "xmax", "ymax"}) p.boundaries[side];
     p.boundaries["ymin"].support = plate::Support::clamped;

@@ -7,6 +7,25 @@ def cases(Case, run):
     def plate(name, message, *edits, **more):
         return Case(name, "plate_modal", message, "plate", list(edits), **more)
 
+    of_mesh = """    mesh: square.msh
+    material: {density: 1000, youngs-modulus: 1 GPa, poissons-ratio: 0.3}
+    thickness: 1 cm
+    boundaries:
+      bottom: {type: clamped}
+      top: {type: free}
+      left: {type: free}
+      right: {type: free}
+"""
+
+    def file_alone(name, more=""):
+        """Edits: the modes of a file in place of a mesh and what goes with it."""
+        return [(of_mesh, more), ("modes: {number: 3}", f"modes: {{file: {name}}}")]
+
+    def of_no_use(key, line, reason, column=5):
+        return plate(f"'{key}' beside modes of a file", f"""
+case.yaml:6:{column}: participants.plate.{key}: with 'modes.file' it is of no use: {reason}.
+""", *file_alone("modes.h5", f"    {line}\n"), ("    contact: {height: -1 cm}\n", ""))
+
     right = [
         plate("right plate", "", exit_code=0),
         plate("right plate that runs", "", exit_code=0, **run),
@@ -56,9 +75,8 @@ case.yaml:15:5: participants.plate.initial-amplitudes: 4 amplitudes are given fo
 """,
               ("modes: {number: 3}", "modes: {number: 3}\n    initial-amplitudes: [1, 2, 3, 4]")),
         plate("seat of unknown stiffness", """
-case.yaml:14:5: participants.plate.contact: with 'modes.file' the material is not known: give 'stiffness'.
-""", ("mesh: square.msh", "thickness: 1 cm"), ("    thickness: 1 cm\n    boundaries", "    boundaries"),
-              ("modes: {number: 3}", "modes: {number: 3, file: modes.h5}")),
+case.yaml:7:5: participants.plate.contact: with 'modes.file' the material is not known: give 'stiffness'.
+""", *file_alone("modes.h5")),
         plate("edge of a plate without an entry", """
 [plate 0] error: participants.plate.boundaries: patch 'top' has no entry; give it type: free, clamped, simply-supported or symmetry.
 """, ("      top: {type: free}\n", ""), **run),
@@ -74,12 +92,10 @@ case.yaml:14:5: participants.plate.contact: with 'modes.file' the material is no
 """, ("number: 3", "number: 300"), **run),
         plate("modes of a file that is not there", """
 [plate 0] error: The file of modes 'modes.h5' does not exist. The path is relative to the folder of the YAML file.
-""", ("mesh: square.msh", "surface-density: true"),
-              ("modes: {number: 3}", "modes: {number: 3, file: modes.h5}"), ("    contact: {height: -1 cm}\n", ""), **run),
+""", *file_alone("modes.h5"), ("    contact: {height: -1 cm}\n", ""), **run),
         plate("modes of a file of another kind", """
 [plate 0] error: The file of modes 'square.msh' cannot be used: HDF5 could not open 'square.msh' (file signature not found). docs/formats.md says what it must hold.
-""", ("mesh: square.msh", "surface-density: true"),
-              ("modes: {number: 3}", "modes: {number: 3, file: square.msh}"), ("    contact: {height: -1 cm}\n", ""), **run),
+""", *file_alone("square.msh"), ("    contact: {height: -1 cm}\n", ""), **run),
         plate("static analysis of a plate that nothing holds", """
 [plate 0] error: The structure moves as a rigid body (mode 1 has no frequency): a static analysis needs supports that hold it.
 """, ("    mesh:", "    analysis: static\n    mesh:"),
@@ -87,6 +103,34 @@ case.yaml:14:5: participants.plate.contact: with 'modes.file' the material is no
         plate("seat where there is no plate", """
 [plate 0] error: contact: no face of the structure looks at the seat. Check 'direction' and 'where'.
 """, ("{height: -1 cm}", "{height: -1 cm, where: x - 3}"), **run),
+        plate("plate in its seat at the start", """
+[plate 0] error: contact: at the start the structure stands 0.003 m deep in the seat, deepest at (0.25, 0.25, -0.005). Lower 'height' (it counts from the origin along the direction, and a side of a plate is half a thickness from its mid-surface), or say 'starts-inside: true' if these springs are meant to push from the start.
+""", ("{height: -1 cm}", "{height: -2 mm}"), **run),
+        plate("seat that moves", """
+case.yaml:15:15: participants.plate.contact.height: a seat stands still: an expression of x, y, z, without t.
+""", ("{height: -1 cm}", "{height: -0.01 + 0.001 * sin(t)}")),
+        plate("seat that comes and goes", """
+case.yaml:15:30: participants.plate.contact.where: a seat stands still: an expression of x, y, z, without t.
+""", ("{height: -1 cm}", "{height: -1 cm, where: t - 0.05}")),
+        plate("seat along which nothing moves", """
+[plate 0] error: contact.direction: the modes move the faces that look at the seat along (0, 1, 0) by 0 % of their motion only; at least 50 % is needed for the seat to hold them. A seat lies across the motion.
+""", ("{height: -1 cm}", "{height: -3, direction: [0, 1, 0], stiffness: 1e6}"), ("bottom: {type: clamped}", "bottom: {type: free}"),
+              ("top: {type: free}", "top: {type: clamped}"), **run),
+        of_no_use("thickness", "thickness: 1 cm", "the modes hold it already"),
+        of_no_use("material", "material: {density: 1000}", "the modes hold it already"),
+        of_no_use("boundaries", "boundaries: {left: {type: free}}", "the modes hold it already"),
+        of_no_use("zones", "zones: {tip: {thickness: 1 mm}}", "the modes hold it already"),
+        of_no_use("wetted", "wetted: upper", "the interface is the surface of the file"),
+        of_no_use("placement", "placement: {origin: [0, 0, 1]}", "the surface of the file stands where the file says"),
+        plate("number of modes beside a file of modes", """
+case.yaml:7:29: participants.plate.modes.number: with 'modes.file' it is of no use: all modes of the file are taken.
+""", *file_alone("modes.h5, number: 3", "    surface-density: true\n")),
+        plate("half a mode", """
+case.yaml:14:13: participants.plate.modes.number: a whole number is needed.
+""", ("number: 3", "number: 3.5")),
+        plate("pressure on a side that is not there", """
+[plate 0] error: load.lower-pressure: the surface of the structure has no face on this side (-0, -0, -1).
+""", ("modes: {number: 3}", "modes: {number: 3}\n    wetted: upper\n    load: {lower-pressure: 3}"), ("    contact: {height: -1 cm}\n", ""), **run),
         plate("probe far from the plate", """
 [plate 0] error: probes.tip: (0, 2, 0) is 1 m away from the surface of the structure.
 """,

@@ -115,7 +115,7 @@ Parameters reed_like() {
   Parameters p;
   p.material = {7850, 2e11, 0.3};
   p.thickness = 0.01;
-  p.n_modes = 1;
+  p.number = 1;
   for (const char* patch : {"xmax", "ymin", "ymax"}) p.boundaries[patch];
   p.boundaries["xmin"].support = Support::clamped;
   return p;
@@ -149,7 +149,7 @@ TEST(PlateContact, a_mode_on_a_seat_at_its_rest_position_bounces_at_twice_its_fr
 TEST(PlateContact, a_plate_with_modes_keeps_its_energy_through_an_impact_and_the_seat_may_have_a_hole) {
   for (const char* where : {"1", "(x - 0.6)^2 + (y - 0.5)^2 - 0.04"}) {
     Parameters p = reed_like();
-    p.n_modes = 15;
+    p.number = 15;
     p.contact.emplace();
     p.contact->height.text = "-0.006 + 0.0005 * x";
     p.contact->where.text = where;
@@ -198,6 +198,46 @@ TEST(PlateContact, a_run_whose_scheme_makes_more_energy_than_there_was_is_refuse
       EXPECT_LT(most, 3 * plate.state().energies.initial);
     }
   }
+}
+
+std::string refusal(const ContactParameters& contact, double amplitude = 0) {
+  Parameters p = reed_like();
+  p.contact = contact;
+  p.initial_amplitudes = {amplitude};
+  const RawMesh raw = square(4);
+  try {
+    const Structure plate(p, PlateContext{}, &raw);
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+// A seat that reaches into the structure at the start is a wound spring: 1 kJ that nobody asked for.
+TEST(PlateContact, a_structure_that_stands_in_its_seat_at_the_start_is_refused_unless_it_is_meant) {
+  ContactParameters seat;
+  seat.height.text = "x > 0.6 ? -0.003 + 0.001 * x : -1";
+  const std::string text = refusal(seat);
+  EXPECT_NE(text.find("m deep in the seat, deepest at (0.9"), std::string::npos) << text;
+  EXPECT_NE(text.find("0.0029"), std::string::npos) << text;
+  EXPECT_NE(text.find("starts-inside"), std::string::npos) << text;
+  seat.starts_inside = true;
+  EXPECT_EQ(refusal(seat), "");
+  // Touching is not standing in it; what bends into it at the start is.
+  ContactParameters touching;
+  touching.height.text = "-0.005";
+  EXPECT_EQ(refusal(touching), "");
+  EXPECT_NE(refusal(touching, -0.002), "");
+  EXPECT_EQ(refusal(touching, 0.002), "");
+}
+
+TEST(PlateContact, a_seat_along_which_nothing_moves_is_refused) {
+  ContactParameters seat;
+  seat.height.text = "-3";
+  seat.direction = {-1, 0, 0};  // the rim of the free edge looks there, and moves across
+  EXPECT_NE(refusal(seat).find("of their motion only"), std::string::npos) << refusal(seat);
+  seat.direction = {std::sin(0.7), 0, std::cos(0.7)};
+  EXPECT_EQ(refusal(seat), "");
 }
 
 TEST(PlateContact, a_seat_that_no_face_looks_at_is_an_error) {

@@ -40,7 +40,7 @@ class PlateModesFile : public ::testing::Test {
     Parameters p;
     p.material = {1000, 1e9, 0.3};
     p.thickness = 0.05;
-    p.n_modes = 6;
+    p.number = 6;
     p.output.fields = false;
     for (const char* patch : {"xmax", "ymin", "ymax"}) p.boundaries[patch];
     p.boundaries["xmin"].support = Support::clamped;
@@ -90,7 +90,7 @@ TEST_F(PlateModesFile, modes_are_reused_while_mesh_and_data_are_the_same) {
   for (int change = 0; change < 5; ++change) {
     Parameters other = parameters();
     if (change == 1) other.thickness *= 1 + 1e-15;
-    if (change == 2) other.n_modes = 7;
+    if (change == 2) other.number = 7;
     if (change == 3) other.boundaries["xmin"].support = Support::simply_supported;
     if (change == 4) other.placement.origin = Vec3(0, 0, 1);
     MPI_Barrier(MPI_COMM_WORLD);
@@ -137,6 +137,30 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
     return message();
   };
   EXPECT_EQ(damaged([](ModalModel&) {}), "");
+  // What no structure has.
+  const auto scaled = [](std::vector<double>& values, double factor) {
+    for (double& value : values) value *= factor;
+  };
+  const auto says = [&](const char* what, auto&& change) {
+    const std::string text = damaged(change);
+    EXPECT_NE(text.find(what), std::string::npos) << what << " / " << text;
+  };
+  says("mass of the structure is -1", [](ModalModel& m) { m.mass = -1; });
+  says("mass of the structure is 0", [](ModalModel& m) { m.mass = 0; });
+  says("the density of face 2 is -3", [](ModalModel& m) { m.face_density[1] = -3; });
+  says("mode 1 is 0 everywhere", [&](ModalModel& m) { scaled(m.vertex_shape, 0), scaled(m.face_shape, 0); });
+  says("along z add up to", [&](ModalModel& m) { scaled(m.participation, 10); });
+  says("shapes and participation are not of the same modes",
+       [&](ModalModel& m) { scaled(m.participation, 0.1); });
+  says("mode 1 is not mass-normalised",
+       [&](ModalModel& m) { scaled(m.vertex_shape, 1e3), scaled(m.face_shape, 1e3); });
+  says("mode 1 is not mass-normalised", [&](ModalModel& m) {
+    m.face_density.clear(), scaled(m.vertex_shape, 1e3), scaled(m.face_shape, 1e3);
+  });
+  says("no mode is mass-normalised", [&](ModalModel& m) {
+    for (auto* part : {&m.vertex_shape, &m.face_shape, &m.participation}) scaled(*part, 1e-3);
+  });
+  EXPECT_EQ(damaged([](ModalModel& m) { m.face_density.clear(); }), "");
   EXPECT_NE(damaged([](ModalModel& m) { m.frequency[3] = -1; }).find("frequency of mode 4"),
             std::string::npos);
   EXPECT_NE(damaged([](ModalModel& m) { m.frequency[3] = 0.5 * m.frequency[2]; }).find("lower frequency"),

@@ -137,7 +137,7 @@ TEST(PlateStatics, a_plate_that_nothing_holds_is_refused) {
   p.analysis = Parameters::Analysis::static_;
   p.material = {1000, 1e9, 0.3};
   p.thickness = 0.01;
-  p.n_modes = 4;
+  p.number = 4;
   for (const char* patch : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[patch];
   const RawMesh raw = square(4);
   EXPECT_THROW(Structure(p, PlateContext{}, &raw), Error);

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether the time step resolves what moves: verdicts that fire where the answer is wrong, and are silent where it is
+// right. The right answers are closed forms.
+#include "plate_modal/resolution.hpp"
+
+#include <gtest/gtest.h>
+
+#include "plate_modal/effect_cards.hpp"
+#include "plate_modal/structure.hpp"
+#include "tests/verification/plate/bounce.hpp"
+#include "tests/verification/plate/plates.hpp"
+
+namespace couplet::plate {
+namespace {
+
+using namespace test;
+constexpr double pi = std::numbers::pi;
+
+struct Driven {
+  StepEvidence evidence;
+  double largest = 0;  ///< displacement of the first mode in the second half
+};
+
+/// Modes of 1 Hz and more under a load on all of them, over `time`.
+Driven drive(const std::vector<double>& omega, double damping_ratio, double dt, double time,
+             const std::function<double(double)>& load, TimeScheme scheme = TimeScheme::trapezoidal,
+             double start = 0) {
+  const std::size_t n = omega.size();
+  std::vector<double> damping, zero(n, 0), q(n, 0);
+  for (const double w : omega) damping.push_back(2 * damping_ratio * w);
+  q[0] = start;
+  Oscillators modes(omega, damping, zero, {scheme}, nullptr);
+  Resolution seen(omega, damping);
+  ModalState now = modes.start(q, zero), next = now;
+  Driven result;
+  const int steps = int(std::lround(time / dt));
+  for (int i = 0; i < steps; ++i) {
+    modes.step(
+        now, dt, [&](double t, std::span<double> f) { std::ranges::fill(f, load(i * dt + t)); }, next);
+    seen.accepted(now, next, dt);
+    std::swap(now, next);
+    if (2 * i > steps) result.largest = std::max(result.largest, std::abs(now.q[0]));
+  }
+  result.evidence = seen.evidence(true);
+  return result;
+}
+
+const auto none = [](double) { return 0.0; };
+
+TEST(PlateResolution, a_free_swing_counts_as_coarse_below_ten_steps_a_period) {
+  for (const double steps : {1.3, 3., 9.}) {
+    const StepEvidence e = drive({2 * pi}, 0, 1 / steps, 30, none, TimeScheme::trapezoidal, 1).evidence;
+    EXPECT_NEAR(e.coarse_share, 1, 0.15) << steps;
+    EXPECT_EQ(e.coarse_mode, 1);
+    EXPECT_NEAR(e.steps_a_period, steps, 1e-9);
+    EXPECT_NEAR(e.recommended_step, 0.05, 1e-9);
+  }
+  EXPECT_EQ(drive({2 * pi}, 0, 1. / 11, 30, none, TimeScheme::trapezoidal, 1).evidence.coarse_share, 0);
+}
+
+TEST(PlateResolution, stiff_modes_that_follow_a_slow_load_may_have_any_step) {
+  const auto slow = [](double t) { return std::pow(std::sin(2 * pi * t / 40), 2); };
+  for (const TimeScheme scheme : {TimeScheme::trapezoidal, TimeScheme::bathe}) {
+    const StepEvidence e = drive({2 * pi, 60, 900}, 0, 0.5, 40, slow, scheme).evidence;
+    EXPECT_GE(e.coarse_share, 0) << name(scheme);
+    EXPECT_LT(e.coarse_share, 0.1) << name(scheme);
+  }
+  // Put on at once the same load makes them swing, and that is not resolved.
+  EXPECT_GT(drive({2 * pi, 60, 900}, 0, 0.5, 40, [](double) { return 1.; }).evidence.coarse_share, 0.5);
+}
+
+TEST(PlateResolution, high_modes_without_share_in_the_answer_do_not_matter) {
+  const StepEvidence e = drive({2 * pi, 200, 900}, 0, 0.02, 10, [](double) { return 1.; }).evidence;
+  EXPECT_GT(e.coarse_share, 0);
+  EXPECT_LT(e.coarse_share, 0.01);
+  EXPECT_LT(e.last_mode_omega, 100);
+}
+
+// The number is an estimate of the error near a resonance: of its size, and on the safe side.
+TEST(PlateResolution, near_a_resonance_the_error_of_the_answer_is_foreseen) {
+  const double w = 2 * pi, z = 0.03, drive_w = 0.97 * w;
+  const double exact = 1 / std::hypot(w * w - drive_w * drive_w, 2 * z * w * drive_w);
+  for (const double steps : {12., 25., 50., 100.}) {
+    const Driven found = drive({w}, z, 1 / steps, 80, [&](double t) { return std::sin(drive_w * t); });
+    const double error = std::abs(found.largest / exact - 1), number = found.evidence.resonance_error;
+    EXPECT_GT(number, error) << steps;
+    EXPECT_LT(number, 6 * error + 1e-3) << steps;
+    EXPECT_EQ(number > 0.1, steps < 40) << steps << " " << number;
+    RecordProperty(fmt::format("error-{:.0f}", steps), fmt::format("{:.3g} told {:.3g}", error, number));
+  }
+  // Loads that stay, and none, say nothing about a resonance.
+  EXPECT_TRUE(std::isnan(drive({w}, 0, 0.05, 80, [](double) { return 3.; }).evidence.resonance_error));
+  EXPECT_TRUE(std::isnan(drive({w}, 0, 0.05, 80, none, TimeScheme::trapezoidal, 1).evidence.resonance_error));
+}
+
+TEST(PlateResolution, what_was_seen_goes_on_after_a_restart) {
+  const std::vector<double> omega{2 * pi, 30}, zero{0, 0};
+  Oscillators modes(omega, zero, zero, {}, nullptr);
+  Resolution whole(omega, zero), first(omega, zero), second(omega, zero);
+  ModalState now = modes.start({1, 0.1}, zero), next = now;
+  for (int i = 0; i < 40; ++i) {
+    modes.step(
+        now, 0.15, [&](double t, std::span<double> f) { std::ranges::fill(f, std::sin(i * 0.15 + t)); },
+        next);
+    whole.accepted(now, next, 0.15);
+    if (i == 20) second.restore(first.state());
+    (i < 20 ? first : second).accepted(now, next, 0.15);
+    if (i == 20) {
+      first.accepted(now, next, 0.15);
+      second.restore(first.state());
+    }
+    std::swap(now, next);
+  }
+  EXPECT_EQ(whole.state(), second.state());
+}
+
+/// Evidence of a body that falls on a seat with `steps` in a contact.
+StepEvidence bounce(double steps, double weight, int n, double speed) {
+  const double kappa = 1e4, dt = pi / 100 / steps;
+  Bounce one(kappa, speed == 0 ? -weight / kappa : 0.7 * dt, -speed, ContactRule::conserving, -weight);
+  Resolution seen(std::vector<double>{0}, std::vector<double>{0});
+  double largest = 0;
+  for (int i = 0; i < n; ++i) {
+    one.step(dt);
+    largest = std::max(largest, one.now.energies.kinetic + one.now.energies.contact);
+    const double work = one.now.energies.impact_work - one.next.energies.impact_work;
+    if (work != 0)
+      seen.impact(one.contact.stiffness_of_impact(one.next.q, one.now.q, one.body.seat().force), work,
+                  largest, dt);
+  }
+  return seen.evidence(true);
+}
+
+TEST(PlateResolution, a_contact_wants_ten_steps) {
+  for (const double steps : {0.3, 1., 4., 20.}) {
+    const StepEvidence e = bounce(steps, 0, 60, 1);
+    EXPECT_NEAR(e.contact_share * steps, 1, 1e-9);
+    EXPECT_NEAR(e.contact_time, pi / 100, 1e-9);
+  }
+  // A body at rest on its seat, with a step of three contacts: nothing is hit.
+  EXPECT_TRUE(std::isnan(bounce(0.3, 9.81, 200, 0).contact_share));
+}
+
+/// Verdicts of a clamped square plate under a pressure after two seconds.
+std::vector<EffectVerdict> verdicts(const std::string& pressure, double dt) {
+  Parameters p;
+  p.material = {1000, 1e9, 0.3};
+  p.thickness = 0.01;
+  p.number = 6;
+  for (const char* patch : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[patch].support = Support::clamped;
+  p.load.emplace().lower.emplace().text = pressure;
+  const RawMesh raw = square(6);
+  Structure plate(p, PlateContext{}, &raw);
+  plate.initialise();
+  const int steps = int(std::lround(2 / dt));
+  for (int i = 0; i < steps; ++i) {
+    plate.begin_step({i * dt, dt, Scheme::standalone, i, 1, true, i + 1 == steps});
+    plate.solve({});
+    plate.accept_step();
+  }
+  return plate.audit();
+}
+
+std::vector<std::string> unsound(const std::vector<EffectVerdict>& all) {
+  std::vector<std::string> names;
+  for (const EffectVerdict& v : all)
+    if (!v.sound()) names.push_back(v.effect);
+  return names;
+}
+
+TEST(PlateResolution, the_audit_says_so) {
+  using Names = std::vector<std::string>;
+  // The first mode has 16.5 Hz.
+  EXPECT_EQ(unsound(verdicts("10 * sin(2 * pi * 5 * t)", 0.002)), Names{});
+  EXPECT_EQ(unsound(verdicts("10 * min(t, 1)", 0.2)), Names{});
+  const Names coarse = unsound(verdicts("t < 1 ? 10 : 0", 0.04));
+  EXPECT_TRUE(std::ranges::find(coarse, "step that resolves the modes") != coarse.end());
+  // 40 Hz in steps of 40 ms look like 10 Hz.
+  const Names load = unsound(verdicts("10 * (1 + x) * sin(2 * pi * 40 * t)", 0.02));
+  EXPECT_TRUE(std::ranges::find(load, "step that resolves the load") != load.end());
+  // A load that jumps on and off ten times is one that the step sees.
+  const Names jumps = unsound(verdicts("10 * (sin(2 * pi * 1.7 * t) > 0 ? 1 : 0.5)", 0.003));
+  EXPECT_TRUE(std::ranges::find(jumps, "step that resolves the load") == jumps.end());
+  for (const EffectVerdict& v : verdicts("t < 1 ? 10 : 0", 0.04)) {
+    if (v.effect != "step that resolves the modes") continue;
+    EXPECT_NE(v.recommendation.find("simulation.time-step: 0.003 s"), std::string::npos) << v.recommendation;
+  }
+}
+
+}  // namespace
+}  // namespace couplet::plate
