@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/boundary.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -34,6 +36,12 @@ FaceKind kind_of(BoundaryType type) {
   return type == BoundaryType::slip || type == BoundaryType::symmetry ? FaceKind::slip : FaceKind::velocity;
 }
 
+Expression turning_of(const BoundaryParameters& b, const std::string& where) {
+  Expression speed(b.rotation->speed, where + ".rotation.speed");
+  if (speed.uses_space()) throw Error("{}.rotation.speed: it may depend on t alone.", where);
+  return speed;
+}
+
 double ramp_factor(const BoundaryParameters& b, double t) {
   if (!b.ramp || t >= *b.ramp) return 1;
   return t <= 0 ? 0 : 0.5 * (1 - std::cos(std::numbers::pi * t / *b.ramp));
@@ -55,7 +63,7 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
   const Index first = patch.first - mesh.n_interior;
   const std::string where = "boundaries." + patch.name;
   std::fill_n(kind_.begin() + first, patch.count, kind_of(b.type));
-  Given given{first, patch.count, b, {}, {}, {}, {}};
+  Given given{first, patch.count, b, {}, {}, {}, {}, {}, {}};
   switch (b.type) {
     case BoundaryType::interface:
       std::fill_n(interface_.begin() + first, patch.count, 1);
@@ -84,10 +92,15 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
       return;
     case BoundaryType::inlet:
     case BoundaryType::moving_wall:
-      if (b.mean_speed) {
+      if (b.rotation) given.turning = turning_of(b, where);
+      if (b.table) {
+        std::vector<std::string> columns{"u", "v", "w"};
+        columns.resize(D);
+        given.table = GridTable::read(b.table->file, columns, b.table->outside);
+      } else if (b.mean_speed) {
         given.mean_speed = Expression(*b.mean_speed, where + ".mean-speed");
         given.shape = inlet_shape<D>(mesh, patch, b.profile);
-      } else {
+      } else if (!b.velocity.empty()) {
         given.velocity = make_expressions(b.velocity, D, where + ".velocity");
       }
       [[fallthrough]];
@@ -97,23 +110,35 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
 }
 
 template <int D>
+void Boundary<D>::set_velocity(const Given& g, double t, const std::vector<Vec3>& centres,
+                               Vectors<D>& w) const {
+  const std::span<const Vec3> places(centres.data() + g.first, g.count);
+  const std::span<double> values = flat<D>(w).subspan(std::size_t(g.first) * D, std::size_t(g.count) * D);
+  if (!g.shape.speed.empty()) {
+    const double mean = g.mean_speed(Vec3::Zero(), t);
+    for (Index i = 0; i < g.count; ++i) w[g.first + i] = mean * g.shape.speed[i] * g.shape.direction;
+  } else if (g.table) {
+    for (Index i = 0; i < g.count; ++i)
+      g.table->evaluate(places[i], t, values.subspan(std::size_t(i) * D, D));
+  } else if (g.velocity.empty() || g.count == 0) {
+    std::fill(values.begin(), values.end(), 0.0);
+  } else {
+    for (int c = 0; c < D; ++c) g.velocity[c].evaluate(places, t, values, D, c);
+  }
+}
+
+template <int D>
 void Boundary<D>::velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const {
   for (const Given& g : velocity_patches_) {
-    const std::span<const Vec3> places(centres.data() + g.first, g.count);
-    const std::span<double> values = flat<D>(w).subspan(std::size_t(g.first) * D, std::size_t(g.count) * D);
+    set_velocity(g, t, centres, w);
+    if (const auto& r = g.parameters.rotation; r && g.count > 0) {
+      const Vec3 omega = g.turning(Vec3::Zero(), t) * (D == 2 ? Vec3::UnitZ() : Vec3(r->axis.normalized()));
+      for (Index b = g.first; b < g.first + g.count; ++b)
+        w[b] += omega.cross(centres[b] - r->centre).template head<D>();
+    }
     const double factor = ramp_factor(g.parameters, t);
-    if (!g.shape.speed.empty()) {
-      const double mean = factor * g.mean_speed(Vec3::Zero(), t);
-      for (Index i = 0; i < g.count; ++i) w[g.first + i] = mean * g.shape.speed[i] * g.shape.direction;
-      continue;
-    }
-    if (g.velocity.empty() || g.count == 0) {
-      std::fill(values.begin(), values.end(), 0.0);
-      continue;
-    }
-    for (int c = 0; c < D; ++c) g.velocity[c].evaluate(places, t, values, D, c);
     if (factor != 1)
-      for (double& v : values) v *= factor;
+      for (Index b = g.first; b < g.first + g.count; ++b) w[b] *= factor;
   }
 }
 

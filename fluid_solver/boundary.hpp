@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -63,8 +64,11 @@ class Boundary {
     BoundaryParameters parameters;
     std::vector<Expression> velocity;
     Expression pressure, mean_speed;
-    InletShape<D> shape;  // with mean_speed
+    InletShape<D> shape;             // with mean_speed
+    std::optional<GridTable> table;  // of the velocity
+    Expression turning;              // [rad/s], with a rotation
   };
+  void set_velocity(const Given& given, double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
   MPI_Comm comm_;
   std::vector<FaceKind> kind_;
   std::vector<char> interface_, convective_, free_backflow_;

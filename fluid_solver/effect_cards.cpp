@@ -16,9 +16,13 @@ using V = std::optional<EffectVerdict>;
 
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 
+template <class Test>
+bool has_boundary(const S& s, const Test& test) {
+  return std::ranges::any_of(s.parameters.boundaries, [&](const auto& b) { return test(b.second); });
+}
+
 bool has_interface(const S& s) {
-  return std::ranges::any_of(s.parameters.boundaries,
-                             [](const auto& b) { return b.second.type == BoundaryType::interface; });
+  return has_boundary(s, [](const auto& b) { return b.type == BoundaryType::interface; });
 }
 
 V judge_turbulence(const S&, const E& e) {
@@ -138,6 +142,23 @@ const std::array cards{
               "`statistics`",
               [](const S& s) { return when(s.parameters.statistics.has_value(), "statistics"); },
               {"sums of velocity, pressure and their squares a cell", 0, 0}},
+    FluidCard{"lines and planes",
+              "`output.samples`",
+              [](const S& s) { return when(!s.parameters.output.samples.empty(), "output.samples"); },
+              {"interpolation at their places and files at the outputs", 0, 0}},
+    FluidCard{"velocity from a file",
+              "`table` of an inlet or moving wall",
+              [](const S& s) {
+                return when(has_boundary(s, [](const auto& b) { return b.table.has_value(); }), "table");
+              },
+              {"the table; a look-up a face of the patch", 0, 0}},
+    FluidCard{"rotating inlet or wall",
+              "`rotation` of an inlet or moving wall",
+              [](const S& s) {
+                return when(has_boundary(s, [](const auto& b) { return b.rotation.has_value(); }),
+                            "rotation");
+              },
+              {}},
     FluidCard{"vorticity and Q",
               "`output.vorticity`, `output.q-criterion`",
               [](const S& s) {

@@ -17,6 +17,9 @@ int main(int argc, char** argv) {
                 couplet::load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
                                    parameters.mesh_parameters, couplet::fluid::periodic_patches(parameters),
                                    {}, false, parameters.mesh_scale);
+            for (auto& [patch, boundary] : parameters.boundaries)  // files lie beside the case
+              if (boundary.table)
+                boundary.table->file = (context.case_folder / boundary.table->file).string();
             couplet::fluid::MotionLink link;
             if (context.mesh_peer != MPI_COMM_NULL)
               link = [peer = context.mesh_peer](const couplet::Mesh& m) {

@@ -22,9 +22,7 @@ constexpr std::array<const char*, 3> axis{"x", "y", "z"};
 template <int D>
 FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, FluidContext context)
     : fluid_(fluid), mesh_(fluid.mesh()), context_(std::move(context)), root_(comm_rank(mesh_.comm) == 0) {
-  for (const auto& [name, probe] : fluid.parameters().probes) probes_.emplace_back(mesh_, name, probe.point);
-  if (!probes_.empty())
-    interpolation_.emplace(mesh_, std::vector<PatchStencil>(mesh_.patches.size(), PatchStencil::open));
+  set_up_points();
   for (const Patch& patch : mesh_.patches)
     if (is_wall(fluid.parameters().boundaries.at(patch.name).type)) walls_.push_back(&patch);
   check_coefficients();
@@ -90,10 +88,14 @@ void FluidOutput<D>::write_fields(double time, const RunningStatistics<D>* stati
     u_rms = statistics->velocity_rms();
     p_rms = statistics->pressure_rms();
     shear = statistics->reynolds_shear();
-    fields.push_back({"velocity-mean", "m/s", Place::cells, D, flat<D>(statistics->velocity_mean())});
-    fields.push_back({"velocity-rms", "m/s", Place::cells, D, flat<D>(u_rms)});
-    fields.push_back({"pressure-mean", "Pa", Place::cells, 1, statistics->pressure_mean()});
-    fields.push_back({"pressure-rms", "Pa", Place::cells, 1, p_rms});
+    fields.push_back({"velocity-mean", "m/s", Place::cells, D,
+                      flat<D>(statistics->velocity_mean()).first(statistics->cells() * D)});
+    fields.push_back({"velocity-rms", "m/s", Place::cells, D,
+                      std::span<const double>(flat<D>(u_rms)).first(statistics->cells() * D)});
+    fields.push_back({"pressure-mean", "Pa", Place::cells, 1,
+                      std::span(statistics->pressure_mean()).first(statistics->cells())});
+    fields.push_back(
+        {"pressure-rms", "Pa", Place::cells, 1, std::span<const double>(p_rms).first(statistics->cells())});
     fields.push_back({"reynolds-shear", "m^2/s^2", Place::cells, RunningStatistics<D>::n_shear, shear});
   }
   fields_->write(time, fluid_.moving() ? s.points : mesh_.reference_points, fields);
@@ -226,42 +228,6 @@ void FluidOutput<D>::write_balance(double time) {
                                        sums[divergence] / sums[volume], sums[outflow] - sums[inflow],
                                        double(fluid_.statistics().sub_steps),
                                        double(fluid_.statistics().pressure_iterations)});
-}
-
-template <int D>
-void FluidOutput<D>::write_probes(double time) {
-  const State<D>& s = fluid_.state();
-  if (!s.pressure[0]) return;
-  if (fluid_.moving()) interpolation_->update(compute_geometry(mesh_, s.points), s.points);
-  Vectors<D> u_boundary = s.u_boundary;
-  u_boundary.resize(mesh_.boundary.n_local(), Vec<D>::Zero());
-  mesh_.boundary.update_ghosts(flat<D>(u_boundary), D);
-  std::vector<double> p_boundary = s.pressure[0]->boundary;
-  p_boundary.resize(mesh_.boundary.n_local(), 0.0);
-  mesh_.boundary.update_ghosts(p_boundary);
-
-  std::vector<double> row{time};
-  std::vector<double> at_points(mesh_.points.n_local() * (D + 1), 0.0);
-  for (const Probe& probe : probes_) {
-    for (const Index point : probe.points()) {
-      double* values = at_points.data() + std::size_t(point) * (D + 1);
-      const Vec<D> velocity = interpolation_->template scalar_at<D>(point, flat<D>(s.u), flat<D>(u_boundary));
-      std::copy_n(velocity.data(), D, values);
-      values[D] = interpolation_->template scalar_at<1>(point, s.pressure[0]->p, p_boundary)[0];
-    }
-    const std::vector<double> sampled = probe.sample(at_points, D + 1);
-    row.insert(row.end(), sampled.begin(), sampled.end());
-  }
-  if (!root_) return;
-  if (!probe_series_) {
-    std::vector<std::string> columns{"time [s]"};
-    for (const auto& [name, unused] : fluid_.parameters().probes) {
-      for (int c = 0; c < D; ++c) columns.push_back(fmt::format("{} velocity {} [m/s]", name, axis[c]));
-      columns.push_back(fmt::format("{} pressure [Pa]", name));
-    }
-    probe_series_.emplace(open("probes.csv", columns));
-  }
-  probe_series_->row(row);
 }
 
 template class FluidOutput<2>;

@@ -7,11 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "common/fv/vertex_interpolation.hpp"
 #include "common/io/field_writer.hpp"
-#include "common/io/probe.hpp"
 #include "common/io/series.hpp"
 #include "fluid_solver/fluid.hpp"
+#include "fluid_solver/samples.hpp"
 #include "fluid_solver/statistics.hpp"
 
 namespace couplet::fluid {
@@ -24,7 +23,7 @@ struct FluidContext {
 };
 
 /// The files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, balance.csv, energy.csv,
-/// bodies.csv, probes.csv. They are opened when first written to.
+/// bodies.csv, probes.csv, sample-NAME.csv. They are opened when first written to.
 template <int D>
 class FluidOutput {
  public:
@@ -32,8 +31,11 @@ class FluidOutput {
   /// `statistics` may be null.
   void write_fields(double time, const RunningStatistics<D>* statistics);
   void write_series(double time);
+  /// Lines and planes. `statistics` may be null. Collective.
+  void write_samples(double time, const RunningStatistics<D>* statistics);
 
  private:
+  void set_up_points();
   void write_forces(double time);
   void write_walls(double time);
   void write_coefficients(double time);
@@ -49,12 +51,14 @@ class FluidOutput {
   FluidContext context_;
   bool root_;
   std::vector<Probe> probes_;
-  std::optional<VertexInterpolation> interpolation_;  // only with probes
+  std::vector<Sample> samples_;
+  std::optional<PointValues<D>> point_values_;  // only with probes or samples
   std::vector<const Patch*> walls_;
   std::optional<FieldWriter> fields_;
   std::vector<double> divergence_;
   std::optional<Series> forces_, coefficients_, walls_series_, balance_, energy_, bodies_,
-      probe_series_;  // on rank 0
+      probe_series_;                                  // on rank 0
+  std::vector<std::optional<Series>> sample_series_;  // one a sample, on rank 0
 };
 
 }  // namespace couplet::fluid

@@ -13,6 +13,35 @@ void declare_ramp(config::Section& s, BoundaryParameters& b) {
       .doc("the velocity grows from 0 as (1 - cos(pi t/ramp))/2 until t = ramp; absent: no ramp");
 }
 
+/// Velocity from a file, and a rotation besides.
+void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
+  s.optional_section<VelocityTableParameters>(
+      "table", b.table,
+      [](config::Section& t, VelocityTableParameters& table) {
+        t.value("file", table.file)
+            .required()
+            .doc(
+                "CSV file beside the case; its first line names the columns: some of x, y, z [m], t [s], and u, v, w "
+                "[m/s]; its lines are a full grid, linear in between");
+        t.choice("outside", table.outside,
+                 {{"error", GridTable::Outside::error}, {"clamp", GridTable::Outside::clamp}})
+            .doc("where a value beyond the ends is needed: error, or clamp (the ends hold)");
+      },
+      "velocity from a file instead of 'velocity'");
+  s.optional_section<RotationParameters>(
+      "rotation", b.rotation,
+      [](config::Section& r, RotationParameters& rotation) {
+        r.value("speed", rotation.speed)
+            .required()
+            .doc("[rad/s], expression of t [s]; ramp holds for it, too");
+        r.value("centre", rotation.centre).unit("m").doc("a point of the axis");
+        r.value("axis", rotation.axis).size(3).doc("3-D; a plane scene turns about z");
+        r.check([&rotation] { return rotation.axis.norm() > 0 ? std::string() : "'axis' must not be zero"; },
+                "axis");
+      },
+      "omega x (r - centre) besides the other velocity: a rotating inlet or wall; absent: none");
+}
+
 void declare_inlet(config::Section& s, BoundaryParameters& b) {
   s.value("velocity", b.velocity).unit("m/s").doc("one expression of x, y, z [m] and t [s] a component");
   s.value("mean-speed", b.mean_speed)
@@ -21,20 +50,28 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
   s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
       .doc("of mean-speed; parabolic: zero at the rim of the patch, a straight line in 2-D, a disc in 3-D");
   declare_ramp(s, b);
+  declare_table_and_rotation(s, b);
   s.check(
       [&b] {
-        if (b.velocity.empty() == !b.mean_speed) return std::string("give either 'velocity' or 'mean-speed'");
+        const int given = !b.velocity.empty() + b.mean_speed.has_value() + b.table.has_value();
+        if (given != 1) return std::string("give either 'velocity', 'mean-speed' or 'table'");
         return std::string();
       },
       "type");
 }
 
 void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
-  s.value("velocity", b.velocity)
-      .unit("m/s")
-      .required()
-      .doc("one expression of x, y, z [m] and t [s] a component");
+  s.value("velocity", b.velocity).unit("m/s").doc("one expression of x, y, z [m] and t [s] a component");
   declare_ramp(s, b);
+  declare_table_and_rotation(s, b);
+  s.check(
+      [&b] {
+        if (!b.velocity.empty() && b.table) return std::string("give either 'velocity' or 'table'");
+        if (b.velocity.empty() && !b.table && !b.rotation)
+          return std::string("give 'velocity', 'table' or 'rotation'");
+        return std::string();
+      },
+      "type");
 }
 
 void declare_outlet(config::Section& s, BoundaryParameters& b) {
@@ -66,39 +103,6 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
       "velocity; slip, symmetry: no flow through, no friction; periodic: what leaves here enters at the "
       "partner; interface: wall that moves with the structure; body: wall that moves as 'motion' says",
       true);
-}
-
-void declare_coefficients(config::Section& s, CoefficientParameters& c) {
-  s.value("patches", c.patches).required().doc("walls whose forces are added");
-  s.value("speed", c.speed)
-      .unit("m/s")
-      .positive()
-      .required()
-      .doc("U of the dynamic pressure q = rho U^2 / 2");
-  s.value("area", c.area)
-      .unit("m^2")
-      .positive()
-      .required()
-      .doc("A: force over q A; in 2-D a length times 1 m");
-  s.value("length", c.length).unit("m").positive().doc("L: moment over q A L");
-  s.value("drag", c.drag).doc("direction of the first coefficient; need not be of length 1");
-  s.value("lift", c.lift).doc("direction of the second coefficient");
-  s.value("centre", c.centre).unit("m").doc("point about which the moment is taken; it rests");
-  s.value("axis", c.axis).size(3).doc("of the moment; a plane scene turns about z");
-}
-
-void declare_output(config::Section& s, FluidOutputParameters& p) {
-  s.value("vorticity", p.vorticity).doc("field of the curl of the velocity [1/s]");
-  s.value("q-criterion", p.q_criterion).doc("field of Q = (|W|^2 - |S|^2)/2 [1/s^2]: positive in vortices");
-  s.value("walls", p.walls)
-      .doc("walls.csv: shear and y+ of each wall; with a turbulence model it is always written");
-  s.map<CoefficientParameters>(
-      "coefficients", p.coefficients, declare_coefficients, "name",
-      "coefficients.csv: force and moment coefficients of some walls, means over the step");
-  s.value("energy-budget", p.energy_budget)
-      .doc(
-          "energy.csv: kinetic energy and the power that viscosity, eddy viscosity and pressure take from "
-          "it");
 }
 
 }  // namespace

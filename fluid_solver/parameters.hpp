@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
+#include "common/fv/grid_table.hpp"
 #include "common/fv/prescribed_motion.hpp"
 
 namespace couplet::fluid {
@@ -36,9 +37,23 @@ enum class ExplicitScheme { adams_bashforth, runge_kutta };
 /// How the face fluxes follow the cells' velocities from step to step.
 enum class Projection { flux_memory, incremental, non_incremental };
 
+/// Velocities in a file, see GridTable: columns u, v (and w) over some of x, y, z, t.
+struct VelocityTableParameters {
+  std::string file;
+  GridTable::Outside outside = GridTable::Outside::error;
+};
+
+/// omega(t) a x (x - c), besides the other velocity.
+struct RotationParameters {
+  config::ExpressionText speed;                      // [rad/s], of t
+  Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]
+};
+
 struct BoundaryParameters {
   BoundaryType type = BoundaryType::no_slip;
   std::vector<config::ExpressionText> velocity;      // [m/s], inlet and moving wall
+  std::optional<VelocityTableParameters> table;      // instead of velocity; inlet and moving wall
+  std::optional<RotationParameters> rotation;        // inlet and moving wall
   std::optional<config::ExpressionText> mean_speed;  // [m/s] into the domain, of t; inlet
   InletProfile profile = InletProfile::uniform;      // of mean_speed
   std::optional<double> ramp;                        // [s], inlet and moving wall
@@ -74,10 +89,20 @@ struct CoefficientParameters {
   Vec3 drag = Vec3::UnitX(), lift = Vec3::UnitY(), axis = Vec3::UnitZ(), centre = Vec3::Zero();
 };
 
+/// Places where velocity and pressure are written at each output: a line (one side) or a plane (two).
+struct SampleParameters {
+  enum class Type { line, plane };
+  Type type = Type::line;
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  // [m]; of a plane: two corners, the third is `up`
+  Vec3 up = Vec3::Zero();                       // [m]
+  int points = 101, rows = 21;                  // along from-to; along from-up
+};
+
 /// Fields and series beyond velocity, pressure, forces and balance.
 struct FluidOutputParameters {
   bool vorticity = false, q_criterion = false, energy_budget = false, walls = false;
   std::map<std::string, CoefficientParameters> coefficients;
+  std::map<std::string, SampleParameters> samples;
 };
 
 struct ProbeParameters {
@@ -113,5 +138,7 @@ struct FluidParameters {
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters);
 
 void declare(config::Section& section, FluidParameters& parameters);
+/// The section `output`.
+void declare_output(config::Section& section, FluidOutputParameters& parameters);
 
 }  // namespace couplet::fluid

@@ -70,7 +70,7 @@ FluidParticipant<D>::FluidParticipant(Mesh mesh, const FluidParameters& paramete
       output_(*fluid_, std::move(context)) {
   if (link) motion_ = link(mesh_);
   set_up_motion();
-  if (parameters.statistics) statistics_.emplace(mesh_.cells.n_local());
+  if (parameters.statistics) statistics_.emplace(mesh_.cells.n_local(), mesh_.boundary.n_owned());
   if (fluid_->boundary().interface_patches().empty()) {
     if (!fluid_->moving()) mesh_.reference = {};  // only the set-up needed it
     return;
@@ -327,7 +327,9 @@ void FluidParticipant<D>::load(CheckpointReader& file) {
 
 template <int D>
 void FluidParticipant<D>::write_output(double time, int) {
-  output_.write_fields(time, statistics_ ? &*statistics_ : nullptr);
+  const RunningStatistics<D>* statistics = statistics_ ? &*statistics_ : nullptr;
+  output_.write_fields(time, statistics);
+  output_.write_samples(time, statistics);
 }
 
 template <int D>

@@ -6,32 +6,43 @@
 namespace couplet::fluid {
 
 template <int D>
-RunningStatistics<D>::RunningStatistics(std::size_t cells)
-    : velocity_(cells, Vec<D>::Zero()),
-      normal_(cells, Vec<D>::Zero()),
+RunningStatistics<D>::RunningStatistics(std::size_t cells, std::size_t faces)
+    : cells_(cells),
+      velocity_(cells + faces, Vec<D>::Zero()),
+      normal_(cells + faces, Vec<D>::Zero()),
       shear_(cells * n_shear, 0.0),
-      pressure_(cells, 0.0),
-      pressure_square_(cells, 0.0) {}
+      pressure_(cells + faces, 0.0),
+      pressure_square_(cells + faces, 0.0) {}
+
+template <int D>
+void RunningStatistics<D>::add(std::size_t i, const Vec<D>& velocity, double dt) {
+  const double share = dt / duration_;
+  const Vec<D> before = velocity - velocity_[i];
+  velocity_[i] += share * before;
+  const Vec<D> after = velocity - velocity_[i];
+  normal_[i] += dt * before.cwiseProduct(after);
+  if (i >= cells_) return;
+  double* shear = shear_.data() + i * n_shear;
+  for (int a = 0; a < D; ++a)
+    for (int b = a + 1; b < D; ++b) *shear++ += dt * before[a] * after[b];
+}
+
+template <int D>
+void RunningStatistics<D>::add_pressure(std::size_t i, double pressure, double dt) {
+  const double before = pressure - pressure_[i];
+  pressure_[i] += dt / duration_ * before;
+  pressure_square_[i] += dt * before * (pressure - pressure_[i]);
+}
 
 template <int D>
 void RunningStatistics<D>::add(const State<D>& s, double dt) {
   duration_ += dt;
-  const double share = dt / duration_;
-  for (std::size_t c = 0; c < velocity_.size(); ++c) {
-    const Vec<D> before = s.u[c] - velocity_[c];
-    velocity_[c] += share * before;
-    const Vec<D> after = s.u[c] - velocity_[c];
-    normal_[c] += dt * before.cwiseProduct(after);
-    double* shear = shear_.data() + c * n_shear;
-    for (int i = 0; i < D; ++i)
-      for (int j = i + 1; j < D; ++j) *shear++ += dt * before[i] * after[j];
-  }
+  for (std::size_t c = 0; c < cells_; ++c) add(c, s.u[c], dt);
+  for (std::size_t b = 0; b < s.u_boundary.size(); ++b) add(cells_ + b, s.u_boundary[b], dt);
   if (!s.pressure[0]) return;
-  for (std::size_t c = 0; c < pressure_.size(); ++c) {
-    const double before = s.pressure[0]->p[c] - pressure_[c];
-    pressure_[c] += share * before;
-    pressure_square_[c] += dt * before * (s.pressure[0]->p[c] - pressure_[c]);
-  }
+  for (std::size_t c = 0; c < cells_; ++c) add_pressure(c, s.pressure[0]->p[c], dt);
+  for (std::size_t b = 0; b < s.pressure[0]->boundary.size(); ++b)
+    add_pressure(cells_ + b, s.pressure[0]->boundary[b], dt);
 }
 
 template <int D>

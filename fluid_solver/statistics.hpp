@@ -6,17 +6,19 @@
 
 namespace couplet::fluid {
 
-/// Time means and second central moments of velocity and pressure per local cell, weighted with the steps
-/// (West's update, which loses no digits over long runs).
+/// Time means and second central moments of velocity and pressure per local cell, then per owned boundary face,
+/// weighted with the steps (West's update, which loses no digits over long runs).
 template <int D>
 class RunningStatistics {
  public:
   static constexpr int n_shear = D * (D - 1) / 2;
-  explicit RunningStatistics(std::size_t cells);
+  RunningStatistics(std::size_t cells, std::size_t faces);
   /// `state` held for dt [s].
   void add(const State<D>& state, double dt);
   double duration() const { return duration_; }  ///< [s]
 
+  std::size_t cells() const { return cells_; }
+  /// Below, entries from cells() on are those of boundary faces; reynolds_shear() is of cells alone.
   const Vectors<D>& velocity_mean() const { return velocity_; }
   const std::vector<double>& pressure_mean() const { return pressure_; }
   Vectors<D> velocity_rms() const;
@@ -28,6 +30,10 @@ class RunningStatistics {
   void load(CheckpointReader& file);
 
  private:
+  void add(std::size_t entry, const Vec<D>& velocity, double dt);
+  void add_pressure(std::size_t entry, double pressure, double dt);
+
+  std::size_t cells_;
   double duration_ = 0;
   Vectors<D> velocity_, normal_;                            // mean; sum dt u_i' u_i'
   std::vector<double> shear_, pressure_, pressure_square_;  // sum dt u_i' u_j'; mean; sum dt p'^2

@@ -296,11 +296,20 @@ case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' does
 case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface, body).
 """, ("{type: no-slip}", "{}")),
     fluid("inlet without velocity", """
-case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity' or 'mean-speed'.
+case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity', 'mean-speed' or 'table'.
 """, (", velocity: [1 m/s, 0 m/s]", "")),
     fluid("inlet with two velocities", """
-case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity' or 'mean-speed'.
+case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity', 'mean-speed' or 'table'.
 """, (", velocity: [1 m/s", ", mean-speed: 1, velocity: [1 m/s")),
+    fluid("velocity from a file that is not there", """
+case.yaml:11:35: participants.fluid.boundaries.left.table.file: there is no file 'none.csv'.
+""", (", velocity: [1 m/s, 0 m/s]", ", table: {file: none.csv}")),
+    fluid("velocity from a file with a gap", """
+[fluid 0] error: in.csv: the grid has no value at y = 1, t = 1; each place of an axis needs one at each place of the others.
+""", (", velocity: [1 m/s, 0 m/s]", ", table: {file: in.csv}"), files={"in.csv": "y,t,u,v\n0,0,1,0\n0,1,1,0\n1,0,1,0\n"}, **RUN),
+    fluid("line of a single point", """
+case.yaml:10:57: participants.fluid.output.samples.a.to: 'from' and 'to' are one point.
+""", ("    boundaries:\n", "    output: {samples: {a: {type: line, from: [0, 0, 0], to: [0, 0, 0]}}}\n    boundaries:\n")),
     fluid("turbulence model that is not there", """
 case.yaml:10:18: participants.fluid.turbulence.model: 'smagorinski' is not one of: smagorinsky, wale. Did you mean 'smagorinsky'?
 """, ("    boundaries:\n", "    turbulence: {model: smagorinski}\n    boundaries:\n")),

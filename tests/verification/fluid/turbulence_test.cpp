@@ -136,7 +136,7 @@ TEST(Statistics, are_those_of_a_known_oscillation) {
   FluidParameters p;
   p.density = 1;
   p.viscosity = 0.01;
-  RunningStatistics<2> statistics(1);
+  RunningStatistics<2> statistics(1, 0);
   State<2> s;
   const int n = 4000;
   double t = 0;

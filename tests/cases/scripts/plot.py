@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""scripts/plot draws monitors, lines, planes and residuals, and says what is wrong with a file."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+PLOT = pathlib.Path(__file__).resolve().parents[3] / "scripts" / "plot"
+
+
+def run(*arguments):
+    return subprocess.run([sys.executable, str(PLOT), *map(str, arguments)], capture_output=True, text=True)
+
+
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    (folder / "forces.csv").write_text("time [s],wall x [N],wall y [N],p [Pa]\n" + "".join(f"{i / 10},{i},{i * i},3\n" for i in range(20)) + "2.0,1")
+    line = "time [s],along [-],up [-],x [m],y [m],z [m],velocity x [m/s]\n"
+    (folder / "sample-a.csv").write_text(line + "".join(f"{t},{s / 4},0,0,{s},0,{s * t}\n" for t in (1, 2) for s in range(5)))
+    (folder / "sample-b.csv").write_text(line + "".join(f"1,{s / 4},{r / 3},{s},{r},0,{s * r}\n" for s in range(5) for r in range(4)))
+    (folder / "residuals.csv").write_text("time [s],iteration [-],relative residual [-]\n0.1,1,1e-2\n0.1,2,1e-5\n")
+    all_of_it = run(folder)
+    assert all_of_it.returncode == 0, all_of_it.stderr
+    for stem in ("forces", "sample-a", "sample-b", "residuals"):
+        picture = folder / f"{stem}.png"
+        assert str(picture) in all_of_it.stdout and picture.stat().st_size > 2000, (stem, all_of_it)
+    one = run(folder / "forces.csv", "--only", "wall", "--from", "0.5", "--picture", folder / "mine.png")
+    assert one.returncode == 0 and (folder / "mine.png").exists(), one.stderr
+    for arguments, message in (
+        ([folder / "none.csv"], "No such file"),
+        ([folder / "forces.csv", "--only", "lift"], "no column holds lift"),
+        ([folder / "forces.csv", "--from", "9"], "no row between these times"),
+        ([folder, "--picture", "x.png"], "--picture names one picture"),
+    ):
+        wrong = run(*arguments)
+        assert wrong.returncode == 1 and message in wrong.stderr, (arguments, wrong)
+    (folder / "text.csv").write_text("name,value\nx,1\n")
+    wrong = run(folder / "text.csv")
+    assert wrong.returncode == 1 and "is no monitor" in wrong.stderr, wrong
+    assert run(folder).returncode == 0  # one file of a folder that is none
+print("ok")

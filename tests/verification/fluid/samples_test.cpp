@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: Apache-2.0
+// Velocities from files and rotating inlets; lines and planes in the output, with means and rms.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "common/base/error.hpp"
+#include "fluid_case.hpp"
+#include "fluid_solver/participant.hpp"
+
+namespace couplet::fluid::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of this test on this number of ranks, made anew. Collective.
+fs::path folder_of(const std::string& name) {
+  const fs::path folder =
+      fs::temp_directory_path() / ("couplet-" + name + "-" + std::to_string(comm_size(MPI_COMM_WORLD)));
+  if (comm_rank(MPI_COMM_WORLD) == 0) {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  return folder;
+}
+
+void write(const fs::path& file, const std::string& text) {
+  MPI_Barrier(MPI_COMM_WORLD);  // nobody still reads the one before
+  if (comm_rank(MPI_COMM_WORLD) == 0) std::ofstream(file) << text;
+  MPI_Barrier(MPI_COMM_WORLD);
+}
+
+RawMesh box(std::array<Index, 3> cells) {
+  return comm_rank(MPI_COMM_WORLD) == 0
+             ? make_box(BoxCells::quadrilaterals, cells, Vec3::Zero(), Vec3(2, 1, 1))
+             : RawMesh{};
+}
+
+/// u = y between a wall at rest and one that moves, exact on any mesh; what comes in is in a file.
+FluidParameters couette() {
+  FluidParameters p;
+  p.mesh = "box";
+  p.dimension = 2;
+  p.density = 1.3;
+  p.viscosity = 0.02;
+  p.pressure_tolerance = 1e-13;
+  p.initial_velocity = {{"y"}, {"0"}};
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet);
+  p.boundaries["xmin"].table.emplace();
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet, {}, "0.7");
+  p.boundaries["ymin"] = boundary(BoundaryType::no_slip);
+  p.boundaries["ymax"] = boundary(BoundaryType::moving_wall, {"1", "0"});
+  p.initial_pressure = {"0.7"};
+  return p;
+}
+
+std::string head_of(const fs::path& file, std::vector<std::vector<double>>& rows) {
+  std::ifstream in(file);
+  std::string head;
+  std::getline(in, head);
+  for (std::string line; std::getline(in, line);) {
+    rows.emplace_back();
+    std::istringstream words(line);
+    for (std::string word; std::getline(words, word, ',');) rows.back().push_back(std::stod(word));
+  }
+  return head;
+}
+
+TEST(VelocityTable, is_linear_in_space_and_time_between_its_places) {
+  const fs::path folder = folder_of("table");
+  write(folder / "in.csv", "# u = y (1 + t)\nt [s],y [m],v,u [m/s]\n0,1,0,1\n0,0,0,0\n2,0,0,0\n2,1,0,3\n");
+  FluidParameters p = couette();
+  p.boundaries["xmin"].table->file = folder / "in.csv";
+  const Mesh mesh = distribute(MPI_COMM_WORLD, box({4, 10, 1}));
+  const Boundary<2> boundary(mesh, p);
+  const auto at = make_placement<2>(mesh, mesh.reference);
+  Vectors<2> w(mesh.boundary.n_owned(), Vec<2>::Zero());
+  boundary.velocity_at(0.5, at->boundary_centre, w);
+  const Patch& inlet = *mesh.find_patch("xmin");
+  for (Index f = inlet.first; f < inlet.first + inlet.count; ++f) {
+    const Index b = f - mesh.n_interior;
+    EXPECT_NEAR(w[b][0], at->boundary_centre[b][1] * 1.5, 1e-14);
+    EXPECT_EQ(w[b][1], 0);
+  }
+}
+
+std::string refusal(const fs::path& file, const std::string& text, double y = 0.5) {
+  write(file, text);
+  try {
+    const GridTable table = GridTable::read(file, {"u", "v"}, GridTable::Outside::error);
+    std::array<double, 2> values{};
+    table.evaluate(Vec3(0, y, 0), 0, values);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(VelocityTable, what_is_wrong_is_said_with_file_and_place) {
+  using testing::HasSubstr;
+  const fs::path file = folder_of("wrong-table") / "in.csv";
+  EXPECT_EQ(refusal(file, "y,u,v\n0,0,0\n1,1,0\n"), "");
+  EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,1,0\n", 1.5),
+              HasSubstr("from y = 0 m to 1 m, but its value at 1.5 m"));
+  EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,one,0\n"), HasSubstr("in.csv:3: 'one' is not a number"));
+  EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,1\n"), HasSubstr("in.csv:3: 3 columns are named, 2 stand here"));
+  EXPECT_THAT(refusal(file, "y,u\n0,0\n"), HasSubstr("in.csv:1: the column 'v' is missing"));
+  EXPECT_THAT(refusal(file, "q,u,v\n0,0,0\n"), HasSubstr("in.csv:1: a column 'q' has no meaning here"));
+  EXPECT_THAT(refusal(file, "u,v\n0,0\n"), HasSubstr("no column is an axis"));
+  EXPECT_THAT(refusal(file, "y,t,u,v\n0,0,1,0\n0,1,1,0\n1,0,1,0\n"), HasSubstr("no value at y = 1, t = 1"));
+  EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n0,0,0\n"), HasSubstr("given twice"));
+  EXPECT_THAT(refusal(file.parent_path() / "none" / "in.csv", ""), HasSubstr("cannot be read"));
+}
+
+TEST(RotatingInlet, adds_omega_cross_r_and_a_ring_between_turning_walls_carries_it) {
+  FluidParameters p = couette();
+  p.boundaries["xmin"].table.reset();
+  p.boundaries["xmin"].velocity = {{"3"}, {"0"}};
+  p.boundaries["xmin"].rotation = RotationParameters{{"2*t"}, Vec3(0.5, 0.25, 0), Vec3::UnitZ()};
+  const Mesh mesh = distribute(MPI_COMM_WORLD, box({4, 10, 1}));
+  const Boundary<2> boundary(mesh, p);
+  const auto at = make_placement<2>(mesh, mesh.reference);
+  Vectors<2> w(mesh.boundary.n_owned(), Vec<2>::Zero());
+  boundary.velocity_at(0.5, at->boundary_centre, w);
+  const Patch& inlet = *mesh.find_patch("xmin");
+  for (Index f = inlet.first; f < inlet.first + inlet.count; ++f) {
+    const Index b = f - mesh.n_interior;
+    EXPECT_NEAR(w[b][0], 3 - (at->boundary_centre[b][1] - 0.25), 1e-14);
+    EXPECT_NEAR(w[b][1], 0 - 0.5, 1e-14);
+  }
+  p.boundaries["xmin"].rotation->speed = {"x"};
+  EXPECT_THROW(Boundary<2>(mesh, p), Error);
+}
+
+TEST(RotatingInlet, walls_that_turn_by_rotation_do_what_the_expression_of_it_does) {
+  FluidParameters p;
+  p.density = 1;
+  p.viscosity = 0.1;
+  p.pressure_tolerance = 1e-12;
+  BoundaryParameters wall = boundary(BoundaryType::moving_wall);
+  wall.rotation = RotationParameters{{"2*t"}, Vec3(0.5, 0.5, 0), Vec3::UnitZ()};
+  all_sides(p, 2, wall);
+  const auto raw = [] {
+    return make_box(BoxCells::quadrilaterals, {12, 12, 1}, Vec3::Zero(), Vec3(1, 1, 1));
+  };
+  FluidCase<2> turned(MPI_COMM_WORLD, raw(), p);
+  all_sides(p, 2, boundary(BoundaryType::moving_wall, {"-2*t*(y-0.5)", "2*t*(x-0.5)"}));
+  FluidCase<2> told(MPI_COMM_WORLD, raw(), p);
+  turned.run(0.2, 10);
+  told.run(0.2, 10);
+  // two distributions in one process need not be the same: no cell by cell comparison
+  const auto exact = [](const Vec3& x) { return Vec3(-0.4 * (x[1] - 0.5), 0.4 * (x[0] - 0.5), 0); };
+  const auto rest = [](const Vec3&) { return Vec3(0, 0, 0); };
+  EXPECT_NEAR(turned.velocity_error(rest), told.velocity_error(rest), 1e-11);
+  EXPECT_NEAR(turned.velocity_error(exact), told.velocity_error(exact), 1e-11);
+  EXPECT_GT(turned.velocity_error(rest), 1e-2);
+}
+
+/// Distributed once: a second time in one process PT-Scotch may part it in another way, and no checkpoint would fit.
+const Mesh& the_mesh() {
+  static const Mesh mesh = distribute(MPI_COMM_WORLD, box({20, 10, 1}));
+  return mesh;
+}
+
+/// Writes three outputs of Couette flow with a line and a plane.
+fs::path run(FluidParameters p, const std::string& name, int begin = 0, int end = 3) {
+  const fs::path folder =
+      begin == 0
+          ? folder_of(name)
+          : fs::temp_directory_path() / ("couplet-" + name + "-" + std::to_string(comm_size(MPI_COMM_WORLD)));
+  if (begin == 0) write(folder / "in.csv", "y,u,v\n0,0,0\n1,1,0\n");
+  p.boundaries["xmin"].table->file = folder / "in.csv";
+  FluidContext context{"fluid", folder};
+  if (begin > 0) context.restart_time = 0.01 * begin;
+  FluidParticipant<2> fluid(Mesh(the_mesh()), p, context, MotionLink{});
+  fluid.initialise();
+  if (begin > 0) {
+    CheckpointReader file(MPI_COMM_WORLD, folder / "state.h5");
+    fluid.load(file);
+  }
+  for (int i = begin; i < end; ++i) {
+    fluid.begin_step({0.01 * i, 0.01, Scheme::standalone, i});
+    fluid.solve({});
+    fluid.accept_step();
+    fluid.write_output(0.01 * (i + 1), i + 1);
+    if (i != 1) continue;
+    CheckpointWriter file(MPI_COMM_WORLD, folder / "state.h5");
+    fluid.save(file);
+    file.close();
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  return folder;
+}
+
+FluidParameters with_samples() {
+  FluidParameters p = couette();
+  p.statistics.emplace();
+  p.output.samples["across"] = {.from = Vec3(0.33, 0, 0), .to = Vec3(0.33, 1, 0), .points = 11};
+  p.output.samples["sheet"] = {.type = SampleParameters::Type::plane,
+                               .from = Vec3(1, -0.5, 0),
+                               .to = Vec3(3, -0.5, 0),
+                               .up = Vec3(1, 1.5, 0),
+                               .points = 3,
+                               .rows = 5};
+  return p;
+}
+
+TEST(Samples, linear_fields_are_exact_on_lines_and_planes_with_their_means) {
+  const fs::path folder = run(with_samples(), "samples");
+  for (const std::string name : {"across", "sheet"}) {
+    std::vector<std::vector<double>> rows;
+    const std::string head = head_of(folder / ("sample-" + name + ".csv"), rows);
+    EXPECT_EQ(
+        head,
+        "time [s],along [-],up [-],x [m],y [m],z [m],velocity x [m/s],velocity y [m/s],pressure [Pa],"
+        "velocity-mean x [m/s],velocity-mean y [m/s],pressure-mean [Pa],velocity-rms x [m/s],velocity-rms y "
+        "[m/s],pressure-rms [Pa]");
+    // of the sheet, 2 of 3 columns and 3 of 5 rows lie in the box
+    ASSERT_EQ(rows.size(), 3u * (name == "across" ? 11 : 6));
+    for (const auto& row : rows) {
+      EXPECT_NEAR(row[6], row[4], 1e-9);
+      EXPECT_NEAR(row[9], row[4], 1e-9);
+      EXPECT_NEAR(row[8], 0.7, 1e-9);
+      EXPECT_NEAR(row[11], 0.7, 1e-9);
+      EXPECT_LT(std::abs(row[7]) + std::abs(row[12]) + std::abs(row[14]), 1e-8);
+    }
+  }
+}
+
+TEST(Samples, a_run_from_a_checkpoint_writes_the_same_numbers) {
+  const fs::path folder = run(with_samples(), "resumed");
+  std::vector<std::vector<double>> through, resumed;
+  head_of(folder / "sample-across.csv", through);
+  run(with_samples(), "resumed", 2);
+  head_of(folder / "sample-across.csv", resumed);
+  EXPECT_EQ(through, resumed);
+}
+
+TEST(Samples, places_that_all_lie_outside_are_refused_and_none_are_written_unless_asked_for) {
+  FluidParameters p = couette();
+  const fs::path folder = run(p, "no-samples", 0, 1);
+  for (const auto& entry : fs::directory_iterator(folder))
+    EXPECT_FALSE(entry.path().filename().string().starts_with("sample-")) << entry.path();
+  p.output.samples["far"] = {.from = Vec3(5, 5, 0), .to = Vec3(6, 6, 0), .points = 3};
+  try {
+    run(p, "far-samples", 0, 0);
+    FAIL() << "accepted";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("output.samples.far: none of its places lies in the mesh"));
+  }
+}
+
+}  // namespace
+}  // namespace couplet::fluid::test
