@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wrong fluids; joined by table.py."""
+
+
+def cases(fluid, RUN):
+    return [
+    fluid("viscosity of the other kind", """
+case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' does not convert to Pa s; expected Pa s or a unit that converts to it.
+""", ("1e-3 Pa s", "1e-6 m^2/s")),
+    fluid("boundary of a fluid without type", """
+case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface, body).
+""", ("{type: no-slip}", "{}")),
+    fluid("inlet without velocity", """
+case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity', 'mean-speed' or 'table'.
+""", (", velocity: [1 m/s, 0 m/s]", "")),
+    fluid("inlet with two velocities", """
+case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity', 'mean-speed' or 'table'.
+""", (", velocity: [1 m/s", ", mean-speed: 1, velocity: [1 m/s")),
+    fluid("velocity from a file that is not there", """
+case.yaml:11:35: participants.fluid.boundaries.left.table.file: there is no file 'none.csv'.
+""", (", velocity: [1 m/s, 0 m/s]", ", table: {file: none.csv}")),
+    fluid("velocity from a file with a gap", """
+[fluid 0] error: in.csv: the grid has no value at y = 1, t = 1; each place of an axis needs one at each place of the others.
+""", (", velocity: [1 m/s, 0 m/s]", ", table: {file: in.csv}"), files={"in.csv": "y,t,u,v\n0,0,1,0\n0,1,1,0\n1,0,1,0\n"}, **RUN),
+    fluid("line of a single point", """
+case.yaml:10:57: participants.fluid.output.samples.a.to: 'from' and 'to' are one point.
+""", ("    boundaries:\n", "    output: {samples: {a: {type: line, from: [0, 0, 0], to: [0, 0, 0]}}}\n    boundaries:\n")),
+    fluid("turbulence model that is not there", """
+case.yaml:10:18: participants.fluid.turbulence.model: 'smagorinski' is not one of: smagorinsky, wale. Did you mean 'smagorinsky'?
+""", ("    boundaries:\n", "    turbulence: {model: smagorinski}\n    boundaries:\n")),
+    fluid("immersed body without a level", """
+case.yaml:10:14: participants.fluid.bodies.ball.level: this required key is missing (expression of x, y, z [m] and t [s]: below zero inside, near the surface about the distance to it: number or expression in m).
+""", ("    boundaries:\n", "    bodies: {ball: {velocity: [1, 0]}}\n    boundaries:\n")),
+    fluid("periodic without partner", """
+case.yaml:12:7: participants.fluid.boundaries.right.partner: this required key is missing (the patch that is the translated copy of this one: text).
+""", ("{type: outlet, pressure: 0}", "{type: periodic}")),
+    fluid("component with a wrong unit", """
+case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 2 of the list: '0 Pa': the unit 'Pa' does not convert to m/s; expected m/s or a unit that converts to it.
+""", ("0 m/s]", "0 Pa]")),
+    fluid("outlet with a velocity", """
+case.yaml:12:29: participants.fluid.boundaries.right.velocity: this key does not belong here; it goes with type: inlet or type: moving-wall.
+""", ("pressure: 0", "velocity: [1, 0]")),
+    fluid("unknown treatment", """
+case.yaml:10:5: participants.fluid.viscous: 'implizit' is not one of: auto, explicit, implicit. Did you mean 'implicit'?
+""", ("    boundaries", "    viscous: implizit\n    boundaries")),
+    fluid("true or false", """
+case.yaml:10:14: participants.fluid.output.vorticity: '2' is not one of: true, false.
+""", ("    boundaries", "    output: {vorticity: 2}\n    boundaries")),
+]
