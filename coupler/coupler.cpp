@@ -96,63 +96,8 @@ void Coupler::initialise() {
   unknown_.emplace(comm_, sides_, *links_, group_, schedule_.side_by_side);
   mechanics_.emplace(comm_, sides_, *links_, labels_of(parameters_, partners_));
   if (unknown_->start_at_rest(given_)) history_.now = unknown_->gather(given_);
-}
-
-void Coupler::ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh) {
-  // The moved one blocks until the mesh has been moved: the mover's command goes out first.
-  const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
-  if (with_mover) partners_.front().send({Op::solve, {}, links_->input(0, known), 0, -1, ""});
-  taken_[i] = links_->input(i, known);
-  partners_[i].send({Op::solve, {}, taken_[i], 0, -1, ""});
-}
-
-void Coupler::answer(std::size_t i, Exchange& given, bool move_mesh) {
-  const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
-  // A failed motion makes the moved one fail too; the mover knows the reason. Both replies are always taken.
-  std::optional<SolveFailure> mover_failed;
-  if (with_mover) {
-    try {
-      partners_.front().receive();
-    } catch (const SolveFailure& failure) {
-      mover_failed = failure;
-    }
-  }
-  try {
-    Reply reply = partners_[i].receive();
-    given = std::move(reply.data);
-    answered_anew_ = answered_anew_ || reply.anew;
-  } catch (const SolveFailure&) {
-    if (!mover_failed) throw;
-  }
-  if (mover_failed) throw SolveFailure(*mover_failed);
-  require_finite(comm_, given, sides_[i].interface, sides_[i].interface.gives, partners_[i].name());
-}
-
-std::vector<Exchange> Coupler::pass(std::vector<Exchange> known, bool move_mesh) {
-  ++iterations_;
-  answered_anew_ = false;
-  if (!schedule_.side_by_side) {
-    for (const std::size_t i : group_) {
-      ask(i, known, move_mesh);
-      answer(i, known[i], move_mesh);
-    }
-    return known;
-  }
-  for (const std::size_t i : group_) ask(i, known, move_mesh);
-  std::vector<Exchange> given = known;
-  std::string failures;
-  bool hopeless = false;
-  for (const std::size_t i : group_) {
-    try {
-      answer(i, given[i], move_mesh);
-    } catch (const SolveFailure& failure) {
-      failures += (failures.empty() ? "" : " ") + std::string(failure.what());
-      hopeless = hopeless || dynamic_cast<const SchemeFailure*>(&failure);
-    }
-  }
-  if (hopeless) throw SchemeFailure(failures);
-  if (!failures.empty()) throw SolveFailure(failures);
-  return given;
+  volume_level_.emplace(comm_, sides_, *links_, schedule_, group_);
+  if (volume_level_->empty()) volume_level_.reset();
 }
 
 std::optional<StepFailure> Coupler::attempt(const Step& step) {
@@ -179,6 +124,7 @@ void Coupler::solve(const Step& step) {
   begun.waveform = schedule_.waveform;
   ask_all(everyone(), {Op::begin_step, begun, {}, 0, -1, ""});
   enter_(Phase::solve, step.time);
+  if (volume_level_) volume_level_->start_step(step.dt);
   bool first = true;
   std::vector<Exchange> outputs;
   const auto pass_from = [&](std::vector<Exchange> known) {
@@ -240,6 +186,10 @@ void Coupler::accept(double time, int output) {
     if (accelerator_) accelerator_ = make_accelerator(parameters_.acceleration, comm_);
   }
   history_.accepted(last_.image, last_dt_, schedule_.predictor);
+  if (volume_level_) {
+    volume_level_->accept(given_);
+    monitor_->volume(time, *volume_level_);
+  }
   const std::vector<SideBalance> balances = mechanics_->accepted(given_, taken_);
   if (!balances.empty()) monitor_->balance(time, balances);
   if (parameters_.exchange) monitor_->amounts(time, links_->amounts(given_));

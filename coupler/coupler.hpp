@@ -22,6 +22,7 @@
 #include "coupler/partners.hpp"
 #include "coupler/schedule.hpp"
 #include "coupler/unknown.hpp"
+#include "coupler/volume_level.hpp"
 
 namespace couplet {
 
@@ -71,6 +72,7 @@ class Coupler {
   std::vector<Exchange> pass(std::vector<Exchange> known, bool move_mesh);
   void ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh);
   void answer(std::size_t i, Exchange& given, bool move_mesh);
+  void hold_volume(std::size_t i, std::vector<Exchange>& known);
   void accept(double time, int output);
   void watch(double time, const std::vector<SideBalance>& balances);
   void finalise();
@@ -85,6 +87,7 @@ class Coupler {
   std::vector<Side> sides_;
   std::optional<Links> links_;
   std::optional<Unknown> unknown_;
+  std::optional<VolumeLevel> volume_level_;  // none: no closed fluid asks for it
   std::optional<Mechanics> mechanics_;
   std::optional<Monitor> monitor_;
   std::optional<InterfaceOutput> interface_output_;  // none: not asked for

@@ -34,6 +34,16 @@ const std::array cards{
         "`scheme: semi-implicit`",
         [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
         {"a pressure solve and a structure's step a pass; mesh motion and predictor once a step", 0, 0}},
+    CouplingCard{"friction of the current wall velocity",
+                 "`scheme: semi-implicit`, implicit viscous term",
+                 [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
+                 {"two vectors a face of the interface, a loop over it a pass", 0, 0}},
+    CouplingCard{
+        "prediction renewed once",
+        "`scheme: semi-implicit`, where friction misses over 1 % of the load in the third pass or later",
+        [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
+        {"sums over the interface a pass; where it acts, the first part of the fluid's step once more", 0,
+         0}},
     CouplingCard{"relaxation by Aitken",
                  "`acceleration.type: aitken`",
                  [](const P& p) {

@@ -85,6 +85,14 @@ void Monitor::amounts(double time, const std::vector<Links::Amount>& amounts) {
   amounts_->row(row);
 }
 
+void Monitor::volume(double time, const VolumeLevel& level) {
+  if (!writes_) return;
+  if (!volume_) volume_.emplace(folder_ / "volume.csv", level.columns(), restart_time_);
+  std::vector<double> row{time};
+  for (const double value : level.row()) row.push_back(value);
+  volume_->row(row);
+}
+
 void Monitor::step(const Step& step, double time, const FixedPointResult& result,
                    const std::vector<Partner>& partners) {
   const auto now = Clock::now();

@@ -195,14 +195,20 @@ void check_roles(const CouplingParameters& parameters, const std::vector<Side>& 
 void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                   const MappingParameters& mapping) {
   std::set<std::pair<std::size_t, std::size_t>> judged;
-  std::vector<int> givers(sides.size(), 0);
-  for (const auto& link : links.all())
-    if (link.datum.name == "displacement") ++givers[link.taker];
+  std::vector<int> givers(sides.size(), 0), fluids(sides.size(), 0);
+  for (const auto& link : links.all()) {
+    if (link.datum.name != "displacement") continue;
+    ++givers[link.taker];
+    const auto& gives = sides[link.taker].interface.gives;
+    if (std::ranges::any_of(gives, is_amount)) ++fluids[link.giver];
+  }
   for (const auto& link : links.all()) {
     if (link.datum.name != "displacement") continue;
     const Side &from = sides[link.giver], &to = sides[link.taker];
-    // With several bodies each has a part of the fluid's surface only; the matched map has its own check.
-    if (mapping.type == MappingParameters::Type::matched || givers[link.taker] > 1) continue;
+    // With several bodies each has a part of the fluid's surface only, with several fluids each a part of the
+    // body's; the matched map has its own check.
+    if (mapping.type == MappingParameters::Type::matched || givers[link.taker] > 1 || fluids[link.giver] > 1)
+      continue;
     if (!judged.insert({link.giver, link.taker}).second) continue;
     const PlaceReport report = judge_places(comm, from, to);
     if (!report.problem.empty()) throw Error("{}", report.problem);

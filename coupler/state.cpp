@@ -32,6 +32,7 @@ void Coupler::save(const std::filesystem::path& folder) {
     file.write("wall-" + std::to_string(i), mechanics_->walls()[i]);
   file.write("work", work_guard_.totals());
   if (accelerator_) accelerator_->save(file);
+  if (volume_level_) volume_level_->save(file);
   file.close();
 }
 
@@ -50,6 +51,7 @@ void Coupler::load() {
   file.read("work", work);
   work_guard_.restore(work);
   if (accelerator_) accelerator_->load(file);
+  if (volume_level_) volume_level_->load(file);
   const RunState state = read_run_state(folders_.restart);
   loop_.restart(state);
   ask_all(everyone(), {Op::load, {}, {}, state.time, -1, folders_.restart.string()});

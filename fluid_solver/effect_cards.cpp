@@ -130,6 +130,12 @@ const std::array cards{
               "a boundary of `type: interface`",
               [](const S& s) { return when(s.coupled && has_interface(s), "a boundary of type interface"); },
               {"forces a face of the interface", 0, 0}},
+    FluidCard{"pressure level of a closed fluid",
+              "`volume-level: structure`",
+              [](const S& s) {
+                return when(s.parameters.volume_level == VolumeLevelBy::structure, "volume-level: structure");
+              },
+              {"the structure's step once or twice more a pass, an inflow a face of the interface", 0, 0}},
     FluidCard{"immersed bodies",
               "`bodies`",
               [](const S& s) { return when(!s.parameters.bodies.empty(), "bodies"); },

@@ -48,6 +48,8 @@ class Fluid {
   void accept();
 
   const State<D>& state() const { return accepted_; }
+  /// Of the step that was prepared.
+  const Placement<D>& end() const { return step_.to(); }
   /// For checkpoints: replaces the accepted state.
   void restore(State<D> state);
   /// The preconditioner is made anew at the next solve: a run that goes on and one that restarts do the same.

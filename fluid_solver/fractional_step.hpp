@@ -61,6 +61,8 @@ class FractionalStep {
   void refresh_solvers() { projection_.equation().refresh(); }
   const StepStatistics& statistics() const { return k_.statistics; }
   double size() const { return k_.step.dt; }
+  /// Of its points at the end.
+  const Placement<D>& to() const { return *k_.step.to; }
   /// Of the accepted steps [m/s].
   double largest_speed() const { return speed_scale_; }
   /// The mesh is not orthogonal, or may become so.

@@ -189,6 +189,12 @@ void declare(config::Section& s, FluidParameters& p) {
           "loss of kinetic energy, but pressure noise is not damped; non-incremental: new in each step, "
           "first "
           "order in time");
+  s.choice("volume-level", p.volume_level,
+           {{"none", VolumeLevelBy::nobody}, {"structure", VolumeLevelBy::structure}})
+      .doc(
+          "of a fluid without an outlet whose interface is a wall of its cavity: who sets the pressure level that "
+          "holds its volume; none: such a fluid is refused; structure: the coupler finds the level from the "
+          "structure's answer to a pressure (coupler/volume.csv); the fluid's own pressures keep the mean zero");
   s.map<BodyParameters>(
       "bodies", p.bodies,
       [](config::Section& b, BodyParameters& body) {

@@ -49,6 +49,9 @@ struct RotationParameters {
   Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]
 };
 
+/// Who sets the pressure level, and so holds the volume, of a fluid without an outlet.
+enum class VolumeLevelBy { nobody, structure };
+
 struct BoundaryParameters {
   BoundaryType type = BoundaryType::no_slip;
   std::vector<config::ExpressionText> velocity;      // [m/s], inlet and moving wall
@@ -131,6 +134,7 @@ struct FluidParameters {
   std::optional<MotionParameters> motion;  // of the mesh; absent: none
   ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   Projection projection = Projection::flux_memory;
+  VolumeLevelBy volume_level = VolumeLevelBy::nobody;
   std::map<std::string, ProbeParameters> probes;
 };
 

@@ -13,6 +13,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/cavity.hpp"
 #include "fluid_solver/derived.hpp"
 #include "fluid_solver/effect_cards.hpp"
 #include "fluid_solver/state_io.hpp"
@@ -30,35 +31,6 @@ constexpr double near_limit = 0.1;
 
 // Sub-steps of a step over those of the step last told in the log, or the other way round.
 constexpr double most_times_as_many = 2;
-
-// Of the area of an interface: up to here it surrounds a body (the rest is where that is clamped), beyond it
-// is the wall of a cavity.
-constexpr double largest_open_share = 0.3;
-
-/// An incompressible fluid without an outlet lets no wall move that would change its volume. Collective.
-template <int D>
-void refuse_trapped_volume(const Fluid<D>& fluid) {
-  const Boundary<D>& boundary = fluid.boundary();
-  if (!boundary.closed() || boundary.has_convective_outlet() || boundary.interface_patches().empty()) return;
-  double sums[4] = {};  // S, |S|
-  for (const std::string& name : boundary.interface_patches()) {
-    const Patch& patch = *fluid.mesh().find_patch(name);
-    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
-      const Vec<D>& area = fluid.state().placement->area[f];
-      for (int c = 0; c < D; ++c) sums[c] += area[c];
-      sums[3] += area.norm();
-    }
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, fluid.mesh().comm);
-  if (Vec3(sums[0], sums[1], sums[2]).norm() <= largest_open_share * sums[3]) return;
-  throw Error(
-      "boundaries: this fluid has no outlet, and its interface is a wall of the cavity ({:.3g} of its area "
-      "{:.3g} m^2 faces "
-      "one way): it could only move by changing the volume of an incompressible fluid. The pressure level "
-      "that holds the "
-      "volume is not computed; give the fluid an outlet (a small one far from the interface will do).",
-      Vec3(sums[0], sums[1], sums[2]).norm() / sums[3], sums[3]);
-}
 
 }  // namespace
 
@@ -140,12 +112,13 @@ Interface FluidParticipant<D>::initialise() {
   using Place = Interface::Place;
   description.takes = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
   description.gives = {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}};
+  if (holds_volume()) description.gives.push_back({"inflow", "m^3/s", Place::faces, 2});
   return description;
 }
 
 template <int D>
 void FluidParticipant<D>::begin_step(const Step& step) {
-  if (step.number == 0 && step.scheme != Scheme::standalone) refuse_trapped_volume(*fluid_);
+  if (step.number == 0 || holds_volume()) check_cavity(*fluid_, step.scheme);
   step_ = step;
   passes_ = 0;
   renewed_ = renewed_now_ = false;
@@ -219,6 +192,8 @@ Exchange FluidParticipant<D>::forces() const {
   Exchange out;
   out["pressure-force"] = interface_->gather_faces(pressure, D);
   out["viscous-force"] = interface_->gather_faces(viscous, D);
+  if (holds_volume())
+    out["inflow"] = interface_->gather_faces(inflow_shares(*fluid_, faces, step_.time, step_.dt), 2);
   return out;
 }
 

@@ -54,6 +54,7 @@ class FluidParticipant final : public Participant {
   Vectors<D> wall_velocity(const Exchange& in) const;
   double wall_displacement(const Exchange& in) const;
   bool stands_still() const { return interface_ && !motion_ && step_.scheme != Scheme::standalone; }
+  bool holds_volume() const { return fluid_->parameters().volume_level == VolumeLevelBy::structure; }
   void prepare(const Vectors<D>& w);
   double contraction(const Vectors<D>& w);
   bool needs_renewal(double contraction) const;

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// One pass through the group.
+#include "common/base/error.hpp"
+#include "coupler/coupler.hpp"
+#include "coupler/places.hpp"
+
+namespace couplet {
+
+void Coupler::ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh) {
+  // The moved one blocks until the mesh has been moved: the mover's command goes out first.
+  const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
+  if (with_mover) partners_.front().send({Op::solve, {}, links_->input(0, known), 0, -1, ""});
+  taken_[i] = links_->input(i, known);
+  partners_[i].send({Op::solve, {}, taken_[i], 0, -1, ""});
+}
+
+void Coupler::answer(std::size_t i, Exchange& given, bool move_mesh) {
+  const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
+  // A failed motion makes the moved one fail too; the mover knows the reason. Both replies are always taken.
+  std::optional<SolveFailure> mover_failed;
+  if (with_mover) {
+    try {
+      partners_.front().receive();
+    } catch (const SolveFailure& failure) {
+      mover_failed = failure;
+    }
+  }
+  try {
+    Reply reply = partners_[i].receive();
+    given = std::move(reply.data);
+    answered_anew_ = answered_anew_ || reply.anew;
+  } catch (const SolveFailure&) {
+    if (!mover_failed) throw;
+  }
+  if (mover_failed) throw SolveFailure(*mover_failed);
+  require_finite(comm_, given, sides_[i].interface, sides_[i].interface.gives, partners_[i].name());
+}
+
+/// After `i` has answered, where fluids are closed.
+void Coupler::hold_volume(std::size_t i, std::vector<Exchange>& known) {
+  volume_level_->loaded(i, taken_[i], known[i]);
+  if (i != volume_level_->structures().back()) return;
+  volume_level_->find(known, [&] {
+    for (const std::size_t structure : volume_level_->structures()) {
+      ask(structure, known, false);
+      answer(structure, known[structure], false);
+    }
+  });
+}
+
+std::vector<Exchange> Coupler::pass(std::vector<Exchange> known, bool move_mesh) {
+  ++iterations_;
+  answered_anew_ = false;
+  if (!schedule_.side_by_side) {
+    for (const std::size_t i : group_) {
+      ask(i, known, move_mesh);
+      answer(i, known[i], move_mesh);
+      if (volume_level_) hold_volume(i, known);
+    }
+    return known;
+  }
+  for (const std::size_t i : group_) ask(i, known, move_mesh);
+  std::vector<Exchange> given = known;
+  std::string failures;
+  bool hopeless = false;
+  for (const std::size_t i : group_) {
+    try {
+      answer(i, given[i], move_mesh);
+    } catch (const SolveFailure& failure) {
+      failures += (failures.empty() ? "" : " ") + std::string(failure.what());
+      hopeless = hopeless || dynamic_cast<const SchemeFailure*>(&failure);
+    }
+  }
+  if (hopeless) throw SchemeFailure(failures);
+  if (!failures.empty()) throw SolveFailure(failures);
+  return given;
+}
+
+}  // namespace couplet

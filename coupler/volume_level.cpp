@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/volume_level.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "coupler/accelerator.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr const char* inflow_name = "inflow";
+constexpr const char* load_name = "pressure-force";
+// Of all that flows through the wall: below it is round-off; up to here a structure's own solver may leave.
+constexpr double exact = 1e-11, good_enough = 1e-6;
+constexpr int most_tries = 12;
+
+bool has(const std::vector<Interface::Datum>& list, const std::string& name) {
+  return std::ranges::find(list, name, &Interface::Datum::name) != list.end();
+}
+
+const std::vector<double>& values_of(const Exchange& data, const std::string& name) {
+  static const std::vector<double> none;
+  const auto found = data.find(name);
+  return found == data.end() ? none : found->second;
+}
+
+}  // namespace
+
+VolumeLevel::VolumeLevel(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
+                         const Schedule& schedule, const std::vector<std::size_t>& group)
+    : comm_(comm), links_(&links) {
+  const auto takes_of_cavity = [&](std::size_t i) {
+    return std::ranges::any_of(links.all(), [&](const Links::Link& l) {
+      return l.taker == i && l.datum.name == load_name && has(sides[l.giver].interface.gives, inflow_name);
+    });
+  };
+  for (const std::size_t i : group) {
+    if (takes_of_cavity(i)) structures_.push_back(i);
+    if (!has(sides[i].interface.gives, inflow_name)) continue;
+    if (!schedule.iterates || schedule.side_by_side)
+      throw Error(
+          "'{}' is a closed fluid whose pressure level the structure sets: that is found in the iteration of a "
+          "step, one after the other; take 'scheme: semi-implicit' or 'implicit' with 'order: serial'.",
+          sides[i].name);
+    if (!structures_.empty())
+      throw Error(
+          "'{}' is a closed fluid whose pressure level the structure sets: it must stand before '{}' in the order "
+          "of a step.",
+          sides[i].name, sides[structures_.front()].name);
+    dim_ = sides[i].interface.dim;
+    cavities_.push_back({i, sides[i].name, CavityWall(comm, sides[i], schedule.moved == sides[i].name)});
+  }
+  if (!cavities_.empty() && structures_.empty())
+    throw Error("Nobody takes the '{}' of '{}', a closed fluid whose pressure level a structure must set.",
+                load_name, cavities_.front().name);
+}
+
+void VolumeLevel::start_step(double dt) {
+  dt_ = dt;
+  for (Cavity& c : cavities_) c.level = c.accepted_level;
+}
+
+/// On the areas between those at the begin and at the end of the step: then the level's work is that on the volume.
+void VolumeLevel::loaded(std::size_t i, const Exchange& taken, Exchange& given) {
+  const auto found = std::ranges::find(cavities_, i, &Cavity::side);
+  if (found == cavities_.end()) return;
+  found->load = values_of(given, load_name);
+  found->areas = found->wall.areas(values_of(taken, "displacement"));
+  const std::vector<Vec3> begin = found->wall.areas(found->place);
+  for (std::size_t f = 0; f < begin.size(); ++f) found->areas[f] = (found->areas[f] + begin[f]) / 2;
+  put(*found, given);
+}
+
+void VolumeLevel::put(const Cavity& cavity, Exchange& given) const {
+  std::vector<double>& load = given[load_name];
+  load = cavity.load;
+  load.resize(cavity.areas.size() * std::size_t(dim_), 0.);
+  for (std::size_t f = 0; f < cavity.areas.size(); ++f)
+    for (int c = 0; c < dim_; ++c)
+      load[f * std::size_t(dim_) + std::size_t(c)] += cavity.level * cavity.areas[f][c];
+}
+
+/// At the end and at the begin of the step [m^3/s].
+std::array<double, 2> VolumeLevel::inflow(const Cavity& cavity, const std::vector<Exchange>& known) const {
+  std::vector<double> sums(2, 0.);
+  const std::vector<double>& shares = values_of(known[cavity.side], inflow_name);
+  for (std::size_t k = 0; k < shares.size(); ++k) sums[k % 2] += shares[k];
+  sum_over(comm_, sums);
+  return {sums[0], sums[1]};
+}
+
+VolumeLevel::Defect VolumeLevel::defect(const std::vector<Exchange>& known) const {
+  const auto n = Eigen::Index(cavities_.size());
+  Defect d{Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Cavity& c = cavities_[std::size_t(k)];
+    const Exchange wall = links_->input(c.side, known);
+    const CavityWall::Flux flux =
+        c.wall.flux(values_of(wall, "velocity"), c.wall.areas(values_of(wall, "displacement")));
+    std::vector<double> sums{flux.net, flux.size, c.wall.swept(c.place, values_of(wall, "displacement"))};
+    sum_over(comm_, sums);
+    const auto [end, begin] = inflow(c, known);
+    const double error = c.change + sums[2] - c.inflow - dt_ / 2 * (begin + end);
+    d.value[k] = sums[0] - end + 2 / dt_ * error;
+    d.size[k] = sums[1] + std::abs(begin) + std::abs(end) + 2 / dt_ * std::abs(c.change - c.inflow);
+  }
+  return d;
+}
+
+VolumeLevel::Defect VolumeLevel::answer_to(std::vector<Exchange>& known,
+                                           const std::function<void()>& answer) {
+  for (const Cavity& c : cavities_) put(c, known[c.side]);
+  answer();
+  return defect(known);
+}
+
+/// The structure's answer to a further pressure in each cavity, of the size of the load.
+void VolumeLevel::probe(std::vector<Exchange>& known, const std::function<void()>& answer,
+                        const Eigen::VectorXd& now) {
+  slope_.resize(now.size(), now.size());
+  for (Eigen::Index k = 0; k < now.size(); ++k) {
+    Cavity& c = cavities_[std::size_t(k)];
+    std::vector<double> sums(2, 0.);
+    for (const double f : values_of(known[c.side], load_name)) sums[0] += f * f;
+    for (const Vec3& s : c.areas) sums[1] += s.squaredNorm();
+    sum_over(comm_, sums);
+    const double size = sums[0] > 0 ? std::sqrt(sums[0] / sums[1]) : 1, before = c.level;
+    c.level += size;
+    slope_.col(k) = (answer_to(known, answer).value - now) / size;
+    c.level = before;
+  }
+  slope_dt_ = dt_;
+}
+
+Eigen::VectorXd VolumeLevel::step_to(const Eigen::VectorXd& g) const {
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(slope_);
+  if (!slope_.allFinite() || !lu.isInvertible())
+    throw SolveFailure(
+        "no pressure in the closed fluid{} '{}' holds {} volume: a pressure there moves no wall, or two of them "
+        "share all they could move.",
+        cavities_.size() > 1 ? "s beginning with" : "", cavities_.front().name,
+        cavities_.size() > 1 ? "their" : "its");
+  return lu.solve(-g);
+}
+
+void VolumeLevel::find(std::vector<Exchange>& known, const std::function<void()>& answer) {
+  Defect now = defect(known);
+  const auto share = [](const Defect& d) {
+    double worst = 0;
+    for (Eigen::Index k = 0; k < d.value.size(); ++k)
+      if (d.size[k] > 0) worst = std::max(worst, std::abs(d.value[k]) / d.size[k]);
+    return worst;
+  };
+  double best = share(now);
+  if (best <= exact) return;
+  if (slope_dt_ != dt_) probe(known, answer, now.value);
+  for (int k = 0; k < most_tries; ++k) {
+    const Eigen::VectorXd change = step_to(now.value);
+    for (Eigen::Index j = 0; j < change.size(); ++j) cavities_[std::size_t(j)].level += change[j];
+    const Defect next = answer_to(known, answer);
+    const double left = share(next);
+    if (!std::isfinite(left)) break;
+    // What a structure's own solver leaves tells nothing about the slope.
+    if (left > good_enough && change.squaredNorm() > 0)
+      slope_ += next.value * change.transpose() / change.squaredNorm();
+    if (left <= exact || (left <= good_enough && left > best / 2)) return;
+    now = next;
+    best = left;
+  }
+  throw SolveFailure(
+      "no pressure level was found for the closed fluid '{}' in {} tries: the volume still misses {:.1e} of what "
+      "flows through its wall.",
+      cavities_.front().name, most_tries, best);
+}
+
+void VolumeLevel::accept(const std::vector<Exchange>& given) {
+  for (Cavity& c : cavities_) {
+    const Exchange wall = links_->input(c.side, given);
+    const std::vector<double>& to = values_of(wall, "displacement");
+    c.change += sum(comm_, c.wall.swept(c.place, to));
+    const auto [end, begin] = inflow(c, given);
+    c.inflow += dt_ / 2 * (begin + end);
+    c.place = to;
+    c.accepted_level = c.level;
+  }
+}
+
+void VolumeLevel::save(CheckpointWriter& file) const {
+  std::vector<double> numbers{slope_dt_};
+  for (const Cavity& c : cavities_) numbers.insert(numbers.end(), {c.accepted_level, c.change, c.inflow});
+  numbers.insert(numbers.end(), slope_.data(), slope_.data() + slope_.size());
+  file.write("volume-level", comm_rank(comm_) == 0 ? numbers : std::vector<double>{});
+  for (const Cavity& c : cavities_) file.write("volume-place-" + c.name, c.place);
+}
+
+void VolumeLevel::load(CheckpointReader& file) {
+  // Every rank needs all of it.
+  const std::vector<double> numbers = all_gather(comm_, file.read("volume-level"));
+  const std::size_t n = cavities_.size();
+  if (numbers.size() < 1 + 3 * n) throw Error("The checkpoint is of a coupling with other closed fluids.");
+  slope_dt_ = numbers[0];
+  for (std::size_t k = 0; k < n; ++k) {
+    Cavity& c = cavities_[k];
+    c.accepted_level = numbers[1 + 3 * k], c.change = numbers[2 + 3 * k], c.inflow = numbers[3 + 3 * k];
+    c.place = file.read("volume-place-" + c.name);
+  }
+  if (numbers.size() == 1 + 3 * n + n * n)
+    slope_ = Eigen::Map<const Eigen::MatrixXd>(&numbers[1 + 3 * n], Eigen::Index(n), Eigen::Index(n));
+}
+
+std::vector<std::string> VolumeLevel::columns() const {
+  std::vector<std::string> list{"time [s]"};
+  for (const Cavity& c : cavities_)
+    for (const char* what : {"level [Pa]", "volume change [m^3]", "inflow [m^3]", "volume error [m^3]"})
+      list.push_back(c.name + " " + what);
+  return list;
+}
+
+std::vector<double> VolumeLevel::row() const {
+  std::vector<double> list;
+  for (const Cavity& c : cavities_)
+    list.insert(list.end(), {c.accepted_level, c.change, c.inflow, c.change - c.inflow});
+  return list;
+}
+
+}  // namespace couplet

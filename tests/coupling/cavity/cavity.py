@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Closed fluids under elastic walls: what is pumped in is what the wall gives way, on any number of ranks and across a restart,
+for a moving mesh, and for a balloon in a channel; without the key such a fluid is refused.
+Usage: cavity.py CONFIGS BIN"""
+import csv
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+CONFIGS, BIN = map(pathlib.Path, sys.argv[1:3])
+for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
+    os.environ.setdefault(name, "1")
+CAVITY = [("coupler", ""), ("fluid_solver", ""), ("solid_solver", ""), ("mesh_mover", "")]
+BALLOON = [("coupler", ""), ("fluid_solver", "inside"), ("fluid_solver", "channel"), ("solid_solver", "")]
+SMALL = ["participants.fluid.mesh-parameters={n: 8}", "participants.mover.mesh-parameters={n: 8}",
+         "participants.lid.mesh-parameters={n: 8}", "simulation.end-time=0.16", "simulation.output.interval=0"]
+
+
+def run(folder, case, programs, sets, ranks=(1, 1, 1, 1), restart=None):
+    command = ["mpirun", "--oversubscribe"]
+    for i, (program, participant) in enumerate(programs):
+        command += [":"] * (i > 0) + ["-n", ranks[i], BIN / program, CONFIGS / case / "case.yaml",
+                                      f"--set=simulation.output.folder={folder}", *(f"--set={s}" for s in sets)]
+        command += ["--participant", participant] if participant else []
+        command += ["--restart", restart] if restart else []
+    return subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=600)
+
+
+def done(*args, **more):
+    result = run(*args, **more)
+    if result.returncode != 0:
+        sys.exit(f"exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-2000:]}")
+
+
+def rows(folder, file):
+    with (folder / "coupler" / file).open() as lines:
+        return [[float(v) for v in row] for row in list(csv.reader(lines))[1:]]
+
+
+def passes(folder):
+    return len(rows(folder, "residuals.csv")) / len(rows(folder, "volume.csv"))
+
+
+def check(claim, holds, value):
+    print(f"{'ok' if holds else 'not ok'}  {claim}: {value}", flush=True)
+    if not holds:
+        sys.exit(1)
+
+
+with tempfile.TemporaryDirectory(prefix="couplet-cavity-") as scratch:
+    here = pathlib.Path(scratch)
+    done(here / "one", "closed-cavity", CAVITY, SMALL)
+    one = rows(here / "one", "volume.csv")
+    inflow = one[-1][3]
+    check("moving mesh: volume error over the inflow, of second order in the step", max(abs(r[4]) for r in one) < 1e-5 * inflow,
+          max(abs(r[4]) for r in one) / inflow)
+    check("moving mesh: passes a step", passes(here / "one") <= 6, passes(here / "one"))
+
+    done(here / "three", "closed-cavity", CAVITY, SMALL, (2, 3, 2, 1))
+    apart = max(abs(a[k] / b[k] - 1) for a, b in zip(one, rows(here / "three", "volume.csv")) for k in (1, 2))
+    check("2 + 3 + 2 ranks: level and volume apart", apart < 1e-5, apart)
+
+    done(here / "first", "closed-cavity", CAVITY, [s.replace("0.16", "0.08") for s in SMALL])
+    done(here / "second", "closed-cavity", CAVITY, SMALL, restart=here / "first" / "checkpoints")
+    done(here / "whole", "closed-cavity", CAVITY, [*SMALL, "simulation.checkpoint={interval: 0.08, keep: 9}"])
+    second, whole = rows(here / "second", "volume.csv"), rows(here / "whole", "volume.csv")
+    check("restart bit for bit", second == whole[4:], f"{len(second)} rows")
+
+    end = ["simulation.end-time=0.1", "simulation.output.interval=0"]
+    done(here / "balloon", "balloon", BALLOON, end)
+    steps = rows(here / "balloon", "volume.csv")
+    worst = max(abs(b[4] - a[4]) / abs(b[3] - a[3]) for a, b in zip(steps, steps[1:]))
+    check("balloon in a channel: volume of a step over its inflow", worst < 1e-10, worst)
+    check("balloon in a channel: passes a step", passes(here / "balloon") <= 6, passes(here / "balloon"))
+
+    refused = run(here / "none", "closed-cavity", CAVITY, [*SMALL, "participants.fluid.volume-level=none"])
+    check("without the key: refused", refused.returncode != 0 and "give the key 'volume-level: structure'" in refused.stdout + refused.stderr,
+          f"exit code {refused.returncode}")
+    outlet = run(here / "outlet", "balloon", BALLOON, [*end, "participants.channel.volume-level=structure"])
+    check("with the key and an outlet: refused", outlet.returncode != 0 and "this fluid has an outlet" in outlet.stdout + outlet.stderr,
+          f"exit code {outlet.returncode}")
+print("all checks passed")
