@@ -52,7 +52,7 @@ def check(claim, holds, value):
 
 with tempfile.TemporaryDirectory(prefix="couplet-cavity-") as scratch:
     here = pathlib.Path(scratch)
-    done(here / "one", "closed-cavity", CAVITY, SMALL)
+    done(here / "one", "closed-cavity", CAVITY, [*SMALL, "simulation.checkpoint={interval: 0.08, keep: 9}"])
     one = rows(here / "one", "volume.csv")
     inflow = one[-1][3]
     check("moving mesh: volume error over the inflow, of second order in the step", max(abs(r[4]) for r in one) < 1e-5 * inflow,
@@ -65,9 +65,8 @@ with tempfile.TemporaryDirectory(prefix="couplet-cavity-") as scratch:
 
     done(here / "first", "closed-cavity", CAVITY, [s.replace("0.16", "0.08") for s in SMALL])
     done(here / "second", "closed-cavity", CAVITY, SMALL, restart=here / "first" / "checkpoints")
-    done(here / "whole", "closed-cavity", CAVITY, [*SMALL, "simulation.checkpoint={interval: 0.08, keep: 9}"])
-    second, whole = rows(here / "second", "volume.csv"), rows(here / "whole", "volume.csv")
-    check("restart bit for bit", second == whole[4:], f"{len(second)} rows")
+    second = rows(here / "second", "volume.csv")
+    check("restart bit for bit", second == one[4:], f"{len(second)} rows")
 
     end = ["simulation.end-time=0.1", "simulation.output.interval=0"]
     done(here / "balloon", "balloon", BALLOON, end)
