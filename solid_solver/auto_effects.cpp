@@ -56,7 +56,8 @@ double time_of_change(const std::vector<config::ExpressionText>& loads, const Ve
 double lowest_period(const SolidParameters& p, const MeshFacts& mesh) {
   double slowest = 0;
   for (const SolidMaterial& m : materials_of(p))
-    if (m.youngs_modulus > 0) slowest = std::max(slowest, std::sqrt(m.density / m.youngs_modulus));
+    for (const double e : m.orthotropic ? m.orthotropic->youngs_moduli : std::vector{m.youngs_modulus})
+      if (e > 0) slowest = std::max(slowest, std::sqrt(m.density / e));
   const double length = mesh.largest_side(), height = std::max(mesh.smallest_side(), 1e-300);
   return 2 * std::numbers::pi * length * length / (3.516 * height) * std::sqrt(12.0) * slowest;
 }

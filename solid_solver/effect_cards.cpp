@@ -69,8 +69,11 @@ V judge_incompressibility(const P& p, const E&) {
   const double nu = std::max(0.0, largest_poissons_ratio(p));
   return verdict(
       nu, 0.45, fmt::format("the largest Poisson's ratio is {:g}", nu),
-      "coarse meshes are too stiff or worse there: 'solution-method: {face-gradient: symmetric}' takes one "
-      "volume strain a cell");
+      has_orthotropic(p)
+          ? "coarse meshes may be too stiff there, and an orthotropic material has no volume strain of cells: compare two "
+            "meshes"
+          : "coarse meshes are too stiff or worse there: 'solution-method: {face-gradient: symmetric}' takes one "
+            "volume strain a cell");
 }
 
 // The strain of a free body with a coefficient of 1e-5 1/K beside the largest gradient of the displacement.
@@ -117,6 +120,10 @@ const std::array cards{
               {"a mean stress a cell, a pass over the faces", 0, 0},
               "largest Poisson's ratio, 0.45",
               judge_incompressibility},
+    SolidCard{"orthotropic elasticity",
+              "`material.orthotropic`",
+              [](const P& p) { return when(is_elastic(p) && has_orthotropic(p), "orthotropic"); },
+              {"21 constants a face (6 in the plane) in place of 2", 0, 0}},
     SolidCard{"gravity",
               "`gravity`",
               [](const P& p) { return when(!p.gravity.empty(), "gravity"); },

@@ -200,6 +200,7 @@ std::vector<std::string> Solid::finish() {
   if (audit_)
     sentences.push_back(fmt::format("error indicator: {}{}.", audit_->text(),
                                     audit_->is_doubtful() ? "; NOT to be trusted" : ""));
+  if (energy_audit_.scale > 0) sentences.push_back(fmt::format("energy balance: {}.", energy_audit_.text()));
   if (is_dynamic() && !parameters_.damping && !kernel_.is_symmetric())
     sentences.push_back(
         "structural damping left out: free vibration does not decay, and modes that the time step resolves "

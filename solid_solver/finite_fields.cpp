@@ -87,16 +87,9 @@ void Solid::add_finite_work(const StageWork& work, const SolidState& before) {
 void Solid::audit_finite() {
   if (!is_dynamic() || !prescribed_.is_zero()) return;
   const double strain = finite_->energy(unknowns_of(state_.cell_u, state_.face_u), known_accepted_);
-  energy_audit_.given = sum(mesh_.comm, state_.energies.initial_kinetic) + sum(mesh_.comm, state_.load_work);
-  energy_audit_.held = sum(mesh_.comm, kinetic_energy(state_, known_rate_accepted_)) + strain;
-  energy_audit_.scale = std::max(energy_audit_.scale, std::abs(energy_audit_.given));
-  if (!energy_audit_.is_doubtful() || energy_doubted_) return;
-  energy_doubted_ = true;
-  log::doubt(
-      comm_rank(mesh_.comm),
-      fmt::format("t = {:g} s: {}: the motion grows out of nothing. A shorter step, 'time-scheme: {{type: "
-                  "energy-momentum}}' or '{{type: bathe}}' stops it.",
-                  state_.time, energy_audit_.text()));
+  judge_energy(strain,
+               "a time scheme that does not keep the energy of a law that is not linear; a shorter step, "
+               "'energy-momentum: true' or 'time-scheme: {type: bathe}' stops it");
 }
 
 }  // namespace couplet

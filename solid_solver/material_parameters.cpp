@@ -42,13 +42,31 @@ void declare_law(config::Section& s, SolidMaterial& m) {
 
 void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   s.value("density", m.density).unit("kg/m^3").positive().required().doc("density");
-  const auto needed = [is_elastic](config::Key& key) -> config::Key& {
-    return is_elastic ? key.required() : key;
+  if (is_elastic)
+    s.optional_section<Orthotropic>(
+        "orthotropic", m.orthotropic, [](config::Section& o, Orthotropic& v) { declare(o, v); },
+        "elastic constants of a body with three planes of symmetry (wood, plies), in place of youngs-modulus and "
+        "poissons-ratio");
+  const auto needed = [&](config::Key& key) -> config::Key& {
+    return is_elastic && !m.orthotropic ? key.required() : key;
   };
-  needed(s.value("youngs-modulus", m.youngs_modulus).unit("Pa").positive().doc("Young's modulus"));
-  needed(s.value("poissons-ratio", m.poissons_ratio)
-             .range(-0.99, 0.49999)
-             .doc("Poisson's ratio; from 0.4 up the symmetric face gradient is the default"));
+  needed(s.value("youngs-modulus", m.youngs_modulus)
+             .unit("Pa")
+             .positive()
+             .doc("Young's modulus; needed without 'orthotropic'"));
+  needed(
+      s.value("poissons-ratio", m.poissons_ratio)
+          .range(-0.99, 0.49999)
+          .doc(
+              "Poisson's ratio, needed without 'orthotropic'; from 0.4 up the symmetric face gradient is the "
+              "default"));
+  s.check(
+      [&m] {
+        return m.orthotropic && (m.youngs_modulus != 0 || m.poissons_ratio != 0)
+                   ? "give either 'orthotropic' or 'youngs-modulus' and 'poissons-ratio'"
+                   : "";
+      },
+      "orthotropic");
   s.value("yield-strength", m.yield_strength)
       .unit("Pa")
       .positive()

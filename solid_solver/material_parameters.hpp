@@ -8,6 +8,7 @@
 
 #include "common/config/section.hpp"
 #include "solid_solver/heat_parameters.hpp"
+#include "solid_solver/orthotropic.hpp"
 
 namespace couplet {
 
@@ -16,9 +17,10 @@ struct SolidMaterial {
   double youngs_modulus = 0;  // [Pa]
   double poissons_ratio = 0;
   HeatMaterial heat{};
-  std::optional<double> yield_strength{};  // [Pa]; for the verdict on yielding alone
-  std::string law{};                       // of finite strain, see laws/; empty: Saint Venant-Kirchhoff
-  std::vector<double> law_coefficients{};  // beside E and nu
+  std::optional<double> yield_strength{};    // [Pa]; for the verdict on yielding alone
+  std::string law{};                         // of finite strain, see laws/; empty: Saint Venant-Kirchhoff
+  std::vector<double> law_coefficients{};    // beside E and nu
+  std::optional<Orthotropic> orthotropic{};  // in place of E and nu
 };
 
 /// One of several materials.

@@ -57,7 +57,9 @@ void declare(config::Section& section, SolidParameters& parameters);
 /// The material, or the materials in the order of their names, which is that of Mesh::cell_material.
 std::vector<SolidMaterial> materials_of(const SolidParameters& parameters);
 
-/// Lame's constants of a material; in plane stress lambda is the effective one of the plane problem.
+/// Of a body in space.
+LameConstants lame_constants(double youngs_modulus, double poissons_ratio);
+/// Lame's constants of a material (of an orthotropic one an isotropic mean); in plane stress lambda is the effective one of the plane problem.
 LameConstants lame_constants(const SolidParameters& parameters, const SolidMaterial& material);
 inline LameConstants lame_constants(const SolidParameters& parameters) {
   return lame_constants(parameters, parameters.material);
@@ -67,6 +69,8 @@ inline bool has_finite_strain(const SolidParameters& p) {
   return p.kinematics == SolidParameters::Kinematics::finite_strain &&
          p.analysis != SolidParameters::Analysis::thermal;
 }
+/// Some material is orthotropic: all cells have an elastic matrix.
+bool has_orthotropic(const SolidParameters& parameters);
 /// From here up the volume strain of faces locks.
 inline constexpr double nearly_incompressible = 0.4;
 double largest_poissons_ratio(const SolidParameters& parameters);
@@ -77,5 +81,8 @@ bool symmetric_suits(const SolidParameters& parameters);
 
 /// For ElasticOperator: the constants of the cells.
 ElasticBody elastic_body(const SolidParameters& parameters, const Mesh& mesh);
+/// Throws Error where a symmetry plane does not mirror an orthotropic material into itself: it would be no plane of
+/// symmetry. Collective.
+void check_symmetry(const SolidParameters& parameters, const Mesh& mesh, const ElasticOperator& rows);
 
 }  // namespace couplet

@@ -72,6 +72,7 @@ Solid::~Solid() = default;
 
 void Solid::check_supports() const {
   check_mesh(mesh_, elastic_.vertices());
+  check_symmetry(parameters_, mesh_, elastic_);
   if (!parameters_.gravity.empty() && std::ssize(parameters_.gravity) != mesh_.dim)
     throw Error("gravity: {} components are given where the {}-dimensional scene needs {}.",
                 parameters_.gravity.size(), mesh_.dim, mesh_.dim);

@@ -218,6 +218,7 @@ class Solid final : public Participant {
                                        std::span<const double> known) const;
   void judge_inertia();
   void audit_answer();
+  void judge_energy(double strain, const char* cure);
   double residual_work(std::span<const double> unknowns) const;
   void add_load_work(const StageWork& work, std::span<const double> interface_load,
                      std::span<const double> cells_before, std::span<const double> faces_before);

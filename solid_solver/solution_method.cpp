@@ -86,15 +86,16 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
                    : problem.is_corrected() ? ", corrected face gradient"
                                             : ", thesis's face gradient";
   if (asked.face_gradient == MethodParameters::FaceGradient::automatic)
-    method->name_ += problem.is_symmetric() ? " (auto: nu from 0.4 up)"
-                     : problem.is_static()  ? " (auto: static, where it errs less)"
-                                            : " (auto: dynamic, where the corrected one's growth is faster)";
+    method->name_ += problem.elastic.is_anisotropic() ? " (auto: orthotropic)"
+                     : problem.is_symmetric()         ? " (auto: nu from 0.4 up)"
+                     : problem.is_static()            ? " (auto: static, where it errs less)"
+                                           : " (auto: dynamic, where the corrected one's growth is faster)";
   return method;
 }
 
 FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters) {
   using FaceGradient = MethodParameters::FaceGradient;
-  if (has_finite_strain(parameters)) return FaceGradientScheme::symmetric;
+  if (has_finite_strain(parameters) || has_orthotropic(parameters)) return FaceGradientScheme::symmetric;
   switch (parameters.method.face_gradient) {
     case FaceGradient::symmetric:
       return FaceGradientScheme::symmetric;

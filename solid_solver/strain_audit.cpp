@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/log/doubt.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/solid.hpp"
@@ -58,8 +59,8 @@ std::string StrainAudit::text() const {
 std::string EnergyAudit::text() const {
   return fmt::format(
       "the solid holds {:.6g} J of kinetic and strain energy where loads and initial motion brought in "
-      "{:.6g} J",
-      held, given);
+      "{:.6g} J ({:+.2g} %)",
+      held, given, 100 * created());
 }
 
 /// Of a displacement in all local cells, boundary faces and points. Collective.
@@ -151,20 +152,32 @@ void Solid::audit_answer() {
             state_.time, strain.text()));
   }
   if (!is_dynamic() || !effects_.empty() || !prescribed_.is_zero()) return;
-  energy_audit_.given = sum(mesh_.comm, state_.energies.initial_kinetic) + sum(mesh_.comm, state_.load_work);
-  energy_audit_.held = sum(mesh_.comm, kinetic_energy(state_, known_rate_accepted_)) +
-                       std::max(0.0, std::min(strain.strain_energy, strain.stress_work));
+  judge_energy(
+      std::max(0.0, std::min(strain.strain_energy, strain.stress_work)),
+      kernel_.is_symmetric()
+          ? "a shorter step or 'time-scheme: {type: bathe}' stops it"
+          : "the operator of 'solution-method: {face-gradient: thesis}' and 'corrected' is not symmetric, so "
+            "that undamped motion grows on leaning, stretched or perturbed cells; 'face-gradient: symmetric' "
+            "has no such growth, 'time-scheme: {type: bathe}' or a little 'damping: {stiffness: ...}' takes "
+            "it out, 'output: {spectrum: true}' tells its rate on a coarse mesh of the same kind");
+}
+
+/// Kinetic and `strain` energy [J] against what was brought in: a growth is told once, one that leaves nothing of the
+/// answer ends the run. Collective.
+void Solid::judge_energy(double strain, const char* cure) {
+  const double work = sum(mesh_.comm, state_.load_work);
+  energy_audit_.is_driven = work != 0;
+  energy_audit_.given = sum(mesh_.comm, state_.energies.initial_kinetic) + work;
+  energy_audit_.held = sum(mesh_.comm, kinetic_energy(state_, known_rate_accepted_)) + strain;
   energy_audit_.scale = std::max(energy_audit_.scale, std::abs(energy_audit_.given));
-  if (energy_audit_.is_doubtful() && !energy_doubted_) {
-    energy_doubted_ = true;
-    log::doubt(
-        comm_rank(mesh_.comm),
-        fmt::format(
-            "t = {:g} s: {}: the motion grows out of nothing. 'time-scheme: {{type: bathe}}' or a little "
-            "'damping: {{stiffness: ...}}' takes it out, 'output: {{spectrum: true}}' tells its rate on "
-            "a coarse mesh of the same kind.",
-            state_.time, energy_audit_.text()));
-  }
+  if (energy_audit_.is_hopeless())
+    throw Error(
+        "t = {:g} s: {}: the motion has grown out of nothing and nothing of the answer is left. Cause: {}.",
+        state_.time, energy_audit_.text(), cure);
+  if (!energy_audit_.is_doubtful() || energy_doubted_) return;
+  energy_doubted_ = true;
+  log::doubt(comm_rank(mesh_.comm), fmt::format("t = {:g} s: {}: the motion grows out of nothing. Cause: {}.",
+                                                state_.time, energy_audit_.text(), cure));
 }
 
 }  // namespace couplet

@@ -29,13 +29,19 @@ struct StrainAudit {
 
 /// Energy that a dynamic run has found beside what it was given [J]; over all ranks.
 struct EnergyAudit {
-  double held = 0;   ///< kinetic and strain energy
-  double given = 0;  ///< initial energy and work of the loads
-  double scale = 0;  ///< most that was given so far
+  double held = 0;        ///< kinetic and strain energy
+  double given = 0;       ///< initial energy and work of the loads
+  double scale = 0;       ///< most that was given so far
+  bool is_driven = true;  ///< loads did work: the balance holds as well as their work is known
   double created() const { return scale > 0 ? (held - given) / scale : 0; }
-  /// Above this, motion grows out of nothing.
-  static constexpr double most_created = 0.2;
-  bool is_doubtful() const { return created() > most_created; }
+  /// Above these, motion grows out of nothing; an undriven body has nothing that could be in error but the motion.
+  static constexpr double most_created = 0.2, most_created_undriven = 0.1;
+  /// Above this, nothing of the answer is left: the run ends.
+  static constexpr double hopeless = 10;
+  // Not a number is more than all of them.
+  bool is_doubtful() const { return !(created() <= (is_driven ? most_created : most_created_undriven)); }
+  bool is_hopeless() const { return !(created() <= hopeless); }
+  /// What is held and what was given, with the growth in per cent.
   std::string text() const;
 };
 

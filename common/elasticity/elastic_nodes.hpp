@@ -56,6 +56,13 @@ inline LameConstants face_lame(const Mesh& mesh, const ElasticOperator& rows, In
   return {0.5 * (here.mu + there.mu), 0.5 * (here.lambda + there.lambda)};
 }
 
+/// The same of the elastic matrix, where the body has one.
+inline ElasticMatrix face_matrix(const Mesh& mesh, const ElasticOperator& rows, Index f) {
+  const ElasticMatrix& here = rows.elastic_matrix(mesh.owner[f]);
+  if (f >= mesh.n_interior) return here;
+  return 0.5 * (here + rows.elastic_matrix(mesh.neighbour[f]));
+}
+
 /// Faces whose force is asked for: the flux faces, and with bonded faces those of ghosts too, since the row
 /// of a bonded face holds the force on its other side.
 inline Index n_faces_with_force(const Mesh& mesh) {

@@ -278,6 +278,7 @@ Tensor3 ElasticOperator::gradient(Index face, std::span<const double> cells, std
 }
 
 Tensor3 ElasticOperator::stress(Index cell, const Tensor3& gradient) const {
+  if (is_anisotropic()) return stress_of(elastic_matrix(cell), gradient);
   const auto [mu, lambda] = lame(cell);
   return mu * (gradient + gradient.transpose()) + lambda * gradient.trace() * Tensor3::Identity();
 }

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "common/base/types.hpp"
+#include "common/elasticity/anisotropic.hpp"
 #include "common/elasticity/elastic_boundary.hpp"
+#include "common/elasticity/lame.hpp"
 #include "common/elasticity/vertex_constraints.hpp"
 #include "common/fv/face_gradient.hpp"
 #include "common/fv/vertex_interpolation.hpp"
@@ -15,12 +17,6 @@
 #include "common/mesh/mesh.hpp"
 
 namespace couplet {
-
-/// sigma = mu (grad u + grad u^T) + lambda tr(grad u) I [Pa]. Plane stress: lambda is 2 lambda mu / (lambda +
-/// 2 mu).
-struct LameConstants {
-  double mu = 0, lambda = 0;
-};
 
 /// What the operator is made of. `lame`: one, or one a local cell (ghosts included). `material_of_cell`: per
 /// local cell, empty when there is one material; where it changes the faces must be bonded.
@@ -30,11 +26,11 @@ struct ElasticBody {
   /// Symmetric gradient: the volume strain is one a cell, the mean of its faces', which does not lock as nu
   /// goes to 1/2.
   bool volume_by_cells = false;
+  /// Symmetric gradient: stress by matrices of its own in place of `lame`, which is then their isotropic mean. Empty:
+  /// none. `matrix_of_cell`: which of them, per local cell; empty when there is one.
+  std::vector<ElasticMatrix> matrix{};
+  std::vector<Index> matrix_of_cell{};
 };
-
-/// What acts on the strain without its volume part, in three dimensions: sigma = 2 mu dev(e) + K tr(e) I.
-inline LameConstants deviatoric(const LameConstants& lame) { return {lame.mu, -2 * lame.mu / 3}; }
-inline double bulk_modulus(const LameConstants& lame) { return lame.lambda + 2 * lame.mu / 3; }
 
 /// Divergence of the linear-elastic stress on cells and boundary faces: thesis (2.56)-(2.58) and (2.77) (with
 /// errata), all displacement components coupled, reference configuration.
@@ -90,6 +86,11 @@ class ElasticOperator {
   /// One pair of constants for all cells.
   bool is_uniform() const { return body_.lame.size() == 1; }
   const LameConstants& lame(Index cell) const { return body_.lame[body_.lame.size() == 1 ? 0 : cell]; }
+  /// Stress is by elastic_matrix(), lame() an isotropic mean of it.
+  bool is_anisotropic() const { return !body_.matrix.empty(); }
+  const ElasticMatrix& elastic_matrix(Index cell) const {
+    return body_.matrix[body_.matrix_of_cell.empty() ? 0 : body_.matrix_of_cell[cell]];
+  }
 
   /// Other constants, one a local cell (ghosts included); what was assembled with the old ones is forgotten.
   void set_lame(std::vector<LameConstants> lame);

@@ -45,8 +45,28 @@ SharedEdges::SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::spa
       lame_.push_back({sums[3 * e + 1] * inverse_volume_[e], sums[3 * e + 2] * inverse_volume_[e]});
   }
   if (rows.is_uniform()) lame_.push_back(rows.volume_by_cells() ? deviatoric(rows.lame(0)) : rows.lame(0));
+  if (rows.is_anisotropic()) find_matrices(mesh, rows, faces, volume);
   find_mirrors(mesh, rows);
   end_points_ = {};
+}
+
+/// Means of the faces' by volume.
+void SharedEdges::find_matrices(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
+                                std::span<const double> volume) {
+  constexpr int entries = 36;
+  std::vector<double> sums(inverse_volume_.size() * entries, 0);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (volume[i] == 0) continue;  // another rank's
+    const ElasticMatrix part = share * volume[i] / 3 * face_matrix(mesh, rows, faces[i]);
+    for (const Index e : edges_of_[i])
+      for (int k = 0; k < entries; ++k) sums[std::size_t(e) * entries + k] += part.data()[k];
+  }
+  if (parallel_) {
+    map_.add_to_owners(sums, entries);
+    map_.update_ghosts(sums, entries);
+  }
+  for (std::size_t e = 0; e < inverse_volume_.size(); ++e)
+    matrix_.push_back(inverse_volume_[e] * Eigen::Map<const ElasticMatrix>(sums.data() + e * entries));
 }
 
 /// Local numbers, the owned edges first; the owner is the smallest rank that has an edge.
@@ -165,6 +185,12 @@ void SharedEdges::finish_gradients(std::span<double> values) const {
 }
 
 void SharedEdges::to_stress() {
+  for (std::size_t e = 0; e < matrix_.size(); ++e) {
+    Eigen::Map<StrainVector> v(value_.data() + e * stride);
+    v.tail<3>() *= 2;
+    v = (matrix_[e] * v).eval();
+  }
+  if (!matrix_.empty()) return;
   const std::size_t step = lame_.size() == 1 ? 0 : 1;
   for (std::size_t e = 0; e < inverse_volume_.size(); ++e) {
     const auto [mu, lambda] = lame_[e * step];

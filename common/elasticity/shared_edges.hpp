@@ -47,6 +47,8 @@ class SharedEdges {
  private:
   struct Key;
   void number(const Mesh& mesh, std::span<const Index> faces);
+  void find_matrices(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
+                     std::span<const double> volume);
   void find_mirrors(const Mesh& mesh, const ElasticOperator& rows);
 
   std::vector<std::array<Index, 3>> edges_of_;
@@ -54,6 +56,7 @@ class SharedEdges {
   bool parallel_ = false;
   std::vector<double> value_, inverse_volume_;
   std::vector<LameConstants> lame_;                     // one a material's edge, or one in all
+  std::vector<ElasticMatrix> matrix_;                   // in its place, one an edge; empty: isotropic
   std::vector<std::pair<Index, Vec3>> mirrors_;         // edges on symmetry planes, with the normal
   std::vector<std::array<GlobalIndex, 2>> end_points_;  // while it is made
 };

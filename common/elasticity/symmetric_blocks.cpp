@@ -46,6 +46,31 @@ std::vector<FaceBlock<D>> make_blocks(const Mesh& mesh, const ElasticOperator& r
   return result;
 }
 
+template <int D>
+std::vector<ElasticBlock<D>> make_elastic_blocks(const Mesh& mesh, const ElasticOperator& rows,
+                                                 std::span<const Index> faces) {
+  if (!rows.is_anisotropic()) return {};
+  constexpr int entry[2][6] = {{0, 1, 3, 0, 0, 0},
+                               {0, 1, 2, 3, 4, 5}};  // of the matrix; in the plane without z
+  std::vector<ElasticBlock<D>> result((faces.size() + 3) / 4);
+  for (std::size_t i = 0; i < result.size() * 4; ++i) {
+    const bool is_filling = i >= faces.size();
+    const Index f = faces[is_filling ? 0 : i];
+    const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
+    const double scale = is_filling ? 0 : face.volume * face.inverse * face.inverse;
+    const ElasticMatrix c = face_matrix(mesh, rows, f);
+    int at = 0;
+    for (int a = 0; a < ElasticBlock<D>::size; ++a)
+      for (int b = a; b < ElasticBlock<D>::size; ++b)
+        result[i / 4].c[at++][i % 4] = scale * c(entry[D - 2][a], entry[D - 2][b]);
+  }
+  return result;
+}
+
+template std::vector<ElasticBlock<2>> make_elastic_blocks<2>(const Mesh&, const ElasticOperator&,
+                                                             std::span<const Index>);
+template std::vector<ElasticBlock<3>> make_elastic_blocks<3>(const Mesh&, const ElasticOperator&,
+                                                             std::span<const Index>);
 template std::vector<FaceBlock<2>> make_blocks<2>(const Mesh&, const ElasticOperator&,
                                                   std::span<const Index>);
 template std::vector<FaceBlock<3>> make_blocks<3>(const Mesh&, const ElasticOperator&,

@@ -26,6 +26,14 @@ struct FaceBlock : BlockGeometry<D> {
   double mu[4], lambda[4];  ///< Lame's constants times V / (S . d)^2
 };
 
+/// In place of Hooke's isotropic law: the upper triangle of the elastic matrix times V / (S . d)^2, row by row; in the
+/// plane that of xx, yy, xy.
+template <int D>
+struct ElasticBlock {
+  static constexpr int size = D == 3 ? 6 : 3;
+  double c[size * (size + 1) / 2][4];
+};
+
 namespace blocks {
 
 template <int D>
@@ -146,6 +154,27 @@ template <int D>
   }
 }
 
+/// The same with a matrix.
+template <int D>
+[[gnu::always_inline]] inline void elastic(const ElasticBlock<D>& block, const lanes::Lane<3> (&h)[D][D],
+                                           lanes::Lane<3> (&stress)[D][D]) {
+  constexpr int n = ElasticBlock<D>::size;
+  constexpr int first[6] = {0, 1, D == 3 ? 2 : 0, 0, 1, 0}, second[6] = {0, 1, D == 3 ? 2 : 1, 1, 2, 2};
+  lanes::Lane<3> strain[n], s[n];
+  for (int k = 0; k < n; ++k) {
+    const int i = first[k], j = second[k];
+    strain[k] = k < D ? h[i][j] : h[i][j] + h[j][i];
+    s[k] = lanes::Lane<3>{};
+  }
+  for (int i = 0, at = 0; i < n; ++i)
+    for (int j = i; j < n; ++j, ++at) {
+      const lanes::Lane<3> c = wide(block.c[at]);
+      s[i] += c * strain[j];
+      if (j != i) s[j] += c * strain[i];
+    }
+  for (int k = 0; k < n; ++k) stress[first[k]][second[k]] = stress[second[k]][first[k]] = s[k];
+}
+
 }  // namespace blocks
 
 /// The blocks of these faces in their order; the last one is filled up with faces without area between the
@@ -153,6 +182,11 @@ template <int D>
 template <int D>
 std::vector<FaceBlock<D>> make_blocks(const Mesh& mesh, const ElasticOperator& rows,
                                       std::span<const Index> faces);
+
+/// Their elastic matrices; none where the body has none.
+template <int D>
+std::vector<ElasticBlock<D>> make_elastic_blocks(const Mesh& mesh, const ElasticOperator& rows,
+                                                 std::span<const Index> faces);
 
 /// Puts face f into place k of a block, or, as filling, without area.
 template <int D>

@@ -47,6 +47,8 @@ void SymmetricKernel<D>::make_faces() {
       mine_.push_back(f);
   }
   if (!mine_.empty()) blocks_ = make_blocks<D>(mesh_, rows_, mine_);
+  elastic_ = make_elastic_blocks<D>(mesh_, rows_, mine_);
+  shared_elastic_ = make_elastic_blocks<D>(mesh_, rows_, shared_mine_);
   const bool shares = D == 3 && any(mesh_.comm, !shared_mine_.empty());
   if (!shares) return;
   if (!shared_mine_.empty()) shared_blocks_ = make_blocks<D>(mesh_, rows_, shared_mine_);
@@ -81,7 +83,10 @@ inline void SymmetricKernel<D>::faces_loop() {
   for (const FaceBlock<D>& block : blocks_) {
     V h[D][D], stress[D][D];
     blocks::stretch<D>(block, nodes, points, h);
-    blocks::hooke<D>(block, h, stress);
+    if (elastic_.empty())
+      blocks::hooke<D>(block, h, stress);
+    else
+      blocks::elastic<D>(elastic_[std::size_t(&block - blocks_.data())], h, stress);
     if (!volumes_.empty()) {
       const V pressure = pressure_on(block, volumes_[std::size_t(&block - blocks_.data())]);
       for (int a = 0; a < D; ++a) stress[a][a] += pressure;
@@ -135,7 +140,10 @@ inline void SymmetricKernel<D>::shared_first_loop() {
       SharedBlock& shared = shared_[i];
       V h[D][D], stress[D][D];
       blocks::stretch<D>(shared_blocks_[i], nodes, points, h);
-      blocks::hooke<D>(shared_blocks_[i], h, stress);
+      if (shared_elastic_.empty())
+        blocks::hooke<D>(shared_blocks_[i], h, stress);
+      else
+        blocks::elastic<D>(shared_elastic_[i], h, stress);
       const V scale = blocks::wide(shared.inverse) * blocks::wide(shared.part) * 0.5;
       V strain[6];
       for (int k = 0; k < 6; ++k) {

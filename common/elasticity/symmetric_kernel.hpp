@@ -82,8 +82,9 @@ class SymmetricKernel final : public ElasticKernel::Implementation {
   std::vector<FaceBlock<D>> blocks_, shared_blocks_;
   std::vector<SharedBlock> shared_;
   std::unique_ptr<SharedEdges> edges_;
-  std::vector<VolumeBlock> volumes_, shared_volumes_;  // empty: the volume strain is the faces'
-  std::vector<double> pressure_, bulk_;                // of nodes; K / V of owned cells [Pa/m^3]
+  std::vector<ElasticBlock<D>> elastic_, shared_elastic_;  // empty: Hooke's isotropic law
+  std::vector<VolumeBlock> volumes_, shared_volumes_;      // empty: the volume strain is the faces'
+  std::vector<double> pressure_, bulk_;                    // of nodes; K / V of owned cells [Pa/m^3]
 };
 
 }  // namespace couplet

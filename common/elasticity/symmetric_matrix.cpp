@@ -24,6 +24,8 @@ class Assembly {
 
   template <int D>
   void add_face(Index f);
+  void add_anisotropic(const std::vector<FaceStencil::Term>& terms, double volume,
+                       const ElasticMatrix& matrix);
   void add_volumes();
   void add_support(Index f);
   void add_diagonal(Index node, double value) { add_block(node, node, value * Tensor3::Identity()); }
@@ -70,12 +72,29 @@ void Assembly::add_face(Index f) {
         volume_of_[mesh_.neighbour[f]].push_back({t.node, there * (t.turn.transpose() * t.b)});
     }
   }
+  if (rows_.is_anisotropic()) return add_anisotropic(terms, face.volume, face_matrix(mesh_, rows_, f));
   for (const FaceStencil::Term& i : terms)
     for (const FaceStencil::Term& j : terms) {
       const Tensor3 block =
           lambda * i.b * j.b.transpose() + mu * (i.b.dot(j.b) * identity + j.b * i.b.transpose());
       add_block(i.node, j.node, face.volume * (i.turn.transpose() * block * j.turn));
     }
+}
+
+/// V B_i^T C B_j, B_i making a strain of the displacement of a node.
+void Assembly::add_anisotropic(const std::vector<FaceStencil::Term>& terms, double volume,
+                               const ElasticMatrix& matrix) {
+  using Strain = Eigen::Matrix<double, 6, 3>;
+  std::vector<Strain> of_node;
+  for (const FaceStencil::Term& t : terms) {
+    Strain b;
+    b << t.b[0], 0, 0, 0, t.b[1], 0, 0, 0, t.b[2], t.b[1], t.b[0], 0, 0, t.b[2], t.b[1], t.b[2], 0, t.b[0];
+    of_node.push_back(b * t.turn);
+  }
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const Eigen::Matrix<double, 3, 6> left = volume * of_node[i].transpose() * matrix;
+    for (std::size_t j = 0; j < terms.size(); ++j) add_block(terms[i].node, terms[j].node, left * of_node[j]);
+  }
 }
 
 /// K / V g g^T with the g of V tr e = g . u, of this rank's faces.

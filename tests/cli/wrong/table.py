@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import check_table
 import flow_table
+import material_table
 import plant_table
 import plate_table
 import tank_table
@@ -249,14 +250,6 @@ case.yaml:16:51: participants.solid.boundaries.bottom.parts[0].type: 'interface'
     solid("spring without stiffness", """
 case.yaml:16:7: participants.solid.boundaries.bottom.stiffness: this required key is missing (force per area and displacement, of x, y, z (Winkler's bedding): number or expression in N/m^3).
 """, ("bottom: {type: free}", "bottom: {type: spring}")),
-    solid("no material", """
-case.yaml:4:3: participants.solid.material: give either 'material' (of the whole solid) or 'materials' (by zone of the mesh).
-""", ("    material:\n      density: 1000 kg/m^3\n      youngs-modulus: 1 MPa\n"
-                             "      poissons-ratio: 0.3\n", "")),
-    solid("one material and several", """
-case.yaml:9:5: participants.solid.material: give either 'material' (of the whole solid) or 'materials' (by zone of the mesh).
-""", ("    boundaries:", "    materials: {rubber: {density: 1000, youngs-modulus: 1e7, "
-                                           "poissons-ratio: 0.4}}\n    boundaries:")),
     solid("several mistakes at once", """
 case.yaml:2:14: simulation.end-time: 0 s is out of range; expected a value above 0 s.
 case.yaml:6:5: participants.solid.mash: unknown key. Did you mean 'mesh'?
@@ -463,4 +456,4 @@ RIGHT_PLANT, PLANT = plant_table.cases(Case, RUN)
 RIGHT_PLATE, PLATE = plate_table.cases(Case, RUN)
 RIGHT_CHECK, CHECK = check_table.cases(Case)
 RIGHT += RIGHT_TANK + RIGHT_PLANT + RIGHT_PLATE + RIGHT_CHECK
-CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + HEAT + FLUID + COUPLING + COMMAND_LINE + MESH + CHECK + TANK + PLANT + PLATE
+CASES = RIGHT + FILE + SIMULATION + PARTICIPANTS + SOLID + material_table.cases(solid) + HEAT + FLUID + COUPLING + COMMAND_LINE + MESH + CHECK + TANK + PLANT + PLATE
