@@ -8,7 +8,8 @@ import couplet_series as couplet
 from validation.job import Bar
 from validation.main_job import FLAP, steps_of
 from validation.parts.coupler_runs import RUNS
-from validation.parts.coupler_strangers import STRANGERS, TUBE_1D
+from validation.parts.coupler_strangers import STRANGERS
+from validation.parts.coupler_tubes import TUBES
 
 RAMP = ["participants.fluid.boundaries.inlet.ramp=0.4"]
 LIGHT = [*RAMP, "participants.solid.material.density=1", "simulation.output.interval=1", "simulation.checkpoint.interval=10"]
@@ -162,17 +163,5 @@ MAPPING = [
     Bar("flap, no vertex common but the corners (147 to 80), first maximum", "within 1 % of matching", non_matching(2, 0.5), long=True, but=SAME),
 ]
 
-
-
-# -- not run ----------------------------------------------------------------------------------------------------------
-def not_run(job):
-    raise NotImplementedError("not built yet")
-
-
-TUBES = [
-    TUBE_1D,
-    Bar("3-D tube, dt 1e-4 s, relative 1e-6: IQN-ILS with reuse", "at most 9.1 iterations on average", not_run, long=True),
-    Bar("3-D tube with unequal meshes", "within 1 % of matching", not_run, long=True),
-]
 
 BARS = [*ADDED_MASS, *STRING, *ACCELERATION, *MAPPING, *TUBES, *RUNS, *STRANGERS]

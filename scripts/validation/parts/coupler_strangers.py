@@ -72,21 +72,3 @@ STRANGERS = [
     Bar("strangers: vibration by vortices, Re 150, 2 rho D^2, U/(f_n D) 4", "reported beside 0.55 D", vortices, long=True),
     Bar("strangers: flap of FEniCSx", "within 3 % of solid_solver's tip", fenicsx, long=True),
 ]
-
-
-# -- the tube in one dimension -----------------------------------------------------------------------------------------
-def tube(job):
-    """Coupled pressure in the middle of the tube against the monolithic one, all 100 steps."""
-    folder = job.scratch / "tube-1d"
-    folder.mkdir()
-    job.environment["COUPLET_BIN"] = str(job.build / "bin")
-    done = job.run([job.root / "configs/tube-1d/run", f"--set=simulation.output.folder={folder / 'out'}"], 900, cwd=folder)
-    if done.returncode:
-        raise RuntimeError(f"exit code {done.returncode}: {(done.stdout + done.stderr)[-300:]}")
-    got = np.loadtxt(folder / "tube.csv", delimiter=",")[:, 1]
-    wanted = job.beside("configs/tube-1d/tube.py").monolithic()[:, 1]
-    off = np.abs(got - wanted).max() / np.abs(wanted).max()
-    return f"{off:.1e} of the largest pressure, {wanted.max():.2f} (preCICE's plot 223.5)", len(got) == 100 and bool(off < 1e-4)
-
-
-TUBE_1D = Bar("1-D tube: coupling error against the monolithic solution at the same step", "below 1e-4", tube)
