@@ -46,6 +46,8 @@ class Oscillators final {
   void step(const ModalState& now, double dt, const LoadAt& load, ModalState& next);
 
   int newton_iterations() const { return iterations_; }  ///< of the last step, most of its stages
+  /// Of the last solve, in its last stage: fluid and prescribed pressures on each mode.
+  std::span<const double> load() const { return load_; }
   const Contact::Result& seat() const { return seat_; }  ///< at the end of the last step
 
  private:

@@ -170,6 +170,12 @@ double PlateModel::frequency_scale() const {
 }
 
 EigenModes PlateModel::modes(int n) const {
+  const auto free = std::ranges::count(fixed_, false);
+  if (n >= free)
+    throw Error(
+        "{} modes are asked for; the plate has {} unknowns that are not held, and one mode must be left out. Ask for fewer, or "
+        "take a finer mesh: modes beyond a tenth of the unknowns are the mesh's.",
+        n, free);
   EigenModes modes = lowest_modes(*stiffness_, *mass_, n, -frequency_scale());
   for (std::vector<double>& shape : modes.shape) {
     // One of the two signs: the first of the largest deflections is positive.

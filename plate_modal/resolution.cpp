@@ -22,9 +22,8 @@ enum Sum { time, rigid, impact_share, steps_, impact_time, load_apart, load_size
 
 }  // namespace
 
-Resolution::Resolution(std::span<const double> omega, std::span<const double> damping)
+Resolution::Resolution(std::span<const double> omega)
     : omega_(omega.begin(), omega.end()),
-      damping_(damping.begin(), damping.end()),
       moved_(omega.size(), 0),
       swung_(moved_),
       coarse_(moved_),
@@ -43,7 +42,8 @@ Resolution::Resolution(std::span<const double> omega, std::span<const double> da
 // Trapezoidal rule, phase theta = 2 atan(omega dt / 2) a step: a swing of amplitude A has in the middle of a step
 // the displacement A cos(theta / 2) cos(phi) = - acceleration / omega^2. A mode that follows a slow load without
 // inertia has no acceleration, and nothing is seen of it here.
-void Resolution::accepted(const ModalState& before, const ModalState& after, double dt) {
+void Resolution::accepted(const ModalState& before, const ModalState& after, std::span<const double> load,
+                          double dt) {
   sums_[time] += dt;
   sums_[steps_] += 1;
   for (std::size_t m = 0; m < omega_.size(); ++m) {
@@ -55,7 +55,7 @@ void Resolution::accepted(const ModalState& before, const ModalState& after, dou
     }
     const double middle = (after.v[m] - before.v[m]) / (dt * w * w), half = 0.5 * w * dt;
     const double swing = middle * middle * (1 + half * half) * dt;
-    follow(m, 0.5 * (before.q[m] + after.q[m]), 0.5 * (before.v[m] + after.v[m]), middle * w * w, dt);
+    follow(m, 0.5 * (before.v[m] + after.v[m]), load[m] / (w * w), dt);
     moved_[m] += square;
     swung_[m] += swing;
     if (w * dt * least_steps <= 2 * std::numbers::pi * (1 + 1e-9)) continue;
@@ -64,16 +64,14 @@ void Resolution::accepted(const ModalState& before, const ModalState& after, dou
   }
 }
 
-/// A load that changes, seen through the equation of the mode: Q / omega^2 = q + (c q' + q'') / omega^2. Steps in
-/// which it hardly changes (a constant load, a pulse that is over) say nothing: the mode is free then.
-void Resolution::follow(std::size_t m, double displacement, double rate, double acceleration, double dt) {
-  const double w2 = omega_[m] * omega_[m], load = displacement + (acceleration + damping_[m] * rate) / w2;
+/// A load that changes, as the displacement that it would make without inertia. Steps in which it hardly does (a
+/// constant load, a pulse that is over) say nothing: the mode is free then.
+void Resolution::follow(std::size_t m, double rate, double load, double dt) {
   const double change = std::abs(load - last_load_[m]) / dt;
   last_load_[m] = load;
   if (sums_[steps_] < 2) return;
   largest_change_[m] = std::max(largest_change_[m], change);
-  const double rounding = 1e-9 * (std::abs(displacement) + std::abs(acceleration) / w2);
-  if (!(change > 0.05 * largest_change_[m]) || change * dt <= rounding) return;
+  if (!(change > 0.05 * largest_change_[m])) return;
   rate_[m] += rate * rate * dt;
   rate_step_[m] += rate * rate * dt * dt * dt;
   drive_[m] += change * change * dt;

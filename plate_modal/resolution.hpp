@@ -35,11 +35,10 @@ struct StepEvidence {
 /// Collects it, step by step. Sums of each mode alone: no state of the solution, and no influence on it.
 class Resolution final {
  public:
-  /// `damping`: c of each mode [1/s].
-  Resolution(std::span<const double> omega, std::span<const double> damping);
+  explicit Resolution(std::span<const double> omega);
 
-  /// A step of length `dt` has been accepted.
-  void accepted(const ModalState& before, const ModalState& after, double dt);
+  /// A step of length `dt` has been accepted; `load`: in it, on each mode, without gravity and seat.
+  void accepted(const ModalState& before, const ModalState& after, std::span<const double> load, double dt);
   /// What the step saw of the load.
   void load(const PressureLoad::Seen& seen);
   /// The seat has done `work` in a step [J]; `stiffness`: what the impact sees of it, over mass [1/s^2];
@@ -56,10 +55,10 @@ class Resolution final {
 
  private:
   double displacement() const;
-  void follow(std::size_t mode, double displacement, double rate, double acceleration, double dt);
+  void follow(std::size_t mode, double rate, double load, double dt);
   void find_resonance(StepEvidence& evidence, double all) const;
 
-  std::vector<double> omega_, damping_;
+  std::vector<double> omega_;
   double longest_period_ = 0;  // of a mode that is no rigid motion
   // Of each mode, integrals over time: square of the displacement, of the swing about what the load holds, and of
   // the part of the latter in steps that were too long for it [kg m^2 s]; the longest of these steps [s].

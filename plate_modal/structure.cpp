@@ -69,7 +69,7 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
   if (p.load && (p.load->upper || p.load->lower))
     pressure_ = std::make_unique<PressureLoad>(*share_, *p.load, p.placement.normal());
   if (p.analysis == Parameters::Analysis::dynamic)
-    resolution_ = std::make_unique<Resolution>(share_->omega(), damping());
+    resolution_ = std::make_unique<Resolution>(share_->omega());
   oscillators_ =
       std::make_unique<Oscillators>(share_->omega(), damping(), gravity_, p.time_scheme, contact_.get());
   state_ = trial_ = initial_state();
@@ -186,7 +186,7 @@ Exchange Structure::solve(const Exchange& in) {
 
 /// Does the step that is accepted now (from trial_, before, to state_) resolve what it moves?
 void Structure::look_at_step() {
-  resolution_->accepted(trial_, state_, step_.dt);
+  resolution_->accepted(trial_, state_, oscillators_->load(), step_.dt);
   // A load that differs from place to place costs an expression a face: not each time.
   const long steps = resolution_->steps();
   if (pressure_ && pressure_->changes_in_time() &&

@@ -84,6 +84,27 @@ std::vector<SurfaceSums> surface_sums(const ModalModel& model) {
   return sums;
 }
 
+/// The mode whose shape at the faces is another one than at their vertices; -1: none. Shapes that turn within a face
+/// say nothing.
+int mode_of_two_shapes(const ModalModel& model) {
+  ModalModel by_vertices = model;
+  average_faces(by_vertices);
+  const std::size_t n = model.n_modes();
+  for (std::size_t m = 0; m < n; ++m) {
+    double square = 0, product = 0, corners = 0, told = 0;
+    for (std::size_t i = m; i < model.face_shape.size(); i += n) {
+      square += by_vertices.face_shape[i] * by_vertices.face_shape[i];
+      product += by_vertices.face_shape[i] * model.face_shape[i];
+      told += model.face_shape[i] * model.face_shape[i];
+    }
+    for (std::size_t i = m; i < model.vertex_shape.size(); i += n)
+      corners += model.vertex_shape[i] * model.vertex_shape[i] / double(model.vertices.size());
+    const bool smooth = square / double(model.faces.size()) > 0.25 * corners;
+    if (smooth && (product < 0.3 * square || told > 9 * square)) return int(m);
+  }
+  return -1;
+}
+
 }  // namespace
 
 std::string impossible_in(const ModalModel& model) {
@@ -97,6 +118,9 @@ std::string impossible_in(const ModalModel& model) {
   for (std::size_t m = 0; m < n; ++m)
     if (largest_displacement(model, m) == 0)
       return fmt::format("the shape of mode {} is 0 everywhere", m + 1);
+  if (const int m = mode_of_two_shapes(model); m >= 0)
+    return fmt::format(
+        "the shape of mode {} at the faces ('shape/faces') is not the mean of that at their vertices", m + 1);
   // Bessel: a uniform motion of the whole mass has at most its own length in the modes.
   for (int c = 0; c < 3; ++c) {
     double effective = 0;
@@ -127,7 +151,9 @@ std::string scale_problem_of(const ModalModel& model) {
     if (model.face_density.empty() || sums[m].mass < 0.5 * model.mass) continue;
     for (int c = 0; c < 3; ++c) {
       const double told = model.participation[c * sums.size() + m], seen = sums[m].participation[c];
-      if (told * told < 0.05 * model.mass || (seen / told > 0.3 && seen / told < 3)) continue;
+      // Small ones are differences of large parts, which a surface need not show.
+      if (told * told < 0.05 * model.mass && seen * seen < 0.3 * model.mass) continue;
+      if (seen / told > 0.3 && seen / told < 3) continue;
       return fmt::format(
           "the participation of mode {} along {} is {:.3g} sqrt(kg), and the shape and mass of the surface give {:.3g}: "
           "shapes and participation are not of the same modes",

@@ -88,8 +88,11 @@ case.yaml:7:5: participants.plate.contact: with 'modes.file' the material is not
 """,
               ("    boundaries:", "    zones: {rim: {thickness: 1 mm}}\n    boundaries:"), **run),
         plate("more modes than a plate has", """
-[plate 0] error: 300 modes are asked for; the model has 27 unknowns. Ask for fewer or refine it.
+[plate 0] error: 300 modes are asked for; the plate has 18 unknowns that are not held, and one mode must be left out. Ask for fewer, or take a finer mesh: modes beyond a tenth of the unknowns are the mesh's.
 """, ("number: 3", "number: 300"), **run),
+        plate("as many modes as a plate has unknowns that are not held", """
+[plate 0] error: 18 modes are asked for; the plate has 18 unknowns that are not held, and one mode must be left out. Ask for fewer, or take a finer mesh: modes beyond a tenth of the unknowns are the mesh's.
+""", ("number: 3", "number: 18"), **run),
         plate("modes of a file that is not there", """
 [plate 0] error: The file of modes 'modes.h5' does not exist. The path is relative to the folder of the YAML file.
 """, *file_alone("modes.h5"), ("    contact: {height: -1 cm}\n", ""), **run),

@@ -149,6 +149,8 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
   says("mass of the structure is 0", [](ModalModel& m) { m.mass = 0; });
   says("the density of face 2 is -3", [](ModalModel& m) { m.face_density[1] = -3; });
   says("mode 1 is 0 everywhere", [&](ModalModel& m) { scaled(m.vertex_shape, 0), scaled(m.face_shape, 0); });
+  says("mode 1 at the faces", [&](ModalModel& m) { scaled(m.vertex_shape, 1e3); });
+  says("mode 1 at the faces", [&](ModalModel& m) { scaled(m.face_shape, -1); });
   says("along z add up to", [&](ModalModel& m) { scaled(m.participation, 10); });
   says("shapes and participation are not of the same modes",
        [&](ModalModel& m) { scaled(m.participation, 0.1); });
