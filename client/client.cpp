@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "transports.hpp"
 #include "wire.hpp"
 
 namespace {
@@ -189,7 +190,10 @@ extern "C" {
 couplet_client* couplet_join(const char* participant, const char* program) try {
   int up = 0;
   MPI_Initialized(&up);
-  if (!up) end_the_job("MPI_Init must come before couplet_join.");
+  if (!up) {
+    choose_transports();
+    MPI_Init(nullptr, nullptr);
+  }
   auto c = std::make_unique<couplet_client>();
   c->participant = participant;
   const Place place = join(participant, program);

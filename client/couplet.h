@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* A program of any kind as a participant of a Couplet job, over MPI alone. The protocol is docs/protocol.md.
  *
- *   MPI_Init(...);
  *   couplet_client* c = couplet_join("solid", "my_solver");     all processes of the participant
  *   couplet_vertices(c, ...); couplet_faces(c, ...);             each process what it owns, or process 0 all
  *   couplet_takes(c, "pressure-force", "N", COUPLET_FACES, 0); couplet_gives(c, ...);
@@ -34,7 +33,9 @@ enum couplet_event {
   COUPLET_LOAD = 7    /* load it from there */
 };
 
-/* Takes part in the start of the job, collective over all its processes. `participant`: its name under
+/* Takes part in the start of the job, collective over all its processes; calls MPI_Init if the program has not, with the
+ * transports that the other programs choose on one machine (a program that calls it itself probes all networks, and on
+ * a machine with some of them may choose one that the others do not have). `participant`: its name under
  * `participants:` of the case; `program`: of that entry. */
 couplet_client* couplet_join(const char* participant, const char* program);
 /* The processes of this participant. */

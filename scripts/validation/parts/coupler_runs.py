@@ -111,6 +111,8 @@ RUNS = [
         unit("coupling_groups", "keeps_the_second_order", "slope_constant", lambda v: max(v) < 1.4)),
     Bar("two bodies in one fluid, serial and parallel", "monolithic solution to 1e-9, restart bit for bit",
         passed("coupling_groups", "Groups.")),
+    Bar("two flaps in one flow, implicit, the real solvers", "runs, restart bit for bit", registered("^coupling_bodies_two-flaps$")),
+    Bar("fluid, structure and heat program", "runs, restart bit for bit", registered("^coupling_bodies_warm-flap$")),
     Bar("flap implicit: Jacobi against Gauss-Seidel", "same tip to 1e-4", jacobi_against_gauss_seidel),
     Bar("coupler on 1, 2, 3 ranks: the flap", "same to 1e-10", coupler_ranks),
     Bar("coupler's own share of a flap step", "< 3 %", own_share),
