@@ -67,16 +67,22 @@ def hours(job):
     return f"{float(took[1]) * 4 / 3600:.3f} core-hours for 85 steps on 4 processes (waiting counted)", None
 
 
+def finer(job, part):
+    """The file of fluid or solid with 104 x 26 faces on the wall."""
+    geo = (job.root / f"configs/tube-3d/{part}.geo").read_text()
+    mesh = job.scratch / f"finer-{part}.geo"
+    mesh.write_text(geo.replace("n = 10,", "n = 13,").replace("n_z = 80", "n_z = 104"))
+    return mesh
+
+
 def unequal(job):
-    _, wanted = radial(tube(job, "semi-implicit", "coupling.scheme=semi-implicit"))
-    geo = (job.root / "configs/tube-3d/solid.geo").read_text()
-    mesh = job.scratch / "coarse.geo"
-    mesh.write_text(re.sub(r"n = 10, n_wall = 4, n_z = 80", "n = 7, n_wall = 4, n_z = 57", geo))
-    gaps = {}
-    for kind in ("projection", "rbf"):
-        _, y = radial(tube(job, kind, f"participants.solid.mesh={mesh}", f"coupling.mapping.type={kind}"))
-        gaps[kind] = y.max() / wanted.max() - 1
-    return ", ".join(f"{k} {100 * g:+.2f} %" for k, g in gaps.items()) + " (largest radial motion of A)", max(map(abs, gaps.values())) <= 0.01
+    """A finer wall in the fluid's mesh as it is, against the same wall in a fluid that matches it: so that only the interface differs."""
+    end = "simulation.end-time=7.5 ms"
+    wall, fluid = f"participants.solid.mesh={finer(job, 'solid')}", finer(job, "fluid")
+    matching = tube(job, "matching", end, wall, f"participants.fluid.mesh={fluid}", f"participants.mover.mesh={fluid}")
+    wanted = radial(matching)[1].max()
+    gaps = {kind: radial(tube(job, kind, end, wall, f"coupling.mapping.type={kind}"))[1].max() / wanted - 1 for kind in ("projection", "rbf")}
+    return ", ".join(f"{k} {100 * g:+.2f} %" for k, g in gaps.items()) + f" of {wanted:.3e} m (largest radial motion of A)", max(map(abs, gaps.values())) <= 0.01
 
 
 EIGHT = "to 8.5 ms, after the maximum at 7 ms"
@@ -87,5 +93,5 @@ TUBES = [
     Bar("3-D tube with an Euler structure: largest radial motion of A", "reported", euler, long=True),
     Bar("3-D tube: radial motion of A from 3 to 4 ms against the run at dt 2.5e-5 s", "within 1 % of its maximum", step, long=True),
     Bar("3-D tube: cost", "reported", hours, long=True),
-    Bar("3-D tube with unequal meshes (57 x 14 faces to 80 x 20)", "within 1 % of matching", unequal, long=True, but=EIGHT),
+    Bar("3-D tube with unequal meshes (wall 104 x 26 faces, fluid 80 x 20)", "within 1 % of matching", unequal, long=True, but="to 7.5 ms, after the maximum"),
 ]
