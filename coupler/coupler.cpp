@@ -92,6 +92,7 @@ void Coupler::initialise() {
   links_.emplace(comm_, sides_, parameters_.mapping);
   for (const std::string& note : links_->notes()) log::info("{}", note);
   check_roles(parameters_, sides_);
+  check_foreseen(sides_, *links_, schedule_, group_);
   check_places(comm_, sides_, *links_, parameters_.mapping);
   unknown_.emplace(comm_, sides_, *links_, group_, schedule_.side_by_side);
   mechanics_.emplace(comm_, sides_, *links_, labels_of(parameters_, partners_));
@@ -128,9 +129,7 @@ void Coupler::solve(const Step& step) {
   bool first = true;
   std::vector<Exchange> outputs;
   const auto pass_from = [&](std::vector<Exchange> known) {
-    const bool move_mesh = schedule_.mover && (first || schedule_.moves_in_each_pass);
-    first = false;
-    outputs = pass(std::move(known), move_mesh);
+    outputs = pass(std::move(known), std::exchange(first, false));
   };
   const FixedPointMap map = [&](const Iterate& x) {
     std::vector<Exchange> known(partners_.size());

@@ -69,8 +69,9 @@ class Coupler {
   std::optional<StepFailure> attempt(const Step& step);
   void solve(const Step& step);
   /// One pass through the group from what is known to what all give.
-  std::vector<Exchange> pass(std::vector<Exchange> known, bool move_mesh);
+  std::vector<Exchange> pass(std::vector<Exchange> known, bool first);
   void ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh);
+  void guess_motion(const std::vector<Exchange>& known, bool first);
   void answer(std::size_t i, Exchange& given, bool move_mesh);
   void hold_volume(std::size_t i, std::vector<Exchange>& known);
   void accept(double time, int output);
@@ -96,6 +97,7 @@ class Coupler {
   History history_;                           // of accepted steps; empty before all has been given
   FixedPointResult last_;                     // of the step just solved
   std::vector<Exchange> given_, taken_;       // by each in its last pass
+  Exchange guess_;                            // of the motion, that the mover has been given
   IterationGuard iteration_guard_;
   OscillationGuard oscillation_guard_;
   WorkGuard work_guard_;

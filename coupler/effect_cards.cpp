@@ -67,6 +67,16 @@ const std::array cards{
                  "`mesh`",
                  [](const P& p) { return when(p.mesh.has_value(), "mesh"); },
                  {"the process mesh_mover", 0, 0}},
+    CouplingCard{"mesh on the guess",
+                 "`mesh-on-guess`, implicit scheme",
+                 [](const P& p) { return when(p.mesh_on_guess, "mesh-on-guess"); },
+                 {"the motion of the guess kept for the step", 0, 0}},
+    CouplingCard{"load as the unknown",
+                 "`order: structure-first`",
+                 [](const P& p) {
+                   return when(p.order == P::Exchange::Order::structure_first, "order: structure-first");
+                 },
+                 {"forces of the faces beside the motion of the vertices in the unknown", 0, 0}},
     CouplingCard{"sub-steps",
                  "`sub-steps`",
                  [](const P& p) { return when(!p.sub_steps.empty(), "sub-steps"); },

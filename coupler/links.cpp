@@ -25,12 +25,15 @@ const Datum* find(const std::vector<Datum>& list, const std::string& name) {
   return found == list.end() ? nullptr : &*found;
 }
 
-/// The participants other than `taker` that give `wanted`.
+/// What a participant remembers of its last pass through the coupler's hands, as a part of the unknown.
+bool is_own(const Datum& datum) { return datum.name.starts_with("own-"); }
+
+/// The participants other than `taker` that give `wanted`; of its own data itself.
 std::vector<Source> sources_of(const Datum& wanted, std::size_t taker, const std::vector<Side>& sides) {
   std::vector<Source> found;
   std::vector<std::string> all;
   for (std::size_t g = 0; g < sides.size(); ++g) {
-    if (g == taker) continue;
+    if ((g == taker) != is_own(wanted)) continue;
     for (const Datum& datum : sides[g].interface.gives)
       all.push_back("'" + datum.name + "' by '" + sides[g].name + "'");
     if (const Datum* datum = find(sides[g].interface.gives, wanted.name)) found.push_back({g, datum});
@@ -146,7 +149,7 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
       for (std::size_t s = 0; s < sources.size(); ++s) {
         const auto& [g, given] = sources[s];
         PointSet mine = from[s];
-        const auto takers = takers_of(*given, sides);
+        const auto takers = is_own(wanted) ? std::vector<std::size_t>{t} : takers_of(*given, sides);
         if (is_amount(*given) && takers.size() > 1) mine = share_of(comm, mine, *given, g, t, takers, sides);
         const bool whole = sources.size() == 1 && !(is_amount(*given) && takers.size() > 1);
         const auto same = std::ranges::find_if(links_, [&, g = g, given = given](const Link& l) {
@@ -160,10 +163,11 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
           continue;
         }
         const auto kind = is_amount(*given) ? Mapping::Kind::conservative : Mapping::Kind::consistent;
-        links_.push_back(
-            {g, t, *given, components, wanted.place,
-             std::make_shared<const Mapping>(comm, kind, mine, part_of(to, giver_of, s), mapping), whole});
-        notes_.push_back(given->name + ": " + links_.back().mapping->summary());
+        links_.push_back({g, t, *given, components, wanted.place,
+                          std::make_shared<const Mapping>(comm, kind, mine, part_of(to, giver_of, s),
+                                                          is_own(wanted) ? MappingParameters{} : mapping),
+                          whole});
+        if (!is_own(wanted)) notes_.push_back(given->name + ": " + links_.back().mapping->summary());
       }
     }
   for (const Side& side : sides)

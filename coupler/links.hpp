@@ -14,7 +14,8 @@ namespace couplet {
 /// gives a datum of the same name. Where several give it (two structures in one fluid), every place takes it
 /// from the one that is nearest, and where several take an amount (N, W), every place gives it to the
 /// nearest: the surfaces must be apart. Amounts are shared out with their sum kept, all else is carried
-/// consistently.
+/// consistently. A datum whose name begins with "own-" a participant takes from itself: what it gave in the last
+/// pass, accelerated with the rest of the unknown.
 class Links {
  public:
   /// Throws Error if a datum is taken and given by nobody or by several in the same place, or if units or

@@ -197,12 +197,27 @@ void declare(config::Section& section, CouplingParameters& p) {
           "order); "
           "constant: the new ones");
   section.check([&] { return problem_of_sub_steps(p); }, "sub-steps");
+  section.check(
+      [&] {
+        return p.mesh_on_guess && (p.scheme != Scheme::implicit || !p.mesh)
+                   ? "it is for `scheme: implicit` with a `mesh` mover; the semi-implicit scheme does so by itself"
+                   : "";
+      },
+      "mesh-on-guess");
   using Order = CouplingParameters::Exchange::Order;
-  section.choice("order", p.order, {{"serial", Order::serial}, {"parallel", Order::parallel}})
+  section
+      .choice("order", p.order,
+              {{"serial", Order::serial},
+               {"parallel", Order::parallel},
+               {"structure-first", Order::structure_first}})
       .doc(
-          "of fluid and structure: serial: the structure with the load of the same pass (Gauss-Seidel); "
-          "parallel: both "
-          "at the same time (Jacobi)");
+          "of fluid and structure: serial: the structure with the load of the same pass (Gauss-Seidel); parallel: both "
+          "at the same time (Jacobi); structure-first: the fluid with the motion of the same pass, the load is "
+          "iterated: what a fluid with `surface-density` at its interface (Robin) needs");
+  section.value("mesh-on-guess", p.mesh_on_guess)
+      .doc(
+          "implicit: the mesh stays where the first guess of the step puts it, as in the semi-implicit scheme: the "
+          "loop holds for lighter structures");
   section.section(
       "mapping", [&](config::Section& s) { declare(s, p.mapping); },
       "between the two sides of the interface");

@@ -39,7 +39,7 @@ struct CouplingParameters {
   std::optional<Role> fluid, structure, mesh;
   /// Participants of any kind that exchange data once a step, in place of fluid, structure and mesh.
   struct Exchange {
-    enum class Order { serial, parallel };
+    enum class Order { serial, parallel, structure_first };
     std::vector<std::string> participants;
     Order order = Order::serial;
   };
@@ -51,6 +51,7 @@ struct CouplingParameters {
   std::optional<double> predictor_order;
   std::map<std::string, double> sub_steps;  // by participant
   enum class Waveform { linear, constant } waveform = Waveform::linear;
+  bool mesh_on_guess = false;  // in each pass of the implicit scheme
   MappingParameters mapping;
   bool interface_output = false;  // for ParaView
   /// What follows when a guard finds that the coupling itself makes the motion.

@@ -9,7 +9,7 @@ namespace couplet {
 void Coupler::ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh) {
   // The moved one blocks until the mesh has been moved: the mover's command goes out first.
   const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
-  if (with_mover) partners_.front().send({Op::solve, {}, links_->input(0, known), 0, -1, ""});
+  if (with_mover) partners_.front().send({Op::solve, {}, guess_, 0, -1, ""});
   taken_[i] = links_->input(i, known);
   partners_[i].send({Op::solve, {}, taken_[i], 0, -1, ""});
 }
@@ -48,7 +48,14 @@ void Coupler::hold_volume(std::size_t i, std::vector<Exchange>& known) {
   });
 }
 
-std::vector<Exchange> Coupler::pass(std::vector<Exchange> known, bool move_mesh) {
+/// What the mover gets: the motion that is known before anybody has answered in this pass.
+void Coupler::guess_motion(const std::vector<Exchange>& known, bool first) {
+  if (first || !schedule_.mesh_on_guess) guess_ = links_->input(0, known);
+}
+
+std::vector<Exchange> Coupler::pass(std::vector<Exchange> known, bool first) {
+  const bool move_mesh = schedule_.mover && (first || schedule_.moves_in_each_pass);
+  if (move_mesh) guess_motion(known, first);
   ++iterations_;
   answered_anew_ = false;
   if (!schedule_.side_by_side) {

@@ -192,6 +192,23 @@ void check_roles(const CouplingParameters& parameters, const std::vector<Side>& 
   }
 }
 
+void check_foreseen(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
+                    const std::vector<std::size_t>& group) {
+  const auto place = [&](std::size_t i) { return std::ranges::find(group, i) - group.begin(); };
+  for (const auto& own : links.all()) {
+    if (own.giver != own.taker) continue;
+    const bool behind = std::ranges::all_of(links.all(), [&](const Links::Link& l) {
+      return l.taker != own.taker || l.datum.name != "velocity" || place(l.giver) < place(own.taker);
+    });
+    if (behind && schedule.iterates && !schedule.side_by_side) continue;
+    throw Error(
+        "'{}' foresees the answer of its walls (`surface-density` at its interface): the structure must be asked before "
+        "it in each pass. Take 'coupling.order: structure-first' (in an exchange: the structure first in the list) with "
+        "'scheme: semi-implicit' or 'implicit', or remove the key.",
+        sides[own.taker].name);
+  }
+}
+
 void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                   const MappingParameters& mapping) {
   std::set<std::pair<std::size_t, std::size_t>> judged;

@@ -6,6 +6,7 @@
 
 #include "coupler/links.hpp"
 #include "coupler/parameters.hpp"
+#include "coupler/schedule.hpp"
 #include "coupler/side.hpp"
 
 namespace couplet {
@@ -29,6 +30,11 @@ PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to);
 void check_roles(const CouplingParameters& parameters, const std::vector<Side>& sides);
 
 /// All of the above before the first step, for every giver of motion and its taker; throws Error.
+/// Throws Error where a fluid that foresees its walls' answer (it takes its own data back) is asked before them: `group`
+/// in the order of a pass.
+void check_foreseen(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
+                    const std::vector<std::size_t>& group);
+
 void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                   const MappingParameters& mapping);
 

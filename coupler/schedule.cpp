@@ -21,6 +21,7 @@ Schedule schedule_of(const CouplingParameters& p) {
   Schedule s;
   s.scheme = p.scheme;
   s.iterates = p.scheme != Scheme::explicit_;
+  s.mesh_on_guess = p.mesh_on_guess;
   s.moves_in_each_pass = p.scheme != Scheme::semi_implicit;
   s.waveform = p.waveform == CouplingParameters::Waveform::linear;
   for (const auto& [name, steps] : p.sub_steps) s.sub_steps[name] = int(std::lround(steps));
@@ -29,6 +30,7 @@ Schedule schedule_of(const CouplingParameters& p) {
     s.side_by_side = p.exchange->order == CouplingParameters::Exchange::Order::parallel;
   } else {
     s.group = {p.fluid->participant, p.structure->participant};
+    if (p.order == CouplingParameters::Exchange::Order::structure_first) std::swap(s.group[0], s.group[1]);
     s.side_by_side = p.order == CouplingParameters::Exchange::Order::parallel;
   }
   // Without motion in it, an exchange takes what was given last.

@@ -22,6 +22,7 @@ struct Schedule {
   bool iterates = true;
   std::optional<std::string> mover, moved;  ///< who moves the mesh, and of whom (one of the group)
   bool moves_in_each_pass = false;
+  bool mesh_on_guess = false;  ///< moved in each pass, but to the same place: that of the first
   int predictor = 2;
   std::map<std::string, int> sub_steps;  ///< of those that take several
   bool waveform = true;                  ///< input of sub-steps as a line in time

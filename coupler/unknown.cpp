@@ -25,8 +25,13 @@ Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& lin
     if (place_in_group(link.giver) == std::ssize(group)) continue;  // not a member
     const auto taker = place_in_group(link.taker);
     // A mover takes before everyone.
-    if (taker == std::ssize(group) || side_by_side || place_in_group(link.giver) > taker) add(link);
+    if (taker == std::ssize(group) || side_by_side || place_in_group(link.giver) >= taker) add(link);
   }
+  // The guess of a displacement, for the mover alone, needs its velocity, too.
+  const std::vector<Part> taken = parts_;
+  for (const Part& p : taken)
+    for (const auto& link : links.all())
+      if (p.datum.name == "displacement" && link.giver == p.giver && link.datum.name == "velocity") add(link);
   for (Part& p : parts_) {
     if (p.datum.name != "velocity") continue;
     for (Part& d : parts_)

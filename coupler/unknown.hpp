@@ -16,7 +16,8 @@ struct Residual {
   double absolute = 0;  ///< root mean square of the vectors r over the places [unit of the datum]
 };
 
-/// What a group iterates on: the data that somebody takes before its giver has given it in the same pass. In
+/// What a group iterates on: the data that somebody takes before its giver has given it in the same pass (its own
+/// data always). In
 /// the order of the list (Gauss-Seidel) these are the data given to earlier members, side by side (Jacobi)
 /// all of the group's. A velocity that goes with a displacement of the same giver is no unknown of its own:
 /// it rides on the displacement's combinations. Several data are scaled to like size, once.

@@ -68,6 +68,11 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
     case BoundaryType::interface:
       std::fill_n(interface_.begin() + first, patch.count, 1);
       interface_patches_.push_back(patch.name);
+      if (b.surface_density) {
+        yields_ = true;
+        wall_mass_.resize(kind_.size(), 0.);
+        std::fill_n(wall_mass_.begin() + first, patch.count, *b.surface_density);
+      }
       return;
     case BoundaryType::body:
       std::fill_n(interface_.begin() + first, patch.count, 1);

@@ -36,6 +36,11 @@ class Boundary {
   /// A wall whose velocity is given from outside: by the structure or by the prescribed motion.
   bool is_interface(Index boundary_face) const { return interface_[boundary_face] != 0; }
 
+  /// Some walls of the interface have a mass that the pressure equation foresees; the mass per area of each boundary
+  /// face [kg/m^2], 0: none.
+  bool yields() const { return yields_; }
+  const std::vector<double>& wall_mass() const { return wall_mass_; }
+
   /// w at time t [m/s] at the faces with given velocity; interface faces are left as they are.
   void velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
   /// p at time t [Pa] at the faces with given pressure; the others are left as they are.
@@ -76,7 +81,8 @@ class Boundary {
   std::vector<const Patch*> body_patches_;
   std::vector<Given> velocity_patches_, pressure_patches_;
   std::vector<std::pair<Index, Index>> convective_patches_;  // first boundary face, count; also empty ones
-  bool closed_ = true;
+  bool closed_ = true, yields_ = false;
+  std::vector<double> wall_mass_;
 };
 
 }  // namespace couplet::fluid

@@ -50,6 +50,10 @@ void check_cavity(const Fluid<D>& fluid, Scheme scheme) {
   if (fluid.parameters().volume_level == VolumeLevelBy::structure) {
     if (scheme == Scheme::standalone)
       throw Error("volume-level: structure: this fluid runs alone, there is no structure; remove the key.");
+    if (boundary.yields())
+      throw Error(
+          "volume-level: structure: walls whose surface-density is given take their level from the pressure equation; "
+          "remove one of the two keys.");
     if (!closed || boundary.interface_patches().empty() || !boundary.body_patches().empty())
       throw Error(
           "volume-level: structure: this fluid {}, so no structure can set its pressure level; remove the key.",
@@ -58,7 +62,8 @@ void check_cavity(const Fluid<D>& fluid, Scheme scheme) {
                                             : "has bodies that move as prescribed");
     return;
   }
-  if (scheme == Scheme::standalone || !closed || boundary.interface_patches().empty()) return;
+  if (scheme == Scheme::standalone || !closed || boundary.interface_patches().empty() || boundary.yields())
+    return;
   const auto [share, area] = open_share(fluid);
   if (share <= largest_open_share) return;
   throw Error(

@@ -130,6 +130,17 @@ const std::array cards{
               "a boundary of `type: interface`",
               [](const S& s) { return when(s.coupled && has_interface(s), "a boundary of type interface"); },
               {"forces a face of the interface", 0, 0}},
+    FluidCard{
+        "walls that yield (Robin interface)",
+        "`surface-density` of a boundary of type interface",
+        [](const S& s) {
+          return when(std::ranges::any_of(s.parameters.boundaries,
+                                          [](const auto& b) { return b.second.surface_density.has_value(); }),
+                      "surface-density");
+        },
+        {"two loops over the interface a pass, a pressure a face over the coupling; pressure matrix anew where the "
+         "step is cut",
+         0, 0}},
     FluidCard{"pressure level of a closed fluid",
               "`volume-level: structure`",
               [](const S& s) {

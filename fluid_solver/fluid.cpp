@@ -290,6 +290,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
         history_.implicit || step_.oblique() || parameters_.projection == Projection::incremental;
     if (needs_pressure && !history_.pressure[0]) start_pressure(sub_step, last_w_);
     if (parameters_.scheme == ExplicitScheme::runge_kutta) run_stages(sub_step, end - dt, wall_velocity);
+    sub_step.yields = last && yields_;
     step_.predict(level(), history_, std::move(sub_step), last_w_);
     ++statistics_.sub_steps;
     ++statistics_.all_sub_steps;

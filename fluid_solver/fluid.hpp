@@ -36,6 +36,14 @@ class Fluid {
   /// `points`: at t^{n+1}, empty if the mesh rests. `wall_velocity`: per boundary face at t^{n+1} [m/s], only
   /// the interface faces count (empty: at rest). Collective.
   void prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
+  /// Before prepare() and solve_pressure(): the pressure that gave the interface its velocity, per boundary face [Pa].
+  /// Walls of a known mass then answer to what the pressure differs from it (see yielding_walls.cpp).
+  void yield_from(std::vector<double> load) {
+    yields_ = boundary_.yields();
+    step_.set_wall_load(std::move(load));
+  }
+  /// At the boundary faces, of the last solve_pressure() [Pa].
+  const std::vector<double>& boundary_pressure() const { return step_.boundary_pressure(); }
   /// Throws SolveFailure if the flow that follows is none; everything that can fail is here and in prepare().
   void solve_pressure(const Vectors<D>& wall_velocity);
   /// Force that friction would add if it saw the wall velocity of the last solve_pressure() instead of that
@@ -103,6 +111,7 @@ class Fluid {
   History<D> history_;   // how the sub-step under way sees level()
   bool split_ = false;   // a sub-step of the step under way is finished: it goes on from trial_
   bool judged_ = false;  // the prediction under way has given a sound level n+1
+  bool yields_ = false;  // the walls, in the last sub-step
   double time_ = 0, dt_ = 0;
   Vectors<D> guess_;                         // given velocities at the step's end as prepare() had them
   Vectors<D> last_w_;                        // given velocities at the end of the last sub-step

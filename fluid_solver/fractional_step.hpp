@@ -58,6 +58,10 @@ class FractionalStep {
   void set_eddy_viscosity(State<D>& state);
   /// Null: none.
   const ImmersedBodies<D>* bodies() const { return k_.bodies.get(); }
+  /// Pressure that gave the interface its w, per boundary face [Pa]: for steps that yield.
+  void set_wall_load(std::vector<double> load) { k_.wall_load = std::move(load); }
+  /// Of the last project(), per boundary face [Pa].
+  const std::vector<double>& boundary_pressure() const { return k_.p_boundary; }
   void refresh_solvers() { projection_.equation().refresh(); }
   const StepStatistics& statistics() const { return k_.statistics; }
   double size() const { return k_.step.dt; }

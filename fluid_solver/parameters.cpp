@@ -96,7 +96,16 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
         [&b](Section& v) {
           v.value("partner", b.partner).required().doc("the patch that is the translated copy of this one");
         }},
-       {"interface", BoundaryType::interface, nothing},
+       {"interface", BoundaryType::interface,
+        [&b](Section& v) {
+          v.value("surface-density", b.surface_density)
+              .unit("kg/m^2")
+              .positive()
+              .doc(
+                  "mass per area of the structure behind it: its answer is then foreseen in the pressure equation "
+                  "(Robin condition), with `coupling.order: structure-first`; a solid's density times its thickness, or "
+                  "less: too little costs passes, too much may diverge; absent: the wall moves as the coupling says");
+        }},
        {"body", BoundaryType::body, nothing}},
       "inlet: given velocity; outlet: given pressure; convective-outlet: what is there moves out with the "
       "mean outflow speed, its mean pressure is 0; no-slip: wall at rest; moving-wall: wall with a given "

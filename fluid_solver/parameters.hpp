@@ -63,6 +63,7 @@ struct BoundaryParameters {
   config::ExpressionText pressure;                   // [Pa], outlet
   bool backflow_stabilisation = true;                // outlet
   std::string partner;                               // periodic
+  std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
 };
 
 enum class TurbulenceModel { smagorinsky, wale };

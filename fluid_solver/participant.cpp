@@ -112,6 +112,11 @@ Interface FluidParticipant<D>::initialise() {
   using Place = Interface::Place;
   description.takes = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
   description.gives = {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}};
+  if (yields()) {
+    const Interface::Datum own{"own-wall-force", "N", Place::faces, 1};
+    description.takes.push_back(own);
+    description.gives.push_back(own);
+  }
   if (holds_volume()) description.gives.push_back({"inflow", "m^3/s", Place::faces, 2});
   return description;
 }
@@ -144,6 +149,19 @@ Vectors<D> FluidParticipant<D>::wall_velocity(const Exchange& in) const {
     value /= static_cast<double>(vertices.size());
   }
   return w;
+}
+
+/// The pressure that the structure has answered to, per boundary face [Pa]; nothing at the very start.
+template <int D>
+std::vector<double> FluidParticipant<D>::wall_load(const Exchange& in) const {
+  std::vector<double> load(mesh_.boundary.n_owned(), 0.);
+  const auto given = in.find("own-wall-force");
+  const std::vector<double> at_faces =
+      interface_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second, 1);
+  const std::vector<Index>& faces = interface_->faces();
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    load[faces[i] - mesh_.n_interior] = at_faces[i] / mesh_.reference.face_area[faces[i]].norm();
+  return load;
 }
 
 /// Of the faces of the interface: largest mean displacement over the height of the cell beside them.
@@ -192,6 +210,13 @@ Exchange FluidParticipant<D>::forces() const {
   Exchange out;
   out["pressure-force"] = interface_->gather_faces(pressure, D);
   out["viscous-force"] = interface_->gather_faces(viscous, D);
+  if (yields()) {
+    std::vector<double> wall(faces.size());
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      wall[i] = fluid_->boundary_pressure()[faces[i] - mesh_.n_interior] *
+                mesh_.reference.face_area[faces[i]].norm();
+    out["own-wall-force"] = interface_->gather_faces(wall, 1);
+  }
   if (holds_volume())
     out["inflow"] = interface_->gather_faces(inflow_shares(*fluid_, faces, step_.time, step_.dt), 2);
   return out;
@@ -235,6 +260,7 @@ void FluidParticipant<D>::prepare(const Vectors<D>& w) {
 template <int D>
 Exchange FluidParticipant<D>::solve(const Exchange& in) {
   const Vectors<D> w = wall_velocity(in);
+  if (yields() && step_.scheme != Scheme::standalone) fluid_->yield_from(wall_load(in));
   prepare(w);
   fluid_->solve_pressure(w);
   if (stands_still()) trial_displacement_ = wall_displacement(in);

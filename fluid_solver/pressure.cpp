@@ -39,7 +39,8 @@ void PressureEquation<D>::make_pattern() {
 }
 
 template <int D>
-std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at) const {
+std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at,
+                                                  std::span<const double> admittance) const {
   const Index owned = mesh_.cells.n_owned();
   std::vector<double> sum(owned, 0.0);
   for (Index f = 0; f < mesh_.n_interior; ++f)
@@ -48,9 +49,11 @@ std::vector<double> PressureEquation<D>::diagonal(const Placement<D>& at) const 
   for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
     if (boundary_.kind()[f - mesh_.n_interior] == FaceKind::pressure)
       sum[mesh_.owner[f]] += at.conductance[f];
+  for (std::size_t b = 0; b < admittance.size(); ++b)
+    sum[mesh_.owner[mesh_.n_interior + static_cast<Index>(b)]] += admittance[b];
   for (double& value : sum)
     if (value == 0) value = 1;  // inside a body: p = 0 there
-  if (boundary_.closed() && owned > 0 && mesh_.cells.first() == 0) sum[0] *= 2;
+  if (singular() && owned > 0 && mesh_.cells.first() == 0) sum[0] *= 2;
   return sum;
 }
 
@@ -70,7 +73,7 @@ void PressureEquation<D>::make_fixed(const Placement<D>& at) {
   const auto set = [&](Index from, Index to, double value) {
     if (from < owned) matrix_->set(mesh_.cells.global(from), mesh_.cells.global(to), value);
   };
-  const std::vector<double> middle = diagonal(at);
+  const std::vector<double> middle = diagonal(at, {});
   for (Index c = 0; c < owned; ++c) set(c, c, middle[c]);
   for (Index f = 0; f < mesh_.n_interior; ++f) {
     set(mesh_.owner[f], mesh_.neighbour[f], -at.conductance[f]);
@@ -80,13 +83,14 @@ void PressureEquation<D>::make_fixed(const Placement<D>& at) {
 }
 
 template <int D>
-void PressureEquation<D>::set(const Placement<D>& at) {
+void PressureEquation<D>::set(const Placement<D>& at, bool yields, std::span<const double> admittance) {
+  yields_ = yields;
   if (fixed_) {
     solver_.reset();
     make_fixed(at);
   } else {
     if (!matrix_) make_pattern();
-    const std::vector<double> middle = diagonal(at);
+    const std::vector<double> middle = diagonal(at, admittance);
     std::size_t next = std::copy(middle.begin(), middle.end(), values_.begin()) - values_.begin();
     for (Index f = 0; f < mesh_.n_interior; ++f)
       for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
@@ -113,7 +117,7 @@ template <int D>
 SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<double>& b,
                                            std::vector<double>& p, double relative, double absolute) {
   const Index owned = mesh_.cells.n_owned();
-  if (boundary_.closed()) {
+  if (singular()) {
     remove_mean(b);
     // Twice the first diagonal entry makes the matrix regular and p = 0 there, the same solution but for a
     // constant.
@@ -122,7 +126,7 @@ SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<d
     for (Index c = 0; c < owned; ++c) p[c] -= pin;
   }
   const SolveStatistics statistics = solver_->solve(b, std::span<double>(p).first(owned), relative, absolute);
-  if (boundary_.closed()) {
+  if (singular()) {
     double sums[2] = {0, 0};
     const auto add = [&](double weight, Index c) {
       sums[0] += weight * p[c];

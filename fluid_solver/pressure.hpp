@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "common/linalg/linear_solver.hpp"
@@ -18,8 +19,8 @@ class PressureEquation {
  public:
   /// `fixed`: the mesh rests; nothing is kept for a second set().
   PressureEquation(const Mesh& mesh, const Boundary<D>& boundary, bool fixed);
-  /// Collective.
-  void set(const Placement<D>& at);
+  /// `yields`: walls answer to the pressure with `admittance`, per boundary face [m]. Collective.
+  void set(const Placement<D>& at, bool yields = false, std::span<const double> admittance = {});
   /// A new preconditioner at the next solve.
   void refresh() {
     if (solver_) solver_->refresh();
@@ -33,11 +34,13 @@ class PressureEquation {
  private:
   void make_pattern();
   void make_fixed(const Placement<D>& at);
-  std::vector<double> diagonal(const Placement<D>& at) const;
+  /// The pressure is known up to a constant only.
+  bool singular() const { return boundary_.closed() && !yields_; }
+  std::vector<double> diagonal(const Placement<D>& at, std::span<const double> admittance) const;
   void remove_mean(std::vector<double>& b) const;
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
-  bool fixed_;
+  bool fixed_, yields_ = false;
   bool direct_;  // small 2-D meshes: kept Cholesky factors
   std::unique_ptr<SparseMatrix> matrix_;
   std::unique_ptr<LinearSolver> solver_;

@@ -33,14 +33,17 @@ constexpr double largest_degrees = 40;
 
 template <int D>
 PressureProjection<D>::PressureProjection(StepWork<D>& work, bool moving)
-    : k_(work), pressure_(work.mesh, work.boundary, !moving && work.parameters.bodies.empty()) {}
+    : k_(work),
+      pressure_(work.mesh, work.boundary,
+                !moving && work.parameters.bodies.empty() && !work.boundary.yields()) {}
 
 template <int D>
 void PressureProjection<D>::assemble() {
-  if (k_.assembled == k_.step.to) return;
+  if (k_.assembled == k_.step.to && assembled_yielding_ == k_.step.yields) return;
   if (k_.oblique) set_obliqueness(*k_.step.to);
-  pressure_.set(k_.pressure_placement());
+  pressure_.set(k_.pressure_placement(), k_.step.yields, admittance());
   k_.assembled = k_.step.to;
+  assembled_yielding_ = k_.step.yields;
 }
 
 template <int D>
@@ -89,7 +92,7 @@ void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);
     k_.phi_p[f] = k_.w[b].dot(k_.step.to->area[f]);
   }
-  if (k_.boundary.closed()) balance_closed_domain();
+  if (k_.boundary.closed() && !k_.step.yields) balance_closed_domain();
 }
 
 // An incompressible fluid without an outlet needs boundary fluxes that add up to nothing. What a moving wall
@@ -114,9 +117,9 @@ void PressureProjection<D>::balance_closed_domain() {
         "outlet or "
         "correct the velocities.",
         sums[total]);
-  // With a level that holds the volume only guesses of the wall's motion leave so much over.
+  // With a level that holds the volume, or walls that yield to one, only guesses of the wall's motion leave so much over.
   if (adjustable && !k_.boundary.has_convective_outlet() &&
-      k_.parameters.volume_level == VolumeLevelBy::nobody &&
+      k_.parameters.volume_level == VolumeLevelBy::nobody && !k_.boundary.yields() &&
       std::abs(sums[total]) > largest_leftover * sums[size] &&
       sums[size] > least_speed * (sums[adjustable_area] + sums[other_area]))
     throw Error(
@@ -202,6 +205,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   const Placement<D>& now = *k_.step.to;
   const double factor = k_.rho / k_.step.dt;
   set_boundary_flux(w);
+  if (k_.step.yields) foresee_walls(from);
   k_.p_boundary.resize(w.size());
   k_.boundary.pressure_at(k_.by.time + k_.step.dt / 2, now.boundary_centre, k_.p_boundary);
   b_.assign(k_.mesh.cells.n_local(), 0.0);
@@ -226,6 +230,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
       pressure_.solve(now, b_, k_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()));
   k_.statistics.pressure_iterations += solved.iterations;
   if (k_.bodies) fill_pressure_in_bodies();
+  if (k_.step.yields) let_walls_yield();
   set_boundary_pressure(from, w);
 }
 

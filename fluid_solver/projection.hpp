@@ -37,6 +37,9 @@ class PressureProjection {
 
  private:
   void balance_closed_domain();
+  std::vector<double> admittance() const;
+  void foresee_walls(const State<D>& from);
+  void let_walls_yield();
   void add_oblique_pressure();
   bool gradient_stands() const;
   void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance);
@@ -49,6 +52,7 @@ class PressureProjection {
   StepWork<D>& k_;
   PressureEquation<D> pressure_;
   std::vector<double> b_;
+  bool assembled_yielding_ = false;
   Vectors<D> gradient_before_;  // very oblique meshes only
 };
 

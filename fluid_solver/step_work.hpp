@@ -19,7 +19,8 @@ struct SubStep {
   std::vector<double> swept;               ///< dV_f per flux face [m^3]; empty: the mesh rests
   std::vector<Vec3> points;                ///< at t^{n+1}; empty: the mesh rests
   Vectors<D> rate{};                       ///< mean of R over the step; empty: by Adams-Bashforth
-  Vectors<D> shear{};  ///< with `rate`: mean of the viscous force on the boundary faces [N]
+  Vectors<D> shear{};   ///< with `rate`: mean of the viscous force on the boundary faces [N]
+  bool yields = false;  ///< walls of a known mass answer to the pressure (Robin condition)
 };
 
 struct StepStatistics {
@@ -43,12 +44,13 @@ struct StepWork {
   std::shared_ptr<const Placement<D>> assembled{};      ///< placement of the pressure matrix
 
   SubStep<D> step{};
-  History<D> by{};                                ///< how the step sees its begin
-  Vectors<D> w{};                                 ///< given velocities at t^{n+1} per boundary face [m/s]
-  Vectors<D> right_side{};                        ///< of the predictor; u^{n+1} once that is made
-  Vectors<D> u_p{};                               ///< predicted velocity per local cell [m/s]
-  Vectors<D> u_boundary{};                        ///< closed boundary velocity of what is looked at [m/s]
-  Vectors<D> force{};                             ///< f at t^{n+1/2} per local cell [m/s^2]; empty: none
+  History<D> by{};                  ///< how the step sees its begin
+  std::vector<double> wall_load{};  ///< pressure that gave w of walls that yield, per boundary face [Pa]
+  Vectors<D> w{};                   ///< given velocities at t^{n+1} per boundary face [m/s]
+  Vectors<D> right_side{};          ///< of the predictor; u^{n+1} once that is made
+  Vectors<D> u_p{};                 ///< predicted velocity per local cell [m/s]
+  Vectors<D> u_boundary{};          ///< closed boundary velocity of what is looked at [m/s]
+  Vectors<D> force{};               ///< f at t^{n+1/2} per local cell [m/s^2]; empty: none
   std::vector<double> phi_orthogonal{}, phi_p{};  ///< phi^p without and with -(dt/rho) grad p~ . k [m^3/s]
   std::vector<double> p{}, p_boundary{};          ///< p^{n+1/2} per local cell, boundary face [Pa]
   Vectors<D> gradient_start{}, gradient_guess{};  ///< of p for the non-orthogonal part: first, of this pass
