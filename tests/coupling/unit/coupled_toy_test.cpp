@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
@@ -34,6 +35,7 @@ class RecordingMover final : public Participant {
     EXPECT_TRUE(in.contains("displacement"));
     if (fails) throw SolveFailure("cell 7 is inverted.");
     log_.push_back("solve");
+    if (motions) motions->push_back(in.at("displacement"));
     return {};
   }
   StepReport accept_step() override {
@@ -45,6 +47,7 @@ class RecordingMover final : public Participant {
   void write_output(double, int) override {}
   void write_monitors(double) override {}
   bool fails = false;
+  std::vector<std::vector<double>>* motions = nullptr;
 
  private:
   toy::Piston piston_;
@@ -92,6 +95,7 @@ struct ToyRun {
   fs::path restart;
 
   std::vector<std::string> mover_log;
+  std::vector<std::vector<double>> motions;  // that the mover was given
   std::string problem;
   int steps = 0, halvings = 0;
   double iterations_a_step = 0, position = 0, velocity = 0;
@@ -121,6 +125,7 @@ struct ToyRun {
     toy::Spring spring(MPI_COMM_SELF, solid);
     RecordingMover mover(fluid, mover_log);
     mover.fails = mover_fails;
+    mover.motions = &motions;
     RenewingPiston renewing(piston, renewed_push, tells);
     Participant& pusher = renewed_push == 0 ? static_cast<Participant&>(piston) : renewing;
     CouplerChannels channels{std::make_unique<LocalChannel>("fluid", pusher),
@@ -236,6 +241,24 @@ TEST(CoupledToy, semi_implicit_moves_the_mesh_once_a_step_and_implicit_each_iter
     const auto passes = std::lround(run.iterations_a_step * run.steps);
     EXPECT_EQ(moves, scheme == Scheme::semi_implicit ? run.steps : passes);
     EXPECT_EQ(std::count(run.mover_log.begin(), run.mover_log.end(), "accept_step"), run.steps);
+  }
+}
+
+TEST(CoupledToy, mesh_on_guess_gives_the_mover_the_same_motion_in_all_passes_of_a_step) {
+  for (const bool on_guess : {false, true}) {
+    ToyRun run;
+    run.with_mover = true;
+    run.coupling.mesh_on_guess = on_guess;
+    run.mass_ratio(2);
+    run();
+    EXPECT_EQ(run.problem, "");
+    EXPECT_NEAR(run.position, run.monolithic_position(), 1e-9);
+    ASSERT_GT(run.motions.size(), 2 * std::size_t(run.steps)) << "several passes a step";
+    const std::set<std::vector<double>> places(run.motions.begin(), run.motions.end());
+    if (on_guess)
+      EXPECT_EQ(places.size(), std::size_t(run.steps));
+    else
+      EXPECT_GT(places.size(), std::size_t(run.steps));
   }
 }
 
