@@ -206,7 +206,8 @@ void PackedBed::filler_temperature(std::vector<double>& mean) const {
   mean.assign(n, 0.0);
   for (int j = 0; j < shells_; ++j)
     for (std::size_t i = 0; i < n; ++i) mean[i] += shell_[j * n + i];
-  for (double& t : mean) t /= shells_;
+  const double share = shells_;
+  for (double& t : mean) t /= share;
   for (const BedGrid::Run& run : grid_.runs)  // fluid alone: there are no grains
     if (run.layer.porosity >= 1) std::copy_n(fluid_.begin() + run.first, run.count, mean.begin() + run.first);
 }

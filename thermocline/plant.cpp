@@ -61,11 +61,14 @@ void declare(config::Section& s, PlantParameters& p) {
           "too "
           "warm, discharging when what enters the power block is this much too cold");
   s.choice("cut-off-at", p.cut_off_at,
-           {{"mixed", PlantParameters::CutOffAt::mixed}, {"outlet", PlantParameters::CutOffAt::outlet}})
+           {{"mixed", PlantParameters::CutOffAt::mixed},
+            {"outlet", PlantParameters::CutOffAt::outlet},
+            {"field", PlantParameters::CutOffAt::field},
+            {"block", PlantParameters::CutOffAt::block}})
       .doc(
           "mixed: the cut-off looks at what enters field or block, where the tank's flow has been mixed with "
-          "that "
-          "of the other; outlet: at what leaves the tank");
+          "that of the other; outlet: at what leaves the tank; field: mixed for charging, the outlet for discharging; block: "
+          "the other way round");
   s.value("restart", p.restart)
       .unit("K")
       .positive()
@@ -134,19 +137,24 @@ PlantFlows Plant::discharge(double field_heat, double top, double load) const {
 
 PlantFlows Plant::flows(double field_heat, double top, double bottom, PlantMode before, double load) const {
   const double block = block_heat() * load;
-  const bool at_outlet = p_.cut_off_at == PlantParameters::CutOffAt::outlet;
+  using CutOffAt = PlantParameters::CutOffAt;
+  const CutOffAt at = p_.cut_off_at;
   if (field_heat > block) {
     const double start = before == PlantMode::charge ? p_.hot : p_.cold + p_.restart;
     // At the hot temperature no flow could take the heat up.
     if (bottom > start || bottom >= p_.hot) return idle(field_heat, load);
     const PlantFlows f = charge(field_heat, bottom, load);
-    return (at_outlet ? bottom : f.field_inlet) < p_.cold + p_.cut_off ? f : idle(field_heat, load);
+    return (at == CutOffAt::outlet || at == CutOffAt::block ? bottom : f.field_inlet) < p_.cold + p_.cut_off
+               ? f
+               : idle(field_heat, load);
   }
   if (field_heat < block) {
     const double start = before == PlantMode::discharge ? p_.cold : p_.hot - p_.restart;
     if (top < start || top <= p_.cold) return idle(field_heat, load);
     const PlantFlows f = discharge(field_heat, top, load);
-    return (at_outlet ? top : f.block_inlet) > p_.hot - p_.cut_off ? f : idle(field_heat, load);
+    return (at == CutOffAt::outlet || at == CutOffAt::field ? top : f.block_inlet) > p_.hot - p_.cut_off
+               ? f
+               : idle(field_heat, load);
   }
   return idle(field_heat, load);
 }

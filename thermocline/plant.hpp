@@ -17,8 +17,9 @@ struct PlantParameters {
   double cut_off = 15;            ///< dT_CO [K]
   double restart = 10;            ///< dT_R [K]
   /// What the cut-off looks at: the mixed temperature at the field's or the block's inlet (what the thesis's
-  /// text says), or what leaves the tank (what its tables follow).
-  enum class CutOffAt { mixed, outlet } cut_off_at = CutOffAt::mixed;
+  /// text says), or what leaves the tank (what its tables follow); or one of them for charging and the other for
+  /// discharging: field: mixed and outlet; block: outlet and mixed.
+  enum class CutOffAt { mixed, outlet, field, block } cut_off_at = CutOffAt::mixed;
   std::vector<double> load{
       1};  ///< share of the power block's output that is asked for, always or by the hour
   std::vector<double> tariff = {};  ///< of the electricity, always or by the hour [currency/MWh]; empty: none

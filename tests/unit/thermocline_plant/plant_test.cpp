@@ -98,6 +98,20 @@ TEST(Plant, cut_off_at_the_outlet_does_not_care_what_is_mixed_in) {
   EXPECT_EQ(mixed.flows(dusk, zero + 374.99, zero + 290, PlantMode::discharge).mode, PlantMode::discharge);
 }
 
+TEST(Plant, cut_off_may_look_at_one_side_mixed_and_at_the_tank_on_the_other) {
+  PlantParameters p = andasol;
+  const double warm = zero + 305.01, cool = zero + 374.99;
+  for (const auto at : {PlantParameters::CutOffAt::field, PlantParameters::CutOffAt::block}) {
+    p.cut_off_at = at;
+    const Plant plant(p, salt);
+    const bool field = at == PlantParameters::CutOffAt::field;
+    EXPECT_EQ(plant.flows(plant.field_heat(700), zero + 390, warm, PlantMode::charge).mode,
+              field ? PlantMode::charge : PlantMode::standby);
+    EXPECT_EQ(plant.flows(plant.field_heat(200), cool, zero + 290, PlantMode::discharge).mode,
+              field ? PlantMode::standby : PlantMode::discharge);
+  }
+}
+
 TEST(Plant, starts_again_only_within_the_restart_tolerance) {
   const Plant plant(andasol, salt);
   const double sun = plant.field_heat(800);
