@@ -33,6 +33,7 @@ std::shared_ptr<PressureLevel<D>> FractionalStep<D>::correct() {
   for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) u[c] = k_.u_p[c] - factor * level->gradient[c];
   k_.mesh.cells.update_ghosts(flat<D>(u), D);
   if (k_.bodies) k_.bodies->force(now, u);
+  if (k_.gap_closed()) k_.gaps->hold(u);
   return level;
 }
 
@@ -69,12 +70,13 @@ void FractionalStep<D>::commit(State<D>& s) {
   s.rates_old.viscous.swap(predictor_.rates().viscous);
   s.shear_old.swap(predictor_.shear());
   s.placement = k_.step.to;
+  if (k_.gaps) s.blocked = k_.gaps->marks();
   s.points.swap(k_.step.points);
   s.mesh_flux.swap(k_.step.swept);
   for (double& flux : s.mesh_flux) flux /= k_.step.dt;
   s.dt_old = k_.step.dt;
   s.time += k_.step.dt;
-  if (s.start == Start::at_rest) {  // the multi-step schemes begin after the impulse
+  if (s.start == Start::at_rest || k_.gap_changed) {  // the multi-step schemes begin after the impulse
     s.start = Start::after_impulse;
     s.dt_old = 0;
   }

@@ -120,9 +120,9 @@ void FaceFlux<D>::remember(State<D>& s) {
     if (k_.step.to->skewed()) k_.gradient_of = s.number;
     for (Index f = 0; f < k_.mesh.n_interior; ++f) s.memory[f] = s.phi[f] - s.memory[f];
   }
-  if (!k_.bodies) return;
+  if (!k_.bodies && !k_.gap_closed()) return;
   for (Index f = 0; f < k_.mesh.n_interior; ++f)
-    if (k_.bodies->blocked(f)) s.memory[f] = 0;
+    if (k_.bodies ? k_.bodies->blocked(f) : k_.gaps->blocked(f)) s.memory[f] = 0;
 }
 
 template class FaceFlux<2>;

@@ -33,12 +33,16 @@ Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving
       step_(mesh, boundary_, parameters_, moving_mesh),
       step_size_(mesh, boundary_, parameters.viscosity / parameters.density, parameters.scheme) {
   if (!parameters.bodies.empty()) check_bodies();
+  if (!parameters.gaps.empty() && boundary_.closed())
+    throw Error("gaps: a fluid with gaps that close needs an outlet: its blocked cells keep what they hold.");
   if (parameters.scheme == ExplicitScheme::runge_kutta) check_scheme();
   start(start_time);
 }
 
 template <int D>
 void Fluid<D>::check_bodies() {
+  if (!parameters_.gaps.empty())
+    throw Error("gaps: a fluid with immersed bodies has none; leave 'gaps' or 'bodies' out.");
   if (moving_)
     throw Error("bodies: the mesh of a fluid with immersed bodies must rest; remove its mesh mover.");
   if (boundary_.closed())
@@ -131,6 +135,7 @@ void Fluid<D>::restore(State<D> state) {
   accepted_ = std::move(state);
   accepted_.number = 0;
   split_ = false;
+  step_.mark_level(accepted_);
   step_.set_eddy_viscosity(accepted_);
 }
 

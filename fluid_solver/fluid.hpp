@@ -81,6 +81,8 @@ class Fluid {
 
   /// Null: no immersed bodies.
   const ImmersedBodies<D>* bodies() const { return step_.bodies(); }
+  /// Null: no gaps that may close.
+  const Gaps<D>* gaps() const { return step_.gaps(); }
 
  private:
   /// What the sub-step under way starts from.

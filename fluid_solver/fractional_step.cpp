@@ -18,6 +18,7 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       loads_(k_),
       energy_guard_(mesh, boundary, parameters.density, parameters.viscosity) {
   if (!parameters.bodies.empty()) k_.bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
+  if (!parameters.gaps.empty()) k_.gaps = std::make_unique<Gaps<D>>(mesh, parameters);
 }
 
 template <int D>
@@ -35,12 +36,17 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
         k_.w[b] = k_.step.swept[f] / (k_.step.dt * k_.step.to->area[f].squaredNorm()) * k_.step.to->area[f];
       }
   if (k_.bodies) projection_.mark_bodies(k_.by.time + k_.step.dt);
+  if (k_.gaps && moving) projection_.mark_gaps();
+  k_.gap_changed = k_.gaps && k_.gaps->differs(from.blocked.get());
+  if (k_.gap_closed()) k_.gaps->follow(*from.placement, *k_.step.to, k_.step.dt);
   predictor_.predict(from);
   loads_.remember_prediction(k_.by.implicit);
   k_.mesh.cells.update_ghosts(flat<D>(k_.u_p), D);
   if (k_.bodies) k_.bodies->force(*k_.step.to, k_.u_p);
+  if (k_.gap_closed()) k_.gaps->hold(k_.u_p);
   projection_.extrapolate_pressure();
   flux_.predict(from);
+  if (k_.gap_closed()) projection_.block_gaps(k_.phi_orthogonal);
   projection_.assemble();
 }
 
@@ -57,6 +63,17 @@ void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w) {
   projection_.project(from, w);
   loads_.set_forces(from);
   loads_.correct_shear();
+}
+
+template <int D>
+void FractionalStep<D>::mark_level(State<D>& s) {
+  if (!k_.gaps) return;
+  k_.step.to = s.placement;
+  k_.step.points = s.points;
+  k_.step.swept.clear();
+  projection_.mark_gaps();
+  k_.gaps->follow(*s.placement, *s.placement, 0);
+  s.blocked = k_.gaps->marks();
 }
 
 /// u = u0 - grad psi with phi free of divergence: the same equation with dt = 1 s, rho = 1. Where the given
@@ -79,6 +96,11 @@ void FractionalStep<D>::project_initial(State<D>& s) {
     k_.bodies->force(at, s.u);
     for (Index f = 0; f < k_.mesh.n_interior; ++f)
       if (k_.bodies->blocked(f)) k_.phi_p[f] = k_.bodies->flux(f, at);
+  }
+  if (k_.gaps) mark_level(s);
+  if (k_.gap_closed()) {
+    k_.gaps->hold(s.u);
+    projection_.block_gaps(k_.phi_p);
   }
   k_.w = s.w;
   k_.gradient_guess.clear();

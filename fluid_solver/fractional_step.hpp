@@ -45,6 +45,10 @@ class FractionalStep {
   /// filled.
   void project_initial(State<D>& state);
 
+  /// state.blocked, of a level that no step made: the first, or one from a checkpoint. Collective.
+  void mark_level(State<D>& state);
+  /// Null: none.
+  const Gaps<D>* gaps() const { return k_.gaps.get(); }
   /// The result of the last project() as a level of history. Collective.
   std::shared_ptr<PressureLevel<D>> pressure_level() const { return projection_.pressure_level(); }
   /// Fills level.gradient from p and boundary. Collective.

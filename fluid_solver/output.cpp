@@ -111,6 +111,7 @@ void FluidOutput<D>::write_series(double time) {
   write_balance(time);
   if (fluid_.parameters().output.energy_budget) write_energy(time);
   if (fluid_.bodies()) write_bodies(time);
+  if (fluid_.gaps()) write_gaps(time);
   if (!probes_.empty()) write_probes(time);
 }
 
@@ -152,6 +153,22 @@ void FluidOutput<D>::write_bodies(double time) {
     bodies_.emplace(open("bodies.csv", columns));
   }
   bodies_->row(row);
+}
+
+template <int D>
+void FluidOutput<D>::write_gaps(double time) {
+  if (!root_) return;
+  const Gaps<D>& gaps = *fluid_.gaps();
+  std::vector<double> row{time};
+  for (const auto& facts : gaps.facts()) row.insert(row.end(), {facts.opening, facts.cells, facts.volume});
+  if (!gaps_) {
+    std::vector<std::string> columns{"time [s]"};
+    for (const std::string& name : gaps.names())
+      for (const char* what : {"opening [m]", "blocked cells [-]", "blocked volume [m^3]"})
+        columns.push_back(fmt::format("{} {}", name, what));
+    gaps_.emplace(open("gaps.csv", columns));
+  }
+  gaps_->row(row);
 }
 
 template <int D>
@@ -211,6 +228,7 @@ void FluidOutput<D>::write_balance(double time) {
   }
   double worst = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    if (s.blocked && (*s.blocked)[c]) divergence_[c] = 0;  // held by its gap as a whole
     worst = std::max(worst, std::abs(divergence_[c]) / at.volume[c]);
     sums[divergence] += std::abs(divergence_[c]);
     sums[volume] += at.volume[c];

@@ -42,6 +42,7 @@ class FluidOutput {
   void check_coefficients() const;
   void write_energy(double time);
   void write_bodies(double time);
+  void write_gaps(double time);
   void write_balance(double time);
   void write_probes(double time);
   Series open(const std::string& file, const std::vector<std::string>& columns) const;
@@ -56,7 +57,7 @@ class FluidOutput {
   std::vector<const Patch*> walls_;
   std::optional<FieldWriter> fields_;
   std::vector<double> divergence_;
-  std::optional<Series> forces_, coefficients_, walls_series_, balance_, energy_, bodies_,
+  std::optional<Series> forces_, coefficients_, walls_series_, balance_, energy_, bodies_, gaps_,
       probe_series_;                                  // on rank 0
   std::vector<std::optional<Series>> sample_series_;  // one a sample, on rank 0
 };

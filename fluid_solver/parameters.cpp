@@ -131,6 +131,25 @@ std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& 
   return pairs;
 }
 
+namespace {
+
+void declare_gap(config::Section& s, GapParameters& gap) {
+  s.value("between", gap.between).required().doc("the two walls (patches), a valve and its seat");
+  s.value("opening", gap.opening)
+      .unit("m")
+      .positive()
+      .required()
+      .doc("cells where the walls are nearer to each other than this are blocked");
+  s.check(
+      [&gap] {
+        const bool two = gap.between.size() == 2 && gap.between[0] != gap.between[1];
+        return two ? std::string() : "names two different patches";
+      },
+      "between");
+}
+
+}  // namespace
+
 void declare(config::Section& s, FluidParameters& p) {
   s.value("mesh", p.mesh).required().doc("mesh file, .msh or .geo, relative to the case's folder");
   s.value("mesh-scale", p.mesh_scale)
@@ -221,6 +240,10 @@ void declare(config::Section& s, FluidParameters& p) {
                 "absent: at rest");
       },
       "body", "rigid bodies in a mesh that does not know them; needs an outlet and a mesh at rest");
+  s.map<GapParameters>(
+      "gaps", p.gaps, declare_gap, "gap",
+      "gaps that nearly close as the mesh moves: their cells let nothing through, take no part in "
+      "the size of the step, and open again");
   s.optional_section<MotionParameters>(
       "motion", p.motion,
       [](config::Section& m, MotionParameters& motion) { couplet::declare(m, motion, true); },

@@ -81,6 +81,12 @@ struct BodyParameters {
   std::vector<config::ExpressionText> velocity;  // [m/s]; empty: at rest
 };
 
+/// Two walls between which nothing passes where they are nearer than `opening`.
+struct GapParameters {
+  std::vector<std::string> between;
+  double opening = 0;  // [m]
+};
+
 /// Running means from a time on; absent: none.
 struct StatisticsParameters {
   double start = 0;  // [s]
@@ -132,6 +138,7 @@ struct FluidParameters {
   std::optional<StatisticsParameters> statistics;
   FluidOutputParameters output;
   std::map<std::string, BodyParameters> bodies;
+  std::map<std::string, GapParameters> gaps;
   std::optional<MotionParameters> motion;  // of the mesh; absent: none
   ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   Projection projection = Projection::flux_memory;

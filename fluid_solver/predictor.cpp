@@ -66,6 +66,12 @@ void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
   if (k_.bodies)
     for (Index c = 0; c < k_.mesh.cells.n_local(); ++c)
       if (k_.bodies->is_solid(c)) rates_.rate[c].setZero();
+  if (!k_.gap_closed()) return;
+  for (Index c = 0; c < k_.mesh.cells.n_local(); ++c)
+    if (k_.gaps->is_blocked(c)) {
+      rates_.rate[c].setZero();
+      if (implicit) rates_.viscous[c].setZero();
+    }
 }
 
 // Volume-integrated at t^{n+1/2}, where the pressure lives that may balance it.
@@ -126,6 +132,7 @@ void Predictor<D>::add_old_pressure(const State<D>& from, bool implicit) {
     old_pressure_[p] += back;
     old_pressure_[n] -= back;
   }
+  if (k_.gap_closed()) part_from_gaps(from, implicit);
   for (std::size_t b = 0; b < level.boundary.size(); ++b) {
     const Index f = k_.mesh.n_interior + static_cast<Index>(b), p = k_.mesh.owner[f];
     k_.right_side[p] -= factor * level.boundary[b] * 0.5 * (old.area[f] - now.area[f]);
@@ -133,6 +140,26 @@ void Predictor<D>::add_old_pressure(const State<D>& from, bool implicit) {
   }
   if (!implicit) return;
   for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) k_.right_side[c] -= old_pressure_[c];
+}
+
+/// As in the gradient of the pressure: a free cell beside a blocked one takes its own value at their face.
+template <int D>
+void Predictor<D>::part_from_gaps(const State<D>& from, bool implicit) {
+  const PressureLevel<D>& level = *k_.by.pressure[0];
+  const double factor = k_.step.dt / k_.rho;
+  const Placement<D>&old = *from.placement, &now = *k_.step.to;
+  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+    if (!k_.gaps->blocked(f)) continue;
+    const Index p = k_.mesh.owner[f], n = k_.mesh.neighbour[f];
+    double value = now.weight[f] * level.p[p] + (1 - now.weight[f]) * level.p[n];
+    if (now.skewed()) value += k_.skew_part(now, level.gradient, f);
+    for (const Index free : {p, n}) {
+      if (k_.gaps->is_blocked(free)) continue;
+      const double more = (free == p ? 1 : -1) * factor * (level.p[free] - value);
+      k_.right_side[free] -= more * 0.5 * (old.area[f] - now.area[f]);
+      if (implicit) old_pressure_[free] += more * now.area[f];
+    }
+  }
 }
 
 /// What is left of the residual adds up over the steps: much tighter than the change of u in one of them.

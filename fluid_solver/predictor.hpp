@@ -30,6 +30,7 @@ class Predictor {
  private:
   void add_body_force();
   void add_swept(const State<D>& from, double e0, double e1);
+  void part_from_gaps(const State<D>& from, bool implicit);
   void add_old_pressure(const State<D>& from, bool implicit);
   double viscous_tolerance() const;
   void guess_velocity(const State<D>& from, double a);

@@ -222,6 +222,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
     if (k_.boundary.kind()[b] == FaceKind::pressure)
       b_[k_.mesh.owner[f]] += now.conductance[f] * k_.p_boundary[b];
   }
+  if (k_.gap_closed()) clear_gaps(b_);
   clear_bodies(b_);
   clear_bodies(k_.p);
   b_.resize(k_.mesh.cells.n_owned());
@@ -266,6 +267,7 @@ void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std:
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);
     sum[k_.mesh.owner[f]] += boundary[b] * at.area[f];
   }
+  if (k_.gap_closed()) part_from_gaps(at, p, sum);
   if (!at.skewed()) return;
   Vectors<D> gradient(sum.size());
   for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c)
@@ -304,6 +306,7 @@ void PressureProjection<D>::solve_initial(const Placement<D>& at) {
     if (f < k_.mesh.n_interior) b_[k_.mesh.neighbour[f]] += k_.phi_p[f];
     size += k_.phi_p[f] * k_.phi_p[f];
   }
+  if (k_.gap_closed()) clear_gaps(b_);
   clear_bodies(b_);
   b_.resize(k_.mesh.cells.n_owned());
   const double floor = 1e-14 * std::sqrt(sum(k_.mesh.comm, size));

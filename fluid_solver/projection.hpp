@@ -33,6 +33,9 @@ class PressureProjection {
   /// Fills level.gradient from p and boundary. Collective.
   void set_gradient(const Placement<D>& at, PressureLevel<D>& level) const;
   void mark_bodies(double time);
+  /// Of the work's step: which cells of gaps are blocked; the matrix that follows. Collective.
+  void mark_gaps();
+  void block_gaps(std::vector<double>& phi) const;
   PressureEquation<D>& equation() { return pressure_; }
 
  private:
@@ -47,6 +50,8 @@ class PressureProjection {
   void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
                          const std::vector<double>& boundary, Vectors<D>& sum) const;
   void fill_pressure_in_bodies();
+  void clear_gaps(std::vector<double>& b) const;
+  void part_from_gaps(const Placement<D>& at, const std::vector<double>& p, Vectors<D>& sum) const;
   void clear_bodies(std::vector<double>& values) const;
 
   StepWork<D>& k_;

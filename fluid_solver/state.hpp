@@ -65,6 +65,8 @@ struct State : History<D> {
   std::vector<double> memory,
       memory_old;  ///< delta^n per interior face [m^3/s] (incremental: what is left of delta^0)
 
+  std::shared_ptr<const std::vector<char>> blocked;  ///< per local cell, in a closed gap; null: none
+
   std::vector<double> eddy;  ///< eddy viscosity at t^n per local cell [m^2/s]; empty: no model
 
   Vectors<D> u_old, u_boundary_old;  ///< at t^{n-1}

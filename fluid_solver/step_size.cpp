@@ -155,6 +155,7 @@ double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
   add_rates(s, false);
   double least = infinity;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    if (s.blocked && (*s.blocked)[c]) continue;
     const Vec<2> rate = (rates_[c] + Vec<2>(0, eddy_.empty() ? 0 : eddy_[c])) / s.placement->volume[c];
     const double lowest = lowest_limit(rate[0], rate[1], scheme_);
     if (lowest * lowest < least * least * rate.squaredNorm())
@@ -168,7 +169,10 @@ double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
 template <int D>
 bool StepSize<D>::explicit_viscous_limit_is_below(double size, const State<D>& s) {
   const Placement<D>& at = *s.placement;
-  const auto stiffness = [&](Index f) { return 2 * nu_ * at.conductance[f] / at.volume[mesh_.owner[f]]; };
+  const auto stiffness = [&](Index f) {
+    if (s.blocked && (*s.blocked)[mesh_.owner[f]]) return 0.0;
+    return 2 * nu_ * at.conductance[f] / at.volume[mesh_.owner[f]];
+  };
   const double highest = explicit_limit(0, scheme_);
   if (any(mesh_.comm, stiff_face_ >= 0 && highest < 0.999 * size * stiffness(stiff_face_))) return true;
   stiff_face_ = -1;
@@ -185,6 +189,7 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
   const double lowest_implicit = implicit_table().least();
   double least[3] = {infinity, infinity, -largest};
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    if (s.blocked && (*s.blocked)[c]) continue;
     const double convection = rates_[c][0] / at.volume[c];
     const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
     const double diffusion = rates_[c][1] / at.volume[c] + eddy;
@@ -209,6 +214,7 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
   StepLimiter found{infinity};
   Index where = -1;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    if (s.blocked && (*s.blocked)[c]) continue;
     const double convection = rates_[c][0] / at.volume[c];
     const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
     const double diffusion = rates_[c][1] / at.volume[c] + eddy;

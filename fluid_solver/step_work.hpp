@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fluid_solver/boundary.hpp"
+#include "fluid_solver/gaps.hpp"
 #include "fluid_solver/immersed.hpp"
 #include "fluid_solver/state.hpp"
 
@@ -41,7 +42,10 @@ struct StepWork {
 
   std::unique_ptr<ImmersedBodies<D>> bodies{};          ///< null: none
   std::shared_ptr<const Placement<D>> around_bodies{};  ///< with bodies only
-  std::shared_ptr<const Placement<D>> assembled{};      ///< placement of the pressure matrix
+  std::unique_ptr<Gaps<D>> gaps{};                      ///< null: none
+  bool gap_changed = false;  ///< in this step cells are blocked or freed: an impulse, as in a first step
+  std::shared_ptr<const Placement<D>> around_gaps{};  ///< with blocked cells only
+  std::shared_ptr<const Placement<D>> assembled{};    ///< placement of the pressure matrix
 
   SubStep<D> step{};
   History<D> by{};                  ///< how the step sees its begin
@@ -60,7 +64,10 @@ struct StepWork {
   StepStatistics statistics{};
 
   /// The placement as the pressure equation sees it: blocked faces conduct nothing.
-  const Placement<D>& pressure_placement() const { return bodies ? *around_bodies : *step.to; }
+  const Placement<D>& pressure_placement() const {
+    return bodies ? *around_bodies : around_gaps ? *around_gaps : *step.to;
+  }
+  bool gap_closed() const { return gaps && gaps->active(); }
   /// What a value linear between the cells lacks at a face of a skewed mesh.
   double skew_part(const Placement<D>& at, const Vectors<D>& gradient, Index f) const {
     const double weight = at.weight[f];
