@@ -79,7 +79,9 @@ void declare(config::Section& s, MethodParameters& m) {
           "predictor, the combination that leaves the least residual is added to the guess; 0: none");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
-      .doc("residual over right-hand side at which the iteration stops");
+      .doc(
+          "residual over right-hand side at which the iteration stops; of symmetric newton-krylov in steps so small that inertia "
+          "outweighs stiffness, over its elastic part");
   s.value("max-iterations", m.max_iterations).range(1, 1e6).doc("iterations after which a step has failed");
 }
 
