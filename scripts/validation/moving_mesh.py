@@ -8,7 +8,8 @@ import couplet_series as couplet
 from validation.job import Bar
 
 SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "common/elasticity", "mesh_mover",
-           "fluid_solver", "configs/moving-mesh", "configs/oscillating-cylinder", "configs/cylinder")
+           "fluid_solver", "configs/moving-mesh", "configs/oscillating-cylinder", "configs/cylinder", "configs/closing-gap",
+           "configs/backward-step", "configs/pitching-plate", "configs/cavity")
 PLATE = "configs/moving-mesh/case.yaml"
 BEND = ("sin(pi*t*x)/(pi*t) - y*sin(pi*t*x) - x", "(cos(pi*t*x)-1)/(-pi*t) + y*cos(pi*t*x) - y")
 MOTIONS = {
@@ -186,6 +187,71 @@ def unbuilt(why):
     return measure
 
 
+def least_squares(job):
+    module, folder = swinging(job, False)
+    drag, mass = module.fit(folder)[:2]
+    fourier = module.averages(folder)[0]
+    return (f"c_d {drag:.4f} ({100 * (drag / 2.09 - 1):+.1f} %), c_m {mass:.4f} by least squares; c_d {fourier:.4f} ({100 * (fourier / 2.09 - 1):+.1f} %) "
+            "by Fourier averages of the same force", abs(drag / 2.09 - 1) <= 0.02 and abs(mass / 1.45 - 1) <= 0.02)
+
+
+def pitching(job):
+    """Two periods of a plate that pitches through +-60 degrees in a stream."""
+    folder, _ = job.solve("fluid_solver", "pitching-plate")
+    rows = couplet.read_csv(folder / "fluid" / "coefficients.csv")
+    t, lift = rows["time [s]"], rows["plate lift [-]"]
+    done = bool(t[-1] > 16 - 1e-6 and np.isfinite(lift).all())
+    return f"to t = {t[-1]:g} s, lift between {lift[t > 8].min():.2f} and {lift[t > 8].max():.2f} in the second period", done
+
+
+def pinch(job, with_gap):
+    more = () if with_gap else ("participants.fluid.gaps={}",)
+    folder, _ = job.solve("fluid_solver", "closing-gap", more)
+    return couplet.read_csv(folder / "fluid" / "balance.csv"), folder / "fluid"
+
+
+def closes(job):
+    """A channel whose lid comes down to 1 % of the height and goes up again."""
+    rows, folder = pinch(job, True)
+    gap = couplet.read_csv(folder / "gaps.csv")
+    least = float(np.nanmin(gap["slot opening [m]"]))
+    t, cells = rows["time [s]"], gap["slot blocked cells [-]"]
+    hold = (t > 3.1) & (t < 3.5)
+    leak = float(np.max(np.abs(rows["mass defect [m^3/s]"][hold])))
+    return (f"least opening {least:.4f} m of 0.5 m, {int(cells.max())} cells blocked, all free at the end: {cells[-1] == 0}; while it is shut the boundaries let in "
+            f"and out the same to {leak:.1e} m^3/s", least < 0.0101 * 0.5 and cells[-1] == 0 and bool(t[-1] > 6 - 1e-6) and leak < 1e-6)
+
+
+def saves(job):
+    with_gap, without = pinch(job, True)[0], pinch(job, False)[0]
+    shut = [r["sub-steps [-]"][(r["time [s]"] > 2.9) & (r["time [s]"] < 3.5)].mean() for r in (with_gap, without)]
+    iterations = [r["pressure iterations so far [-]"][-1] for r in (with_gap, without)]
+    return f"{shut[0]:.1f} sub-steps a step while it is shut, {shut[1]:.1f} without; {iterations[0]:.0f} iterations of the pressure, {iterations[1]:.0f} without", None
+
+
+def behind_step(job):
+    module = job.beside("configs/backward-step/lengths.py")
+    folder, _ = job.solve("fluid_solver", "backward-step")
+    found = module.lengths(folder / "fluid")
+    off = {k: found[k] / v - 1 for k, v in module.GARTLING.items()}
+    return "; ".join(f"{k} {found[k]:.3f} ({100 * off[k]:+.1f} %)" for k in off), all(abs(v) <= 0.01 for v in off.values())
+
+
+def cavity_5000(job):
+    """Beside its own extrapolation from 64^2, 96^2 and 128^2."""
+    module = job.beside("configs/cavity/extrema.py")
+    ghia = {"u_min": -0.43643, "v_max": 0.43648, "v_min": -0.55408}
+    found = {}
+    for n in (64, 96, 128):
+        folder, _ = job.solve("fluid_solver", "cavity", (f"participants.fluid.mesh-parameters.n={n}", "participants.fluid.viscosity=2e-4",
+                                                         "simulation.end-time=400", "simulation.time-step=0.1", "simulation.output.interval=400"))
+        found[n] = module.extrema(folder / "fluid")
+    limit = {k: found[128][k] + (found[128][k] - found[96][k]) / ((128 / 96) ** 2 - 1) for k in ghia}
+    off = {k: found[128][k] / limit[k] - 1 for k in ghia}
+    return ("; ".join(f"{k} {found[128][k]:.5f} ({100 * off[k]:+.2f} % of {limit[k]:.5f}, Ghia {g})" for k, g in ghia.items()),
+            all(abs(v) <= 0.01 for v in off.values()))
+
+
 STATED = ("E of the volumes that cells have now, the thesis's V^n, on the mesh of the last step: form incremental, "
           "stiffening-volumes current")
 BARS = [
@@ -222,4 +288,13 @@ BARS = [
     Bar("oscillating cylinder, the two meshes", "coefficients within 1 % of each other", both_frames),
     Bar("force coefficients of 2D-1 by output.coefficients", "c_d within 0.5 % of 5.57954, c_l within 10 % of 0.010619", steady_coefficients),
     Bar("2D-3 on 11 k cells: largest lift", "within 3 % of 0.47795", pulse, long=True),
+    Bar("oscillating cylinder: Morison coefficients by least squares", "within 2 % of c_d 2.09, c_m 1.45", least_squares),
+    Bar("a plate that pitches through +-60 degrees in a stream", "completes two periods", pitching),
+    Bar("a channel closes by 99 % without remeshing and opens again", "completes; shut, the boundaries let in what they let out to 1e-6 m^3/s", closes),
+    Bar("a channel that closes by 99 %: what blocking saves", "reported", saves),
+    Bar("closing gaps: flow, volume, checkpoint, 1, 2 and 3 ranks", "tests pass", ranks("^verification_fluid_gaps")),
+    Bar("cells sheared by 55, 70 and 75 degrees, needles, slivers, aspect 1000", "solved, or refused by name: tests pass",
+        tested("stability_fluid_step_sizes", "*HardMeshes*")),
+    Bar("backward step, Re 800", "within 1 % of 6.10, 4.85, 10.48 (Gartling)", behind_step, long=True),
+    Bar("cavity, Re 5000, 128^2 stretched", "extrema within 1 % of their own extrapolation", cavity_5000, long=True),
 ]
