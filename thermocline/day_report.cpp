@@ -203,6 +203,10 @@ std::vector<ReportLine> DayReport::lines_of(const ReportSums& s, double days) co
 
 std::vector<ReportLine> DayReport::lines() const {
   std::vector<ReportLine> all = lines_of(results_, results_[Sums::duration] / day_length);
+  if (!(results_[Sums::duration] > 0)) {  // no day counts: zeros would look like answers
+    for (ReportLine& line : all) line.value = std::numeric_limits<double>::quiet_NaN();
+    return all;
+  }
   if (results_[Sums::pumping] > 0)
     all.push_back({"pumping", "MWh/day",
                    results_[Sums::pumping] / megawatt_hour / (results_[Sums::duration] / day_length)});
@@ -238,6 +242,23 @@ void DayReport::write_day(double time) {
   std::vector<double> row{time};
   for (const ReportLine& line : lines_of(day_, day_[Sums::duration] / day_length)) row.push_back(line.value);
   days_->row(row);
+}
+
+std::vector<std::string> DayReport::doubts() const {
+  std::vector<std::string> sentences;
+  const double days = results_[Sums::duration] / day_length;
+  if (days_counted_ == 0 && p_.run_in > 0)
+    sentences.push_back(fmt::format(
+        "report: no day counts: the run has {} whole days, the first {:g} are the run-in (report.run-in); summary.csv {}",
+        days_seen_, p_.run_in,
+        days > 0 ? fmt::format("is that of its last {:.3g} h", 24 * days) : std::string("holds no numbers")));
+  constexpr double year = 365;
+  if (days > 0 && days < 0.95 * year && (p_.economics || !plant_.parameters().tariff.empty()))
+    sentences.push_back(fmt::format(
+        "report: {:.3g} days stand for a year in the electricity and its cost or revenue: they hold for a whole year's run "
+        "alone",
+        days));
+  return sentences;
 }
 
 void DayReport::finish() {

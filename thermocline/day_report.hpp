@@ -81,6 +81,7 @@ class DayReport final : public TankObserver {
 
   void record(const TankRecord& record) override;
   void finish() override;
+  std::vector<std::string> doubts() const override;
   std::vector<double> state() const override;
   void restore(std::span<const double> state) override;
 

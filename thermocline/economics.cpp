@@ -20,6 +20,13 @@ void declare(config::Section& s, EconomicsParameters& p) {
   s.value("operation", p.operation).range(0, 1).doc("cost of a year, share of the capital");
   s.value("interest", p.interest).range(0, 1).doc("a year");
   s.value("lifetime", p.lifetime).range(1, 200).doc("years");
+  s.check(
+      [&] {
+        return p.field + p.block + p.fixed + p.steel + p.filler + p.fluid + p.insulation + p.foundation > 0
+                   ? ""
+                   : "no price is above 0: what costs nothing has no levelised cost";
+      },
+      "");
 }
 
 LevelisedCost levelised_cost(const EconomicsParameters& p, const Inventory& i, double electricity) {

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 /// What the tank, the weather, the plant and the reports know of each other. Temperatures in K, time in s
@@ -89,6 +90,8 @@ class TankObserver {
   virtual void record(const TankRecord& record) = 0;
   /// At the end of the run.
   virtual void finish() {}
+  /// After finish(): why what it wrote may not be what was meant. Sentences.
+  virtual std::vector<std::string> doubts() const { return {}; }
   /// For checkpoints.
   virtual std::vector<double> state() const { return {}; }
   virtual void restore(std::span<const double>) {}

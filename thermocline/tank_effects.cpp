@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/log/doubt.hpp"
 #include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
 #include "thermocline/effect_cards.hpp"
 #include "thermocline/tank.hpp"
 
@@ -176,7 +178,11 @@ std::vector<EffectVerdict> Tank::audit() const {
 }
 
 std::vector<std::string> Tank::finish() {
-  for (const auto& observer : observers_) observer->finish();
+  for (const auto& observer : observers_) {
+    observer->finish();
+    for (const std::string& doubt : observer->doubts())
+      log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, doubt));
+  }
   Lines lines;
   const TankModel& m = accepted_;
   const double t = step_.time + step_.dt;

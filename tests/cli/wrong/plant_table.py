@@ -47,6 +47,9 @@ case.yaml:19:5: participants.tank.report: is about a plant: give flow: {type: pl
       hot: 390 degC
       cold: 290 degC
 """, "      type: rest\n")),
+        tank("costs without a price", """
+case.yaml:25:29: participants.tank.report.economics: no price is above 0: what costs nothing has no levelised cost.
+""", ("{run-in: 0 day}", "{run-in: 0 day, economics: {interest: 0.05}}")),
         tank("plant key without a plant", """
 case.yaml:19:7: participants.tank.flow.electric-power: this key does not belong here; it goes with type: plant.
 case.yaml:20:7: participants.tank.flow.block-efficiency: this key does not belong here; it goes with type: plant.

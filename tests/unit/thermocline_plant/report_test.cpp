@@ -36,8 +36,9 @@ class IdealDay {
   DayReport report(double run_in) const {
     ReportParameters parameters;
     parameters.run_in = run_in;
-    return {parameters, plant_, *weather_, {}};
+    return report(parameters);
   }
+  DayReport report(const ReportParameters& parameters) const { return {parameters, plant_, *weather_, {}}; }
   /// One hour of the day.
   void hour(DayReport& report, int h) {
     const int clock = h % 24;
@@ -220,6 +221,33 @@ TEST(ThermoclineThickness, is_not_defined_in_a_uniform_bed) {
   const std::array<double, 3> z{0.5, 1.5, 2.5}, hot{390, 390, 390}, cold{300, 300, 300};
   EXPECT_FALSE(thermocline_thickness(z, 3, hot, 315, 385).has_value());
   EXPECT_FALSE(thermocline_thickness(z, 3, cold, 315, 385).has_value());
+}
+
+TEST(DayReport, a_part_of_a_year_is_doubted_and_no_day_is_no_answer) {
+  IdealDay ideal;
+  ReportParameters p;
+  const auto report = [&](int days, int hours) {
+    DayReport r = ideal.report(p);
+    for (int h = 0; h < 24 * days + hours; ++h) ideal.hour(r, h);
+    r.finish();
+    return std::pair(r.doubts(), r.lines());
+  };
+  EXPECT_TRUE(report(3, 0).first.empty());
+  p.run_in = 4;
+  for (const int hours : {0, 5}) {
+    const auto [doubts, lines] = report(3, hours);
+    ASSERT_EQ(doubts.size(), 1u);
+    EXPECT_NE(doubts[0].find("no day counts: the run has 3 whole days, the first 4 are the run-in"),
+              std::string::npos)
+        << doubts[0];
+    EXPECT_EQ(std::isnan(lines[0].value), hours == 0);
+  }
+  EXPECT_TRUE(report(6, 0).first.empty());
+  p.economics.emplace().field = 1;
+  const auto part = report(6, 0).first;
+  ASSERT_EQ(part.size(), 1u);
+  EXPECT_NE(part[0].find("2 days stand for a year"), std::string::npos) << part[0];
+  EXPECT_TRUE(report(4 + 365, 0).first.empty());
 }
 
 }  // namespace
