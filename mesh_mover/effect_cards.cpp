@@ -25,10 +25,13 @@ const std::array cards{
          "`stiffening` above 0",
          [](const P& p) { return when(p.stiffening > 0, "stiffening"); },
          {"a stiffness a face, computed once", 0, 0}},
-    Card{"sliding patches",
-         "a boundary of `type: slip`",
-         [](const P& p) { return when(slips(p), "a boundary of type slip"); },
-         {"a matrix of its own for each direction that is held differently", 0, 0}},
+    Card{
+        "sliding patches",
+        "a boundary of `type: slip`",
+        [](const P& p) { return when(slips(p), "a boundary of type slip"); },
+        {"a matrix of its own for each direction that is held differently; on curved patches the nearest place of the "
+         "patch for each point",
+         0, 0}},
     Card{"elastic mesh motion",
          "`method: pseudo-solid`",
          [](const P& p) { return when(p.method == Method::pseudo_solid, "method: pseudo-solid"); },

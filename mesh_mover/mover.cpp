@@ -47,6 +47,7 @@ Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
       parameters_(parameters),
       mesh_(load_checked(parameters, context)),
       guard_(mesh_, parameters),
+      curved_(mesh_, parameters),
       interface_(mesh_, interface_patches(parameters)),
       displacement_(std::size_t(mesh_.points.n_local()) * mesh_.dim, 0.0),
       accepted_(displacement_) {
@@ -154,6 +155,7 @@ Exchange Mover::solve(const Exchange& in) {
     displacement_ = method_->solve(prescribed(in));
     if (incremental())
       for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += accepted_[i];
+    curved_.put_back(displacement_);
     const std::vector<Vec3> points = points_of(displacement_);
     const std::string refusal = guard_.refusal(compute_geometry(mesh_, points), points);
     if (!refusal.empty())

@@ -13,6 +13,7 @@
 #include "common/fv/prescribed_motion.hpp"
 #include "common/io/field_writer.hpp"
 #include "common/io/series.hpp"
+#include "mesh_mover/curved_slide.hpp"
 #include "mesh_mover/guard.hpp"
 #include "mesh_mover/motion_method.hpp"
 #include "mesh_mover/parameters.hpp"
@@ -58,6 +59,7 @@ class Mover final : public Participant {
   Mesh mesh_;
   std::unique_ptr<Mesh> base_;  // incremental: the mesh of the last step
   Guard guard_;
+  CurvedSlide curved_;
   std::unique_ptr<MotionMethod> method_;
   InterfaceMap interface_;
   std::vector<Moving> moving_;

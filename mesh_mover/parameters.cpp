@@ -18,7 +18,7 @@ void declare_boundary(config::Section& s, Boundary& b) {
              {"slip", BoundaryMotion::slip, nothing},
              {"free", BoundaryMotion::free, nothing}},
             "interface: moves with the structure; moving: moves as 'motion' says; fixed: stays; slip: slides "
-            "along its plane; free: follows what is inside",
+            "along the patch (curved ones with method: pseudo-solid); free: follows what is inside",
             true);
 }
 
