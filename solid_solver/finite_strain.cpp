@@ -25,10 +25,14 @@ constexpr double first = 1e6;
 // Of the step length: below it the direction is useless.
 constexpr double shortest = 1. / 128;
 // Forcing of the linear solves.
-constexpr double loosest = 0.05, tightest = 1e-4;
+constexpr double loosest = 0.05, tightest = 1e-4, with_pressures = 1e-6;
 constexpr std::size_t solvers_kept = 2;
 // Of a stiffness, in a residual that is nothing but rounding.
 constexpr double last_digits = 2e-15;
+// From this Poisson's ratio on pressures are carried along, and the compact operator says too little of the tangent (in
+// motion inertia helps it further); bodies of so many cells can have factors.
+constexpr double factors_from_ratio = 0.48, factors_from_dynamic = 0.499;
+constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 4000;
 // A correction of this size beside the displacement is rounding.
 constexpr double rounding = 1e-14;
 
@@ -51,9 +55,25 @@ FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const 
           law.name);
   }
   kernel_ = make_finite_kernel(mesh, rows, all);
+  using Preconditioner = MethodParameters::Preconditioner;
+  const GlobalIndex cells = mesh.cells.n_global();
+  const bool is_small = cells <= (mesh.dim == 2 ? factors_up_to_2d : factors_up_to_3d);
+  const double ratio = largest_poissons_ratio(parameters);
+  const bool is_dynamic = parameters.analysis == SolidParameters::Analysis::dynamic;
+  const bool wants_factors =
+      rows.volume_by_cells() && ratio >= (is_dynamic ? factors_from_dynamic : factors_from_ratio);
+  if (parameters.method.preconditioner == Preconditioner::factors ||
+      (parameters.method.preconditioner == Preconditioner::automatic && is_small && wants_factors))
+    by_ = TangentSolver::By::factors;
+  mixed_ = rows.volume_by_cells() && ratio >= factors_from_ratio;
   r_.resize(rows.n_unknowns());
   trial_ = du_ = r_;
   noise_ = noise();
+}
+
+std::string FiniteStrain::name() const {
+  return fmt::format("Newton's method at large strain{}, symmetric face gradient",
+                     by_ == TangentSolver::By::factors ? " (factors of the tangent)" : "");
 }
 
 TangentSolver& FiniteStrain::solver_for(double mass_factor, const std::vector<double>& node_inertia) {
@@ -67,7 +87,7 @@ TangentSolver& FiniteStrain::solver_for(double mass_factor, const std::vector<do
   }
   if (solvers_.size() == solvers_kept) solvers_.pop_back();
   solvers_.insert(solvers_.begin(),
-                  std::make_unique<TangentSolver>(mesh_, rows_, *kernel_, mass_factor, node_inertia));
+                  std::make_unique<TangentSolver>(mesh_, rows_, *kernel_, mass_factor, node_inertia, by_));
   return *solvers_.front();
 }
 
@@ -89,8 +109,42 @@ double FiniteStrain::residual(const Load& load, std::span<const double> u, doubl
   ratio = min(mesh_.comm, kernel_->worst().ratio);
   if (!(ratio > 0)) return std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = load.rows[i] - r_[i];
-  const double size = norm(mesh_.comm, r_);
-  return std::isfinite(size) ? size : std::numeric_limits<double>::infinity();
+  double size = norm(mesh_.comm, r_);
+  whole_ = size;
+  if (is_carried_) {
+    // What the linear system wants on the right once its pressures are eliminated.
+    std::vector<double> defect(r_.size(), 0);
+    kernel_->add_pressure_defect(defect);
+    for (std::size_t i = 0; i < r_.size(); ++i) r_[i] -= defect[i];
+    whole_ = norm(mesh_.comm, r_);
+  }
+  return std::isfinite(size) && std::isfinite(whole_) ? size : std::numeric_limits<double>::infinity();
+}
+
+/// p of the accepted state, moved on with the linear change to the first guess.
+void FiniteStrain::start_pressures(const Load& load, std::span<const double> u) {
+  is_carried_ = false;
+  kernel_->set_own_pressures(false);
+  if (!mixed_ || load.is_conserving) return;
+  is_carried_ = true;
+  if (load.accepted.empty()) {
+    kernel_->linearise(u, load.known, load.mass_factor, r_);
+    return kernel_->set_own_pressures(true);
+  }
+  kernel_->linearise(load.accepted, load.accepted_known, load.mass_factor, r_);
+  kernel_->set_own_pressures(true);
+  std::vector<double> change(u.begin(), u.end()), known_change(load.known.begin(), load.known.end());
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= load.accepted[i];
+  for (std::size_t i = 0; i < known_change.size(); ++i)
+    known_change[i] -= (load.before.empty() ? load.accepted_known : load.known)[i];
+  predict_pressures(change, known_change);
+}
+
+void FiniteStrain::predict_pressures(std::span<const double> change, std::span<const double> known_change) {
+  if (!is_carried_) return;
+  kernel_->predict_pressures(change, known_change);
+  kernel_->set_pressure_fraction(1);
+  kernel_->accept_pressures();
 }
 
 /// The motion of what is known goes into the body by one linear step: left to the first guess it would be a jump
@@ -110,6 +164,7 @@ void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::sp
   kernel_->apply_tangent(still, change, load.mass_factor, trial_);
   for (std::size_t i = 0; i < r_.size(); ++i) r_[i] -= trial_[i];
   solver.solve(r_, du_, tightest, most_linear_);
+  predict_pressures(du_, change);
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += du_[i];
 }
 
@@ -133,11 +188,13 @@ std::string FiniteStrain::where_worst() const {
 bool FiniteStrain::search(const Load& load, std::span<double> u, NewtonIterate& now, double most) {
   for (double s = 1; s >= shortest; s *= 0.5) {
     for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + s * du_[i];
+    kernel_->set_pressure_fraction(is_carried_ ? s : 0);
     const double size = residual(load, trial_, now.ratio);
     now.length = s;
     now.residual = size;
     if (!(size <= most)) continue;
     std::ranges::copy(trial_, u.begin());
+    if (is_carried_) kernel_->accept_pressures();
     return true;
   }
   return false;
@@ -156,8 +213,10 @@ double FiniteStrain::scale_of(const Load& load, std::span<const double> u, doubl
 SolveStatistics FiniteStrain::solve(const Load& load, const std::vector<double>& node_inertia,
                                     std::span<double> u) {
   TangentSolver& solver = solver_for(load.mass_factor, node_inertia);
+  solver.forget_factors();
   SolveStatistics statistics;
   iterates_.clear();
+  start_pressures(load, u);
   if (!load.before.empty()) follow_known(load, solver, u);
   NewtonIterate now;
   now.residual = residual(load, u, now.ratio);
@@ -169,19 +228,20 @@ SolveStatistics FiniteStrain::solve(const Load& load, const std::vector<double>&
   double before = now.residual;
   for (;;) {
     iterates_.push_back(now);
-    iterates_.back().residual /= scale > 0 ? scale : 1;
-    if (now.residual <= std::max(tolerance_ * scale, floor)) break;
+    iterates_.back().residual = std::max(now.residual, whole_) / (scale > 0 ? scale : 1);
+    if (std::max(now.residual, whole_) <= std::max(tolerance_ * scale, floor)) break;
     if (statistics.iterations == most_iterations)
       throw SolveFailure(
           "Newton's method did not find the equilibrium: after {} iterations the residual is {:.2g} of the load "
           "({:.0e} wanted). {}",
-          statistics.iterations, now.residual / scale, tolerance_, where_worst());
+          statistics.iterations, std::max(now.residual, whole_) / scale, tolerance_, where_worst());
     const double ratio = statistics.iterations == 0 ? 1 : now.residual / before;
     const double wanted = 0.5 * tolerance_ * scale / now.residual;
     const double eta =
         std::max(std::clamp(0.9 * ratio * ratio, tightest, loosest), std::min(wanted, loosest));
     solver.follow(statistics.iterations % 2 == 0);
-    now.linear = solver.solve(r_, du_, eta, most_linear_).iterations;
+    now.linear = solver.solve(r_, du_, is_carried_ ? with_pressures : eta, most_linear_).iterations;
+    if (is_carried_) kernel_->predict_pressures(du_, {});
     ++statistics.iterations;
     statistics.inner_iterations += now.linear;
     before = now.residual;
@@ -194,10 +254,12 @@ SolveStatistics FiniteStrain::solve(const Load& load, const std::vector<double>&
           now.length, growth, where_worst());
     if (correction <= rounding * size && now.residual < small * scale) {
       iterates_.push_back(now);
-      iterates_.back().residual /= scale;
+      iterates_.back().residual = std::max(now.residual, whole_) / scale;
       break;
     }
   }
+  kernel_->set_own_pressures(false);
+  is_carried_ = false;
   statistics.residual = iterates_.back().residual;
   log::debug("{}", text());
   return statistics;
@@ -217,6 +279,7 @@ std::string FiniteStrain::text() const {
 double FiniteStrain::energy(std::span<const double> unknowns, std::span<const double> known) {
   std::vector<double> rows(rows_.n_unknowns());
   kernel_->forget_start();
+  kernel_->set_own_pressures(false);
   kernel_->linearise(unknowns, known, 0, rows);
   return sum(mesh_.comm, kernel_->energy());
 }

@@ -32,7 +32,7 @@ class FiniteStrain {
 
   FiniteKernel& kernel() { return *kernel_; }
   /// For the log.
-  static std::string name() { return "Newton's method at large strain, symmetric face gradient"; }
+  std::string name() const;
   const FiniteLaw& law(std::size_t material) const { return *laws_[material]; }
   /// Of the local cells; dynamic analyses.
   void set_density(std::span<const double> of_cells) { kernel_->set_density(of_cells); }
@@ -44,6 +44,8 @@ class FiniteStrain {
                              ///< to `known`; empty: the guess has them already
     double mass_factor = 0;  ///< m
     bool is_conserving = false;  ///< the kernel has a start (set_start)
+    /// Of the accepted state, from which pressures of their own start; empty: from the first guess.
+    std::span<const double> accepted{}, accepted_known{};
   };
   /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then. Collective.
   SolveStatistics solve(const Load& load, const std::vector<double>& node_inertia, std::span<double> u);
@@ -56,6 +58,8 @@ class FiniteStrain {
 
  private:
   double residual(const Load& load, std::span<const double> u, double& ratio);
+  void start_pressures(const Load& load, std::span<const double> u);
+  void predict_pressures(std::span<const double> change, std::span<const double> known_change);
   bool search(const Load& load, std::span<double> u, NewtonIterate& now, double most);
   void follow_known(const Load& load, TangentSolver& solver, std::span<double> u);
   double scale_of(const Load& load, std::span<const double> u, double residual);
@@ -65,7 +69,11 @@ class FiniteStrain {
 
   const Mesh& mesh_;
   const ElasticOperator& rows_;
+  TangentSolver::By by_ = TangentSolver::By::frames;
+  bool mixed_ = false;       // pressures of their own on the way to equilibrium
+  bool is_carried_ = false;  // in the solve under way
   double tolerance_, noise_;
+  double whole_ = 0;  // norm of the last residual with U'(J) in place of those pressures
   int most_linear_;
   std::vector<std::unique_ptr<FiniteLaw>> laws_;
   std::unique_ptr<FiniteKernel> kernel_;

@@ -234,6 +234,9 @@ SolveStatistics Solid::solve_finite(const StageWork& work) {
     finite_->kernel().set_start(unknowns_of(state_.cell_u, state_.face_u), known_accepted_);
   FiniteStrain::Load load{rhs_, work.known, {}, work.system->mass_factor, parameters_.energy_momentum};
   if (!is_dynamic() && !work.known.empty()) load.before = known_accepted_;
+  const std::vector<double> accepted = unknowns_of(state_.cell_u, state_.face_u);
+  load.accepted = accepted;
+  load.accepted_known = known_accepted_;
   const SolveStatistics statistics = finite_->solve(load, work.system->node_inertia, unknowns_);
   finite_->kernel().forget_start();
   return statistics;

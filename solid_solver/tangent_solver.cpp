@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/finite_matrix.hpp"
 #include "common/elasticity/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -15,6 +16,8 @@ namespace {
 // Cells below which the rigid motions of aggregates gain nothing, cells an aggregate, and most aggregates.
 constexpr GlobalIndex small_body = 64, cells_of_aggregate = 32;
 constexpr GlobalIndex most_aggregates = 160;
+// New factors cost as much as some dozens of iterations; a tangent that has changed much needs them.
+constexpr int most_with_old_factors = 12, most_before_new_factors = 60;
 
 /// The rotation of F = R U by Higham's iteration; I where F is inside out.
 Tensor3 rotation_of(const Tensor3& f) {
@@ -32,20 +35,27 @@ Tensor3 rotation_of(const Tensor3& f) {
 }  // namespace
 
 TangentSolver::TangentSolver(const Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel,
-                             double mass_factor, const std::vector<double>& node_inertia)
-    : mesh_(mesh), rows_(rows), kernel_(kernel), mass_factor_(mass_factor) {
-  ElasticPreconditioner::Options options;
-  options.scheme = FaceGradientScheme::symmetric;
-  options.node_inertia = node_inertia;
-  compact_ = std::make_unique<ElasticPreconditioner>(mesh, rows, std::span<const double>{}, options);
-  const GlobalIndex cells = mesh.cells.n_global();
-  if (cells >= small_body) {
-    const GlobalIndex n = std::clamp<GlobalIndex>(cells / cells_of_aggregate, 8, most_aggregates);
-    modes_ = std::make_unique<CurrentRigidModes>(mesh, rows, static_cast<int>(n), node_inertia);
-  }
+                             double mass_factor, const std::vector<double>& node_inertia, By by)
+    : mesh_(mesh),
+      rows_(rows),
+      kernel_(kernel),
+      mass_factor_(mass_factor),
+      node_inertia_(node_inertia),
+      by_(by) {
   const std::size_t n = rows.n_unknowns();
-  turned_.resize(n);
-  correction_.resize(n);
+  if (by == By::frames) {
+    ElasticPreconditioner::Options options;
+    options.scheme = FaceGradientScheme::symmetric;
+    options.node_inertia = node_inertia;
+    compact_ = std::make_unique<ElasticPreconditioner>(mesh, rows, std::span<const double>{}, options);
+    const GlobalIndex cells = mesh.cells.n_global();
+    if (cells >= small_body) {
+      const GlobalIndex aggregates = std::clamp<GlobalIndex>(cells / cells_of_aggregate, 8, most_aggregates);
+      modes_ = std::make_unique<CurrentRigidModes>(mesh, rows, static_cast<int>(aggregates), node_inertia);
+    }
+    turned_.resize(n);
+    correction_.resize(n);
+  }
   krylov_ = std::make_unique<KrylovSolver>(
       "displacement", mesh.comm, n,
       [this](std::span<const double> x, std::span<double> y) {
@@ -78,6 +88,7 @@ void TangentSolver::find_frames(std::span<const Tensor3> gradient) {
 
 void TangentSolver::follow(bool with_modes) {
   is_unsymmetric_ = any(mesh_.comm, kernel_.has_pressure());
+  if (by_ == By::factors) return make_factors();
   DeformedBody body;
   body.gradient.assign(mesh_.n_flux_faces(), Tensor3::Identity());
   kernel_.visit([&](Index f, const Tensor3& deformation, const Tensor3&) { body.gradient[f] = deformation; });
@@ -86,6 +97,17 @@ void TangentSolver::follow(bool with_modes) {
   for (Index i = 0; i < mesh_.cells.n_local() + mesh_.boundary.n_local(); ++i)
     body.displacement.push_back(kernel_.displacement(i));
   modes_->update(body);
+}
+
+/// LU: away from equilibrium, and under a pressure that follows, the tangent need not be positive.
+void TangentSolver::make_factors() {
+  is_fresh_ = !(factors_ && iterations_ <= most_with_old_factors);
+  if (!is_fresh_) return;
+  LinearOptions options;
+  options.method = LinearMethod::direct;
+  factors_.reset();
+  matrix_ = std::make_unique<SparseMatrix>(finite_matrix(mesh_, rows_, kernel_, node_inertia_));
+  factors_ = std::make_unique<LinearSolver>("displacement", *matrix_, options);
 }
 
 void TangentSolver::turn(std::span<const double> from, bool back, std::span<double> to) const {
@@ -100,6 +122,10 @@ void TangentSolver::turn(std::span<const double> from, bool back, std::span<doub
 }
 
 void TangentSolver::precondition(std::span<const double> r, std::span<double> z) {
+  if (factors_) {
+    factors_->solve(r, z);
+    return;
+  }
   turn(r, true, turned_);
   compact_->apply(turned_, correction_);
   turn(correction_, false, z);
@@ -110,15 +136,34 @@ SolveStatistics TangentSolver::solve(std::span<const double> r, std::span<double
                                      double relative_tolerance, int max_iterations) {
   std::ranges::fill(du, 0.0);
   KrylovOptions options{relative_tolerance, max_iterations, !is_unsymmetric_};
+  if (factors_ && !is_fresh_) {
+    // Those of an earlier correction, for as long as they are cheap.
+    KrylovOptions few = options;
+    few.max_iterations = std::min(max_iterations, most_before_new_factors);
+    try {
+      return counted(r, du, few);
+    } catch (const SolveFailure&) {
+      factors_.reset();
+      make_factors();
+      std::ranges::fill(du, 0.0);
+    }
+  }
   try {
-    return krylov_->solve(r, du, options);
+    return counted(r, du, options);
   } catch (const SolveFailure&) {
     if (!options.is_symmetric) throw;
     // Not positive away from equilibrium, perhaps: what does not need it.
     std::ranges::fill(du, 0.0);
     options.is_symmetric = false;
-    return krylov_->solve(r, du, options);
+    return counted(r, du, options);
   }
+}
+
+SolveStatistics TangentSolver::counted(std::span<const double> r, std::span<double> du,
+                                       const KrylovOptions& options) {
+  const SolveStatistics statistics = krylov_->solve(r, du, options);
+  iterations_ = statistics.iterations;
+  return statistics;
 }
 
 }  // namespace couplet

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What one run costs: whole process, started without mpirun, one core, in processor seconds (user and system: all
 contenders run one thread, and other work on the machine disturbs these least). Plate of configs/elliptic-plate and vibrating
-beam of configs/vibrating-cantilever with solid_solver; the plate with OpenFOAM's solidDisplacementFoam and CalculiX."""
+beam of configs/vibrating-cantilever with solid_solver; the plate with OpenFOAM's solidDisplacementFoam and CalculiX, the bent
+beam with CalculiX."""
 import os
 import pathlib
 import re
@@ -11,6 +12,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
+import calculix_beam  # noqa: E402
 import calculix_plate  # noqa: E402
 import openfoam_plate  # noqa: E402
 import plate as geometry  # noqa: E402
@@ -107,6 +109,28 @@ def calculix(job, n, element, solver="SPOOLES", times=1):
         return {"seconds": statistics.median(r.cpu for r in runs), "memory": 1048576 * runs[0].memory, "iterations": 0,
                 "cells": n[0] * n[1] * n[2], "error": calculix_plate.plate_error(folder / "plate.frd", n, element)}
     return job.once(("ccx", n, element, solver, times), make)
+
+
+def bent_beam(job, across, along, load, times=3):
+    """Case E, Saint Venant-Kirchhoff, in one load step by solid_solver and CalculiX, turn by turn: {who: (processor seconds of
+    the whole process, the median; deflection over the length)}; CalculiX's are left out where it is not installed."""
+    force = load * calculix_beam.YOUNG * 0.2**4 / 12 / (0.04 * 2.0**2) / 2**0.5
+    sets = ["participants.solid.mesh-parameters={n: %d, m: %d}" % (across, along), "participants.solid.material.law=saint-venant-kirchhoff",
+            f"participants.solid.boundaries.tip.value=[{force!r}*t, {force!r}*t, 0]"]
+    seconds, deflection = {}, {}
+    program = shutil.which("ccx")
+    for turn in range(times):
+        run, folder, _ = ours(job, "bent-beam", sets)
+        tip = read_csv(pathlib.Path(folder) / "solid/probes.csv")
+        deflection["ours"] = (tip["tip x [m]"][-1]**2 + tip["tip y [m]"][-1]**2)**0.5 / 2
+        seconds.setdefault("ours", []).append(run.cpu)
+        for element in ("C3D8", "C3D8I") if program else ():
+            place = job.scratch / f"ccx-beam-{element}"
+            place.mkdir(parents=True, exist_ok=True)
+            calculix_beam.write(place / "beam.inp", across, along, element, load)
+            seconds.setdefault(element, []).append(cost([program, "beam"], place).cpu)
+            deflection[element] = calculix_beam.deflection(place / "beam.dat")
+    return {who: (statistics.median(s), deflection[who]) for who, s in seconds.items()}
 
 
 def beam(job, method, tolerance=1e-7, step=0.01, steps=60, times=3, extra=()):

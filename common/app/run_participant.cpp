@@ -112,7 +112,7 @@ class OwnCommands {
     Command command{Op::begin_step, step, {}, 0, -1, ""};
     for (const Op op : {Op::begin_step, Op::solve}) {
       command.op = op;
-      if (const Reply reply = (*this)(command); reply.status == Reply::Status::failure)
+      if (const Reply reply = (*this)(command); reply.status != Reply::Status::ok)
         return StepFailure(reply.text, reply.shorter_helps);
     }
     return {};
@@ -124,7 +124,7 @@ class OwnCommands {
   /// A command that is no step: its failure is the end.
   void must(const Command& command) {
     const Reply reply = (*this)(command);
-    if (reply.status == Reply::Status::failure) throw SolveFailure(reply.text);
+    if (reply.status != Reply::Status::ok) throw SolveFailure(reply.text);
   }
   double advised_dt() const { return advised_dt_; }
   /// Of the last accepted step.

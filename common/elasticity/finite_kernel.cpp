@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/elasticity/finite_kernel.hpp"
+#include "common/elasticity/finite_kernel_of.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 
-#include "common/elasticity/finite_loops.hpp"
-#include "common/elasticity/follower_pressure.hpp"
-#include "common/elasticity/symmetric_space.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -38,14 +35,6 @@ constexpr std::size_t chunk = 16;
   group.law->has_second_invariant() ? finite::stress_loop<2, true>(group, at)
                                     : finite::stress_loop<2, false>(group, at);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void volume_pass(
-    const finite::Group<3>& group, const finite::Values<3>& at) {
-  finite::volume_loop<3>(group, at);
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void volume_pass(
-    const finite::Group<2>& group, const finite::Values<2>& at) {
-  finite::volume_loop<2>(group, at);
-}
 [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void tangent_pass(
     const finite::Group<3>& group, const finite::Values<3>& at) {
   group.law->has_second_invariant() ? finite::tangent_loop<3, true>(group, at)
@@ -56,62 +45,6 @@ constexpr std::size_t chunk = 16;
   group.law->has_second_invariant() ? finite::tangent_loop<2, true>(group, at)
                                     : finite::tangent_loop<2, false>(group, at);
 }
-
-template <int D>
-class Implementation final : public FiniteKernel {
- public:
-  Implementation(const Mesh& mesh, const ElasticOperator& rows, std::vector<const FiniteLaw*> laws);
-
-  void set_start(std::span<const double> unknowns, std::span<const double> known) override;
-  void forget_start() override { has_start_ = false; }
-  void set_pressure(std::span<const double> of_faces) override { pressure_.set(mesh_, of_faces); }
-  bool has_pressure() const override { return !pressure_.empty(); }
-  Vec3 pressure_force() const override { return pressure_force_; }
-  void set_density(std::span<const double> of_cells) override {
-    space_.set_density(of_cells), massive_ = true;
-  }
-  void linearise(std::span<const double> unknowns, std::span<const double> known, double mass_factor,
-                 std::span<double> result) override;
-  void apply_tangent(std::span<const double> v, std::span<const double> known, double mass_factor,
-                     std::span<double> result) override;
-  double energy() const override { return energy_; }
-  Worst worst() const override { return worst_; }
-  void visit(const Take& take) override;
-  Vec3 displacement(Index node) const override {
-    Vec3 u = Vec3::Zero();
-    for (int a = 0; a < D; ++a) u[a] = space_.nodes()[std::size_t(node) * SymmetricSpace<D>::stride + a];
-    return u;
-  }
-  std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                   const ElasticLoads& loads) override;
-
- private:
-  void make_group(std::size_t material, bool shares, std::span<const Index> edge_index);
-  void make_edges(std::vector<Index>& edge_index);
-  void internal_forces();
-  void deform(finite::Group<D>& group);
-  void find_pressures();
-  void conserving_forces();
-  void conserving_pressures();
-  finite::Values<D> values();
-  const FiniteLaw& law_of(Index cell) const {
-    return *laws_[laws_.size() == 1 ? 0 : std::size_t(mesh_.material_of(cell))];
-  }
-
-  const Mesh& mesh_;
-  const ElasticOperator& rows_;
-  SymmetricSpace<D> space_;
-  std::vector<const FiniteLaw*> laws_;
-  std::vector<finite::Group<D>> groups_;
-  std::unique_ptr<FiniteEdges> edges_;  // none: no three-cornered faces in space
-  FollowerPressure<D> pressure_;
-  Vec3 pressure_force_ = Vec3::Zero();
-  bool massive_ = false, has_start_ = false;
-  double energy_ = 0;
-  Worst worst_;
-  std::vector<double> of_cells_, volume_;  // of nodes: sums, then pressures; of owned cells; empty: faces'
-  std::vector<double> modulus_;            // U'' / V of owned cells at the last linearise()
-};
 
 template <int D>
 finite::FiniteBlock<D>& place(std::vector<finite::FiniteBlock<D>>& blocks, std::size_t i) {
@@ -133,8 +66,10 @@ void add_face(const Mesh& mesh, const ElasticOperator& rows, Index f, std::size_
   block.face[k] = is_filling ? -1 : f;
 }
 
+}  // namespace
+
 template <int D>
-Implementation<D>::Implementation(const Mesh& mesh, const ElasticOperator& rows,
+FiniteKernelOf<D>::FiniteKernelOf(const Mesh& mesh, const ElasticOperator& rows,
                                   std::vector<const FiniteLaw*> laws)
     : mesh_(mesh), rows_(rows), space_(mesh, rows), laws_(std::move(laws)) {
   std::vector<Index> edge_index;
@@ -147,11 +82,13 @@ Implementation<D>::Implementation(const Mesh& mesh, const ElasticOperator& rows,
   of_cells_.assign(space_.n_nodes(), 0);
   volume_ = pyramid_volumes(mesh);
   modulus_.assign(volume_.size(), 0);
+  bulk_pressure_ = modulus_;
+  make_elsewhere();
 }
 
 /// Faces of one material, those that share with edges or the others.
 template <int D>
-void Implementation<D>::make_group(std::size_t material, bool shares, std::span<const Index> edge_index) {
+void FiniteKernelOf<D>::make_group(std::size_t material, bool shares, std::span<const Index> edge_index) {
   finite::Group<D> group{laws_[material], {}, {}, {}, shares ? 1 - SharedEdges::share : 1, {}};
   Index last = -1;
   std::size_t n = 0;
@@ -173,9 +110,23 @@ void Implementation<D>::make_group(std::size_t material, bool shares, std::span<
   groups_.push_back(std::move(group));
 }
 
+template <int D>
+void FiniteKernelOf<D>::make_elsewhere() {
+  std::size_t n = 0;
+  Index last = -1;
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    if (mesh_.owner[f] >= mesh_.cells.n_owned() && mesh_.neighbour[f] < mesh_.cells.n_owned()) {
+      add_face<D>(mesh_, rows_, f, n % 4, false, place(elsewhere_.blocks, n));
+      last = f;
+      ++n;
+    }
+  for (; n % 4 != 0; ++n) add_face<D>(mesh_, rows_, last, n % 4, true, place(elsewhere_.blocks, n));
+  elsewhere_.states.resize(elsewhere_.blocks.size());
+}
+
 /// `edge_index`: of each flux face among those that share, -1: it does not. Collective.
 template <int D>
-void Implementation<D>::make_edges(std::vector<Index>& edge_index) {
+void FiniteKernelOf<D>::make_edges(std::vector<Index>& edge_index) {
   if (D == 2) return;
   std::vector<Index> faces, elsewhere;
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f)
@@ -194,14 +145,14 @@ void Implementation<D>::make_edges(std::vector<Index>& edge_index) {
 }
 
 template <int D>
-finite::Values<D> Implementation<D>::values() {
+finite::Values<D> FiniteKernelOf<D>::values() {
   return {space_.nodes(), space_.points(), space_.forces(), space_.point_forces(),
           of_cells_.empty() ? nullptr : of_cells_.data()};
 }
 
 /// States, energy and the worst volume ratio of one material's faces.
 template <int D>
-void Implementation<D>::deform(finite::Group<D>& group) {
+void FiniteKernelOf<D>::deform(finite::Group<D>& group) {
   std::array<Invariants, chunk> found;
   std::array<Energy, chunk> energy;
   for (std::size_t first = 0; first < group.blocks.size(); first += chunk) {
@@ -220,26 +171,15 @@ void Implementation<D>::deform(finite::Group<D>& group) {
   }
 }
 
-/// From V J of the cells to U'(J).
 template <int D>
-void Implementation<D>::find_pressures() {
-  const std::span<double> cells = std::span(of_cells_).first(std::size_t(mesh_.cells.n_local()));
-  mesh_.cells.add_to_owners(cells);
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const BulkOf<double> bulk = law_of(c).bulk(cells[c] / volume_[c]);
-    cells[c] = bulk.pressure;
-    modulus_[c] = bulk.modulus / volume_[c];
-    energy_ += volume_[c] * bulk.u;
-  }
-  mesh_.cells.update_ghosts(cells);
-}
-
-template <int D>
-void Implementation<D>::internal_forces() {
+void FiniteKernelOf<D>::internal_forces() {
   energy_ = 0;
   worst_ = {};
   std::ranges::fill(of_cells_, 0.0);
   for (finite::Group<D>& group : groups_) deform(group);
+  for (std::size_t i = 0; i < elsewhere_.blocks.size(); ++i)
+    finite::deformation<D>(elsewhere_.blocks[i], elsewhere_.blocks[i].inverse, space_.nodes(),
+                           space_.points(), false, elsewhere_.states[i].f);
   if (edges_) {
     edges_->clear();
     for (const finite::Group<D>& group : groups_) finite::to_edges<D>(group, values(), false, *edges_);
@@ -261,7 +201,7 @@ void Implementation<D>::internal_forces() {
 
 /// F, W and the cells' J of the state where a step begins.
 template <int D>
-void Implementation<D>::set_start(std::span<const double> unknowns, std::span<const double> known) {
+void FiniteKernelOf<D>::set_start(std::span<const double> unknowns, std::span<const double> known) {
   has_start_ = false;
   space_.fill(unknowns, known);
   space_.clear_forces();
@@ -281,32 +221,10 @@ void Implementation<D>::set_start(std::span<const double> unknowns, std::span<co
   has_start_ = true;
 }
 
-/// p* = [U(J_1) - U(J_0)] / (J_1 - J_0) of the cells, J_1 being that of 2 F - F_0.
-template <int D>
-void Implementation<D>::conserving_pressures() {
-  std::ranges::fill(of_cells_, 0.0);
-  std::vector<double> before(of_cells_.size(), 0);
-  for (const finite::Group<D>& group : groups_) {
-    finite::end_volumes<D>(group, false, before);
-    finite::end_volumes<D>(group, true, of_cells_);
-  }
-  const std::span<double> cells = std::span(of_cells_).first(std::size_t(mesh_.cells.n_local()));
-  const std::span<double> starts = std::span(before).first(cells.size());
-  mesh_.cells.add_to_owners(cells);
-  mesh_.cells.add_to_owners(starts);
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    const double j1 = cells[c] / volume_[c], j0 = starts[c] / volume_[c];
-    const FiniteLaw& law = law_of(c);
-    cells[c] = std::abs(j1 - j0) > finite::smallest_change ? (law.bulk(j1).u - law.bulk(j0).u) / (j1 - j0)
-                                                           : law.bulk(0.5 * (j0 + j1)).pressure;
-  }
-  mesh_.cells.update_ghosts(cells);
-}
-
 /// Of a step that conserves energy; the tangent stays that of the states in its middle, which is symmetric and differs
 /// by the square of the step.
 template <int D>
-void Implementation<D>::conserving_forces() {
+void FiniteKernelOf<D>::conserving_forces() {
   // The states' pressure belongs to their tangent.
   if (!of_cells_.empty())
     for (finite::Group<D>& group : groups_) finite::add_pressures<D>(group, of_cells_.data());
@@ -328,7 +246,7 @@ void Implementation<D>::conserving_forces() {
 }
 
 template <int D>
-void Implementation<D>::linearise(std::span<const double> unknowns, std::span<const double> known,
+void FiniteKernelOf<D>::linearise(std::span<const double> unknowns, std::span<const double> known,
                                   double mass_factor, std::span<double> result) {
   space_.fill(unknowns, known);
   space_.clear_forces();
@@ -341,17 +259,13 @@ void Implementation<D>::linearise(std::span<const double> unknowns, std::span<co
 }
 
 template <int D>
-void Implementation<D>::apply_tangent(std::span<const double> v, std::span<const double> known,
+void FiniteKernelOf<D>::apply_tangent(std::span<const double> v, std::span<const double> known,
                                       double mass_factor, std::span<double> result) {
   space_.fill(v, known);
   space_.clear_forces();
   if (!of_cells_.empty()) {
-    std::ranges::fill(of_cells_, 0.0);
-    for (const finite::Group<D>& group : groups_) volume_pass(group, values());
-    const std::span<double> cells = std::span(of_cells_).first(std::size_t(mesh_.cells.n_local()));
-    mesh_.cells.add_to_owners(cells);
-    for (std::size_t c = 0; c < modulus_.size(); ++c) cells[c] *= modulus_[c];
-    mesh_.cells.update_ghosts(cells);
+    sum_volume_changes();
+    mesh_.cells.update_ghosts(std::span(of_cells_).first(std::size_t(mesh_.cells.n_local())));
   }
   for (const finite::Group<D>& group : groups_) tangent_pass(group, values());
   if (edges_) {
@@ -370,7 +284,7 @@ void Implementation<D>::apply_tangent(std::span<const double> v, std::span<const
 
 /// With edges: what the face's share of them makes of both.
 template <int D>
-void Implementation<D>::visit(const Take& take) {
+void FiniteKernelOf<D>::visit(const Take& take) {
   for (const finite::Group<D>& group : groups_)
     for (std::size_t i = 0; i < group.blocks.size(); ++i) {
       Four p[3][3];
@@ -397,10 +311,11 @@ void Implementation<D>::visit(const Take& take) {
 }
 
 template <int D>
-std::vector<Vec3> Implementation<D>::holding_forces(std::span<const double> unknowns,
+std::vector<Vec3> FiniteKernelOf<D>::holding_forces(std::span<const double> unknowns,
                                                     std::span<const double> known,
                                                     const ElasticLoads& loads) {
   has_start_ = false;
+  set_own_pressures(false);
   space_.clear_forces();
   if (!loads.faces.empty()) space_.spread_face_forces(loads.faces);
   if (!loads.cells.empty()) space_.spread_cell_forces(loads.cells);
@@ -412,12 +327,13 @@ std::vector<Vec3> Implementation<D>::holding_forces(std::span<const double> unkn
   return space_.held(known);
 }
 
-}  // namespace
+template class FiniteKernelOf<2>;
+template class FiniteKernelOf<3>;
 
 std::unique_ptr<FiniteKernel> make_finite_kernel(const Mesh& mesh, const ElasticOperator& rows,
                                                  std::vector<const FiniteLaw*> of_materials) {
-  if (mesh.dim == 2) return std::make_unique<Implementation<2>>(mesh, rows, std::move(of_materials));
-  return std::make_unique<Implementation<3>>(mesh, rows, std::move(of_materials));
+  if (mesh.dim == 2) return std::make_unique<FiniteKernelOf<2>>(mesh, rows, std::move(of_materials));
+  return std::make_unique<FiniteKernelOf<3>>(mesh, rows, std::move(of_materials));
 }
 
 }  // namespace couplet

@@ -33,6 +33,19 @@ class FiniteKernel {
   virtual bool has_pressure() const = 0;
   /// Resultant of that pressure at the last linearise(), this rank's [N].
   virtual Vec3 pressure_force() const = 0;
+  /// Pressures of their own (one volume ratio a cell): from here on the forces of linearise() are those of pressures p
+  /// that need not be U'(J), which Newton's method carries along as unknowns of the mixed form,
+  ///   dP/du du + H dp = ..., dp = U'' dJ + U' - p,
+  /// p eliminated from its linear system. Near incompressibility U' of a state on the way is nonsense, p is not. They
+  /// start as U'(J) of the last linearise(); `false`: forces by U' again.
+  virtual void set_own_pressures(bool on) = 0;
+  /// The change of p that goes with a change of the displacement from the last linearise() on. Collective.
+  virtual void predict_pressures(std::span<const double> change, std::span<const double> known_change) = 0;
+  /// The next linearise() takes p and so much of that change; accept_pressures() keeps them.
+  virtual void set_pressure_fraction(double fraction) = 0;
+  virtual void accept_pressures() = 0;
+  /// result += what the forces of the last linearise() would be more with U'(J) in place of p. Collective.
+  virtual void add_pressure_defect(std::span<double> result) = 0;
   /// result = dE/du (u) + springs + mass_factor M u; keeps what the tangent there needs. Collective.
   virtual void linearise(std::span<const double> unknowns, std::span<const double> known, double mass_factor,
                          std::span<double> result) = 0;
@@ -53,6 +66,17 @@ class FiniteKernel {
   /// d x_i / d X_j, and with edges what the face's share of them makes of it.
   using Take = std::function<void(Index, const Tensor3&, const Tensor3&)>;
   virtual void visit(const Take& take) = 0;
+  /// dP/dF of a face of this rank and the cofactors of F at the last linearise(); entry i * 3 + j of P_ij. Three-cornered
+  /// faces as if they shared nothing with their edges. One volume ratio a cell: the cofactors alone also of the faces
+  /// between an owned cell and its owner on another rank.
+  struct FaceTangent {
+    Index face;
+    Eigen::Matrix<double, 9, 9> stiffness;
+    Tensor3 cofactors;
+  };
+  virtual void visit_tangents(const std::function<void(const FaceTangent&)>& take) = 0;
+  /// U'' / V of an owned cell at the last linearise() [Pa/m^3]; one volume ratio a cell.
+  virtual double modulus(Index cell) const = 0;
   /// Of a local node (cells, then boundary faces) at the last linearise(), or what was applied since.
   virtual Vec3 displacement(Index node) const = 0;
   /// As ElasticKernel::holding_forces(), of displacements `unknowns`. Collective.

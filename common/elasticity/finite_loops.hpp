@@ -101,6 +101,19 @@ template <int D, bool HasSecond>
   }
 }
 
+/// The forces of a pressure of the cells alone: p H.
+template <int D>
+void pressure_loop(const Group<D>& group, const Values<D>& at) {
+  for (std::size_t i = 0; i < group.blocks.size(); ++i) {
+    Four h[3][3];
+    cofactors(group.states[i].f, h);
+    const Four p = between<D>(group.blocks[i], at.of_cells);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) h[a][b] *= p;
+    push_stress<D>(group.blocks[i], h, 1, at.forces, at.point_forces);
+  }
+}
+
 /// V_fP dJ to the cells.
 template <int D>
 [[gnu::always_inline]] inline void volume_loop(const Group<D>& group, const Values<D>& at) {

