@@ -130,6 +130,10 @@ const std::array cards{
               "a boundary of `type: interface`",
               [](const S& s) { return when(s.coupled && has_interface(s), "a boundary of type interface"); },
               {"forces a face of the interface", 0, 0}},
+    FluidCard{"implicit sub-steps bounded by accuracy",
+              "`implicit-stretch`",
+              [](const S& s) { return when(s.parameters.implicit_stretch.has_value(), "implicit-stretch"); },
+              {"up to as many more sub-steps as stability would let them be longer", 0, 0}},
     FluidCard{
         "walls that yield (Robin interface)",
         "`surface-density` of a boundary of type interface",

@@ -164,13 +164,20 @@ void Fluid<D>::choose_viscous_treatment() {
   } else {
     const double with_explicit = parts(dt_, parameters_.safety_factor * limits.explicit_viscous);
     const double with_implicit =
-        implicit_cost * parts(dt_, parameters_.safety_factor * limits.implicit_viscous);
+        implicit_cost * parts(dt_, parameters_.safety_factor * implicit_limit(limits));
     if (implicit && with_explicit < 0.7 * with_implicit) implicit = false;
     if (!implicit && with_implicit < 0.9 * with_explicit) implicit = true;
   }
   if (implicit == begin_.implicit) return;
   begin_.implicit = implicit;
   begin_.dt_old = 0;
+}
+
+/// By stability, and by accuracy where that is asked for.
+template <int D>
+double Fluid<D>::implicit_limit(const StepLimits& limits) const {
+  if (!parameters_.implicit_stretch) return limits.implicit_viscous;
+  return std::min(limits.implicit_viscous, *parameters_.implicit_stretch * limits.explicit_viscous);
 }
 
 /// Equal parts of what remains, each within the limit of the present flow.
@@ -182,7 +189,7 @@ double Fluid<D>::next_size(double remaining, bool& last) {
   } else {
     const StepLimits limits = statistics_.sub_steps == 0 ? statistics_.limits : step_size_.limits(level());
     limit =
-        parameters_.safety_factor * (history_.implicit ? limits.implicit_viscous : limits.explicit_viscous);
+        parameters_.safety_factor * (history_.implicit ? implicit_limit(limits) : limits.explicit_viscous);
   }
   const double n = parts(remaining, limit);
   if (!(n + statistics_.sub_steps <= most_sub_steps))

@@ -94,6 +94,7 @@ class Fluid {
   void check_wall_velocity() const;
   void refuse_inverted(const Placement<D>& at) const;
   void choose_viscous_treatment();
+  double implicit_limit(const StepLimits& limits) const;
   double next_size(double remaining, bool& last);
   SubStep<D> make_sub_step(double dt, double done, std::span<const Vec3> points) const;
   Vectors<D> wall_velocity_at(double done, const Vectors<D>& interface_velocity,

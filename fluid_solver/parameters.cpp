@@ -181,6 +181,12 @@ void declare(config::Section& s, FluidParameters& p) {
           "time scheme of the viscous term; auto: implicit where its explicit stability limit would cost "
           "clearly "
           "more steps;");
+  s.value("implicit-stretch", p.implicit_stretch)
+      .range(1, 1e6)
+      .doc(
+          "largest step with an implicit viscous term, in limits of the explicit one: bounds it by accuracy, since the "
+          "second order of the implicit term shows where nu dt / h^2 is about 1 or less only (4 gives it on the flap); "
+          "absent: by stability alone, which is cheaper");
   s.value("pressure-tolerance", p.pressure_tolerance)
       .range(1e-14, 1e-1)
       .doc(

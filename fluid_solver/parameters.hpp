@@ -130,6 +130,8 @@ struct FluidParameters {
   std::optional<double> time_step;  // [s]; empty: by the stability limit
   double safety_factor = 0.8;
   ViscousTreatment viscous = ViscousTreatment::automatic;
+  std::optional<double>
+      implicit_stretch;  // largest implicit sub-step over the explicit limit; empty: no such bound
   double pressure_tolerance = 1e-6;
   std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
   config::ExpressionText initial_pressure;               // [Pa]

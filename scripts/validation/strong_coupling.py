@@ -5,7 +5,9 @@ import resource
 import numpy as np
 
 import couplet_series as couplet
+from couplet_run.launch import RunFailed
 from validation.job import Bar
+from validation.parts.strong_walls import WALLS
 
 FLAP = "configs/perpendicular-flap/case.yaml"
 LADDER = [(rho, mu) for rho in (42, 10, 1) for mu in (10, 1, 0.1)]
@@ -79,7 +81,49 @@ def tested(executable, pattern):
     return measure
 
 
+COARSE = ["participants.solid.mesh-parameters={n_side: 40, n_tip: 4}", *(
+    f"participants.{name}.mesh-parameters={{n_side: 20, n_tip: 2, growth: 1.3, wall_growth: 1.3, wall_cells: 5}}" for name in ("fluid", "mover"))]
+
+
+def order(mu, more=(), mesh=()):
+    """Mean slope of the successive differences of the tip over four steps."""
+    def measure(job):
+        tips = [flap(job, 3000, mu, dt=dt, more=(*mesh, *more, "coupling.convergence.relative=1e-7"))[0][-1]
+                for dt in (0.01, 0.005, 0.0025, 0.00125)]
+        gaps = np.abs(np.diff(tips))
+        slope = np.log2(gaps[0] / gaps[-1]) / 2
+        return f"{slope:.2f}, differences {', '.join(f'{g:.1e}' for g in gaps)} m", slope >= 1.8
+    return measure
+
+
+def implicit_at_its_edge(on_guess):
+    def measure(job):
+        folder = job.scratch / f"edge-{on_guess}"
+        arguments = [
+            "simulation.end-time=0.15", "simulation.max-step-halvings=0", "simulation.output.interval=0.15", "simulation.checkpoint.interval=0",
+            "participants.fluid.boundaries.inlet.ramp=0.4", "participants.fluid.pressure-tolerance=1e-8", "participants.fluid.viscosity=10",
+            "participants.solid.material.density=1", "coupling.scheme=implicit", "coupling.convergence.max-iterations=100",
+            f"coupling.mesh-on-guess={'true' if on_guess else 'false'}"]
+        try:
+            job.case_run(job.root / FLAP, folder, arguments, {}, 3000)
+        except RunFailed:
+            pass  # how far it came is the answer
+        tip = couplet.read_csv(folder / "solid" / "probes.csv")["tip x [m]"]
+        value = f"{len(tip)} of 15 steps, zigzag {zigzag(tip):.3f}" if len(tip) > 9 else f"{len(tip)} of 15 steps"
+        return value, len(tip) == 15
+    return measure
+
+
 BARS = [
+    *WALLS,
+    Bar("order in the step, flap, mu 1, default settings", "slope >= 1.8", order(1, mesh=COARSE), but="20 cells a side, rho_s 3000, to 0.2 s"),
+    Bar("order in the step, flap, mu 0.1, default settings", "slope >= 1.8", order(0.1, mesh=COARSE), but="20 cells a side, rho_s 3000, to 0.2 s"),
+    *(Bar(f"order in the step, flap, mu {mu}, implicit-stretch 4", "slope >= 1.8",
+          order(mu, ("participants.fluid.implicit-stretch=4",), COARSE), but="20 cells a side, rho_s 3000, to 0.2 s; not the default")
+      for mu in (1, 0.1)),
+    Bar("order in the step, flap, mu 1, default settings, mesh of the case", "slope >= 1.8", order(1), long=True, but="to 0.2 s"),
+    Bar("implicit at rho_s 1, mu 10, mesh on the guess", "15 steps", implicit_at_its_edge(True), long=True),
+    Bar("implicit at rho_s 1, mu 10, mesh moved in each pass", "reported: the neighbour", lambda job: (implicit_at_its_edge(False)(job)[0], None), long=True),
     *(Bar(f"ladder rho_s {rho}, mu {mu}, dt 0.01 s, to {END} s", "every step solved, zigzag < 0.15", rung(rho, mu),
           but=f"to {END} s; the row to 0.6 s follows") for rho, mu in LADDER),
     *(Bar(f"ladder rho_s {rho}, mu {mu}, dt 0.01 s, to 0.6 s", "every step solved, zigzag < 0.15", rung(rho, mu, end=0.6),

@@ -171,6 +171,29 @@ TEST(AddedMass, impulse_does_not_depend_on_the_number_of_sub_steps) {
   }
 }
 
+/// By stability alone one implicit sub-step would do.
+TEST(ImplicitStretch, bounds_an_implicit_sub_step_in_limits_of_the_explicit_one) {
+  FluidParameters p;
+  p.density = p.viscosity = 1;
+  p.viscous = ViscousTreatment::implicit;
+  all_sides(p, 2, boundary(BoundaryType::no_slip));
+  const RawMesh raw = make_box(BoxCells::quadrilaterals, {8, 8, 1}, Vec3::Zero(), Vec3(1, 1, 1));
+  const auto sub_steps = [&](std::optional<double> stretch) {
+    p.implicit_stretch = stretch;
+    FluidCase<2> c(MPI_COMM_WORLD, raw, p);
+    c.step(0.1);
+    const StepLimits limits = c.fluid().statistics().limits;
+    EXPECT_GT(0.1, 10 * limits.explicit_viscous);
+    return std::pair(c.fluid().statistics().sub_steps, 0.1 / (p.safety_factor * limits.explicit_viscous));
+  };
+  EXPECT_EQ(sub_steps({}).first, 1);
+  for (const double stretch : {1., 4.}) {
+    const auto [parts, explicit_parts] = sub_steps(stretch);
+    EXPECT_EQ(parts, std::ceil(explicit_parts / stretch - 1e-9)) << stretch;
+  }
+  EXPECT_EQ(sub_steps(1e6).first, 1);
+}
+
 TEST(ImpulsiveStart, loads_the_first_step_with_the_impulse_of_the_fluid_set_in_motion) {
   // A plug of fluid, 2 m long, set in motion by an inlet that is switched on at t = 0; the floor feels its
   // pressure.
