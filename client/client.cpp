@@ -51,6 +51,7 @@ struct couplet_client {
   std::int64_t iterations = 0;
   double error = NAN, energy = NAN, started = 0;
   bool described = false;
+  bool started_mpi = false;
 };
 
 namespace {
@@ -195,6 +196,7 @@ couplet_client* couplet_join(const char* participant, const char* program) try {
     MPI_Init(nullptr, nullptr);
   }
   auto c = std::make_unique<couplet_client>();
+  c->started_mpi = !up;
   c->participant = participant;
   const Place place = join(participant, program);
   if (!place.starts) {
@@ -290,6 +292,10 @@ void couplet_report(couplet_client* c, int64_t iterations, double error, double 
   c->energy = energy;
 }
 
-void couplet_leave(couplet_client* c) { delete c; }
+void couplet_leave(couplet_client* c) {
+  const bool finalise = c->started_mpi;
+  delete c;
+  if (finalise) MPI_Finalize();
+}
 
 }  // extern "C"

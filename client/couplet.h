@@ -5,7 +5,7 @@
  *   couplet_vertices(c, ...); couplet_faces(c, ...);             each process what it owns, or process 0 all
  *   couplet_takes(c, "pressure-force", "N", COUPLET_FACES, 0); couplet_gives(c, ...);
  *   while ((event = couplet_next(c)) != COUPLET_END) switch (event) ...
- *   couplet_leave(c); MPI_Finalize();
+ *   couplet_leave(c);
  *
  * Between two calls of couplet_next the program does what the event asks for; the next call answers for it. Units
  * are SI. An error that is no failed step ends the whole job with a sentence (MPI_Abort). */
@@ -72,6 +72,7 @@ void couplet_advise(couplet_client* c, double dt);
 /* ACCEPT: what the accepted step was like: iterations of solvers, estimated time error, energy [J]; NAN: unknown. */
 void couplet_report(couplet_client* c, int64_t iterations, double error, double energy);
 
+/* After COUPLET_END. Calls MPI_Finalize if couplet_join has called MPI_Init. */
 void couplet_leave(couplet_client* c);
 
 #ifdef __cplusplus

@@ -62,6 +62,5 @@ int main(int argc, char** argv) {
   }
   fclose(file);
   couplet_leave(job);
-  MPI_Finalize();
   return 0;
 }

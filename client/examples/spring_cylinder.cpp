@@ -73,5 +73,4 @@ int main(int argc, char** argv) {
       if (event == COUPLET_LOAD) std::ifstream(job.checkpoint() + ".txt") >> now.y >> now.v;
     }
   }
-  MPI_Finalize();
 }

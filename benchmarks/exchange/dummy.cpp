@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// A participant that costs nothing but its data: n vertices on a sheet, three numbers each way, y_i = c_i - g_i x_i.
+// Usage: dummy one|two VERTICES   or   dummy plain VERTICES on two processes: the same bytes to and fro by MPI alone.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "couplet.hpp"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds(Clock::time_point since) {
+  return std::chrono::duration<double>(Clock::now() - since).count();
+}
+
+int plain(int n) {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  std::vector<double> values(3 * std::size_t(n), rank);
+  constexpr int rounds = 200;
+  double least = 1e9;
+  for (int k = 0; k < rounds; ++k) {
+    MPI_Barrier(MPI_COMM_WORLD);
+    const auto start = Clock::now();
+    for (int way = 0; way < 2; ++way)
+      if (rank == way)
+        MPI_Send(values.data(), 3 * n, MPI_DOUBLE, 1 - rank, 0, MPI_COMM_WORLD);
+      else
+        MPI_Recv(values.data(), 3 * n, MPI_DOUBLE, 1 - rank, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    least = std::min(least, seconds(start));
+  }
+  if (rank == 0) std::printf("plain %.6f ms there and back\n", 1e3 * least);
+  MPI_Finalize();
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 3) return 2;
+  const std::string name = argv[1];
+  const int n = std::atoi(argv[2]), columns = int(std::sqrt(double(n)));
+  if (name == "plain") return MPI_Init(&argc, &argv), plain(n);
+  couplet::Client job(name, "dummy");
+  std::vector<double> xyz;
+  for (int i = 0; i < n; ++i) xyz.insert(xyz.end(), {double(i % columns), double(i / columns), 0.});
+  job.vertices(3, xyz);
+  job.faces({}, {});
+  const bool first = name == "one";
+  job.takes(first ? "force" : "motion", first ? "Pa" : "m", COUPLET_VERTICES);
+  job.gives(first ? "motion" : "force", first ? "m" : "Pa", COUPLET_VERTICES);
+  std::vector<double> answer(3 * std::size_t(n)), push(answer), slope(answer);
+  for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = 0.05 + 0.9 * double(i % 97) / 97;
+  auto before = Clock::now();
+  double own = 0, all = 0;
+  int passes = 0;
+  for (couplet_event event; (event = job.next()) != COUPLET_END;) {
+    if (event == COUPLET_BEGIN) {
+      for (std::size_t i = 0; i < push.size(); ++i) push[i] = std::sin(10 * job.time() + 1e-4 * double(i));
+      before = Clock::now();
+    }
+    if (event != COUPLET_SOLVE) continue;
+    const auto start = Clock::now();
+    const std::vector<double> x = job.read(first ? "force" : "motion");
+    for (std::size_t i = 0; i < answer.size(); ++i) answer[i] = first ? push[i] - slope[i] * x[i] : x[i];
+    job.write(first ? "motion" : "force", answer);
+    own += seconds(start);
+    all += seconds(before);
+    before = Clock::now();
+    ++passes;
+  }
+  if (first)
+    std::printf("passes %d, %.6f ms a pass, of it the dummies' own %.6f ms\n", passes, 1e3 * all / passes,
+                2e3 * own / passes);
+  return 0;
+}
