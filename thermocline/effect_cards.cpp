@@ -38,6 +38,16 @@ V judge_yield(const P&, const E& e) {
       "the wall would yield: its stress and that of the grains are those of an elastic wall"};
 }
 
+V judge_sound(const P&, const E& e) {
+  if (std::isnan(e.largest_mach)) return {};
+  return EffectVerdict{
+      "", e.largest_mach, 0.3,
+      fmt::format("at its largest flow the gas has {:.2g} of the speed of sound between the grains",
+                  e.largest_mach),
+      "its flow is compressible, and neither the pressure loss nor the films hold: take less flow, a wider bed or more "
+      "pressure"};
+}
+
 const std::array cards{
     Card{"resolved grains",
          "`bed.shells` above 1",
@@ -46,11 +56,17 @@ const std::array cards{
          "Biot number of the grains, 20",
          judge_grains},
     Card{"yielding of the wall",
-         "not available here",
+         "no key: not in the model",
          [](const P&) { return std::string(); },
          {},
          "equivalent stress over the yield strength, 1",
          judge_yield},
+    Card{"compressible flow of a gas",
+         "no key: not in the model",
+         [](const P&) { return std::string(); },
+         {},
+         "speed between the grains over that of sound, 0.3",
+         judge_sound},
     Card{"shell",
          "`shell`",
          [](const P& p) { return when(p, p.tank.shell.has_value(), "shell"); },

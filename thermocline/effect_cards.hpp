@@ -13,6 +13,7 @@ namespace couplet::thermocline {
 struct Evidence {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double largest_biot = unknown;    ///< film d / (2 conductivity) of the grains at the largest flow
+  double largest_mach = unknown;    ///< of a gas between the grains at the largest flow
   double share_of_yield = unknown;  ///< largest equivalent stress of the wall over its yield strength
 };
 using Card = EffectCard<ElementParameters, Evidence>;

@@ -53,6 +53,16 @@ double largest_biot(const TankModel& m, double peak_flow) {
   return largest;
 }
 
+/// Of an ideal gas where it is hottest and the pores are narrowest, at the pressure at which it leaves.
+double largest_mach(const TankModel& m, double peak_flow) {
+  const Fluid& gas = m.setup().fluid;
+  double narrowest = 1;
+  for (const auto& run : m.bed().grid().runs) narrowest = std::min(narrowest, run.layer.porosity);
+  const double hottest = m.fluid_range().second, r = gas.gas_constant;
+  const double speed = peak_flow / m.bed().area() * r * hottest / (gas.pressure * narrowest);
+  return speed / std::sqrt(gas.specific_heat / (gas.specific_heat - r) * r * hottest);
+}
+
 void fluid(const TankModel& m, double peak_flow, Lines& lines) {
   if (m.inversion().depth > 0.01)
     lines.push_back(fmt::format(
@@ -164,6 +174,7 @@ void speed(const Speed& speed, int cells, Lines& lines) {
 std::vector<EffectVerdict> Tank::audit() const {
   const TankModel& m = accepted_;
   Evidence evidence;
+  if (m.setup().fluid.is_gas() && peak_flow_ > 0) evidence.largest_mach = largest_mach(m, peak_flow_);
   if (m.bed().shells() == 1 && peak_flow_ > 0) evidence.largest_biot = largest_biot(m, peak_flow_);
   if (m.shell() && !m.stress().yield.empty()) {
     const WallStress& stress = m.stress();
