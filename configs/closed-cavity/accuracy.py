@@ -7,13 +7,13 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 import couplet_series as couplet  # noqa: E402
 
 TITLE = "Closed box under an elastic lid"
-LID = 0.019113384  # [m], its middle at 0.4 s: this case, semi-implicit with IQN-ILS, steps of 0.3125 ms
+LID = 0.020633703  # [m], its middle at 0.4 s: this case, semi-implicit with the level and IQN-ILS, steps of 1.25 ms
 MESHES = {f"participants.{name}.mesh-parameters": "{n: 8}" for name in ("fluid", "lid", "mover")}
 ROBIN = {"coupling.order": "structure-first", "participants.fluid.volume-level": "none",
          "participants.fluid.boundaries.lid.surface-density": "50"}
 
 
-def runs(scheme, acceleration, more=(), steps=(0.04, 0.02, 0.01, 0.005)):
+def runs(scheme, acceleration, more=(), steps=(0.04, 0.02, 0.01)):
     return {f"{1e3 * dt:g} ms": {"simulation.time-step": str(dt), "simulation.end-time": "0.4", "simulation.output.interval": "0",
                                  "coupling.scheme": scheme, "coupling.acceleration.type": acceleration, **MESHES, **dict(more)}
             for dt in steps}

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of strong coupling: light structures in viscous fluids."""
 import resource
+import zlib
 
 import numpy as np
 
@@ -17,7 +18,7 @@ END = 0.2  # s; long rows go on to 0.6 s
 def flap(job, rho, mu, scheme="semi-implicit", dt=0.01, end=END, more=()):
     """One rung: tip displacements, coupling iterations a step and cpu seconds of all programs, which hold about 0.5 s of start-up."""
     def make():
-        name = f"ladder-{rho}-{mu}-{scheme}-{dt}-{end}"
+        name = f"ladder-{rho}-{mu}-{scheme}-{dt}-{end}-{zlib.crc32(' '.join(more).encode())}"  # runs are kept by their folder
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         folder = job.coupled(job.root / FLAP, name, [
             f"simulation.end-time={end}", f"simulation.time-step={dt}", "simulation.max-step-halvings=0",
