@@ -11,6 +11,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/io/numbering.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/cavity.hpp"
@@ -315,12 +316,14 @@ StepReport FluidParticipant<D>::accept_step() {
 template <int D>
 void FluidParticipant<D>::save(CheckpointWriter& file) const {
   fluid_->refresh_solvers();
+  write_numbering(file, mesh_);
   write_state(file, fluid_->state());
   if (statistics_) statistics_->save(file);
 }
 
 template <int D>
 void FluidParticipant<D>::load(CheckpointReader& file) {
+  check_numbering(file, mesh_);
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
   if (statistics_) statistics_->load(file);
   fluid_->refresh_solvers();

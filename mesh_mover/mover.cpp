@@ -5,6 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/io/numbering.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
@@ -186,11 +187,13 @@ MeshState Mover::state() const {
 }
 
 void Mover::save(CheckpointWriter& file) const {
+  write_numbering(file, mesh_);
   file.write("displacement", accepted_);
   if (!incremental()) method_->save(file);  // else it starts from nothing in each step
 }
 
 void Mover::load(CheckpointReader& file) {
+  check_numbering(file, mesh_);
   file.read("displacement", accepted_);
   displacement_ = accepted_;
   if (incremental())

@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/io/numbering.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/effect_cards.hpp"
 #include "solid_solver/output.hpp"
@@ -226,6 +227,7 @@ void Solid::write_monitors(double time) {
 }
 
 void Solid::save(CheckpointWriter& file) const {
+  write_numbering(file, mesh_);
   file.write("cell-displacement", state_.cell_u);
   file.write("cell-velocity", state_.cell_v);
   if (!state_.cell_a.empty()) file.write("cell-acceleration", state_.cell_a);
@@ -296,6 +298,7 @@ void Solid::load_projections(CheckpointReader& file) {
 }
 
 void Solid::load(CheckpointReader& file) {
+  check_numbering(file, mesh_);
   file.read("cell-displacement", state_.cell_u);
   file.read("cell-velocity", state_.cell_v);
   if (!state_.cell_a.empty()) file.read("cell-acceleration", state_.cell_a);
