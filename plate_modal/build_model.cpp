@@ -14,7 +14,7 @@ namespace couplet::plate {
 namespace {
 
 /// To be counted up when the same data would give other modes.
-constexpr int model_version = 1;
+constexpr int model_version = 2;
 
 /// FNV-1a over all that the modes depend on.
 class Key final {
@@ -110,6 +110,21 @@ RawMesh read(const Parameters& p, const std::filesystem::path& folder) {
   return raw;
 }
 
+/// Rigid motions come with the rounding of the stiffness: below this eigenvalue they are none [1/s^2].
+double rigid_limit(const PlateModel& plate) { return 1e-6 * plate.frequency_scale(); }
+
+/// A plate that may fall and turn in some ways must be able to do so in all of them.
+void refuse_lost_rigid(const PlateModel& plate, const EigenModes& modes) {
+  if (!(modes.next < rigid_limit(plate))) return;
+  const EigenModes first = plate.modes(3);  // there are no more: a fall and two turns
+  const auto rigid =
+      std::ranges::count_if(first.eigenvalue, [&](double value) { return value < rigid_limit(plate); });
+  throw Error(
+      "modes.number: nothing holds the plate against {} rigid motions (modes of 0 Hz), and only {} of them would be "
+      "kept: it would fall and turn in some ways and not in others. Keep at least {}.",
+      rigid, modes.eigenvalue.size(), rigid);
+}
+
 void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const PlateContext& context) {
   const std::filesystem::path file = context.output_folder / "modes.h5";
   const std::string key = key_of(plate, p);
@@ -119,6 +134,7 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
     return;
   }
   const EigenModes modes = plate.modes(p.n_modes());
+  refuse_lost_rigid(plate, modes);
   if (cuts_a_group(modes, 1e-3))
     built.note = fmt::format(
         "modes {} and {} have the same frequency, and only the first is kept: the plate answers differently "
@@ -126,8 +142,7 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
         "directions that should be alike. Keep one more or one less.",
         p.n_modes(), p.n_modes() + 1);
   built.model = skin_of(plate, modes, p.placement, p.wetted, open_patches(plate.surface(), p));
-  // Rigid motions come with the rounding of the stiffness: they are none.
-  const double least = std::sqrt(1e-6 * plate.frequency_scale()) / (2 * std::numbers::pi);
+  const double least = std::sqrt(rigid_limit(plate)) / (2 * std::numbers::pi);
   for (double& f : built.model.frequency)
     if (f < least) f = 0;
   if (!context.output_folder.empty()) write_modes(file, built.model, key);

@@ -28,10 +28,32 @@ V verdict(double number, double threshold, std::string sentence, std::string rec
 // A clamped strip whose tip has moved by a quarter of its length has turned there by about 20 degrees: the
 // foreshortening that modes do not know is 0.6 x 0.25^2 of the length, 4 %.
 V judge_rotation(const S&, const E& e) {
+  // A rigid body that turns by 0.25 rad is stretched by 1 / cos, 3 %.
+  if (!std::isnan(e.rotation))
+    return verdict(e.rotation, 0.25,
+                   fmt::format("the structure has turned as a whole by {:.2g} rad", e.rotation),
+                   "modes are linear and turn a body along its tangent: take a program for finite strain");
   return verdict(
       e.displacement_over_size, 0.25,
       fmt::format("the largest displacement is {:.2g} of the structure's size", e.displacement_over_size),
       "modes are linear and know no large rotation: take a program for finite strain");
+}
+
+V judge_in_plane(const S& s, const E& e) {
+  return verdict(
+      e.in_plane_share, 0.01,
+      fmt::format(
+          "{:.2g} of {} lies in the plane of the plate", e.in_plane_share,
+          s.parameters.gravity.empty() ? "the initial velocity" : "the gravity or the initial velocity"),
+      "no mode moves in the plane: that part is left out. Give its normal part alone, or take a volume");
+}
+
+V judge_kept(const S&, const E& e) {
+  return verdict(
+      e.modes_apart, 0.05,
+      fmt::format("the deflection by modes is {:.2g} of the deflection itself off", e.modes_apart),
+      "fields and probes show the deflection itself, but modal.csv and the interface the modes: keep "
+      "more modes ('modes.number')");
 }
 
 // A plate that is held all round is stiffened by its stretch as 1 + 0.5 (w/h)^2, more or less by its edges.
@@ -162,8 +184,20 @@ const std::array cards{
               "no key: not in the model",
               [](const S&) { return std::string(); },
               {},
-              "largest displacement over the structure's size, 0.25",
+              "largest displacement over the structure's size, or rotation as a whole [rad], 0.25",
               judge_rotation},
+    PlateCard{"motion in the plane",
+              "no key: not in the model",
+              [](const S&) { return std::string(); },
+              {},
+              "share of gravity on a plate that may fall, or of the initial velocity, in its plane, 0.01",
+              judge_in_plane},
+    PlateCard{"deflection beyond the modes",
+              "`modes.number`",
+              [](const S&) { return std::string(); },
+              {},
+              "static: deflection itself against that by modes, 0.05",
+              judge_kept},
     PlateCard{"stretch of the mid-surface",
               "no key: not in the model",
               [](const S&) { return std::string(); },

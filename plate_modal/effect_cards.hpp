@@ -22,6 +22,10 @@ struct PlateEvidence {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double displacement_over_size = unknown;       ///< of a structure that is held
   double displacement_over_thickness = unknown;  ///< of a plate that is held all round
+  double rotation = unknown;                     ///< of a structure with rigid motions, as a whole [rad]
+  double in_plane_share =
+      unknown;                   ///< of gravity or of the initial velocity of a plate, that no mode answers
+  double modes_apart = unknown;  ///< static: difference by modes over the deflection itself
   double thickness_over_wave =
       unknown;  ///< over half the wave length of the highest mode that moves, or that is kept
   double energy_mismatch = unknown;  ///< of the largest energy, thesis (4.29)-(4.31)

@@ -2,6 +2,7 @@
 #include "plate_modal/midsurface.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -22,6 +23,30 @@ double least_corner(const Midsurface& s, std::span<const Index> cell) {
     least = std::min(least, cross(b - a, c - a));
   }
   return least;
+}
+
+/// The model lies in the plane of the mesh's x and y, and 'placement' says where that is in space: a mesh that stands
+/// in another plane, or is no plane, would be seen from above only.
+void refuse_out_of_plane(const RawMesh& raw) {
+  constexpr double tolerance =
+      1e-6;  // of the mesh's size: coordinates of a file have no more digits than this
+  std::vector<Index> used;
+  for (Index c = 0; c < raw.cell_points.size(); ++c)
+    for (const Index p : raw.cell_points[c]) used.push_back(p);
+  if (used.empty()) return;
+  Vec3 low = raw.points[used.front()], high = low;
+  Index farthest = used.front();
+  for (const Index p : used) {
+    const Vec3& x = raw.points[p];
+    low = low.cwiseMin(x), high = high.cwiseMax(x);
+    if (std::abs(x.z()) > std::abs(raw.points[farthest].z())) farthest = p;
+  }
+  const Vec3& x = raw.points[farthest];
+  if (std::abs(x.z()) <= tolerance * (high - low).norm()) return;
+  throw Error(
+      "The mid-surface does not lie in the plane z = 0: its z goes from {:.6g} to {:.6g} m, farthest at ({:.6g}, "
+      "{:.6g}, {:.6g}). A plate is meshed there, and 'placement' puts it into space; a curved or folded sheet is none.",
+      low.z(), high.z(), x.x(), x.y(), x.z());
 }
 
 void add_cells(const RawMesh& raw, Midsurface& s) {
@@ -61,9 +86,30 @@ std::map<std::pair<Index, Index>, int> patch_of_edges(const RawMesh& raw) {
   std::map<std::pair<Index, Index>, int> patch;
   for (Index e = 0; e < raw.boundary_points.size(); ++e) {
     const auto ends = raw.boundary_points[e];
-    patch[std::minmax(number[ends[0]], number[ends[1]])] = raw.boundary_patch[e];
+    const auto [found, is_new] =
+        patch.emplace(std::minmax(number[ends[0]], number[ends[1]]), raw.boundary_patch[e]);
+    if (is_new || found->second == raw.boundary_patch[e]) continue;
+    const Vec3 middle = 0.5 * (raw.points[ends[0]] + raw.points[ends[1]]);
+    throw Error(
+        "The edge of the mid-surface at ({:.6g}, {:.6g}) belongs to two patches, '{}' and '{}': it cannot be held in "
+        "two ways. Put each curve into one physical curve.",
+        middle.x(), middle.y(), raw.patches[found->second], raw.patches[raw.boundary_patch[e]]);
   }
   return patch;
+}
+
+/// Edges of a patch that are not on the outline would hold nothing, whatever their entry says.
+void refuse_inside(const Midsurface& s, const std::map<std::pair<Index, Index>, int>& patches,
+                   const std::map<std::pair<Index, Index>, int>& uses) {
+  for (const auto& [edge, patch] : patches) {
+    const auto found = uses.find(edge);
+    if (found == uses.end() || found->second < 2) continue;
+    const Vec2 middle = 0.5 * (s.points[edge.first] + s.points[edge.second]);
+    throw Error(
+        "The patch '{}' has an edge inside the mid-surface, at ({:.6g}, {:.6g}). Only edges of the outline can be "
+        "held: take the curve out of the physical curves, or cut a slit along it.",
+        s.patches[patch], middle.x(), middle.y());
+  }
 }
 
 }  // namespace
@@ -71,12 +117,14 @@ std::map<std::pair<Index, Index>, int> patch_of_edges(const RawMesh& raw) {
 Midsurface midsurface_of(const RawMesh& raw) {
   Midsurface s;
   s.patches = raw.patches;
+  refuse_out_of_plane(raw);
   add_cells(raw, s);
   std::map<std::pair<Index, Index>, int> uses;
   for (Index c = 0; c < s.cells.size(); ++c)
     for (std::size_t i = 0, n = s.cells[c].size(); i < n; ++i)
       ++uses[std::minmax(s.cells[c][i], s.cells[c][(i + 1) % n])];
   const auto patches = patch_of_edges(raw);
+  refuse_inside(s, patches, uses);
   for (Index c = 0; c < s.cells.size(); ++c)
     for (std::size_t i = 0, n = s.cells[c].size(); i < n; ++i) {
       const Index from = s.cells[c][i], to = s.cells[c][(i + 1) % n];

@@ -26,7 +26,8 @@ struct Midsurface {
 };
 
 /// Turns cells counter-clockwise, drops points that no cell uses and finds the patch of every edge of the
-/// outline. Throws Error naming the place of an edge without a patch or of a cell without area.
+/// outline. Throws Error naming the place of an edge without a patch, of two patches or of one inside the plate, of a
+/// cell without area, or of a point out of the plane.
 Midsurface midsurface_of(const RawMesh& raw);
 
 }  // namespace couplet::plate

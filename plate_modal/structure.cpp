@@ -10,27 +10,10 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/on_root.hpp"
-#include "plate_modal/effect_cards.hpp"
 #include "plate_modal/results.hpp"
 
 namespace couplet::plate {
 namespace {
-
-/// Thickness over half the length of a bending wave of this frequency in the thickest part of a plate:
-/// D k^4 = rho h omega^2.
-double thickness_over_wave(const Parameters& p, double omega) {
-  double largest = 0;
-  const auto of = [&](double h, double density, double youngs_modulus) {
-    const double d =
-        youngs_modulus * h * h * h / (12 * (1 - p.material.poissons_ratio * p.material.poissons_ratio));
-    largest = std::max(largest, h * std::pow(density * h * omega * omega / d, 0.25) / std::numbers::pi);
-  };
-  of(p.thickness, p.material.density, p.material.youngs_modulus);
-  for (const auto& [name, zone] : p.zones)
-    of(zone.thickness.value_or(p.thickness), zone.density.value_or(p.material.density),
-       zone.youngs_modulus.value_or(p.material.youngs_modulus));
-  return largest;
-}
 
 /// A seat in which the structure stands at the start has wound springs: energy that nobody asked for.
 void refuse_inside(const Contact& contact, const Share& share, std::span<const double> q) {
@@ -43,6 +26,12 @@ void refuse_inside(const Contact& contact, const Share& share, std::span<const d
       "'height' (it counts from the origin along the direction, and a side of a plate is half a thickness from its "
       "mid-surface), or say 'starts-inside: true' if these springs are meant to push from the start.",
       place.depth, place.centre.x(), place.centre.y(), place.centre.z());
+}
+
+double largest_of(const std::vector<double>& vectors) {
+  double largest = 0;
+  for (std::size_t i = 0; i < vectors.size(); i += 3) largest = std::max(largest, Vec3(&vectors[i]).norm());
+  return largest;
 }
 
 }  // namespace
@@ -75,6 +64,7 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
   state_ = trial_ = initial_state();
   if (contact_ && !p.contact->starts_inside) refuse_inside(*contact_, *share_, state_.q);
   results_ = std::make_unique<PlateResults>(*this);
+  find_rotations();
 }
 
 Structure::~Structure() = default;
@@ -176,8 +166,7 @@ Exchange Structure::solve(const Exchange& in) {
   Exchange out;
   std::vector<double> u = share_->gather_vertices(trial_.q), v = share_->gather_vertices(trial_.v);
   if (comm_rank(context_.comm) != 0) return out;
-  trial_largest_ = 0;
-  for (std::size_t i = 0; i < u.size(); i += 3) trial_largest_ = std::max(trial_largest_, Vec3(&u[i]).norm());
+  trial_largest_ = largest_of(direct_.empty() ? u : direct_);
   out["displacement"] = std::move(u);
   out["velocity"] = std::move(v);
   if (parameters_.surface_density) out["surface-density"] = built_.model.face_density;
@@ -203,6 +192,7 @@ StepReport Structure::accept_step() {
   std::swap(state_, trial_);
   if (resolution_) look_at_step();
   largest_ = std::max(largest_, trial_largest_);
+  if (!rotations_.empty()) look_at_rotation();
   const Energies& e = state_.energies;
   worst_mismatch_ = std::max(worst_mismatch_, std::abs(e.mismatch()));
   largest_true_ = std::max(largest_true_, true_energy(state_));
@@ -217,29 +207,6 @@ std::vector<double> Structure::displacement() const {
 
 void Structure::write_output(double time, int) { results_->write_fields(time); }
 void Structure::write_monitors(double time) { results_->write_series(time); }
-
-std::vector<EffectVerdict> Structure::audit() const {
-  // What rank 0 knows of the whole surface decides on all ranks alike.
-  std::vector<double> seen(2, PlateEvidence::unknown);
-  if (comm_rank(context_.comm) == 0) {
-    double size = 0;
-    for (const Vec3& x : built_.model.vertices)
-      size = std::max(size, (x - built_.model.vertices.front()).norm());
-    // A body that moves as a whole may go far.
-    if (share_->omega().front() > 0) seen[0] = largest_ / size;
-    if (built_.held_all_round) seen[1] = largest_ / parameters_.thickness;
-  }
-  broadcast(context_.comm, seen);
-  PlateEvidence evidence{seen[0], seen[1], PlateEvidence::unknown, PlateEvidence::unknown, {}};
-  if (resolution_) evidence.step = resolution_->evidence(step_.is_last);
-  // Where nothing has moved yet, or nothing will, the modes themselves are the answer.
-  if (parameters_.mesh && !(resolution_ && std::isnan(evidence.step.last_mode_omega)))
-    evidence.thickness_over_wave = thickness_over_wave(
-        parameters_, resolution_ ? evidence.step.last_mode_omega : share_->omega().back());
-  if (parameters_.analysis == Parameters::Analysis::dynamic && largest_exchange_ > 0)
-    evidence.energy_mismatch = worst_mismatch_ / largest_exchange_;
-  return couplet::audit(plate_effect_cards(), PlateScene{parameters_}, evidence);
-}
 
 std::vector<std::string> Structure::finish() {
   if (parameters_.analysis != Parameters::Analysis::dynamic || !(largest_exchange_ > 0)) return {};
@@ -261,6 +228,7 @@ void Structure::save(CheckpointWriter& file) const {
   file.write("energies", std::vector<double>{e.kinetic, e.strain, e.gravity, e.contact, e.initial,
                                              e.load_work, e.impact_work, e.damping_loss, worst_mismatch_,
                                              largest_exchange_, largest_true_});
+  file.write("largest", std::vector<double>{largest_, largest_rotation_});
   file.write_scalar("dt", state_.dt);
   if (resolution_) file.write("resolution", resolution_->state());
 }
@@ -285,6 +253,9 @@ void Structure::load(CheckpointReader& file) {
   for (double* part : {&e.kinetic, &e.strain, &e.gravity, &e.contact, &e.initial, &e.load_work,
                        &e.impact_work, &e.damping_loss, &worst_mismatch_, &largest_exchange_, &largest_true_})
     *part = kept[i++];
+  std::vector<double> largest(2);
+  file.read("largest", largest);
+  largest_ = largest[0], largest_rotation_ = largest[1];
   state_.dt = file.read_scalar("dt");
   if (resolution_) {
     std::vector<double> seen = resolution_->state();

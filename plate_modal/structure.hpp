@@ -57,6 +57,9 @@ class Structure final : public Participant {
   ModalState initial_state() const;
   void make_contact();
   void look_at_step();
+  void find_rotations();
+  void look_at_rotation();
+  double in_plane_share() const;
   double true_energy(const ModalState& state) const;
   void refuse_made_energy() const;
   void solve_static(double t, std::span<const double> fluid);
@@ -80,6 +83,8 @@ class Structure final : public Participant {
   double worst_mismatch_ = 0, largest_exchange_ = 0;
   double largest_true_ = 0;  // largest energy that the scheme did not make, or work of the loads [J]
   double largest_ = 0, trial_largest_ = 0;  // displacement of any vertex [m], on rank 0
+  std::vector<Vec3> rotations_;             // of each mode [1/(sqrt(kg) m)]; empty: none is a rigid motion
+  double largest_rotation_ = 0;             // of the body as a whole [rad]
   std::unique_ptr<PlateResults> results_;
 };
 

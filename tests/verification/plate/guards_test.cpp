@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// What bending modes cannot answer is said, and not answered wrongly: each guard is shown to fire and not to fire.
+#include <gtest/gtest.h>
+
+#include "common/base/error.hpp"
+#include "plate_modal/structure.hpp"
+#include "tests/verification/plate/plates.hpp"
+
+namespace couplet::plate {
+namespace {
+
+using namespace test;
+
+/// A square plate of 1 m, its edges free but for those named.
+Parameters plate_held(const std::map<std::string, Support>& held = {}) {
+  Parameters p;
+  p.material = {2700, 70e9, 0.33};
+  p.thickness = 0.005;
+  p.number = 6;
+  for (const char* patch : {"xmin", "xmax", "ymin", "ymax"}) p.boundaries[patch];
+  for (const auto& [patch, support] : held) p.boundaries[patch].support = support;
+  return p;
+}
+
+std::vector<EffectVerdict> verdicts(const Parameters& p, int steps, double dt,
+                                    const RawMesh& raw = square(6)) {
+  Structure plate(p, PlateContext{}, &raw);
+  plate.initialise();
+  for (int i = 0; i < steps; ++i) {
+    plate.begin_step({i * dt, dt, Scheme::standalone, i, 1, true, i + 1 == steps});
+    plate.solve({});
+    plate.accept_step();
+  }
+  return plate.audit();
+}
+
+/// The verdict of that name; a test fails where there is none.
+EffectVerdict find(const std::vector<EffectVerdict>& all, const std::string& effect) {
+  for (const EffectVerdict& v : all)
+    if (v.effect == effect) return v;
+  ADD_FAILURE() << "no verdict '" << effect << "'";
+  return {};
+}
+
+std::string message_of(auto&& act) {
+  try {
+    act();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(PlateGuards, a_plate_on_a_hinge_may_fall_but_not_turn_far) {
+  Parameters p = plate_held({{"xmin", Support::simply_supported}});
+  p.gravity = {0, 0, -9.81};
+  // Its rotation is 3 g / (2 L) t^2 / 2.
+  const EffectVerdict little = find(verdicts(p, 10, 0.01), "large rotation");
+  EXPECT_NEAR(little.number, 0.75 * 9.81 * 0.01, 0.002);
+  EXPECT_TRUE(little.sound());
+  const EffectVerdict far = find(verdicts(p, 10, 0.05), "large rotation");
+  EXPECT_NEAR(far.number, 0.75 * 9.81 * 0.25, 0.04);
+  EXPECT_FALSE(far.sound());
+  // A free plate that falls does not turn.
+  p.boundaries["xmin"].support = Support::free;
+  EXPECT_LT(find(verdicts(p, 10, 0.05), "large rotation").number, 1e-6);
+}
+
+TEST(PlateGuards, all_rigid_motions_are_kept_or_none) {
+  const RawMesh raw = square(4);
+  for (const int n : {1, 2}) {
+    Parameters p = plate_held();
+    p.number = n;
+    const std::string text = message_of([&] { Structure(p, PlateContext{}, &raw); });
+    EXPECT_NE(text.find("against 3 rigid motions"), std::string::npos) << text;
+    EXPECT_NE(text.find("Keep at least 3"), std::string::npos) << text;
+  }
+  Parameters p = plate_held();
+  p.number = 3;
+  EXPECT_NO_THROW(Structure(p, PlateContext{}, &raw));
+  p = plate_held({{"xmin", Support::simply_supported}});
+  p.number = 1;
+  EXPECT_NO_THROW(Structure(p, PlateContext{}, &raw));
+}
+
+TEST(PlateGuards, what_moves_a_plate_in_its_plane_is_not_answered_with_nothing) {
+  Parameters p = plate_held();
+  p.gravity = {9.81, 0, 0};
+  EXPECT_FALSE(find(verdicts(p, 1, 0.01), "motion in the plane").sound());
+  p.gravity = {0, 0, -9.81};
+  EXPECT_TRUE(find(verdicts(p, 1, 0.01), "motion in the plane").sound());
+  p.initial_velocity = Vec3(0, 1, 1);
+  EXPECT_NEAR(find(verdicts(p, 1, 0.01), "motion in the plane").number, std::sqrt(0.5), 1e-12);
+  // The weight along a plate that is held rests on its supports.
+  p = plate_held({{"xmin", Support::clamped}});
+  p.gravity = {9.81, 0, 0};
+  EXPECT_TRUE(find(verdicts(p, 1, 0.01), "motion in the plane").sound());
+}
+
+/// A clamped plate under a load beside one corner, static.
+Parameters pressed(int modes) {
+  const Support c = Support::clamped;
+  Parameters p = plate_held({{"xmin", c}, {"xmax", c}, {"ymin", c}, {"ymax", c}});
+  p.analysis = Parameters::Analysis::static_;
+  p.number = modes;
+  p.load.emplace().lower.emplace().text = "1000 * sin(2 * pi * x)";
+  return p;
+}
+
+TEST(PlateGuards, a_static_deflection_is_judged_by_itself_and_not_by_its_modes) {
+  // The first mode alone is even about the middle and sees nothing of the load.
+  const std::vector<EffectVerdict> few = verdicts(pressed(1), 1, 1), many = verdicts(pressed(20), 1, 1);
+  EXPECT_GT(find(few, "stretch of the mid-surface").number, 0.01);
+  EXPECT_NEAR(find(few, "stretch of the mid-surface").number, find(many, "stretch of the mid-surface").number,
+              1e-9);
+  EXPECT_FALSE(find(few, "deflection beyond the modes").sound());
+  EXPECT_TRUE(find(many, "deflection beyond the modes").sound());
+}
+
+TEST(PlateGuards, edges_that_hold_nothing_or_twice_are_refused) {
+  RawMesh raw = square(4);
+  EXPECT_NO_THROW(midsurface_of(raw));
+  raw.patches.push_back("mid");
+  raw.boundary_points.push_row(std::array{raw.cell_points[0][0], raw.cell_points[0][1]});
+  raw.boundary_patch.push_back(4);
+  const std::string twice = message_of([&] { midsurface_of(raw); });
+  // The first cell's edges: one on the outline, two inside or the other way round.
+  bool inside = false, doubled = twice.find("two patches") != std::string::npos;
+  for (int i = 0; i < 3; ++i) {
+    RawMesh other = square(4);
+    other.patches.push_back("mid");
+    other.boundary_points.push_row(std::array{other.cell_points[0][i], other.cell_points[0][(i + 1) % 3]});
+    other.boundary_patch.push_back(4);
+    const std::string text = message_of([&] { midsurface_of(other); });
+    EXPECT_NE(text.find("'mid'"), std::string::npos) << text;
+    inside = inside || text.find("'mid' has an edge inside the mid-surface") != std::string::npos;
+    doubled = doubled || text.find("belongs to two patches") != std::string::npos;
+  }
+  EXPECT_TRUE(inside);
+  EXPECT_TRUE(doubled);
+}
+
+TEST(PlateGuards, a_mesh_out_of_its_plane_is_refused) {
+  RawMesh raw = square(4);
+  raw.points[7].z() = 1e-8;
+  EXPECT_NO_THROW(midsurface_of(raw));
+  raw.points[7].z() = 1e-3;
+  EXPECT_NE(message_of([&] { midsurface_of(raw); }).find("does not lie in the plane z = 0"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace couplet::plate
