@@ -68,6 +68,28 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const Patch& patch) {
 }
 
 template <int D>
+double through_moving_walls(const Fluid<D>& fluid) {
+  const Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  double worst = std::numeric_limits<double>::quiet_NaN();
+  for (const Patch& patch : mesh.patches) {
+    if (fluid.parameters().boundaries.at(patch.name).type != BoundaryType::moving_wall) continue;
+    double through = 0, size = 0;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Vec<D>& w = s.w[f - mesh.n_interior];
+      through += std::abs(w.dot(s.placement->area[f]));
+      size += w.norm() * s.placement->area[f].norm();
+    }
+    through = sum(mesh.comm, through), size = sum(mesh.comm, size);
+    if (size > 0) worst = std::isnan(worst) ? through / size : std::max(worst, through / size);
+  }
+  return worst;
+}
+
+template double through_moving_walls<2>(const Fluid<2>&);
+template double through_moving_walls<3>(const Fluid<3>&);
+
+template <int D>
 Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& c) {
   const Mesh& mesh = fluid.mesh();
   Vec3 sums[2] = {Vec3::Zero(), Vec3::Zero()};  // force, moment

@@ -27,6 +27,11 @@ WallSummary summarise_wall(const Fluid<D>& fluid, const Patch& patch);
 template <int D>
 std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid);
 
+/// Of the moving walls of a mesh at rest the largest sum of |w . S| over the sum of |w| |S|; NaN without such walls, or
+/// before they move. Collective.
+template <int D>
+double through_moving_walls(const Fluid<D>& fluid);
+
 /// Coefficients of drag, lift and moment: sum F.d / (q A), sum F.l / (q A), sum ((x - c) x F).a / (q A L) of
 /// the forces on some walls, means over the last step.
 struct Coefficients {

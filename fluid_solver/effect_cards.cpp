@@ -87,6 +87,23 @@ V judge_still_mesh(const S& s, const E& e) {
                        "give the case a mesh mover: 'coupling: {mesh: {participant: ...}}'"};
 }
 
+// A wall that moves across itself on a mesh that rests is an inlet.
+V judge_moving_walls(const S&, const E& e) {
+  if (std::isnan(e.through_walls)) return {};
+  return EffectVerdict{
+      "", e.through_walls, 0.1,
+      fmt::format("of the speed of a moving wall {:.2g} goes through the wall", e.through_walls),
+      "its mesh rests, so that fluid comes in or leaves there: let the wall move along itself, "
+      "call it an inlet, or move it with 'motion'"};
+}
+
+V judge_blocked(const S&, const E& e) {
+  if (std::isnan(e.blocked_cells)) return {};
+  return EffectVerdict{"", e.blocked_cells, 0.5,
+                       fmt::format("gaps block {:.2g} of all cells", e.blocked_cells),
+                       "is the 'opening' given in metres, and smaller than the channel?"};
+}
+
 const std::array cards{
     FluidCard{"turbulence model",
               "`turbulence`",
@@ -158,7 +175,21 @@ const std::array cards{
     FluidCard{"gaps that close",
               "`gaps`",
               [](const S& s) { return when(!s.parameters.gaps.empty(), "gaps"); },
-              {"a mark a cell; the distance of two walls where they are near each other", 0, 0}},
+              {"a mark a cell; the distance of two walls where they are near each other", 0, 0},
+              "share of the cells that they block, 0.5",
+              judge_blocked,
+              true},
+    FluidCard{"walls that move along themselves",
+              "`type: moving-wall`",
+              [](const S& s) {
+                for (const auto& [name, b] : s.parameters.boundaries)
+                  if (b.type == BoundaryType::moving_wall) return "boundaries." + name;
+                return std::string();
+              },
+              {},
+              "on a mesh at rest: flow through them over their speed and area, 0.1",
+              judge_moving_walls,
+              true},
     FluidCard{"body force", "`body-force`",
               [](const S& s) { return when(!s.parameters.body_force.empty(), "body-force"); }},
     FluidCard{"third dimension", "`dimension: 3`",

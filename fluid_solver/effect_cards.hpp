@@ -26,6 +26,9 @@ struct FluidEvidence {
   double energy_excess = unknown;   ///< kinetic energy that no work explains, of that of late (EnergyGuard)
   /// Of an interface on a mesh that stands still: largest displacement in heights of the cell there.
   double wall_displacement = unknown;
+  double through_walls =
+      unknown;  ///< largest flow through a moving wall of a resting mesh over its speed and area
+  double blocked_cells = unknown;  ///< share of all cells that gaps block
 };
 
 using FluidCard = EffectCard<FluidScene, FluidEvidence>;

@@ -332,6 +332,10 @@ void FluidParticipant<D>::load(CheckpointReader& file) {
 template <int D>
 void FluidParticipant<D>::write_output(double time, int) {
   const RunningStatistics<D>* statistics = statistics_ ? &*statistics_ : nullptr;
+  std::optional<RunningStatistics<D>> none;
+  if (statistics && !(statistics->duration() > 0))
+    statistics =
+        &none.emplace(RunningStatistics<D>::nothing_yet(statistics->cells(), mesh_.boundary.n_owned()));
   output_.write_fields(time, statistics);
   output_.write_samples(time, statistics);
 }
@@ -357,6 +361,12 @@ std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
     evidence.pressure_range = max(mesh_.comm, high) - min(mesh_.comm, low);
   }
   if (stands_still()) evidence.wall_displacement = displacement_;
+  if (!fluid_->moving()) evidence.through_walls = through_moving_walls(*fluid_);
+  if (fluid_->gaps()) {
+    double blocked = 0;
+    for (const auto& gap : fluid_->gaps()->facts()) blocked += gap.cells;
+    evidence.blocked_cells = blocked / double(mesh_.cells.n_global());
+  }
   if (const EnergyLedger& ledger = fluid_->state().ledger; ledger.reference > 0)
     evidence.energy_excess = ledger.excess / ledger.reference;
   const FluidScene scene{fluid_->parameters(), fluid_->moving(), step_.scheme != Scheme::standalone};
@@ -366,6 +376,10 @@ std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
 template <int D>
 std::vector<std::string> FluidParticipant<D>::finish() {
   std::vector<std::string> sentences;
+  if (statistics_ && !(statistics_->duration() > 0))
+    sentences.push_back(
+        fmt::format("Running statistics begin at t = {:g} s: this run ended before, there are none.",
+                    fluid_->parameters().statistics->start));
   if (steps_ > 0)
     sentences.push_back(fmt::format(
         "Semi-implicit coupling: friction was computed anew with a better wall velocity in {} of {} steps; "

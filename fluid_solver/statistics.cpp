@@ -2,8 +2,15 @@
 #include "fluid_solver/statistics.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace couplet::fluid {
+namespace {
+
+/// Round-off may leave a square below zero; what is not a number stays so.
+double root(double square) { return square < 0 ? 0.0 : std::sqrt(square); }
+
+}  // namespace
 
 template <int D>
 RunningStatistics<D>::RunningStatistics(std::size_t cells, std::size_t faces)
@@ -13,6 +20,16 @@ RunningStatistics<D>::RunningStatistics(std::size_t cells, std::size_t faces)
       shear_(cells * n_shear, 0.0),
       pressure_(cells + faces, 0.0),
       pressure_square_(cells + faces, 0.0) {}
+
+template <int D>
+RunningStatistics<D> RunningStatistics<D>::nothing_yet(std::size_t cells, std::size_t faces) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  RunningStatistics none(cells, faces);
+  for (Vectors<D>* v : {&none.velocity_, &none.normal_}) v->assign(v->size(), Vec<D>::Constant(unknown));
+  for (auto* v : {&none.shear_, &none.pressure_, &none.pressure_square_}) v->assign(v->size(), unknown);
+  none.duration_ = 1;
+  return none;
+}
 
 template <int D>
 void RunningStatistics<D>::add(std::size_t i, const Vec<D>& velocity, double dt) {
@@ -49,7 +66,7 @@ template <int D>
 Vectors<D> RunningStatistics<D>::velocity_rms() const {
   Vectors<D> rms(normal_.size(), Vec<D>::Zero());
   if (duration_ > 0)
-    for (std::size_t c = 0; c < rms.size(); ++c) rms[c] = (normal_[c] / duration_).cwiseMax(0.0).cwiseSqrt();
+    for (std::size_t c = 0; c < rms.size(); ++c) rms[c] = (normal_[c] / duration_).unaryExpr(&root);
   return rms;
 }
 
@@ -57,8 +74,7 @@ template <int D>
 std::vector<double> RunningStatistics<D>::pressure_rms() const {
   std::vector<double> rms(pressure_.size(), 0.0);
   if (duration_ > 0)
-    for (std::size_t c = 0; c < rms.size(); ++c)
-      rms[c] = std::sqrt(std::max(0.0, pressure_square_[c] / duration_));
+    for (std::size_t c = 0; c < rms.size(); ++c) rms[c] = root(pressure_square_[c] / duration_);
   return rms;
 }
 

@@ -54,6 +54,14 @@ Columns columns_of(const std::filesystem::path& file, const std::vector<std::str
       throw Error("{}:1: a column '{}' has no meaning here. {}", file.string(), name,
                   did_you_mean(name, known, "columns"));
     const auto at = static_cast<std::size_t>(found - known.begin());
+    // A header in other units would be taken for what it is not.
+    if (const auto open = head[i].find('['); open != std::string::npos) {
+      const std::string unit(trim(head[i].substr(open + 1, head[i].find(']') - open - 1)));
+      const std::string wanted = at < axis_names.size() ? axis_units[at] : "m/s";
+      if (unit != wanted)
+        throw Error("{}:1: the column '{}' is in '{}'; only {} is read here.", file.string(), name, unit,
+                    wanted);
+    }
     int& column = at < axis_names.size() ? columns.axis[at] : columns.value[at - axis_names.size()];
     if (column >= 0) throw Error("{}:1: there are two columns '{}'.", file.string(), name);
     column = static_cast<int>(i);

@@ -111,6 +111,13 @@ TEST(EffectCards, fluid_verdicts_turn_at_their_thresholds) {
   EXPECT_FALSE(sound("mesh motion", {.wall_displacement = 0.101}, air));
   EXPECT_TRUE(sound("balance of the kinetic energy", {.energy_excess = 0.09}, air));
   EXPECT_FALSE(sound("balance of the kinetic energy", {.energy_excess = 0.11}, air));
+  fluid::FluidScene lid = air, valve = air;
+  lid.parameters.boundaries["lid"].type = fluid::BoundaryType::moving_wall;
+  EXPECT_TRUE(sound("walls that move along themselves", {.through_walls = 0.09}, lid));
+  EXPECT_FALSE(sound("walls that move along themselves", {.through_walls = 0.11}, lid));
+  valve.parameters.gaps["slot"] = {};
+  EXPECT_TRUE(sound("gaps that close", {.blocked_cells = 0.4}, valve));
+  EXPECT_FALSE(sound("gaps that close", {.blocked_cells = 0.6}, valve));
   fluid::FluidScene moving = air;
   moving.moving_mesh = true;
   EXPECT_FALSE(verdict_on("mesh motion", fluid::fluid_effect_cards(), moving,

@@ -132,6 +132,15 @@ TEST(Smagorinsky, takes_the_energy_that_the_budget_names) {
   EXPECT_GT(lost, 0.01 * before.kinetic);
 }
 
+// Before they begin there are none: 0 would be a velocity.
+TEST(Statistics, are_no_numbers_before_they_begin) {
+  const auto none = RunningStatistics<2>::nothing_yet(3, 2);
+  EXPECT_TRUE(std::isnan(none.velocity_mean()[4][1]));
+  EXPECT_TRUE(std::isnan(none.velocity_rms()[0][0]));
+  EXPECT_TRUE(std::isnan(none.pressure_rms()[2]));
+  EXPECT_TRUE(std::isnan(none.reynolds_shear()[0]));
+}
+
 TEST(Statistics, are_those_of_a_known_oscillation) {
   FluidParameters p;
   p.density = 1;
