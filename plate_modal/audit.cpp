@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/error.hpp"
 #include "common/mesh/on_root.hpp"
 #include "common/modes/rigid_motion.hpp"
 #include "plate_modal/effect_cards.hpp"
@@ -64,9 +65,75 @@ double Structure::in_plane_share() const {
   return largest;
 }
 
+/// The forces of a fluid along the normal, as pressures on the cells: what the modes left out would see of them.
+void Structure::take_fluid(const Exchange& in) {
+  fluid_pressure_.clear();
+  const auto given = in.find("pressure-force");
+  if (given == in.end() || given->second.empty()) return;
+  const Vec3 normal = parameters_.placement.normal();
+  const std::vector<double> areas = built_.plate->cell_areas();
+  const std::size_t sides = parameters_.wetted == Wetted::both ? 2 : 1;
+  fluid_pressure_.assign(areas.size(), 0);
+  for (std::size_t f = 0; f < sides * areas.size(); ++f)
+    fluid_pressure_[f % areas.size()] += Vec3(&given->second[3 * f]).dot(normal) / areas[f % areas.size()];
+}
+
+/// At the times at which a run is judged in its first steps, and ever more rarely.
+void Structure::look_at_modes() {
+  const long steps = resolution_->steps();
+  const bool power_of_two = (steps & (steps - 1)) == 0;
+  if (!(steps <= 8 || power_of_two || step_.is_last)) return;
+  const double t = step_.time + 0.5 * step_.dt;
+  on_root(context_.comm, [&] {
+    add_within_faces(t);
+    if (!truncation_) return;
+    std::vector<double> pressure;
+    try {
+      pressure = cell_pressures(t);
+    } catch (const Error&) {
+      return;  // no value there: the scheme need not ask for it
+    }
+    for (std::size_t c = 0; c < fluid_pressure_.size(); ++c) pressure[c] += fluid_pressure_[c];
+    truncation_->look(pressure);
+  });
+}
+
+void Structure::add_within_faces(double t) {
+  if (!pressure_) return;
+  const WithinFaces seen = within_faces(built_.model, *pressure_, t);
+  within_[0] += seen.apart;
+  within_[1] += seen.size;
+}
+
+/// Of the modes by their share of the motion; of a modal analysis: of the highest mode. On rank 0.
+double Structure::mesh_gap() const {
+  const Vec3 normal = parameters_.placement.normal();
+  const std::size_t sides = parameters_.wetted == Wetted::both ? 2 : 1;
+  std::size_t cells = 0;
+  for (const double density : built_.model.face_density) cells += density > 0;
+  const std::vector<double> gaps = mesh_gaps(built_.model, cells / sides, normal);
+  if (parameters_.analysis == Parameters::Analysis::modal) return gaps.back();
+  double all = 0, apart = 0;
+  for (std::size_t m = 0; m < gaps.size(); ++m) {
+    const double moved = resolution_ ? resolution_->moved()[m] : state_.q[m] * state_.q[m];
+    all += moved;
+    apart += moved * gaps[m] * gaps[m];
+  }
+  return all > 0 ? std::sqrt(apart / all) : PlateEvidence::unknown;
+}
+
+/// Share of the energy of the initial velocity that no mode has.
+double Structure::velocity_lost() const {
+  const Vec3& v = parameters_.initial_velocity;
+  if (!resolution_ || !(v.norm() > 0)) return PlateEvidence::unknown;
+  double kept = 0;
+  for (const double one : share_->participation(v)) kept += one * one;
+  return std::max(0.0, 1 - kept / (share_->mass() * v.squaredNorm()));
+}
+
 std::vector<EffectVerdict> Structure::audit() const {
   // What rank 0 knows of the whole surface decides on all ranks alike.
-  std::vector<double> seen(3, PlateEvidence::unknown);
+  std::vector<double> seen(6, PlateEvidence::unknown);
   if (comm_rank(context_.comm) == 0) {
     double size = 0;
     for (const Vec3& x : built_.model.vertices)
@@ -75,12 +142,18 @@ std::vector<EffectVerdict> Structure::audit() const {
     if (share_->omega().front() > 0) seen[0] = largest_ / size;
     if (built_.held_all_round) seen[1] = largest_ / parameters_.thickness;
     if (deflection_ && deflection_->direct > 0) seen[2] = deflection_->apart / deflection_->direct;
+    if (within_[1] > 0) seen[3] = std::sqrt(within_[0] / within_[1]);
+    if (!parameters_.modes_file) seen[4] = mesh_gap();
+    if (truncation_) seen[5] = truncation_->share();
   }
   broadcast(context_.comm, seen);
   PlateEvidence evidence;
   evidence.displacement_over_size = seen[0];
   evidence.displacement_over_thickness = seen[1];
-  evidence.modes_apart = seen[2];
+  evidence.modes_apart = resolution_ ? seen[5] : seen[2];
+  evidence.within_faces = seen[3];
+  evidence.mesh_gap = seen[4];
+  evidence.velocity_lost = velocity_lost();
   if (!rotations_.empty()) evidence.rotation = largest_rotation_;
   if (!parameters_.modes_file && parameters_.analysis == Parameters::Analysis::dynamic)
     evidence.in_plane_share = in_plane_share();

@@ -179,7 +179,7 @@ Built build_model(const Parameters& p, const PlateContext& context, const RawMes
     const std::vector<Support> held = supports(plate->surface(), p);
     built.held_all_round = std::ranges::none_of(held, [](Support s) { return s == Support::free; });
     add_modes(built, *plate, p, context);
-    if (p.analysis == Parameters::Analysis::static_) built.plate = std::move(plate);
+    if (p.analysis != Parameters::Analysis::modal) built.plate = std::move(plate);
   });
   return built;
 }

@@ -22,7 +22,7 @@ struct PlateContext {
 /// What the configuration describes, on rank 0 (the model is empty elsewhere).
 struct Built {
   ModalModel model;
-  std::unique_ptr<PlateModel> plate;  ///< of a mesh, for a static analysis
+  std::unique_ptr<PlateModel> plate;  ///< of a mesh, but for a modal analysis
   bool reused = false;                ///< modes of an earlier run
   bool held_all_round = false;        ///< a plate whose outline cannot move: deflection stretches it
   std::string note;                   ///< something the user should know, or nothing

@@ -48,12 +48,41 @@ V judge_in_plane(const S& s, const E& e) {
       "no mode moves in the plane: that part is left out. Give its normal part alone, or take a volume");
 }
 
-V judge_kept(const S&, const E& e) {
+V judge_kept(const S& s, const E& e) {
+  if (is_dynamic(s))
+    return verdict(
+        e.modes_apart, 0.05,
+        fmt::format("the modes left out have {:.2g} of the compliance of the loads", e.modes_apart),
+        "the loads move shapes that were not kept: keep more modes ('modes.number')");
   return verdict(
       e.modes_apart, 0.05,
       fmt::format("the deflection by modes is {:.2g} of the deflection itself off", e.modes_apart),
       "fields and probes show the deflection itself, but modal.csv and the interface the modes: keep "
       "more modes ('modes.number')");
+}
+
+V judge_velocity(const S&, const E& e) {
+  return verdict(
+      e.velocity_lost, 0.1,
+      fmt::format("the modes have no part in {:.2g} of the energy of the initial velocity", e.velocity_lost),
+      "a uniform velocity beside supports needs many modes: keep more, or start by 'initial-amplitudes'");
+}
+
+V judge_within(const S&, const E& e) {
+  return verdict(
+      e.within_faces, 0.05,
+      fmt::format("a force at the middle of each face makes {:.2g} of the load's effect on the modes wrong",
+                  e.within_faces),
+      "the pressure varies within a face: refine the mesh there");
+}
+
+// Cells of h in half a wave of n cells: (pi / n)^2 / 12 a direction; 0.1 is four cells in both.
+V judge_mesh(const S&, const E& e) {
+  return verdict(
+      e.mesh_gap, 0.1,
+      fmt::format("the middle of a cell deflects by {:.2g} otherwise than its corners (rms over the motion)",
+                  e.mesh_gap),
+      "the mesh does not resolve the modes that move: at least four cells in half a wave in each direction");
 }
 
 // A plate that is held all round is stiffened by its stretch as 1 + 0.5 (w/h)^2, more or less by its edges.
@@ -196,8 +225,26 @@ const std::array cards{
               "`modes.number`",
               [](const S&) { return std::string(); },
               {},
-              "static: deflection itself against that by modes, 0.05",
+              "modes left out: static, of the deflection, dynamic, of the compliance of the loads, 0.05",
               judge_kept},
+    PlateCard{"initial velocity beyond the modes",
+              "`modes.number`",
+              [](const S&) { return std::string(); },
+              {},
+              "share of its energy that no mode has, 0.1",
+              judge_velocity},
+    PlateCard{"load within a face",
+              "no key: finer mesh",
+              [](const S&) { return std::string(); },
+              {},
+              "midpoint of each face against sixteen points, of the load's effect on the modes, 0.05",
+              judge_within},
+    PlateCard{"mesh that resolves the modes",
+              "no key: finer mesh",
+              [](const S&) { return std::string(); },
+              {},
+              "mean of a cell's corners against its mean deflection, rms over the motion, 0.1",
+              judge_mesh},
     PlateCard{"stretch of the mid-surface",
               "no key: not in the model",
               [](const S&) { return std::string(); },

@@ -24,8 +24,13 @@ struct PlateEvidence {
   double displacement_over_thickness = unknown;  ///< of a plate that is held all round
   double rotation = unknown;                     ///< of a structure with rigid motions, as a whole [rad]
   double in_plane_share =
-      unknown;                   ///< of gravity or of the initial velocity of a plate, that no mode answers
-  double modes_apart = unknown;  ///< static: difference by modes over the deflection itself
+      unknown;  ///< of gravity or of the initial velocity of a plate, that no mode answers
+  /// Static: difference by modes over the deflection itself; dynamic: share of the loads' compliance without modes.
+  double modes_apart = unknown;
+  double velocity_lost = unknown;  ///< share of the energy of the initial velocity that no mode has
+  double within_faces =
+      unknown;                ///< of prescribed pressures, rms over the modes: what the midpoint rule misses
+  double mesh_gap = unknown;  ///< corners of a cell against its mean deflection, rms over the motion
   double thickness_over_wave =
       unknown;  ///< over half the wave length of the highest mode that moves, or that is kept
   double energy_mismatch = unknown;  ///< of the largest energy, thesis (4.29)-(4.31)

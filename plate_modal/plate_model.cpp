@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/linalg/linear_solver.hpp"
+#include "common/linalg/petsc_check.hpp"
 
 namespace couplet::plate {
 namespace {
@@ -189,6 +190,10 @@ EigenModes PlateModel::modes(int n) const {
     }
   }
   return modes;
+}
+
+void PlateModel::stiffen(double shift) {
+  petsc_check(MatAXPY(stiffness_->petsc(), shift, mass_->petsc(), SAME_NONZERO_PATTERN));
 }
 
 std::vector<double> PlateModel::deflect(std::span<const double> load) const {

@@ -52,6 +52,8 @@ class PlateModel final {
 
   /// The plate's lowest modes.
   EigenModes modes(int n) const;
+  /// Puts K + shift M in the place of K.
+  void stiffen(double shift);
   /// K u = load. Throws Error if the supports leave it free, SolveFailure. In unknowns.
   std::vector<double> deflect(std::span<const double> load) const;
 

@@ -47,6 +47,13 @@ bool PressureLoad::is_uniform() const {
   return !(upper_ && upper_->uses_space()) && !(lower_ && lower_->uses_space());
 }
 
+double PressureLoad::push(const Vec3& area, const Vec3& x, double t) const {
+  double sum = 0;
+  if (upper_ && is_on(area, normal_, 1)) sum += (*upper_)(x, t);
+  if (lower_ && is_on(area, normal_, -1)) sum += (*lower_)(x, t);
+  return sum;
+}
+
 void PressureLoad::add_faces(const Expression& side, double sign, double t, std::span<double> load) const {
   std::vector<double> force(3 * share_.n_faces(), 0);
   for (std::size_t f = 0; f < share_.n_faces(); ++f) {

@@ -27,6 +27,9 @@ class PressureLoad final {
   /// Loads on the modes at t [N/sqrt(kg)], of all ranks. Collective.
   void at(double t, std::span<double> load) const;
 
+  /// Pressures at x on a face of this area, those that push against its normal [Pa].
+  double push(const Vec3& area, const Vec3& x, double t) const;
+
   /// What a step from t sees of the load: it takes the value in its middle for the mean over it.
   struct Seen {
     double apart = 0;  ///< square of (mean over the step - value in the middle), over all modes

@@ -48,6 +48,8 @@ class Resolution final {
   /// `at_end`: nothing comes after. Before a quarter of the longest period nothing is said: the slow modes have
   /// not answered yet, and the fast ones carry what there is.
   StepEvidence evidence(bool at_end) const;
+  /// Of each mode: integral over time of the square of its displacement [kg m^2 s].
+  std::span<const double> moved() const { return moved_; }
   long steps() const { return long(sums_[3]); }
 
   std::vector<double> state() const;

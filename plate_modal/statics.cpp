@@ -31,6 +31,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
   on_root(context_.comm, [&] {
     if (!built_.plate) return;
     direct_ = direct_deflection(t);
+    add_within_faces(t);
     Deflection& d = deflection_.emplace();
     for (std::size_t i = 0; i < direct_.size(); ++i) {
       d.direct = std::max(d.direct, std::abs(direct_[i]));
@@ -42,7 +43,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
   });
 }
 
-std::vector<double> Structure::direct_deflection(double t) const {
+std::vector<double> Structure::cell_pressures(double t) const {
   const PlateModel& plate = *built_.plate;
   const Midsurface& s = plate.surface();
   const Placement& place = parameters_.placement;
@@ -57,8 +58,14 @@ std::vector<double> Structure::direct_deflection(double t) const {
     if (!parameters_.gravity.empty())
       pressure[c] += plate.cell(c).surface_density() * normal.dot(Vec3(parameters_.gravity.data()));
   }
-  const EigenModes one{{0}, {plate.deflect(plate.load_of(pressure))}, 0, 0};
-  return skin_of(plate, one, place, parameters_.wetted, std::vector<bool>(s.patches.size(), false))
+  return pressure;
+}
+
+std::vector<double> Structure::direct_deflection(double t) const {
+  const PlateModel& plate = *built_.plate;
+  const EigenModes one{{0}, {plate.deflect(plate.load_of(cell_pressures(t)))}, 0, 0};
+  return skin_of(plate, one, parameters_.placement, parameters_.wetted,
+                 std::vector<bool>(plate.surface().patches.size(), false))
       .vertex_shape;
 }
 

@@ -65,6 +65,10 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
   if (contact_ && !p.contact->starts_inside) refuse_inside(*contact_, *share_, state_.q);
   results_ = std::make_unique<PlateResults>(*this);
   find_rotations();
+  on_root(context_.comm, [&] {
+    if (built_.plate && resolution_)
+      truncation_ = std::make_unique<Truncation>(*built_.plate, built_.model, p.placement.normal());
+  });
 }
 
 Structure::~Structure() = default;
@@ -150,6 +154,7 @@ Exchange Structure::solve(const Exchange& in) {
     share_->add_load(share_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second), fluid);
   }
   share_->sum(fluid);
+  if (truncation_) take_fluid(in);
   if (parameters_.analysis == Parameters::Analysis::dynamic) {
     const auto load = [&](double after, std::span<double> total) {
       if (pressure_)
@@ -193,6 +198,7 @@ StepReport Structure::accept_step() {
   if (resolution_) look_at_step();
   largest_ = std::max(largest_, trial_largest_);
   if (!rotations_.empty()) look_at_rotation();
+  if (resolution_) look_at_modes();
   const Energies& e = state_.energies;
   worst_mismatch_ = std::max(worst_mismatch_, std::abs(e.mismatch()));
   largest_true_ = std::max(largest_true_, true_energy(state_));
@@ -228,7 +234,8 @@ void Structure::save(CheckpointWriter& file) const {
   file.write("energies", std::vector<double>{e.kinetic, e.strain, e.gravity, e.contact, e.initial,
                                              e.load_work, e.impact_work, e.damping_loss, worst_mismatch_,
                                              largest_exchange_, largest_true_});
-  file.write("largest", std::vector<double>{largest_, largest_rotation_});
+  file.write("largest", std::vector<double>{largest_, largest_rotation_, within_[0], within_[1]});
+  file.write("truncation", truncation_ ? truncation_->state() : std::vector<double>(2, 0));
   file.write_scalar("dt", state_.dt);
   if (resolution_) file.write("resolution", resolution_->state());
 }
@@ -253,9 +260,12 @@ void Structure::load(CheckpointReader& file) {
   for (double* part : {&e.kinetic, &e.strain, &e.gravity, &e.contact, &e.initial, &e.load_work,
                        &e.impact_work, &e.damping_loss, &worst_mismatch_, &largest_exchange_, &largest_true_})
     *part = kept[i++];
-  std::vector<double> largest(2);
+  std::vector<double> largest(4), left_out(2);
   file.read("largest", largest);
   largest_ = largest[0], largest_rotation_ = largest[1];
+  within_ = {largest[2], largest[3]};
+  file.read("truncation", left_out);
+  if (truncation_) truncation_->restore(left_out);
   state_.dt = file.read_scalar("dt");
   if (resolution_) {
     std::vector<double> seen = resolution_->state();

@@ -12,6 +12,7 @@
 #include "plate_modal/pressure_load.hpp"
 #include "plate_modal/resolution.hpp"
 #include "plate_modal/share.hpp"
+#include "plate_modal/truncation.hpp"
 
 namespace couplet::plate {
 
@@ -64,6 +65,12 @@ class Structure final : public Participant {
   void refuse_made_energy() const;
   void solve_static(double t, std::span<const double> fluid);
   std::vector<double> direct_deflection(double t) const;
+  std::vector<double> cell_pressures(double t) const;
+  void take_fluid(const Exchange& in);
+  void look_at_modes();
+  void add_within_faces(double t);
+  double mesh_gap() const;
+  double velocity_lost() const;
 
   Parameters parameters_;
   PlateContext context_;
@@ -84,7 +91,10 @@ class Structure final : public Participant {
   double largest_true_ = 0;  // largest energy that the scheme did not make, or work of the loads [J]
   double largest_ = 0, trial_largest_ = 0;  // displacement of any vertex [m], on rank 0
   std::vector<Vec3> rotations_;             // of each mode [1/(sqrt(kg) m)]; empty: none is a rigid motion
-  double largest_rotation_ = 0;             // of the body as a whole [rad]
+  std::unique_ptr<Truncation> truncation_;  // of a mesh in a dynamic analysis, on rank 0
+  std::vector<double> fluid_pressure_;      // of the last solve, a cell, on rank 0; empty: no fluid
+  std::vector<double> within_{0, 0};  // what the midpoint rule misses of prescribed pressures, on rank 0
+  double largest_rotation_ = 0;       // of the body as a whole [rad]
   std::unique_ptr<PlateResults> results_;
 };
 

@@ -117,6 +117,68 @@ TEST(PlateGuards, a_static_deflection_is_judged_by_itself_and_not_by_its_modes) 
   EXPECT_TRUE(find(many, "deflection beyond the modes").sound());
 }
 
+TEST(PlateGuards, modes_left_out_are_missed_in_a_dynamic_run) {
+  const Support s = Support::simply_supported;
+  Parameters p = plate_held({{"xmin", s}, {"xmax", s}, {"ymin", s}, {"ymax", s}});
+  const auto share = [&](int number, const char* load) {
+    p.number = number;
+    p.load.emplace().lower.emplace().text = load;
+    return find(verdicts(p, 4, 1e-3, square(12)), "deflection beyond the modes");
+  };
+  // Mode (2, 2) is the fourth.
+  const char* fourth = "100 * sin(2 * pi * x) * sin(2 * pi * y) * sin(100 * t)";
+  EXPECT_GT(share(3, fourth).number, 0.99);
+  EXPECT_TRUE(share(4, fourth).sound());
+  EXPECT_TRUE(share(15, "100").sound());
+  // Of a free plate the modes that bend count beside those that fall.
+  p = plate_held();
+  EXPECT_GT(share(3, "100 * sin(2 * pi * x) * sin(2 * pi * y)").number, 0.5);
+  EXPECT_LT(share(6, "100").number, 1e-6);
+}
+
+TEST(PlateGuards, the_energy_of_an_initial_velocity_is_kept_or_missed) {
+  const Support s = Support::simply_supported;
+  Parameters p = plate_held({{"xmin", s}, {"xmax", s}, {"ymin", s}, {"ymax", s}});
+  p.initial_velocity = Vec3(0, 0, 1);
+  p.number = 1;
+  // The first mode has (8 / pi^2)^2 of the mass.
+  const EffectVerdict one = find(verdicts(p, 1, 1e-3, square(12)), "initial velocity beyond the modes");
+  EXPECT_NEAR(one.number, 1 - 64 / std::pow(std::numbers::pi, 4), 0.01);
+  EXPECT_FALSE(one.sound());
+  p = plate_held();
+  p.initial_velocity = Vec3(0, 0, 1);
+  EXPECT_LT(find(verdicts(p, 1, 1e-3), "initial velocity beyond the modes").number, 1e-6);
+}
+
+TEST(PlateGuards, a_load_between_the_middles_of_the_faces_is_missed) {
+  const Support c = Support::clamped;
+  for (const auto analysis : {Parameters::Analysis::static_, Parameters::Analysis::dynamic}) {
+    Parameters p = plate_held({{"xmin", c}, {"xmax", c}, {"ymin", c}, {"ymax", c}});
+    p.analysis = analysis;
+    const auto within = [&](const char* load) {
+      p.load.emplace().upper.emplace().text = load;
+      return find(verdicts(p, 1, 1e-3), "load within a face");
+    };
+    // About a point of the mesh, nearer than the middles around it.
+    EXPECT_FALSE(within("(x - 0.5)^2 + (y - 0.5)^2 < 0.05^2 ? 1000 : 0").sound());
+    EXPECT_TRUE(within("1000 * (1 + x * y)").sound());
+  }
+}
+
+TEST(PlateGuards, a_mesh_of_one_cell_across_is_no_mesh) {
+  const Support s = Support::simply_supported;
+  Parameters p = plate_held({{"xmin", s}, {"xmax", s}, {"ymin", s}, {"ymax", s}});
+  p.analysis = Parameters::Analysis::static_;
+  p.load.emplace().upper.emplace().text = "100";
+  const auto gap = [&](int nx, int ny) {
+    return find(verdicts(p, 1, 1, make_box(BoxCells::triangles, {nx, ny, 1}, Vec3::Zero(), Vec3(1, 1, 0))),
+                "mesh that resolves the modes");
+  };
+  EXPECT_FALSE(gap(40, 1).sound());
+  EXPECT_FALSE(gap(40, 2).sound());
+  EXPECT_TRUE(gap(10, 10).sound());
+}
+
 TEST(PlateGuards, edges_that_hold_nothing_or_twice_are_refused) {
   RawMesh raw = square(4);
   EXPECT_NO_THROW(midsurface_of(raw));
