@@ -247,11 +247,15 @@ TEST(Mover, gives_the_same_mesh_for_the_same_interface_whatever_came_between) {
 }
 
 TEST(Mover, is_restored_from_a_checkpoint_bit_for_bit) {
-  Mover mover(square(), context_of_the_test()), other(square(), context_of_the_test());
+  // In one process the partitioner shares out a second mesh otherwise, which a checkpoint refuses.
+  Mover mover(square(), context_of_the_test());
   const Interface interface = mover.initialise();
-  mover.begin_step({.time = 0, .dt = 0.1, .scheme = Scheme::implicit, .number = 1});
-  mover.solve(push_middle(interface, 0.1));
-  mover.accept_step();
+  const auto step = [&](double push) {
+    mover.begin_step({.time = 0, .dt = 0.1, .scheme = Scheme::implicit, .number = 1});
+    mover.solve(push_middle(interface, push));
+    mover.accept_step();
+  };
+  step(0.1);
   const auto file = std::filesystem::temp_directory_path() /
                     ("couplet-mover-" + std::to_string(comm_size(MPI_COMM_WORLD)) + ".h5");
   {
@@ -259,9 +263,12 @@ TEST(Mover, is_restored_from_a_checkpoint_bit_for_bit) {
     mover.save(writer);
     writer.close();
   }
+  const auto saved = mover.displacement();
+  step(0.2);
+  EXPECT_NE(mover.displacement(), saved);
   CheckpointReader reader(MPI_COMM_WORLD, file);
-  other.load(reader);
-  EXPECT_EQ(other.displacement(), mover.displacement());
+  mover.load(reader);
+  EXPECT_EQ(mover.displacement(), saved);
 }
 
 TEST(Mover, refuses_an_inverted_cell_by_name_and_place) {
