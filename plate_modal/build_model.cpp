@@ -145,7 +145,8 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
   const double least = std::sqrt(rigid_limit(plate)) / (2 * std::numbers::pi);
   for (double& f : built.model.frequency)
     if (f < least) f = 0;
-  if (!context.output_folder.empty()) write_modes(file, built.model, key);
+  // Without the key they are found again, and what was noted is said again.
+  if (!context.output_folder.empty()) write_modes(file, built.model, built.note.empty() ? key : "");
 }
 
 }  // namespace

@@ -100,6 +100,21 @@ TEST_F(PlateModesFile, modes_are_reused_while_mesh_and_data_are_the_same) {
   }
 }
 
+TEST_F(PlateModesFile, a_cut_pair_is_said_again_in_the_next_run) {
+  if (comm_size(MPI_COMM_WORLD) > 1) return;
+  const RawMesh raw = square(6, BoxCells::quadrilaterals);
+  Parameters p = parameters();
+  for (auto& [patch, edge] : p.boundaries) edge.support = Support::clamped;
+  for (const int number : {2, 3}) {
+    p.number = number;
+    for (int run = 0; run < 2; ++run) {
+      const Built built = build_model(p, context(), &raw);
+      EXPECT_EQ(built.note.find("have the same frequency") != std::string::npos, number == 2) << run;
+      EXPECT_EQ(built.reused, number == 3 && run == 1);
+    }
+  }
+}
+
 TEST_F(PlateModesFile, a_structure_runs_on_the_modes_of_a_file_as_on_those_of_its_mesh) {
   const RawMesh raw = square(7);
   Structure from_mesh(parameters(), context(), &raw);
