@@ -49,12 +49,17 @@ def apart(a, b):
     return max((abs(x - y) for p, q in zip(a, b) for x, y in zip(p, q)), default=0) if len(a) == len(b) else float("inf")
 
 
+def python_is_there():
+    there = not subprocess.run(["/usr/bin/python3", "-c", "import mpi4py, numpy"], capture_output=True).returncode
+    if not there:
+        print("skipped: Python without mpi4py and numpy")
+    return there
+
+
 def examples():
     results = {}
     for language, body in body_of.items():
-        if language == "python" and subprocess.run(["/usr/bin/python3", "-c", "import mpi4py, numpy"],
-                                                   capture_output=True).returncode:
-            print("skipped: Python without mpi4py and numpy")
+        if language == "python" and not python_is_there():
             continue
         with tempfile.TemporaryDirectory() as folder:
             run(folder, body)
@@ -101,6 +106,8 @@ def install():
         environment["PYTHONPATH"] = str(prefix / "share/couplet/python")
         bodies = {"cmake": [user / "build/mine"], "pkg-config": [user / "mine_c"],
                   "python": ["/usr/bin/python3", user / "spring_cylinder.py"]}
+        if not python_is_there():
+            del bodies["python"]
         results = {}
         for name, body in bodies.items():
             folder = top / name
@@ -121,6 +128,8 @@ def handshake():
         check("so is who is missing", "participant 'body' (spring_cylinder) is missing" in said.stderr + said.stdout)
 
 
+    if not python_is_there():
+        return
     with tempfile.TemporaryDirectory() as folder:
         # A program of Python that fails in the middle: MPI_Finalize alone would wait for the others for ever.
         broken = pathlib.Path(folder) / "broken.py"
@@ -172,6 +181,8 @@ def fenicsx():
 def tube():
     """Both participants from elsewhere: the tube in one dimension against its monolithic solution; restart with the history
     of the quasi-Newton method."""
+    if not python_is_there():
+        return
     sys.path.insert(0, str(project / "configs/tube-1d"))
     import tube as model
     wanted = model.monolithic(8)[:, 1]
