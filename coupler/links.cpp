@@ -55,7 +55,7 @@ void check_same(const Datum& wanted, const Side& taker, const Datum& given, cons
 }
 
 PointSet part_of(const PointSet& set, const std::vector<std::size_t>& choice, std::size_t chosen) {
-  PointSet part{set.what, {}, {}, set.surface, {}, {}, set.starts};
+  PointSet part{set.what, {}, {}, set.surface, {}, {}, set.starts, set.place};
   for (std::size_t i = 0; i < set.points.size(); ++i) {
     if (choice[i] != chosen) continue;
     part.points.push_back(set.points[i]);
@@ -126,7 +126,7 @@ double sum_of(MPI_Comm comm, const std::vector<double>& values, int components, 
 Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParameters& mapping) : comm_(comm) {
   for (const Side& side : sides) {
     names_.push_back(side.name);
-    if (comm_size(comm) == 1) check_corners(side.interface, side.name);
+    check_corners(side.interface, side.name, side.vertices.back());
     entries_.push_back({side.entries(Place::vertices), side.entries(Place::faces)});
   }
   for (std::size_t t = 0; t < sides.size(); ++t)

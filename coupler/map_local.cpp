@@ -8,7 +8,10 @@
 namespace couplet {
 namespace {
 
-double wendland(double r) { return r < 1 ? std::pow(1 - r, 4) * (4 * r + 1) : 0; }
+double wendland(double r) {
+  const double s = (1 - r) * (1 - r);
+  return r < 1 ? s * s * (4 * r + 1) : 0;
+}
 
 /// Coordinates about the sources' centre, in units of their reach, along the directions that the polynomial
 /// takes: sources first, x last.

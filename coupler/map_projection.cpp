@@ -85,13 +85,6 @@ struct FacesAround {
   }
 };
 
-void require_faces(const Interface& surface) {
-  if (surface.face_offset.size() != surface.face_centres.size() + 1)
-    throw Error(
-        "A mapping by projection needs the vertices of each face, which a participant does not list: take "
-        "`coupling.mapping.type: rbf` or nearest.");
-}
-
 /// Centres of equal parts of a face, about `pieces` along each direction; their mean is the face's centre.
 std::vector<Vec3> parts(const Interface& surface, Index face, int pieces) {
   const Vec3& centre = surface.face_centres[face];
@@ -135,16 +128,22 @@ void facing(const Vec3& area, const Interface& to, const std::vector<Index>& nea
 
 }  // namespace
 
+void require_corners(bool known) {
+  if (!known)
+    throw Error(
+        "A mapping by projection needs the vertices of each face, which a participant does not list: take "
+        "`coupling.mapping.type: rbf` or nearest.");
+}
+
 SparseMap nearest_projection(const Interface& surface, const std::vector<Vec3>& targets) {
-  require_faces(surface);
+  require_corners(surface.face_offset.size() == surface.face_centres.size() + 1);
   const FacesAround around(surface);
   const PointTree vertices(surface.vertices), centres(surface.face_centres);
   SparseMap map;
   map.n_from = surface.vertices.size();
   for (const Vec3& p : targets) {
-    // The nearest face touches one of the nearest vertices, or is large and has its centre near.
-    std::vector<Index> faces = centres.nearest(p, 4);
-    for (const Index v : vertices.nearest(p, 3))
+    std::vector<Index> faces = centres.nearest(p, projection_faces);
+    for (const Index v : vertices.nearest(p, projection_vertices))
       faces.insert(faces.end(), around.face.begin() + around.offset[v],
                    around.face.begin() + around.offset[v + 1]);
     Nearest best;
@@ -165,7 +164,7 @@ SparseMap shared_out(const Interface& from, const Interface& to, std::size_t k) 
   gather.n_from = to.face_centres.size();
   std::vector<Index> sources;
   for (Index f = 0; f < Index(from.face_centres.size()); ++f) {
-    const Index closest = tree.nearest(from.face_centres[f]).index;
+    const Index closest = tree.nearest(from.face_centres[f], 1).front();
     const double size = std::pow(from.face_areas[f].norm() / to.face_areas[closest].norm(), power);
     const std::vector<Vec3> pieces = parts(from, f, int(std::clamp(std::ceil(size - 0.1), 1., 32.)));
     std::map<Index, double> row;
@@ -196,7 +195,7 @@ SparseMap local_interpolation(const std::vector<Vec3>& sources, const std::vecto
   return map;
 }
 
-void check_corners(const Interface& surface, const std::string& name) {
+void check_corners(const Interface& surface, const std::string& name, GlobalIndex vertices) {
   if (surface.face_offset.empty() && surface.face_vertices.empty()) return;
   const auto refuse = [&](const std::string& what) {
     throw Error("The corners of the faces of '{}' are listed wrongly: {}.", name, what);
@@ -211,8 +210,7 @@ void check_corners(const Interface& surface, const std::string& name) {
     if (surface.face_offset[f + 1] - surface.face_offset[f] < 2)
       refuse(fmt::format("face {} has less than two corners", f));
   for (const Index v : surface.face_vertices)
-    if (v < 0 || v >= Index(surface.vertices.size()))
-      refuse(fmt::format("vertex {} is none of its {}", v, surface.vertices.size()));
+    if (v < 0 || v >= vertices) refuse(fmt::format("vertex {} is none of its {}", v, vertices));
 }
 
 SparseMap vertices_to_faces(const Interface& surface) {

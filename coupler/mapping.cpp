@@ -8,6 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/map_projection.hpp"
+#include "coupler/surroundings.hpp"
 
 namespace couplet {
 namespace {
@@ -104,85 +105,73 @@ std::vector<Transfer::Entry> shares(MPI_Comm comm, const PointSet& from, const P
   return entries;
 }
 
-/// The whole list on every rank: the maps below look at neighbourhoods of unknown width when they are built.
-PointSet gathered(MPI_Comm comm, const PointSet& set) {
-  if (comm_size(comm) == 1) return set;
-  PointSet all = set;
-  all.points = all_gather(comm, set.points);
-  all.positions = all_gather(comm, set.positions);
-  return all;
+/// Rows of a map by the targets' positions, columns by the sources'.
+void add_entries(const SparseMap& map, const std::vector<GlobalIndex>& targets,
+                 const std::vector<GlobalIndex>& sources, std::vector<Transfer::Entry>& entries) {
+  for (std::size_t row = 0; row < map.n_to(); ++row)
+    for (std::size_t k = map.offset[row]; k < map.offset[row + 1]; ++k)
+      entries.push_back({targets[row], sources[std::size_t(map.source[k])], map.weight[k]});
 }
 
-Interface gathered(MPI_Comm comm, const Interface& part) {
-  Interface all;
-  all.dim = part.dim;
-  all.vertices = all_gather(comm, part.vertices);
-  all.face_centres = all_gather(comm, part.face_centres);
-  all.face_areas = all_gather(comm, part.face_areas);
-  all.face_vertices = all_gather(comm, part.face_vertices);
-  if (all.face_vertices.empty()) return all;
-  std::vector<Index> counts;
-  for (std::size_t f = 0; f + 1 < part.face_offset.size(); ++f)
-    counts.push_back(part.face_offset[f + 1] - part.face_offset[f]);
-  all.face_offset.push_back(0);
-  for (const Index n : all_gather(comm, counts)) all.face_offset.push_back(all.face_offset.back() + n);
-  return all;
-}
-
-/// Entries of a map between whole surfaces (`whole`), of which those between the given parts count.
-std::vector<Transfer::Entry> entries_of(MPI_Comm comm, const SparseMap& map, const PointSet& from,
-                                        const PointSet& to, bool whole) {
+/// Displacements and the like by projection onto the other surface's faces.
+std::vector<Transfer::Entry> projected(MPI_Comm comm, const PointSet& from, const PointSet& to) {
   std::vector<Transfer::Entry> entries;
-  std::vector<char> wanted(map.n_from, whole ? 0 : 1);
-  if (whole)
-    for (const GlobalIndex p : from.positions) wanted[std::size_t(p)] = 1;
-  const auto add = [&](std::size_t row, GlobalIndex target) {
-    for (std::size_t k = map.offset[row]; k < map.offset[row + 1]; ++k) {
-      const auto source = std::size_t(map.source[k]);
-      if (wanted[source])
-        entries.push_back({target, whole ? GlobalIndex(source) : from.positions[source], map.weight[k]});
-    }
-  };
-  const GlobalIndex first = to.starts[std::size_t(comm_rank(comm))],
-                    end = to.starts[std::size_t(comm_rank(comm)) + 1];
-  for (std::size_t row = 0; row < map.n_to(); ++row) {
-    const GlobalIndex target = whole ? GlobalIndex(row) : to.positions[row];
-    if (target >= first && target < end) add(row, target);
+  const Surroundings source(comm, *from.surface);
+  require_corners(source.has_corners());
+  if (comm_size(comm) == 1) {
+    add_entries(nearest_projection(*from.surface, to.points), to.positions, source.vertices().positions,
+                entries);
+    return entries;
   }
+  std::vector<GlobalIndex> faces =
+      source.faces_around(nearby(comm, to.points, {}, projection_vertices, source.vertices()).positions);
+  const Nearby near = nearby(comm, to.points, {}, projection_faces, source.faces());
+  faces.insert(faces.end(), near.positions.begin(), near.positions.end());
+  std::ranges::sort(faces);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  const SurfacePart part = source.with(faces);
+  if (!to.points.empty())
+    add_entries(nearest_projection(part.surface, to.points), to.positions, part.vertices, entries);
   return entries;
 }
 
-/// Projection and radial functions.
+/// Forces of faces cut over these and shared out among the other surface's.
+std::vector<Transfer::Entry> cut_and_shared(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                                            std::size_t k) {
+  const Surroundings source(comm, *from.surface), target(comm, *to.surface);
+  const SurfacePart mine = source.with(from.positions);
+  // Pieces of a face look for up to 4 k faces, and lie within its corners (moved to keep its centre).
+  std::vector<double> reach(mine.faces.size(), 0.);
+  const Interface& s = mine.surface;
+  for (std::size_t f = 0; f < mine.faces.size() && !s.face_offset.empty(); ++f)
+    for (Index c = s.face_offset[f]; c < s.face_offset[f + 1]; ++c)
+      reach[f] = std::max(reach[f], 2 * (s.vertices[s.face_vertices[c]] - s.face_centres[f]).norm());
+  const SurfacePart near = target.with(
+      comm_size(comm) == 1 ? target.faces().positions
+                           : nearby(comm, s.face_centres, reach, 4 * k, target.faces()).positions);
+  std::vector<Transfer::Entry> entries;
+  if (!mine.faces.empty()) add_entries(shared_out(s, near.surface, k), near.faces, mine.faces, entries);
+  return entries;
+}
+
+/// Projection and radial functions. No rank sees more of the other surface than what lies about its own part.
 std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, const PointSet& from,
                                           const PointSet& to, MappingParameters::Type type) {
   const bool projection = type == MappingParameters::Type::projection;
   const int dim = from.surface != nullptr ? from.surface->dim : 3;
   const std::size_t k = dim == 2 ? (projection ? 3 : 5) : (projection ? 5 : 10);
-  const bool alone = comm_size(comm) == 1;
-  Interface all_from, all_to;
-  if (!alone && from.surface) all_from = gathered(comm, *from.surface);
-  if (!alone && to.surface) all_to = gathered(comm, *to.surface);
-  const Interface *source = alone          ? from.surface
-                            : from.surface ? &all_from
-                                           : nullptr,
-                  *target = alone        ? to.surface
-                            : to.surface ? &all_to
-                                         : nullptr;
-  const PointSet sources = gathered(comm, from), targets = gathered(comm, to);
-  if (kind == Mapping::Kind::conservative && source && target)
-    return entries_of(comm, shared_out(*source, *target, k), sources, to, true);
-  const bool at_vertices = source && from.starts.back() == GlobalIndex(source->vertices.size());
-  if (projection && at_vertices && kind == Mapping::Kind::consistent) {
-    PointSet whole = sources;
-    whole.positions.resize(source->vertices.size());
-    for (std::size_t v = 0; v < whole.positions.size(); ++v) whole.positions[v] = GlobalIndex(v);
-    return entries_of(comm, nearest_projection(*source, to.points), whole, to, false);
-  }
-  return entries_of(comm,
-                    kind == Mapping::Kind::consistent
-                        ? local_interpolation(sources.points, to.points, k)
-                        : local_interpolation(targets.points, sources.points, k).transposed(),
-                    sources, kind == Mapping::Kind::consistent ? to : targets, false);
+  const bool consistent = kind == Mapping::Kind::consistent;
+  if (!consistent && from.surface && to.surface) return cut_and_shared(comm, from, to, k);
+  if (consistent && projection && from.surface && from.place == Interface::Place::vertices)
+    return projected(comm, from, to);
+  const PointSet &ask = consistent ? to : from, &among = consistent ? from : to;
+  const Nearby near = nearby(comm, ask.points, {}, k, among);
+  std::vector<Transfer::Entry> entries;
+  if (ask.points.empty()) return entries;
+  add_entries(local_interpolation(near.points, ask.points, k), ask.positions, near.positions, entries);
+  if (!consistent)
+    for (auto& e : entries) std::swap(e.target, e.source);
+  return entries;
 }
 
 }  // namespace

@@ -46,6 +46,10 @@ Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::s
       start_time_(std::isnan(restart_time) ? 0. : restart_time),
       worked_(names_.size(), 0.) {
   if (!writes_) return;
+  // Not every run writes these: what an earlier run has left in the folder would be taken for this one's.
+  if (std::isnan(restart_time))
+    for (const char* file : {"balance.csv", "amounts.csv", "volume.csv"})
+      std::filesystem::remove(folder_ / file);
   residuals_.emplace(folder_ / "residuals.csv",
                      std::vector<std::string>{"time [s]", "dt [s]", "step", "iteration", "relative residual",
                                               "absolute residual [m]", "relaxation"},

@@ -34,20 +34,34 @@ struct PointTree::State {
 PointTree::PointTree(const std::vector<Vec3>& points) : state_(std::make_unique<State>(points)) {}
 PointTree::~PointTree() = default;
 
-PointTree::Found PointTree::nearest(const Vec3& p) const {
-  Found found;
-  double square = 0;
-  state_->tree.knnSearch(p.data(), 1, &found.index, &square);
-  found.distance = std::sqrt(square);
-  return found;
+std::vector<Index> PointTree::nearest(const Vec3& p, std::size_t k) const {
+  const std::size_t all = state_->cloud.points.size();
+  k = std::min(k, all);
+  if (k == 0) return {};
+  constexpr double equal = 1 + 2e-9;  // of squares
+  std::vector<Index> indices;
+  std::vector<double> squares;
+  // More than k, until the last one is further than the k-th.
+  for (std::size_t n = std::min(k + 3, all);; n = std::min(2 * n, all)) {
+    indices.resize(n), squares.resize(n);
+    state_->tree.knnSearch(p.data(), n, indices.data(), squares.data());
+    if (n == all || squares.back() > squares[k - 1] * equal) break;
+  }
+  for (std::size_t first = 0; first < k;) {
+    std::size_t end = first + 1;
+    while (end < indices.size() && squares[end] <= squares[first] * equal) ++end;
+    std::sort(indices.begin() + std::ptrdiff_t(first), indices.begin() + std::ptrdiff_t(end));
+    first = end;
+  }
+  indices.resize(k);
+  return indices;
 }
 
-std::vector<Index> PointTree::nearest(const Vec3& p, std::size_t k) const {
-  k = std::min(k, state_->cloud.points.size());
-  std::vector<Index> indices(k);
-  std::vector<double> squares(k);
-  const std::size_t found = state_->tree.knnSearch(p.data(), k, indices.data(), squares.data());
-  indices.resize(found);
+std::vector<Index> PointTree::within(const Vec3& p, double distance) const {
+  std::vector<std::pair<Index, double>> found;
+  state_->tree.radiusSearch(p.data(), distance * distance * (1 + 1e-9), found, {});
+  std::vector<Index> indices;
+  for (const auto& item : found) indices.push_back(item.first);
   return indices;
 }
 

@@ -14,13 +14,11 @@ class PointTree {
   explicit PointTree(const std::vector<Vec3>& points);
   ~PointTree();
   PointTree(const PointTree&) = delete;
-  struct Found {
-    Index index = -1;
-    double distance = 0;  ///< [m]
-  };
-  Found nearest(const Vec3& p) const;
-  /// The k nearest, or all if there are fewer, nearest first.
+  /// The k nearest, or all if there are fewer, nearest first; of those equally far (to rounding) the smaller
+  /// index first, so that the choice does not depend on what else is in the tree.
   std::vector<Index> nearest(const Vec3& p, std::size_t k) const;
+  /// All within this distance [m], in no order.
+  std::vector<Index> within(const Vec3& p, double distance) const;
 
  private:
   struct State;

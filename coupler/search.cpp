@@ -36,21 +36,12 @@ std::vector<Neighbour> nearest_here(const std::vector<Vec3>& points, const Point
   return found;
 }
 
-struct Box {
-  Vec3 low, high;
-  bool empty;
-  double nearest(const Vec3& p) const { return (p - p.cwiseMax(low).cwiseMin(high)).norm(); }
-  double furthest(const Vec3& p) const { return (p - low).cwiseAbs().cwiseMax((p - high).cwiseAbs()).norm(); }
-};
-
-std::vector<Box> boxes(MPI_Comm comm, const std::vector<Vec3>& points) {
-  Box box{Vec3::Zero(), Vec3::Zero(), points.empty()};
-  if (!points.empty()) box.low = box.high = points.front();
-  for (const Vec3& p : points) box.low = box.low.cwiseMin(p), box.high = box.high.cwiseMax(p);
-  return all_gather(comm, std::vector<Box>{box});
-}
-
 }  // namespace
+
+PointBox::PointBox(const std::vector<Vec3>& points) : empty(points.empty()) {
+  if (!empty) low = high = points.front();
+  for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+}
 
 PointSet whole_set(PointSet set) {
   if (!set.starts.empty()) return set;
@@ -63,12 +54,12 @@ PointSet whole_set(PointSet set) {
 std::vector<Neighbour> nearest(MPI_Comm comm, const std::vector<Vec3>& points, const PointSet& among) {
   if (comm_size(comm) == 1) return nearest_here(points, among);
   // A point is asked about where a box is nearer than the furthest corner of every box.
-  const std::vector<Box> all = boxes(comm, among.points);
+  const std::vector<PointBox> all = all_gather(comm, std::vector<PointBox>{PointBox(among.points)});
   std::vector<std::vector<Vec3>> ask(all.size());
   std::vector<std::vector<std::size_t>> asked(all.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     double bound = std::numeric_limits<double>::infinity();
-    for (const Box& box : all)
+    for (const PointBox& box : all)
       if (!box.empty) bound = std::min(bound, box.furthest(points[i]));
     for (std::size_t r = 0; r < all.size(); ++r)
       if (!all[r].empty && all[r].nearest(points[i]) <= bound * (1 + 1e-9)) {

@@ -11,6 +11,17 @@
 
 namespace couplet {
 
+/// The smallest box around some points.
+struct PointBox {
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  bool empty = true;
+  PointBox() = default;
+  explicit PointBox(const std::vector<Vec3>& points);
+  /// Distance [m] of a point of the box to `p`, at least and at most.
+  double nearest(const Vec3& p) const { return (p - p.cwiseMax(low).cwiseMin(high)).norm(); }
+  double furthest(const Vec3& p) const { return (p - low).cwiseAbs().cwiseMax((p - high).cwiseAbs()).norm(); }
+};
+
 /// Some places of one side of the interface: this rank's part of a list that is cut over the coupler's ranks.
 struct PointSet {
   std::string what;  ///< for messages: "vertices of 'fluid'"
@@ -21,6 +32,7 @@ struct PointSet {
   std::vector<GlobalIndex> positions{};  ///< of these points in the whole list
   std::vector<GlobalIndex> ids{};        ///< the same on any number of ranks: decide between equals
   Starts starts{};                       ///< of the whole list
+  Interface::Place place = Interface::Place::vertices;
 };
 /// Fills in positions, ids and starts of a list that lives on one rank.
 PointSet whole_set(PointSet set);

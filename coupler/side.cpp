@@ -25,6 +25,7 @@ PointSet Side::places(Interface::Place place) const {
   set.what = (at_vertices ? "vertices of '" : "faces of '") + name + "'";
   set.points = at_vertices ? interface.vertices : interface.face_centres;
   set.surface = &interface;
+  set.place = place;
   set.ids = at_vertices ? interface.vertex_ids : interface.face_ids;
   set.starts = at_vertices ? vertices : faces;
   for (std::size_t i = 0; i < set.points.size(); ++i)

@@ -4,8 +4,13 @@
 #include <petscmat.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <numeric>
+
+extern "C" {
+#include <scotch.h>  // needs FILE
+}
 
 #include "common/linalg/petsc_check.hpp"
 
@@ -35,6 +40,8 @@ std::vector<int> partition(const Csr& graph, int parts) {
   if (parts == 1) return std::vector<int>(n, 0);
   // With several threads Scotch 7 gives another partition each time, and a restart would not be bit for bit.
   setenv("SCOTCH_PTHREAD_NUMBER", "1", 1);
+  // Scotch goes on in its row of random numbers: a second mesh of a process would be shared out in another way.
+  SCOTCH_randomReset();
   // PETSc frees both arrays with the matrix.
   PetscInt *rows = nullptr, *columns = nullptr;
   petsc_check(PetscMalloc1(n + 1, &rows));

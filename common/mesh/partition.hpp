@@ -12,7 +12,7 @@ namespace couplet {
 Csr make_graph(Index n, std::span<const Index> first, std::span<const Index> second);
 
 /// A part 0 .. parts - 1 for every node, by PT-Scotch through PETSc. Serial: to be called on one rank. The
-/// same in every run (but not in a second call: Scotch goes on in its row of random numbers).
+/// same in every run and in every call.
 std::vector<int> partition(const Csr& graph, int parts);
 
 /// Reverse Cuthill-McKee: order[i] is the node that comes i-th. Components one after the other.

@@ -57,6 +57,7 @@ inline Interface plate(int n, bool triangles, double sign, double z = 0) {
 inline PointSet vertices_of(const Interface& s) { return {"vertices", s.vertices, {}, &s}; }
 inline PointSet faces_of(const Interface& s) {
   PointSet set{"faces", s.face_centres, {}, &s};
+  set.place = Interface::Place::faces;
   for (const Vec3& area : s.face_areas) set.sizes.push_back(area.norm());
   return set;
 }

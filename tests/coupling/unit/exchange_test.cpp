@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
@@ -144,6 +145,17 @@ TEST(Exchange, restart_continues_bit_for_bit) {
   ASSERT_EQ(uninterrupted.run(), "");
   EXPECT_EQ(rest.hot.temperature(), uninterrupted.hot.temperature());
   EXPECT_EQ(rest.cold.temperature(), uninterrupted.cold.temperature());
+}
+
+TEST(Exchange, what_another_run_has_left_in_the_folder_is_not_taken_for_this_ones) {
+  Pair pair;
+  fs::create_directories(pair.folder);
+  for (const char* file : {"volume.csv", "balance.csv", "notes.txt"})
+    std::ofstream(pair.folder / file) << "old";
+  ASSERT_EQ(pair.run(), "");
+  EXPECT_FALSE(fs::exists(pair.folder / "volume.csv"));
+  EXPECT_FALSE(fs::exists(pair.folder / "balance.csv"));
+  EXPECT_TRUE(fs::exists(pair.folder / "notes.txt")) << "not the coupler's";
 }
 
 std::vector<Side> sides() {

@@ -222,7 +222,7 @@ TEST(LocalWeights, take_points_in_any_position) {
 TEST(Corners, are_checked) {
   const auto problem = [](const Interface& s) -> std::string {
     try {
-      check_corners(s, "wall");
+      check_corners(s, "wall", GlobalIndex(s.vertices.size()));
     } catch (const Error& error) {
       return error.what();
     }

@@ -7,6 +7,9 @@
 
 #include "common/parallel/collective.hpp"
 #include "coupler/mapping.hpp"
+#include "coupler/side.hpp"
+#include "coupler/surroundings.hpp"
+#include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet {
 namespace {
@@ -73,6 +76,90 @@ TEST(MapsOverRanks, matched_points_find_their_twins_on_any_rank) {
   for (const Vec3& p : from.points) z.push_back(p.z());
   const auto carried = map.apply(z, 1);
   for (std::size_t i = 0; i < carried.size(); ++i) EXPECT_EQ(carried[i], to.points[i].z());
+}
+
+/// This rank's part of a whole surface, cut evenly; vertices and faces each their own way.
+Interface part_of(const Interface& whole) {
+  const auto rank = std::size_t(comm_rank(world));
+  const Starts v = even_starts(GlobalIndex(whole.vertices.size()), comm_size(world)),
+               f = even_starts(GlobalIndex(whole.face_centres.size()), comm_size(world));
+  Interface part;
+  part.dim = whole.dim;
+  part.vertices.assign(whole.vertices.begin() + v[rank], whole.vertices.begin() + v[rank + 1]);
+  part.face_centres.assign(whole.face_centres.begin() + f[rank], whole.face_centres.begin() + f[rank + 1]);
+  part.face_areas.assign(whole.face_areas.begin() + f[rank], whole.face_areas.begin() + f[rank + 1]);
+  part.face_offset.push_back(0);
+  for (GlobalIndex face = f[rank]; face < f[rank + 1]; ++face) {
+    part.face_vertices.insert(part.face_vertices.end(), whole.face_vertices.begin() + whole.face_offset[face],
+                              whole.face_vertices.begin() + whole.face_offset[face + 1]);
+    part.face_offset.push_back(Index(part.face_vertices.size()));
+  }
+  return part;
+}
+
+/// Both kinds of maps of second order between parts, against those between the whole surfaces on one rank.
+void expect_as_on_one_rank(const Interface& a, const Interface& b, MappingParameters::Type type) {
+  using Place = Interface::Place;
+  MappingParameters parameters;
+  parameters.type = type;
+  const Side from(world, "a", part_of(a)), to(world, "b", part_of(b)), all_from(MPI_COMM_SELF, "a", a),
+      all_to(MPI_COMM_SELF, "b", b);
+  for (const auto kind : {Mapping::Kind::consistent, Mapping::Kind::conservative})
+    for (const Place place : {Place::vertices, Place::faces}) {
+      if (kind == Mapping::Kind::conservative && place == Place::vertices) continue;
+      const PointSet mine = from.places(place);
+      std::vector<double> values;
+      for (const Vec3& p : mine.points)
+        values.insert(values.end(), {std::sin(9 * p.x() + p.y()), p.y() * p.y()});
+      const Mapping map(world, kind, mine, to.places(place), parameters);
+      const Mapping alone(MPI_COMM_SELF, kind, all_from.places(place), all_to.places(place), parameters);
+      const auto carried = all_gather(world, map.apply(values, 2)),
+                 expected = alone.apply(all_gather(world, values), 2);
+      ASSERT_EQ(carried.size(), expected.size());
+      for (std::size_t i = 0; i < carried.size(); ++i)
+        ASSERT_NEAR(carried[i], expected[i], 1e-14) << int(type) << int(kind) << int(place) << " at " << i;
+    }
+}
+
+TEST(MapsOverRanks, of_second_order_are_built_in_parts_as_on_one_rank) {
+  using tests::flap, tests::plate;
+  for (const auto type : {MappingParameters::Type::projection, MappingParameters::Type::rbf}) {
+    expect_as_on_one_rank(flap(51, 9, 1), flap(17, 3, -1), type);
+    // Regular meshes: many places are equally near.
+    expect_as_on_one_rank(plate(6, false, 1), plate(12, false, -1, 0.01), type);
+    // Fewer faces than neighbours wanted.
+    expect_as_on_one_rank(plate(1, false, 1), plate(5, false, -1), type);
+  }
+}
+
+TEST(MapsOverRanks, need_of_the_other_surface_what_is_near_alone) {
+  const Side sheet(world, "sheet", part_of(tests::plate(24, false, 1)));
+  const PointSet mine = sheet.places(Interface::Place::faces);
+  const Nearby near = nearby(world, mine.points, {}, 4, mine);
+  // A rank's own part (rows of the sheet) and the row beside it on each side.
+  const std::size_t rows = 24, row = 48;
+  EXPECT_LE(near.positions.size(), comm_size(world) > 1 ? mine.points.size() + 2 * row : rows * row);
+  EXPECT_GE(near.positions.size(), mine.points.size());
+  for (std::size_t i = 0; i + 1 < near.positions.size(); ++i)
+    EXPECT_LT(near.positions[i], near.positions[i + 1]);
+}
+
+TEST(MapsOverRanks, a_closed_curve_has_as_many_faces_as_vertices_and_values_at_faces_stay_there) {
+  Interface ring;
+  ring.dim = 2;
+  constexpr int n = 40;
+  for (int i = 0; i < n; ++i)
+    ring.vertices.emplace_back(std::cos(2 * M_PI * i / n), std::sin(2 * M_PI * i / n), 0);
+  for (Index i = 0; i < n; ++i) tests::add_face(ring, {i, (i + 1) % n}, Vec3(1, 0, 0));
+  const Side side(world, "ring", part_of(ring));
+  const PointSet faces = side.places(Interface::Place::faces);
+  MappingParameters parameters;
+  parameters.type = MappingParameters::Type::projection;
+  const Mapping map(world, Mapping::Kind::consistent, faces, faces, parameters);
+  std::vector<double> x;
+  for (const Vec3& p : faces.points) x.push_back(p.x());
+  const std::vector<double> carried = map.apply(x, 1);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(carried[i], x[i], 1e-12);
 }
 
 TEST(Transfers, entries_given_on_any_rank_add_up) {

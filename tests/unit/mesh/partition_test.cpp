@@ -62,5 +62,13 @@ TEST(Partition, is_balanced_and_cuts_few_edges) {
   EXPECT_LE(cut / 2, 60) << "strips would cut 30 edges, random parts about 560";
 }
 
+TEST(Partition, is_the_same_in_every_call) {
+  const Csr graph = shuffled_grid(60, 50);
+  const std::vector<int> first = partition(graph, 3);
+  EXPECT_EQ(partition(graph, 3), first);
+  partition(shuffled_grid(17, 9), 2);  // whatever comes between
+  EXPECT_EQ(partition(graph, 3), first);
+}
+
 }  // namespace
 }  // namespace couplet
