@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/fv/point_gradient.hpp"
-#include "solid_solver/solid.hpp"
+#include "solid_solver/solid_fields.hpp"
 
 namespace couplet {
 namespace {
@@ -30,12 +30,12 @@ std::vector<bool> uniform_surroundings(const Mesh& mesh) {
 /// those of the faces are. With the corrected face gradient the points' values are exact for quadratics, and
 /// Gauss's theorem over the faces with these means at the points errs by h^2/24 of the third derivatives
 /// along a line of cells where the mean of the faces' differences errs by h^2/6.
-std::vector<Tensor3> Solid::cell_gradient(std::span<const double> points) const {
+std::vector<Tensor3> SolidFields::cell_gradient(std::span<const double> points) const {
   const Index n_owned = mesh_.cells.n_owned();
   std::vector<Tensor3> gradient(n_owned, Tensor3::Zero()), on_boundary;
   std::vector<double> weight(n_owned, 0);
-  if (is_corrected()) on_boundary.resize(mesh_.boundary.n_owned());
-  visit_gradients(state_.cell_u, state_.face_u, points, [&](Index f, const Tensor3& here) {
+  if (body_.is_corrected()) on_boundary.resize(mesh_.boundary.n_owned());
+  body_.visit_gradients(displacement(points), [&](Index f, const Tensor3& here) {
     const auto add = [&](Index c) {
       if (c >= n_owned) return;
       const Vec3 arm = mesh_.reference.face_centre[f] - mesh_.reference.cell_centre[c];
@@ -46,12 +46,12 @@ std::vector<Tensor3> Solid::cell_gradient(std::span<const double> points) const 
     add(mesh_.owner[f]);
     if (f < mesh_.n_interior)
       add(mesh_.neighbour[f]);
-    else if (is_corrected())
+    else if (body_.is_corrected())
       on_boundary[f - mesh_.n_interior] = here;
   });
   for (Index c = 0; c < n_owned; ++c) gradient[c] /= weight[c];
   weight = std::vector<double>();
-  if (!is_corrected()) return gradient;
+  if (!body_.is_corrected()) return gradient;
 
   const std::vector<Tensor3> at_points = point_tensors().interpolate_full(gradient, on_boundary);
   const std::vector<Tensor3> better = gradients_from_points(mesh_, points, at_points);

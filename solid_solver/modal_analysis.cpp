@@ -78,6 +78,11 @@ EigenModes search(const SolidProblem& problem, const MethodParameters& method,
 
 }  // namespace
 
+std::optional<SolidProblem> vibration(const SolidBody& body) {
+  if (!body.has_mass()) return {};
+  return SolidProblem{body.mesh(), body.elastic(), {}, body.kernel(), 0};
+}
+
 EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
                        std::span<const double> cell_mass, int n) {
   const double scale = slowest_scale(problem, cell_mass);

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <span>
+
 #include "common/modes/lowest_modes.hpp"
 #include "common/modes/modal_model.hpp"
+#include "solid_solver/solid_body.hpp"
 #include "solid_solver/solution_method.hpp"
 
 namespace couplet {
+
+/// K of free vibrations, with a kernel that has M; none where the kernel has no mass of its own. `body` by reference.
+std::optional<SolidProblem> vibration(const SolidBody& body);
 
 /// The n lowest free vibrations of the body as it is held, K x = omega^2 M x with the kernel's own stiffness and
 /// mass, shift-inverted with the solution method of a time step; supports and springs count, prescribed motions are

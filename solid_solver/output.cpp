@@ -16,6 +16,7 @@
 #include "common/parallel/collective.hpp"
 #include "common/time/amplification.hpp"
 #include "solid_solver/modal_analysis.hpp"
+#include "solid_solver/spectrum.hpp"
 #include "solid_solver/stress.hpp"
 
 namespace couplet {
@@ -55,11 +56,12 @@ std::vector<double> packed_cells(const Mesh& mesh, std::span<const Tensor3> owne
   return values;
 }
 
-void add_cell_stress(const Solid& solid, std::span<const double> points, Fields& fields) {
-  const SolidOutputParameters& chosen = solid.parameters().output;
+void add_cell_stress(const SolidBody& body, const SolidFields& derived, std::span<const double> points,
+                     Fields& fields) {
+  const SolidOutputParameters& chosen = body.parameters().output;
   if (!chosen.stress && !chosen.principal_stress) return;
-  const Mesh& mesh = solid.mesh();
-  const std::vector<Tensor3> tensors = solid.cell_stress(points);
+  const Mesh& mesh = body.mesh();
+  const std::vector<Tensor3> tensors = derived.cell_stress(points);
   if (chosen.stress) {
     fields.add_tensor("stress", "Pa", Place::cells, mesh.dim, packed_cells(mesh, tensors));
     std::vector<double> equivalent(mesh.cells.n_local(), 0);
@@ -76,14 +78,15 @@ void add_cell_stress(const Solid& solid, std::span<const double> points, Fields&
 
 }  // namespace
 
-SolidOutput::SolidOutput(const Solid& solid, const SolidContext& context)
-    : solid_(solid), context_(context), probes_(solid) {}
+SolidOutput::SolidOutput(const SolidFields& derived, const SolidStepper& stepper, const SolidBody& body,
+                         const SolidContext& context)
+    : derived_(derived), stepper_(stepper), body_(body), context_(context), probes_(body, derived) {}
 
 void SolidOutput::write_fields(double time, std::span<const double> points) {
   if (context_.output_folder.empty()) return;
-  const Mesh& mesh = solid_.mesh();
-  const SolidOutputParameters& chosen = solid_.parameters().output;
-  const SolidState& state = solid_.state();
+  const Mesh& mesh = body_.mesh();
+  const SolidOutputParameters& chosen = body_.parameters().output;
+  const SolidState& state = stepper_.state();
   const int dim = mesh.dim;
   if (!fields_)
     fields_.emplace(mesh, context_.output_folder, context_.name, chosen.deformed, context_.restart_time);
@@ -92,19 +95,19 @@ void SolidOutput::write_fields(double time, std::span<const double> points) {
     for (int a = 0; a < dim; ++a) places[v][a] += points[v * dim + a];
   Fields fields;
   fields.list.push_back({"displacement", "m", Place::points, dim, points});
-  if (solid_.parameters().analysis == SolidParameters::Analysis::dynamic)
-    fields.add("velocity", "m/s", Place::points, dim, solid_.point_velocity());
+  if (body_.parameters().analysis == SolidParameters::Analysis::dynamic)
+    fields.add("velocity", "m/s", Place::points, dim, derived_.point_velocity());
   fields.list.push_back({"cell-displacement", "m", Place::cells, dim, state.cell_u});
   if (chosen.acceleration && !state.acceleration.empty()) {
-    fields.add("acceleration", "m/s^2", Place::points, dim, solid_.point_acceleration());
+    fields.add("acceleration", "m/s^2", Place::points, dim, derived_.point_acceleration());
     fields.list.push_back({"cell-acceleration", "m/s^2", Place::cells, dim, state.acceleration});
   }
-  add_cell_stress(solid_, points, fields);
+  add_cell_stress(body_, derived_, points, fields);
   if (chosen.strain)
-    fields.add_tensor("strain", "-", Place::cells, dim, packed_cells(mesh, solid_.cell_strain(points)));
+    fields.add_tensor("strain", "-", Place::cells, dim, packed_cells(mesh, derived_.cell_strain(points)));
   if (chosen.point_stress)
-    fields.add_tensor("point-stress", "Pa", Place::points, dim, solid_.point_stress(points));
-  for (const auto& effect : solid_.effects()) effect->add_fields(fields.list);
+    fields.add_tensor("point-stress", "Pa", Place::points, dim, derived_.point_stress(points));
+  for (const auto& effect : body_.effects()) effect->add_fields(fields.list);
   fields_->write(time, places, fields.list);
 }
 
@@ -113,15 +116,15 @@ void SolidOutput::write_series(double time, std::span<const double> points) {
   if (!probes_.empty()) write_probes(time, points);
   write_reactions(time, points);
   write_effort(time);
-  if (solid_.parameters().output.energies) write_energies(time, points);
+  if (body_.parameters().output.energies) write_energies(time, points);
 }
 
 void SolidOutput::write_spectrum(double dt) {
   if (context_.output_folder.empty() || spectrum_written_) return;
   spectrum_written_ = true;
-  const std::vector<std::complex<double>> values = solid_.eigenvalues();
-  if (comm_rank(solid_.mesh().comm) != 0) return;
-  const SolidParameters& p = solid_.parameters();
+  const std::vector<std::complex<double>> values = eigenvalues(body_);
+  if (comm_rank(body_.mesh().comm) != 0) return;
+  const SolidParameters& p = body_.parameters();
   const SolidDamping chosen = p.damping.value_or(SolidDamping{});
   const RayleighCoefficients damping{chosen.mass, chosen.stiffness};
   Series series(context_.output_folder / "spectrum.csv",
@@ -148,19 +151,19 @@ void SolidOutput::write_spectrum(double dt) {
 void SolidOutput::write_modes() {
   if (context_.output_folder.empty() || modes_written_) return;
   modes_written_ = true;
-  const Mesh& mesh = solid_.mesh();
-  const std::optional<SolidProblem> problem = solid_.vibration();
+  const Mesh& mesh = body_.mesh();
+  const std::optional<SolidProblem> problem = vibration(body_);
   if (!problem)
     throw Error(
         "output.modes: free vibrations want 'analysis: dynamic' and 'solution-method: {{face-gradient: symmetric}}': the "
         "stiffness of the other face gradients is not symmetric.");
   std::vector<double> mass;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    mass.push_back(solid_.density(c) * mesh.reference.volume[c]);
-  const int n = solid_.parameters().output.modes;
+    mass.push_back(body_.density(c) * mesh.reference.volume[c]);
+  const int n = body_.parameters().output.modes;
   EigenModes found;
   try {
-    found = solid_modes(*problem, solid_.parameters().method, mass, n);
+    found = solid_modes(*problem, body_.parameters().method, mass, n);
   } catch (const SolveFailure& e) {
     throw Error("output.modes: {}", e.what());  // no shorter step would help
   }
@@ -187,7 +190,7 @@ void SolidOutput::write_modes() {
 
 void SolidOutput::write_probes(double time, std::span<const double> points) {
   const std::vector<double> values = probes_.sample(points);
-  if (comm_rank(solid_.mesh().comm) != 0) return;
+  if (comm_rank(body_.mesh().comm) != 0) return;
   if (!probe_series_) {
     std::vector<std::string> columns{"time [s]"};
     columns.insert(columns.end(), probes_.columns().begin(), probes_.columns().end());
@@ -199,8 +202,8 @@ void SolidOutput::write_probes(double time, std::span<const double> points) {
 }
 
 void SolidOutput::write_energies(double time, std::span<const double> points) {
-  const SolidEnergies e = solid_.energies(points);
-  if (comm_rank(solid_.mesh().comm) != 0) return;
+  const SolidEnergies e = stepper_.ledger().total(stepper_.state(), points);
+  if (comm_rank(body_.mesh().comm) != 0) return;
   if (!energy_series_)
     energy_series_.emplace(
         context_.output_folder / "energies.csv",
@@ -212,10 +215,10 @@ void SolidOutput::write_energies(double time, std::span<const double> points) {
 }
 
 void SolidOutput::write_reactions(double time, std::span<const double> points) {
-  const int dim = solid_.mesh().dim;
-  const std::vector<PatchForce> reactions = solid_.reactions(points);
-  const Vec3 load = solid_.total_load();
-  if (comm_rank(solid_.mesh().comm) != 0) return;
+  const int dim = body_.mesh().dim;
+  const std::vector<PatchForce> reactions = derived_.reactions(points);
+  const Vec3 load = derived_.total_load();
+  if (comm_rank(body_.mesh().comm) != 0) return;
   std::vector<double> row{time};
   for (const PatchForce& r : reactions) row.insert(row.end(), r.force.data(), r.force.data() + dim);
   row.insert(row.end(), load.data(), load.data() + dim);
@@ -230,8 +233,8 @@ void SolidOutput::write_reactions(double time, std::span<const double> points) {
 }
 
 void SolidOutput::write_effort(double time) {
-  const SolverEffort& effort = solid_.effort();
-  if (effort.solves == 0 || comm_rank(solid_.mesh().comm) != 0) return;  // at the start nothing was solved
+  const SolverEffort& effort = stepper_.effort();
+  if (effort.solves == 0 || comm_rank(body_.mesh().comm) != 0) return;  // at the start nothing was solved
   if (!solver_series_)
     solver_series_.emplace(
         context_.output_folder / "solver.csv",

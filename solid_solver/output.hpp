@@ -9,7 +9,9 @@
 #include "common/io/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "solid_solver/probes.hpp"
-#include "solid_solver/solid.hpp"
+#include "solid_solver/solid_context.hpp"
+#include "solid_solver/solid_fields.hpp"
+#include "solid_solver/solid_stepper.hpp"
 
 namespace couplet {
 
@@ -17,7 +19,9 @@ namespace couplet {
 /// to.
 class SolidOutput {
  public:
-  SolidOutput(const Solid& solid, const SolidContext& context);
+  /// All by reference.
+  SolidOutput(const SolidFields& derived, const SolidStepper& stepper, const SolidBody& body,
+              const SolidContext& context);
 
   /// `points`: displacement of all local points.
   void write_fields(double time, std::span<const double> points);
@@ -33,7 +37,9 @@ class SolidOutput {
   void write_effort(double time);
   void write_energies(double time, std::span<const double> points);
 
-  const Solid& solid_;
+  const SolidFields& derived_;
+  const SolidStepper& stepper_;
+  const SolidBody& body_;
   const SolidContext& context_;
   SolidProbes probes_;
   bool spectrum_written_ = false, modes_written_ = false;

@@ -13,9 +13,9 @@ namespace {
 constexpr std::array<const char*, 3> axis{"x", "y", "z"};
 
 /// A field that an effect keeps at points; its name and unit are the effect's.
-OutputField effect_field(const Solid& solid, const std::string& name) {
+OutputField effect_field(const SolidBody& body, const std::string& name) {
   std::vector<OutputField> fields;
-  for (const auto& effect : solid.effects()) effect->add_fields(fields);
+  for (const auto& effect : body.effects()) effect->add_fields(fields);
   for (const OutputField& field : fields)
     if (field.name == name && field.place == OutputField::Place::points) return field;
   throw Error("probes: the field '{}' is watched, but nothing in this scene computes it.", name);
@@ -23,23 +23,23 @@ OutputField effect_field(const Solid& solid, const std::string& name) {
 
 }  // namespace
 
-SolidProbes::SolidProbes(const Solid& solid) : solid_(solid) {
-  for (const auto& [name, chosen] : solid.parameters().probes) {
-    probes_.push_back({Probe(solid.mesh(), name, chosen.point), chosen.fields});
+SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : body_(body), derived_(derived) {
+  for (const auto& [name, chosen] : body.parameters().probes) {
+    probes_.push_back({Probe(body.mesh(), name, chosen.point), chosen.fields});
     for (const std::string& field : chosen.fields) add_columns(name, field);
   }
 }
 
 void SolidProbes::add_columns(const std::string& probe, const std::string& field) {
   const auto vector = [&](const std::string& what, const char* unit) {
-    for (int a = 0; a < solid_.mesh().dim; ++a)
+    for (int a = 0; a < body_.mesh().dim; ++a)
       columns_.push_back(probe + " " + what + axis[a] + " [" + unit + "]");
   };
   const auto tensor = [&](const char* unit) {
     for (const char* component : tensor_component)
       columns_.push_back(probe + " " + field + "-" + component + " [" + unit + "]");
   };
-  if (field == "acceleration" && solid_.parameters().analysis == SolidParameters::Analysis::static_)
+  if (field == "acceleration" && body_.parameters().analysis == SolidParameters::Analysis::static_)
     throw Error("probes.{}: a static analysis has no acceleration to watch.", probe);
   if (field == "displacement") return vector("", "m");
   if (field == "velocity") return vector("velocity ", "m/s");
@@ -51,7 +51,7 @@ void SolidProbes::add_columns(const std::string& probe, const std::string& field
     for (const char* i : {"1", "2", "3"}) columns_.push_back(probe + " principal-stress-" + i + " [Pa]");
     return;
   }
-  columns_.push_back(probe + " " + field + " [" + effect_field(solid_, field).unit + "]");
+  columns_.push_back(probe + " " + field + " [" + effect_field(body_, field).unit + "]");
 }
 
 bool SolidProbes::any_watches(std::initializer_list<const char*> fields) const {
@@ -62,12 +62,13 @@ bool SolidProbes::any_watches(std::initializer_list<const char*> fields) const {
 }
 
 std::vector<double> SolidProbes::sample(std::span<const double> points) const {
-  const int dim = solid_.mesh().dim;
+  const int dim = body_.mesh().dim;
   std::vector<double> velocity, acceleration, stress, strain, row;
-  if (any_watches({"velocity"})) velocity = solid_.point_velocity();
-  if (any_watches({"acceleration"})) acceleration = solid_.point_acceleration();
-  if (any_watches({"stress", "equivalent-stress", "principal-stress"})) stress = solid_.point_stress(points);
-  if (any_watches({"strain"})) strain = solid_.point_strain(points);
+  if (any_watches({"velocity"})) velocity = derived_.point_velocity();
+  if (any_watches({"acceleration"})) acceleration = derived_.point_acceleration();
+  if (any_watches({"stress", "equivalent-stress", "principal-stress"}))
+    stress = derived_.point_stress(points);
+  if (any_watches({"strain"})) strain = derived_.point_strain(points);
   for (const Watched& watched : probes_) {
     for (const std::string& field : watched.fields) {
       std::vector<double> values;
@@ -88,7 +89,7 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
           values.assign(principal.begin(), principal.end());
         }
       } else {
-        values = watched.probe.sample(effect_field(solid_, field).values, 1);
+        values = watched.probe.sample(effect_field(body_, field).values, 1);
       }
       row.insert(row.end(), values.begin(), values.end());
     }

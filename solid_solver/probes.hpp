@@ -6,15 +6,16 @@
 #include <vector>
 
 #include "common/io/probe.hpp"
-#include "solid_solver/solid.hpp"
+#include "solid_solver/solid_body.hpp"
+#include "solid_solver/solid_fields.hpp"
 
 namespace couplet {
 
 /// The probes of a solid: which columns they fill, and their values.
 class SolidProbes {
  public:
-  /// Throws Error if a probe lies outside or watches a field the scene does not have. Collective.
-  explicit SolidProbes(const Solid& solid);
+  /// Throws Error if a probe lies outside or watches a field the scene does not have. All by reference. Collective.
+  SolidProbes(const SolidBody& body, const SolidFields& derived);
   bool empty() const { return probes_.empty(); }
   /// "tip x [m]", "tip velocity x [m/s]", "tip stress-xx [Pa]", ...
   const std::vector<std::string>& columns() const { return columns_; }
@@ -30,7 +31,8 @@ class SolidProbes {
   void add_columns(const std::string& probe, const std::string& field);
   bool any_watches(std::initializer_list<const char*> fields) const;
 
-  const Solid& solid_;
+  const SolidBody& body_;
+  const SolidFields& derived_;
   std::vector<Watched> probes_;
   std::vector<std::string> columns_;
 };

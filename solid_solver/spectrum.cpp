@@ -85,4 +85,19 @@ std::vector<std::complex<double>> spectrum(const Mesh& mesh, std::span<const dou
   return result;
 }
 
+std::vector<std::complex<double>> eigenvalues(const SolidBody& body) {
+  const Mesh& mesh = body.mesh();
+  const ElasticKernel& kernel = body.kernel();
+  if (body.has_mass())
+    return symmetric_spectrum(
+        mesh, body.elastic().n_unknowns(),
+        [&](std::span<const double> x, std::span<double> y) { kernel.apply(x, {}, y); },
+        [&](std::span<const double> x, std::span<double> y) { kernel.apply_with_mass(x, {}, 1, false, y); });
+  std::vector<double> mass;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) mass.push_back(body.density(c) * mesh.reference.volume[c]);
+  const std::vector<double> still(body.prescribed().size() * mesh.dim, 0);
+  return spectrum(mesh, mass, body.elastic().n_unknowns(),
+                  [&](std::span<const double> x, std::span<double> y) { kernel.apply(x, still, y); });
+}
+
 }  // namespace couplet

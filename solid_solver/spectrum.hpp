@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/mesh/mesh.hpp"
+#include "solid_solver/solid_body.hpp"
 
 namespace couplet {
 
@@ -27,5 +28,8 @@ std::vector<std::complex<double>> spectrum(const Mesh& mesh, std::span<const dou
 std::vector<std::complex<double>> symmetric_spectrum(const Mesh& mesh, std::size_t n_unknowns,
                                                      const ElasticApplication& stiffness,
                                                      const ElasticApplication& mass);
+
+/// Those of a body, see above. Collective.
+std::vector<std::complex<double>> eigenvalues(const SolidBody& body);
 
 }  // namespace couplet

@@ -5,8 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/output.hpp"
-#include "solid_solver/solid.hpp"
+#include "solid_solver/solid_stepper.hpp"
 
 namespace couplet {
 namespace {
@@ -22,7 +21,7 @@ constexpr double share_of_a_step = 0.1;
 // Error of a step: constant dt^3 d3u/dt3 (Euler: constant dt^2 d2u/dt2), with d3u/dt3 from the mean
 // accelerations of this step and the last one. A coupled step is not refused here: its iterates come before
 // the load has settled.
-void Solid::judge_step() {
+void SolidStepper::judge_step() {
   const LocalError local = local_error(parameters_.time_scheme);
   const double dt = step_.dt, apart = 0.5 * (dt + state_.dt);
   double error = 0, volume = 0;
@@ -47,7 +46,7 @@ void Solid::judge_step() {
         tolerance);
 }
 
-double Solid::suggest_dt() {
+double SolidStepper::suggest_dt() const {
   if (!parameters_.step_control || !(state_.error > 0)) return std::numeric_limits<double>::infinity();
   const double room = share_of_a_step * parameters_.step_control->tolerance / state_.error;
   return safety * state_.dt * std::pow(room, 1. / (local_error(parameters_.time_scheme).order + 1));

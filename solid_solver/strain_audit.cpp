@@ -11,7 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/log/doubt.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/solid.hpp"
+#include "solid_solver/judge.hpp"
 
 namespace couplet {
 namespace {
@@ -64,58 +64,59 @@ std::string EnergyAudit::text() const {
 }
 
 /// Of a displacement in all local cells, boundary faces and points. Collective.
-StrainAudit Solid::audit_strain(std::span<const double> points, bool compare) const {
+StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compare) const {
+  const SolidState& state = stepper_.state();
   const int dim = mesh_.dim;
   StrainAudit audit;
   audit.compares_gradients = compare;
   std::vector<std::array<float, 6>> strains(compare ? mesh_.n_flux_faces() : 0);
-  const std::vector<double> unknowns = unknowns_of(state_.cell_u, state_.face_u);
-  const std::vector<double> known = known_of(state_.face_u, points);
+  const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
+  const std::vector<double> known = body_.known_of({state.cell_u, state.face_u, points});
   const auto is_mine = [&](Index f) { return mesh_.owner[f] < mesh_.cells.n_owned(); };
   const auto volume = [&](Index f) {
     return std::abs(mesh_.reference.face_area[f].dot(line_of(mesh_, f))) / dim;
   };
   double energy = 0, work = 0, difference = 0, size = 0;
-  kernel_.face_gradients(
+  body_.kernel().face_gradients(
       unknowns, known,
       [&](Index f, const Tensor3& gradient) {
         if (!is_mine(f)) return;  // another rank's
         const Index owner = mesh_.owner[f];
-        const Tensor3 stress = elastic_.stress(owner, gradient);
+        const Tensor3 stress = body_.elastic().stress(owner, gradient);
         energy += 0.5 * volume(f) * product(stress, gradient);
         Vec3 force = stress * mesh_.reference.face_area[f];
-        const Vec3 here = at(state_.cell_u, owner, dim);
+        const Vec3 here = at(state.cell_u, owner, dim);
         if (f < mesh_.n_interior)
-          work += 0.5 * force.dot(at(state_.cell_u, mesh_.neighbour[f], dim) - here);
-        else if (elastic_.condition(f) == ElasticCondition::symmetry)
+          work += 0.5 * force.dot(at(state.cell_u, mesh_.neighbour[f], dim) - here);
+        else if (body_.elastic().condition(f) == ElasticCondition::symmetry)
           work -= 0.5 * mesh_.reference.face_area[f].dot(force) * mesh_.reference.face_area[f].dot(here) /
                   mesh_.reference.face_area[f].squaredNorm();
         else
-          work += 0.5 * force.dot(at(state_.face_u, f - mesh_.n_interior, dim) - here);
+          work += 0.5 * force.dot(at(state.face_u, f - mesh_.n_interior, dim) - here);
         if (!compare) return;
         const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
-        size += volume(f) * elastic_.lame(owner).mu * symmetric.squaredNorm();
+        size += volume(f) * body_.elastic().lame(owner).mu * symmetric.squaredNorm();
         const PackedTensor strain = pack(symmetric);
         std::ranges::copy(strain, strains[f].begin());
       },
       0, mesh_.n_flux_faces());
   if (compare) {
-    ElasticKernel(mesh_, elastic_, other_scheme(kernel_.scheme()))
+    ElasticKernel(mesh_, body_.elastic(), other_scheme(body_.kernel().scheme()))
         .face_gradients(
             unknowns, known,
             [&](Index f, const Tensor3& gradient) {
               if (!is_mine(f)) return;
               PackedTensor gap = pack(0.5 * (gradient + gradient.transpose()));
               for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= strains[f][i];
-              difference += volume(f) * elastic_.lame(mesh_.owner[f]).mu * unpack(gap).squaredNorm();
+              difference += volume(f) * body_.elastic().lame(mesh_.owner[f]).mu * unpack(gap).squaredNorm();
             },
             0, mesh_.n_flux_faces());
     difference = sum(mesh_.comm, difference);
     size = sum(mesh_.comm, size);
   }
-  if (kernel_.is_symmetric()) {
+  if (body_.kernel().is_symmetric()) {
     const ElasticField u{unknowns, known};
-    energy = 0.5 * kernel_.product(ElasticPart::stiffness, u, u);
+    energy = 0.5 * body_.kernel().product(ElasticPart::stiffness, u, u);
     work = energy + 0.5 * residual_work(unknowns);
   }
   audit.strain_energy = sum(mesh_.comm, energy);
@@ -126,58 +127,14 @@ StrainAudit Solid::audit_strain(std::span<const double> points, bool compare) co
 
 /// What equilibrium misses, times the displacement: where nothing is missing, a symmetric operator's strain
 /// energy is half of the loads' work. Static solves; this rank's part.
-double Solid::residual_work(std::span<const double> unknowns) const {
-  if (is_dynamic() || rhs_.size() != unknowns.size()) return 0;
+double SolidJudge::residual_work(std::span<const double> unknowns) const {
+  const std::vector<double>& rhs = stepper_.last_solve().rhs;
+  if (body_.is_dynamic() || rhs.size() != unknowns.size()) return 0;
   std::vector<double> force(unknowns.size());
-  kernel_.apply(unknowns, {}, force);
+  body_.kernel().apply(unknowns, {}, force);
   double work = 0;
-  for (std::size_t i = 0; i < force.size(); ++i) work += unknowns[i] * (rhs_[i] - force[i]);
+  for (std::size_t i = 0; i < force.size(); ++i) work += unknowns[i] * (rhs[i] - force[i]);
   return work;
-}
-
-/// Of the accepted state; a doubtful one is told once, loudly. Collective.
-void Solid::audit_answer() {
-  if (finite_) return audit_finite();
-  const std::vector<double> points = point_displacement();
-  const StrainAudit strain = audit_strain(points, !is_dynamic());
-  if (!audit_ || strain.is_doubtful() || !audit_->is_doubtful()) audit_ = strain;
-  if (strain.is_doubtful() && !strain_doubted_) {
-    strain_doubted_ = true;
-    log::doubt(
-        comm_rank(mesh_.comm),
-        fmt::format(
-            "t = {:g} s: the displacement is not to be trusted: {}. Mesh finer, most of all across what "
-            "bends; cells long in the direction of bending, few tetrahedra or prisms across and nu near "
-            "0.5 are what does this.",
-            state_.time, strain.text()));
-  }
-  if (!is_dynamic() || !effects_.empty() || !prescribed_.is_zero()) return;
-  judge_energy(
-      std::max(0.0, std::min(strain.strain_energy, strain.stress_work)),
-      kernel_.is_symmetric()
-          ? "a shorter step or 'time-scheme: {type: bathe}' stops it"
-          : "the operator of 'solution-method: {face-gradient: thesis}' and 'corrected' is not symmetric, so "
-            "that undamped motion grows on leaning, stretched or perturbed cells; 'face-gradient: symmetric' "
-            "has no such growth, 'time-scheme: {type: bathe}' or a little 'damping: {stiffness: ...}' takes "
-            "it out, 'output: {spectrum: true}' tells its rate on a coarse mesh of the same kind");
-}
-
-/// Kinetic and `strain` energy [J] against what was brought in: a growth is told once, one that leaves nothing of the
-/// answer ends the run. Collective.
-void Solid::judge_energy(double strain, const char* cure) {
-  const double work = sum(mesh_.comm, state_.load_work);
-  energy_audit_.is_driven = work != 0;
-  energy_audit_.given = sum(mesh_.comm, state_.energies.initial_kinetic) + work;
-  energy_audit_.held = sum(mesh_.comm, kinetic_energy(state_, known_rate_accepted_)) + strain;
-  energy_audit_.scale = std::max(energy_audit_.scale, std::abs(energy_audit_.given));
-  if (energy_audit_.is_hopeless())
-    throw Error(
-        "t = {:g} s: {}: the motion has grown out of nothing and nothing of the answer is left. Cause: {}.",
-        state_.time, energy_audit_.text(), cure);
-  if (!energy_audit_.is_doubtful() || energy_doubted_) return;
-  energy_doubted_ = true;
-  log::doubt(comm_rank(mesh_.comm), fmt::format("t = {:g} s: {}: the motion grows out of nothing. Cause: {}.",
-                                                state_.time, energy_audit_.text(), cure));
 }
 
 }  // namespace couplet

@@ -13,7 +13,7 @@
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/heat.hpp"
 #include "solid_solver/parameters.hpp"
-#include "solid_solver/solid.hpp"
+#include "solid_solver/solid_context.hpp"
 
 namespace couplet {
 

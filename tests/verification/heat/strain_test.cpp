@@ -24,20 +24,21 @@ INSTANTIATE_TEST_SUITE_P(Heat, Strain,
 /// Largest deviation of the cells' stress from `wanted`, over E alpha times the rise.
 double stress_error(const Solid& solid, const Tensor3& wanted) {
   double error = 0;
-  for (const Tensor3& s : solid.cell_stress(solid.point_displacement()))
+  for (const Tensor3& s : solid.fields().cell_stress(solid.fields().point_displacement()))
     error = std::max(error, (s - wanted).norm());
-  return max(solid.mesh().comm, error) / (modulus * alpha * rise);
+  return max(solid.body().mesh().comm, error) / (modulus * alpha * rise);
 }
 
 /// Largest deviation of the points' displacement from growth^T x, over the largest.
 double growth_error(const Solid& solid, const Vec3& growth) {
-  const std::vector<double> u = solid.point_displacement();
-  const int dim = solid.mesh().dim;
+  const std::vector<double> u = solid.fields().point_displacement();
+  const int dim = solid.body().mesh().dim;
   double error = 0;
-  for (std::size_t v = 0; v < solid.mesh().reference_points.size(); ++v)
+  for (std::size_t v = 0; v < solid.body().mesh().reference_points.size(); ++v)
     for (int a = 0; a < dim; ++a)
-      error = std::max(error, std::abs(u[v * dim + a] - growth[a] * solid.mesh().reference_points[v][a]));
-  return max(solid.mesh().comm, error) / (alpha * rise);
+      error =
+          std::max(error, std::abs(u[v * dim + a] - growth[a] * solid.body().mesh().reference_points[v][a]));
+  return max(solid.body().mesh().comm, error) / (alpha * rise);
 }
 
 TEST_P(Strain, a_free_body_at_uniform_temperature_grows_without_stress) {
@@ -67,7 +68,7 @@ TEST_P(Strain, a_bar_held_at_both_ends_is_compressed) {
   EXPECT_LT(error, 1e-10);
   EXPECT_LT(growth_error(*solid, Vec3(0, 1, 1) * (1 + nu) * alpha * rise), 1e-10);
   const double area = dim == 3 ? 0.48 : 0.8;
-  for (const PatchForce& r : solid->reactions(solid->point_displacement()))
+  for (const PatchForce& r : solid->fields().reactions(solid->fields().point_displacement()))
     if (r.patch == "xmin") {
       EXPECT_NEAR(r.force[0] / (modulus * alpha * rise * area), 1, 1e-10);
     }
@@ -168,7 +169,7 @@ TEST_P(Strain, two_materials_held_all_around_push_with_one_traction) {
   step(*solid, 1);
   const double wanted = -lengths / compliance;
   double error = 0;
-  for (const Tensor3& s : solid->cell_stress(solid->point_displacement()))
+  for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
     error = std::max(error, std::abs(s(0, 0) / wanted - 1));
   error = max(MPI_COMM_WORLD, error);
   ::testing::Test::RecordProperty("relative_error", fmt::format("{:.3e}", error));
@@ -213,12 +214,12 @@ TEST(ThermoelasticCoupling, a_stretched_body_cools_and_a_compressed_one_warms) {
     for (auto& [name, b] : p.boundaries) b = boundary(Type::fixed_displacement, {u, "0", "0"});
     const auto solid = make_solid(distorted_box(BoxCells::mixed), p);
     for (int i = 0; i < 22; ++i) step(*solid, 0.05);
-    const auto& effect = dynamic_cast<const ThermalStrain&>(*solid->effects().front());
+    const auto& effect = dynamic_cast<const ThermalStrain&>(*solid->body().effects().front());
     const double rate = modulus / (1 - 2 * nu) * alpha / (7800 * 480);
     const double exact = 300 * (std::exp(-rate * strain) - 1);
     const std::vector<double>& t = effect.heat()->accepted().cells;
     double error = 0;
-    for (Index c = 0; c < solid->mesh().cells.n_owned(); ++c)
+    for (Index c = 0; c < solid->body().mesh().cells.n_owned(); ++c)
       error = std::max(error, std::abs((t[c] - 300) / exact - 1));
     largest = std::max(largest, max(MPI_COMM_WORLD, error));
   }
@@ -261,9 +262,9 @@ TEST(SolvedTemperature, goes_on_bit_for_bit_after_a_restart) {
     CheckpointReader reader(MPI_COMM_WORLD, file.path());
     second->load(reader);
     for (Solid* solid : {first.get(), second.get()}) step(*solid, 10), step(*solid, 10);
-    EXPECT_EQ(first->state().cell_u, second->state().cell_u);
-    const auto u = first->point_displacement();
-    const auto s = first->cell_stress(u), t = second->cell_stress(u);
+    EXPECT_EQ(first->stepper().state().cell_u, second->stepper().state().cell_u);
+    const auto u = first->fields().point_displacement();
+    const auto s = first->fields().cell_stress(u), t = second->fields().cell_stress(u);
     for (std::size_t c = 0; c < s.size(); ++c) EXPECT_EQ(s[c], t[c]);
   }
 }

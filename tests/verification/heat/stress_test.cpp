@@ -69,13 +69,13 @@ Errors wedge_errors(int n, bool solve_for_temperature) {
   }
   const auto solid = make_solid(wedge(n, 0.002, cylinder), p);
   step(*solid, 1);
-  const Mesh& mesh = solid->mesh();
-  const auto stress = solid->cell_stress(solid->point_displacement());
+  const Mesh& mesh = solid->body().mesh();
+  const auto stress = solid->fields().cell_stress(solid->fields().point_displacement());
   double error = 0, size = 0, stress_error = 0, stress_size = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     const double r = mesh.reference.cell_centre[c].head<2>().norm(), v = mesh.reference.volume[c];
     const double u = cylinder.displacement(r);
-    error += v * std::pow(solid->state().cell_u[3 * std::size_t(c)] - u, 2);
+    error += v * std::pow(solid->stepper().state().cell_u[3 * std::size_t(c)] - u, 2);
     size += v * u * u;
     const Vec3 exact = cylinder.stress(r);
     stress_error += v * (stress[c].diagonal() - exact).squaredNorm();
@@ -118,10 +118,10 @@ double linear_temperature_stress(BoxCells cells, int n) {
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, u);
   const auto solid = make_solid(make_box(cells, {n, n, n}, Vec3::Zero(), Vec3(1, 1, dim == 3 ? 1 : 0)), p);
   step(*solid, 1);
-  const auto stress = solid->cell_stress(solid->point_displacement());
+  const auto stress = solid->fields().cell_stress(solid->fields().point_displacement());
   double squares = 0;
   for (std::size_t c = 0; c < stress.size(); ++c)
-    squares += solid->mesh().reference.volume[c] * stress[c].squaredNorm();
+    squares += solid->body().mesh().reference.volume[c] * stress[c].squaredNorm();
   return std::sqrt(squares) / (modulus * alpha * 100);
 }
 

@@ -42,8 +42,8 @@ void report(const char* what, const StrainAudit& audit) { fmt::print("{}: {}\n",
 TEST(Audit, fires_on_cook_at_nu_0_49_with_the_corrected_gradient) {
   const int before = log::doubts();
   const auto wrong = cook(16, 0.49, FaceGradient::corrected);
-  report("Cook, nu 0.49, corrected", *wrong->last_audit());
-  EXPECT_TRUE(wrong->last_audit()->is_doubtful());
+  report("Cook, nu 0.49, corrected", *wrong->judge().last_audit());
+  EXPECT_TRUE(wrong->judge().last_audit()->is_doubtful());
   EXPECT_EQ(log::doubts(), before + 1);
 }
 
@@ -51,31 +51,33 @@ TEST(Audit, is_silent_on_cook_with_the_symmetric_gradient_and_at_nu_one_third) {
   const int before = log::doubts();
   for (const double nu : {1. / 3, 0.49, 0.4999}) {
     const auto sound = cook(16, nu, FaceGradient::symmetric);
-    report("Cook, symmetric", *sound->last_audit());
-    EXPECT_LT(sound->last_audit()->mismatch(), 1e-6) << nu;  // a symmetric operator is never convicted by it
+    report("Cook, symmetric", *sound->judge().last_audit());
+    EXPECT_LT(sound->judge().last_audit()->mismatch(), 1e-6)
+        << nu;  // a symmetric operator is never convicted by it
   }
   const auto sound = cook(16, 1. / 3, FaceGradient::corrected);
-  report("Cook, nu 1/3, corrected", *sound->last_audit());
-  EXPECT_FALSE(sound->last_audit()->is_doubtful());
+  report("Cook, nu 1/3, corrected", *sound->judge().last_audit());
+  EXPECT_FALSE(sound->judge().last_audit()->is_doubtful());
   EXPECT_EQ(log::doubts(), before);
 }
 
 TEST(Audit, fires_on_two_long_tetrahedra_across_a_slender_beam) {
   const auto wrong = beam(BoxCells::tetrahedra, {16, 2, 2}, 40, FaceGradient::corrected);
-  report("tetrahedra two across 40:1, corrected", *wrong->last_audit());
-  EXPECT_TRUE(wrong->last_audit()->is_doubtful());
+  report("tetrahedra two across 40:1, corrected", *wrong->judge().last_audit());
+  EXPECT_TRUE(wrong->judge().last_audit()->is_doubtful());
   const auto sound = beam(BoxCells::hexahedra, {40, 4, 4}, 10, FaceGradient::corrected);
-  report("hexahedra four across 10:1, corrected", *sound->last_audit());
-  EXPECT_FALSE(sound->last_audit()->is_doubtful());
+  report("hexahedra four across 10:1, corrected", *sound->judge().last_audit());
+  EXPECT_FALSE(sound->judge().last_audit()->is_doubtful());
 }
 
 // Stretched cells: stiff, and said by the difference of the gradients.
 TEST(Audit, says_that_stretched_tetrahedra_are_stiff) {
   const auto stiff = beam(BoxCells::tetrahedra, {4, 4, 4}, 10, FaceGradient::symmetric);
   const auto sound = beam(BoxCells::tetrahedra, {40, 4, 4}, 10, FaceGradient::symmetric);
-  report("tetrahedra 10:1 cells, symmetric", *stiff->last_audit());
-  report("tetrahedra 1:1 cells, symmetric", *sound->last_audit());
-  EXPECT_GT(stiff->last_audit()->gradient_difference, 2 * sound->last_audit()->gradient_difference);
+  report("tetrahedra 10:1 cells, symmetric", *stiff->judge().last_audit());
+  report("tetrahedra 1:1 cells, symmetric", *sound->judge().last_audit());
+  EXPECT_GT(stiff->judge().last_audit()->gradient_difference,
+            2 * sound->judge().last_audit()->gradient_difference);
 }
 
 /// A sheet that swings freely, judged every 0.2 s for as long as the run lasts.
@@ -100,17 +102,17 @@ Swing swing(FaceGradient gradient, double until) {
   Swing result;
   const int before = log::doubts();
   try {
-    for (int i = 1; solid->state().time < until; ++i) {
+    for (int i = 1; solid->stepper().state().time < until; ++i) {
       step(*solid, 0.01);
-      if (i % 20 == 0) solid->write_output(solid->state().time, 0);
+      if (i % 20 == 0) solid->write_output(solid->stepper().state().time, 0);
       if (log::doubts() > before && result.first_told == 0)
-        result.first_told = solid->energy_audit().created();
+        result.first_told = solid->judge().energy_audit().created();
     }
   } catch (const Error& error) {
     result.cause = error.what();
-    result.ended = solid->state().time;
+    result.ended = solid->stepper().state().time;
   }
-  result.created = solid->energy_audit().created();
+  result.created = solid->judge().energy_audit().created();
   return result;
 }
 

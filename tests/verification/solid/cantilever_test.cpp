@@ -27,13 +27,13 @@ Tip tip_of(const std::array<int, 3>& n) {
   const auto start = std::chrono::steady_clock::now();
   const auto solid = make_solid(make_box(BoxCells::hexahedra, n, Vec3(0, -1, -1), Vec3(20, 1, 1)), p);
   step(*solid, 1);
-  const std::vector<double> points = solid->point_displacement();
-  const Probe probe(solid->mesh(), "tip", Vec3(20, 0, 0));
+  const std::vector<double> points = solid->fields().point_displacement();
+  const Probe probe(solid->body().mesh(), "tip", Vec3(20, 0, 0));
   const double deflection = -probe.sample(points, 3)[1];
-  Vec3 total = solid->total_load();
+  Vec3 total = solid->fields().total_load();
   const double load = total.norm();
   EXPECT_NEAR(load, 500, 1e-9);
-  for (const PatchForce& r : solid->reactions(points)) total += r.force;
+  for (const PatchForce& r : solid->fields().reactions(points)) total += r.force;
   fmt::print("{}x{}x{}: tip {:.5f} m ({:+.2f} %), {:.2f} s\n", n[0], n[1], n[2], deflection,
              100 * (deflection / 0.10008 - 1),
              std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

@@ -27,13 +27,14 @@ RawMesh mapped_square(BoxCells cells, int n_s, int n_t, Place&& place) {
 /// `exact_u` and `exact_stress` (xx, yy, xy) at a place; a null displacement is not compared.
 template <class U, class S>
 Errors compare(const Solid& solid, U&& exact_u, S&& exact_stress) {
-  const Mesh& mesh = solid.mesh();
-  const auto stress = solid.cell_stress(solid.point_displacement());
+  const Mesh& mesh = solid.body().mesh();
+  const auto stress = solid.fields().cell_stress(solid.fields().point_displacement());
   double u = 0, u_size = 0, s = 0, s_size = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     const Vec3& x = mesh.reference.cell_centre[c];
     const double volume = mesh.reference.volume[c];
-    const Vec3 found(solid.state().cell_u[2 * c], solid.state().cell_u[2 * c + 1], 0), wanted = exact_u(x);
+    const Vec3 found(solid.stepper().state().cell_u[2 * c], solid.stepper().state().cell_u[2 * c + 1], 0),
+        wanted = exact_u(x);
     u += volume * (found - wanted).squaredNorm();
     u_size += volume * wanted.squaredNorm();
     const Vec3 exact = exact_stress(x), here(stress[c](0, 0), stress[c](1, 1), stress[c](0, 1));
@@ -92,7 +93,7 @@ std::unique_ptr<Solid> solve_cylinder(const SolidParameters& p, BoxCells cells, 
 
 /// u_r = a r + b / r with the constants of the plane problem.
 Errors cylinder_errors(const Solid& solid, double a, double b) {
-  const LameConstants l = solid.elastic().lame(0);
+  const LameConstants l = solid.body().elastic().lame(0);
   return compare(
       solid, [&](const Vec3& x) { return Vec3((a + b / x.squaredNorm()) * x); },
       [&](const Vec3& x) {
@@ -195,9 +196,9 @@ Errors kirsch_errors(FaceGradient gradient, int n, double& at_hole) {
                                }),
                  p);
   step(*solid, 1);
-  const Mesh& mesh = solid->mesh();
+  const Mesh& mesh = solid->body().mesh();
   const Patch& rim = *mesh.find_patch("xmin");
-  const auto faces = solid->face_stress(rim.first, rim.count, solid->point_displacement());
+  const auto faces = solid->fields().face_stress(rim.first, rim.count, solid->fields().point_displacement());
   at_hole = 0;
   for (Index i = 0; i < rim.count; ++i) {
     const Vec3 n = mesh.reference.face_area[rim.first + i].normalized(), along(-n[1], n[0], 0);

@@ -75,7 +75,7 @@ TEST_P(SolidContract, solve_starts_from_the_accepted_state_each_time) {
   solid->begin_step({0, 0.01, Scheme::implicit, 0});
   solid->solve(one);
   solid->accept_step();
-  const std::vector<double> before = solid->state().cell_u;
+  const std::vector<double> before = solid->stepper().state().cell_u;
   solid->begin_step({0.01, 0.01, Scheme::implicit, 1});
   const Exchange first = solid->solve(one);
   solid->solve(other);
@@ -86,7 +86,7 @@ TEST_P(SolidContract, solve_starts_from_the_accepted_state_each_time) {
   const Exchange again = solid->solve(one);
   EXPECT_LT(difference(first.at("displacement"), again.at("displacement")), 1e-13);
   EXPECT_LT(difference(first.at("velocity"), again.at("velocity")), 1e-13);
-  EXPECT_EQ(before, solid->state().cell_u);
+  EXPECT_EQ(before, solid->stepper().state().cell_u);
 }
 
 TEST_P(SolidContract, interface_load_acts_as_the_same_traction) {
@@ -105,8 +105,8 @@ TEST_P(SolidContract, interface_load_acts_as_the_same_traction) {
     coupled->accept_step();
     step(alone, 0.01);
   }
-  EXPECT_LT(difference(coupled->state().cell_u, alone.state().cell_u), 1e-12);
-  EXPECT_NEAR(coupled->total_load()[0], 5 * (p.dimension == 3 ? 0.05 : 1), 1e-12);
+  EXPECT_LT(difference(coupled->stepper().state().cell_u, alone.stepper().state().cell_u), 1e-12);
+  EXPECT_NEAR(coupled->fields().total_load()[0], 5 * (p.dimension == 3 ? 0.05 : 1), 1e-12);
 }
 
 TEST_P(SolidContract, interface_values_are_those_of_the_vertices) {
@@ -123,10 +123,10 @@ TEST_P(SolidContract, interface_values_are_those_of_the_vertices) {
       EXPECT_EQ(out.at("displacement")[i * interface.dim], 0);
     }
   // The vertices at the top move with the load; all ranks look at their own points.
-  const std::vector<double> points = solid->point_displacement();
+  const std::vector<double> points = solid->fields().point_displacement();
   double top = 0;
-  for (Index v = 0; v < solid->mesh().points.n_local(); ++v)
-    if (solid->mesh().reference_points[v][1] > 1 - 1e-9)
+  for (Index v = 0; v < solid->body().mesh().points.n_local(); ++v)
+    if (solid->body().mesh().reference_points[v][1] > 1 - 1e-9)
       top = std::max(top, points[std::size_t(v) * interface.dim]);
   double sent = 0;
   for (std::size_t i = 0; i < interface.vertices.size(); ++i)
@@ -149,13 +149,16 @@ TEST_P(SolidContract, all_ranks_together_give_what_one_rank_gives) {
     alone->accept_step();
   }
   std::map<GlobalIndex, Index> cell_of;
-  for (Index c = 0; c < alone->mesh().cells.n_owned(); ++c) cell_of[alone->mesh().cell_id[c]] = c;
-  const int dim = alone->mesh().dim;
+  for (Index c = 0; c < alone->body().mesh().cells.n_owned(); ++c)
+    cell_of[alone->body().mesh().cell_id[c]] = c;
+  const int dim = alone->body().mesh().dim;
   std::vector<double> mine, theirs;
-  for (Index c = 0; c < together->mesh().cells.n_local(); ++c)
+  for (Index c = 0; c < together->body().mesh().cells.n_local(); ++c)
     for (int a = 0; a < dim; ++a) {
-      mine.push_back(together->state().cell_u[std::size_t(c) * dim + a]);
-      theirs.push_back(alone->state().cell_u[std::size_t(cell_of.at(together->mesh().cell_id[c])) * dim + a]);
+      mine.push_back(together->stepper().state().cell_u[std::size_t(c) * dim + a]);
+      theirs.push_back(alone->stepper()
+                           .state()
+                           .cell_u[std::size_t(cell_of.at(together->body().mesh().cell_id[c])) * dim + a]);
     }
   EXPECT_LT(difference(mine, theirs), 1e-10);
   // Each vertex of the whole interface is given by one rank, with the value that one rank alone gives it.
@@ -207,7 +210,7 @@ void expect_that_a_checkpoint_continues_bit_for_bit(BoxCells cells, MethodParame
     continued->load(reader);
   }
   EXPECT_EQ(of_whole, advance(*continued, 3, 6, true));
-  EXPECT_EQ(whole->state().cell_v, continued->state().cell_v);
+  EXPECT_EQ(whole->stepper().state().cell_v, continued->stepper().state().cell_v);
   MPI_Barrier(MPI_COMM_WORLD);
   if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
 }
@@ -231,7 +234,7 @@ TEST_P(SolidContract, a_step_that_cannot_be_solved_fails_on_all_ranks_and_leaves
   solid->begin_step({0, 0.01, Scheme::implicit, 0});
   const Exchange first = solid->solve(load_on(interface, 1));
   EXPECT_THROW(solid->solve(load_on(interface, std::nan(""))), SolveFailure);
-  EXPECT_EQ(solid->state().steps, 0);
+  EXPECT_EQ(solid->stepper().state().steps, 0);
   const Exchange again = solid->solve(load_on(interface, 1));
   EXPECT_LT(difference(first.at("displacement"), again.at("displacement")), 1e-13);
 }

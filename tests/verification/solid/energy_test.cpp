@@ -58,9 +58,10 @@ TEST(SolidEnergy, balances_to_round_off_with_two_materials_and_supports) {
       raw.cell_zone[c] = raw.points[raw.cell_points[c][0]][0] > 0.45;
     perturb_interior(raw, 0.15, 4);
     const auto solid = make_solid(raw, p);
-    ASSERT_FALSE(solid->mesh().twin.empty());
+    ASSERT_FALSE(solid->body().mesh().twin.empty());
     for (int i = 0; i < 80; ++i) step(*solid, 0.02);
-    const SolidEnergies e = solid->energies(solid->point_displacement());
+    const SolidEnergies e =
+        solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
     RecordProperty(damped ? "imbalance_damped" : "imbalance",
                    fmt::format("{:.2e}", std::abs(e.lost()) / largest(e)));
     EXPECT_LT(std::abs(e.lost()), 1e-9 * largest(e));
@@ -73,7 +74,8 @@ TEST(SolidEnergy, balances_to_round_off_for_the_trapezoidal_rule) {
     SolidParameters p = busy_sheet(TimeScheme::trapezoidal);
     if (!damped) p.damping.reset();
     const auto solid = run(p, 80, 0.02);
-    const SolidEnergies e = solid->energies(solid->point_displacement());
+    const SolidEnergies e =
+        solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
     fmt::print(
         "kinetic {:.3e}, internal work {:.3e}, strain {:.3e}, external {:.3e}, damping {:.3e}, lost {:.1e} "
         "J\n",
@@ -94,8 +96,10 @@ TEST(SolidEnergy, what_dissipative_schemes_lose_vanishes_with_the_step) {
     SolidParameters p = busy_sheet(scheme);
     p.damping.reset();
     const auto coarse = run(p, 80, 0.02), fine = run(p, 320, 0.005);
-    const SolidEnergies a = coarse->energies(coarse->point_displacement());
-    const SolidEnergies b = fine->energies(fine->point_displacement());
+    const SolidEnergies a =
+        coarse->stepper().ledger().total(coarse->stepper().state(), coarse->fields().point_displacement());
+    const SolidEnergies b =
+        fine->stepper().ledger().total(fine->stepper().state(), fine->fields().point_displacement());
     fmt::print("{}: lost {:.2e} and {:.2e} of {:.2e} J\n", name(scheme), a.lost(), b.lost(), largest(b));
     EXPECT_GT(std::abs(a.lost()), 1e-8 * largest(a)) << name(scheme);
     EXPECT_LT(std::abs(b.lost()), 0.7 * std::abs(a.lost()))
@@ -120,10 +124,12 @@ TEST(SolidEnergy, dissipative_schemes_never_show_a_gain_in_free_vibration) {
     double least = 0;
     for (int i = 0; i < 40; ++i) {
       step(*solid, 0.01);
-      const SolidEnergies e = solid->energies(solid->point_displacement());
+      const SolidEnergies e =
+          solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
       least = std::min(least, e.lost() / e.initial_kinetic);
     }
-    const SolidEnergies e = solid->energies(solid->point_displacement());
+    const SolidEnergies e =
+        solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
     fmt::print("{}: lost {:.2e} of {:.2e} J, least {:.1e}\n", name(scheme), e.lost(), e.initial_kinetic,
                least);
     EXPECT_GT(least, -1e-9) << name(scheme);
@@ -139,7 +145,8 @@ TEST(SolidEnergy, of_a_falling_body_is_all_kinetic) {
   p.gravity = {0, -10};
   p.output.energies = true;
   const auto solid = run(p, 10, 0.1);
-  const SolidEnergies e = solid->energies(solid->point_displacement());
+  const SolidEnergies e =
+      solid->stepper().ledger().total(solid->stepper().state(), solid->fields().point_displacement());
   const double mass = 7800 * 0.4;
   EXPECT_NEAR(e.kinetic / (0.5 * mass * 100), 1, 1e-9);
   EXPECT_NEAR(e.external_work / (0.5 * mass * 100), 1, 1e-9);

@@ -35,10 +35,10 @@ TEST(FiniteStrain, rigid_rotation_makes_no_stress) {
       double most = 0;
       for (int i = 0; i < 12; ++i) {
         step(*solid, 1. / 12);
-        for (const Tensor3& s : solid->cell_stress(solid->point_displacement()))
+        for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
           most = std::max(most, s.cwiseAbs().maxCoeff());
       }
-      EXPECT_LT(max(solid->mesh().comm, most), 1e-9 * p.material.youngs_modulus) << law;
+      EXPECT_LT(max(solid->body().mesh().comm, most), 1e-9 * p.material.youngs_modulus) << law;
     }
   }
 }
@@ -67,12 +67,12 @@ TEST(FiniteStrain, pressure_follows_the_surface) {
   const RawMesh raw = make_box(BoxCells::quadrilaterals, {40, 4, 1}, Vec3::Zero(), Vec3(10, 1, 0));
   const auto solid = make(raw, p);
   for (int i = 0; i < 5; ++i) step(*solid, 0.2);
-  const std::vector<double> u = solid->point_displacement();
+  const std::vector<double> u = solid->fields().point_displacement();
   Vec3 ends[2] = {Vec3::Zero(), Vec3::Zero()};
-  for (std::size_t v = 0; v < solid->mesh().reference_points.size(); ++v)
+  for (std::size_t v = 0; v < solid->body().mesh().reference_points.size(); ++v)
     for (int k = 0; k < 2; ++k)
-      if ((solid->mesh().reference_points[v] - Vec3(10 * k, 1, 0)).norm() < 1e-9)
-        ends[k] = solid->mesh().reference_points[v] + Vec3(u[2 * v], u[2 * v + 1], 0);
+      if ((solid->body().mesh().reference_points[v] - Vec3(10 * k, 1, 0)).norm() < 1e-9)
+        ends[k] = solid->body().mesh().reference_points[v] + Vec3(u[2 * v], u[2 * v + 1], 0);
   for (Vec3& end : ends)
     for (int a = 0; a < 3; ++a) {
       const double most = max(MPI_COMM_WORLD, end[a]), least = min(MPI_COMM_WORLD, end[a]);
@@ -80,18 +80,18 @@ TEST(FiniteStrain, pressure_follows_the_surface) {
     }
   const Vec3 along = ends[1] - ends[0];
   EXPECT_LT(along[1], -1.5);  // far from where it was
-  const auto reactions = solid->reactions(u);
+  const auto reactions = solid->fields().reactions(u);
   const Vec3 load = 2e3 * Vec3(along[1], -along[0], 0);
   EXPECT_LT((reactions[0].force + load).norm(), 1e-6 * load.norm());
-  EXPECT_LT((solid->total_load() - load).norm(), 1e-9 * load.norm());
+  EXPECT_LT((solid->fields().total_load() - load).norm(), 1e-9 * load.norm());
 }
 
 /// Linear momentum, angular momentum about the origin and energy of a free body that spins and swings.
 std::array<double, 7> kept(const Solid& solid) {
-  const ElasticKernel kernel(solid.mesh(), solid.elastic(), FaceGradientScheme::symmetric);
-  kernel.set_density(std::vector<double>(solid.mesh().cells.n_local(), 1000.));
-  const Mesh& mesh = solid.mesh();
-  std::vector<double> v, momentum(solid.elastic().n_unknowns());
+  const ElasticKernel kernel(solid.body().mesh(), solid.body().elastic(), FaceGradientScheme::symmetric);
+  kernel.set_density(std::vector<double>(solid.body().mesh().cells.n_local(), 1000.));
+  const Mesh& mesh = solid.body().mesh();
+  std::vector<double> v, momentum(solid.body().elastic().n_unknowns());
   std::vector<Vec3> x;
   const auto add = [&](const Vec3& place, std::size_t i, const std::vector<double>& us,
                        const std::vector<double>& vs) {
@@ -99,10 +99,11 @@ std::array<double, 7> kept(const Solid& solid) {
     for (int a = 0; a < 3; ++a) v.push_back(vs[3 * i + std::size_t(a)]);
   };
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    add(mesh.reference.cell_centre[c], std::size_t(c), solid.state().cell_u, solid.state().cell_v);
-  for (const Index f : solid.elastic().unknown_faces())
-    add(mesh.reference.face_centre[f], std::size_t(f - mesh.n_interior), solid.state().face_u,
-        solid.state().face_v);
+    add(mesh.reference.cell_centre[c], std::size_t(c), solid.stepper().state().cell_u,
+        solid.stepper().state().cell_v);
+  for (const Index f : solid.body().elastic().unknown_faces())
+    add(mesh.reference.face_centre[f], std::size_t(f - mesh.n_interior), solid.stepper().state().face_u,
+        solid.stepper().state().face_v);
   kernel.apply_with_mass(v, {}, 1, false, momentum);
   std::array<double, 7> result{};
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -110,7 +111,8 @@ std::array<double, 7> kept(const Solid& solid) {
     for (std::size_t a = 0; a < 3; ++a) result[a] += p[Index(a)], result[3 + a] += spin[Index(a)];
   }
   for (double& r : result) r = sum(MPI_COMM_WORLD, r);
-  const SolidEnergies e = solid.energies(solid.point_displacement());
+  const SolidEnergies e =
+      solid.stepper().ledger().total(solid.stepper().state(), solid.fields().point_displacement());
   result[6] = e.kinetic + e.strain;
   return result;
 }

@@ -47,12 +47,12 @@ std::unique_ptr<Solid> make(const RawMesh& raw, const SolidParameters& p, MPI_Co
 
 /// Of the middle of the tip, over the length, on all ranks.
 double deflection(const Solid& solid) {
-  const std::vector<double> u = solid.point_displacement();
+  const std::vector<double> u = solid.fields().point_displacement();
   double most = 0;
   for (std::size_t i = 0; i < u.size(); i += 3)
-    if ((solid.mesh().reference_points[i / 3] - Vec3(0, 0, length)).norm() < 1e-9)
+    if ((solid.body().mesh().reference_points[i / 3] - Vec3(0, 0, length)).norm() < 1e-9)
       most = std::hypot(u[i], u[i + 1]);
-  return max(solid.mesh().comm, most) / length;
+  return max(solid.body().mesh().comm, most) / length;
 }
 
 TEST(FiniteStrain, bends_as_converged_finite_elements_do) {
@@ -79,7 +79,7 @@ TEST(FiniteStrain, equals_small_strain_under_small_loads) {
 TEST(FiniteStrain, newton_ends_superlinearly) {
   const auto solid = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1));
   step(*solid, 1);
-  const auto& tail = solid->newton();
+  const auto& tail = solid->body().finite()->iterates();
   ASSERT_GE(tail.size(), 4U);
   EXPECT_LE(tail.size(), 12U);
   bool seen = false;
@@ -119,7 +119,7 @@ TEST(FiniteStrain, homogeneous_deformation_is_exact) {
       perturb_interior(raw, 0.15, 7);
       const auto solid = make(raw, p);
       step(*solid, 1);
-      for (const Tensor3& s : solid->cell_stress(solid->point_displacement()))
+      for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
         EXPECT_LT((s - wanted).cwiseAbs().maxCoeff(), 1e-8 * wanted.norm());
     }
 }
@@ -142,26 +142,26 @@ TEST(FiniteStrain, restart_in_the_middle_of_the_load_is_bit_for_bit) {
   after->load(reader);
   step(*through, 0.5);
   step(*after, 0.5);
-  EXPECT_EQ(through->state().cell_u, after->state().cell_u);
-  EXPECT_EQ(through->state().face_u, after->state().face_u);
+  EXPECT_EQ(through->stepper().state().cell_u, after->stepper().state().cell_u);
+  EXPECT_EQ(through->stepper().state().face_u, after->stepper().state().face_u);
 }
 
 TEST(FiniteStrain, failed_load_names_the_worst_cell_and_leaves_the_state) {
   if (comm_size(MPI_COMM_WORLD) > 2) return;  // its many linear iterations wait for each other on few cores
   const auto solid = make(beam(BoxCells::hexahedra, 2, 20), bent("saint-venant-kirchhoff", 1));
   step(*solid, 0.5);
-  const std::vector<double> kept = solid->state().cell_u;
+  const std::vector<double> kept = solid->stepper().state().cell_u;
   solid->begin_step({0.5, 400, Scheme::standalone, 1});
   EXPECT_THAT([&] { solid->solve({}); }, ThrowsMessage<SolveFailure>(HasSubstr("where det F =")));
-  EXPECT_EQ(solid->state().cell_u, kept);
+  EXPECT_EQ(solid->stepper().state().cell_u, kept);
   step(*solid, 0.1);
 }
 
 TEST(FiniteStrain, reactions_balance_the_load) {
   const auto solid = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", 1));
   step(*solid, 1);
-  const auto reactions = solid->reactions(solid->point_displacement());
-  const Vec3 load = solid->total_load();
+  const auto reactions = solid->fields().reactions(solid->fields().point_displacement());
+  const Vec3 load = solid->fields().total_load();
   ASSERT_EQ(reactions.size(), 1U);
   EXPECT_LT((reactions[0].force + load).norm(), 1e-8 * load.norm());
 }
@@ -205,9 +205,9 @@ TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
       perturb_interior(raw, 0.1, 3);
       const auto solid = make(raw, busy(dim, volume));
       const auto law =
-          laws::find("mooney-rivlin")->make(lame_constants(solid->parameters()), std::vector{0.3});
-      const auto kernel = make_finite_kernel(solid->mesh(), solid->elastic(), {law.get()});
-      const std::size_t n = solid->elastic().n_unknowns();
+          laws::find("mooney-rivlin")->make(lame_constants(solid->body().parameters()), std::vector{0.3});
+      const auto kernel = make_finite_kernel(solid->body().mesh(), solid->body().elastic(), {law.get()});
+      const std::size_t n = solid->body().elastic().n_unknowns();
       const std::vector<double> u = noise(n, 0.02, 1), v = noise(n, 1, 2), w = noise(n, 1, 3);
       const double h = 1e-6;
       std::vector<double> up = u, down = u, force(n), ahead(n), behind(n), kv(n), kw(n);
@@ -232,10 +232,10 @@ TEST(FiniteStrain, tangent_is_the_derivative_of_the_forces_on_all_cells) {
       kernel->linearise(down, {}, 0, behind);
       const double least = sum(MPI_COMM_WORLD, kernel->energy());
       EXPECT_NEAR((most - least) / (2 * h), dot(force, v), 1e-5 * std::sqrt(dot(force, force) * dot(v, v)));
-      std::vector<double> pressure(solid->mesh().boundary.n_owned(), 0);
-      for (Index f = solid->mesh().n_interior; f < solid->mesh().n_flux_faces(); ++f)
-        if (solid->mesh().reference.face_centre[f][1] > 1 - 1e-9)
-          pressure[f - solid->mesh().n_interior] = 3e5;
+      std::vector<double> pressure(solid->body().mesh().boundary.n_owned(), 0);
+      for (Index f = solid->body().mesh().n_interior; f < solid->body().mesh().n_flux_faces(); ++f)
+        if (solid->body().mesh().reference.face_centre[f][1] > 1 - 1e-9)
+          pressure[f - solid->body().mesh().n_interior] = 3e5;
       kernel->set_pressure(pressure);
       compare();
     }

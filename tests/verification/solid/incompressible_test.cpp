@@ -25,8 +25,8 @@ SolidParameters rubber(int dim, const std::string& law, double modulus, double n
 
 /// Displacement of the point that lies at `x`, on all ranks.
 Vec3 displacement_at(const Solid& solid, const Vec3& x) {
-  const Mesh& mesh = solid.mesh();
-  const std::vector<double> u = solid.point_displacement();
+  const Mesh& mesh = solid.body().mesh();
+  const std::vector<double> u = solid.fields().point_displacement();
   Vec3 result = Vec3::Constant(-1e300);
   for (Index v = 0; v < mesh.points.n_local(); ++v)
     if ((mesh.reference_points[v] - x).norm() < 1e-9)
@@ -53,7 +53,7 @@ TEST(Incompressible, cook_takes_one_load_step_and_few_iterations) {
   const bool alone = comm_size(MPI_COMM_WORLD) == 1;
   const int n = alone ? 16 : 8;
   const auto once = cook(n, 1);
-  EXPECT_LE(once->effort().iterations, 8);
+  EXPECT_LE(once->stepper().effort().iterations, 8);
   const double u = displacement_at(*once, corner)[1];
   RecordProperty("corner_mm", fmt::format("{:.4f}", 1e3 * u));
   EXPECT_NEAR(displacement_at(*cook(n, 1, MPI_COMM_SELF), corner)[1] / u, 1, 1e-7);
@@ -99,10 +99,11 @@ TEST(Incompressible, a_ring_under_a_pressure_that_follows_is_that_of_the_closed_
     RecordProperty(fmt::format("error_{}", n), fmt::format("{:.3e}", errors.back()));
     if (n == 16) {
       std::string tail;
-      for (const NewtonIterate& i : solid->newton()) tail += fmt::format(" {:.1e}", i.residual);
+      for (const NewtonIterate& i : solid->body().finite()->iterates())
+        tail += fmt::format(" {:.1e}", i.residual);
       RecordProperty("newton", tail);
       // Quadratic: one more correction squares what the last has left, until only rounding is.
-      const auto& it = solid->newton();
+      const auto& it = solid->body().finite()->iterates();
       double order = 0;
       for (std::size_t i = 2; i < it.size(); ++i)
         if (it[i - 1].residual < 0.1 && it[i].residual > 0)
@@ -129,9 +130,10 @@ double dot(std::span<const double> a, std::span<const double> b) {
 /// its inner wall pressed, or the half above the diagonal.
 double asymmetry(bool whole_wall) {
   const auto solid = ring(8, 3e5, 0.49);
-  const Mesh& mesh = solid->mesh();
-  const auto law = laws::find("mooney-rivlin")->make(lame_constants(solid->parameters()), std::vector{0.2});
-  const auto kernel = make_finite_kernel(mesh, solid->elastic(), {law.get()});
+  const Mesh& mesh = solid->body().mesh();
+  const auto law =
+      laws::find("mooney-rivlin")->make(lame_constants(solid->body().parameters()), std::vector{0.2});
+  const auto kernel = make_finite_kernel(mesh, solid->body().elastic(), {law.get()});
   std::vector<double> pressure(std::size_t(mesh.boundary.n_owned()), 0);
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
     const Vec3& x = mesh.reference.face_centre[f];
@@ -139,7 +141,7 @@ double asymmetry(bool whole_wall) {
       pressure[std::size_t(f - mesh.n_interior)] = 3e5;
   }
   kernel->set_pressure(pressure);
-  const std::size_t n = solid->elastic().n_unknowns();
+  const std::size_t n = solid->body().elastic().n_unknowns();
   std::vector<double> u(n), v(n), w(n), kv(n), kw(n);
   for (std::size_t i = 0; i < n; ++i) {
     u[i] = 0.02 * std::sin(0.1 * double(i));
@@ -171,11 +173,11 @@ TEST(Incompressible, a_swinging_column_keeps_its_energy) {
   auto solid = make_solid(make_box(BoxCells::hexahedra, {2, 8, 2}, Vec3::Zero(), Vec3(1, 6, 1)), p);
   for (int i = 0; i < 10; ++i) {
     step(*solid, 0.004);
-    EXPECT_LE(solid->effort().iterations, 8);
+    EXPECT_LE(solid->stepper().effort().iterations, 8);
   }
-  solid->write_output(solid->state().time, 0);
-  RecordProperty("created", fmt::format("{:.1e}", solid->energy_audit().created()));
-  EXPECT_LT(std::abs(solid->energy_audit().created()), 0.02);
+  solid->write_output(solid->stepper().state().time, 0);
+  RecordProperty("created", fmt::format("{:.1e}", solid->judge().energy_audit().created()));
+  EXPECT_LT(std::abs(solid->judge().energy_audit().created()), 0.02);
 }
 
 }  // namespace

@@ -39,22 +39,23 @@ Exchange given(const Interface& interface, double pressure, double temperature) 
 }
 
 void take(Solid& solid, const Exchange& in) {
-  solid.begin_step({solid.state().time, 1, Scheme::explicit_, solid.state().steps});
+  solid.begin_step({solid.stepper().state().time, 1, Scheme::explicit_, solid.stepper().state().steps});
   solid.solve(in);
   solid.accept_step();
 }
 
 double largest_error(const Solid& solid, double pressure, double warmer) {
-  const double e = solid.parameters().material.youngs_modulus,
-               nu = solid.parameters().material.poissons_ratio;
+  const double e = solid.body().parameters().material.youngs_modulus,
+               nu = solid.body().parameters().material.poissons_ratio;
   const Vec3 strain(1.2e-5 * warmer - pressure / e, 1.2e-5 * warmer + nu * pressure / e,
                     1.2e-5 * warmer + nu * pressure / e);
-  const std::vector<double> u = solid.point_displacement();
+  const std::vector<double> u = solid.fields().point_displacement();
   double worst = 0;
   for (std::size_t v = 0; v < u.size() / 3; ++v)
     for (int c = 0; c < 3; ++c)
-      worst = std::max(worst, std::abs(u[3 * v + c] - strain[c] * solid.mesh().reference_points[v][c]));
-  return max(solid.mesh().comm, worst) / 1e-3;
+      worst =
+          std::max(worst, std::abs(u[3 * v + c] - strain[c] * solid.body().mesh().reference_points[v][c]));
+  return max(solid.body().mesh().comm, worst) / 1e-3;
 }
 
 TEST(InterfaceData, pressure_and_temperature_deform_a_box_as_they_must) {
@@ -91,7 +92,8 @@ TEST(InterfaceData, stress_of_free_expansion_is_zero) {
   const Interface interface = solid->initialise();
   take(*solid, given(interface, 0, 400));
   double worst = 0;
-  for (const Tensor3& s : solid->cell_stress(solid->point_displacement())) worst = std::max(worst, s.norm());
+  for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
+    worst = std::max(worst, s.norm());
   EXPECT_LT(worst, 1e-3 * 200e9 * 1.2e-5 * 100 * 1e-6);
 }
 
@@ -147,10 +149,10 @@ TEST(InterfaceData, the_solid_has_the_given_temperature_along_the_interface) {
     in["temperature"][f] = 300 + 40 * interface.face_centres[f].y();
   take(*solid, in);
   int found = 0;
-  for (const auto& effect : solid->effects())
+  for (const auto& effect : solid->body().effects())
     if (const auto* strain = dynamic_cast<const ThermalStrain*>(effect.get())) {
       const std::vector<double> points = strain->point_temperature();
-      const auto& places = solid->mesh().reference_points;
+      const auto& places = solid->body().mesh().reference_points;
       for (std::size_t v = 0; v < points.size(); ++v, ++found)
         if (places[v].y() > 0.2 && places[v].y() < 0.8) {
           EXPECT_NEAR(points[v], 300 + 40 * places[v].y(), 1e-9);

@@ -80,7 +80,7 @@ inline bool symmetric_refuses(const CellsAndGradient& which, const SolidParamete
 
 /// Largest error of cells, points and traction faces over the largest displacement.
 inline double relative_error(const Solid& solid, const LinearField& field) {
-  const Mesh& mesh = solid.mesh();
+  const Mesh& mesh = solid.body().mesh();
   const int dim = mesh.dim;
   double error = 0, size = 0;
   const auto compare = [&](std::span<const double> values, Index i, const Vec3& x) {
@@ -90,22 +90,22 @@ inline double relative_error(const Solid& solid, const LinearField& field) {
     }
   };
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    compare(solid.state().cell_u, c, mesh.reference.cell_centre[c]);
-  const std::vector<double> points = solid.point_displacement();
+    compare(solid.stepper().state().cell_u, c, mesh.reference.cell_centre[c]);
+  const std::vector<double> points = solid.fields().point_displacement();
   for (Index v = 0; v < mesh.points.n_local(); ++v) compare(points, v, mesh.reference_points[v]);
-  for (const Index f : solid.elastic().unknown_faces())
-    compare(solid.state().face_u, f - mesh.n_interior, mesh.reference.face_centre[f]);
+  for (const Index f : solid.body().elastic().unknown_faces())
+    compare(solid.stepper().state().face_u, f - mesh.n_interior, mesh.reference.face_centre[f]);
   return max(mesh.comm, error) / max(mesh.comm, size);
 }
 
 /// Largest error of the stress over the largest stress.
 inline double relative_stress_error(const Solid& solid, const LinearField& field) {
-  const Tensor3 exact = solid.elastic().stress(0, field.slope);
+  const Tensor3 exact = solid.body().elastic().stress(0, field.slope);
   double error = 0;
-  const int dim = solid.mesh().dim;
-  for (const Tensor3& s : solid.cell_stress(solid.point_displacement()))
+  const int dim = solid.body().mesh().dim;
+  for (const Tensor3& s : solid.fields().cell_stress(solid.fields().point_displacement()))
     error = std::max(error, (s - exact).topLeftCorner(dim, dim).norm());
-  return max(solid.mesh().comm, error) / exact.norm();
+  return max(solid.body().mesh().comm, error) / exact.norm();
 }
 
 inline void expect_exact(const Solid& solid, const LinearField& field) {

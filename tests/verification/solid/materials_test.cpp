@@ -111,32 +111,33 @@ TEST_P(Materials, piecewise_linear_fields_are_exact_across_an_oblique_interface)
     pull("xmax", field.hard, normal, "hard");
     pull("xmin", field.soft, -normal, "rubber");
     const auto solid = make_solid(two_zones(cells, slant), p);
-    const Mesh& mesh = solid->mesh();
+    const Mesh& mesh = solid->body().mesh();
     ASSERT_FALSE(mesh.cell_material.empty());
     step(*solid, 1);
     double error = 0, size = 0, stress_error = 0, jump = 0;
-    const std::vector<double> points = solid->point_displacement();
+    const std::vector<double> points = solid->fields().point_displacement();
     for (Index v = 0; v < mesh.points.n_local(); ++v) {
       Vec3 u = Vec3::Zero();
       for (int a = 0; a < dim; ++a) u[a] = points[std::size_t(v) * dim + a];
       error = std::max(error, (u - field.at(mesh.reference_points[v])).norm());
       size = std::max(size, u.norm());
     }
-    const std::vector<Tensor3> stress = solid->cell_stress(points);
+    const std::vector<Tensor3> stress = solid->fields().cell_stress(points);
     double stress_size = 0;
     for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
-      const Tensor3 exact = solid->elastic().stress(c, field.on(mesh.reference.cell_centre[c]).slope);
+      const Tensor3 exact = solid->body().elastic().stress(c, field.on(mesh.reference.cell_centre[c]).slope);
       stress_error = std::max(stress_error, (stress[c] - exact).topLeftCorner(dim, dim).norm());
       stress_size = std::max(stress_size, exact.norm());
     }
     // Tractions of the two sides of each bonded face.
-    std::vector<Tensor3> faces = solid->face_stress(mesh.n_interior, mesh.boundary.n_owned(), points);
+    std::vector<Tensor3> faces =
+        solid->fields().face_stress(mesh.n_interior, mesh.boundary.n_owned(), points);
     faces.resize(mesh.boundary.n_local());
     mesh.boundary.update_ghosts(std::span(faces.data()->data(), 9 * faces.size()), 9);
     double n_bonded = 0;
-    for (const Index f : solid->elastic().unknown_faces()) {
+    for (const Index f : solid->body().elastic().unknown_faces()) {
       const Index b = f - mesh.n_interior;
-      if (solid->elastic().condition(f) != ElasticCondition::bonded) continue;
+      if (solid->body().elastic().condition(f) != ElasticCondition::bonded) continue;
       const Vec3 n = mesh.reference.face_area[f].normalized();
       jump = std::max(jump, ((faces[b] - faces[mesh.twin[b]]) * n).norm());
       ++n_bonded;
@@ -162,7 +163,7 @@ TEST_P(Materials, both_ends_of_a_bar_in_series_carry_the_same_force) {
                dim == 3 ? std::vector<std::string>{"1e-3", "0", "0"} : std::vector<std::string>{"1e-3", "0"});
   const auto solid = make_solid(two_zones(cells, 0), p);
   step(*solid, 1);
-  const auto forces = solid->reactions(solid->point_displacement());
+  const auto forces = solid->fields().reactions(solid->fields().point_displacement());
   ASSERT_EQ(forces.size(), 2U);
   EXPECT_GT(forces[1].force[0], 1e3);
   // The stiff part is 1e4 times as stiff: what rounding leaves there is more with the wider stencil.
@@ -189,14 +190,14 @@ TEST_P(Materials, unequal_thermal_expansion_of_bonded_materials_is_exact) {
   const double stress = axial(soft) * e_soft - thermal(soft, 2e-4);
   const auto solid = make_solid(two_zones(cells, 0), p);
   step(*solid, 1);
-  const Mesh& mesh = solid->mesh();
+  const Mesh& mesh = solid->body().mesh();
   double error = 0, stress_error = 0;
-  const std::vector<Tensor3> stresses = solid->cell_stress(solid->point_displacement());
+  const std::vector<Tensor3> stresses = solid->fields().cell_stress(solid->fields().point_displacement());
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     const double x = mesh.reference.cell_centre[c][0];
     const double wanted = x < 0.6 ? e_soft * x : 1.5 * e_soft * (1 - x);
     Vec3 u = Vec3::Zero();
-    for (int a = 0; a < dim; ++a) u[a] = solid->state().cell_u[std::size_t(c) * dim + a];
+    for (int a = 0; a < dim; ++a) u[a] = solid->stepper().state().cell_u[std::size_t(c) * dim + a];
     error = std::max(error, (u - Vec3(wanted, 0, 0)).norm());
     stress_error = std::max(stress_error, std::abs(stresses[c](0, 0) - stress));
   }
@@ -208,8 +209,8 @@ TEST_P(Materials, zones_of_equal_material_give_the_answer_of_one_material) {
   SolidParameters p = box_parameters(dim);
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, general_field(dim).text(dim));
   const auto solid = make_solid(two_zones(cells, 0.3), p);
-  EXPECT_TRUE(solid->mesh().cell_material.empty());
-  EXPECT_TRUE(solid->mesh().twin.empty());
+  EXPECT_TRUE(solid->body().mesh().cell_material.empty());
+  EXPECT_TRUE(solid->body().mesh().twin.empty());
 }
 
 // Two layers under inner pressure, plane strain: u_r = A_i r + B_i / r (Lame), a quarter of the ring.
@@ -245,8 +246,8 @@ double layered_ring_error(int n, double& stress_error) {
   const Eigen::Vector4d ab = m.fullPivLu().solve(Eigen::Vector4d(-pressure, 0, 0, 0));
   const auto solid = make_solid(raw, p);
   step(*solid, 1);
-  const Mesh& mesh = solid->mesh();
-  const auto stress = solid->cell_stress(solid->point_displacement());
+  const Mesh& mesh = solid->body().mesh();
+  const auto stress = solid->fields().cell_stress(solid->fields().point_displacement());
   double error = 0, size = 0, stress_size = 0;
   stress_error = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
@@ -255,7 +256,7 @@ double layered_ring_error(int n, double& stress_error) {
     const Eigen::Vector2d k = r < r1 ? ab.head<2>() : ab.tail<2>();
     const LameConstants& l = r < r1 ? in : out;
     const Vec3 exact = (k[0] + k[1] / (r * r)) * x;
-    const Vec3 u(solid->state().cell_u[2 * c], solid->state().cell_u[2 * c + 1], 0);
+    const Vec3 u(solid->stepper().state().cell_u[2 * c], solid->stepper().state().cell_u[2 * c + 1], 0);
     error += volume * (u - exact).squaredNorm();
     size += volume * exact.squaredNorm();
     const Vec3 er = x / r;

@@ -53,12 +53,13 @@ MethodParameters method(MethodType type, FaceGradient gradient, double tolerance
 
 /// Displacements of all cells by cell_id: two meshes of one block may be cut up differently.
 std::vector<double> whole(const Solid& solid) {
-  const int dim = solid.mesh().dim;
-  const Index n = solid.mesh().cells.n_owned();
+  const int dim = solid.body().mesh().dim;
+  const Index n = solid.body().mesh().cells.n_owned();
   std::vector<double> values(std::size_t(sum(MPI_COMM_WORLD, GlobalIndex(n))) * dim, 0);
   for (Index c = 0; c < n; ++c)
     for (int a = 0; a < dim; ++a)
-      values[std::size_t(solid.mesh().cell_id[c]) * dim + a] = solid.state().cell_u[std::size_t(c) * dim + a];
+      values[std::size_t(solid.body().mesh().cell_id[c]) * dim + a] =
+          solid.stepper().state().cell_u[std::size_t(c) * dim + a];
   MPI_Allreduce(MPI_IN_PLACE, values.data(), int(values.size()), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
   return values;
 }
@@ -127,13 +128,15 @@ TEST(SolidMethods, ranks_do_not_change_the_answer) {
       perturb_interior(raw, 0.15, 3);
       Solid alone(distribute(MPI_COMM_SELF, raw), p, SolidContext{});
       step(alone, 1);
-      std::vector<Index> place(alone.mesh().cells.n_owned());
-      for (Index c = 0; c < alone.mesh().cells.n_owned(); ++c) place[alone.mesh().cell_id[c]] = c;
+      std::vector<Index> place(alone.body().mesh().cells.n_owned());
+      for (Index c = 0; c < alone.body().mesh().cells.n_owned(); ++c)
+        place[alone.body().mesh().cell_id[c]] = c;
       double gap = 0, size = 0;
-      for (Index c = 0; c < together->mesh().cells.n_owned(); ++c)
+      for (Index c = 0; c < together->body().mesh().cells.n_owned(); ++c)
         for (int a = 0; a < 3; ++a) {
-          const double here = together->state().cell_u[std::size_t(c) * 3 + a];
-          const double there = alone.state().cell_u[std::size_t(place[together->mesh().cell_id[c]]) * 3 + a];
+          const double here = together->stepper().state().cell_u[std::size_t(c) * 3 + a];
+          const double there =
+              alone.stepper().state().cell_u[std::size_t(place[together->body().mesh().cell_id[c]]) * 3 + a];
           gap = std::max(gap, std::abs(here - there));
           size = std::max(size, std::abs(there));
         }
@@ -159,7 +162,7 @@ int iterations_of_motion(MethodParameters::Predictor predictor, int corrections_
   int iterations = 0;
   for (int i = 0; i < 20; ++i) {
     step(*solid, 1e-5);
-    iterations += solid->effort().iterations;
+    iterations += solid->stepper().effort().iterations;
   }
   end = whole(*solid);
   return iterations;

@@ -9,6 +9,7 @@
 
 #include "common/parallel/collective.hpp"
 #include "solid_solver/modal_analysis.hpp"
+#include "solid_solver/spectrum.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
@@ -24,8 +25,8 @@ SolidParameters vibrating(int dim) {
 
 std::vector<double> cell_mass(const Solid& solid) {
   std::vector<double> mass;
-  for (Index c = 0; c < solid.mesh().cells.n_owned(); ++c)
-    mass.push_back(solid.density(c) * solid.mesh().reference.volume[c]);
+  for (Index c = 0; c < solid.body().mesh().cells.n_owned(); ++c)
+    mass.push_back(solid.body().density(c) * solid.body().mesh().reference.volume[c]);
   return mass;
 }
 
@@ -39,10 +40,10 @@ TEST_P(SolidModes, are_the_lowest_of_the_dense_problem_with_equal_ones) {
   const auto solid =
       make_solid(make_box(cells, {6, 2, dim == 3 ? 2 : 1}, Vec3::Zero(), Vec3(6, 1, dim == 3 ? 1 : 0)), p);
   std::vector<double> dense;
-  for (const auto& value : solid->eigenvalues()) dense.push_back(value.real());
+  for (const auto& value : eigenvalues(solid->body())) dense.push_back(value.real());
   std::ranges::sort(dense);
   constexpr int n = 8;
-  const EigenModes found = solid_modes(*solid->vibration(), p.method, cell_mass(*solid), n);
+  const EigenModes found = solid_modes(*vibration(solid->body()), p.method, cell_mass(*solid), n);
   ASSERT_EQ(found.eigenvalue.size(), std::size_t(n));
   for (int m = 0; m < n && !dense.empty(); ++m)  // rank 0 has the dense ones
     EXPECT_NEAR(found.eigenvalue[m], dense[m], 1e-7 * dense[m]) << m;
@@ -56,8 +57,8 @@ INSTANTIATE_TEST_SUITE_P(Solid, SolidModes,
 TEST(SolidModesOfAFreeBody, carry_its_whole_mass_and_move_its_surface_rigidly) {
   SolidParameters p = vibrating(3);
   const auto solid = make_solid(make_box(BoxCells::hexahedra, {4, 3, 3}, Vec3::Zero(), Vec3(2, 1, 1)), p);
-  const EigenModes found = solid_modes(*solid->vibration(), p.method, cell_mass(*solid), 8);
-  const ModalModel model = modal_model(*solid->vibration(), found);
+  const EigenModes found = solid_modes(*vibration(solid->body()), p.method, cell_mass(*solid), 8);
+  const ModalModel model = modal_model(*vibration(solid->body()), found);
   if (comm_rank(MPI_COMM_WORLD) != 0) return;
   ASSERT_EQ(model.n_modes(), 8u);
   EXPECT_EQ(problem_of(model), "");
@@ -85,7 +86,7 @@ TEST(SolidModesOfABeam, are_those_of_euler_and_bernoulli_and_converge_at_second_
   const auto first = [&](int n) {
     const auto solid =
         make_solid(make_box(BoxCells::quadrilaterals, {10 * n, n, 1}, Vec3::Zero(), Vec3(20, 1, 0)), p);
-    const EigenModes found = solid_modes(*solid->vibration(), p.method, cell_mass(*solid), 1);
+    const EigenModes found = solid_modes(*vibration(solid->body()), p.method, cell_mass(*solid), 1);
     return std::sqrt(found.eigenvalue[0]) / (2 * std::numbers::pi);
   };
   const double coarse = first(2), middle = first(4), fine = first(8);
@@ -102,7 +103,7 @@ TEST(SolidModesOfABeam, are_refused_without_a_mass_of_the_kernel) {
   p.method.face_gradient = FaceGradient::corrected;
   const auto solid =
       make_solid(make_box(BoxCells::quadrilaterals, {4, 2, 1}, Vec3::Zero(), Vec3(2, 1, 0)), p);
-  EXPECT_FALSE(solid->vibration());
+  EXPECT_FALSE(vibration(solid->body()));
 }
 
 }  // namespace

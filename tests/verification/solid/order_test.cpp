@@ -69,8 +69,8 @@ Errors solve(BoxCells cells, int n, double perturbed, FaceGradient gradient) {
   const auto solid = make_solid(raw, p);
   step(*solid, 1);
 
-  const Mesh& mesh = solid->mesh();
-  const auto stress = solid->cell_stress(solid->point_displacement());
+  const Mesh& mesh = solid->body().mesh();
+  const auto stress = solid->fields().cell_stress(solid->fields().point_displacement());
   double error = 0, size = 0, stress_error = 0, stress_size = 0, inner_error = 0, inner_size = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     const Vec3& x = mesh.reference.cell_centre[c];
@@ -83,12 +83,12 @@ Errors solve(BoxCells cells, int n, double perturbed, FaceGradient gradient) {
     Tensor3 slope = Tensor3::Zero();
     for (int a = 0; a < dim; ++a) {
       const double exact = amplitude[a] * product(-1);
-      error +=
-          mesh.reference.volume[c] * std::pow(solid->state().cell_u[std::size_t(c) * dim + a] - exact, 2);
+      error += mesh.reference.volume[c] *
+               std::pow(solid->stepper().state().cell_u[std::size_t(c) * dim + a] - exact, 2);
       size += mesh.reference.volume[c] * exact * exact;
       for (int d = 0; d < dim; ++d) slope(d, a) = amplitude[a] * product(d);
     }
-    const Tensor3 exact = solid->elastic().stress(0, slope);
+    const Tensor3 exact = solid->body().elastic().stress(0, slope);
     const double here = mesh.reference.volume[c] * (stress[c] - exact).topLeftCorner(dim, dim).squaredNorm();
     const double there = mesh.reference.volume[c] * exact.topLeftCorner(dim, dim).squaredNorm();
     stress_error += here;

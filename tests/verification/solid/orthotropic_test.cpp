@@ -50,14 +50,14 @@ struct Errors {
 using Displacement = std::function<Vec3(const Vec3&)>;
 using Stress = std::function<Tensor3(const Vec3&)>;
 Errors errors(const Solid& solid, const Displacement& u, const Stress& stress) {
-  const Mesh& mesh = solid.mesh();
+  const Mesh& mesh = solid.body().mesh();
   double gap = 0, size = 0, stress_gap = 0, stress_size = 0, volume = 0;
-  const std::vector<Tensor3> found = solid.cell_stress(solid.point_displacement());
+  const std::vector<Tensor3> found = solid.fields().cell_stress(solid.fields().point_displacement());
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     const Vec3& x = mesh.reference.cell_centre[c];
     const double v = mesh.reference.volume[c];
     for (int a = 0; a < mesh.dim; ++a) {
-      gap += v * std::pow(solid.state().cell_u[std::size_t(c) * mesh.dim + a] - u(x)[a], 2);
+      gap += v * std::pow(solid.stepper().state().cell_u[std::size_t(c) * mesh.dim + a] - u(x)[a], 2);
       size += v * std::pow(u(x)[a], 2);
     }
     stress_gap += v * (found[std::size_t(c)] - stress(x)).topLeftCorner(mesh.dim, mesh.dim).squaredNorm();
@@ -92,14 +92,14 @@ TEST_P(Orthotropy, constant_strain_is_exact_in_turned_axes) {
                                                          {"ymax", Vec3(0, 1, 0)},
                                                          {"zmin", Vec3(0, 0, -1)},
                                                          {"zmax", Vec3(0, 0, 1)}};
-  const Tensor3 stress = held->elastic().stress(0, field.slope);
+  const Tensor3 stress = held->body().elastic().stress(0, field.slope);
   for (const auto& [name, normal] : loaded)
     if (p.boundaries.contains(name))
       p.boundaries[name] = boundary(Type::traction, texts(stress * normal, dim));
   const auto pulled = make_solid(distorted_box(GetParam()), p);
   step(*pulled, 1);
   expect_exact(*pulled, field);
-  EXPECT_LT(pulled->last_audit()->mismatch(), 1e-9);  // the operator is symmetric
+  EXPECT_LT(pulled->judge().last_audit()->mismatch(), 1e-9);  // the operator is symmetric
 }
 
 /// Compliances of a sheet whose fibres stand at `angle` to x [lekhnitskii1963, 9.8]: of xx, of yy for xx, of xy for xx.
@@ -144,7 +144,7 @@ TEST(Orthotropic, a_bar_cut_off_axis_stretches_and_shears_as_its_closed_form) {
                    fmt::format("u {:.1e}, stress {:.1e}", e.u, e.stress));
     EXPECT_LT(e.u, 1e-10);
     EXPECT_LT(e.stress, 1e-10);
-    EXPECT_LE(solid->effort().iterations, 3);  // the assembled factors are those of the operator
+    EXPECT_LE(solid->stepper().effort().iterations, 3);  // the assembled factors are those of the operator
   }
 }
 
@@ -225,8 +225,8 @@ TEST(Orthotropic, a_ring_with_axes_along_its_circles_is_that_of_the_closed_form)
   EXPECT_GT(order, 1.8);
   EXPECT_LT(e.u, 0.01);
   EXPECT_LT(e.stress, 0.02);
-  const double alone = ring(16, MPI_COMM_SELF)->last_audit()->strain_energy;
-  EXPECT_NEAR(fine->last_audit()->strain_energy / alone, 1, 1e-8);
+  const double alone = ring(16, MPI_COMM_SELF)->judge().last_audit()->strain_energy;
+  EXPECT_NEAR(fine->judge().last_audit()->strain_energy / alone, 1, 1e-8);
 }
 
 /// A beam of tetrahedra with its fibres askew, cantilevered, on these ranks.
@@ -237,7 +237,7 @@ double energy_of_beam(MPI_Comm comm) {
   Solid solid(distribute(comm, make_box(BoxCells::tetrahedra, {6, 2, 2}, Vec3::Zero(), Vec3(3, 1, 1))), p,
               SolidContext{});
   step(solid, 1);
-  return solid.last_audit()->strain_energy;
+  return solid.judge().last_audit()->strain_energy;
 }
 
 TEST(Orthotropic, ranks_agree_on_tetrahedra_whose_edges_share) {
@@ -253,9 +253,9 @@ TEST(Orthotropic, undamped_motion_keeps_its_energy) {
   p.initial_velocity = {{"x*y"}, {"x^2"}, {"0.5*x*sin(9*z)"}};
   auto solid = make_solid(distorted_box(BoxCells::tetrahedra), p);
   for (int i = 0; i < 10; ++i) step(*solid, 1e-4);
-  solid->write_output(solid->state().time, 0);
-  RecordProperty("drift", fmt::format("{:.1e}", solid->energy_audit().created()));
-  EXPECT_LT(std::abs(solid->energy_audit().created()), 1e-8);
+  solid->write_output(solid->stepper().state().time, 0);
+  RecordProperty("drift", fmt::format("{:.1e}", solid->judge().energy_audit().created()));
+  EXPECT_LT(std::abs(solid->judge().energy_audit().created()), 1e-8);
 }
 
 TEST(Orthotropic, a_symmetry_plane_oblique_to_the_fibres_is_refused) {

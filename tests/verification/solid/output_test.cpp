@@ -67,8 +67,8 @@ TEST(SolidOutput, probes_and_reactions_hold_the_displacement_and_the_balance_of_
   Solid solid(distribute(MPI_COMM_WORLD, raw), pulled_sheet(), SolidContext{"solid", folder.path()});
   for (int i = 0; i < 3; ++i) {
     step(solid, 1);
-    solid.write_monitors(solid.state().time);
-    solid.write_output(solid.state().time, i);
+    solid.write_monitors(solid.stepper().state().time);
+    solid.write_output(solid.stepper().state().time, i);
   }
   MPI_Barrier(MPI_COMM_WORLD);
   if (comm_rank(MPI_COMM_WORLD) != 0) return;
@@ -115,7 +115,7 @@ TEST(SolidOutput, probes_watch_velocity_stress_strain_and_what_follows_from_them
   Solid solid(distribute(MPI_COMM_WORLD, raw), p, SolidContext{"solid", folder.path()});
   for (int i = 0; i < 2; ++i) {
     step(solid, 1);
-    solid.write_monitors(solid.state().time);
+    solid.write_monitors(solid.stepper().state().time);
   }
   MPI_Barrier(MPI_COMM_WORLD);
   if (comm_rank(MPI_COMM_WORLD) != 0) return;
@@ -149,11 +149,11 @@ TEST(SolidOutput, acceleration_of_a_driven_block_is_that_of_its_support) {
   Solid solid(distribute(MPI_COMM_WORLD, raw), p, SolidContext{"solid", folder.path()});
   for (int i = 0; i < 100; ++i) {
     step(solid, 2e-4);
-    solid.write_monitors(solid.state().time);
+    solid.write_monitors(solid.stepper().state().time);
   }
   MPI_Barrier(MPI_COMM_WORLD);
   if (comm_rank(MPI_COMM_WORLD) != 0) return;
-  const double expected = -1e-3 * 2500 * std::sin(50 * solid.state().time);
+  const double expected = -1e-3 * 2500 * std::sin(50 * solid.stepper().state().time);
   const auto lines = lines_of(folder.path() / "probes.csv");
   EXPECT_NEAR(last_of(lines, "support acceleration y [m/s^2]") / expected, 1, 1e-4);
   EXPECT_NEAR(last_of(lines, "inside acceleration y [m/s^2]") / expected, 1, 0.01);

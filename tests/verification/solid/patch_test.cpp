@@ -77,7 +77,7 @@ TEST_P(Patch, small_rigid_rotation_and_translation_give_no_stress) {
   const auto solid = make_solid(distorted_box(cells), p);
   step(*solid, 1);
   double largest = 0;
-  for (const Tensor3& s : solid->cell_stress(solid->point_displacement()))
+  for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
     largest = std::max(largest, s.norm());
   // Against the stress that a stretch of the same size would give.
   const double relative = max(MPI_COMM_WORLD, largest) / (p.material.youngs_modulus * 1e-3);
@@ -98,9 +98,10 @@ TEST_P(Patch, reactions_balance_tractions_pressure_and_body_forces) {
   p.gravity = std::vector<double>(dim, -9.81);
   const auto solid = make_solid(distorted_box(cells), p);
   step(*solid, 1);
-  Vec3 total = solid->total_load();
+  Vec3 total = solid->fields().total_load();
   const double size = total.norm();
-  for (const PatchForce& r : solid->reactions(solid->point_displacement())) total += r.force;
+  for (const PatchForce& r : solid->fields().reactions(solid->fields().point_displacement()))
+    total += r.force;
   EXPECT_GT(size, 1e4);
   EXPECT_LT(total.norm(), 1e-8 * size);
 }

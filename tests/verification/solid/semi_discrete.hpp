@@ -15,9 +15,9 @@ namespace couplet::testing {
 class SemiDiscrete {
  public:
   explicit SemiDiscrete(const Solid& solid) : solid_(solid) {
-    const ElasticOperator& elastic = solid.elastic();
+    const ElasticOperator& elastic = solid.body().elastic();
     const auto n = Eigen::Index(elastic.n_unknowns());
-    n_ = Eigen::Index(solid.mesh().cells.n_owned()) * solid.mesh().dim;
+    n_ = Eigen::Index(solid.body().mesh().cells.n_owned()) * solid.body().mesh().dim;
     const SparseMatrix matrix = elastic.matrix({});
     Eigen::MatrixXd a(n, n);
     std::vector<double> unit(n, 0), column(n);
@@ -31,7 +31,8 @@ class SemiDiscrete {
     stiffness_ = a.topLeftCorner(n_, n_) - to_cells_ * a.bottomLeftCorner(n - n_, n_);
     mass_.resize(n_);
     for (Eigen::Index i = 0; i < n_; ++i)
-      mass_[i] = solid.parameters().material.density * solid.mesh().reference.volume[i / solid.mesh().dim];
+      mass_[i] = solid.body().parameters().material.density *
+                 solid.body().mesh().reference.volume[i / solid.body().mesh().dim];
   }
 
   Eigen::Index size() const { return n_; }
@@ -48,7 +49,7 @@ class SemiDiscrete {
   /// classical Runge-Kutta, steps short enough to be exact here.
   Eigen::VectorXd integrate(const std::function<Eigen::VectorXd(double)>& force, const SolidDamping& damping,
                             double end, int steps) const {
-    Eigen::VectorXd u = start(solid_.state().cell_u), v = start(solid_.state().cell_v);
+    Eigen::VectorXd u = start(solid_.stepper().state().cell_u), v = start(solid_.stepper().state().cell_v);
     const auto acceleration = [&](double t, const Eigen::VectorXd& x, const Eigen::VectorXd& rate) {
       return Eigen::VectorXd((force(t) - stiffness_ * (x + damping.stiffness * rate)).cwiseQuotient(mass_) -
                              damping.mass * rate);

@@ -84,7 +84,8 @@ TEST(StepControl, keeps_the_error_below_the_tolerance_with_fewer_steps) {
     run(
         *exact,
         [&](const Solid& s) {
-          if (at_nominal(s.state().time)) truth[nominal(s.state().time)] = s.state().cell_u;
+          if (at_nominal(s.stepper().state().time))
+            truth[nominal(s.stepper().state().time)] = s.stepper().state().cell_u;
         },
         longest_step / 512, 0);
 
@@ -94,12 +95,12 @@ TEST(StepControl, keeps_the_error_below_the_tolerance_with_fewer_steps) {
     const auto [steps, refused] = run(
         *solid,
         [&](const Solid& s) {
-          shortest = std::min(shortest, s.state().dt);
-          longest = std::max(longest, s.state().dt);
-          EXPECT_LE(s.state().error, 0.1 * tolerance * (1 + 1e-12));
-          if (!at_nominal(s.state().time)) return;
-          const auto& expected = truth.at(nominal(s.state().time));
-          worst = std::max(worst, distance(s.state().cell_u, expected));
+          shortest = std::min(shortest, s.stepper().state().dt);
+          longest = std::max(longest, s.stepper().state().dt);
+          EXPECT_LE(s.stepper().state().error, 0.1 * tolerance * (1 + 1e-12));
+          if (!at_nominal(s.stepper().state().time)) return;
+          const auto& expected = truth.at(nominal(s.stepper().state().time));
+          worst = std::max(worst, distance(s.stepper().state().cell_u, expected));
           largest = std::max(largest, distance(expected, std::vector<double>(expected.size(), 0)));
         },
         longest_step, 8);

@@ -44,7 +44,7 @@ inline std::unique_ptr<Solid> make_solid(RawMesh raw, const SolidParameters& p) 
 
 /// One accepted step from the present state.
 inline void step(Solid& solid, double dt) {
-  solid.begin_step({solid.state().time, dt, Scheme::standalone, solid.state().steps});
+  solid.begin_step({solid.stepper().state().time, dt, Scheme::standalone, solid.stepper().state().steps});
   solid.solve({});
   solid.accept_step();
 }

@@ -35,19 +35,19 @@ RawMesh sheet() { return make_box(BoxCells::quadrilaterals, {8, 3, 1}, Vec3::Zer
 Eigen::VectorXd exact(const SolidParameters& p) {
   const auto solid = make_solid(sheet(), p);
   const SemiDiscrete model(*solid);
-  const SolidBoundaries boundaries(solid->mesh(), p);
-  const PrescribedDisplacement prescribed(solid->mesh(), boundaries, solid->elastic());
+  const SolidBoundaries boundaries(solid->body().mesh(), p);
+  const PrescribedDisplacement prescribed(solid->body().mesh(), boundaries, solid->body().elastic());
   const auto body = make_expressions(p.body_force, 2, "body-force");
-  const Mesh& mesh = solid->mesh();
+  const Mesh& mesh = solid->body().mesh();
   const SolidDamping damping = p.damping.value_or(SolidDamping{});
   const auto force = [&](double t) {
-    std::vector<double> rhs(solid->elastic().n_unknowns(), 0);
+    std::vector<double> rhs(solid->body().elastic().n_unknowns(), 0);
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
       for (int a = 0; a < 2; ++a)
         rhs[std::size_t(c) * 2 + a] = body[a](mesh.reference.cell_centre[c], t) * mesh.reference.volume[c];
     std::vector<double> on_faces(std::size_t(mesh.boundary.n_owned()) * 2, 0);
     boundaries.add_forces(t, on_faces);
-    const auto& faces = solid->elastic().unknown_faces();
+    const auto& faces = solid->body().elastic().unknown_faces();
     for (std::size_t i = 0; i < faces.size(); ++i)
       for (int a = 0; a < 2; ++a) {
         const double value = on_faces[std::size_t(faces[i] - mesh.n_interior) * 2 + a];
@@ -58,7 +58,7 @@ Eigen::VectorXd exact(const SolidParameters& p) {
     prescribed.evaluate(t, known);
     prescribed.evaluate_rate(t, 1e-2, rate);
     for (std::size_t i = 0; i < known.size(); ++i) known[i] += damping.stiffness * rate[i];
-    solid->elastic().subtract_known(known, rhs);
+    solid->body().elastic().subtract_known(known, rhs);
     return model.reduced(rhs);
   };
   return model.integrate(force, damping, end_time, 6000);
@@ -68,8 +68,8 @@ Eigen::VectorXd exact(const SolidParameters& p) {
 double error_with(const SolidParameters& p, const Eigen::VectorXd& reference, int n, bool uneven) {
   const auto solid = make_solid(sheet(), p);
   for (int i = 0; i < n; ++i) step(*solid, uneven ? end_time / (1.5 * n) * (1 + i % 2) : end_time / n);
-  EXPECT_NEAR(solid->state().time, end_time, 1e-12);
-  const Eigen::Map<const Eigen::VectorXd> u(solid->state().cell_u.data(), reference.size());
+  EXPECT_NEAR(solid->stepper().state().time, end_time, 1e-12);
+  const Eigen::Map<const Eigen::VectorXd> u(solid->stepper().state().cell_u.data(), reference.size());
   return (u - reference).norm() / reference.norm();
 }
 
@@ -134,8 +134,8 @@ TEST(TimeSchemes, continue_from_a_checkpoint_bit_for_bit) {
       step(*run, dt);
       step(*restarted, dt);
     }
-    EXPECT_EQ(run->state().cell_u, restarted->state().cell_u) << name(scheme);
-    EXPECT_EQ(run->point_velocity(), restarted->point_velocity()) << name(scheme);
+    EXPECT_EQ(run->stepper().state().cell_u, restarted->stepper().state().cell_u) << name(scheme);
+    EXPECT_EQ(run->fields().point_velocity(), restarted->fields().point_velocity()) << name(scheme);
   }
   std::filesystem::remove(file);
 }

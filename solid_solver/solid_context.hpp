@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <string>
+
+namespace couplet {
+
+/// Where a solid stands among the other programs.
+struct SolidContext {
+  std::string name = "solid";
+  std::filesystem::path output_folder;  ///< empty: nothing is written
+  double restart_time = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace couplet

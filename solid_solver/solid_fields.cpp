@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/solid_fields.hpp"
+
+namespace couplet {
+namespace {
+
+Tensor3 symmetric(const Tensor3& gradient) { return 0.5 * (gradient + gradient.transpose()); }
+
+/// Green's strain (F^T F - I) / 2; entry (i, j) of the gradient is d u_j / d x_i.
+Tensor3 green(const Tensor3& gradient) { return symmetric(gradient) + 0.5 * gradient * gradient.transpose(); }
+
+}  // namespace
+
+SolidFields::SolidFields(const SolidBody& body, const SolidState& state, const LastSolve& last)
+    : body_(body),
+      state_(state),
+      last_(last),
+      mesh_(body.mesh()),
+      parameters_(body.parameters()),
+      elastic_(body.elastic()) {}
+
+std::vector<double> SolidFields::point_displacement() const {
+  return body_.to_points(state_.cell_u, state_.face_u, state_.known);
+}
+
+std::vector<double> SolidFields::point_velocity() const {
+  return body_.to_points(state_.cell_v, state_.face_v, state_.known_rate);
+}
+
+std::vector<double> SolidFields::point_acceleration() const {
+  return body_.to_points(state_.acceleration, state_.face_acceleration, known_acceleration());
+}
+
+/// Of the prescribed columns at the accepted time: a difference over half of the last step.
+std::vector<double> SolidFields::known_acceleration() const {
+  std::vector<double> result(state_.known.size(), 0), before(result.size()), now(result.size());
+  if (!body_.prescribed().uses_time() || !(state_.dt > 0)) return result;
+  const double h = 0.25 * state_.dt;
+  body_.prescribed().evaluate(state_.time - h, before);
+  body_.prescribed().evaluate(state_.time, now);
+  body_.prescribed().evaluate(state_.time + h, result);
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = (result[i] - 2 * now[i] + before[i]) / (h * h);
+  return result;
+}
+
+std::vector<Tensor3> SolidFields::face_stress(Index first, Index count,
+                                              std::span<const double> points) const {
+  if (body_.finite()) return finite_face_stress(first, count);
+  std::vector<Tensor3> stress = body_.face_gradients(first, count, displacement(points));
+  for (Index i = 0; i < count; ++i) stress[i] = elastic_.stress(mesh_.owner[first + i], stress[i]);
+  for (const auto& effect : body_.effects()) effect->add_face_stress(first, stress);
+  return stress;
+}
+
+std::vector<Tensor3> SolidFields::face_strain(Index first, Index count,
+                                              std::span<const double> points) const {
+  std::vector<Tensor3> strain = body_.face_gradients(first, count, displacement(points));
+  for (Tensor3& e : strain) e = body_.finite() ? green(e) : symmetric(e);
+  return strain;
+}
+
+std::vector<Tensor3> SolidFields::cell_strain(std::span<const double> points) const {
+  std::vector<Tensor3> strain = cell_gradient(points);
+  for (Tensor3& e : strain) e = body_.finite() ? green(e) : symmetric(e);
+  return strain;
+}
+
+std::vector<Tensor3> SolidFields::cell_stress(std::span<const double> points) const {
+  if (body_.finite()) return finite_cell_stress();
+  std::vector<Tensor3> stress = cell_gradient(points);
+  for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = elastic_.stress(Index(c), stress[c]);
+  for (const auto& effect : body_.effects()) effect->add_cell_stress(stress);
+  // Across a 2-D scene: lambda tr(epsilon) in plane strain (it stands there already), nothing in plane
+  // stress.
+  if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
+    for (Tensor3& s : stress) s(2, 2) = 0;
+  return stress;
+}
+
+const PointTensors& SolidFields::point_tensors() const {
+  if (!point_tensors_) {
+    std::vector<bool> is_symmetry;
+    for (const Patch& patch : mesh_.patches) {
+      const auto found = parameters_.boundaries.find(patch.name);
+      is_symmetry.push_back(found != parameters_.boundaries.end() && found->second.parts.empty() &&
+                            found->second.type == SolidBoundary::Type::symmetry);
+    }
+    point_tensors_ = std::make_unique<PointTensors>(mesh_, is_symmetry, elastic_.vertices());
+  }
+  return *point_tensors_;
+}
+
+std::vector<double> SolidFields::point_stress(std::span<const double> points) const {
+  std::vector<Tensor3> faces = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
+  if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
+    for (Tensor3& s : faces) s(2, 2) = 0;
+  return point_tensors().interpolate(cell_stress(points), faces);
+}
+
+std::vector<double> SolidFields::point_strain(std::span<const double> points) const {
+  return point_tensors().interpolate(cell_strain(points),
+                                     face_strain(mesh_.n_interior, mesh_.boundary.n_owned(), points));
+}
+
+}  // namespace couplet

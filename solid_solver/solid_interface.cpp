@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/solid_interface.hpp"
+
+#include <algorithm>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+
+SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
+  const Mesh& mesh = body.mesh();
+  const SolidParameters& parameters = body.parameters();
+  if (!body.boundaries().interface_patches().empty()) {
+    map_ = std::make_unique<InterfaceMap>(mesh, body.boundaries().interface_patches());
+    description_ = map_->describe();
+  }
+  description_.dim = mesh.dim;
+  description_.takes = taken(parameters.interface_data.value_or(InterfaceData{}));
+  description_.gives = {{"displacement", "m", Interface::Place::vertices},
+                        {"velocity", "m/s", Interface::Place::vertices}};
+  if (!parameters.interface_data || !parameters.interface_data->temperature) return;
+  if (!map_) throw Error("interface: no patch has 'type: interface', where a temperature could be taken.");
+  temperature_ = std::make_unique<InterfaceTemperature>(mesh.comm, description_.face_centres);
+  for (const auto& effect : body.effects())
+    if (effect->wants_temperature()) effect->set_interface(*temperature_);
+}
+
+void SolidInterface::take_temperature(const Exchange& in) const {
+  const auto found = in.find("temperature");
+  const std::vector<double> faces =
+      temperature_->everywhere(found == in.end() ? std::vector<double>{} : found->second);
+  if (!faces.empty() && faces.size() != temperature_->n_faces())
+    throw Error("The solid was given {} temperatures; its interface has {} faces.", faces.size(),
+                temperature_->n_faces());
+  for (const auto& effect : body_.effects())
+    if (effect->wants_temperature()) effect->take_temperature(faces);
+}
+
+std::vector<double> SolidInterface::load(const Exchange& in) const {
+  if (!map_) return {};
+  const Mesh& mesh = body_.mesh();
+  const int dim = mesh.dim;
+  std::vector<double> total(description_.face_centres.size() * dim, 0.0);
+  for (const auto& [name, values] : in) {
+    if (name == "temperature" && temperature_) continue;
+    if (std::ranges::none_of(description_.takes, [&](const auto& datum) { return datum.name == name; }))
+      throw Error("The solid was given '{}', which it does not take.", name);
+    if (name == "pressure" && values.size() * dim == total.size()) {
+      // A normal force on each face; the areas point out of the solid.
+      for (std::size_t i = 0; i < values.size(); ++i)
+        for (int a = 0; a < dim; ++a) total[i * dim + a] -= values[i] * description_.face_areas[i][a];
+      continue;
+    }
+    if (values.size() != total.size())
+      throw Error("The solid was given {} values of '{}'; its interface has {} faces of {} components.",
+                  values.size(), name, description_.face_centres.size(), dim);
+    for (std::size_t i = 0; i < values.size(); ++i) total[i] += values[i];
+  }
+  std::vector<double> force(std::size_t(mesh.boundary.n_owned()) * dim, 0);
+  const std::vector<double> local = map_->scatter_faces(total, dim);
+  for (std::size_t i = 0; i < map_->faces().size(); ++i)
+    for (int a = 0; a < dim; ++a)
+      force[std::size_t(map_->faces()[i] - mesh.n_interior) * dim + a] += local[i * dim + a];
+  return force;
+}
+
+Exchange SolidInterface::values(const SolidState& state) const {
+  if (!map_) return {};
+  const int dim = body_.mesh().dim;
+  Exchange out;
+  out["displacement"] =
+      map_->gather_vertices(body_.at_points(map_->points(), state.cell_u, state.face_u, state.known), dim);
+  out["velocity"] = map_->gather_vertices(
+      body_.at_points(map_->points(), state.cell_v, state.face_v, state.known_rate), dim);
+  return out;
+}
+
+}  // namespace couplet
