@@ -110,8 +110,8 @@ PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux,
   stage.conducted = through_inlet * (inlet - fluid_[entry]);
   StepHeat heat;
   heat.outlet = stage.outlet;
-  heat.by_flow =
-      area_ * dt_ * (std::abs(flux) * liquid_.specific_heat * (inlet - stage.outlet) + stage.conducted);
+  heat.by_flow = area_ * prepared_.dt *
+                 (std::abs(flux) * liquid_.specific_heat * (inlet - stage.outlet) + stage.conducted);
   return heat;
 }
 
@@ -127,7 +127,7 @@ PackedBed::StepHeat PackedBed::first_order_step(const Operator& op, double flux,
 /// hence u' = u + dt/2 (A(U1) + A(U2)) + (U1 - u + U2 - R2)/(2 gamma).
 bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   const std::size_t n = fluid_.size(), ns = shell_.size();
-  const double gamma = main_.tau / dt_, carry = (1 - 2 * gamma) / gamma, half = 0.5 / gamma;
+  const double gamma = main_.tau / prepared_.dt, carry = (1 - 2 * gamma) / gamma, half = 0.5 / gamma;
   const double through_inlet = flux != 0 ? inlet_conductance(flux > 0) : 0;
   const std::size_t entry = flux > 0 ? 0 : n - 1;
   // What enters by conduction counts as part of L.
@@ -143,7 +143,7 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   const Stage first = explicit_terms(fluid1_.data(), flux, inlet, true);
   // R2 in fluid2_, shell2_; fluid1_ becomes u' as far as it is known.
   for (std::size_t i = 0; i < n; ++i) {
-    const double a = dt_ / capacity_[i] * extra_[i], l = fluid1_[i] - fluid_[i];
+    const double a = prepared_.dt / capacity_[i] * extra_[i], l = fluid1_[i] - fluid_[i];
     fluid2_[i] = fluid_[i] + a + carry * l;
     fluid1_[i] = fluid_[i] + 0.5 * a + half * (l - fluid2_[i]);
   }
@@ -155,20 +155,21 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
   Range before{flux != 0 ? inlet : fluid_[0], flux != 0 ? inlet : fluid_[0]};
   before.add(fluid_.data(), n);
   before.add(shell_.data(), ns);
-  for (std::size_t i = 0; i < n; ++i) fluid1_[i] += half * fluid2_[i] + 0.5 * dt_ / capacity_[i] * extra_[i];
+  for (std::size_t i = 0; i < n; ++i)
+    fluid1_[i] += half * fluid2_[i] + 0.5 * prepared_.dt / capacity_[i] * extra_[i];
   // u + (U1 - u + U2 - R2)/(2 gamma) with R2 = u + carry (U1 - u).
   const double of_u = 1 - half * (2 - carry), of_u1 = half * (1 - carry);
   for (std::size_t i = 0; i < ns; ++i) shell1_[i] = of_u * shell_[i] + of_u1 * shell1_[i] + half * shell2_[i];
   Range after{before.low, before.high};
   after.add(fluid1_.data(), n);
   after.add(shell1_.data(), ns);
-  const double slack = 1e-9 * (before.high - before.low) + 1e-11 * before.high + source_rate_ * dt_;
+  const double slack = 1e-9 * (before.high - before.low) + 1e-11 * before.high + source_rate_ * prepared_.dt;
   if (!(after.low >= before.low - slack && after.high <= before.high + slack)) return false;
   fluid_.swap(fluid1_);
   shell_.swap(shell1_);
   heat.outlet = 0.5 * (first.outlet + second.outlet);
   heat.by_flow =
-      area_ * dt_ *
+      area_ * prepared_.dt *
       (std::abs(flux) * liquid_.specific_heat * (inlet - heat.outlet) + 0.5 * (conducted1 + conducted2));
   return true;
 }
@@ -176,22 +177,22 @@ bool PackedBed::second_order_step(double flux, double inlet, StepHeat& heat) {
 PackedBed::StepHeat PackedBed::step(double mass_flow, double inlet) {
   // The matrix of the implicit scheme belongs to one flow.
   const double flux = mass_flow / area_;
-  const bool other_inlet =
-      conducting_inlet_ && ((flux > 0) != (prepared_flow_ > 0) || (flux < 0) != (prepared_flow_ < 0));
-  if ((advection_ == Advection::implicit && mass_flow != prepared_flow_) || other_inlet)
-    prepare(dt_, mass_flow);
+  const bool other_inlet = conducting_inlet_ && ((flux > 0) != (prepared_.mass_flow > 0) ||
+                                                 (flux < 0) != (prepared_.mass_flow < 0));
+  if ((advection_ == Advection::implicit && mass_flow != prepared_.mass_flow) || other_inlet)
+    prepare(prepared_.dt, mass_flow);
   StepHeat heat;
   if (advection_ != Advection::tvd) {
     heat = first_order_step(main_, flux, inlet, false);
   } else if (!second_order_step(flux, inlet, heat)) {
-    if (!fallback_is_built_) build(fallback_, dt_);
+    if (!fallback_is_built_) build(fallback_, prepared_.dt);
     fallback_is_built_ = true;
     ++fallbacks_;
     heat = first_order_step(fallback_, flux, inlet, true);
   }
   double source = 0;
   for (const double s : source_) source += s;
-  heat.by_source = area_ * dt_ * source;
+  heat.by_source = area_ * prepared_.dt * source;
   return heat;
 }
 

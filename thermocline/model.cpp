@@ -137,7 +137,7 @@ void TankModel::update_stress() {
 }
 
 void TankModel::watch(double t) {
-  if (const auto now = bed_.inversion(); now.depth > inversion_.depth) inversion_ = {now.depth, now.z, t};
+  if (const auto now = inversion_of(bed_); now.depth > inversion_.depth) inversion_ = {now.depth, now.z, t};
   const auto fluid = bed_.fluid();
   const auto [low, high] = std::minmax_element(fluid.begin(), fluid.end());
   coldest_ = std::min(coldest_, *low), hottest_ = std::max(hottest_, *high);

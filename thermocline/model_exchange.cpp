@@ -199,20 +199,20 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Ambie
     s.t = t;
     s.ambient = ambient.at(t);
     s.flow = control.decide(t, bed_.top(), bed_.bottom(), s.ambient);
-    const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared_flow();
+    const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared().mass_flow;
     if (t > block - tiny) prepared = false, block = t + renewal;
     const double until = std::min(block, s.flow.until > t + tiny ? std::min(end, s.flow.until) : end);
     // New closures when the flow has changed by a tenth, a new step when the old one has become too long or
     // would pass the time the control gave; a little over the limit is within the scheme's reserve.
     const bool other_flow = (m == 0) != (now == 0) || m * now < 0 || std::abs(m - now) > 0.1 * std::abs(now);
-    const bool too_long = bed_.prepared_step() > 1.05 * limit || t + bed_.prepared_step() > until + tiny;
+    const bool too_long = bed_.prepared().dt > 1.05 * limit || t + bed_.prepared().dt > until + tiny;
     if (!prepared || other_flow || too_long) {
       const Stopwatch watch(speed, Element::preparation);
       const double steps_left = std::ceil((until - t) / limit * (1 - 1e-9));
       bed_.prepare((until - t) / std::max(1.0, steps_left), m);
       prepared = true;
     }
-    s.dt = bed_.prepared_step();
+    s.dt = bed_.prepared().dt;
     const Stopwatch watch(speed, Element::bed);
     const PackedBed::StepHeat heat = bed_.step(m, s.flow.inlet_temperature);
     s.outlet_temperature = heat.outlet;

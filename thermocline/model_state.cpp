@@ -35,7 +35,7 @@ std::vector<std::pair<std::string, std::vector<double>>> TankModel::state() cons
     const auto gas = ullage_->state();
     all.emplace_back("ullage", std::vector<double>{gas[0], gas[1], from_liquid_, wall_to_ullage_});
   }
-  all.emplace_back("flow-of-closures", std::vector<double>{bed_.prepared_step(), bed_.prepared_flow()});
+  all.emplace_back("flow-of-closures", std::vector<double>{bed_.prepared().dt, bed_.prepared().mass_flow});
   all.emplace_back("closures",
                    std::vector<double>(bed_.wall_coefficient().begin(), bed_.wall_coefficient().end()));
   const Ledger& l = ledger_;

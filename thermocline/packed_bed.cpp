@@ -98,8 +98,8 @@ double PackedBed::largest_step(double mass_flow) const {
 
 void PackedBed::prepare(double dt, double mass_flow) {
   settle();
-  dt_ = dt;
-  prepared_flow_ = mass_flow;
+  prepared_.dt = dt;
+  prepared_.mass_flow = mass_flow;
   const MassFlux flux(std::abs(mass_flow) / area_);
   for (const BedGrid::Run& run : grid_.runs) {
     const std::size_t l = &run - grid_.runs.data(), i = run.first;
@@ -140,13 +140,14 @@ void PackedBed::build(Operator& op, double tau) {
     for (int i = 0; i < n; ++i) op.own_part[i] = diagonal_[i] - op.rate[i];
   conduction_rows(n, conductivity_.data(), grid_.dz.data(), lower_.data(), diagonal_.data(), upper_.data());
   double *a = lower_.data(), *b = diagonal_.data(), *c = upper_.data();
-  if (prepared_flow_ != 0) b[prepared_flow_ > 0 ? 0 : n - 1] += inlet_conductance(prepared_flow_ > 0);
+  if (prepared_.mass_flow != 0)
+    b[prepared_.mass_flow > 0 ? 0 : n - 1] += inlet_conductance(prepared_.mass_flow > 0);
   if (advection_ == Advection::implicit) {
-    const double gc = std::abs(prepared_flow_) / area_ * liquid_.specific_heat;
+    const double gc = std::abs(prepared_.mass_flow) / area_ * liquid_.specific_heat;
     for (int i = 0; i < n; ++i) {
       b[i] += gc;
-      if (prepared_flow_ > 0 && i > 0) a[i] -= gc;
-      if (prepared_flow_ < 0 && i + 1 < n) c[i] -= gc;
+      if (prepared_.mass_flow > 0 && i > 0) a[i] -= gc;
+      if (prepared_.mass_flow < 0 && i + 1 < n) c[i] -= gc;
     }
   }
   op.matrix.resize(n);
@@ -216,11 +217,12 @@ double PackedBed::reynolds(int cell, double mass_flow) const {
   return (*closures_)[grid_.layer[cell]].reynolds(fluid_[cell], std::abs(mass_flow) / area_);
 }
 
-PackedBed::Inversion PackedBed::inversion() const {
+Inversion inversion_of(const PackedBed& bed) {
+  const std::span<const double> fluid = bed.fluid();
+  const BedGrid& grid = bed.grid();
   Inversion worst;
-  for (int i = 0; i + 1 < grid_.size(); ++i)
-    if (fluid_[i] - fluid_[i + 1] > worst.depth)
-      worst = {fluid_[i] - fluid_[i + 1], grid_.z[i] + grid_.dz[i] / 2};
+  for (int i = 0; i + 1 < grid.size(); ++i)
+    if (fluid[i] - fluid[i + 1] > worst.depth) worst = {fluid[i] - fluid[i + 1], grid.z[i] + grid.dz[i] / 2};
   return worst;
 }
 

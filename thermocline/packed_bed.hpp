@@ -52,8 +52,11 @@ class PackedBed {
   double largest_step(double mass_flow) const;
   /// Steps of this length follow; film, conductivity and factorisation are made for this flow.
   void prepare(double dt, double mass_flow);
-  double prepared_step() const { return dt_; }
-  double prepared_flow() const { return prepared_flow_; }
+  /// For which step [s] and flow [kg/s].
+  struct Prepared {
+    double dt = 0, mass_flow = 0;
+  };
+  const Prepared& prepared() const { return prepared_; }
   /// Heat given to the fluid of each cell by walls, ullage and ground during the following steps [W].
   void set_source(std::span<const double> source);
 
@@ -89,16 +92,8 @@ class PackedBed {
   std::span<const double> wall_coefficient() const { return wall_; }
   /// Those of a checkpoint: the walls use what the last steps used.
   void set_wall_coefficient(std::span<const double> wall) { wall_.assign(wall.begin(), wall.end()); }
-  /// Film coefficient and axial conductivity of the prepared flow.
-  std::span<const double> film_coefficient() const { return film_; }
-  std::span<const double> conductivity() const { return conductivity_; }
   double reynolds(int cell, double mass_flow) const;
 
-  /// Largest amount by which a cell is colder than the one below it, and where [K], [m].
-  struct Inversion {
-    double depth = 0, z = 0;
-  };
-  Inversion inversion() const;
   /// Mixes fluid where it is colder than the fluid below it; keeps its heat.
   void mix_inversions();
   bool melts() const { return !melting_.empty(); }
@@ -161,7 +156,7 @@ class PackedBed {
   std::vector<double> capacity_;  // eps rho c dz [J/(m^2 K)]
   double limit_;                  // smallest eps rho dz [kg/m^2]
 
-  double dt_ = 0, prepared_flow_ = 0;
+  Prepared prepared_;
   Operator main_{1}, fallback_{2};
   int sums_of_ = 0;  // the operator that sums_ belong to; 0: to none
   bool fallback_is_built_ = false;
@@ -180,6 +175,12 @@ class PackedBed {
     Tridiagonal matrix;
   } melt_;
 };
+
+/// Largest amount by which a cell is colder than the one below it, and where [K], [m].
+struct Inversion {
+  double depth = 0, z = 0;
+};
+Inversion inversion_of(const PackedBed& bed);
 
 void declare(config::Section& section, BedParameters& parameters);
 

@@ -7,6 +7,19 @@ import sys
 from check_sources import check_links, check_references, check_text
 
 HEAD = "// SPDX-License-Identifier: Apache-2.0\n"
+
+
+def class_of(n):
+    """A class with n member functions, and with what looks like one and is none."""
+    kinds = ["  A(int a) : a_(a), b_{f(a)} {}\n", "  bool operator==(const A& b) const = default;\n", "  ~A();\n",
+             "  int f(int x = g(1)) const { return f(x) + (x); }\n", "  template <class T> T h(std::span<const T> x);\n",
+             "  virtual std::vector<std::pair<int, int>> k(const B& b) = 0;\n"]
+    none = ["  // int f(int x);\n", "  using F = std::function<void(int)>;\n", "  std::function<int(double)> g_;\n",
+            "  double b_ = f(2) + g(3), c_{f(4)};\n", "  friend int f(A& a);\n", "  const char* t_ = \"int f(int x);\";\n",
+            "  struct D { int f(); int g(); };\n", "  enum class E { a = sizeof(int), b };\n"]
+    return "class A final : public B {\n public:\n" + "".join(kinds[i % len(kinds)] for i in range(n)) + "".join(none) + "};\n"
+
+
 WRONG = {
     ("common/mesh/a.cpp", HEAD + '#include "common/io/series.hpp"\n'): "common/mesh stands below common/io",
     ("common/log/a.cpp", HEAD + '#include "common/config/section.hpp"\n'): "common/log stands below common/config",
@@ -18,11 +31,14 @@ WRONG = {
     ("coupler/a.cpp", HEAD + '#include "tests/support/a.hpp"\n'): "production code includes test code",
     ("common/base/a.cpp", "int a;\n"): "no SPDX line",
     ("common/base/a.cpp", HEAD + "\n" * 600): "601 lines",
+    ("common/base/a.hpp", HEAD + class_of(41)): "A has 41 member functions",
 }
 RIGHT = [
     ("common/io/a.cpp", HEAD + '#include <hdf5.h>\n#include "common/mesh/mesh.hpp"\n'),
     ("fluid_solver/a.cpp", HEAD + '#include "fluid_solver/fluid.hpp"\n#include "common/fv/expression.hpp"\n'),
     ("coupler/a.cpp", HEAD + "#include <nanoflann.hpp>\n"),
+    ("common/base/a.hpp", HEAD + class_of(40)),
+    ("common/base/a.hpp", HEAD + class_of(40).replace("class A", "struct B {};\nstruct A")),
 ]
 
 failed = 0

@@ -40,7 +40,7 @@ TEST(RealDensity, a_bed_that_warms_through_has_taken_the_integral_of_its_capacit
     double entered = 0;
     for (int block = 0; block < 1200; ++block) {
       bed.prepare(std::min(10.0, bed.largest_step(-120)), -120);
-      for (double t = 0; t < 60; t += bed.prepared_step()) entered += bed.step(-120, 565 + c0).by_flow;
+      for (double t = 0; t < 60; t += bed.prepared().dt) entered += bed.step(-120, 565 + c0).by_flow;
       bed.settle();
       ASSERT_LE(*std::max_element(bed.fluid().begin(), bed.fluid().end()), 565 + c0 + 0.01);
     }

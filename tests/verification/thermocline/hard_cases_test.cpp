@@ -173,11 +173,11 @@ TEST(Inversion, mixing_keeps_the_heat_and_leaves_none) {
   std::vector<double> t(50);
   for (int i = 0; i < 50; ++i) t[i] = 300 + 50 * std::sin(0.7 * i) + i;
   bed.set_temperature(t);
-  EXPECT_GT(bed.inversion().depth, 10);
+  EXPECT_GT(inversion_of(bed).depth, 10);
   const double before = bed.energy(300);
   bed.mix_inversions();
   EXPECT_NEAR(bed.energy(300), before, 1e-12 * bed.heat_capacity() * 100);
-  EXPECT_LT(bed.inversion().depth, 1e-9);
+  EXPECT_LT(inversion_of(bed).depth, 1e-9);
 }
 
 }  // namespace

@@ -96,9 +96,9 @@ TEST_P(Pacheco, front_travels_with_the_speed_of_theory_and_energy_closes) {
   while (time < 9000) {
     const auto heat = bed.step(7, 290 + c0);
     entered += heat.by_flow;
-    time += bed.prepared_step();
+    time += bed.prepared().dt;
     if (first == 0 && time >= 1800) first = front();
-    if (time >= 7200 && time < 7200 + bed.prepared_step()) {
+    if (time >= 7200 && time < 7200 + bed.prepared().dt) {
       const double speed = (front() - first) / 5400 * 3600;
       const double theory = 7 * 1550.0 / (0.22 * 1733 * 1550 + 0.78 * 2640 * 1050) / bed.area() * 3600;
       RecordProperty("ratio", fmt::format("{:.4f}", speed / theory));
