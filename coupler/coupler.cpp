@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/log/doubt.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/places.hpp"
@@ -95,6 +96,7 @@ void Coupler::initialise() {
   check_foreseen(sides_, *links_, schedule_, group_);
   check_places(comm_, sides_, *links_, parameters_.mapping);
   unknown_.emplace(comm_, sides_, *links_, group_, schedule_.side_by_side);
+  audit_.emplace(comm_, sides_, *links_);
   mechanics_.emplace(comm_, sides_, *links_, labels_of(parameters_, partners_));
   if (unknown_->start_at_rest(given_)) history_.now = unknown_->gather(given_);
   volume_level_.emplace(comm_, sides_, *links_, schedule_, group_);
@@ -153,9 +155,7 @@ void Coupler::solve(const Step& step) {
   if (!begins) last_.x = predict(*unknown_, history_, step.dt, schedule_.predictor);
   if (!schedule_.iterates) {
     if (!begins && !unknown_->parts().empty()) {
-      last_.image = map(last_.x);
-      last_.residual = worst(unknown_->measure(last_.x, last_.image));
-      last_.iterations = 1;
+      pass_once(step, map);
     }
     monitor_->iteration(step, 1, last_.residual, std::numeric_limits<double>::quiet_NaN());
   } else if (!unknown_->parts().empty()) {
@@ -174,6 +174,19 @@ void Coupler::solve(const Step& step) {
   }
   given_ = std::move(outputs);
   last_dt_ = step.dt;
+}
+
+void Coupler::pass_once(const Step& step, const FixedPointMap& map) {
+  last_.image = map(last_.x);
+  last_.residual = worst(unknown_->measure(last_.x, last_.image));
+  last_.iterations = 1;
+  // Not where sub-steps see a line through what was given: each pass would bend it.
+  if (step.scheme != Scheme::explicit_ || !schedule_.sub_steps.empty() ||
+      !CouplingAudit::looks_at(step.number))
+    return;
+  const Iterate again = map(last_.image);
+  audit_->returned(last_.residual, worst(unknown_->measure(last_.image, again)));
+  last_.image = map(last_.x);  // the step is what it is without this look
 }
 
 void Coupler::accept(double time, int output) {
@@ -209,11 +222,13 @@ void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
     const auto parted = work_guard_.accepted(given, taken, parameters_.scheme);
     if (!reason) reason = parted;
   }
+  audit_->loads(given_);
+  audit_->tell(parameters_, time);
   if (!reason || !diverged_.empty()) return;
   if (parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
     diverged_ = *reason;
   else if (!warned_)
-    log::warn("t = {:g} s: {}", time, *reason);
+    log::doubt(comm_rank(comm_), fmt::format("t = {:g} s: {}", time, *reason));
   warned_ = true;
 }
 
@@ -221,7 +236,8 @@ void Coupler::finalise() {
   enter_(Phase::finalise, {});
   log::info("{}", monitor_->summary(loop_.halvings()));
   if (const WorkGuard::Verdict v = work_guard_.verdict(); !v.text.empty())
-    v.sound ? log::info("{}", v.text) : log::warn("{}", v.text);
+    v.sound ? log::info("{}", v.text) : log::doubt(comm_rank(comm_), v.text);
+  audit_->tell_at_end(parameters_);
   finalise_all(everyone());
 }
 

@@ -13,6 +13,7 @@
 #include "common/app/step_loop.hpp"
 #include "common/app/watch.hpp"
 #include "coupler/accelerator.hpp"
+#include "coupler/audit.hpp"
 #include "coupler/fixed_point.hpp"
 #include "coupler/guards.hpp"
 #include "coupler/interface_output.hpp"
@@ -68,6 +69,8 @@ class Coupler {
   void save(const std::filesystem::path& folder);
   std::optional<StepFailure> attempt(const Step& step);
   void solve(const Step& step);
+  /// One pass from x, the explicit scheme's step.
+  void pass_once(const Step& step, const FixedPointMap& map);
   /// One pass through the group from what is known to what all give.
   std::vector<Exchange> pass(std::vector<Exchange> known, bool first);
   void ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh);
@@ -101,6 +104,7 @@ class Coupler {
   IterationGuard iteration_guard_;
   OscillationGuard oscillation_guard_;
   WorkGuard work_guard_;
+  std::optional<CouplingAudit> audit_;
   std::string diverged_;  // empty: no guard has fired
   bool warned_ = false;
   bool answered_anew_ = false;  // somebody in the last pass

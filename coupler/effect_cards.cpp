@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/effect_cards.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
+#include <cmath>
 
 #include "coupler/schedule.hpp"
 
@@ -20,6 +23,29 @@ bool is_quasi_newton(const P& p) {
   return p.acceleration.type == Acceleration::iqn_ils || p.acceleration.type == Acceleration::iqn_mvj;
 }
 
+// One pass a step holds while the guess that the load is of is not thrown over: a guess with velocity v^n returns
+// r = added mass / mass of the last change, lambda = -r; one of 2 v^n - v^{n-1} (order 2) gives
+// lambda^2 + r (2 lambda - 1) = 0, which reaches -1 at r = 1/3. The error goes with r: half the limit is asked for.
+std::optional<EffectVerdict> judge_one_pass(const P& p, const CouplingEvidence& e) {
+  if (p.scheme != Scheme::explicit_ || std::isnan(e.returned)) return {};
+  const double limit = schedule_of(p).predictor >= 2 ? 1.0 / 3 : 1.0;
+  return EffectVerdict{
+      "", e.returned, limit / 2,
+      fmt::format(
+          "of a change of the motion {:.3g} comes back by the load in the next pass (the added mass over the "
+          "structure's); one pass a step diverges from {:.2g} on",
+          e.returned, limit),
+      "take the added mass into the iteration: 'scheme: semi-implicit'"};
+}
+
+std::optional<EffectVerdict> judge_lost_load(const P&, const CouplingEvidence& e) {
+  if (std::isnan(e.lost_load)) return {};
+  return EffectVerdict{
+      "", e.lost_load, 0.02,
+      fmt::format("forces that a fluid gives and no structure takes are {:.2g} of those taken", e.lost_load),
+      "let the structure take 'viscous-force', too ('interface: {load: forces}' of a solid)"};
+}
+
 const std::array cards{
     CouplingCard{"exchange among any participants",
                  "`exchange`",
@@ -33,7 +59,10 @@ const std::array cards{
         "iteration of pressure and structure",
         "`scheme: semi-implicit`",
         [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
-        {"a pressure solve and a structure's step a pass; mesh motion and predictor once a step", 0, 0}},
+        {"a pressure solve and a structure's step a pass; mesh motion and predictor once a step", 0, 0},
+        "explicit: share of a change of the motion that the next pass returns, 0.5 (predictor of order 2: 0.17); two "
+        "passes more in steps 4, 16, 64, ...",
+        judge_one_pass},
     CouplingCard{"friction of the current wall velocity",
                  "`scheme: semi-implicit`, implicit viscous term",
                  [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
@@ -44,6 +73,15 @@ const std::array cards{
         [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
         {"sums over the interface a pass; where it acts, the first part of the fluid's step once more", 0,
          0}},
+    CouplingCard{"viscous coupling load",
+                 "by a structure that takes `viscous-force` beside `pressure-force`",
+                 [](const P& p) {
+                   return when(p.fluid.has_value() || p.exchange.has_value(), "what the structure takes");
+                 },
+                 {"a force a face of the interface", 0, 0},
+                 "forces given that nobody takes over those taken, 0.02",
+                 judge_lost_load,
+                 true},
     CouplingCard{"relaxation by Aitken",
                  "`acceleration.type: aitken`",
                  [](const P& p) {

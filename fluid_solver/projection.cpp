@@ -225,8 +225,10 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
       b_[k_.mesh.owner[f]] += now.conductance[f] * k_.p_boundary[b];
   }
   if (k_.gap_closed()) clear_gaps(b_);
-  clear_bodies(b_);
-  clear_bodies(k_.p);
+  if (k_.bodies) {
+    clear_bodies(b_);
+    clear_bodies(k_.p);
+  }
   b_.resize(k_.mesh.cells.n_owned());
   const double floor = flux_floor * factor * std::sqrt(sum(k_.mesh.comm, size));
   const SolveStatistics solved =
@@ -309,7 +311,7 @@ void PressureProjection<D>::solve_initial(const Placement<D>& at) {
     size += k_.phi_p[f] * k_.phi_p[f];
   }
   if (k_.gap_closed()) clear_gaps(b_);
-  clear_bodies(b_);
+  if (k_.bodies) clear_bodies(b_);
   b_.resize(k_.mesh.cells.n_owned());
   const double floor = 1e-14 * std::sqrt(sum(k_.mesh.comm, size));
   pressure_.solve(at, b_, k_.p, std::min(1e-8, k_.parameters.pressure_tolerance),

@@ -20,7 +20,6 @@ void PressureProjection<D>::mark_bodies(double time) {
 
 template <int D>
 void PressureProjection<D>::clear_bodies(std::vector<double>& values) const {
-  if (!k_.bodies) return;
   for (Index c = 0; c < k_.mesh.cells.n_local(); ++c)
     if (k_.bodies->is_solid(c)) values[c] = 0;
 }

@@ -16,6 +16,7 @@
 #include "common/app/case_keys.hpp"
 #include "common/app/command_line.hpp"
 #include "common/app/questions.hpp"
+#include "common/app/start_guard.hpp"
 #include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
 #include "common/log/doubt.hpp"
@@ -116,10 +117,9 @@ int speaker(const std::vector<Attendant>& attendants) {
   return 0;
 }
 
-int attend(const CommandLine& command_line, const ProgramKind& kind,
+int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseFile& file,
+           const std::string& label, std::optional<StartGuard>& start_guard,
            const std::function<int(const Job&)>& run) {
-  CaseFile file = read_case(command_line, kind);
-  const std::string label = file.participant.empty() ? kind.name : file.participant;
   Watch watch(shake_hands(MPI_COMM_WORLD), label);
   log::setup(label, 0, command_line.verbosity);
   try {
@@ -154,6 +154,7 @@ int attend(const CommandLine& command_line, const ProgramKind& kind,
     prepare(job, command_line, kind.is_coupler);
     job.enter(Phase::initialise);
     watch.limit_silence(job.simulation.hang_timeout);
+    start_guard.reset();
     const int code = run(job);
     if (code == 0 && Watch::has_stopped()) return exit_stopped;
     if (code != 0 || !command_line.strict || log::doubts() == 0) return code;
@@ -198,10 +199,16 @@ int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<
   // Read where the geometry is meshed, far from here.
   if (command_line.allow_commands) ::setenv("COUPLET_ALLOW_COMMANDS", "1", 1);
   prepare_mpi_start();
+  const CaseFile file = read_case(command_line, kind);
+  const std::string label = file.participant.empty() ? kind.name : file.participant;
+  // MPI's own start takes seconds on a busy machine.
+  const double patience = file.simulation.hang_timeout > 0 ? std::max(file.simulation.hang_timeout, 4.0) : 0;
+  std::optional<StartGuard> start_guard(std::in_place, patience, label);
   MPI_Init(&argc, &argv);
   // Short sleeps while waiting for other programs shall be short (Linux adds 50 us to each by default).
   prctl(PR_SET_TIMERSLACK, 2000UL);
-  const int code = attend(command_line, kind, run);
+  const int code = attend(command_line, kind, file, label, start_guard, run);
+  start_guard.reset();
   std::fflush(nullptr);
   MPI_Finalize();
   Watch::finished();

@@ -93,7 +93,8 @@ class Runner:
         (folder / "run.log").write_text(text)
         if result.returncode == 2 and " is beyond " not in text:  # what a program says of values that it cannot compute with
             raise RuntimeError(f"{folder}: the case is wrong: {text.strip().splitlines()[-1]}")
-        strict = result.returncode == 1 and "--strict: the result is in doubt" in text
+        failed = any("error:" in line and "--strict:" not in line for line in text.splitlines())
+        strict = result.returncode == 1 and "--strict: the result is in doubt" in text and not failed
         # That a mesh does not resolve turbulence is no word about the scheme.
         words = [line for line in text.splitlines() if "warning:" in line and "turbulence model left out" not in line]
         return (0 if strict else result.returncode), strict and bool(words)

@@ -11,7 +11,7 @@ from validation.job import Bar
 
 SOURCES = ("common/effects", "common/app", "common/time", "solid_solver", "fluid_solver", "thermocline", "plate_modal", "coupler",
            "scripts/couplet_atlas", "docs/stability")
-MAPS = ("solid-energy", "solid-stretch", "solid-nu", "fluid-diffusion", "fluid-convection", "fluid-aspect", "coupling-mass",
+MAPS = ("solid-energy", "solid-stretch", "solid-nu", "fluid-diffusion", "fluid-convection", "fluid-aspect", "coupling-mass", "coupling-viscous",
         "tank-front", "tank-biot", "plate-contact")
 
 

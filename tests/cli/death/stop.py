@@ -133,6 +133,18 @@ with tempfile.TemporaryDirectory(prefix="couplet-stop-") as name:
         check(f"SIGSTOP to {victim}: named ({time.monotonic() - before:.1f} s)",
               code != 0 and f"participant '{victim}' (rank 0, " in output and "is stopped (as by SIGSTOP)" in output, output)
 
+    # Before the programs know each other nobody can be named, but the others do not wait for ever in MPI's start.
+    folder = top / "hang-at-the-start"
+    folder.mkdir()
+    case(folder, "1e6 s", "\n  hang-timeout: 1 s")
+    job = start(folder, coupled("-q"))
+    end = time.monotonic() + PATIENCE
+    while not (pid := pid_of(job, "toy_piston")) and time.monotonic() < end:
+        time.sleep(0.001)
+    os.kill(pid, signal.SIGSTOP)
+    code, output = end_of(job)
+    check("SIGSTOP before the roll call: the job ends", code != 0 and "have not all answered within 4 s of its start" in output, output)
+
     folder = top / "patient"
     folder.mkdir()
     case(folder, "1e6 s", "\n  hang-timeout: 60 s")

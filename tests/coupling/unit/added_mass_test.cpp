@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "common/log/doubt.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "tests/coupling/support/residuals.hpp"
@@ -61,6 +62,33 @@ struct ModalRun {
     residuals = tests::read_residuals(folder / "residuals.csv");
   }
 };
+
+/// The explicit scheme tells its user the ratio, from two passes more in a few steps; half of what it bears is the
+/// bound: r = 0.5, and 1/6 with the predictor of order 2.
+TEST(AddedMass, explicit_coupling_measures_the_mass_ratio_and_doubts_itself_beyond_half_its_limit) {
+  for (const auto& [order, r, good] :
+       {std::tuple{1, 0.49, true}, {1, 0.51, false}, {2, 0.163, true}, {2, 0.17, false}}) {
+    ModalRun run;
+    run.coupling.scheme = Scheme::explicit_;
+    run.coupling.predictor_order = order;
+    run.ratio(r);
+    run.steps(20, 1e-3);
+    run.p.pulse_duration = 0.02;
+    run.p.stiffness = run.p.tension = 0;  // the mass alone
+    run.p.vertices = 3;                   // one mode
+    const int before = log::doubts();
+    run();
+    EXPECT_EQ(run.problem, "");
+    EXPECT_EQ(log::doubts() - before, good ? 0 : 1) << "order " << order << ", r = " << r;
+  }
+}
+
+TEST(AddedMass, is_looked_at_seldom) {
+  std::vector<GlobalIndex> due;
+  for (GlobalIndex n = 0; n <= 1000; ++n)
+    if (CouplingAudit::looks_at(n)) due.push_back(n);
+  EXPECT_EQ(due, (std::vector<GlobalIndex>{4, 16, 64, 256}));
+}
 
 /// Explicit coupling, w = v^n: m (v^{n+1} - v^n) = - rho mu (v^n - v^{n-1}), so the increments of the
 /// velocity grow by r a step, whatever the step.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "common/base/error.hpp"
+#include "coupler/audit.hpp"
 #include "coupler/balance.hpp"
 #include "coupler/mechanics.hpp"
 #include "coupler/places.hpp"
@@ -52,6 +53,21 @@ std::string message(const F& f) {
     return error.what();
   }
   return "";
+}
+
+TEST(CouplingAudit, forces_that_nobody_takes_are_compared_with_those_taken) {
+  const std::vector<Exchange> given{{{"pressure-force", {0, 3, 0, 4}}, {"viscous-force", {0.1, 0, 0, 0}}},
+                                    {}};
+  const auto seen = [&](const Interface& structure) {
+    const std::vector<Side> sides{side("fluid", fluid()), side("solid", structure)};
+    CouplingAudit audit(MPI_COMM_SELF, sides, {MPI_COMM_SELF, sides, {}});
+    audit.loads(given);
+    return audit.evidence().lost_load;
+  };
+  Interface pressed = solid();
+  pressed.takes = {load.front()};
+  EXPECT_DOUBLE_EQ(seen(pressed), 0.1 / 5);
+  EXPECT_TRUE(std::isnan(seen(solid())));
 }
 
 TEST(Links, motion_goes_to_the_fluid_and_load_to_the_structure) {

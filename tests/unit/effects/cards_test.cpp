@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/effects/card.hpp"
+#include "coupler/effect_cards.hpp"
 #include "fluid_solver/effect_cards.hpp"
 #include "plate_modal/effect_cards.hpp"
 #include "solid_solver/effect_cards.hpp"
@@ -124,6 +125,29 @@ TEST(EffectCards, fluid_verdicts_turn_at_their_thresholds) {
                           fluid::FluidEvidence{.wall_displacement = 10}));
   EXPECT_FALSE(verdict_on("turbulence model", fluid::fluid_effect_cards(), model,
                           fluid::FluidEvidence{.largest_peclet = 1e4}));
+}
+
+TEST(EffectCards, coupling_verdicts_turn_at_their_thresholds) {
+  CouplingParameters one_pass, iterated;
+  one_pass.scheme = Scheme::explicit_;
+  one_pass.fluid = iterated.fluid = {"fluid"};
+  one_pass.structure = iterated.structure = {"solid"};
+  iterated.scheme = Scheme::semi_implicit;
+  const auto sound = [&](const char* effect, const CouplingEvidence& e) {
+    const auto v = verdict_on(effect, coupling_effect_cards(), one_pass, e);
+    EXPECT_TRUE(v.has_value()) << effect;
+    return v && v->sound();
+  };
+  one_pass.predictor_order = 1;
+  EXPECT_TRUE(sound("iteration of pressure and structure", {.returned = 0.49}));
+  EXPECT_FALSE(sound("iteration of pressure and structure", {.returned = 0.51}));
+  one_pass.predictor_order = 2;
+  EXPECT_TRUE(sound("iteration of pressure and structure", {.returned = 0.16}));
+  EXPECT_FALSE(sound("iteration of pressure and structure", {.returned = 0.17}));
+  EXPECT_TRUE(sound("viscous coupling load", {.lost_load = 0.019}));
+  EXPECT_FALSE(sound("viscous coupling load", {.lost_load = 0.021}));
+  EXPECT_THAT(audit(coupling_effect_cards(), iterated, CouplingEvidence{.returned = 5}), IsEmpty());
+  EXPECT_THAT(audit(coupling_effect_cards(), one_pass, CouplingEvidence{}), IsEmpty());
 }
 
 TEST(EffectCards, plate_verdicts_turn_at_their_thresholds) {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/start_guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <optional>
+
+namespace couplet {
+namespace {
+
+using namespace std::chrono_literals;
+
+TEST(StartGuardDeathTest, ends_a_start_that_takes_too_long) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        StartGuard guard(0.05, "fluid");
+        std::this_thread::sleep_for(30s);
+        std::_Exit(0);
+      },
+      ::testing::ExitedWithCode(1), "\\[fluid\\] error: .* have not all answered within 0.05 s");
+}
+
+TEST(StartGuardDeathTest, is_silent_once_disarmed_and_where_no_timeout_is_asked_for) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        std::optional<StartGuard> guard(std::in_place, 0.05, "fluid");
+        const StartGuard never(0, "solid");
+        guard.reset();
+        std::this_thread::sleep_for(300ms);
+        std::_Exit(0);
+      },
+      ::testing::ExitedWithCode(0), "^$");
+}
+
+}  // namespace
+}  // namespace couplet
