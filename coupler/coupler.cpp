@@ -187,6 +187,7 @@ void Coupler::pass_once(const Step& step, const FixedPointMap& map) {
   const Iterate again = map(last_.image);
   audit_->returned(last_.residual, worst(unknown_->measure(last_.image, again)));
   last_.image = map(last_.x);  // the step is what it is without this look
+  iterations_ -= 2;            // nor are these its passes
 }
 
 void Coupler::accept(double time, int output) {
