@@ -1,69 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/map_projection.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 
 #include "common/base/error.hpp"
+#include "common/base/nearest.hpp"
 #include "coupler/map_local.hpp"
 #include "coupler/point_tree.hpp"
 
 namespace couplet {
 namespace {
 
-/// The nearest point of a simplex as weights of its corners.
-struct Nearest {
-  std::vector<double> weights;
-  double distance = std::numeric_limits<double>::max();
-};
-
-Nearest on_edge(const Vec3& a, const Vec3& b, const Vec3& p) {
-  const double length = (b - a).squaredNorm();
-  const double s = length > 0 ? std::clamp((p - a).dot(b - a) / length, 0., 1.) : 0;
-  return {{1 - s, s}, (p - a - s * (b - a)).norm()};
-}
-
-Nearest on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& p) {
-  const Vec3 n = (b - a).cross(c - a);
-  const double area = n.squaredNorm();
-  if (area > 0) {
-    const double u = (c - b).cross(p - b).dot(n) / area, v = (a - c).cross(p - c).dot(n) / area;
-    if (u >= 0 && v >= 0 && u + v <= 1)
-      return {{u, v, 1 - u - v}, std::abs((p - a).dot(n)) / std::sqrt(area)};
-  }
-  Nearest best;
-  const std::array<const Vec3*, 3> corner{&a, &b, &c};
-  for (int i = 0; i < 3; ++i) {
-    const Nearest edge = on_edge(*corner[i], *corner[(i + 1) % 3], p);
-    if (edge.distance >= best.distance) continue;
-    best = {{0, 0, 0}, edge.distance};
-    best.weights[i] = edge.weights[0];
-    best.weights[(i + 1) % 3] = edge.weights[1];
-  }
-  return best;
-}
-
 std::span<const Index> corners(const Interface& surface, Index face) {
   return {surface.face_vertices.data() + surface.face_offset[face],
           std::size_t(surface.face_offset[face + 1] - surface.face_offset[face])};
 }
 
-/// Nearest point of a face: weights of its corners.
-Nearest on_face(const Interface& surface, Index face, const Vec3& p) {
+/// The nearest place of a face, as weights of its corners.
+struct OnFace {
+  std::vector<double> weights;
+  double distance = std::numeric_limits<double>::max();
+};
+
+OnFace on_face(const Interface& surface, Index face, const Vec3& p) {
   const auto vertex = corners(surface, face);
   const auto at = [&](std::size_t i) { return surface.vertices[vertex[i]]; };
-  if (vertex.size() == 2) return on_edge(at(0), at(1), p);
-  if (vertex.size() == 3) return on_triangle(at(0), at(1), at(2), p);
+  const auto whole = [](const auto& nearest) {
+    return OnFace{{nearest.weights.begin(), nearest.weights.end()}, nearest.distance};
+  };
+  if (vertex.size() == 2) return whole(nearest_on_segment(at(0), at(1), p));
+  if (vertex.size() == 3) return whole(nearest_on_triangle(at(0), at(1), at(2), p));
   const std::size_t n = vertex.size();
   Vec3 centre = Vec3::Zero();
   for (std::size_t i = 0; i < n; ++i) centre += at(i) / double(n);
-  Nearest best;
+  OnFace best;
   for (std::size_t i = 0; i < n; ++i) {
-    const Nearest part = on_triangle(at(i), at((i + 1) % n), centre, p);
+    const Nearest<3> part = nearest_on_triangle(at(i), at((i + 1) % n), centre, p);
     if (part.distance >= best.distance) continue;
     best = {std::vector<double>(n, part.weights[2] / double(n)), part.distance};
     best.weights[i] += part.weights[0];
@@ -146,10 +121,10 @@ SparseMap nearest_projection(const Interface& surface, const std::vector<Vec3>& 
     for (const Index v : vertices.nearest(p, projection_vertices))
       faces.insert(faces.end(), around.face.begin() + around.offset[v],
                    around.face.begin() + around.offset[v + 1]);
-    Nearest best;
+    OnFace best;
     Index chosen = -1;
     for (const Index f : faces) {
-      Nearest found = on_face(surface, f, p);
+      OnFace found = on_face(surface, f, p);
       if (found.distance < best.distance) best = std::move(found), chosen = f;
     }
     map.push_row(corners(surface, chosen), best.weights);

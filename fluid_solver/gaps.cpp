@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/gaps.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/base/nearest.hpp"
 #include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -15,31 +15,15 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double distance_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
-  const Vec3 d = b - a;
-  const double square = d.squaredNorm();
-  const double s = square > 0 ? std::clamp((x - a).dot(d) / square, 0.0, 1.0) : 0.0;
-  return (x - a - s * d).norm();
-}
-
-double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 u = b - a, v = c - a, w = x - a, n = u.cross(v);
-  const double square = n.squaredNorm();
-  if (square > 0) {
-    const double s = w.cross(v).dot(n) / square, t = u.cross(w).dot(n) / square;
-    if (s >= 0 && t >= 0 && s + t <= 1) return std::abs(w.dot(n)) / std::sqrt(square);
-  }
-  return std::min({distance_to_segment(x, a, b), distance_to_segment(x, b, c), distance_to_segment(x, c, a)});
-}
-
 /// Of x from segments (2-D) or triangles, whose corners stand one after the other.
 template <int D>
 double distance(const Vec3& x, const std::vector<double>& corners) {
   double least = infinity;
   const auto corner = [&](std::size_t i) { return Vec3(Eigen::Map<const Vec3>(corners.data() + 3 * i)); };
   for (std::size_t i = 0; i + D <= corners.size() / 3; i += D)
-    least = std::min(least, D == 2 ? distance_to_segment(x, corner(i), corner(i + 1))
-                                   : distance_to_triangle(x, corner(i), corner(i + 1), corner(i + D - 1)));
+    least = std::min(least,
+                     D == 2 ? nearest_on_segment(corner(i), corner(i + 1), x).distance
+                            : nearest_on_triangle(corner(i), corner(i + 1), corner(i + D - 1), x).distance);
   return least;
 }
 

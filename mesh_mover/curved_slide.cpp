@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh_mover/curved_slide.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "common/base/nearest.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::mesh_mover {
@@ -13,22 +13,6 @@ namespace {
 
 // 1 - |cosine| between a face and the patch's mean normal up to which it is flat.
 constexpr double flat = 1e-9;
-
-Vec3 on_segment(const Vec3& a, const Vec3& b, const Vec3& x) {
-  const Vec3 d = b - a;
-  return a + std::clamp((x - a).dot(d) / d.squaredNorm(), 0.0, 1.0) * d;
-}
-
-Vec3 on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
-  const Vec3 u = b - a, v = c - a, w = x - a, n = u.cross(v);
-  const double square = n.squaredNorm();
-  const double s = w.cross(v).dot(n) / square, t = u.cross(w).dot(n) / square;
-  if (s >= 0 && t >= 0 && s + t <= 1) return a + s * u + t * v;
-  Vec3 best = on_segment(a, b, x);
-  for (const Vec3& other : {on_segment(b, c, x), on_segment(c, a, x)})
-    if ((other - x).squaredNorm() < (best - x).squaredNorm()) best = other;
-  return best;
-}
 
 /// Collective.
 bool is_flat(const Mesh& mesh, const Patch& patch) {
@@ -98,12 +82,15 @@ Vec3 CurvedSlide::nearest(const Curved& patch, const Vec3& x) const {
   for (const Part& part : patch.parts) {
     const double reach = least + part.radius;
     if ((part.centre - x).squaredNorm() >= reach * reach) continue;
-    const Vec3 place =
-        part.b == part.c ? on_segment(part.a, part.b, x) : on_triangle(part.a, part.b, part.c, x);
-    const double distance = (place - x).norm();
-    if (distance >= least) continue;
-    least = distance;
-    best = place;
+    const auto consider = [&](const auto& nearest) {
+      if (nearest.distance >= least) return;
+      least = nearest.distance;
+      best = nearest.place;
+    };
+    if (part.b == part.c)
+      consider(nearest_on_segment(part.a, part.b, x));
+    else
+      consider(nearest_on_triangle(part.a, part.b, part.c, x));
   }
   return best;
 }

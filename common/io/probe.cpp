@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/base/nearest.hpp"
 #include "common/io/shape_functions.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -52,29 +53,6 @@ Candidate containing_cell(const Mesh& mesh, const Vec3& place) {
   return best;
 }
 
-// Weights of the ends of a segment at its place nearest to x.
-std::array<double, 2> nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& x) {
-  const Vec3 d = b - a;
-  const double s = std::clamp((x - a).dot(d) / d.squaredNorm(), 0.0, 1.0);
-  return {1 - s, s};
-}
-
-// Weights of the corners of a triangle at its place nearest to x.
-std::array<double, 3> nearest_on_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& x) {
-  const Vec3 u = b - a, v = c - a, w = x - a;
-  const double uu = u.dot(u), uv = u.dot(v), vv = v.dot(v), wu = w.dot(u), wv = w.dot(v);
-  const double determinant = uu * vv - uv * uv;
-  const double s = (vv * wu - uv * wv) / determinant, t = (uu * wv - uv * wu) / determinant;
-  if (s >= 0 && t >= 0 && s + t <= 1) return {1 - s - t, s, t};
-  const auto ab = nearest_on_segment(a, b, x), bc = nearest_on_segment(b, c, x),
-             ca = nearest_on_segment(c, a, x);
-  const double d_ab = (ab[0] * a + ab[1] * b - x).norm(), d_bc = (bc[0] * b + bc[1] * c - x).norm(),
-               d_ca = (ca[0] * c + ca[1] * a - x).norm();
-  if (d_ab <= d_bc && d_ab <= d_ca) return {ab[0], ab[1], 0};
-  if (d_bc <= d_ca) return {0, bc[0], bc[1]};
-  return {ca[1], 0, ca[0]};
-}
-
 Candidate nearest_on_face(const Mesh& mesh, std::span<const Index> points, const Vec3& place) {
   Candidate best;
   const auto consider = [&](std::initializer_list<int> corners, std::span<const double> weights) {
@@ -90,10 +68,10 @@ Candidate nearest_on_face(const Mesh& mesh, std::span<const Index> points, const
   };
   const auto x = [&](int i) -> const Vec3& { return mesh.reference_points[points[i]]; };
   if (points.size() == 2) {
-    consider({0, 1}, nearest_on_segment(x(0), x(1), place));
+    consider({0, 1}, nearest_on_segment(x(0), x(1), place).weights);
   } else {
-    consider({0, 1, 2}, nearest_on_triangle(x(0), x(1), x(2), place));
-    if (points.size() == 4) consider({0, 2, 3}, nearest_on_triangle(x(0), x(2), x(3), place));
+    consider({0, 1, 2}, nearest_on_triangle(x(0), x(1), x(2), place).weights);
+    if (points.size() == 4) consider({0, 2, 3}, nearest_on_triangle(x(0), x(2), x(3), place).weights);
   }
   return best;
 }
