@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <optional>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/fv/csv_line.hpp"
 
 namespace couplet {
 namespace {
@@ -15,26 +14,6 @@ namespace {
 constexpr std::array<const char*, 4> axis_names{"x", "y", "z", "t"};
 constexpr std::array<const char*, 4> axis_units{"m", "m", "m", "s"};
 constexpr double most_places = 1e8;
-
-std::optional<double> number_of(const std::string& text) {
-  std::size_t used = 0;
-  try {
-    const double value = std::stod(text, &used);
-    if (used == text.size() && std::isfinite(value)) return value;
-  } catch (const std::exception&) {
-  }
-  return {};
-}
-
-std::vector<std::string> cells_of(std::string line) {
-  line = line.substr(0, line.find('#'));
-  for (char& c : line)
-    if (c == ';') c = ',';
-  std::vector<std::string> cells;
-  for (const std::string& cell : split(line, ',')) cells.emplace_back(trim(cell));
-  if (cells.size() == 1 && cells[0].empty()) cells.clear();
-  return cells;
-}
 
 struct Columns {
   std::array<int, 4> axis{-1, -1, -1, -1};
@@ -48,20 +27,17 @@ Columns columns_of(const std::filesystem::path& file, const std::vector<std::str
   std::vector<std::string> known(axis_names.begin(), axis_names.end());
   known.insert(known.end(), values.begin(), values.end());
   for (std::size_t i = 0; i < head.size(); ++i) {
-    const std::string name(trim(head[i].substr(0, head[i].find('['))));
+    const auto [name, unit] = heading_of(head[i]);
     const auto found = std::ranges::find(known, name);
     if (found == known.end())
       throw Error("{}:1: a column '{}' has no meaning here. {}", file.string(), name,
                   did_you_mean(name, known, "columns"));
     const auto at = static_cast<std::size_t>(found - known.begin());
     // A header in other units would be taken for what it is not.
-    if (const auto open = head[i].find('['); open != std::string::npos) {
-      const std::string unit(trim(head[i].substr(open + 1, head[i].find(']') - open - 1)));
-      const std::string wanted = at < axis_names.size() ? axis_units[at] : "m/s";
-      if (unit != wanted)
-        throw Error("{}:1: the column '{}' is in '{}'; only {} is read here.", file.string(), name, unit,
-                    wanted);
-    }
+    const std::string wanted = at < axis_names.size() ? axis_units[at] : "m/s";
+    if (head[i].find('[') != std::string::npos && unit != wanted)
+      throw Error("{}:1: the column '{}' is in '{}'; only {} is read here.", file.string(), name, unit,
+                  wanted);
     int& column = at < axis_names.size() ? columns.axis[at] : columns.value[at - axis_names.size()];
     if (column >= 0) throw Error("{}:1: there are two columns '{}'.", file.string(), name);
     column = static_cast<int>(i);
@@ -76,15 +52,11 @@ Columns columns_of(const std::filesystem::path& file, const std::vector<std::str
 }
 
 std::vector<std::vector<double>> rows_of(const std::filesystem::path& file, std::vector<std::string>& head) {
-  std::error_code ignored;
-  std::ifstream stream;
-  const bool is_file = std::filesystem::is_regular_file(file, ignored);
-  if (is_file) stream.open(file);
-  if (!is_file || !stream) throw Error("{}: this file of a table cannot be read.", file.string());
+  std::ifstream stream = open_table(file);
   std::vector<std::vector<double>> rows;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
-    const std::vector<std::string> cells = cells_of(line);
+    const std::vector<std::string> cells = cells_of(line, false);
     if (cells.empty()) continue;
     if (head.empty()) {
       head = cells;

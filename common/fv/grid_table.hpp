@@ -19,8 +19,8 @@ class GridTable {
     clamp,  ///< the ends hold beyond the ends
     error,  ///< a value outside is an Error
   };
-  /// A CSV file: the first line names its columns, axes ("x", "y", "z", "t", units in brackets are passed over)
-  /// and `values`; one line a place of the grid, in any order. Throws Error naming file and line: unknown or
+  /// A CSV file: the first line names its columns, axes ("x", "y", "z", "t"; units in brackets must be m, s and
+  /// m/s) and `values`; one line a place of the grid, in any order. Throws Error naming file and line: unknown or
   /// missing columns, what is no number, places twice or missing.
   static GridTable read(const std::filesystem::path& file, const std::vector<std::string>& values,
                         Outside outside);

@@ -5,40 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <optional>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/fv/csv_line.hpp"
 
 namespace couplet {
 namespace {
-
-std::optional<double> number_of(std::string_view text) {
-  const std::string trimmed(trim(text));
-  if (trimmed.empty()) return {};
-  std::size_t used = 0;
-  try {
-    const double value = std::stod(trimmed, &used);
-    if (used == trimmed.size() && std::isfinite(value)) return value;
-  } catch (const std::exception&) {
-  }
-  return {};
-}
-
-std::vector<std::string> cells_of(std::string line) {
-  line = line.substr(0, line.find('#'));
-  const bool blanks_separate = line.find_first_of(",;") == std::string::npos;
-  for (char& c : line)
-    if (c == ';' || (blanks_separate && (c == ' ' || c == '\t'))) c = ',';
-  std::vector<std::string> cells;
-  for (const std::string& cell : split(line, ',')) {
-    const std::string text(trim(cell));
-    if (!blanks_separate || !text.empty()) cells.push_back(text);
-  }
-  if (cells.size() == 1 && cells[0].empty()) cells.clear();
-  return cells;
-}
 
 /// Number (from 0) of the column that is wanted.
 std::size_t find_column(const std::filesystem::path& file, const std::vector<std::string>& names,
@@ -50,7 +24,9 @@ std::size_t find_column(const std::filesystem::path& file, const std::vector<std
                   column);
     return static_cast<std::size_t>(*number) - 1;
   }
-  const auto found = std::ranges::find(names, column);
+  auto found = std::ranges::find(names, column);
+  if (found == names.end())
+    found = std::ranges::find_if(names, [&](const std::string& n) { return heading_of(n).name == column; });
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   throw Error("{}: there is no column '{}' for a table. {}", file.string(), column,
               names.empty() ? "Its first line holds no names; give the number of a column, from 2."
@@ -112,18 +88,13 @@ double Table::integral(double from, double to) const {
 }
 
 Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside) {
-  // A pipe would wait for ever for somebody to write.
-  std::error_code ignored;
-  const bool is_file = std::filesystem::is_regular_file(file, ignored);
-  std::ifstream stream;
-  if (is_file) stream.open(file);
-  if (!is_file || !stream) throw Error("{}: this file of a table cannot be read.", file.string());
+  std::ifstream stream = open_table(file);
   std::vector<double> at, values;
   std::vector<std::string> names;
   std::optional<std::size_t> wanted;
   std::string line;
   for (int number = 1; std::getline(stream, line); ++number) {
-    const std::vector<std::string> cells = cells_of(line);
+    const std::vector<std::string> cells = cells_of(line, true);
     if (cells.empty()) continue;
     if (at.empty() && names.empty() && !number_of(cells[0])) {
       names = cells;
@@ -137,7 +108,12 @@ Table read_table(const std::filesystem::path& file, const std::string& column, T
     at.push_back(*x);
     values.push_back(*y);
   }
-  return Table(std::move(at), std::move(values), outside, file.string());
+  Table table(std::move(at), std::move(values), outside, file.string());
+  const auto unit_of = [&](std::size_t column) {
+    return column < names.size() ? heading_of(names[column]).unit : std::string();
+  };
+  table.units_ = {unit_of(0), wanted ? unit_of(*wanted) : std::string()};
+  return table;
 }
 
 Property::Property(const config::ExpressionText& text, const std::string& where) {

@@ -28,18 +28,27 @@ class Table final {
   double antiderivative(double at) const;
   const std::vector<double>& at() const { return at_; }
   const std::vector<double>& values() const { return values_; }
+  /// What the header of its file says of its columns' units; empty: nothing. The numbers are as in the file.
+  struct Units {
+    std::string axis, value;
+  };
+  const Units& units() const { return units_; }
+  const std::string& where() const { return where_; }
 
  private:
+  friend Table read_table(const std::filesystem::path& file, const std::string& column, Outside outside);
   void check_inside(double at) const;
   double inside(double at) const;
 
   std::vector<double> at_, values_, integral_;  // integral_: from at_.front() to each entry
   Outside outside_;
   std::string where_;
+  Units units_;
 };
 
 /// A table from a CSV file: numbers separated by commas, semicolons or blanks; '#' begins a comment, the
-/// first line may hold names. The first column is the axis; `column`: name or number (from 1) of the values.
+/// first line may hold names. The first column is the axis; `column`: name (with or without "[unit]") or number
+/// (from 1) of the values.
 /// Throws Error.
 Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside);
 
@@ -52,7 +61,8 @@ struct TextProblem {
 
 /// Finds the calls table(variable, [clamp|error,] x0, y0, x1, y1, ...) and table(variable, [clamp|error,]
 /// "file.csv"[, column]) and puts tabNN(variable) in their place, padded with blanks so that positions stay.
-/// Table number NN is appended to `tables`. Throws TextProblem.
+/// Table number NN is appended to `tables`. Throws TextProblem; also where a file's header names a unit other than
+/// that of the variable or of the value that it stands for.
 std::string take_tables(const std::string& text, std::deque<Table>& tables);
 
 /// A material property: a number, or a table of the temperature T: "table(T, 300, 210e9, 600, 180e9)".

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/base/units.hpp"
 #include "common/fv/table.hpp"
 
 namespace couplet {
@@ -101,6 +104,43 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
   }
 }
 
+/// Factor and zero of a header's unit; empty where it is none that we know ("[-]", "[cells]").
+std::optional<Unit> unit_of(const std::string& text) {
+  try {
+    return parse_unit(text);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+/// A file's numbers are taken as they stand. Where they meet a bare variable, or are the whole value, nothing can
+/// bring another unit of the header to SI: such a file would be read as what it is not.
+void check_units(const Table& table, const std::string& variable, bool is_whole_value, std::size_t at) {
+  static const std::map<std::string, std::string> unit_of_variable{{"x", "m"}, {"y", "m"}, {"z", "m"},
+                                                                   {"r", "m"}, {"t", "s"}, {"T", "K"}};
+  const auto known = unit_of_variable.find(variable);
+  if (const auto unit = unit_of(table.units().axis);
+      unit && !table.units().axis.empty() && known != unit_of_variable.end()) {
+    const Unit wanted = parse_unit(known->second);
+    if (unit->dimension != wanted.dimension || unit->factor != wanted.factor || unit->offset != 0)
+      throw TextProblem{
+          at,
+          fmt::format(
+              "{}: the first column is in '{}', but '{}' is in {}. Convert the column, or write the variable "
+              "in its unit, such as table(t/3600, \"file.csv\") for hours.",
+              table.where(), table.units().axis, variable, known->second),
+          true};
+  }
+  if (const auto unit = unit_of(table.units().value);
+      is_whole_value && unit && (unit->factor != 1 || unit->offset != 0))
+    throw TextProblem{
+        at,
+        fmt::format("{}: the values are in '{}', but a table's values are taken in SI units. Convert "
+                    "the column, or scale it, such as \"1e5*table(t, \\\"file.csv\\\")\" for bar.",
+                    table.where(), table.units().value),
+        true};
+}
+
 }  // namespace
 
 std::string take_tables(const std::string& text, std::deque<Table>& tables) {
@@ -112,6 +152,8 @@ std::string take_tables(const std::string& text, std::deque<Table>& tables) {
     tables.push_back(table_from(arguments, begin));
     std::string call = fmt::format("tab{:02}({}", tables.size() - 1, arguments[0].text);
     call.resize(close - begin, ' ');
+    const bool is_whole_value = rest.find_first_not_of(" (") == begin && rest.find_last_not_of(" )") < close;
+    check_units(tables.back(), arguments[0].text, is_whole_value, begin);
     rest.replace(begin, close - begin, call);
   }
   return rest;

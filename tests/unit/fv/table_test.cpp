@@ -100,6 +100,30 @@ TEST(Table, is_read_from_a_file_by_name_or_number_of_its_column) {
               ThrowsMessage<Error>(HasSubstr("nowhere.csv: this file of a table cannot be read")));
 }
 
+TEST(Table, a_header_in_other_units_is_not_read_as_si) {
+  const CsvFile file("time [ms], p [bar], u [m], n [cells]\n0, 0, 0, 1\n10, 8, 3, 1\n");
+  const auto of = [&](const std::string& variable, const std::string& column) {
+    return fmt::format("table({}, \"{}\", \"{}\")", variable, file.path(), column);
+  };
+  EXPECT_THAT([&] { value_of(of("t", "u"), Vec3::Zero(), 5e-3); },
+              ThrowsMessage<Error>(HasSubstr("the first column is in 'ms', but 't' is in s")));
+  EXPECT_THAT([&] { value_of(of("1000*t", "p [bar]"), Vec3::Zero(), 5e-3); },
+              ThrowsMessage<Error>(HasSubstr("the values are in 'bar'")));
+  EXPECT_THAT([&] { value_of(fmt::format("({})", of("1000*t", "p")), Vec3::Zero(), 5e-3); },
+              ThrowsMessage<Error>(HasSubstr("the values are in 'bar'")));
+  // Said by the scene, or of no unit that could be taken for another.
+  EXPECT_DOUBLE_EQ(value_of(fmt::format("1e5*{}", of("1000*t", "p")), Vec3::Zero(), 5e-3), 4e5);
+  EXPECT_DOUBLE_EQ(value_of(of("1000*t", "u"), Vec3::Zero(), 5e-3), 1.5);
+  EXPECT_DOUBLE_EQ(value_of(of("1000*t", "n"), Vec3::Zero(), 5e-3), 1);
+}
+
+TEST(Table, a_header_of_another_quantity_is_no_axis) {
+  const CsvFile file("z [s], p [Pa]\n0, 0\n10, 8\n");
+  EXPECT_THAT([&] { value_of(fmt::format("table(z, \"{}\")", file.path()), Vec3::Zero(), 0); },
+              ThrowsMessage<Error>(HasSubstr("the first column is in 's', but 'z' is in m")));
+  EXPECT_DOUBLE_EQ(value_of(fmt::format("table(t, \"{}\")", file.path()), Vec3::Zero(), 5), 4);
+}
+
 struct Loads {
   config::ExpressionText pressure;
 };
