@@ -101,10 +101,6 @@ void Coupler::initialise() {
   if (unknown_->start_at_rest(given_)) history_.now = unknown_->gather(given_);
   volume_level_.emplace(comm_, sides_, *links_, schedule_, group_);
   if (volume_level_->empty()) volume_level_.reset();
-  if (volume_level_ && !schedule_.sub_steps.empty())
-    throw Error(
-        "coupling.sub-steps: a closed fluid whose pressure level the structure sets (volume-level: structure) needs "
-        "the structure's motion at the end of the same step; leave 'sub-steps' out and take a smaller time step.");
 }
 
 std::optional<StepFailure> Coupler::attempt(const Step& step) {

@@ -29,12 +29,12 @@ PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to);
 /// Error.
 void check_roles(const CouplingParameters& parameters, const std::vector<Side>& sides);
 
-/// All of the above before the first step, for every giver of motion and its taker; throws Error.
 /// Throws Error where a fluid that foresees its walls' answer (it takes its own data back) is asked before them: `group`
 /// in the order of a pass.
 void check_foreseen(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
                     const std::vector<std::size_t>& group);
 
+/// judge_places() before the first step, for every giver of motion and its taker; throws Error.
 void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
                   const MappingParameters& mapping);
 

@@ -47,6 +47,11 @@ VolumeLevel::VolumeLevel(MPI_Comm comm, const std::vector<Side>& sides, const Li
           "'{}' is a closed fluid whose pressure level the structure sets: that is found in the iteration of a "
           "step, one after the other; take 'scheme: semi-implicit' or 'implicit' with 'order: serial'.",
           sides[i].name);
+    if (!schedule.sub_steps.empty())
+      throw Error(
+          "coupling.sub-steps: '{}' is a closed fluid whose pressure level the structure sets (volume-level: structure) "
+          "from its motion at the end of the same step; leave 'sub-steps' out and take a smaller time step.",
+          sides[i].name);
     if (!structures_.empty())
       throw Error(
           "'{}' is a closed fluid whose pressure level the structure sets: it must stand before '{}' in the order "

@@ -63,7 +63,10 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
   const Index first = patch.first - mesh.n_interior;
   const std::string where = "boundaries." + patch.name;
   std::fill_n(kind_.begin() + first, patch.count, kind_of(b.type));
-  Given given{first, patch.count, b, {}, {}, {}, {}, {}, {}};
+  Given given;
+  given.first = first;
+  given.count = patch.count;
+  given.parameters = b;
   switch (b.type) {
     case BoundaryType::interface:
       std::fill_n(interface_.begin() + first, patch.count, 1);

@@ -113,7 +113,7 @@ class OwnCommands {
     for (const Op op : {Op::begin_step, Op::solve}) {
       command.op = op;
       if (const Reply reply = (*this)(command); reply.status != Reply::Status::ok)
-        return StepFailure(reply.text, reply.shorter_helps);
+        return StepFailure(reply.text, reply.status != Reply::Status::hopeless);
     }
     return {};
   }

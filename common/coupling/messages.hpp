@@ -44,8 +44,7 @@ struct Reply {
   };
   Status status = Status::ok;
   std::string text;
-  bool shorter_helps = true;  ///< failure: a shorter step may be solved; not sent
-  double seconds = 0;         ///< spent on the command
+  double seconds = 0;                                             ///< spent on the command
   double suggested_dt = std::numeric_limits<double>::infinity();  ///< initialise, accept_step, load
   StepReport report;                                              ///< accept_step
   Exchange data;                                                  ///< solve: the output, this rank's entries

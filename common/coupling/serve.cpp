@@ -147,7 +147,6 @@ Reply carry_out(const Command& command, Participant& participant, const std::str
     reply.status =
         dynamic_cast<const SchemeFailure*>(&failure) ? Reply::Status::hopeless : Reply::Status::failure;
     reply.text = failure.what();
-    reply.shorter_helps = dynamic_cast<const SchemeFailure*>(&failure) == nullptr;
   }
   reply.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return reply;
