@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <string>
 #include <vector>
 
 #include "common/base/types.hpp"
@@ -37,14 +35,5 @@ void average_faces(ModalModel& model);
 
 /// The largest displacement of a mode's vertices [1/sqrt(kg)].
 double largest_displacement(const ModalModel& model, std::size_t mode);
-
-/// What is wrong with the sizes and values of a model; empty: nothing.
-std::string problem_of(const ModalModel& model);
-/// Whether a sound model can belong to a structure: mass above 0, no shape without motion, effective masses within the
-/// mass. Empty: nothing is wrong.
-std::string impossible_in(const ModalModel& model);
-/// Whether its shapes can be mass-normalised, as far as the surface shows the mass (a factor of about three where
-/// `face_density` stands for half of the mass or more, of a hundred otherwise). Empty: they can.
-std::string scale_problem_of(const ModalModel& model);
 
 }  // namespace couplet

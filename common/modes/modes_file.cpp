@@ -3,6 +3,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/hdf5.hpp"
+#include "common/modes/modal_checks.hpp"
 
 namespace couplet {
 namespace {
@@ -78,7 +79,7 @@ ModalModel read_model(hid_t id) {
     if (const std::string problem = problem_of(model); !problem.empty()) throw Error("{}", problem);
     average_faces(model);
   }
-  for (const auto look : {&problem_of, &impossible_in, &scale_problem_of})
+  for (const auto look : {&problem_of, &order_problem_of, &impossible_in, &scale_problem_of})
     if (const std::string problem = look(model); !problem.empty()) throw Error("{}", problem);
   return model;
 }

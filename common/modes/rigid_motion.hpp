@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
-
 #include "common/modes/modal_model.hpp"
 
 namespace couplet {
@@ -16,9 +14,5 @@ struct RigidMotion {
 
 /// By least squares over the vertices. A surface whose vertices lie on one line does not turn about it.
 RigidMotion rigid_motion(const ModalModel& model, std::size_t mode);
-
-/// Whether the faces make one surface: each with different vertices, every vertex in a face, neighbours turning alike.
-/// Empty: they do. The vertices that the faces name must exist.
-std::string surface_problem_of(const ModalModel& model);
 
 }  // namespace couplet
