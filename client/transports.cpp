@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Open MPI's transports within one machine, chosen as the programs of the job choose them: other choices of two
-// processes do not fit each other, and looking at all networks takes its time.
+// processes do not fit each other, and looking at all networks takes its time. The twin of
+// common/parallel/mpi_start.cpp: a client shares nothing with the rest, so change both (tests/coupling/client starts them
+// together).
 #include "transports.hpp"
 
 #include <cstdlib>

@@ -158,6 +158,8 @@ std::vector<EffectVerdict> Structure::audit() const {
   if (!parameters_.modes_file && parameters_.analysis == Parameters::Analysis::dynamic)
     evidence.in_plane_share = in_plane_share();
   if (resolution_) evidence.step = resolution_->evidence(step_.is_last);
+  // What has no part at all in the load is not moved by it at any frequency.
+  if (seen[5] < 1e-6) evidence.step.load_over_last = StepEvidence::unknown;
   // Where nothing has moved yet, or nothing will, the modes themselves are the answer.
   if (parameters_.mesh && !(resolution_ && std::isnan(evidence.step.last_mode_omega)))
     evidence.thickness_over_wave = thickness_over_wave(

@@ -61,6 +61,17 @@ V judge_kept(const S& s, const E& e) {
       "more modes ('modes.number')");
 }
 
+// A mode answers a load of frequency f as 1 / (1 - (f / f_mode)^2): at two thirds of its own frequency with 1.8 times
+// what the static measure counts, and near it without limit.
+V judge_load_beyond(const S&, const E& e) {
+  return verdict(
+      e.step.load_over_last, 2. / 3,
+      fmt::format("the load swings with {:.3g} Hz, {:.2g} of the frequency of the highest mode kept",
+                  e.step.load_omega / (2 * std::numbers::pi), e.step.load_over_last),
+      "modes left out may be near resonance with it: keep modes up to one and a half times that "
+      "frequency ('modes.number')");
+}
+
 V judge_velocity(const S&, const E& e) {
   return verdict(
       e.velocity_lost, 0.1,
@@ -223,6 +234,8 @@ const std::array cards{
     left_out("deflection beyond the modes", "`modes.number`",
              "modes left out: static, of the deflection, dynamic, of the compliance of the loads, 0.05",
              judge_kept),
+    left_out("load faster than the modes", "`modes.number`",
+             "frequency of a load that swings over that of the highest mode kept, 2/3", judge_load_beyond),
     left_out("initial velocity beyond the modes", "`modes.number`",
              "share of its energy that no mode has, 0.1", judge_velocity),
     left_out("load within a face", "no key: finer mesh",

@@ -17,6 +17,8 @@ constexpr double coarse_limit = 0.1;
 constexpr double least_work = 0.02;
 /// One jump among fewer steps says nothing about the load.
 constexpr double least_samples = 16;
+/// A load that has turned less often is no vibration.
+constexpr double least_turns = 8;
 
 enum Sum { time, rigid, impact_share, steps_, impact_time, load_apart, load_size, load_samples, n_sums };
 
@@ -34,6 +36,11 @@ Resolution::Resolution(std::span<const double> omega)
       driven_(moved_),
       last_load_(moved_),
       largest_change_(moved_),
+      load_(moved_),
+      load_square_(moved_),
+      change_(moved_),
+      turns_(moved_),
+      last_change_(moved_),
       sums_(n_sums, 0) {
   for (const double w : omega_)
     if (w > 0 && longest_period_ == 0) longest_period_ = 2 * std::numbers::pi / w;
@@ -67,11 +74,16 @@ void Resolution::accepted(const ModalState& before, const ModalState& after, std
 /// A load that changes, as the displacement that it would make without inertia. Steps in which it hardly does (a
 /// constant load, a pulse that is over) say nothing: the mode is free then.
 void Resolution::follow(std::size_t m, double rate, double load, double dt) {
-  const double change = std::abs(load - last_load_[m]) / dt;
+  const double signed_change = (load - last_load_[m]) / dt, change = std::abs(signed_change);
   last_load_[m] = load;
   if (sums_[steps_] < 2) return;
+  load_[m] += load * dt;
+  load_square_[m] += load * load * dt;
+  change_[m] += change * change * dt;
   largest_change_[m] = std::max(largest_change_[m], change);
   if (!(change > 0.05 * largest_change_[m])) return;
+  if (signed_change * last_change_[m] < 0) turns_[m] += 1;
+  last_change_[m] = signed_change;
   rate_[m] += rate * rate * dt;
   rate_step_[m] += rate * rate * dt * dt * dt;
   drive_[m] += change * change * dt;
@@ -93,6 +105,22 @@ void Resolution::find_resonance(StepEvidence& e, double all) const {
     e.resonant_step =
         2 * half / omega_[m] * std::sqrt(0.2 * coarse_limit / std::max(2 * error * amplification, 1e-300));
   }
+}
+
+// Turns alone would take noise for a vibration, the rms of the change alone a jump.
+void Resolution::find_load(StepEvidence& e) const {
+  double change = 0, square = 0, largest = 0;
+  std::size_t first = 0;
+  for (std::size_t m = 0; m < omega_.size(); ++m) {
+    if (omega_[m] == 0) continue;
+    const double about_mean = load_square_[m] - load_[m] * load_[m] / sums_[time];
+    change += change_[m];
+    square += about_mean;
+    if (about_mean > largest) largest = about_mean, first = m;
+  }
+  if (!(square > 0) || turns_[first] < least_turns) return;
+  e.load_omega = std::min(std::sqrt(change / square), std::numbers::pi * turns_[first] / sums_[time]);
+  e.load_over_last = e.load_omega / omega_.back();
 }
 
 void Resolution::load(const PressureLoad::Seen& seen) {
@@ -131,6 +159,7 @@ StepEvidence Resolution::evidence(bool at_end) const {
     if (moved_[m] >= 1e-4 * all) e.last_mode_omega = omega_[m];
   }
   find_resonance(e, all);
+  find_load(e);
   e.coarse_share = std::sqrt(coarse / all);
   if (coarse == 0) return e;
   e.coarse_mode = int(worst) + 1;
@@ -146,16 +175,18 @@ StepEvidence Resolution::evidence(bool at_end) const {
 
 std::vector<double> Resolution::state() const {
   std::vector<double> all = sums_;
-  for (const auto* part : {&moved_, &swung_, &coarse_, &longest_step_, &rate_, &drive_, &rate_step_, &driven_,
-                           &last_load_, &largest_change_})
+  for (const auto* part :
+       {&moved_, &swung_, &coarse_, &longest_step_, &rate_, &drive_, &rate_step_, &driven_, &last_load_,
+        &largest_change_, &load_, &load_square_, &change_, &turns_, &last_change_})
     all.insert(all.end(), part->begin(), part->end());
   return all;
 }
 
 void Resolution::restore(const std::vector<double>& state) {
   auto at = state.begin();
-  for (auto* part : {&sums_, &moved_, &swung_, &coarse_, &longest_step_, &rate_, &drive_, &rate_step_,
-                     &driven_, &last_load_, &largest_change_}) {
+  for (auto* part :
+       {&sums_, &moved_, &swung_, &coarse_, &longest_step_, &rate_, &drive_, &rate_step_, &driven_,
+        &last_load_, &largest_change_, &load_, &load_square_, &change_, &turns_, &last_change_}) {
     std::copy(at, at + std::ssize(*part), part->begin());
     at += std::ssize(*part);
   }

@@ -27,6 +27,9 @@ struct StepEvidence {
   double amplification = 0,
          resonant_step = 0;          ///< of it; a step that brings the error to a fifth of the limit [s]
   double last_mode_omega = unknown;  ///< of the highest mode with 1 % of the motion [1/s]
+  /// Of a load that goes up and down, what it swings with: the lesser of pi times its turns a second and of its rms
+  /// change over its rms [1/s]; and that over the highest mode's.
+  double load_omega = unknown, load_over_last = unknown;
   double load_apart = unknown;  ///< value in the middle of a step against the mean over it, of the load, rms
   double contact_share = unknown;  ///< a step over the duration pi / omega of the impacts
   double contact_time = 0;         ///< that duration [s]
@@ -59,6 +62,7 @@ class Resolution final {
   double displacement() const;
   void follow(std::size_t mode, double rate, double load, double dt);
   void find_resonance(StepEvidence& evidence, double all) const;
+  void find_load(StepEvidence& evidence) const;
 
   std::vector<double> omega_;
   double longest_period_ = 0;  // of a mode that is no rigid motion
@@ -68,6 +72,9 @@ class Resolution final {
   // Of each mode that a changing load drives, integrals over time: square of the rate, of the rate that the load has
   // without inertia, times step^2 of the former; steps; the load's displacement in the last step; largest change.
   std::vector<double> rate_, drive_, rate_step_, driven_, last_load_, largest_change_;
+  // Of the displacement that the load has without inertia, over all steps: integral, integral of the square and of the
+  // square of its change, times that it turned, and the last change that counted.
+  std::vector<double> load_, load_square_, change_, turns_, last_change_;
   // Time [s], square of rigid motions, impact: (share, duration), steps; load: apart, size, samples.
   std::vector<double> sums_;
 };

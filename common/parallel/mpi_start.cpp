@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+// What a user's files and variables choose is read in client/transports.cpp, too: change both.
 namespace couplet {
 namespace {
 
