@@ -12,8 +12,10 @@ namespace couplet::thermocline {
 /// What a run of a tank has seen; the rest is told as sentences, see tank_effects.cpp. NaN: not seen.
 struct Evidence {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  double largest_biot = unknown;    ///< film d / (2 conductivity) of the grains at the largest flow
-  double largest_mach = unknown;    ///< of a gas between the grains at the largest flow
+  double largest_biot = unknown;  ///< film d / (2 conductivity) of the grains at the largest flow
+  double largest_mach = unknown;  ///< of a gas between the grains at the largest flow
+  /// Of `advection: implicit`: what its largest step spreads a front that crosses the bed by, over the bed's height.
+  double implicit_spread = unknown, implicit_step = unknown;  ///< and a step that brings the limit [s]
   double share_of_yield = unknown;  ///< largest equivalent stress of the wall over its yield strength
 };
 using Card = EffectCard<ElementParameters, Evidence>;

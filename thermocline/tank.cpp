@@ -168,7 +168,10 @@ StepReport Tank::accept_step() {
   std::swap(accepted_, next_);
   control_state_ = control_->state();
   look_at_bending();
-  for (const BedStep& s : steps_) peak_flow_ = std::max(peak_flow_, std::abs(s.flow.mass_flow));
+  for (const BedStep& s : steps_) {
+    peak_flow_ = std::max(peak_flow_, std::abs(s.flow.mass_flow));
+    peak_advance_ = std::max(peak_advance_, std::abs(s.flow.mass_flow) * s.dt);
+  }
   for (const std::string& sentence : accepted_.take_warnings())
     if (files_) log::warn("{}", sentence);
   if (!observers_.empty()) {

@@ -58,6 +58,7 @@ class Tank final : public Participant {
   std::vector<BedStep> steps_;  // of next_
   Step step_;
   Speed speed_;
+  double peak_advance_ = 0;                 // largest |m| dt of a step of the bed in this run [kg]
   double peak_flow_ = 0;                    // largest |m| of this run [kg/s]
   BendingSeen bending_;                     // of this run; only where the wall is of rings
   std::unique_ptr<TankOutputFiles> files_;  // on rank 0

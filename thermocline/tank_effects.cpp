@@ -63,6 +63,20 @@ double largest_mach(const TankModel& m, double peak_flow) {
   return speed / std::sqrt(gas.specific_heat / (gas.specific_heat - r) * r * hottest);
 }
 
+/// Heat capacity of the whole bed over that of a kilogram of fluid [kg]: what must flow in for a front to cross it.
+double crossing_mass(const TankModel& m) {
+  const Fluid& f = m.setup().fluid;
+  double capacity = 0;
+  for (const auto& run : m.bed().grid().runs) {
+    const Filler& filler = run.layer.filler ? *run.layer.filler : m.setup().filler;
+    double height = 0;
+    for (int i = run.first; i < run.first + run.count; ++i) height += m.bed().grid().dz[i];
+    capacity += height * m.bed().area() *
+                (run.layer.porosity * f.volumetric() + (1 - run.layer.porosity) * filler.volumetric());
+  }
+  return capacity / f.specific_heat;
+}
+
 void fluid(const TankModel& m, double peak_flow, Lines& lines) {
   if (m.inversion().depth > 0.01)
     lines.push_back(fmt::format(
@@ -175,6 +189,11 @@ std::vector<EffectVerdict> Tank::audit() const {
   const TankModel& m = accepted_;
   Evidence evidence;
   if (m.setup().fluid.is_gas() && peak_flow_ > 0) evidence.largest_mach = largest_mach(m, peak_flow_);
+  if (m.setup().parameters.bed.advection == Advection::implicit && peak_advance_ > 0) {
+    const double part = peak_advance_ / crossing_mass(m);  // v dt / H
+    evidence.implicit_spread = std::sqrt(part);
+    evidence.implicit_step = 0.05 * 0.05 / part * peak_advance_ / peak_flow_;
+  }
   if (m.bed().shells() == 1 && peak_flow_ > 0) evidence.largest_biot = largest_biot(m, peak_flow_);
   if (m.shell() && !m.stress().yield.empty()) {
     const WallStress& stress = m.stress();

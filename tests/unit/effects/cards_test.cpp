@@ -192,6 +192,8 @@ TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
   };
   EXPECT_TRUE(sound("resolved grains", {.largest_biot = 19.9}));
   EXPECT_FALSE(sound("resolved grains", {.largest_biot = 20.1}));
+  EXPECT_TRUE(sound("implicit advection", {.implicit_spread = 0.049, .implicit_step = 1}));
+  EXPECT_FALSE(sound("implicit advection", {.implicit_spread = 0.051, .implicit_step = 1}));
   EXPECT_TRUE(sound("compressible flow of a gas", {.largest_mach = 0.29}));
   EXPECT_FALSE(sound("compressible flow of a gas", {.largest_mach = 0.31}));
   EXPECT_TRUE(sound("yielding of the wall", {.share_of_yield = 0.99}));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/modes/modal_checks.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/modal_analysis.hpp"
 #include "solid_solver/spectrum.hpp"
