@@ -8,6 +8,7 @@ import numpy as np
 
 import couplet_series as series
 from validation.job import Bar
+from validation.parts import effects_off
 
 SOURCES = ("common/effects", "common/app", "common/time", "solid_solver", "fluid_solver", "thermocline", "plate_modal", "coupler",
            "scripts/couplet_atlas", "docs/stability")
@@ -41,35 +42,19 @@ def pairs(job):
 
 
 # -- prices -----------------------------------------------------------------------------------------------------------
-SCENES = {  # name: (program, case, what is switched on, one at a time)
-    "static bracket": ("solid_solver", "cantilever", (), {
-        "gravity": ["participants.solid.gravity=[0, -9.81, 0]"],
-        "energies": ["participants.solid.output={energies: true}"],
-        "inertia": ["participants.solid.analysis=dynamic"]}),
-    "channel": ("fluid_solver", "cavity", ("simulation.end-time=2",), {
-        "turbulence model": ["participants.fluid.turbulence={model: wale}"],
-        "running statistics": ["participants.fluid.statistics={start: 0}"],
-        "body force": ["participants.fluid.body-force=[0, 1e-3]"]}),
-    "tank": ("thermocline", "schumann", (), {"resolved grains": ["participants.tank.bed.shells=5"]}),
-    "sheet on a seat": ("plate_modal", "plate-drop", (), {
-        "without contact": ["participants.sheet.contact="],
-        "damping": ["participants.sheet.damping={ratio: 0.01}"]}),
-}
-
-
 def price(job, scene):
     """Processor seconds and memory of the scene, and what each effect adds to it."""
-    program, case, base, effects = SCENES[scene]
+    from couplet_atlas import prices
+    (_, seconds, memory, processes), *effects = prices.measure(next(s for s in prices.SCENES if s.name == scene), job.build, job.scratch)
+    return "; ".join([f"{seconds:.2f} s, {memory:.0f} MB, {processes} process{'es' if processes > 1 else ''}",
+                      *(f"{n} {s:+.2f} s {m:+.0f} MB" + (f" {p:+d} process" if p else "") for n, s, m, p in effects)]), None
 
-    def cost(sets):
-        runs = [job.solve_run(program, case, (*base, *sets, f"simulation.name=price{i}")) for i in range(2)]
-        return min(r.cost.cpu for r in runs), min(r.cost.memory for r in runs)
-    seconds, memory = cost(())
-    words = [f"{seconds:.2f} s, {memory:.0f} MB"]
-    for name, sets in effects.items():
-        s, m = cost(sets)
-        words.append(f"{name} {s - seconds:+.2f} s {m - memory:+.0f} MB")
-    return "; ".join(words), None
+
+def priced(job):
+    from couplet_atlas import prices
+    table, folder = prices.read(job.root / "docs/stability/prices.csv"), job.root / "docs/stability"
+    there = [s.name for s in prices.SCENES if len(table.get(s.name, ())) == 1 + len(s.adds) + len(s.lacks)]
+    return f"{len(there)} scenes, {sum(len(r) - 1 for r in table.values())} effects", len(there) == 5 and (folder / "prices.png").exists()
 
 
 # -- two dimensions against one cell of three --------------------------------------------------------------------------
@@ -233,8 +218,11 @@ BARS = [
     Bar("effects: a verdict that turns bad is told once, in the midst of the run; --strict fails the run", "pass", ctest("^cli_effects$")),
     Bar("effects: off, the plate's seat, damping and gravity allocate nothing and take no step of their own", "tests pass",
         tests("verification_plate_effects", "Effects")),
-    *[Bar(f"price: {scene}", "reported: processor seconds and memory, and what each effect adds", lambda job, s=scene: price(job, s), long=True)
-      for scene in SCENES],
+    *effects_off.BARS,
+    Bar("prices: five scenes as a table and a picture", "all", priced),
+    *[Bar(f"price: {scene}", "reported: processor seconds, memory and processes, and what each effect adds", lambda job, s=scene: price(job, s),
+          long=True) for scene in ("static bracket", "vibrating beam", "channel", "flap", "tank")],
+    Bar("effects: auto chooses as an expert would, a reason each", "15 scenes", tests("unit_effects", "scene_[0-9]+_", 15)),
     Bar("two components against three, one cell thick: solid", "at most 0.5 of the time", solid_2d, but="seconds in 'solve', the less of three runs"),
     Bar("two components against three, one cell thick: solid, newton-krylov in both", "at most 0.5 of the time",
         lambda job: component_ratio(job, "solid", 0.5, "newton-krylov"),
