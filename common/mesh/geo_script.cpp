@@ -106,8 +106,28 @@ class Scanner {
       danger(tokens[i].at, fmt::format("'{}'", word));
     if (word == "Printf" && has_redirection(tokens, i + 1)) danger(tokens[i].at, "'Printf' into a file");
     if (word == "DefineConstant" && tokens[i + 1].text == "[") constants(tokens, i + 2);
+    if (word == "Layers" && tokens[i + 1].text == "{") count(tokens, i + 2, "}");
+    if (word == "Transfinite" && (tokens[i + 1].text == "Curve" || tokens[i + 1].text == "Line")) {
+      for (i += 2; tokens[i].kind != Token::Kind::end && tokens[i].text != "=" && tokens[i].text != ";";) ++i;
+      if (tokens[i].text == "=") count(tokens, i + 1, ";");
+    }
     if (word == "Physical") group(tokens, i + 1);
     if (word == "Include" || word == "Merge" || word == "ShapeFromFile") include(tokens[i], tokens, i + 1);
+  }
+
+  /// A number of cells from here to `end` or 'Using': a name, perhaps with numbers around it. Of several names one
+  /// may well be 0.
+  void count(const std::vector<Token>& tokens, std::size_t i, std::string_view end) {
+    std::vector<std::string> names;
+    bool whole = true;
+    for (; tokens[i].kind != Token::Kind::end && tokens[i].text != end && tokens[i].text != "Using"; ++i) {
+      if (tokens[i].kind == Token::Kind::word && !std::isdigit(static_cast<unsigned char>(tokens[i].text[0])))
+        names.emplace_back(tokens[i].text);
+      whole = whole && tokens[i].text != "*" && tokens[i].text != "/" && tokens[i].text != "(";
+    }
+    if (names.size() != 1) return;
+    const auto [known, is_new] = script_.counts.emplace(names.front(), whole);
+    if (!is_new) known->second = known->second && whole;
   }
 
   /// After the bracket that closes: Printf("...", x) >> "file".

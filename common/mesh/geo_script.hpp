@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@ struct GeoScript {
   std::string text;
   /// The names in all DefineConstant [...]: `n = 8` or `n = {8, Name "..."}`.
   std::vector<std::string> constants;
+  /// Names that a number of cells is made of, by Layers or Transfinite Curve. `whole`: as they are or with something
+  /// added, so that only a whole number is meant.
+  std::map<std::string, bool> counts;
   /// What in it runs commands or writes files, or cannot be looked into: "'SystemCall' in line 3 of plate.geo"; empty
   /// if nothing does.
   std::string danger;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "common/base/error.hpp"
@@ -27,6 +28,20 @@ void check_names(const std::filesystem::path& geo, const std::vector<std::string
   }
 }
 
+/// gmsh takes the amount of a negative number of cells, drops what follows the point, and makes another kind of mesh of 0.
+void check_counts(const std::filesystem::path& geo, const std::map<std::string, bool>& counts,
+                  const MeshParameters& parameters) {
+  for (const auto& [name, value] : parameters) {
+    const auto count = counts.find(name);
+    if (count == counts.end()) continue;
+    if (!(value > 0) || !(value < 1e7) || (count->second && value != std::floor(value)))
+      throw Error(
+          "mesh-parameters: '{}' is a number of cells in the geometry file '{}' (Layers, Transfinite Curve): it must be {} above 0 "
+          "and below 1e7, not {}.",
+          name, geo.string(), count->second ? "a whole number" : "a number", value);
+  }
+}
+
 }  // namespace
 
 std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const MeshParameters& parameters) {
@@ -37,6 +52,7 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
         "--allow-commands.",
         script.danger);
   check_names(geo, script.constants, parameters);
+  check_counts(geo, script.counts, parameters);
   std::vector<std::string> numbers;
   for (const auto& [name, value] : parameters)
     numbers.insert(numbers.end(), {"-setnumber", name, fmt::format("{}", value)});

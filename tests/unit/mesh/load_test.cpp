@@ -110,6 +110,25 @@ TEST_F(LoadMesh, a_parameter_that_nobody_takes_is_an_error) {
               HasSubstr("is finished, so 'mesh-parameters' cannot change it."));
 }
 
+// gmsh makes 3 cells of -3, 2 of 2.5 and triangles of 0, without a word.
+TEST_F(LoadMesh, a_number_of_cells_that_is_none_is_refused) {
+  const auto geo = write(
+      "counts.geo",
+      "DefineConstant [ n = 4, half = 8, shift = 1 ];\n"
+      "Point(1) = {0, 0, 0, 1}; Point(2) = {1, 0, 0, 1}; Line(1) = {1, 2}; Transfinite Curve {1} = n + 1 Using "
+      "Bump shift;\n"
+      "out() = Extrude {0, 1, 0} { Curve{1}; Layers {half / 2}; Recombine; };\n"
+      "Physical Curve(\"floor\") = {1}; Physical Curve(\"rest\") = {out(0), out(2), out(3)};\n"
+      "Physical Surface(\"body\") = {out(1)};\n");
+  const auto error = [&](const MeshParameters& parameters) {
+    return test::error_of([&] { load_mesh(MPI_COMM_WORLD, geo, 2, parameters); });
+  };
+  for (const double value : {-3.0, 0.0, 2.5, 1e9})
+    EXPECT_THAT(error({{"n", value}}), HasSubstr("'n' is a number of cells in the geometry file")) << value;
+  EXPECT_THAT(error({{"half", -8.0}}), HasSubstr("it must be a number above 0"));
+  EXPECT_EQ(error({{"n", 3}, {"half", 5}, {"shift", 0.5}}), "");
+}
+
 TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
   EXPECT_EQ(error(folder / "none.msh", 3),
             "The mesh file '" + (folder / "none.msh").string() +
