@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/accelerator.hpp"
 
+#include <Eigen/Core>
 #include <cassert>
 
 #include "coupler/quasi_newton.hpp"
@@ -14,9 +15,15 @@ void sum_over(MPI_Comm comm, std::span<double> values) {
 
 double dot(std::span<const double> a, std::span<const double> b) {
   assert(a.size() == b.size());
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
+  // Several sums side by side: one alone waits for each addition.
+  using Vector = Eigen::Map<const Eigen::VectorXd>;
+  return Vector(a.data(), Eigen::Index(a.size())).dot(Vector(b.data(), Eigen::Index(b.size())));
+}
+
+double squares_of_change(std::span<const double> a, std::span<const double> b) {
+  assert(a.size() == b.size());
+  using Vector = Eigen::Map<const Eigen::VectorXd>;
+  return (Vector(a.data(), Eigen::Index(a.size())) - Vector(b.data(), Eigen::Index(b.size()))).squaredNorm();
 }
 
 std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& parameters, MPI_Comm comm) {

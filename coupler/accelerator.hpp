@@ -54,5 +54,7 @@ std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& para
 /// Sums over all ranks of a few values at once, in place.
 void sum_over(MPI_Comm comm, std::span<double> values);
 double dot(std::span<const double> a, std::span<const double> b);  // of this rank
+/// |a - b|^2 of this rank.
+double squares_of_change(std::span<const double> a, std::span<const double> b);
 
 }  // namespace couplet

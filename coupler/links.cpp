@@ -190,11 +190,13 @@ Exchange Links::input(std::size_t taker, const std::vector<Exchange>& given) con
   Exchange data;
   for (const Link& link : links_) {
     if (link.taker != taker || !given[link.giver].contains(link.datum.name)) continue;
-    const std::vector<double> values = carried(link, given);
+    std::vector<double> values = carried(link, given);
     // Places that have another giver got nothing.
     std::vector<double>& all = data[link.datum.name];
-    all.resize(values.size(), 0.);
-    for (std::size_t i = 0; i < values.size(); ++i) all[i] += values[i];
+    if (all.empty())
+      all = std::move(values);
+    else
+      for (std::size_t i = 0; i < values.size(); ++i) all[i] += values[i];
   }
   return data;
 }

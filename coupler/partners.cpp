@@ -19,7 +19,7 @@ Reply Partner::receive() {
 }
 
 void ask_all(const std::vector<Partner*>& partners, const Command& command) {
-  for (Partner* p : partners) p->send(command);
+  for (Partner* p : partners) p->send(Command(command));
   std::string failures;
   for (Partner* p : partners) {
     try {

@@ -19,7 +19,8 @@ struct Partner {
   double advised_dt = 0;
 
   const std::string& name() const { return channel->name(); }
-  void send(Command command) {
+  void send(Command&& command) { send(command); }
+  void send(Command& command) {
     command.step.sub_steps = sub_steps;
     channel->send(command);
   }

@@ -10,8 +10,9 @@ void Coupler::ask(std::size_t i, const std::vector<Exchange>& known, bool move_m
   // The moved one blocks until the mesh has been moved: the mover's command goes out first.
   const bool with_mover = move_mesh && schedule_.mover && partners_[i].name() == *schedule_.moved;
   if (with_mover) partners_.front().send({Op::solve, {}, guess_, 0, -1, ""});
-  taken_[i] = links_->input(i, known);
-  partners_[i].send({Op::solve, {}, taken_[i], 0, -1, ""});
+  Command command{Op::solve, {}, links_->input(i, known), 0, -1, ""};
+  partners_[i].send(command);
+  taken_[i] = std::move(command.data);
 }
 
 void Coupler::answer(std::size_t i, Exchange& given, bool move_mesh) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/relaxation.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -26,12 +27,9 @@ Iterate relaxed(const Iterate& x, double omega, const Iterate& image) {
 double aitken_factor(double omega, std::span<const double> residual, std::span<const double> next_residual,
                      MPI_Comm comm) {
   assert(residual.size() == next_residual.size());
-  std::array<double, 2> sums{};  // r . change, |change|^2
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    const double change = next_residual[i] - residual[i];
-    sums[0] += residual[i] * change;
-    sums[1] += change * change;
-  }
+  using Vector = Eigen::Map<const Eigen::VectorXd>;
+  const Vector r(residual.data(), Eigen::Index(residual.size())), next(next_residual.data(), r.size());
+  std::array<double, 2> sums{r.dot(next - r), (next - r).squaredNorm()};  // r . change, |change|^2
   sum_over(comm, sums);
   return sums[1] > 0 ? -omega * sums[0] / sums[1] : omega;
 }
@@ -56,8 +54,8 @@ std::vector<double> AitkenRelaxation::residual_of(const Iterate& x, const Iterat
   for (std::size_t i = 0; i < n; ++i) r[i] = image.unknown[i] - x.unknown[i];
   for (std::size_t i = 0; i < m; ++i) r[n + i] = image.rider[i] - x.rider[i];
   if (!last_residual_) {
-    std::array<double, 2> squares{};
-    for (std::size_t i = 0; i < n + m; ++i) squares[i < n ? 0 : 1] += r[i] * r[i];
+    const std::span<const double> own(r.data(), n), riders(r.data() + n, m);
+    std::array<double, 2> squares{dot(own, own), dot(riders, riders)};
     sum_over(comm_, squares);
     rider_weight_ = squares[1] > 0 ? std::sqrt(squares[0] / squares[1]) : 0;
   }
@@ -75,11 +73,11 @@ void AitkenRelaxation::learn(std::span<const double> residual) {
 }
 
 Iterate AitkenRelaxation::next(const Iterate& x, const Iterate& image) {
-  const std::vector<double> r = residual_of(x, image);
+  std::vector<double> r = residual_of(x, image);
   const bool first = !last_residual_;
   learn(r);
   second_pass_ = first;
-  last_residual_ = r;
+  last_residual_ = std::move(r);
   return relaxed(x, omega_, image);
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -14,8 +15,15 @@ std::vector<double> difference(const std::vector<double>& a, const std::vector<d
   return result;
 }
 
-void add_to(std::vector<double>& y, double factor, const std::vector<double>& x) {
-  for (std::size_t i = 0; i < y.size(); ++i) y[i] += factor * x[i];
+/// y += sum of c_j x_j, by rows that stay in the cache.
+template <class Column>
+void add_to(std::vector<double>& y, const Eigen::VectorXd& c, Column column) {
+  constexpr std::size_t block = 1024;
+  for (std::size_t first = 0; first < y.size(); first += block)
+    for (int j = 0; j < c.size(); ++j) {
+      const std::vector<double>& x = column(j);
+      for (std::size_t i = first; i < std::min(first + block, y.size()); ++i) y[i] += c[j] * x[i];
+    }
 }
 
 }  // namespace
@@ -37,10 +45,8 @@ std::vector<int> SecantPairs::drop(double limit) {
 }
 
 void SecantPairs::add(const Eigen::VectorXd& c, Iterate& to) const {
-  for (int j = 0; j < columns(); ++j) {
-    add_to(to.unknown, c[j], images_[j].unknown);
-    add_to(to.rider, c[j], images_[j].rider);
-  }
+  add_to(to.unknown, c, [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].unknown; });
+  add_to(to.rider, c, [&](int j) -> const std::vector<double>& { return images_[std::size_t(j)].rider; });
 }
 
 void SecantPairs::save(CheckpointWriter& file, const std::string& name) const {
@@ -86,15 +92,21 @@ std::optional<Secants::Pair> Secants::pair(const Iterate& x, const Iterate& imag
 }
 
 bool Secants::finite(const Iterate& x) const {
-  double wrong = 0;
-  for (const double v : x.unknown) wrong += !std::isfinite(v);
+  // Zero times what is not finite is not a number, and so is its sum with anything.
+  double sums[4] = {}, wrong = 0;
+  for (std::size_t i = 0; i + 4 <= x.unknown.size(); i += 4)
+    for (std::size_t k = 0; k < 4; ++k) sums[k] += 0 * x.unknown[i + k];
+  for (std::size_t i = x.unknown.size() / 4 * 4; i < x.unknown.size(); ++i) sums[0] += 0 * x.unknown[i];
+  wrong = sums[0] + sums[1] + sums[2] + sums[3] == 0 ? 0 : 1;
   sum_over(comm_, {&wrong, 1});
   return wrong == 0;
 }
 
 double Secants::share(const Iterate& x, const Iterate& next) const {
-  std::array<double, 2> sums{dot(next.unknown, residual()) - dot(x.unknown, residual()),
-                             dot(residual(), residual())};
+  using Vector = Eigen::Map<const Eigen::VectorXd>;
+  const auto n = Eigen::Index(x.unknown.size());
+  const Vector r(residual().data(), n), from(x.unknown.data(), n), to(next.unknown.data(), n);
+  std::array<double, 2> sums{(to - from).dot(r), r.squaredNorm()};
   sum_over(comm_, sums);
   return sums[1] > 0 ? sums[0] / sums[1] : 0;
 }

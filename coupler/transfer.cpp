@@ -46,6 +46,9 @@ Transfer::Transfer(MPI_Comm comm, const Starts& targets, const Starts& sources, 
     weight_.push_back(e.weight);
   }
   for (std::size_t t = 0; t < n_targets; ++t) first_[t + 1] += first_[t];
+  same_ = alone_ && n_sources_ == n_targets && column_.size() == n_targets;
+  for (std::size_t t = 0; same_ && t < n_targets; ++t)
+    same_ = first_[t + 1] == t + 1 && column_[t] == t && weight_[t] == 1;
   if (alone_) return;
   // Foreign positions are ascending, so they come rank by rank.
   std::vector<std::vector<GlobalIndex>> wanted(std::size_t(comm_size(comm)));
@@ -80,14 +83,28 @@ std::vector<double> Transfer::fetch(std::span<const double> values, int componen
   return all;
 }
 
+namespace {
+
+/// The product for N components, known when this is compiled or (0) not.
+template <std::size_t N>
+void multiply(const std::vector<std::size_t>& first, const std::vector<std::size_t>& column,
+              const std::vector<double>& weight, const double* from, std::size_t components, double* to) {
+  const std::size_t n = N > 0 ? N : components;
+  for (std::size_t t = 0; t + 1 < first.size(); ++t)
+    for (std::size_t e = first[t]; e < first[t + 1]; ++e)
+      for (std::size_t c = 0; c < n; ++c) to[t * n + c] += weight[e] * from[column[e] * n + c];
+}
+
+}  // namespace
+
 std::vector<double> Transfer::apply(std::span<const double> values, int components) const {
+  if (same_) return {values.begin(), values.end()};
   const std::vector<double> fetched = alone_ ? std::vector<double>{} : fetch(values, components);
   const double* from = alone_ ? values.data() : fetched.data();
   const auto n = std::size_t(components);
   std::vector<double> result((first_.size() - 1) * n, 0.);
-  for (std::size_t t = 0; t + 1 < first_.size(); ++t)
-    for (std::size_t e = first_[t]; e < first_[t + 1]; ++e)
-      for (std::size_t c = 0; c < n; ++c) result[t * n + c] += weight_[e] * from[column_[e] * n + c];
+  const auto product = n == 1 ? multiply<1> : n == 2 ? multiply<2> : n == 3 ? multiply<3> : multiply<0>;
+  product(first_, column_, weight_, from, n, result.data());
   return result;
 }
 

@@ -35,7 +35,7 @@ class Transfer {
   std::vector<double> weight_;
   std::vector<std::vector<std::size_t>> give_;  // by rank: which of my sources it needs
   std::vector<int> take_;                       // by rank: how many I get from it
-  bool alone_ = true;
+  bool alone_ = true, same_ = false;            // same: each target is the source at its place, on one rank
 };
 
 }  // namespace couplet

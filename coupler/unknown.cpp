@@ -65,7 +65,10 @@ Iterate Unknown::gather(const std::vector<Exchange>& given) const {
       throw Error("A participant gave {} values of '{}' where {} had been announced.", values.size(),
                   p.datum.name, p.count);
     std::vector<double>& to = p.rides ? x.rider : x.unknown;
-    for (std::size_t i = 0; i < p.count; ++i) to[p.first + i] = p.weight * values[i];
+    if (p.weight == 1)
+      std::ranges::copy(values, to.begin() + std::ptrdiff_t(p.first));
+    else
+      for (std::size_t i = 0; i < p.count; ++i) to[p.first + i] = p.weight * values[i];
   }
   return x;
 }
@@ -74,8 +77,9 @@ void Unknown::scatter(const Iterate& x, std::vector<Exchange>& given) const {
   for (const Part& p : parts_) {
     const std::vector<double>& from = p.rides ? x.rider : x.unknown;
     std::vector<double>& values = given[p.giver][p.datum.name];
-    values.resize(p.count);
-    for (std::size_t i = 0; i < p.count; ++i) values[i] = from[p.first + i] / p.weight;
+    values.assign(from.begin() + std::ptrdiff_t(p.first), from.begin() + std::ptrdiff_t(p.first + p.count));
+    if (p.weight != 1)
+      for (double& v : values) v /= p.weight;
   }
 }
 
@@ -93,9 +97,8 @@ void Unknown::scale(const std::vector<Exchange>& given) {
   scaled_ = true;
   for (Part& p : parts_) {
     if (p.rides) continue;
-    double square = 0;
-    for (const double v : given[p.giver].at(p.datum.name)) square += v * v;
-    square = sum(comm_, square);
+    const std::vector<double>& values = given[p.giver].at(p.datum.name);
+    const double square = sum(comm_, dot(values, values));
     if (square > 0) p.weight = 1 / std::sqrt(square);
   }
   for (Part& p : parts_)  // the velocity goes with its displacement
@@ -119,13 +122,10 @@ std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) c
   std::vector<double> sums;
   for (const Part& p : parts_) {
     if (p.rides) continue;
-    double r = 0, h = 0;
-    for (std::size_t i = p.first; i < p.first + p.count; ++i) {
-      const double change = image.unknown[i] - x.unknown[i];
-      r += change * change;
-      h += image.unknown[i] * image.unknown[i];
-    }
-    sums.insert(sums.end(), {r, h, double(p.count) / p.components});
+    const std::span<const double> here(x.unknown.data() + p.first, p.count),
+        there(image.unknown.data() + p.first, p.count);
+    sums.insert(sums.end(),
+                {squares_of_change(there, here), dot(there, there), double(p.count) / p.components});
   }
   sum_over(comm_, sums);
   std::vector<Residual> list;

@@ -71,10 +71,15 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
     case BoundaryType::interface:
       std::fill_n(interface_.begin() + first, patch.count, 1);
       interface_patches_.push_back(patch.name);
-      if (b.surface_density) {
+      if (b.foresees()) {
         yields_ = true;
         wall_mass_.resize(kind_.size(), 0.);
-        std::fill_n(wall_mass_.begin() + first, patch.count, *b.surface_density);
+        std::fill_n(wall_mass_.begin() + first, patch.count, b.surface_density.value_or(0.));
+      }
+      if (b.impedance == Impedance::structure) {
+        asks_for_mass_ = true;
+        asked_.resize(kind_.size(), 0);
+        std::fill_n(asked_.begin() + first, patch.count, 1);
       }
       return;
     case BoundaryType::body:
@@ -115,6 +120,23 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
     case BoundaryType::no_slip:
       velocity_patches_.push_back(std::move(given));
   }
+}
+
+template <int D>
+bool Boundary<D>::set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {
+  bool changed = false;
+  for (std::size_t i = 0; i < boundary_faces.size(); ++i) {
+    const Index b = boundary_faces[i];
+    if (!asked_[b]) continue;
+    if (!(masses[i] > 0) || !std::isfinite(masses[i]))
+      throw Error(
+          "impedance: structure: the structure gave a 'surface-density' of {:g} kg/m^2 at a face of the interface; above "
+          "0 is needed.",
+          masses[i]);
+    changed = changed || wall_mass_[b] != masses[i];
+    wall_mass_[b] = masses[i];
+  }
+  return changed;
 }
 
 template <int D>

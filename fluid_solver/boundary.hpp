@@ -40,6 +40,11 @@ class Boundary {
   /// face [kg/m^2], 0: none.
   bool yields() const { return yields_; }
   const std::vector<double>& wall_mass() const { return wall_mass_; }
+  /// The structure says these masses (`impedance: structure`), for all its faces of the interface or some.
+  bool asks_for_mass() const { return asks_for_mass_; }
+  /// What it said, at boundary faces [kg/m^2]; counts where it was asked. Whether one of this rank's has changed. Throws
+  /// Error if one is not above 0.
+  bool set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses);
 
   /// w at time t [m/s] at the faces with given velocity; interface faces are left as they are.
   void velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
@@ -81,8 +86,9 @@ class Boundary {
   std::vector<const Patch*> body_patches_;
   std::vector<Given> velocity_patches_, pressure_patches_;
   std::vector<std::pair<Index, Index>> convective_patches_;  // first boundary face, count; also empty ones
-  bool closed_ = true, yields_ = false;
+  bool closed_ = true, yields_ = false, asks_for_mass_ = false;
   std::vector<double> wall_mass_;
+  std::vector<char> asked_;  // by boundary face: its mass is the structure's word
 };
 
 }  // namespace couplet::fluid

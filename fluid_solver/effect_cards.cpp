@@ -153,11 +153,11 @@ const std::array cards{
               {"up to as many more sub-steps as stability would let them be longer", 0, 0}},
     FluidCard{
         "walls that yield (Robin interface)",
-        "`surface-density` of a boundary of type interface",
+        "`surface-density` or `impedance` of a boundary of type interface",
         [](const S& s) {
-          return when(std::ranges::any_of(s.parameters.boundaries,
-                                          [](const auto& b) { return b.second.surface_density.has_value(); }),
-                      "surface-density");
+          return when(
+              std::ranges::any_of(s.parameters.boundaries, [](const auto& b) { return b.second.foresees(); }),
+              "surface-density");
         },
         {"two loops over the interface a pass, a pressure a face over the coupling; pressure matrix anew where the "
          "step is cut",

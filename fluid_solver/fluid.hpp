@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "common/parallel/collective.hpp"
 #include "fluid_solver/fractional_step.hpp"
 #include "fluid_solver/step_size.hpp"
 
@@ -41,6 +42,10 @@ class Fluid {
   void yield_from(std::vector<double> load) {
     yields_ = boundary_.yields();
     step_.set_wall_load(std::move(load));
+  }
+  /// Before yield_from(): Boundary::set_wall_mass. Collective.
+  void set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {
+    if (any(mesh_.comm, boundary_.set_wall_mass(boundary_faces, masses))) step_.forget_walls();
   }
   /// At the boundary faces, of the last solve_pressure() [Pa].
   const std::vector<double>& boundary_pressure() const { return step_.boundary_pressure(); }

@@ -64,6 +64,8 @@ class FractionalStep {
   const ImmersedBodies<D>* bodies() const { return k_.bodies.get(); }
   /// Pressure that gave the interface its w, per boundary face [Pa]: for steps that yield.
   void set_wall_load(std::vector<double> load) { k_.wall_load = std::move(load); }
+  /// The masses of such walls have changed: the pressure matrix is made anew when it is needed next.
+  void forget_walls() { k_.assembled = nullptr; }
   /// Of the last project(), per boundary face [Pa].
   const std::vector<double>& boundary_pressure() const { return k_.p_boundary; }
   void refresh_solvers() { projection_.equation().refresh(); }

@@ -105,6 +105,19 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
                   "mass per area of the structure behind it: its answer is then foreseen in the pressure equation "
                   "(Robin condition), with `coupling.order: structure-first`; a solid's density times its thickness, or "
                   "less: too little costs passes, too much may diverge; absent: the wall moves as the coupling says");
+          v.choice("impedance", b.impedance,
+                   {{"given", Impedance::given}, {"structure", Impedance::structure}})
+              .doc(
+                  "who says it: given: `surface-density`, if there is one; structure: the structure itself, for each face "
+                  "(solid_solver with `interface: {surface-density: true}`, plate_modal with `surface-density: true`, or any "
+                  "program that gives 'surface-density' [kg/m^2] at its faces)");
+          v.check(
+              [&b] {
+                return b.surface_density && b.impedance == Impedance::structure
+                           ? "the structure says it: leave 'surface-density' out"
+                           : "";
+              },
+              "impedance");
         }},
        {"body", BoundaryType::body, nothing}},
       "inlet: given velocity; outlet: given pressure; convective-outlet: what is there moves out with the "

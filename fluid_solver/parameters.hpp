@@ -49,6 +49,9 @@ struct RotationParameters {
   Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]
 };
 
+/// Who says what mass per area stands behind an interface of type Robin.
+enum class Impedance { given, structure };
+
 /// Who sets the pressure level, and so holds the volume, of a fluid without an outlet.
 enum class VolumeLevelBy { nobody, structure };
 
@@ -64,6 +67,9 @@ struct BoundaryParameters {
   bool backflow_stabilisation = true;                // outlet
   std::string partner;                               // periodic
   std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
+  Impedance impedance = Impedance::given;            // interface
+  /// The wall's answer is foreseen in the pressure equation.
+  bool foresees() const { return surface_density || impedance == Impedance::structure; }
 };
 
 enum class TurbulenceModel { smagorinsky, wale };

@@ -117,6 +117,8 @@ Interface FluidParticipant<D>::initialise() {
     const Interface::Datum own{"own-wall-force", "N", Place::faces, 1};
     description.takes.push_back(own);
     description.gives.push_back(own);
+    if (fluid_->boundary().asks_for_mass())
+      description.takes.push_back({"surface-density", "kg/m^2", Place::faces, 1});
   }
   if (holds_volume()) description.gives.push_back({"inflow", "m^3/s", Place::faces, 2});
   return description;
@@ -163,6 +165,17 @@ std::vector<double> FluidParticipant<D>::wall_load(const Exchange& in) const {
   for (std::size_t i = 0; i < faces.size(); ++i)
     load[faces[i] - mesh_.n_interior] = at_faces[i] / mesh_.reference.face_area[faces[i]].norm();
   return load;
+}
+
+/// `impedance: structure`.
+template <int D>
+void FluidParticipant<D>::take_wall_mass(const Exchange& in) {
+  const auto given = in.find("surface-density");
+  const std::vector<double> masses =
+      interface_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second, 1);
+  std::vector<Index> faces = interface_->faces();
+  for (Index& f : faces) f -= mesh_.n_interior;
+  fluid_->set_wall_mass(faces, masses);
 }
 
 /// Of the faces of the interface: largest mean displacement over the height of the cell beside them.
@@ -261,7 +274,10 @@ void FluidParticipant<D>::prepare(const Vectors<D>& w) {
 template <int D>
 Exchange FluidParticipant<D>::solve(const Exchange& in) {
   const Vectors<D> w = wall_velocity(in);
-  if (yields() && step_.scheme != Scheme::standalone) fluid_->yield_from(wall_load(in));
+  if (yields() && step_.scheme != Scheme::standalone) {
+    if (fluid_->boundary().asks_for_mass()) take_wall_mass(in);
+    fluid_->yield_from(wall_load(in));
+  }
   prepare(w);
   fluid_->solve_pressure(w);
   if (stands_still()) trial_displacement_ = wall_displacement(in);

@@ -53,6 +53,7 @@ class FluidParticipant final : public Participant {
  private:
   Vectors<D> wall_velocity(const Exchange& in) const;
   std::vector<double> wall_load(const Exchange& in) const;
+  void take_wall_mass(const Exchange& in);
   bool yields() const { return interface_ && fluid_->boundary().yields(); }
   double wall_displacement(const Exchange& in) const;
   bool stands_still() const { return interface_ && !motion_ && step_.scheme != Scheme::standalone; }

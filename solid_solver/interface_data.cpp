@@ -83,6 +83,18 @@ void declare(config::Section& s, InterfaceData& d) {
           "a temperature is taken at the faces; the solid has it along the interface, linear between the "
           "faces, and "
           "the same through its thickness");
+  s.value("surface-density", d.surface_density)
+      .doc(
+          "also give the mass behind the faces [kg/m^2], the solid's mass over the area of its interface: the impedance for "
+          "a fluid with `impedance: structure` (Robin)");
+}
+
+double surface_density(MPI_Comm comm, std::span<const double> densities, std::span<const double> volumes,
+                       std::span<const Vec3> areas) {
+  double mass = 0, area = 0;
+  for (std::size_t c = 0; c < volumes.size(); ++c) mass += densities[c] * volumes[c];
+  for (const Vec3& a : areas) area += a.norm();
+  return sum(comm, mass) / sum(comm, area);
 }
 
 std::vector<Interface::Datum> taken(const InterfaceData& data) {

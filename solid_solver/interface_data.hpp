@@ -19,9 +19,16 @@ struct InterfaceData {
     pressure,  ///< pressure [Pa], one value a face, pushes into the solid
   };
   Load load = Load::forces;
-  bool temperature = false;  ///< temperature [K], one value a face
+  bool temperature = false;      ///< temperature [K], one value a face
+  bool surface_density = false;  ///< gives the mass per area behind its faces [kg/m^2]
 };
 void declare(config::Section& section, InterfaceData& data);
+
+/// The mass of the body over the area of its interface [kg/m^2]: what answers to a pressure that changes on all of
+/// these faces at once, the density times the thickness of a wall that is wet on one side and half of it on both.
+/// `densities`, `volumes`: of this rank's cells; `areas`: of its faces of the interface. Collective.
+double surface_density(MPI_Comm comm, std::span<const double> densities, std::span<const double> volumes,
+                       std::span<const Vec3> areas);
 
 /// The data to announce at the faces of the interface.
 std::vector<Interface::Datum> taken(const InterfaceData& data);

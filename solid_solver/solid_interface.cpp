@@ -7,6 +7,25 @@
 
 namespace couplet {
 
+namespace {
+
+/// What `interface: {surface-density: true}` gives [kg/m^2]. Collective.
+double density_behind(const SolidBody& body, const Interface& interface) {
+  const Mesh& mesh = body.mesh();
+  if (body.boundaries().interface_patches().empty())
+    throw Error("interface: surface-density: no patch has 'type: interface', where it could be given.");
+  if (!body.is_dynamic())
+    throw Error(
+        "interface: surface-density: a static solid answers without its mass; take 'analysis: dynamic' or remove "
+        "the key.");
+  std::vector<double> densities, volumes;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    densities.push_back(body.density(c)), volumes.push_back(mesh.reference.volume[c]);
+  return surface_density(mesh.comm, densities, volumes, interface.face_areas);
+}
+
+}  // namespace
+
 SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
   const Mesh& mesh = body.mesh();
   const SolidParameters& parameters = body.parameters();
@@ -18,6 +37,10 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
   description_.takes = taken(parameters.interface_data.value_or(InterfaceData{}));
   description_.gives = {{"displacement", "m", Interface::Place::vertices},
                         {"velocity", "m/s", Interface::Place::vertices}};
+  if (parameters.interface_data && parameters.interface_data->surface_density) {
+    surface_density_ = density_behind(body, description_);
+    description_.gives.push_back({"surface-density", "kg/m^2", Interface::Place::faces, 1});
+  }
   if (!parameters.interface_data || !parameters.interface_data->temperature) return;
   if (!map_) throw Error("interface: no patch has 'type: interface', where a temperature could be taken.");
   temperature_ = std::make_unique<InterfaceTemperature>(mesh.comm, description_.face_centres);
@@ -72,6 +95,7 @@ Exchange SolidInterface::values(const SolidState& state) const {
       map_->gather_vertices(body_.at_points(map_->points(), state.cell_u, state.face_u, state.known), dim);
   out["velocity"] = map_->gather_vertices(
       body_.at_points(map_->points(), state.cell_v, state.face_v, state.known_rate), dim);
+  if (surface_density_) out["surface-density"].assign(description_.face_areas.size(), *surface_density_);
   return out;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "common/coupling/interface_map.hpp"
@@ -15,7 +16,7 @@ namespace couplet {
 /// What a solid takes through its interface patches and gives there.
 class SolidInterface final {
  public:
-  /// Throws Error if a temperature is wanted where there is no interface. Collective.
+  /// Throws Error if a temperature or a surface density is wanted where there is no interface. Collective.
   explicit SolidInterface(const SolidBody& body);
 
   const Interface& description() const { return description_; }
@@ -25,13 +26,14 @@ class SolidInterface final {
   void take_temperature(const Exchange& in) const;
   /// Sum of the given forces, `dim` values a boundary face of owned cells; empty without interface.
   std::vector<double> load(const Exchange& in) const;
-  /// Displacement and velocity at the vertices. Collective.
+  /// Displacement and velocity at the vertices, and the surface density if it was asked for. Collective.
   Exchange values(const SolidState& state) const;
 
  private:
   const SolidBody& body_;
   std::unique_ptr<InterfaceMap> map_;  // none: no interface patch
   Interface description_;
+  std::optional<double> surface_density_;              // [kg/m^2]; none: not given
   std::unique_ptr<InterfaceTemperature> temperature_;  // none: not taken
 };
 

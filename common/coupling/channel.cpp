@@ -31,8 +31,8 @@ void MpiChannel::send(const Command& command) {
   const auto data = present(command.data, takes_, name_);
   SendAll sending(peers_);
   for (const auto& [other, slice] : exchanged(mine_, rank, theirs_))
-    if (auto values = cut_out(command.data, data, dim_, slice, name_); !values.empty())
-      sending.add(other, input_tag, std::move(values));
+    if (const auto values = cut_out(command.data, data, dim_, slice, name_); !values.empty())
+      sending.add(other, input_tag, values);
   sending.wait(what);
 }
 
@@ -70,15 +70,9 @@ void MpiChannel::receive_values(Exchange& data) {
     data[datum.name].resize(std::size_t(starts[std::size_t(rank) + 1] - starts[std::size_t(rank)]) *
                             std::size_t(datum.size(dim_)));
   }
-  for (const auto& [other, slice] : exchanged(mine_, rank, theirs_)) {
-    std::size_t n = 0;
-    for (const auto& datum : list)
-      n += std::size_t(datum.size(dim_)) *
-           (datum.place == Interface::Place::vertices ? slice.vertices : slice.faces);
-    if (n > 0)
-      put_back(receive_doubles(peers_, other, output_tag, n, "values of '" + name_ + "'"), list, dim_, slice,
-               data);
-  }
+  for (const auto& [other, slice] : exchanged(mine_, rank, theirs_))
+    if (const auto to = places_in(data, list, dim_, slice, name_); !to.empty())
+      receive_stretches(peers_, other, output_tag, to, "values of '" + name_ + "'");
 }
 
 LocalChannel::LocalChannel(std::string name, Participant& participant, MPI_Comm comm)

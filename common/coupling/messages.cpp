@@ -249,38 +249,36 @@ std::vector<Interface::Datum> present(const Exchange& data, const std::vector<In
   return list;
 }
 
-std::vector<double> cut_out(const Exchange& data, const std::vector<Interface::Datum>& of, int dim,
-                            const Slice& slice, const std::string& whose) {
-  std::vector<double> values;
+namespace {
+
+template <class Value, class Data>
+std::vector<std::span<Value>> stretches(Data& data, const std::vector<Interface::Datum>& of, int dim,
+                                        const Slice& slice, const std::string& whose) {
+  std::vector<std::span<Value>> parts;
   for (const auto& datum : of) {
-    const std::vector<double>& from = data.at(datum.name);
+    auto& array = data.at(datum.name);
     const bool at_vertices = datum.place == Interface::Place::vertices;
     const auto n = std::size_t(datum.size(dim));
     const std::size_t first = n * (at_vertices ? slice.first_vertex : slice.first_face),
                       count = n * (at_vertices ? slice.vertices : slice.faces);
-    if (first + count > from.size())
+    if (first + count > array.size())
       throw Error("'{}' gave {} values of '{}' where its interface has {} {} of {} components.", whose,
-                  from.size(), datum.name, (first + count) / n, at_vertices ? "vertices" : "faces", n);
-    values.insert(values.end(), from.begin() + std::ptrdiff_t(first),
-                  from.begin() + std::ptrdiff_t(first + count));
+                  array.size(), datum.name, (first + count) / n, at_vertices ? "vertices" : "faces", n);
+    if (count > 0) parts.emplace_back(array.data() + first, count);
   }
-  return values;
+  return parts;
 }
 
-void put_back(std::span<const double> values, const std::vector<Interface::Datum>& of, int dim,
-              const Slice& slice, Exchange& data) {
-  std::size_t at = 0;
-  for (const auto& datum : of) {
-    const bool at_vertices = datum.place == Interface::Place::vertices;
-    const auto n = std::size_t(datum.size(dim));
-    const std::size_t first = n * (at_vertices ? slice.first_vertex : slice.first_face),
-                      count = n * (at_vertices ? slice.vertices : slice.faces);
-    if (at + count > values.size()) throw Error("A message with values of '{}' is cut short.", datum.name);
-    std::copy_n(values.begin() + std::ptrdiff_t(at), count,
-                data.at(datum.name).begin() + std::ptrdiff_t(first));
-    at += count;
-  }
-  if (at != values.size()) throw Error("A message with interface values is longer than its content.");
+}  // namespace
+
+std::vector<std::span<const double>> cut_out(const Exchange& data, const std::vector<Interface::Datum>& of,
+                                             int dim, const Slice& slice, const std::string& whose) {
+  return stretches<const double>(data, of, dim, slice, whose);
+}
+
+std::vector<std::span<double>> places_in(Exchange& data, const std::vector<Interface::Datum>& of, int dim,
+                                         const Slice& slice, const std::string& whose) {
+  return stretches<double>(data, of, dim, slice, whose);
 }
 
 // Vertices: number, ids, places. Faces: number, ids, centres, areas, parts, numbers of vertices, their

@@ -67,16 +67,17 @@ Command unpack_command(std::span<const char> bytes);
 Reply unpack_reply(std::span<const char> bytes, Cut& cut);
 
 /// What one rank has of a participant's values, cut further for another rank: all data of `names` one after
-/// the other, each the part at vertices or faces. Throws Error if an array has not the announced length.
+/// the other, each the part at vertices or faces; data without a value there are left out. Throws Error if an array has
+/// not the announced length.
 struct Slice {
   std::size_t first_vertex = 0, vertices = 0, first_face = 0, faces = 0;  ///< within this rank's entries
   bool empty() const { return vertices == 0 && faces == 0; }
 };
-std::vector<double> cut_out(const Exchange& data, const std::vector<Interface::Datum>& of, int dim,
-                            const Slice& slice, const std::string& whose);
-/// The reverse: into arrays that have their full length.
-void put_back(std::span<const double> values, const std::vector<Interface::Datum>& of, int dim,
-              const Slice& slice, Exchange& data);
+std::vector<std::span<const double>> cut_out(const Exchange& data, const std::vector<Interface::Datum>& of,
+                                             int dim, const Slice& slice, const std::string& whose);
+/// The same of arrays that are to be filled.
+std::vector<std::span<double>> places_in(Exchange& data, const std::vector<Interface::Datum>& of, int dim,
+                                         const Slice& slice, const std::string& whose);
 /// Those of `announced` whose names are in `data`, by name; throws Error if a name was not announced.
 std::vector<Interface::Datum> present(const Exchange& data, const std::vector<Interface::Datum>& announced,
                                       const std::string& whose);

@@ -94,19 +94,12 @@ class Ranks {
       else
         data[datum.name].resize(entries * std::size_t(datum.size(interface_.dim)));
     }
-    for (const auto& [other, slice] : plan_) {
-      std::size_t n = 0;
-      for (const auto& datum : list)
-        n += std::size_t(datum.size(interface_.dim)) *
-             (datum.place == Interface::Place::vertices ? slice.vertices : slice.faces);
-      if (n == 0) continue;
-      const std::vector<double> values =
-          receive_doubles(coupler_, other, input_tag, n, "the coupler to send values");
-      std::vector<Interface::Datum> here;
-      for (const auto& datum : list)
-        if (data.contains(datum.name)) here.push_back(datum);
-      put_back(values, here, interface_.dim, slice, data);
-    }
+    std::vector<Interface::Datum> here;
+    for (const auto& datum : list)
+      if (data.contains(datum.name)) here.push_back(datum);
+    for (const auto& [other, slice] : plan_)
+      if (const auto to = places_in(data, here, interface_.dim, slice, name_); !to.empty())
+        receive_stretches(coupler_, other, input_tag, to, "the coupler to send values");
   }
 
   void send(const Exchange& data) const {
@@ -122,8 +115,8 @@ class Ranks {
     }
     SendAll sending(coupler_);
     for (const auto& [other, slice] : plan_)
-      if (auto values = cut_out(data, list, interface_.dim, slice, name_); !values.empty())
-        sending.add(other, output_tag, std::move(values));
+      if (const auto values = cut_out(data, list, interface_.dim, slice, name_); !values.empty())
+        sending.add(other, output_tag, values);
     sending.wait("the coupler to take values");
   }
 

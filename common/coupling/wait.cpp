@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <thread>
 
+#include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -40,15 +41,23 @@ void send_bytes(MPI_Comm peers, int to, int tag, std::span<const char> bytes, co
   wait_politely(request, what);
 }
 
-std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::string& what) {
+namespace {
+
+MPI_Message await_message(MPI_Comm peers, int from, int tag, const std::string& what, MPI_Status& status) {
   PoliteWait wait(what);
   MPI_Message message;
-  MPI_Status status;
   for (int there = 0;;) {
     MPI_Improbe(from, tag, peers, &there, &message, &status);
-    if (there) break;
+    if (there) return message;
     wait.pause();
   }
+}
+
+}  // namespace
+
+std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::string& what) {
+  MPI_Status status;
+  MPI_Message message = await_message(peers, from, tag, what, status);
   int count = 0;
   MPI_Get_count(&status, MPI_BYTE, &count);
   std::vector<char> bytes(count);
@@ -58,25 +67,68 @@ std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::st
   return bytes;
 }
 
-std::vector<double> receive_doubles(MPI_Comm peers, int from, int tag, std::size_t count,
-                                    const std::string& what) {
-  std::vector<double> values(count);
+namespace {
+
+/// Stretches as one MPI datatype, to be taken from MPI_BOTTOM; the one of a single stretch is that of its values.
+template <class Value>
+class Layout {
+ public:
+  explicit Layout(const std::vector<std::span<Value>>& parts) {
+    if (parts.size() == 1) {
+      at_ = const_cast<double*>(parts[0].data()), count_ = int(parts[0].size());
+      return;
+    }
+    std::vector<int> lengths;
+    std::vector<MPI_Aint> places;
+    for (const auto& part : parts) {
+      lengths.push_back(int(part.size()));
+      MPI_Get_address(part.data(), &places.emplace_back());
+    }
+    MPI_Type_create_hindexed(int(parts.size()), lengths.data(), places.data(), MPI_DOUBLE, &type_);
+    MPI_Type_commit(&type_);
+  }
+  ~Layout() {
+    // MPI keeps it until the messages under way are done.
+    if (type_ != MPI_DOUBLE) MPI_Type_free(&type_);
+  }
+  Layout(const Layout&) = delete;
+  void* at() const { return at_; }
+  int count() const { return count_; }
+  MPI_Datatype type() const { return type_; }
+
+ private:
+  void* at_ = MPI_BOTTOM;
+  int count_ = 1;
+  MPI_Datatype type_ = MPI_DOUBLE;
+};
+
+}  // namespace
+
+void receive_stretches(MPI_Comm peers, int from, int tag, const Stretches& to, const std::string& what) {
+  const Layout<double> layout(to);
+  std::size_t wanted = 0;
+  for (const auto& part : to) wanted += part.size();
+  MPI_Status status;
+  MPI_Message message = await_message(peers, from, tag, what, status);
+  int bytes = 0;
+  MPI_Get_count(&status, MPI_BYTE, &bytes);
+  // A program of somebody else may have another idea of its interface than it has announced.
+  if (std::size_t(bytes) != wanted * sizeof(double))
+    throw Error("While waiting for {}: a message of {} values came where {} had been announced.", what,
+                std::size_t(bytes) / sizeof(double), wanted);
   MPI_Request request;
-  MPI_Irecv(values.data(), static_cast<int>(count), MPI_DOUBLE, from, tag, peers, &request);
+  MPI_Imrecv(layout.at(), layout.count(), layout.type(), &message, &request);
   wait_politely(request, what);
-  return values;
 }
 
-void SendAll::add(int to, int tag, std::vector<double> values) {
-  values_.push_back(std::move(values));
-  MPI_Isend(values_.back().data(), static_cast<int>(values_.back().size()), MPI_DOUBLE, to, tag, peers_,
-            &requests_.emplace_back());
+void SendAll::add(int to, int tag, const std::vector<std::span<const double>>& values) {
+  const Layout<const double> layout(values);
+  MPI_Isend(layout.at(), layout.count(), layout.type(), to, tag, peers_, &requests_.emplace_back());
 }
 
 void SendAll::wait(const std::string& what) {
   for (MPI_Request& request : requests_) wait_politely(request, what);
   requests_.clear();
-  values_.clear();
 }
 
 void broadcast_bytes(MPI_Comm comm, std::vector<char>& bytes, const std::string& what) {

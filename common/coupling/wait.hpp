@@ -34,20 +34,20 @@ void wait_politely(MPI_Request& request, const std::string& what);
 void send_bytes(MPI_Comm peers, int to, int tag, std::span<const char> bytes, const std::string& what);
 std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::string& what);
 
-/// Doubles whose number is known.
-std::vector<double> receive_doubles(MPI_Comm peers, int from, int tag, std::size_t count,
-                                    const std::string& what);
+/// Some stretches of arrays that travel as one message, one after the other, without being copied together.
+/// Throws Error if a message of another length comes.
+using Stretches = std::vector<std::span<double>>;
+void receive_stretches(MPI_Comm peers, int from, int tag, const Stretches& to, const std::string& what);
 
-/// Several messages on their way at once; they are kept until wait().
+/// Several messages on their way at once; the values must stay where they are until wait().
 class SendAll {
  public:
   explicit SendAll(MPI_Comm peers) : peers_(peers) {}
-  void add(int to, int tag, std::vector<double> values);
+  void add(int to, int tag, const std::vector<std::span<const double>>& values);
   void wait(const std::string& what);
 
  private:
   MPI_Comm peers_;
-  std::vector<std::vector<double>> values_;
   std::vector<MPI_Request> requests_;
 };
 
