@@ -15,6 +15,8 @@ namespace couplet::config {
 namespace {
 
 /// Looks for what yaml-cpp lets pass and nobody after it could bear.
+bool is_control(unsigned char c) { return (c < 32 && c != '\n' && c != '\t') || c == 127; }
+
 class Inspection {
  public:
   std::vector<Message> messages;
@@ -43,7 +45,6 @@ class Inspection {
   /// False if the text holds what would spoil messages, names of files and terminals.
   bool check_text(const YAML::Node& node, const std::string& path, const char* what) {
     const std::string& text = node.Scalar();
-    const auto is_control = [](unsigned char c) { return (c < 32 && c != '\n' && c != '\t') || c == 127; };
     const auto found = std::find_if(text.begin(), text.end(), is_control);
     if (found == text.end()) return true;
     messages.push_back(
@@ -220,11 +221,14 @@ Document Document::parse(const std::string& text, const std::string& name) {
 }
 
 void Document::set(const std::string& assignment) {
-  const std::string option = "--set " + assignment;
+  std::string option = "--set " + assignment;
+  std::replace_if(option.begin(), option.end(), is_control, '?');  // what is told must not steer a terminal
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
     throw Error("{}: expected key=value, for example --set simulation.end-time='2 s'.", option);
   const std::string path(trim(assignment.substr(0, equals)));
+  if (std::any_of(path.begin(), path.end(), is_control))
+    throw Error("{}: the key holds a control character; remove it.", option);
   const std::vector<std::string> parts = split(path, '.');
   YAML::Node value;
   try {

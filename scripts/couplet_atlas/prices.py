@@ -27,16 +27,16 @@ class Scene:
 
 
 SCENES = [
-    Scene("static bracket", "cantilever", {"solid.mesh-parameters": {"n_length": 60, "n_side": 6}}, {
+    Scene("static bracket", "cantilever", {"solid.mesh-parameters": {"n_length": 40, "n_side": 4}}, {
         "gravity": {"solid.gravity": [0, -9.81, 0]}, "body force": {"solid.body-force": [0, -1, 0]},
         "thermal strain": {"solid.material.expansion": 1e-5, "solid.temperature": 300, "solid.thermal-expansion": {}},
         "geometric non-linearity": FINITE, "inertia": {"solid.analysis": "dynamic"}}),
-    Scene("vibrating beam", "vibrating-cantilever", {"solid.mesh-parameters": {"n_length": 40, "n_side": 4}, "simulation.end-time": 5}, {
+    Scene("vibrating beam", "vibrating-cantilever", {"solid.mesh-parameters": {"n_length": 30, "n_side": 3}, "simulation.end-time": 2}, {
         "structural damping": {"solid.damping": {"stiffness": 0.01}}, "energies": {"solid.output": {"energies": True}},
         "geometric non-linearity": FINITE,
         "near incompressibility": {"solid.material.poissons-ratio": 0.45,
                                    "solid.solution-method": {"face-gradient": "symmetric", "volume-strain": "cells"}}}),
-    Scene("channel", "cavity", {"simulation.end-time": 2, "fluid.boundaries.walls": {"type": "outlet"}}, {
+    Scene("channel", "cavity", {"simulation.end-time": 0.4, "fluid.boundaries.walls": {"type": "outlet"}}, {
         "turbulence model": {"fluid.turbulence": {"model": "wale"}}, "running statistics": {"fluid.statistics": {"start": 0}},
         "body force": {"fluid.body-force": [0, 1e-3]}, "energy budget": {"fluid.output": {"energy-budget": True}},
         "immersed bodies": {"fluid.bodies": {"ball": {"level": "sqrt((x-0.5)^2+(y-0.5)^2)-0.1"}}}}),
@@ -47,7 +47,7 @@ SCENES = [
         "geometric non-linearity": FINITE}, {
         "mesh motion": {"coupling.mesh": None, "participants.mover": None},
         "iteration of pressure and structure": {"coupling.scheme": "explicit"}}),
-    Scene("tank", "thermocline-solar-one", {"simulation.end-time": "20 day"}, {"resolved grains": {"tank.bed.shells": 5}}, {
+    Scene("tank", "thermocline-solar-one", {"simulation.end-time": "5 day"}, {"resolved grains": {"tank.bed.shells": 5}}, {
         "ground": {"tank.ground": None}, "filler mechanics": {"tank.filler-mechanics": None}, "insulation": {"tank.insulation": None},
         "mixing": {"tank.bed.mix-inversions": False}}),
 ]
@@ -68,7 +68,7 @@ def changed(data, keys, participants):
     return data
 
 
-def cost(scene, keys, build, scratch, turns=3):
+def cost(scene, keys, build, scratch, turns=2):
     """(seconds, MB, processes): the least of some runs. Seconds: processor time; of a coupled job the sum of what its participants worked."""
     source = ROOT / "configs" / scene.case
     plain = yaml.safe_load((source / "case.yaml").read_text())
@@ -147,7 +147,7 @@ def picture(table, file):
 
 def page(table):
     text = ("## What each effect adds\n\nFrom `scripts/stability --prices`: the same scene with and without each effect; seconds of "
-            "processor time (of a coupled job what its participants worked, without waiting; the least of three runs), memory and processes. "
+            "processor time (of a coupled job what its participants worked, without waiting; the less of two runs), memory and processes. "
             "Differences of some per cent and of 1 MB are noise.\n\n"
             "| scene | effect | seconds | MB | processes |\n|---|---|---|---|---|\n")
     for scene, rows in table.items():

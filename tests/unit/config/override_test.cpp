@@ -94,6 +94,17 @@ TEST(Override, a_path_that_leads_nowhere_is_refused) {
             "']'.");
 }
 
+TEST(Override, control_characters_are_refused_and_not_told) {
+  for (const char* assignment : {"gravity=a\x1b[2J", "gra\x1bvity=1"}) try {
+      read_with({assignment});
+      FAIL() << "accepted";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("holds a control character"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("?"));
+      EXPECT_EQ(std::string(error.what()).find('\x1b'), std::string::npos);
+    }
+}
+
 TEST(Override, the_hash_covers_the_text_and_the_overrides) {
   config::Document a = document(), b = document();
   EXPECT_EQ(a.hash(), b.hash());
