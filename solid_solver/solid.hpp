@@ -25,7 +25,9 @@ class Solid final : public Participant {
   ~Solid() override;
 
   Interface initialise() override { return interface_.description(); }
-  double suggest_dt() override { return stepper_.suggest_dt(); }
+  double suggest_dt() override {
+    return body_.parameters().step_control ? stepper_.suggest_dt() : Participant::suggest_dt();
+  }
   void begin_step(const Step& step) override;
   Exchange solve(const Exchange& in) override;
   StepReport accept_step() override;

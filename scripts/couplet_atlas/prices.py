@@ -148,7 +148,7 @@ def picture(table, file):
 def page(table):
     text = ("## What each effect adds\n\nFrom `scripts/stability --prices`: the same scene with and without each effect; seconds of "
             "processor time (of a coupled job what its participants worked, without waiting; the less of two runs), memory and processes. "
-            "Differences of some per cent and of 1 MB are noise.\n\n"
+            "Differences of a tenth and of 1 MB are noise.\n\n"
             "| scene | effect | seconds | MB | processes |\n|---|---|---|---|---|\n")
     for scene, rows in table.items():
         for name, s, m, p in rows:

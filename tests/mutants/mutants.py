@@ -19,7 +19,7 @@ MUTANTS = [
     Mutant("no backflow stabilisation", "fluid_solver/rates.cpp",
            "(backflow ? boundary_.backflow(b) : 1.0)", "(backflow ? 1.0 : 1.0)", "verification_fluid_boundaries"),
     Mutant("four fifths of the mesh stiffening", "mesh_mover/laplacian.cpp",
-           "std::pow(g.volume[c] / mean, -stiffening)", "std::pow(g.volume[c] / mean, -0.8 * stiffening)", "verification_mover"),
+           "std::pow(volumes[c] / mean, -stiffening)", "std::pow(volumes[c] / mean, -0.8 * stiffening)", "verification_mover"),
     Mutant("the limiter's slope at the inlet", "thermocline/bed_step.cpp",
            "half_slope(2 * (t[0] - inlet), t[1] - t[0])", "half_slope(t[0] - inlet, t[1] - t[0])", "verification_thermocline_bed"),
     Mutant("Wakao's 1.1 is 1.0 where the bed takes it", "thermocline/closures.cpp",

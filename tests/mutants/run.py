@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Breaks the code on purpose, a line at a time, and asks whether the tests notice: each mutant of mutants.py is built and
 tested in a copy of the tree, and must make its test fail. What survives shows a claim that no test holds.
-Usage: run.py ROOT BUILD [NAME ...]   (BUILD: a configured build whose options the copy takes; NAME: only these mutants)"""
+Usage: run.py ROOT BUILD [NAME ...]   (BUILD: a configured build whose options the copy takes; NAME: only these mutants)
+       run.py ROOT --places            (only whether each line is where the mutant looks for it)"""
+import os
 import pathlib
 import re
 import shutil
@@ -18,12 +20,24 @@ def option(cache, name):
     return found[1] if found else ""
 
 
+def places(root):
+    """A mutant whose line was rewritten breaks nothing any more."""
+    lost = [m for m in mutants.MUTANTS if (root / m.file).read_text().count(m.old) != 1]
+    for m in lost:
+        print(f"LOST     {m.name}: '{m.old}' is not once in {m.file}")
+    print(f"{len(mutants.MUTANTS) - len(lost)} of {len(mutants.MUTANTS)} mutants have their place")
+    return 1 if lost else 0
+
+
 def main():
+    if sys.argv[2:] == ["--places"]:
+        return places(pathlib.Path(sys.argv[1]).resolve())
     root, build, names = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]), sys.argv[3:]
     chosen = [m for m in mutants.MUTANTS if not names or m.name in names]
     killed = 0
     with tempfile.TemporaryDirectory(prefix="couplet-mutants-", dir=root.parent) as name:
         copy = pathlib.Path(name)
+        os.environ.update(CCACHE_BASEDIR=name, CCACHE_NOHASHDIR="1")  # the folder's name is another one each time
         files = subprocess.run(["git", "-C", root, "ls-files", "-z"], capture_output=True, text=True, check=True).stdout
         for file in filter(None, files.split("\0")):
             (copy / file).parent.mkdir(parents=True, exist_ok=True)
