@@ -21,7 +21,8 @@ bool is_elastic(const P& p) { return p.analysis != P::Analysis::thermal; }
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 
 bool has_volume_strain_of_cells(const P& p) {
-  return is_elastic(p) && face_gradient_scheme(p) == FaceGradientScheme::symmetric && volume_by_cells(p);
+  return is_elastic(p) && face_gradient_scheme(p) == FaceGradientScheme::symmetric &&
+         volume_strain_of(p) != VolumeStrain::faces;
 }
 
 bool varies(const P& p) {
@@ -50,7 +51,9 @@ V judge_geometry(const P& p, const E& e) {
                                 ? ""
                                 : fmt::format(" (last: strain {:.2g}, rotation {:.2g} degrees)",
                                               e.largest_strain, 57.29578 * e.largest_rotation);
-  return verdict(g, 0.02, fmt::format("the largest displacement gradient seen is {:.2g}{}", g, parts),
+  const std::string change = e.large_strain.empty() ? "" : "; " + e.large_strain;
+  return verdict(g, 0.02,
+                 fmt::format("the largest displacement gradient seen is {:.2g}{}{}", g, parts, change),
                  g < 0.1 ? "errors of some per cent are to be expected"
                          : "it would matter: the result is that of the linear theory, not of the body; "
                            "'kinematics: finite-strain' takes it into account");

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <span>
+#include <string>
 
 #include "common/effects/card.hpp"
 #include "solid_solver/parameters.hpp"
@@ -19,6 +20,7 @@ struct SolidEvidence {
   double inertia_over_load = unknown;  ///< of a static run with several steps
   double coupling_number = unknown;    ///< stiffening by the heat of deformation, thesis (2.27)
   double temperature_range = unknown;  ///< of a run that knows a temperature [K]
+  std::string large_strain{};          ///< what it would change, where that was asked for
 };
 
 using SolidCard = EffectCard<SolidParameters, SolidEvidence>;

@@ -108,20 +108,25 @@ bool symmetric_suits(const SolidParameters& p) {
   });
 }
 
-bool volume_by_cells(const SolidParameters& p) {
-  using VolumeStrain = MethodParameters::VolumeStrain;
-  if (p.method.volume_strain != VolumeStrain::automatic) return p.method.volume_strain == VolumeStrain::cells;
+VolumeStrain volume_strain_of(const SolidParameters& p) {
+  using Chosen = MethodParameters::VolumeStrain;
+  if (p.method.volume_strain == Chosen::faces) return VolumeStrain::faces;
+  if (p.method.volume_strain == Chosen::cells) return VolumeStrain::cells;
+  if (p.method.volume_strain == Chosen::shared) return VolumeStrain::shared;
   const bool plane_stress = p.dimension == 2 && p.plane == SolidParameters::Plane::stress;
-  if (plane_stress || has_orthotropic(p) || largest_poissons_ratio(p) < nearly_incompressible) return false;
-  return !has_finite_strain(p) || std::ranges::all_of(materials_of(p), [](const SolidMaterial& m) {
-    return laws::of(m.law)->make({1, 1}, {})->has_bulk();
-  });
+  if (plane_stress || has_orthotropic(p) || largest_poissons_ratio(p) < nearly_incompressible)
+    return VolumeStrain::faces;
+  const bool has_bulk =
+      !has_finite_strain(p) || std::ranges::all_of(materials_of(p), [](const SolidMaterial& m) {
+        return laws::of(m.law)->make({1, 1}, {})->has_bulk();
+      });
+  return has_bulk ? VolumeStrain::cells : VolumeStrain::faces;
 }
 
 ElasticBody elastic_body(const SolidParameters& p, const Mesh& mesh) {
   std::vector<LameConstants> of_material;
   for (const SolidMaterial& material : materials_of(p)) of_material.push_back(lame_constants(p, material));
-  ElasticBody body{{}, mesh.cell_material, volume_by_cells(p)};
+  ElasticBody body{{}, mesh.cell_material, volume_strain_of(p)};
   if (mesh.cell_material.empty()) body.lame = {of_material.front()};
   for (const int material : mesh.cell_material) body.lame.push_back(of_material[material]);
   if (has_orthotropic(p)) add_matrices(p, mesh, body);

@@ -8,6 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/doubt.hpp"
+#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -93,12 +94,23 @@ void SolidJudge::see_inertia() {
   if (load > 0) inertia_over_load_ = std::max(inertia_over_load_, inertia.norm() / load);
 }
 
+void SolidJudge::estimate_large_strain() {
+  large_strain_.reset();
+  try {
+    large_strain_ =
+        couplet::estimate_large_strain(body_, stepper_.last_solve().unknowns, stepper_.trial().known);
+  } catch (const SolveFailure& failure) {
+    log::warn("output.large-strain-estimate: it could not be found: {}", failure.what());
+  }
+}
+
 SolidEvidence SolidJudge::evidence() const {
   const std::vector<double> points = fields_.point_displacement();
   SolidEvidence evidence = fields_.deformation(points);
   evidence.share_of_yield = fields_.share_of_yield(points);
   evidence.largest_gradient = std::max(largest_gradient_, evidence.largest_gradient);
   if (!body_.is_dynamic() && stepper_.state().steps > 1) evidence.inertia_over_load = inertia_over_load_;
+  if (large_strain_) evidence.large_strain = large_strain_->text();
   for (const auto& effect : body_.effects()) effect->add_evidence(evidence);
   return evidence;
 }
@@ -108,6 +120,7 @@ std::vector<std::string> SolidJudge::sentences() const {
   if (audit_)
     sentences.push_back(fmt::format("error indicator: {}{}.", audit_->text(),
                                     audit_->is_doubtful() ? "; NOT to be trusted" : ""));
+  if (large_strain_) sentences.push_back(large_strain_->text() + ".");
   if (energy_audit_.scale > 0) sentences.push_back(fmt::format("energy balance: {}.", energy_audit_.text()));
   if (body_.is_dynamic() && !body_.parameters().damping && !body_.kernel().is_symmetric())
     sentences.push_back(

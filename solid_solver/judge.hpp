@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solid_solver/effect_cards.hpp"
+#include "solid_solver/large_strain_estimate.hpp"
 #include "solid_solver/solid_fields.hpp"
 #include "solid_solver/solid_stepper.hpp"
 #include "solid_solver/strain_audit.hpp"
@@ -31,6 +32,9 @@ class SolidJudge final {
   void see_gradient(std::span<const double> points);
   /// Of a static run, between solve and acceptance: what inertia would have been beside the load.
   void see_inertia();
+  /// Of a linear static run, between solve and acceptance, where it is asked for.
+  void estimate_large_strain();
+  const std::optional<LargeStrainEstimate>& large_strain() const { return large_strain_; }
   SolidEvidence evidence() const;
   /// For the end of the run.
   std::vector<std::string> sentences() const;
@@ -50,6 +54,7 @@ class SolidJudge final {
   double largest_gradient_ = 0, inertia_over_load_ = 0;
   std::optional<StrainAudit> audit_;
   EnergyAudit energy_audit_;
+  std::optional<LargeStrainEstimate> large_strain_;  // of the last step
   bool strain_doubted_ = false, energy_doubted_ = false;
 };
 

@@ -36,13 +36,16 @@ void declare(config::Section& s, MethodParameters& m) {
           "auto: "
           "corrected in static analyses, thesis in dynamic ones");
   using VolumeStrain = MethodParameters::VolumeStrain;
-  s.choice(
-       "volume-strain", m.volume_strain,
-       {{"auto", VolumeStrain::automatic}, {"faces", VolumeStrain::faces}, {"cells", VolumeStrain::cells}})
+  s.choice("volume-strain", m.volume_strain,
+           {{"auto", VolumeStrain::automatic},
+            {"faces", VolumeStrain::faces},
+            {"cells", VolumeStrain::cells},
+            {"shared", VolumeStrain::shared}})
       .doc(
-          "of face-gradient symmetric; cells: one a cell, which does not lock as nu goes to 0.5; faces: that "
-          "of each "
-          "face; auto: cells from nu = 0.4 up");
+          "of face-gradient symmetric; cells: one a cell, which does not lock as nu goes to 0.5; faces: that of each "
+          "face; shared: a tenth of the bulk modulus, at most a third of the shear modulus, on the faces', the rest on the "
+          "cells': best in plane strain and for plates, too soft for bars in space with few cells across; auto: cells from "
+          "nu = 0.4 up, else faces");
   s.choice("linear-solver", m.linear_solver,
            {{"auto", LinearSolver::automatic},
             {"direct", LinearSolver::direct},

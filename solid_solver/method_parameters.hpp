@@ -13,7 +13,7 @@ struct MethodParameters {
   enum class Preconditioner { automatic, multigrid, factors };
   enum class Acceleration { none, aitken, anderson };
   enum class Predictor { none, euler, adams };
-  enum class VolumeStrain { automatic, faces, cells };
+  enum class VolumeStrain { automatic, faces, cells, shared };
   Type type = Type::automatic;
   FaceGradient face_gradient = FaceGradient::automatic;
   VolumeStrain volume_strain = VolumeStrain::automatic;       // of the symmetric gradient

@@ -40,6 +40,10 @@ void declare(config::Section& s, SolidOutputParameters& o) {
   s.value("point-stress", o.point_stress).doc("write stress components at the points too");
   s.value("acceleration", o.acceleration).doc("write the acceleration of a dynamic analysis");
   s.value("energies", o.energies).doc("write the energies after each step to energies.csv");
+  s.value("large-strain-estimate", o.large_strain_estimate)
+      .doc(
+          "of a linear static analysis: by how much 'kinematics: finite-strain' would change the displacement, in two "
+          "more linear solves a step; told at the end of the run");
   s.value("spectrum", o.spectrum)
       .doc(
           "write the eigenvalues of M^-1 K of a dynamic analysis to spectrum.csv at the start and tell how "

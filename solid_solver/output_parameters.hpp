@@ -23,6 +23,7 @@ struct SolidOutputParameters {
   bool point_stress = false;
   bool acceleration = false;
   bool energies = false;
+  bool large_strain_estimate = false;
   bool spectrum = false;
   int modes = 0;  // frequencies and shapes that are asked for
 };

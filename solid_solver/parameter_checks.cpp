@@ -79,6 +79,8 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
         key);
   };
   const bool is_dynamic = p.analysis == SolidParameters::Analysis::dynamic;
+  refuse("solution-method", p.method.volume_strain == MethodParameters::VolumeStrain::shared,
+         "finite strain takes 'volume-strain: faces' or 'cells' and no share of both");
   refuse("plane", p.dimension == 2 && p.plane == SolidParameters::Plane::stress,
          "finite strain knows plane strain only; model the sheet in 3-D");
   refuse("thermal-expansion", p.expansion.has_value(), "finite strain has no thermal strain");
@@ -119,6 +121,26 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
          "'spectrum' and 'modes' are those of the linear solid; use small-strain");
 }
 
+void check_large_strain_estimate(config::Section& s, SolidParameters& p) {
+  s.check(
+      [&p]() -> std::string {
+        if (!p.output.large_strain_estimate) return "";
+        if (p.analysis != SolidParameters::Analysis::static_ || has_finite_strain(p))
+          return "'large-strain-estimate' is of a linear static analysis: 'analysis: static' without 'kinematics: "
+                 "finite-strain'";
+        if (p.dimension == 2 && p.plane == SolidParameters::Plane::stress)
+          return "'large-strain-estimate' knows plane strain only; model the sheet in 3-D";
+        if (has_orthotropic(p) || p.expansion)
+          return "'large-strain-estimate' knows neither orthotropic materials nor thermal strain";
+        MethodParameters any = p.method;
+        any.type = MethodParameters::Type::automatic;
+        SolidParameters q = p;
+        q.method = any;
+        return symmetric_suits(q) ? "" : "'large-strain-estimate' cannot have 'zero-normal-gradient'";
+      },
+      "output");
+}
+
 /// What an elastic matrix cannot have, each with the key to change.
 void check_orthotropic(config::Section& s, SolidParameters& p) {
   using Method = MethodParameters;
@@ -134,7 +156,8 @@ void check_orthotropic(config::Section& s, SolidParameters& p) {
       p.method.type == Method::Type::segregated || p.method.type == Method::Type::block_coupled ||
           p.method.face_gradient == Method::FaceGradient::thesis ||
           p.method.face_gradient == Method::FaceGradient::corrected ||
-          p.method.volume_strain == Method::VolumeStrain::cells,
+          p.method.volume_strain == Method::VolumeStrain::cells ||
+          p.method.volume_strain == Method::VolumeStrain::shared,
       "an orthotropic material goes with 'face-gradient: symmetric' (or 'auto'), 'type: newton-krylov' (or 'auto') "
       "and the volume strain of the faces");
   s.check(

@@ -74,8 +74,8 @@ bool has_orthotropic(const SolidParameters& parameters);
 /// From here up the volume strain of faces locks.
 inline constexpr double nearly_incompressible = 0.4;
 double largest_poissons_ratio(const SolidParameters& parameters);
-/// The symmetric gradient takes one volume strain a cell.
-bool volume_by_cells(const SolidParameters& parameters);
+/// Whose volume strain the symmetric gradient takes.
+VolumeStrain volume_strain_of(const SolidParameters& parameters);
 /// The symmetric gradient can have all of the scene's boundaries and the method that is asked for.
 bool symmetric_suits(const SolidParameters& parameters);
 

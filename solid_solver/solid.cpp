@@ -37,6 +37,7 @@ Exchange Solid::solve(const Exchange& in) {
 
 StepReport Solid::accept_step() {
   if (!body_.is_dynamic()) judge_.see_inertia();
+  if (body_.parameters().output.large_strain_estimate) judge_.estimate_large_strain();
   stepper_.accept_step();
   if (!body_.is_dynamic()) judge_.look();
   for (const auto& effect : body_.effects())

@@ -23,9 +23,7 @@ namespace couplet {
 struct ElasticBody {
   std::vector<LameConstants> lame;
   std::vector<int> material_of_cell;
-  /// Symmetric gradient: the volume strain is one a cell, the mean of its faces', which does not lock as nu
-  /// goes to 1/2.
-  bool volume_by_cells = false;
+  VolumeStrain volume_strain = VolumeStrain::faces;  ///< of the symmetric gradient
   /// Symmetric gradient: stress by matrices of its own in place of `lame`, which is then their isotropic mean. Empty:
   /// none. `matrix_of_cell`: which of them, per local cell; empty when there is one.
   std::vector<ElasticMatrix> matrix{};
@@ -82,7 +80,9 @@ class ElasticOperator {
   std::size_t n_unknowns() const { return (mesh_->cells.n_owned() + unknown_faces_.size()) * mesh_->dim; }
   ElasticCondition condition(Index face) const { return boundary_.condition[face - mesh_->n_interior]; }
   const ElasticSupport& support(Index face) const { return boundary_.support(face - mesh_->n_interior); }
-  bool volume_by_cells() const { return body_.volume_by_cells; }
+  VolumeStrain volume_strain() const { return body_.volume_strain; }
+  /// Cells have a volume strain of their own, on which some or all of the bulk modulus acts.
+  bool volume_by_cells() const { return body_.volume_strain != VolumeStrain::faces; }
   /// One pair of constants for all cells.
   bool is_uniform() const { return body_.lame.size() == 1; }
   const LameConstants& lame(Index cell) const { return body_.lame[body_.lame.size() == 1 ? 0 : cell]; }

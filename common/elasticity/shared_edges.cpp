@@ -27,7 +27,7 @@ SharedEdges::SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::spa
   std::vector<double> sums(n * 3, 0);  // V_E, and mu and lambda by volume
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const LameConstants whole = face_lame(mesh, rows, faces[i]);
-    const LameConstants lame = rows.volume_by_cells() ? deviatoric(whole) : whole;
+    const LameConstants lame = part_of_faces(whole, rows.volume_strain());
     const double part = share * volume[i] / 3;
     for (const Index e : edges_of_[i]) {
       sums[std::size_t(e) * 3] += part;
@@ -44,7 +44,7 @@ SharedEdges::SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::spa
     if (!rows.is_uniform())
       lame_.push_back({sums[3 * e + 1] * inverse_volume_[e], sums[3 * e + 2] * inverse_volume_[e]});
   }
-  if (rows.is_uniform()) lame_.push_back(rows.volume_by_cells() ? deviatoric(rows.lame(0)) : rows.lame(0));
+  if (rows.is_uniform()) lame_.push_back(part_of_faces(rows.lame(0), rows.volume_strain()));
   if (rows.is_anisotropic()) find_matrices(mesh, rows, faces, volume);
   find_mirrors(mesh, rows);
   end_points_ = {};

@@ -37,7 +37,7 @@ std::vector<FaceBlock<D>> make_blocks(const Mesh& mesh, const ElasticOperator& r
     const Index f = faces[is_filling ? 0 : i];
     const SymmetricFace<D> face = symmetric_face<D>(mesh, rows, f);
     const LameConstants whole = face_lame(mesh, rows, f);
-    const LameConstants lame = rows.volume_by_cells() ? deviatoric(whole) : whole;
+    const LameConstants lame = part_of_faces(whole, rows.volume_strain());
     const double scale = is_filling ? 0 : face.volume * face.inverse * face.inverse;
     block.mu[k] = lame.mu * scale;
     block.lambda[k] = lame.lambda * scale;

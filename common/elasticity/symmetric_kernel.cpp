@@ -16,7 +16,8 @@ SymmetricKernel<D>::SymmetricKernel(const Mesh& mesh, const ElasticOperator& row
   shared_volumes_ = make_volumes(shared_mine_);
   pressure_.assign(space_.n_nodes(), 0);
   const std::vector<double> volume = pyramid_volumes(mesh);
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) bulk_.push_back(bulk_modulus(rows.lame(c)) / volume[c]);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    bulk_.push_back(bulk_of_cells(rows.lame(c), rows.volume_strain()) / volume[c]);
 }
 
 template <int D>
@@ -297,7 +298,7 @@ void SymmetricKernel<D>::face_gradients(std::span<const double> unknowns, std::s
       double mean = here * pressure_[std::size_t(mesh_.owner[f])];
       if (f < mesh_.n_interior) mean += there * pressure_[std::size_t(mesh_.neighbour[f])];
       mean /= here + there;
-      const double gap = mean - bulk_modulus(lame) * gradient.trace();
+      const double gap = mean - bulk_of_cells(lame, rows_.volume_strain()) * gradient.trace();
       for (int a = 0; a < D; ++a) gradient(a, a) += gap / (2 * lame.mu + D * lame.lambda);
     }
     take(f, gradient);

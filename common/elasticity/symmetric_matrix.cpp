@@ -4,6 +4,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/node_assembly.hpp"
 #include "common/elasticity/symmetric_faces.hpp"
+#include "common/elasticity/symmetric_space.hpp"
 
 namespace couplet {
 namespace {
@@ -32,7 +33,7 @@ void add_face(const Mesh& mesh, const ElasticOperator& rows, Index f, NodeAssemb
   const Tensor3 identity = Tensor3::Identity();
   const std::vector<FaceStencil::Term>& terms = to.stencil().of<D>(face, f);
   const LameConstants whole = face_lame(mesh, rows, f);
-  const auto [mu, lambda] = rows.volume_by_cells() ? deviatoric(whole) : whole;
+  const auto [mu, lambda] = part_of_faces(whole, rows.volume_strain());
   if (rows.volume_by_cells()) {
     const auto [here, there] = pyramids(mesh, f);
     for (const FaceStencil::Term& t : terms) {
@@ -63,7 +64,9 @@ SparseMatrix symmetric_matrix(const Mesh& mesh, const ElasticOperator& rows,
     else
       add_face<3>(mesh, rows, f, assembly);
   }
-  assembly.finish_volumes([&](Index c) { return bulk_modulus(rows.lame(c)) / mesh.reference.volume[c]; });
+  const std::vector<double> volume = pyramid_volumes(mesh);
+  assembly.finish_volumes(
+      [&](Index c) { return bulk_of_cells(rows.lame(c), rows.volume_strain()) / volume[std::size_t(c)]; });
   assembly.add_supports();
   assembly.add_diagonals(of_nodes);
   return assembly.matrix();

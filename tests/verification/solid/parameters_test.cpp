@@ -117,6 +117,19 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
   told(large + "damping: {stiffness: 1}\nmaterial: {" + body + "}\n", "damps rigid rotations");
   told(large + "solution-method: {type: segregated}\nmaterial: {" + body + "}\n", "Newton's method");
   told(large + "output: {spectrum: true}\nmaterial: {" + body + "}\n", "use small-strain");
+  told(large + "solution-method: {volume-strain: shared}\nmaterial: {" + body + "}\n", "no share of both");
+  const std::string estimate = "output: {large-strain-estimate: true}\n";
+  told(large + estimate + "material: {" + body + "}\n", "of a linear static analysis");
+  told(estimate + "material: {" + body + "}\n", "of a linear static analysis");
+  SolidParameters sheet, sound;
+  EXPECT_THAT(
+      read(
+          "mesh: a.msh\ndimension: 2\nplane: stress\nanalysis: static\nboundaries: {root: {type: fixed-displacement, value: [0, 0]}}\n" +
+              estimate + "material: {" + body + "}\n",
+          sheet),
+      Contains(HasSubstr("plane strain only")));
+  EXPECT_THAT(read(start + estimate + "analysis: static\nmaterial: {" + body + "}\n", sound),
+              ::testing::IsEmpty());
   told(large + "interface: {load: pressure}\nmaterial: {" + body + "}\n", "would not follow the surface");
 }
 

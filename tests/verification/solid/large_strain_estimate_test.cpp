@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a linear run says large strain would change, held against what it changes.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+struct Pair {
+  const char* name;
+  std::array<double, 2> size;  // [m]; of E = 1 MPa
+  std::array<int, 2> cells;
+  std::string along, across;  // traction of the free end [Pa]
+  std::string body;           // force per volume across [N/m^3]
+  bool clamped_ends = false;
+  double nu = 0.3;
+  double least = 0;  // the true change is at least so large: the pair would say nothing below
+  FaceGradient gradient = FaceGradient::automatic;
+};
+
+void PrintTo(const Pair& pair, std::ostream* out) { *out << pair.name; }
+
+// With h / L = 0.1 and b = E / (1 - nu^2): EI / L^2 = b h^3 / (12 L^2) = 91.6 N/m; Euler's load 226 N/m, 2260 Pa.
+const std::vector<Pair> pairs{
+    {.name = "cantilever",
+     .size = {1, 0.1},
+     .cells = {40, 4},
+     .along = "0",
+     .across = "900*t",
+     .body = "0",
+     .least = 0.15},
+    {.name = "cantilever_far",
+     .size = {1, 0.1},
+     .cells = {40, 4},
+     .along = "0",
+     .across = "1600*t",
+     .body = "0",
+     .least = 0.25},
+    {.name = "clamped_beam",
+     .size = {1, 0.02},
+     .cells = {80, 4},
+     .along = "0",
+     .across = "0",
+     .body = "120*t",
+     .clamped_ends = true,
+     .least = 0.1},
+    {.name = "compressed_column",
+     .size = {1, 0.1},
+     .cells = {40, 4},
+     .along = "-900*t",
+     .across = "30*t",
+     .body = "0",
+     .least = 0.3},
+    {.name = "tensioned_beam",
+     .size = {1, 0.1},
+     .cells = {40, 4},
+     .along = "900*t",
+     .across = "90*t",
+     .body = "0",
+     .least = 0.15},
+    {.name = "pulled_block",
+     .size = {1, 1},
+     .cells = {8, 8},
+     .along = "6e4*t",
+     .across = "0",
+     .body = "0",
+     .least = 0.05},
+    {.name = "cantilever_nearly_incompressible",
+     .size = {1, 0.1},
+     .cells = {40, 4},
+     .along = "0",
+     .across = "900*t",
+     .body = "0",
+     .nu = 0.49,
+     .least = 0.1,
+     .gradient = FaceGradient::symmetric},
+};
+
+SolidParameters parameters(const Pair& pair) {
+  SolidParameters p = box_parameters(2);
+  p.material = {1000, 1e6, pair.nu};
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmax"] =
+      pair.clamped_ends ? p.boundaries["xmin"] : boundary(Type::traction, {pair.along, pair.across});
+  p.body_force = {{"0"}, {pair.body}};
+  p.method.face_gradient = pair.gradient;
+  return p;
+}
+
+RawMesh mesh_of(const Pair& pair) {
+  return make_box(BoxCells::quadrilaterals, {pair.cells[0], pair.cells[1], 1}, Vec3::Zero(),
+                  Vec3(pair.size[0], pair.size[1], 0));
+}
+
+/// Root mean square over all cells of b - a, over that of a.
+double change_of(const Solid& a, const Solid& b) {
+  const Mesh& mesh = a.body().mesh();
+  const auto &u = a.stepper().state().cell_u, &v = b.stepper().state().cell_u;
+  double difference = 0, whole = 0;
+  for (std::size_t i = 0; i < std::size_t(mesh.cells.n_owned()) * mesh.dim; ++i) {
+    difference += mesh.reference.volume[i / mesh.dim] * (v[i] - u[i]) * (v[i] - u[i]);
+    whole += mesh.reference.volume[i / mesh.dim] * u[i] * u[i];
+  }
+  return std::sqrt(sum(mesh.comm, difference) / sum(mesh.comm, whole));
+}
+
+class LargeStrainPair : public ::testing::TestWithParam<Pair> {};
+
+TEST_P(LargeStrainPair, is_estimated_within_a_factor_of_1_5_of_the_true_difference) {
+  if (comm_size(MPI_COMM_WORLD) > 1) GTEST_SKIP() << "one rank; ranks_agree holds the others to it";
+  SolidParameters p = parameters(GetParam());
+  p.output.large_strain_estimate = true;
+  const auto linear = make_solid(mesh_of(GetParam()), p);
+  step(*linear, 1);
+  p.output.large_strain_estimate = false;
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.method.face_gradient = FaceGradient::automatic;
+  if (p.material.poissons_ratio > 0.4) p.material.law = "nearly-incompressible-neo-hookean";
+  const auto large = make_solid(mesh_of(GetParam()), p);
+  for (int i = 0; i < 4; ++i) step(*large, 0.25);
+  ASSERT_TRUE(linear->judge().large_strain().has_value());
+  const double told = linear->judge().large_strain()->change, found = change_of(*linear, *large);
+  RecordProperty("told", fmt::format("{:.4f}", told));
+  RecordProperty("found", fmt::format("{:.4f}", found));
+  EXPECT_GT(found, GetParam().least);
+  EXPECT_LT(told, 1.5 * found);
+  EXPECT_GT(told, found / 1.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, LargeStrainPair, ::testing::ValuesIn(pairs),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(LargeStrainEstimate, vanishes_with_the_load) {
+  Pair pair = pairs[0];
+  pair.across = "0.9*t";
+  SolidParameters p = parameters(pair);
+  p.output.large_strain_estimate = true;
+  const auto solid = make_solid(mesh_of(pair), p);
+  step(*solid, 1);
+  EXPECT_LT(solid->judge().large_strain()->change, 1e-3);
+}
+
+TEST(LargeStrainEstimate, ranks_agree) {
+  Pair pair = pairs[0];
+  pair.cells = {12, 2};
+  SolidParameters p = parameters(pair);
+  p.output.large_strain_estimate = true;
+  Solid whole(distribute(MPI_COMM_SELF, mesh_of(pair)), p, SolidContext{}),
+      parts(distribute(MPI_COMM_WORLD, mesh_of(pair)), p, SolidContext{});
+  step(whole, 1);
+  step(parts, 1);
+  const LargeStrainEstimate &a = *whole.judge().large_strain(), &b = *parts.judge().large_strain();
+  EXPECT_GT(a.change, 0.1);
+  EXPECT_NEAR(b.change, a.change, 1e-6 * a.change);
+}
+
+// A column under four times Euler's load: linear theory bends it a little, it would buckle.
+TEST(LargeStrainEstimate, does_not_call_a_column_beyond_its_load_harmless) {
+  Pair pair = pairs[3];
+  pair.along = "-9000*t";
+  SolidParameters p = parameters(pair);
+  p.output.large_strain_estimate = true;
+  const auto solid = make_solid(mesh_of(pair), p);
+  step(*solid, 1);
+  const LargeStrainEstimate& told = *solid->judge().large_strain();
+  EXPECT_TRUE(!told.is_known() || told.change > 1) << told.text();
+}
+
+TEST(LargeStrainEstimate, is_not_made_unless_asked_for) {
+  const auto solid = make_solid(mesh_of(pairs[0]), parameters(pairs[0]));
+  step(*solid, 1);
+  EXPECT_FALSE(solid->judge().large_strain().has_value());
+}
+
+}  // namespace
+}  // namespace couplet::testing
