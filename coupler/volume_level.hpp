@@ -67,6 +67,7 @@ class VolumeLevel {
   Defect answer_to(std::vector<Exchange>& known, const std::function<void()>& answer);
   void put(const Cavity& cavity, Exchange& given) const;
   void probe(std::vector<Exchange>& known, const std::function<void()>& answer, const Eigen::VectorXd& now);
+  double pressure(const Cavity& cavity, const std::vector<double>& load) const;
   Eigen::VectorXd step_to(const Eigen::VectorXd& g) const;
   std::array<double, 2> inflow(const Cavity& cavity, const std::vector<Exchange>& known) const;
 

@@ -42,6 +42,10 @@ Expression turning_of(const BoundaryParameters& b, const std::string& where) {
   return speed;
 }
 
+bool uses_space(const std::vector<Expression>& expressions) {
+  return std::ranges::any_of(expressions, [](const Expression& e) { return e.uses_space(); });
+}
+
 double ramp_factor(const BoundaryParameters& b, double t) {
   if (!b.ramp || t >= *b.ramp) return 1;
   return t <= 0 ? 0 : 0.5 * (1 - std::cos(std::numbers::pi * t / *b.ramp));
@@ -71,6 +75,7 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
     case BoundaryType::interface:
       std::fill_n(interface_.begin() + first, patch.count, 1);
       interface_patches_.push_back(patch.name);
+      turns_ = true;
       if (b.foresees()) {
         yields_ = true;
         wall_mass_.resize(kind_.size(), 0.);
@@ -85,6 +90,7 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
     case BoundaryType::body:
       std::fill_n(interface_.begin() + first, patch.count, 1);
       body_patches_.push_back(&patch);
+      turns_ = true;
       return;
     case BoundaryType::convective_outlet:
       std::fill_n(convective_.begin() + first, patch.count, 1);
@@ -116,6 +122,10 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
       } else if (!b.velocity.empty()) {
         given.velocity = make_expressions(b.velocity, D, where + ".velocity");
       }
+      if (b.type == BoundaryType::moving_wall && (b.rotation || b.table || uses_space(given.velocity))) {
+        given.turns = &patch;
+        turns_ = true;
+      }
       [[fallthrough]];
     case BoundaryType::no_slip:
       velocity_patches_.push_back(std::move(given));
@@ -140,36 +150,32 @@ bool Boundary<D>::set_wall_mass(std::span<const Index> boundary_faces, std::span
 }
 
 template <int D>
-void Boundary<D>::set_velocity(const Given& g, double t, const std::vector<Vec3>& centres,
-                               Vectors<D>& w) const {
-  const std::span<const Vec3> places(centres.data() + g.first, g.count);
-  const std::span<double> values = flat<D>(w).subspan(std::size_t(g.first) * D, std::size_t(g.count) * D);
+void Boundary<D>::velocity_of(const Given& g, double t, std::span<const Vec3> places, Vec<D>* w) const {
+  const std::size_t n = places.size();
+  if (n == 0) return;
+  const std::span<double> values(w->data(), n * D);
   if (!g.shape.speed.empty()) {
     const double mean = g.mean_speed(Vec3::Zero(), t);
-    for (Index i = 0; i < g.count; ++i) w[g.first + i] = mean * g.shape.speed[i] * g.shape.direction;
+    for (std::size_t i = 0; i < n; ++i) w[i] = mean * g.shape.speed[i] * g.shape.direction;
   } else if (g.table) {
-    for (Index i = 0; i < g.count; ++i)
-      g.table->evaluate(places[i], t, values.subspan(std::size_t(i) * D, D));
-  } else if (g.velocity.empty() || g.count == 0) {
+    for (std::size_t i = 0; i < n; ++i) g.table->evaluate(places[i], t, values.subspan(i * D, D));
+  } else if (g.velocity.empty()) {
     std::fill(values.begin(), values.end(), 0.0);
   } else {
     for (int c = 0; c < D; ++c) g.velocity[c].evaluate(places, t, values, D, c);
   }
+  if (const auto& r = g.parameters.rotation) {
+    const Vec3 omega = g.turning(Vec3::Zero(), t) * (D == 2 ? Vec3::UnitZ() : Vec3(r->axis.normalized()));
+    for (std::size_t i = 0; i < n; ++i) w[i] += omega.cross(places[i] - r->centre).template head<D>();
+  }
+  const double factor = ramp_factor(g.parameters, t);
+  for (std::size_t i = 0; factor != 1 && i < n; ++i) w[i] *= factor;
 }
 
 template <int D>
 void Boundary<D>::velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const {
-  for (const Given& g : velocity_patches_) {
-    set_velocity(g, t, centres, w);
-    if (const auto& r = g.parameters.rotation; r && g.count > 0) {
-      const Vec3 omega = g.turning(Vec3::Zero(), t) * (D == 2 ? Vec3::UnitZ() : Vec3(r->axis.normalized()));
-      for (Index b = g.first; b < g.first + g.count; ++b)
-        w[b] += omega.cross(centres[b] - r->centre).template head<D>();
-    }
-    const double factor = ramp_factor(g.parameters, t);
-    if (factor != 1)
-      for (Index b = g.first; b < g.first + g.count; ++b) w[b] *= factor;
-  }
+  for (const Given& g : velocity_patches_)
+    velocity_of(g, t, {centres.data() + g.first, std::size_t(g.count)}, w.data() + g.first);
 }
 
 template <int D>

@@ -48,6 +48,11 @@ class Boundary {
 
   /// w at time t [m/s] at the faces with given velocity; interface faces are left as they are.
   void velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
+  /// Some walls may turn or stretch: the same on all ranks.
+  bool walls_turn() const { return turns_; }
+  /// The turn (see turn_of()) of the walls whose velocity the case gives and that differs from place to place, at
+  /// their faces of `turn`, which has all boundary faces. `points`: of the mesh at time t.
+  void add_turn(const Mesh& mesh, std::span<const Vec3> points, double t, Vectors<D>& turn) const;
   /// p at time t [Pa] at the faces with given pressure; the others are left as they are.
   void pressure_at(double t, const std::vector<Vec3>& centres, std::vector<double>& p) const;
   /// Velocity at all boundary faces from that in the cells: u_b = w, u_P with the normal part of w, or u_P.
@@ -77,8 +82,10 @@ class Boundary {
     InletShape<D> shape;             // with mean_speed
     std::optional<GridTable> table;  // of the velocity
     Expression turning;              // [rad/s], with a rotation
+    const Patch* turns = nullptr;    // a wall whose velocity differs from place to place
   };
-  void set_velocity(const Given& given, double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
+  /// At places of the patch, in the order of its faces where a profile was made for them [m/s].
+  void velocity_of(const Given& given, double t, std::span<const Vec3> places, Vec<D>* w) const;
   MPI_Comm comm_;
   std::vector<FaceKind> kind_;
   std::vector<char> interface_, convective_, free_backflow_;
@@ -86,7 +93,7 @@ class Boundary {
   std::vector<const Patch*> body_patches_;
   std::vector<Given> velocity_patches_, pressure_patches_;
   std::vector<std::pair<Index, Index>> convective_patches_;  // first boundary face, count; also empty ones
-  bool closed_ = true, yields_ = false, asks_for_mass_ = false;
+  bool closed_ = true, yields_ = false, asks_for_mass_ = false, turns_ = false;
   std::vector<double> wall_mass_;
   std::vector<char> asked_;  // by boundary face: its mass is the structure's word
 };

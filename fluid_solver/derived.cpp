@@ -39,7 +39,9 @@ std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid) {
   std::vector<std::array<double, 2>> units(fluid.viscous_force().size());
   for (std::size_t b = 0; b < units.size(); ++b) {
     const Index f = mesh.n_interior + static_cast<Index>(b);
-    const double area = at.area[f].norm(), shear = fluid.viscous_force()[b].norm() / area;
+    const double area = at.area[f].norm();
+    const Vec<D> n = at.area[f] / area, &force = fluid.viscous_force()[b];
+    const double shear = (force - force.dot(n) * n).norm() / area;
     const double distance = area / at.conductance[f];
     units[b] = {shear, nu > 0 ? distance * std::sqrt(shear / rho) / nu : 0};
   }

@@ -13,13 +13,19 @@ namespace couplet::fluid {
 namespace {
 
 constexpr int most_sub_steps = 100000;
-// An interface faster than so many times all that moved so far (at the very start: than this [m/s]) diverges.
-constexpr double most_times_faster = 1e4, most_speed = 1e8;
 // The implicit viscous term costs about this much more a sub-step.
 constexpr double implicit_cost = 1.5;
 
 double parts(double dt, double limit) {
   return std::isfinite(limit) ? std::max(1.0, std::ceil(dt / limit - 1e-9)) : 1.0;
+}
+
+/// A frame that is only translated keeps its shape, and with it the pressure equation and its factors. Null: none.
+template <int D>
+std::shared_ptr<const Placement<D>> placed(const Mesh& mesh, const Placement<D>* frame,
+                                           std::span<const Vec3> points) {
+  if (!frame) return make_placement<D>(mesh, points);
+  return translated(*frame, points.empty() ? Vec3(Vec3::Zero()) : Vec3(points[0] - mesh.reference_points[0]));
 }
 
 }  // namespace
@@ -29,31 +35,30 @@ Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving
     : mesh_(mesh),
       parameters_(parameters),
       moving_(moving_mesh),
+      translates_(parameters.motion && parameters.motion->translates()),
       boundary_(mesh, parameters_),
-      step_(mesh, boundary_, parameters_, moving_mesh),
+      step_(mesh, boundary_, parameters_, moving_mesh && !translates_),
       step_size_(mesh, boundary_, parameters.viscosity / parameters.density, parameters.scheme) {
-  if (!parameters.bodies.empty()) check_bodies();
-  if (!parameters.gaps.empty() && boundary_.closed())
-    throw Error("gaps: a fluid with gaps that close needs an outlet: its blocked cells keep what they hold.");
-  if (parameters.scheme == ExplicitScheme::runge_kutta) check_scheme();
+  check_parameters();
   start(start_time);
 }
 
 template <int D>
-void Fluid<D>::check_bodies() {
-  if (!parameters_.gaps.empty())
-    throw Error("gaps: a fluid with immersed bodies has none; leave 'gaps' or 'bodies' out.");
-  if (moving_)
-    throw Error("bodies: the mesh of a fluid with immersed bodies must rest; remove its mesh mover.");
-  if (boundary_.closed())
-    throw Error("bodies: a fluid with immersed bodies needs an outlet, since they may displace fluid.");
-  if (parameters_.viscous == ViscousTreatment::implicit)
-    throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
-  parameters_.viscous = ViscousTreatment::explicit_;
-}
-
-template <int D>
-void Fluid<D>::check_scheme() {
+void Fluid<D>::check_parameters() {
+  if (!parameters_.bodies.empty()) {
+    if (!parameters_.gaps.empty())
+      throw Error("gaps: a fluid with immersed bodies has none; leave 'gaps' or 'bodies' out.");
+    if (moving_)
+      throw Error("bodies: the mesh of a fluid with immersed bodies must rest; remove its mesh mover.");
+    if (boundary_.closed())
+      throw Error("bodies: a fluid with immersed bodies needs an outlet, since they may displace fluid.");
+    if (parameters_.viscous == ViscousTreatment::implicit)
+      throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
+    parameters_.viscous = ViscousTreatment::explicit_;
+  }
+  if (!parameters_.gaps.empty() && boundary_.closed())
+    throw Error("gaps: a fluid with gaps that close needs an outlet: its blocked cells keep what they hold.");
+  if (parameters_.scheme != ExplicitScheme::runge_kutta) return;
   if (moving_)
     throw Error("scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover.");
   if (parameters_.viscous == ViscousTreatment::implicit)
@@ -94,6 +99,11 @@ void Fluid<D>::start(double time) {
   s.time = time;
   if (moving_) s.points = mesh_.reference_points;
   s.placement = moving_ ? make_placement<D>(mesh_, s.points) : make_placement<D>(mesh_, mesh_.reference);
+  if (translates_) {
+    auto frame = std::make_shared<Placement<D>>(*s.placement);
+    frame->shape = std::make_shared<const char>();
+    s.placement = frame_ = std::move(frame);
+  }
   const Placement<D>& at = *s.placement;
   s.u.assign(mesh_.cells.n_local(), Vec<D>::Zero());
   s.w.assign(mesh_.boundary.n_owned(), Vec<D>::Zero());
@@ -109,7 +119,14 @@ void Fluid<D>::start(double time) {
   // impulse in the first step, which an elastic wall must feel. A given field is made to fit its boundaries
   // instead.
   s.start = parameters_.initial_velocity.empty() ? Start::at_rest : Start::flowing;
-  if (s.start == Start::flowing) boundary_.velocity_at(time, at.boundary_centre, s.w);
+  if (s.start == Start::flowing) {
+    boundary_.velocity_at(time, at.boundary_centre, s.w);
+    if (boundary_.walls_turn()) {
+      s.turn.assign(s.w.size(), Vec<D>::Zero());
+      boundary_.add_turn(mesh_, mesh_.reference_points, time, s.turn);
+      s.turns = true;
+    }
+  }
   for (std::size_t b = 0; b < s.w.size(); ++b)
     if (boundary_.is_convective(b)) s.w[b] = s.u_boundary[b];
   for (std::size_t b = 0; b < s.w.size(); ++b)
@@ -134,6 +151,7 @@ template <int D>
 void Fluid<D>::restore(State<D> state) {
   accepted_ = std::move(state);
   accepted_.number = 0;
+  if (translates_) accepted_.placement = placed(mesh_, frame_.get(), accepted_.points);
   split_ = false;
   step_.mark_level(accepted_);
   step_.set_eddy_viscosity(accepted_);
@@ -200,30 +218,6 @@ double Fluid<D>::next_size(double remaining, bool& last) {
   return remaining / n;
 }
 
-/// Whoever moved the points: a cell turned over has no flow.
-template <int D>
-void Fluid<D>::refuse_inverted(const Placement<D>& at) const {
-  struct {
-    double value;
-    int rank;
-  } least{std::numeric_limits<double>::infinity(), comm_rank(mesh_.comm)};
-  Index where = 0;
-  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
-    if (at.volume[c] >= least.value) continue;
-    least.value = at.volume[c];
-    where = c;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPI_DOUBLE_INT, MPI_MINLOC, mesh_.comm);
-  if (least.value > 0) return;
-  Vec3 place = Vec3::Zero();
-  if (mesh_.cells.n_owned() > 0) place.template head<D>() = at.centre[where];
-  MPI_Bcast(place.data(), 3, MPI_DOUBLE, least.rank, mesh_.comm);
-  throw SolveFailure(
-      "The motion of the mesh from t = {:.6g} s turns a cell over near ({:.6g}, {:.6g}, {:.6g}) m (volume "
-      "{:.3e} m^3).",
-      time_, place.x(), place.y(), place.z(), least.value);
-}
-
 template <int D>
 SubStep<D> Fluid<D>::make_sub_step(double dt, double done, std::span<const Vec3> points) const {
   SubStep<D> step;
@@ -238,8 +232,8 @@ SubStep<D> Fluid<D>::make_sub_step(double dt, double done, std::span<const Vec3>
     for (std::size_t i = 0; i < points.size(); ++i)
       step.points[i] = accepted_.points[i] + s * (points[i] - accepted_.points[i]);
   }
-  step.to = make_placement<D>(mesh_, step.points);
-  refuse_inverted(*step.to);
+  step.to = placed(mesh_, frame_.get(), step.points);
+  if (!translates_) refuse_inverted(*step.to);
   step.swept = swept_volumes(mesh_, level().points, step.points);
   step.swept.resize(mesh_.n_flux_faces());
   return step;
@@ -321,53 +315,6 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
   if (!boundary_.interface_patches().empty()) guess_ = last_w_;
 }
 
-/// The layer that a wall drags along within a step is rho sqrt(nu dt) thick: a mass that acts on w* in the
-/// loop, see docs/theory.md.
-template <int D>
-double Fluid<D>::unseen_share() const {
-  const double layer = std::sqrt(parameters_.density * parameters_.viscosity / dt_);  // rho sqrt(nu dt)/dt
-  double sums[4] = {};  // unseen^2, load^2, load.S, S^2
-  for (std::size_t b = 0; b < guess_.size(); ++b) {
-    if (!boundary_.is_interface(static_cast<Index>(b))) continue;
-    const Vec<D>& area = level().placement->area[mesh_.n_interior + static_cast<Index>(b)];
-    const Vec<D> load = pressure_force_[b] + viscous_force_[b];
-    sums[0] += layer * layer * area.squaredNorm() * (last_w_[b] - guess_[b]).squaredNorm();
-    sums[1] += load.squaredNorm();
-    sums[2] += load.dot(area);
-    sums[3] += area.squaredNorm();
-  }
-  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh_.comm);
-  const double load = sums[3] > 0 ? sums[1] - sums[2] * sums[2] / sums[3] : 0;
-  return load > 0 ? std::sqrt(sums[0] / load) : 0;
-}
-
-/// A structure that fails gives velocities that no fluid can follow.
-template <int D>
-void Fluid<D>::check_wall_velocity() const {
-  double worst = 0;
-  Index where = -1;
-  for (std::size_t b = 0; b < last_w_.size(); ++b) {
-    const double square = last_w_[b].squaredNorm();
-    if (square <= worst || !boundary_.is_interface(static_cast<Index>(b))) continue;
-    worst = std::isfinite(square) ? square : std::numeric_limits<double>::infinity();
-    where = static_cast<Index>(b);
-  }
-  const double limit = step_.largest_speed() > 0 ? most_times_faster * step_.largest_speed() : most_speed;
-  if (!any(mesh_.comm, !(std::sqrt(worst) <= limit))) return;
-  struct {
-    double value;
-    int rank;
-  } first{worst, comm_rank(mesh_.comm)};
-  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_DOUBLE_INT, MPI_MAXLOC, mesh_.comm);
-  Vec3 place = where < 0 ? Vec3(Vec3::Zero()) : level().placement->boundary_centre[where];
-  MPI_Bcast(place.data(), 3, MPI_DOUBLE, first.rank, mesh_.comm);
-  throw SolveFailure(
-      "The velocity of the interface {} at t = {:.6g} s near ({:.6g}, {:.6g}, {:.6g}) m: the structure or "
-      "the coupling diverges.",
-      std::isfinite(first.value) ? fmt::format("is {:.3g} m/s", std::sqrt(first.value)) : "is not finite",
-      time_ + dt_, place.x(), place.y(), place.z());
-}
-
 template <int D>
 void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity) {
   if (!wall_velocity.empty())
@@ -380,6 +327,7 @@ void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity) {
   judged_ = true;
   ++statistics_.pressure_solves;
   add_forces(step_.size() / dt_);
+  add_turning();
 }
 
 template <int D>
@@ -394,6 +342,8 @@ void Fluid<D>::accept() {
   split_ = false;
   step_.commit(accepted_);
   accepted_.time = time_ + dt_;
+  accepted_.turn.swap(turn_);
+  accepted_.turns = boundary_.walls_turn();
   statistics_.pressure_iterations = step_.statistics().pressure_iterations;
   statistics_.viscous_iterations = step_.statistics().viscous_iterations;
 }

@@ -49,6 +49,9 @@ class Fluid {
   }
   /// At the boundary faces, of the last solve_pressure() [Pa].
   const std::vector<double>& boundary_pressure() const { return step_.boundary_pressure(); }
+  /// Before solve_pressure(): the turn of the interface's and the bodies' faces at the step's end, see turn_of();
+  /// empty: they do not turn. At the faces of other walls zeros.
+  void set_turn(Vectors<D> turn) { given_turn_ = std::move(turn); }
   /// Throws SolveFailure if the flow that follows is none; everything that can fail is here and in prepare().
   void solve_pressure(const Vectors<D>& wall_velocity);
   /// Force that friction would add if it saw the wall velocity of the last solve_pressure() instead of that
@@ -92,8 +95,7 @@ class Fluid {
  private:
   /// What the sub-step under way starts from.
   const State<D>& level() const { return split_ ? trial_ : accepted_; }
-  void check_bodies();
-  void check_scheme();
+  void check_parameters();
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(double time);
   void check_wall_velocity() const;
@@ -106,17 +108,20 @@ class Fluid {
                               const SubStep<D>& step) const;
   void start_pressure(const SubStep<D>& step, const Vectors<D>& w);
   void add_forces(double share);
+  void add_turning();
 
   const Mesh& mesh_;
   FluidParameters parameters_;
   bool moving_;
+  bool translates_;  // the mesh moves as a frame that does not turn
   Boundary<D> boundary_;
   FractionalStep<D> step_;
   StepSize<D> step_size_;
-  State<D> accepted_;    // level n: accept() and restore() alone change it
-  History<D> begin_;     // how the step under way sees level n
-  State<D> trial_;       // after the last finished sub-step of the step under way
-  History<D> history_;   // how the sub-step under way sees level()
+  std::shared_ptr<const Placement<D>> frame_;  // with translates_: the reference placement
+  State<D> accepted_;                          // level n: accept() and restore() alone change it
+  History<D> begin_;                           // how the step under way sees level n
+  State<D> trial_;                             // after the last finished sub-step of the step under way
+  History<D> history_;                         // how the sub-step under way sees level()
   bool split_ = false;   // a sub-step of the step under way is finished: it goes on from trial_
   bool judged_ = false;  // the prediction under way has given a sound level n+1
   bool yields_ = false;  // the walls, in the last sub-step
@@ -125,6 +130,7 @@ class Fluid {
   Vectors<D> last_w_;                        // given velocities at the end of the last sub-step
   Vectors<D> pressure_done_, viscous_done_;  // time integrals over the finished sub-steps / dt_
   Vectors<D> pressure_force_, viscous_force_;
+  Vectors<D> given_turn_, turn_;  // at the step's end: what set_turn() gave; of all walls. Empty: none
   FluidStatistics statistics_;
 };
 

@@ -18,7 +18,9 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       loads_(k_),
       energy_guard_(mesh, boundary, parameters.density, parameters.viscosity) {
   if (!parameters.bodies.empty()) k_.bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
-  if (!parameters.gaps.empty()) k_.gaps = std::make_unique<Gaps<D>>(mesh, parameters);
+  if (parameters.gaps.empty()) return;
+  k_.gaps = std::make_unique<Gaps<D>>(mesh, parameters);
+  k_.pockets = std::make_unique<GapPockets<D>>(mesh, parameters);
 }
 
 template <int D>
@@ -38,7 +40,10 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
   if (k_.bodies) projection_.mark_bodies(k_.by.time + k_.step.dt);
   if (k_.gaps && moving) projection_.mark_gaps();
   k_.gap_changed = k_.gaps && k_.gaps->differs(from.blocked.get());
-  if (k_.gap_closed()) k_.gaps->follow(*from.placement, *k_.step.to, k_.step.dt);
+  if (k_.gap_closed()) {
+    k_.pockets->check(*k_.step.to, k_.w, k_.by.time + k_.step.dt);
+    k_.gaps->follow(*from.placement, *k_.step.to, k_.step.dt);
+  }
   predictor_.predict(from);
   loads_.remember_prediction(k_.by.implicit);
   k_.mesh.cells.update_ghosts(flat<D>(k_.u_p), D);
@@ -81,7 +86,8 @@ void FractionalStep<D>::mark_level(State<D>& s) {
 /// flow.
 template <int D>
 void FractionalStep<D>::project_initial(State<D>& s) {
-  k_.oblique = max(k_.mesh.comm, s.placement->obliqueness) > orthogonal || !s.points.empty();
+  k_.oblique =
+      max(k_.mesh.comm, s.placement->obliqueness) > orthogonal || (!s.points.empty() && !s.placement->shape);
   const Placement<D>& at = *s.placement;
   projection_.set_obliqueness(at);
   k_.phi_p.assign(k_.mesh.n_flux_faces(), 0.0);

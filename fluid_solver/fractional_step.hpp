@@ -73,6 +73,8 @@ class FractionalStep {
   double size() const { return k_.step.dt; }
   /// Of its points at the end.
   const Placement<D>& to() const { return *k_.step.to; }
+  /// At the end; empty: the mesh rests.
+  const std::vector<Vec3>& points() const { return k_.step.points; }
   /// Of the accepted steps [m/s].
   double largest_speed() const { return speed_scale_; }
   /// The mesh is not orthogonal, or may become so.
@@ -82,10 +84,12 @@ class FractionalStep {
   std::shared_ptr<PressureLevel<D>> correct();
   struct Judgement {
     EnergyJudgement energy;
-    double speed = 0;  // largest [m/s]; infinity where one is not finite
+    double speed = 0;        // largest [m/s]; infinity where one is not finite
+    double given_speed = 0;  // largest of the boundaries [m/s]
   };
   EnergyStep<D> energy_step(const State<D>& from) const;
   Judgement judge(const State<D>& from) const;
+  bool too_fast() const;
   void check(const State<D>& from);
 
   StepWork<D> k_;

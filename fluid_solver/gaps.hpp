@@ -32,6 +32,8 @@ class Gaps {
   /// Gives the blocked cells that velocity.
   void hold(Vectors<D>& u) const;
   bool active() const { return active_; }  ///< any cell of any rank is blocked
+  /// Per local cell the gap that blocks it, below 0: free.
+  const std::vector<int>& blocked_by() const { return gap_; }
   bool is_blocked(Index cell) const { return gap_[cell] >= 0; }
   bool blocked(Index f) const { return is_blocked(mesh_.owner[f]) || is_blocked(mesh_.neighbour[f]); }
   const std::vector<std::string>& names() const { return names_; }

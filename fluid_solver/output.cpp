@@ -9,7 +9,6 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/derived.hpp"
 
@@ -29,24 +28,6 @@ FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, FluidContext context)
   check_coefficients();
 }
 
-/// The load leaves out mu (grad u)^T.S, mu omega x S of it on a wall that turns: nothing in the sum over a closed
-/// body, but the moment lacks -2 mu omega A (2-D, A: area of the body).
-template <int D>
-void FluidOutput<D>::doubt_moments() const {
-  const FluidParameters& p = fluid_.parameters();
-  const bool body_turns = p.motion && p.motion->angle.text != "0";
-  for (const auto& [name, c] : p.output.coefficients)
-    for (const std::string& patch : c.patches) {
-      const BoundaryParameters& b = p.boundaries.at(patch);
-      if (!b.rotation && !(body_turns && b.type == BoundaryType::body)) continue;
-      if (root_)
-        log::warn(
-            "output.coefficients.{}: the wall '{}' turns; its moment leaves out what friction makes of the rotation "
-            "itself, 2 mu omega times the area of the body (2-D): small at high Reynolds numbers only.",
-            name, patch);
-    }
-}
-
 template <int D>
 void FluidOutput<D>::check_coefficients() const {
   std::vector<std::string> names;
@@ -56,7 +37,6 @@ void FluidOutput<D>::check_coefficients() const {
       if (std::ranges::find(names, patch) == names.end())
         throw Error("output.coefficients.{}.patches: '{}' is no wall. {}", name, patch,
                     did_you_mean(patch, names, "walls"));
-  doubt_moments();
 }
 
 template <int D>

@@ -40,7 +40,6 @@ class FluidOutput {
   void write_walls(double time);
   void write_coefficients(double time);
   void check_coefficients() const;
-  void doubt_moments() const;
   void write_energy(double time);
   void write_bodies(double time);
   void write_gaps(double time);

@@ -52,6 +52,8 @@ class FluidParticipant final : public Participant {
 
  private:
   Vectors<D> wall_velocity(const Exchange& in) const;
+  Vectors<D> wall_turn(const Exchange& in) const;
+  std::vector<Vec3> body_velocities(const Patch& patch) const;
   std::vector<double> wall_load(const Exchange& in) const;
   void take_wall_mass(const Exchange& in);
   bool yields() const { return interface_ && fluid_->boundary().yields(); }

@@ -150,6 +150,17 @@ std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<c
   return make_placement<D>(mesh, compute_geometry(mesh, points));
 }
 
+template <int D>
+std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const Vec3& by) {
+  auto placement = std::make_shared<Placement<D>>(from);
+  const Vec<D> shift = by.template head<D>();
+  for (Vec<D>& centre : placement->centre) centre += shift;
+  for (Vec3& centre : placement->boundary_centre) centre += by;
+  return placement;
+}
+
+template std::shared_ptr<const Placement<2>> translated<2>(const Placement<2>&, const Vec3&);
+template std::shared_ptr<const Placement<3>> translated<3>(const Placement<3>&, const Vec3&);
 template std::shared_ptr<const Placement<2>> make_placement<2>(const Mesh&, const Geometry&);
 template std::shared_ptr<const Placement<3>> make_placement<3>(const Mesh&, const Geometry&);
 template std::shared_ptr<const Placement<2>> make_placement<2>(const Mesh&, std::span<const Vec3>);

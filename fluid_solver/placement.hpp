@@ -45,6 +45,8 @@ struct Placement {
   Vec<D> offset(Index f) const {
     return skew[f] + (0.5 - weight[f]) / conductance[f] * (area[f] - oblique_of(f));
   }
+  /// Placements that are translations of each other share it; null: nothing is known.
+  std::shared_ptr<const char> shape{};
   /// k of a face [m^2], whether or not there is the array.
   Vec<D> oblique_of(Index face) const { return oblique.empty() ? Vec<D>(Vec<D>::Zero()) : oblique[face]; }
 };
@@ -56,5 +58,8 @@ template <int D>
 std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geometry& geometry);
 template <int D>
 std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<const Vec3> points);
+/// The same shape elsewhere: only the centres differ. `from` must have a shape.
+template <int D>
+std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const Vec3& by);
 
 }  // namespace couplet::fluid

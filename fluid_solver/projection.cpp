@@ -39,7 +39,9 @@ PressureProjection<D>::PressureProjection(StepWork<D>& work, bool moving)
 
 template <int D>
 void PressureProjection<D>::assemble() {
-  if (k_.assembled == k_.step.to && assembled_yielding_ == k_.step.yields) return;
+  const bool same = k_.assembled && (k_.assembled == k_.step.to ||
+                                     (k_.step.to->shape && k_.assembled->shape == k_.step.to->shape));
+  if (same && assembled_yielding_ == k_.step.yields) return;
   if (k_.oblique) set_obliqueness(*k_.step.to);
   pressure_.set(k_.pressure_placement(), k_.step.yields, admittance());
   k_.assembled = k_.step.to;

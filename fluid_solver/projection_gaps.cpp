@@ -18,6 +18,7 @@ void PressureProjection<D>::mark_gaps() {
   if (changed) {
     k_.assembled = nullptr;
     pressure_.refresh();
+    if (k_.gaps->active()) k_.pockets->find(k_.gaps->blocked_by());
   }
   k_.around_gaps.reset();
   if (!k_.gaps->active()) return;

@@ -62,19 +62,20 @@ void PointValues<D>::means(const RunningStatistics<D>& statistics, std::span<con
 
 Sample::Sample(const Mesh& mesh, std::string name, const SampleParameters& p) : name_(std::move(name)) {
   const int rows = p.type == SampleParameters::Type::plane ? p.rows : 1;
-  std::string last_problem;
+  const PlaceSearch search(mesh);
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < p.points; ++i) {
       const double s = double(i) / (p.points - 1), r = rows > 1 ? double(j) / (rows - 1) : 0.0;
-      try {  // a place outside is so on all ranks
-        probes_.emplace_back(mesh, name_, p.from + s * (p.to - p.from) + r * (p.up - p.from));
-        along_.push_back({s, r});
-      } catch (const Error& outside) {
-        last_problem = outside.what();
-      }
+      auto probe = Probe::in(search, p.from + s * (p.to - p.from) + r * (p.up - p.from));
+      if (!probe) continue;  // on all ranks
+      probes_.push_back(*std::move(probe));
+      along_.push_back({s, r});
     }
-  if (probes_.empty())
-    throw Error("output.samples.{}: none of its places lies in the mesh. {}", name_, last_problem);
+  if (probes_.empty()) try {
+      Probe(mesh, name_, p.from);
+    } catch (const Error& outside) {
+      throw Error("output.samples.{}: none of its places lies in the mesh. {}", name_, outside.what());
+    }
   const auto asked = std::size_t(p.points) * std::size_t(rows);
   if (probes_.size() < asked && comm_rank(mesh.comm) == 0)
     log::info("output.samples.{}: {} of {} places lie outside the mesh and are left out", name_,

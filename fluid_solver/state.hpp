@@ -58,9 +58,11 @@ struct State : History<D> {
                              ///< computed again; 0: not computed
   EnergyLedger ledger;
 
-  Vectors<D> u;             ///< u^n per local cell, ghosts current [m/s]
-  Vectors<D> w;             ///< given velocity per boundary face at t^n [m/s]
-  Vectors<D> u_boundary;    ///< closed boundary velocity at t^n [m/s]
+  Vectors<D> u;           ///< u^n per local cell, ghosts current [m/s]
+  Vectors<D> w;           ///< given velocity per boundary face at t^n [m/s]
+  Vectors<D> u_boundary;  ///< closed boundary velocity at t^n [m/s]
+  Vectors<D> turn;        ///< of the walls per boundary face at t^n, see turn_of() [m^2/s]; only with `turns`
+  bool turns = false;     ///< the same on all ranks
   std::vector<double> phi;  ///< absolute volume flux per flux face at t^n [m^3/s]
   std::vector<double> memory,
       memory_old;  ///< delta^n per interior face [m^3/s] (incremental: what is left of delta^0)

@@ -30,7 +30,9 @@ void write_state(CheckpointWriter& file, const State<D>& s) {
   file.write_scalar("pressure-levels", levels);
   file.write_scalar("has-mesh-flux", s.mesh_flux.empty() ? 0 : 1);
   file.write_scalar("has-flux-memory", s.memory.empty() ? 0 : 1);
+  file.write_scalar("has-turn", s.turns ? 1 : 0);
   file.write("velocity", flat<D>(s.u));
+  file.write("wall-turn", flat<D>(s.turn));
   file.write("given-velocity", flat<D>(s.w));
   file.write("boundary-velocity", flat<D>(s.u_boundary));
   file.write("flux", s.phi);
@@ -72,7 +74,9 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<co
   const int levels = static_cast<int>(file.read_scalar("pressure-levels"));
   const bool has_mesh_flux = file.read_scalar("has-mesh-flux") != 0;
   const bool has_memory = file.read_scalar("has-flux-memory") != 0;
+  s.turns = file.read_scalar("has-turn") != 0;
   read_vectors<D>(file, "velocity", s.u, cells);
+  read_vectors<D>(file, "wall-turn", s.turn, s.turns ? faces : 0);
   read_vectors<D>(file, "given-velocity", s.w, faces);
   read_vectors<D>(file, "boundary-velocity", s.u_boundary, faces);
   s.phi.resize(mesh.n_flux_faces());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fluid_solver/boundary.hpp"
+#include "fluid_solver/gap_pockets.hpp"
 #include "fluid_solver/gaps.hpp"
 #include "fluid_solver/immersed.hpp"
 #include "fluid_solver/state.hpp"
@@ -43,6 +44,7 @@ struct StepWork {
   std::unique_ptr<ImmersedBodies<D>> bodies{};          ///< null: none
   std::shared_ptr<const Placement<D>> around_bodies{};  ///< with bodies only
   std::unique_ptr<Gaps<D>> gaps{};                      ///< null: none
+  std::unique_ptr<GapPockets<D>> pockets{};             ///< with gaps only
   bool gap_changed = false;  ///< in this step cells are blocked or freed: an impulse, as in a first step
   std::shared_ptr<const Placement<D>> around_gaps{};  ///< with blocked cells only
   std::shared_ptr<const Placement<D>> assembled{};    ///< placement of the pressure matrix

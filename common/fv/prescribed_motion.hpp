@@ -18,6 +18,8 @@ struct MotionParameters {
   Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]; of the rotation
   double inner_radius = 0;                           // [m]
   std::optional<double> outer_radius;                // [m]; absent: everything moves
+  /// Everything is only translated.
+  bool translates() const { return displacement.empty() && !outer_radius && angle.text == "0"; }
 };
 
 /// `with_radii`: the keys inner-radius and outer-radius, too.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
+#include <tuple>
 
 #include "common/base/error.hpp"
 #include "common/base/nearest.hpp"
@@ -14,6 +16,8 @@ namespace couplet {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
+// Of the mesh's size: nearer to a point is that point, nearer to the boundary is on it.
+constexpr double on_point = 1e-10, on_boundary = 1e-6;
 
 // One rank's best way to hold the probe; the ranks agree on the smallest key.
 struct Candidate {
@@ -23,20 +27,21 @@ struct Candidate {
   std::vector<double> weights;
 };
 
-Candidate nearest_point(const Mesh& mesh, const Vec3& place) {
+// Of those that are looked at, here as below: all, or those that a search found.
+Candidate nearest_point(const Mesh& mesh, const auto& candidates, const Vec3& place) {
   Candidate best;
-  for (Index p = 0; p < mesh.points.n_owned(); ++p) {
+  for (const Index p : candidates) {
     const double distance = (mesh.reference_points[p] - place).norm();
     if (distance < best.key) best = {distance, mesh.reference_points[p], {p}, {1.0}};
   }
   return best;
 }
 
-Candidate containing_cell(const Mesh& mesh, const Vec3& place) {
+Candidate containing_cell(const Mesh& mesh, const auto& candidates, const Vec3& place) {
   constexpr double slack = 1e-9;
   Candidate best;
   std::vector<Vec3> corners;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+  for (const Index c : candidates) {
     // The first cell of the file that contains it, so that a place on a face has the same cell on any
     // partition.
     if (double(mesh.cell_id[c]) > best.key) continue;
@@ -76,9 +81,9 @@ Candidate nearest_on_face(const Mesh& mesh, std::span<const Index> points, const
   return best;
 }
 
-Candidate nearest_on_boundary(const Mesh& mesh, const Vec3& place) {
+Candidate nearest_on_boundary(const Mesh& mesh, const auto& candidates, const Vec3& place) {
   Candidate best;
-  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
+  for (const Index f : candidates) {
     Candidate one = nearest_on_face(mesh, mesh.face_points[f], place);
     if (one.key < best.key) best = std::move(one);
   }
@@ -95,42 +100,69 @@ std::pair<double, int> agree(MPI_Comm comm, double key) {
   return {value.key, value.rank};
 }
 
-double mesh_size(const Mesh& mesh) {
-  Vec3 low = Vec3::Constant(none), high = Vec3::Constant(-none);
-  for (const Vec3& p : mesh.reference_points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-  MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
-  MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
-  return (high - low).norm();
+// At a mesh point, in a cell, else at the place of the boundary that is nearest: what this rank has, and the rank that
+// has the best with its key. `look` gives what to look at: points, cells, faces within a distance. Collective.
+struct Chosen {
+  Candidate candidate;
+  double key = none;  // [m] from the boundary if it is outside
+  int rank = 0;
+  bool outside = false;
+};
+Chosen choose(const Mesh& mesh, const Vec3& place, double size, const auto& look) {
+  Chosen chosen;
+  chosen.candidate = nearest_point(mesh, look.points(place, on_point * size), place);
+  std::tie(chosen.key, chosen.rank) = agree(mesh.comm, chosen.candidate.key);
+  if (chosen.key <= on_point * size) return chosen;
+  chosen.candidate = containing_cell(mesh, look.cells(place, on_point * size), place);
+  std::tie(chosen.key, chosen.rank) = agree(mesh.comm, chosen.candidate.key);
+  if (chosen.key != none) return chosen;
+  chosen.candidate = nearest_on_boundary(mesh, look.faces(place, on_boundary * size), place);
+  std::tie(chosen.key, chosen.rank) = agree(mesh.comm, chosen.candidate.key);
+  chosen.outside = true;
+  return chosen;
 }
 
+// For a single place, which pays for no tree.
+struct Everything {
+  const Mesh& mesh;
+  auto points(const Vec3&, double) const { return std::views::iota(Index(0), mesh.points.n_owned()); }
+  auto cells(const Vec3&, double) const { return std::views::iota(Index(0), mesh.cells.n_owned()); }
+  auto faces(const Vec3&, double) const { return std::views::iota(mesh.n_interior, mesh.n_flux_faces()); }
+};
+
 }  // namespace
+
+void Probe::take(const Vec3& place, int rank, std::vector<Index>&& points, std::vector<double>&& weights) {
+  place_ = place;
+  MPI_Bcast(place_.data(), 3, MPI_DOUBLE, rank, comm_);
+  if (comm_rank(comm_) != rank) return;
+  points_ = std::move(points);
+  weights_ = std::move(weights);
+}
 
 Probe::Probe(const Mesh& mesh, const std::string& name, const Vec3& place, std::optional<double> tolerance)
     : comm_(mesh.comm) {
   const double size = mesh_size(mesh);
-  Candidate chosen = nearest_point(mesh, place);
-  auto [key, rank] = agree(comm_, chosen.key);
-  if (key > 1e-10 * size) {
-    chosen = containing_cell(mesh, place);
-    std::tie(key, rank) = agree(comm_, chosen.key);
-    if (key == none) {
-      chosen = nearest_on_boundary(mesh, place);
-      std::tie(key, rank) = agree(comm_, chosen.key);
-      MPI_Bcast(chosen.place.data(), 3, MPI_DOUBLE, rank, comm_);
-      if (key > tolerance.value_or(1e-6 * size))
-        throw Error(
-            "The probe '{}' at ({}, {}, {}) lies outside the mesh: the nearest place of it is ({:.6g}, "
-            "{:.6g}, {:.6g}), "
-            "{:.3g} m away. Move the probe there or into the mesh.",
-            name, place[0], place[1], place[2], chosen.place[0], chosen.place[1], chosen.place[2], key);
-    }
-  }
-  MPI_Bcast(chosen.place.data(), 3, MPI_DOUBLE, rank, comm_);
-  place_ = chosen.place;
-  if (comm_rank(comm_) == rank) {
-    points_ = std::move(chosen.points);
-    weights_ = std::move(chosen.weights);
-  }
+  Chosen chosen = choose(mesh, place, size, Everything{mesh});
+  take(chosen.candidate.place, chosen.rank, std::move(chosen.candidate.points),
+       std::move(chosen.candidate.weights));
+  if (chosen.outside && chosen.key > tolerance.value_or(on_boundary * size))
+    throw Error(
+        "The probe '{}' at ({}, {}, {}) lies outside the mesh: the nearest place of it is ({:.6g}, "
+        "{:.6g}, {:.6g}), "
+        "{:.3g} m away. Move the probe there or into the mesh.",
+        name, place[0], place[1], place[2], place_[0], place_[1], place_[2], chosen.key);
+}
+
+std::optional<Probe> Probe::in(const PlaceSearch& search, const Vec3& place) {
+  const Mesh& mesh = search.mesh();
+  const double size = search.size();
+  Chosen chosen = choose(mesh, place, size, search);
+  if (chosen.outside && !(chosen.key <= on_boundary * size)) return {};
+  Probe probe(mesh.comm);
+  probe.take(chosen.candidate.place, chosen.rank, std::move(chosen.candidate.points),
+             std::move(chosen.candidate.weights));
+  return probe;
 }
 
 std::vector<double> Probe::sample(std::span<const double> values, int components) const {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/place_search.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet {
@@ -20,6 +21,8 @@ class Probe {
  public:
   /// Collective over mesh.comm. `name` is for messages; tolerance [m], by default 1e-6 of the mesh's size.
   Probe(const Mesh& mesh, const std::string& name, const Vec3& place, std::optional<double> tolerance = {});
+  /// One of many in a mesh: nothing if the place lies outside it. Collective.
+  static std::optional<Probe> in(const PlaceSearch& search, const Vec3& place);
 
   /// `values`: per local point (ghosts up to date), `components` each. The value on rank 0, empty elsewhere.
   /// Collective.
@@ -32,8 +35,10 @@ class Probe {
   const std::vector<double>& weights() const { return weights_; }
 
  private:
+  explicit Probe(MPI_Comm comm) : comm_(comm) {}
+  void take(const Vec3& place, int rank, std::vector<Index>&& points, std::vector<double>&& weights);
   MPI_Comm comm_;
-  Vec3 place_;
+  Vec3 place_ = Vec3::Zero();
   std::vector<Index> points_;
   std::vector<double> weights_;
 };

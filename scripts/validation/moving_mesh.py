@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of meshes that move far and of bodies that move as told."""
 import math
+import re
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from validation.job import Bar
 
 SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "common/elasticity", "mesh_mover",
            "fluid_solver", "configs/moving-mesh", "configs/oscillating-cylinder", "configs/cylinder", "configs/closing-gap",
-           "configs/backward-step", "configs/pitching-plate", "configs/cavity")
+           "configs/backward-step", "configs/pitching-plate", "configs/cavity", "configs/taylor-couette")
 PLATE = "configs/moving-mesh/case.yaml"
 BEND = ("sin(pi*t*x)/(pi*t) - y*sin(pi*t*x) - x", "(cos(pi*t*x)-1)/(-pi*t) + y*cos(pi*t*x) - y")
 MOTIONS = {
@@ -181,10 +182,13 @@ def pulse(job):
             abs(lift / 0.47795 - 1) <= 0.03)
 
 
-def unbuilt(why):
-    def measure(job):
-        raise NotImplementedError(why)
-    return measure
+def torques(job):
+    """On the two circles of configs/taylor-couette, with coefficients whose rho/2 U^2 A L is 1 N m; du/dr alone gives 1.047 on the inner one."""
+    folder, _ = job.solve("fluid_solver", "taylor-couette")
+    rows, exact = couplet.read_csv(folder / "fluid" / "coefficients.csv"), 16 * np.pi * 0.1 / 3
+    inner, outer = -rows["inner moment [-]"][-1], rows["outer moment [-]"][-1]
+    return (f"{inner:.4f} N m on the inner ({100 * (inner / exact - 1):+.2f} %), {outer:.4f} on the outer circle ({100 * (outer / exact - 1):+.2f} %)",
+            abs(inner / exact - 1) <= 0.005 and abs(outer / exact - 1) <= 0.005)
 
 
 def least_squares(job):
@@ -255,6 +259,28 @@ def cavity_5000(job):
             all(abs(v) <= 0.01 for v in off.values()))
 
 
+EFFECTS = r"couplet::(?:fluid::)?(PrescribedMotion::\w+|swept_volumes|Gaps<2>::\w+|GapPockets<2>::\w+|Sample::\w+|PlaceSearch::\w+|PointValues<2>::\w+|Fluid<2>::place|set_turn)\b"
+
+
+def off_is_nothing(job):
+    """Functions of motion, gaps and samples that callgrind sees in two steps of the pinch valve, and in the same channel without the three."""
+    called = {}
+    for name, more in (("with", ()), ("without", ("participants.fluid.motion=null", "participants.fluid.gaps={}", "participants.fluid.output.samples={}",
+                                                  "participants.fluid.boundaries.lid={type: no-slip}"))):
+        folder = job.scratch / f"callgrind-{name}"
+        folder.mkdir()
+        command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder}/counts", job.build / "bin" / "fluid_solver",
+                   job.root / "configs/closing-gap/case.yaml"]
+        for key in (f"simulation.output.folder={folder}", "simulation.end-time=0.04", "simulation.time-step=0.02", *more):
+            command += ["--set", key]
+        result = job.run(command)
+        if result.returncode != 0:
+            raise RuntimeError((result.stderr or result.stdout)[-300:])
+        called[name] = set(re.findall(EFFECTS, (folder / "counts").read_text()))
+    return (f"{len(called['with'])} functions of motion, gaps and samples run with them, {len(called['without'])} without",
+            len(called["with"]) >= 8 and not called["without"])
+
+
 STATED = ("E of the volumes that cells have now, the thesis's V^n, on the mesh of the last step: form incremental, "
           "stiffening-volumes current")
 BARS = [
@@ -295,7 +321,9 @@ BARS = [
     Bar("a plate that pitches through +-60 degrees in a stream", "completes two periods", pitching),
     Bar("a channel closes by 99 % without remeshing and opens again", "completes; shut, the boundaries let in what they let out to 1e-6 m^3/s", closes),
     Bar("a channel that closes by 99 %: what blocking saves", "reported", saves),
+    Bar("torque between two circles of which one turns", "within 0.5 % of 16 pi mu/3 = 1.6755 N m on both", torques),
     Bar("closing gaps: flow, volume, checkpoint, 1, 2 and 3 ranks", "tests pass", ranks("^verification_fluid_gaps")),
+    Bar("effects: no instruction of motion, gaps and samples in a run without them (callgrind)", "none", off_is_nothing),
     Bar("cells sheared by 55, 70 and 75 degrees, needles, slivers, aspect 1000", "solved, or refused by name: tests pass",
         tested("stability_fluid_step_sizes", "*HardMeshes*")),
     Bar("backward step, Re 800, 48 cells over the height", "reported", behind_step(48, False), long=True),

@@ -141,6 +141,25 @@ TEST(Gaps, a_checkpoint_of_a_closed_valve_goes_on_bit_for_bit) {
   EXPECT_LE(max(MPI_COMM_WORLD, apart), comm_size(MPI_COMM_WORLD) == 1 ? 0 : 1e-9);
 }
 
+/// The left end lets fluid in, the slot closes: what flows in then has nowhere to go.
+TEST(Gaps, that_cut_an_inlet_off_are_refused_with_the_cause) {
+  FluidParameters p = valve(true);
+  const auto end_of = [](const FluidParameters& shut) -> std::string {
+    Valve v(shut);
+    try {
+      v.run(1.4);
+    } catch (const SolveFailure& e) {
+      return e.what();
+    }
+    return "to the end";
+  };
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.01", "0"});
+  EXPECT_THAT(end_of(p),
+              testing::HasSubstr("the closed gap cuts 'xmin' off from every outlet, but 0.005 m^3/s are"));
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.01*max(0,1-t/0.8)", "0"});
+  EXPECT_THAT(end_of(p), testing::HasSubstr("A closed gap has shut 1")) << "the lid presses what is shut off";
+}
+
 TEST(Gaps, wrong_ones_are_refused_by_name) {
   const auto refusal = [](const FluidParameters& p) -> std::string {
     try {

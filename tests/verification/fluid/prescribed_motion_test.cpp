@@ -118,6 +118,27 @@ TEST(PrescribedMotion, a_body_turns_rigidly_and_what_is_outside_rests) {
   EXPECT_LT((v - Vec3(0.02 - 0.05 * std::sin(0.2), 0.05 * std::cos(0.2), 0)).norm(), 1e-8);
 }
 
+/// A frame that is only translated keeps its geometry and its pressure matrix; given as a field of displacements the same motion is
+/// that of any mesh.
+TEST(PrescribedMotion, of_a_frame_does_what_the_same_motion_of_a_mesh_does) {
+  const std::vector<config::ExpressionText> path{{"0.1*(1-cos(6*t))"}, {"0.05*t^2"}};
+  const auto run = [&](bool frame) {
+    FluidParameters p = box_of_fluid();
+    (frame ? p.motion->translation : p.motion->displacement) = path;
+    all_sides(p, 2, boundary(BoundaryType::body));
+    p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"1+0.6*sin(6*t)", "0.1*t+0.1*sin(20*t)"});
+    p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+    auto alone = std::make_unique<Alone>(p);
+    EXPECT_EQ(p.motion->translates(), frame);
+    for (int i = 0; i < 12; ++i) alone->step(0.02);
+    return alone;
+  };
+  const auto frame = run(true), mesh = run(false);
+  EXPECT_LT(frame->largest([&](Index c) { return (frame->state().u[c] - mesh->state().u[c]).norm(); }), 1e-7);
+  EXPECT_GT(frame->largest([&](Index c) { return frame->state().u[c][1]; }), 0.05);
+  EXPECT_LT((frame->state().placement->centre[0] - mesh->state().placement->centre[0]).norm(), 1e-14);
+}
+
 std::string refusal(const FluidParameters& p) {
   try {
     Alone run(p);
@@ -135,6 +156,35 @@ TEST(PrescribedMotion, what_cannot_be_is_refused_by_name) {
   EXPECT_THAT(refusal(none), testing::HasSubstr("the section 'motion'"));
   p.motion->translation = {{"0.1*cos(t)"}, {"0"}};
   EXPECT_THAT(refusal(p), testing::HasSubstr("displaces the mesh by up to 0.1 m"));
+}
+
+/// After rest there is only round-off to measure by: nothing diverges when the motion begins.
+TEST(PrescribedMotion, may_begin_after_rest) {
+  for (const bool turns : {false, true}) {
+    FluidParameters p = box_of_fluid();
+    p.body_force = {{"0"}, {"-9.81"}};
+    if (turns)
+      p.motion->angle = {"max(0,t-0.1)^2"};
+    else
+      p.motion->translation = {{"0.1*max(0,t-0.1)"}, {"0"}};
+    all_sides(p, 2, boundary(BoundaryType::body));
+    Alone run(p);
+    for (int i = 0; i < 15; ++i) run.step(0.02);
+    EXPECT_GT(run.largest([&](Index c) { return run.state().u[c].norm(); }), turns ? 0.1 : 0.099);
+  }
+}
+
+/// The same for an inlet in a fluid that was at rest.
+TEST(PrescribedMotion, or_an_inlet_may_begin_after_rest) {
+  FluidParameters p = box_of_fluid();
+  p.motion.reset();
+  p.body_force = {{"0"}, {"-9.81"}};
+  all_sides(p, 2, boundary(BoundaryType::no_slip));
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"max(0,t-0.1)", "0"});
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet, {}, "1.3*9.81*(1-y)");
+  Alone run(p);
+  for (int i = 0; i < 10; ++i) run.step(0.02);
+  EXPECT_GT(run.largest([&](Index c) { return run.state().u[c].norm(); }), 0.05);
 }
 
 TEST(PrescribedMotion, that_turns_cells_over_fails_in_solve) {

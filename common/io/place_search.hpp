@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// Balls of very different sizes, asked for those that hold a place: k-d trees of their centres (nanoflann), one for
+/// each power of two of the radius. n log n to build; log n a question and what it finds.
+class Balls {
+ public:
+  Balls(std::vector<Vec3> centres, std::vector<double> radii);
+  ~Balls();
+  Balls(Balls&&) noexcept;
+  /// Those within radius + slack of x, in ascending order, and perhaps some more.
+  std::vector<Index> near(const Vec3& x, double slack) const;
+
+ private:
+  struct Group;
+  std::vector<std::unique_ptr<Group>> groups_;
+};
+
+/// Diagonal of the box around the reference mesh [m]. Collective.
+double mesh_size(const Mesh& mesh);
+
+/// What of a mesh in its reference configuration may hold a place, for many places: owned points, owned cells,
+/// boundary faces of this rank. The mesh must outlive it. Making one is collective.
+class PlaceSearch {
+ public:
+  explicit PlaceSearch(const Mesh& mesh);
+  const Mesh& mesh() const { return mesh_; }
+  double size() const { return size_; }  ///< [m]
+  /// Within `slack` [m] of x, ascending, and perhaps some more.
+  std::vector<Index> points(const Vec3& x, double slack) const { return points_.near(x, slack); }
+  std::vector<Index> cells(const Vec3& x, double slack) const { return cells_.near(x, slack); }
+  std::vector<Index> faces(const Vec3& x, double slack) const;
+
+ private:
+  const Mesh& mesh_;
+  double size_;
+  Balls points_, cells_, faces_;
+};
+
+}  // namespace couplet

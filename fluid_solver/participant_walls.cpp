@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the participant tells its fluid of the walls that others move.
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/participant.hpp"
+#include "fluid_solver/turning_walls.hpp"
+
+namespace couplet::fluid {
+
+/// One a corner of each face of the patch, at the end of the step.
+template <int D>
+std::vector<Vec3> FluidParticipant<D>::body_velocities(const Patch& patch) const {
+  std::vector<Vec3> corners;
+  for (Index f = patch.first; f < patch.first + patch.count; ++f)
+    for (const Index v : mesh_.face_points[f]) corners.push_back(mesh_.reference_points[v]);
+  return prescribed_->velocities(corners, step_.time + step_.dt, step_.dt);
+}
+
+/// At the faces of bodies the mean of the velocities of their points, as at an interface.
+template <int D>
+void FluidParticipant<D>::add_body_velocity(Vectors<D>& w) const {
+  for (const Patch* patch : fluid_->boundary().body_patches()) {
+    const std::vector<Vec3> velocities = body_velocities(*patch);
+    auto next = velocities.begin();
+    for (Index f = patch->first; f < patch->first + patch->count; ++f) {
+      const auto n = mesh_.face_points[f].size();
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t i = 0; i < n; ++i) sum += *next++;
+      w[f - mesh_.n_interior] = (sum / double(n)).template head<D>();
+    }
+  }
+}
+
+/// See turn_of(); nothing where no wall turns. After prepare(), which knows the points.
+template <int D>
+Vectors<D> FluidParticipant<D>::wall_turn(const Exchange& in) const {
+  const bool coupled = interface_ && step_.scheme != Scheme::standalone;
+  if (!coupled && !prescribed_) return {};
+  Vectors<D> turn(mesh_.boundary.n_owned(), Vec<D>::Zero());
+  const std::vector<Vec3>& points = points_.empty() ? mesh_.reference_points : points_;
+  for (const Patch* patch : fluid_->boundary().body_patches())
+    fluid::set_turn<D>(mesh_, *patch, points, body_velocities(*patch), turn);
+  if (!coupled) return turn;
+  const auto given = in.find("velocity");
+  const std::vector<double> at_points =
+      interface_->scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, D);
+  const std::vector<Index>& faces = interface_->faces();
+  std::vector<Vec3> corners, velocities;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    corners.clear();
+    velocities.clear();
+    for (const Index v : mesh_.face_points[faces[i]]) corners.push_back(points[v]);
+    for (const Index v : interface_vertices_[static_cast<Index>(i)]) {
+      velocities.push_back(Vec3::Zero());
+      velocities.back().template head<D>() = Eigen::Map<const Vec<D>>(at_points.data() + std::size_t(v) * D);
+    }
+    turn[faces[i] - mesh_.n_interior] = turn_of<D>(corners, velocities);
+  }
+  return turn;
+}
+
+/// w at a face is the mean of the velocities of its vertices.
+template <int D>
+Vectors<D> FluidParticipant<D>::wall_velocity(const Exchange& in) const {
+  const bool coupled = interface_ && step_.scheme != Scheme::standalone;
+  if (!coupled && !prescribed_) return {};
+  Vectors<D> w(mesh_.boundary.n_owned(), Vec<D>::Zero());
+  if (prescribed_) add_body_velocity(w);
+  if (!coupled) return w;
+  const auto given = in.find("velocity");
+  const std::vector<double> at_points =
+      interface_->scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, D);
+  const std::vector<Index>& faces = interface_->faces();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto vertices = interface_vertices_[static_cast<Index>(i)];
+    Vec<D>& value = w[faces[i] - mesh_.n_interior];
+    for (const Index v : vertices) value += Eigen::Map<const Vec<D>>(at_points.data() + std::size_t(v) * D);
+    value /= static_cast<double>(vertices.size());
+  }
+  return w;
+}
+
+/// The pressure that the structure has answered to, per boundary face [Pa]; nothing at the very start.
+template <int D>
+std::vector<double> FluidParticipant<D>::wall_load(const Exchange& in) const {
+  std::vector<double> load(mesh_.boundary.n_owned(), 0.);
+  const auto given = in.find("own-wall-force");
+  const std::vector<double> at_faces =
+      interface_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second, 1);
+  const std::vector<Index>& faces = interface_->faces();
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    load[faces[i] - mesh_.n_interior] = at_faces[i] / mesh_.reference.face_area[faces[i]].norm();
+  return load;
+}
+
+/// `impedance: structure`.
+template <int D>
+void FluidParticipant<D>::take_wall_mass(const Exchange& in) {
+  const auto given = in.find("surface-density");
+  const std::vector<double> masses =
+      interface_->scatter_faces(given == in.end() ? std::vector<double>{} : given->second, 1);
+  std::vector<Index> faces = interface_->faces();
+  for (Index& f : faces) f -= mesh_.n_interior;
+  fluid_->set_wall_mass(faces, masses);
+}
+
+/// Of the faces of the interface: largest mean displacement over the height of the cell beside them.
+/// Collective.
+template <int D>
+double FluidParticipant<D>::wall_displacement(const Exchange& in) const {
+  const auto given = in.find("displacement");
+  const std::vector<double> at_points =
+      interface_->scatter_vertices(given == in.end() ? std::vector<double>{} : given->second, D);
+  const std::vector<Index>& faces = interface_->faces();
+  double largest = 0;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto vertices = interface_vertices_[static_cast<Index>(i)];
+    Vec<D> mean = Vec<D>::Zero();
+    for (const Index v : vertices) mean += Eigen::Map<const Vec<D>>(at_points.data() + std::size_t(v) * D);
+    mean /= static_cast<double>(vertices.size());
+    const Geometry& g = mesh_.reference;
+    const Vec3 arm = g.face_centre[faces[i]] - g.cell_centre[mesh_.owner[faces[i]]];
+    const double height = 2 * std::abs(arm.dot(g.face_area[faces[i]].normalized()));
+    largest = std::max(largest, mean.norm() / height);
+  }
+  return max(mesh_.comm, largest);
+}
+
+template std::vector<Vec3> FluidParticipant<2>::body_velocities(const Patch&) const;
+template void FluidParticipant<2>::add_body_velocity(Vectors<2>&) const;
+template Vectors<2> FluidParticipant<2>::wall_turn(const Exchange&) const;
+template Vectors<2> FluidParticipant<2>::wall_velocity(const Exchange&) const;
+template std::vector<double> FluidParticipant<2>::wall_load(const Exchange&) const;
+template void FluidParticipant<2>::take_wall_mass(const Exchange&);
+template double FluidParticipant<2>::wall_displacement(const Exchange&) const;
+template std::vector<Vec3> FluidParticipant<3>::body_velocities(const Patch&) const;
+template void FluidParticipant<3>::add_body_velocity(Vectors<3>&) const;
+template Vectors<3> FluidParticipant<3>::wall_turn(const Exchange&) const;
+template Vectors<3> FluidParticipant<3>::wall_velocity(const Exchange&) const;
+template std::vector<double> FluidParticipant<3>::wall_load(const Exchange&) const;
+template void FluidParticipant<3>::take_wall_mass(const Exchange&);
+template double FluidParticipant<3>::wall_displacement(const Exchange&) const;
+
+}  // namespace couplet::fluid
