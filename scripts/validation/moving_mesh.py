@@ -259,6 +259,19 @@ def cavity_5000(job):
             all(abs(v) <= 0.01 for v in off.values()))
 
 
+def speed(n):
+    """benchmarks/mover: processor time of a step of mesh motion, set-up left out, over that of a step of the fluid (one pressure equation and the predictor)."""
+    def measure(job):
+        result = job.run([job.root / "benchmarks/mover", "--build", job.build, "--n", n], timeout=7200)
+        if result.returncode != 0:
+            raise RuntimeError((result.stderr or result.stdout)[-300:])
+        seconds = {row.split("|")[0].strip(): float(row.split("|")[1]) for row in result.stdout.splitlines()[1:] if "|" in row}
+        fluid = seconds.pop("a step of the fluid")
+        return (f"a step of the fluid {fluid:.3f} s; " + "; ".join(f"{k} {v / fluid:.2f} times that" for k, v in seconds.items()),
+                seconds["laplacian, total"] < 1.5 * fluid and seconds["pseudo-solid, total"] < 5 * fluid)
+    return measure
+
+
 EFFECTS = r"couplet::(?:fluid::)?(PrescribedMotion::\w+|swept_volumes|Gaps<2>::\w+|GapPockets<2>::\w+|Sample::\w+|PlaceSearch::\w+|PointValues<2>::\w+|Fluid<2>::place|set_turn)\b"
 
 
@@ -316,6 +329,9 @@ BARS = [
         but="by Fourier averages; those of a least-squares fit stand beside them"),
     Bar("oscillating cylinder, the two meshes", "coefficients within 1 % of each other", both_frames),
     Bar("force coefficients of 2D-1 by output.coefficients", "c_d within 0.5 % of 5.57954, c_l within 10 % of 0.010619", steady_coefficients),
+    *(Bar(f"step of mesh motion to 1e-5, {n ** 3} hexahedra, refilled and warm", "laplacian under 1.5, pseudo-solid under 5 times a pressure solve to 1e-6",
+          speed(n), long=True, but="beside a whole step of the fluid: the pressure equation and an explicit predictor" + more)
+      for n, more in ((32, "; on a smaller mesh"), (100, ""))),
     Bar("2D-3 on 11 k cells: largest lift", "within 3 % of 0.47795", pulse, long=True),
     Bar("oscillating cylinder: Morison coefficients by least squares", "within 2 % of c_d 2.09, c_m 1.45", least_squares),
     Bar("a plate that pitches through +-60 degrees in a stream", "completes two periods", pitching),
