@@ -133,14 +133,15 @@ double Structure::velocity_lost() const {
 
 std::vector<EffectVerdict> Structure::audit() const {
   // What rank 0 knows of the whole surface decides on all ranks alike.
-  std::vector<double> seen(6, PlateEvidence::unknown);
+  std::vector<double> seen(7, PlateEvidence::unknown);
   if (comm_rank(context_.comm) == 0) {
     double size = 0;
     for (const Vec3& x : built_.model.vertices)
       size = std::max(size, (x - built_.model.vertices.front()).norm());
     // A body that moves as a whole may go far, but not turn far.
     if (share_->omega().front() > 0) seen[0] = largest_ / size;
-    if (built_.held_all_round) seen[1] = largest_ / parameters_.thickness;
+    if (built_.stretch_limit > 0) seen[1] = largest_ / parameters_.thickness;
+    seen[6] = built_.stretch_limit;
     if (deflection_ && deflection_->direct > 0) seen[2] = deflection_->apart / deflection_->direct;
     if (within_[1] > 0) seen[3] = std::sqrt(within_[0] / within_[1]);
     if (!parameters_.modes_file) seen[4] = mesh_gap();
@@ -150,6 +151,9 @@ std::vector<EffectVerdict> Structure::audit() const {
   PlateEvidence evidence;
   evidence.displacement_over_size = seen[0];
   evidence.displacement_over_thickness = seen[1];
+  evidence.stretch_limit = seen[6];
+  evidence.load_lost =
+      pressure_ && !load_acted_ && (pressure_->changes_in_time() || !pressure_->is_uniform());
   evidence.modes_apart = resolution_ ? seen[5] : seen[2];
   evidence.within_faces = seen[3];
   evidence.mesh_gap = seen[4];

@@ -24,8 +24,9 @@ struct Built {
   ModalModel model;
   std::unique_ptr<PlateModel> plate;  ///< of a mesh, but for a modal analysis
   bool reused = false;                ///< modes of an earlier run
-  bool held_all_round = false;        ///< a plate whose outline cannot move: deflection stretches it
-  std::string note;                   ///< something the user should know, or nothing
+  /// Of a plate with two held edges or more: deflection over thickness from which its stretch matters; 0: it has none.
+  double stretch_limit = 0;
+  std::string note;  ///< something the user should know, or nothing
 };
 
 /// Cells of the mid-surface with their materials, supports of its patches. Throws Error naming zones and

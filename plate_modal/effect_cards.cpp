@@ -98,10 +98,20 @@ V judge_mesh(const S&, const E& e) {
 
 // A plate that is held all round is stiffened by its stretch as 1 + 0.5 (w/h)^2, more or less by its edges.
 V judge_stretch(const S&, const E& e) {
-  return verdict(e.displacement_over_thickness, 0.5,
-                 fmt::format("the plate is held all round and deflects by {:.2g} of its thickness",
-                             e.displacement_over_thickness),
-                 "its stretch would stiffen it noticeably: take a program for finite strain");
+  return verdict(
+      e.displacement_over_thickness, e.stretch_limit,
+      fmt::format("the plate is held on opposite sides and deflects by {:.2g} of its thickness",
+                  e.displacement_over_thickness),
+      "unless its edges may slide in its plane, its stretch stiffens it noticeably: take a program for finite strain");
+}
+
+// A force at the middle of each face does not see what lies between them.
+V judge_lost(const S&, const E& e) {
+  if (!e.load_lost) return {};
+  return EffectVerdict{
+      "", 1, 0.5, "the pressures of the case were 0 at the middle of every face in every step",
+      "a load that is smaller than a face or shorter than a step is lost: refine, or spread it over "
+      "a face or a step with the same resultant"};
 }
 
 // Mindlin's plate against Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5 (1 - nu)))
@@ -238,13 +248,16 @@ const std::array cards{
              "frequency of a load that swings over that of the highest mode kept, 2/3", judge_load_beyond),
     left_out("initial velocity beyond the modes", "`modes.number`",
              "share of its energy that no mode has, 0.1", judge_velocity),
+    left_out("load between the faces or steps", "no key: finer mesh or step",
+             "a prescribed pressure that is 0 wherever it is taken", judge_lost),
     left_out("load within a face", "no key: finer mesh",
              "midpoint of each face against sixteen points, of the load's effect on the modes, 0.05",
              judge_within),
     left_out("mesh that resolves the modes", "no key: finer mesh",
              "mean of a cell's corners against its mean deflection, rms over the motion, 0.1", judge_mesh),
     left_out("stretch of the mid-surface", "no key: not in the model",
-             "of a plate held all round: deflection over thickness, 0.5", judge_stretch),
+             "of a plate with two held edges or more: deflection over thickness, 0.5, or 0.2 with hinges",
+             judge_stretch),
     left_out("shear and rotary inertia", "no key: not in the model",
              "thickness over half the wave of the highest mode with 1 % of the motion, 0.1", judge_shear),
     PlateCard{"damping",

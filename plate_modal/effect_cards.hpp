@@ -21,8 +21,10 @@ struct PlateScene {
 struct PlateEvidence {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double displacement_over_size = unknown;       ///< of a structure that is held
-  double displacement_over_thickness = unknown;  ///< of a plate that is held all round
-  double rotation = unknown;                     ///< of a structure with rigid motions, as a whole [rad]
+  double displacement_over_thickness = unknown;  ///< of a plate that is held on two edges or more
+  double stretch_limit = 0.5;                    ///< what it may be there
+  bool load_lost = false;     ///< prescribed pressures, which were 0 wherever they were taken
+  double rotation = unknown;  ///< of a structure with rigid motions, as a whole [rad]
   double in_plane_share =
       unknown;  ///< of gravity or of the initial velocity of a plate, that no mode answers
   /// Static: difference by modes over the deflection itself; dynamic: share of the loads' compliance without modes.

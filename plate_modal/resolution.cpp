@@ -48,7 +48,9 @@ Resolution::Resolution(std::span<const double> omega)
 
 // Trapezoidal rule, phase theta = 2 atan(omega dt / 2) a step: a swing of amplitude A has in the middle of a step
 // the displacement A cos(theta / 2) cos(phi) = - acceleration / omega^2. A mode that follows a slow load without
-// inertia has no acceleration, and nothing is seen of it here.
+// inertia has no acceleration, and nothing is seen of it here. Steps of half a period and more meet the swing at the same
+// phases again and again, its middle at rest: there its ends, A sin(theta / 2) sin(phi) apart from the middle, count as
+// much, less what the load itself moves them.
 void Resolution::accepted(const ModalState& before, const ModalState& after, std::span<const double> load,
                           double dt) {
   sums_[time] += dt;
@@ -61,7 +63,11 @@ void Resolution::accepted(const ModalState& before, const ModalState& after, std
       continue;
     }
     const double middle = (after.v[m] - before.v[m]) / (dt * w * w), half = 0.5 * w * dt;
-    const double swing = middle * middle * (1 + half * half) * dt;
+    double swing = middle * middle * (1 + half * half) * dt;
+    if (half > 1) {
+      const double ends = 0.5 * (after.q[m] - before.q[m] - (load[m] / (w * w) - last_load_[m]));
+      if (sums_[steps_] >= 2) swing = 0.5 * (swing + ends * ends * (1 + 1 / (half * half)) * dt);
+    }
     follow(m, 0.5 * (before.v[m] + after.v[m]), load[m] / (w * w), dt);
     moved_[m] += square;
     swung_[m] += swing;
@@ -74,7 +80,10 @@ void Resolution::accepted(const ModalState& before, const ModalState& after, std
 /// A load that changes, as the displacement that it would make without inertia. Steps in which it hardly does (a
 /// constant load, a pulse that is over) say nothing: the mode is free then.
 void Resolution::follow(std::size_t m, double rate, double load, double dt) {
-  const double signed_change = (load - last_load_[m]) / dt, change = std::abs(signed_change);
+  // Rounding of a load that stays is no change.
+  const double moved = load - last_load_[m];
+  const double signed_change = std::abs(moved) < 1e-9 * std::abs(load) ? 0 : moved / dt;
+  const double change = std::abs(signed_change);
   last_load_[m] = load;
   if (sums_[steps_] < 2) return;
   load_[m] += load * dt;

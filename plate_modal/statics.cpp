@@ -13,7 +13,7 @@ namespace couplet::plate {
 /// q = Q / omega^2 of each mode; beside it K u = f on rank 0.
 void Structure::solve_static(double t, std::span<const double> fluid) {
   std::vector<double> load(fluid.size(), 0);
-  if (pressure_) pressure_->at(t, load);
+  if (pressure_) add_pressure(t, load);
   for (std::size_t m = 0; m < load.size(); ++m) {
     trial_.q[m] = (load[m] + fluid[m] + gravity_[m]) / (share_->omega()[m] * share_->omega()[m]);
     trial_.v[m] = 0;

@@ -158,7 +158,7 @@ Exchange Structure::solve(const Exchange& in) {
   if (parameters_.analysis == Parameters::Analysis::dynamic) {
     const auto load = [&](double after, std::span<double> total) {
       if (pressure_)
-        pressure_->at(step_.time + after, total);
+        add_pressure(step_.time + after, total);
       else
         std::ranges::fill(total, 0);
       for (std::size_t m = 0; m < fluid.size(); ++m) total[m] += fluid[m];
@@ -176,6 +176,11 @@ Exchange Structure::solve(const Exchange& in) {
   out["velocity"] = std::move(v);
   if (parameters_.surface_density) out["surface-density"] = built_.model.face_density;
   return out;
+}
+
+void Structure::add_pressure(double t, std::span<double> load) {
+  pressure_->at(t, load);
+  load_acted_ = load_acted_ || std::ranges::any_of(load, [](double f) { return f != 0; });
 }
 
 /// Does the step that is accepted now (from trial_, before, to state_) resolve what it moves?
@@ -247,6 +252,7 @@ void Structure::load(CheckpointReader& file) {
         "supports or the "
         "number of modes differ.");
   state_ = initial_state();
+  load_acted_ = true;  // before, for all that is known here
   for (const auto& [name, values] : {std::pair{"q", &state_.q},
                                      {"v", &state_.v},
                                      {"a", &state_.a},

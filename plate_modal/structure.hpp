@@ -57,6 +57,7 @@ class Structure final : public Participant {
   std::vector<double> damping() const;
   ModalState initial_state() const;
   void make_contact();
+  void add_pressure(double t, std::span<double> load);
   void look_at_step();
   void find_rotations();
   void look_at_rotation();
@@ -93,6 +94,7 @@ class Structure final : public Participant {
   std::vector<Vec3> rotations_;             // of each mode [1/(sqrt(kg) m)]; empty: none is a rigid motion
   std::unique_ptr<Truncation> truncation_;  // of a mesh in a dynamic analysis, on rank 0
   std::vector<double> fluid_pressure_;      // of the last solve, a cell, on rank 0; empty: no fluid
+  bool load_acted_ = false;                 // a prescribed pressure was not 0 somewhere
   std::vector<double> within_{0, 0};  // what the midpoint rule misses of prescribed pressures, on rank 0
   double largest_rotation_ = 0;       // of the body as a whole [rad]
   std::unique_ptr<PlateResults> results_;

@@ -12,6 +12,8 @@ std::string problem_of(const ModalModel& model);
 /// Whether a sound model can belong to a structure: mass above 0, no shape without motion, effective masses within the
 /// mass. Empty: nothing is wrong.
 std::string impossible_in(const ModalModel& model);
+/// Whether two modes overlap, as far as faces that carry the whole mass show it. Empty: they do not.
+std::string overlap_problem_of(const ModalModel& model);
 /// Whether its shapes can be mass-normalised, as far as the surface shows the mass (a factor of about three where
 /// `face_density` stands for half of the mass or more, of a hundred otherwise). Empty: they can.
 std::string scale_problem_of(const ModalModel& model);

@@ -79,7 +79,8 @@ ModalModel read_model(hid_t id) {
     if (const std::string problem = problem_of(model); !problem.empty()) throw Error("{}", problem);
     average_faces(model);
   }
-  for (const auto look : {&problem_of, &order_problem_of, &impossible_in, &scale_problem_of})
+  for (const auto look :
+       {&problem_of, &order_problem_of, &impossible_in, &scale_problem_of, &overlap_problem_of})
     if (const std::string problem = look(model); !problem.empty()) throw Error("{}", problem);
   return model;
 }

@@ -160,6 +160,7 @@ TEST(EffectCards, plate_verdicts_turn_at_their_thresholds) {
   EXPECT_FALSE(sound("large rotation", {.displacement_over_size = 0.251}));
   EXPECT_TRUE(sound("stretch of the mid-surface", {.displacement_over_thickness = 0.49}));
   EXPECT_FALSE(sound("stretch of the mid-surface", {.displacement_over_thickness = 0.51}));
+  EXPECT_FALSE(sound("load between the faces or steps", {.load_lost = true}));
   EXPECT_TRUE(sound("shear and rotary inertia", {.thickness_over_wave = 0.099}));
   EXPECT_FALSE(sound("shear and rotary inertia", {.thickness_over_wave = 0.101}));
   EXPECT_TRUE(sound("balance of the energies", {.energy_mismatch = 0.0099}));

@@ -189,6 +189,16 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
   };
   says("as if all x components came first", by_component);
   says("as if all x components came first", [&](ModalModel& m) { m.face_density.clear(), by_component(m); });
+  says("mode 1 at the faces", [&](ModalModel& m) { m.face_density.clear(), scaled(m.face_shape, 2); });
+  // One shape twice: its load would count twice.
+  says("modes 1 and 2 are not orthogonal", [](ModalModel& m) {
+    const std::size_t n = m.n_modes();
+    for (auto* part : {&m.vertex_shape, &m.face_shape, &m.participation})
+      for (std::size_t i = 0; i < part->size(); i += n) {
+        const double both = ((*part)[i] + (*part)[i + 1]) / std::sqrt(2.);
+        (*part)[i] = both;
+      }
+  });
   says("face 2 names vertex", [](ModalModel& m) { m.faces.index[4] = m.faces.index[3]; });
   says("is turned inside out", [](ModalModel& m) { std::swap(m.faces.index[3], m.faces.index[4]); });
   says("mode 1 has 0 Hz, but its shape is no rigid motion", [](ModalModel& m) { m.frequency[0] = 0; });

@@ -58,6 +58,36 @@ TEST(PlateResolution, a_free_swing_counts_as_coarse_below_ten_steps_a_period) {
   EXPECT_EQ(drive({2 * pi}, 0, 1. / 11, 30, none, TimeScheme::trapezoidal, 1).evidence.coarse_share, 0);
 }
 
+// At rest in the middle of every step: 2A, 0, 2A, 0 under a load that came at once.
+TEST(PlateResolution, the_swing_of_steps_of_many_periods_is_seen) {
+  for (const double steps_a_period : {1., 0.1, 0.001})
+    for (const int steps : {10, 100})
+      EXPECT_GT(drive({2 * pi}, 0, 1 / steps_a_period, steps / steps_a_period, [](double) { return 1.; })
+                    .evidence.coarse_share,
+                0.3)
+          << steps_a_period << " " << steps;
+}
+
+TEST(PlateResolution, a_load_that_stays_beside_one_that_swings_drives_no_resonance) {
+  // The first mode has the load that stays alone, to rounding.
+  Oscillators modes({2 * pi, 30.}, {0, 0}, {0, 0}, {TimeScheme::trapezoidal}, nullptr);
+  Resolution seen(std::vector<double>{2 * pi, 30.});
+  const std::vector<double> zero{0, 0};
+  ModalState now = modes.start(zero, zero), next = now;
+  for (int i = 0; i < 2000; ++i) {
+    modes.step(
+        now, 0.002,
+        [&](double t, std::span<double> f) {
+          const double swing = std::sin(2 * pi * 2 * (0.002 * i + t));
+          f[0] = 5 + 1e-15 * swing, f[1] = swing;
+        },
+        next);
+    seen.accepted(now, next, modes.load(), 0.002);
+    std::swap(now, next);
+  }
+  EXPECT_LT(seen.evidence(true).resonance_error, 0.1);
+}
+
 TEST(PlateResolution, stiff_modes_that_follow_a_slow_load_may_have_any_step) {
   const auto slow = [](double t) { return std::pow(std::sin(2 * pi * t / 40), 2); };
   for (const TimeScheme scheme : {TimeScheme::trapezoidal, TimeScheme::bathe}) {
