@@ -63,12 +63,14 @@ class Bag final : public Participant {
     Exchange out;
     for (std::size_t f = 0; f < n; ++f) {
       out["pressure-force"].insert(out["pressure-force"].end(),
-                                   {0, weight_ * h_ - mass_ * (next_[f] - now_[f] - mean) / step_.dt});
+                                   {0, weight_at(f) * h_ - mass_ * (next_[f] - now_[f] - mean) / step_.dt});
       out["inflow"].insert(out["inflow"].end(),
                            {inflow(step_.time + step_.dt) / double(n), inflow(step_.time) / double(n)});
     }
     return out;
   }
+  /// Round-off from face to face, as a solver leaves it: no level cancels it.
+  double weight_at(std::size_t f) const { return weight_ * (1 + 1e-14 * std::sin(double(f + 1))); }
   /// A pressure that is there at rest [Pa].
   void weigh(double weight) { weight_ = weight; }
   double inflow(double t) const { return q_ * std::pow(std::sin(std::numbers::pi * t), 2); }
@@ -179,6 +181,7 @@ TEST(VolumeLevel, a_load_at_rest_is_carried_where_nothing_flows) {
   BagRun run;
   run.weight = -4905.1;
   run.pumped = 0;
+  run.coupling.convergence.absolute = 1e-12;  // of round-off nothing relative can be asked
   run.simulation.end_time = 0.2;
   run();
   ASSERT_EQ(run.problem, "");
