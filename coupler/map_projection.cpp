@@ -8,8 +8,8 @@
 
 #include "common/base/error.hpp"
 #include "common/base/nearest.hpp"
+#include "common/base/point_tree.hpp"
 #include "coupler/map_local.hpp"
-#include "coupler/point_tree.hpp"
 
 namespace couplet {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/point_tree.hpp"
 
 namespace couplet {
 namespace {

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <optional>
 
+#include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/point_tree.hpp"
 
 namespace couplet {
 namespace {

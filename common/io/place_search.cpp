@@ -5,46 +5,18 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nanoflann.hpp>
 #include <span>
 
+#include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
-namespace {
-
-struct Cloud {
-  std::vector<Vec3> points;
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t i, std::size_t d) const { return points[i][Eigen::Index(d)]; }
-  template <class Box>
-  bool kdtree_get_bbox(Box&) const {
-    return false;
-  }
-};
-using Tree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, Index>;
-
-/// Everything within a radius, in the form that nanoflann fills.
-struct Within {
-  double square;
-  std::vector<Index> found;
-  std::size_t size() const { return found.size(); }
-  bool full() const { return true; }
-  bool addPoint(double distance, Index i) {
-    if (distance <= square) found.push_back(i);
-    return true;
-  }
-  double worstDist() const { return std::nextafter(square, INFINITY); }
-};
-
-}  // namespace
 
 struct Balls::Group {
   double radius = 0;  // largest
-  Cloud cloud{};
+  std::vector<Vec3> centres{};
   std::vector<Index> number{};
-  std::unique_ptr<Tree> tree{};
+  std::unique_ptr<PointTree> tree{};
 };
 
 Balls::Balls(std::vector<Vec3> centres, std::vector<double> radii) {
@@ -53,12 +25,11 @@ Balls::Balls(std::vector<Vec3> centres, std::vector<double> radii) {
     auto& group = by_size[radii[i] > 0 ? std::ilogb(radii[i]) : -10000];
     if (!group) group = std::make_unique<Group>();
     group->radius = std::max(group->radius, radii[i]);
-    group->cloud.points.push_back(centres[i]);
+    group->centres.push_back(centres[i]);
     group->number.push_back(static_cast<Index>(i));
   }
   for (auto& [size, group] : by_size) {
-    group->tree = std::make_unique<Tree>(3, group->cloud, nanoflann::KDTreeSingleIndexAdaptorParams(10));
-    group->tree->buildIndex();
+    group->tree = std::make_unique<PointTree>(group->centres);
     groups_.push_back(std::move(group));
   }
 }
@@ -67,12 +38,9 @@ Balls::Balls(Balls&&) noexcept = default;
 
 std::vector<Index> Balls::near(const Vec3& x, double slack) const {
   std::vector<Index> all;
-  for (const auto& group : groups_) {
-    const double reach = group->radius * (1 + 1e-6) + slack;
-    Within within{reach * reach, {}};
-    group->tree->radiusSearchCustomCallback(x.data(), within);
-    for (const Index i : within.found) all.push_back(group->number[i]);
-  }
+  for (const auto& group : groups_)
+    for (const Index i : group->tree->within(x, group->radius * (1 + 1e-6) + slack))
+      all.push_back(group->number[i]);
   std::ranges::sort(all);
   return all;
 }

@@ -8,7 +8,7 @@
 
 namespace couplet {
 
-/// Balls of very different sizes, asked for those that hold a place: k-d trees of their centres (nanoflann), one for
+/// Balls of very different sizes, asked for those that hold a place: k-d trees of their centres, one for
 /// each power of two of the radius. n log n to build; log n a question and what it finds.
 class Balls {
  public:

@@ -37,7 +37,7 @@ THIRD_PARTY = {
     r"yaml-cpp/": ["common/config"],
     r"CLI/": ["common/app"],
     r"muParser": ["common/fv"],
-    r"nanoflann": ["coupler", "common/io", "common/fv"],
+    r"nanoflann": ["common/base"],
     r"spdlog/": ["common/log"],
     r"zlib": ["thermocline"],
 }

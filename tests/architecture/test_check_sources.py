@@ -29,6 +29,7 @@ WRONG = {
     ("common/mesh/a.cpp", HEAD + "#include <hdf5.h>\n"): "only common/io",
     ("common/app/a.cpp", HEAD + "#include <yaml-cpp/yaml.h>\n"): "only common/config",
     ("coupler/a.cpp", HEAD + '#include "tests/support/a.hpp"\n'): "production code includes test code",
+    ("coupler/b.cpp", HEAD + "#include <nanoflann.hpp>\n"): "only common/base may include it",
     ("common/base/a.cpp", "int a;\n"): "no SPDX line",
     ("common/base/a.cpp", HEAD + "\n" * 600): "601 lines",
     ("common/base/a.hpp", HEAD + class_of(41)): "A has 41 member functions",
@@ -36,7 +37,7 @@ WRONG = {
 RIGHT = [
     ("common/io/a.cpp", HEAD + '#include <hdf5.h>\n#include "common/mesh/mesh.hpp"\n'),
     ("fluid_solver/a.cpp", HEAD + '#include "fluid_solver/fluid.hpp"\n#include "common/fv/expression.hpp"\n'),
-    ("coupler/a.cpp", HEAD + "#include <nanoflann.hpp>\n"),
+    ("common/base/a.cpp", HEAD + "#include <nanoflann.hpp>\n"),
     ("common/base/a.hpp", HEAD + class_of(40)),
     ("common/base/a.hpp", HEAD + class_of(40).replace("class A", "struct B {};\nstruct A")),
 ]

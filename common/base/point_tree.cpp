@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/point_tree.hpp"
+#include "common/base/point_tree.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nanoflann.hpp>
 
 namespace couplet {
@@ -59,7 +60,9 @@ std::vector<Index> PointTree::nearest(const Vec3& p, std::size_t k) const {
 
 std::vector<Index> PointTree::within(const Vec3& p, double distance) const {
   std::vector<std::pair<Index, double>> found;
-  state_->tree.radiusSearch(p.data(), distance * distance * (1 + 1e-9), found, {});
+  // nanoflann leaves out what is as far as the limit: a distance of 0 still holds the place itself.
+  const double square = distance * distance * (1 + 1e-9) + std::numeric_limits<double>::min();
+  state_->tree.radiusSearch(p.data(), square, found, {});
   std::vector<Index> indices;
   for (const auto& item : found) indices.push_back(item.first);
   return indices;
