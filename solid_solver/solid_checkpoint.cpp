@@ -2,6 +2,8 @@
 // The state of a solid and what its next first guesses learn from, on file.
 #include <fmt/format.h>
 
+#include <type_traits>
+
 #include "common/io/checkpoint.hpp"
 #include "common/io/numbering.hpp"
 #include "solid_solver/newton_krylov.hpp"
@@ -9,34 +11,54 @@
 
 namespace couplet {
 
+namespace {
+
+/// The arrays of a state by their names on file; those that a scheme does not have are empty in a fresh state, too.
+template <class State, class Visit>
+void visit_arrays(State& s, bool has_mass, Visit visit) {
+  visit("cell-displacement", s.cell_u);
+  visit("cell-velocity", s.cell_v);
+  if (!s.cell_a.empty()) visit("cell-acceleration", s.cell_a);
+  if (has_mass && !s.face_a.empty()) visit("nodes-face-acceleration", s.face_a);
+  if (has_mass && !s.face_u_old.empty()) {
+    visit("old-face-displacement", s.face_u_old);
+    visit("old-face-velocity", s.face_v_old);
+  }
+  if (!s.acceleration.empty()) {
+    visit("acceleration", s.acceleration);
+    visit("mean-acceleration", s.mean_acceleration);
+    visit("face-acceleration", s.face_acceleration);
+  }
+  if (!s.cell_u_old.empty()) {
+    visit("old-cell-displacement", s.cell_u_old);
+    visit("old-cell-velocity", s.cell_v_old);
+  }
+  visit("face-displacement", s.face_u);
+  visit("face-velocity", s.face_v);
+  visit("face-offset", s.offset);
+  visit("face-offset-rate", s.offset_rate);
+  visit("known-displacement", s.known);
+  visit("known-rate", s.known_rate);
+}
+
+template <class State, class Visit>
+void visit_scalars(State& s, bool controls_step, Visit visit) {
+  visit("time", s.time);
+  if (controls_step) visit("error", s.error);
+  visit("dt", s.dt);
+  visit("stage-dt", s.stage_dt);
+  visit("offset-lag", s.offset_lag);
+  visit("steps", s.steps);
+}
+
+}  // namespace
+
 void SolidStepper::save_state(CheckpointWriter& file) const {
   write_numbering(file, mesh_);
-  file.write("cell-displacement", state_.cell_u);
-  file.write("cell-velocity", state_.cell_v);
-  if (!state_.cell_a.empty()) file.write("cell-acceleration", state_.cell_a);
-  if (body_.has_mass()) {
-    if (!state_.face_a.empty()) file.write("nodes-face-acceleration", state_.face_a);
-    if (!state_.face_u_old.empty()) {
-      file.write("old-face-displacement", state_.face_u_old);
-      file.write("old-face-velocity", state_.face_v_old);
-    }
-  }
-  if (!state_.acceleration.empty()) {
-    file.write("acceleration", state_.acceleration);
-    file.write("mean-acceleration", state_.mean_acceleration);
-    file.write("face-acceleration", state_.face_acceleration);
-  }
-  if (!state_.cell_u_old.empty()) {
-    file.write("old-cell-displacement", state_.cell_u_old);
-    file.write("old-cell-velocity", state_.cell_v_old);
-  }
-  file.write("face-displacement", state_.face_u);
-  file.write("face-velocity", state_.face_v);
-  file.write("face-offset", state_.offset);
-  file.write("face-offset-rate", state_.offset_rate);
-  file.write("known-displacement", state_.known);
-  file.write("known-rate", state_.known_rate);
-  file.write_scalar("time", state_.time);
+  visit_arrays(state_, body_.has_mass(),
+               [&](const char* name, const auto& values) { file.write(name, values); });
+  visit_scalars(state_, parameters_.step_control.has_value(),
+                [&](const char* name, const auto& value) { file.write_scalar(name, value); });
   if (parameters_.output.energies) {
     const SolidEnergies& e = state_.energies;
     file.write("energies", std::vector<double>{e.kinetic, e.initial_kinetic, e.internal_work, e.external_work,
@@ -44,41 +66,14 @@ void SolidStepper::save_state(CheckpointWriter& file) const {
   }
   if (body_.is_dynamic())
     file.write("load-work", std::vector<double>{state_.load_work, state_.energies.initial_kinetic});
-  if (parameters_.step_control) file.write_scalar("error", state_.error);
-  file.write_scalar("dt", state_.dt);
-  file.write_scalar("stage-dt", state_.stage_dt);
-  file.write_scalar("offset-lag", state_.offset_lag);
-  file.write_scalar("steps", state_.steps);
 }
 
 void SolidStepper::load_state(CheckpointReader& file) {
   check_numbering(file, mesh_);
-  file.read("cell-displacement", state_.cell_u);
-  file.read("cell-velocity", state_.cell_v);
-  if (!state_.cell_a.empty()) file.read("cell-acceleration", state_.cell_a);
-  if (body_.has_mass()) {
-    if (!state_.face_a.empty()) file.read("nodes-face-acceleration", state_.face_a);
-    if (!state_.face_u_old.empty()) {
-      file.read("old-face-displacement", state_.face_u_old);
-      file.read("old-face-velocity", state_.face_v_old);
-    }
-  }
-  if (!state_.acceleration.empty()) {
-    file.read("acceleration", state_.acceleration);
-    file.read("mean-acceleration", state_.mean_acceleration);
-    file.read("face-acceleration", state_.face_acceleration);
-  }
-  if (!state_.cell_u_old.empty()) {
-    file.read("old-cell-displacement", state_.cell_u_old);
-    file.read("old-cell-velocity", state_.cell_v_old);
-  }
-  file.read("face-displacement", state_.face_u);
-  file.read("face-velocity", state_.face_v);
-  file.read("face-offset", state_.offset);
-  file.read("face-offset-rate", state_.offset_rate);
-  file.read("known-displacement", state_.known);
-  file.read("known-rate", state_.known_rate);
-  state_.time = file.read_scalar("time");
+  visit_arrays(state_, body_.has_mass(), [&](const char* name, auto& values) { file.read(name, values); });
+  visit_scalars(state_, parameters_.step_control.has_value(), [&](const char* name, auto& value) {
+    value = static_cast<std::remove_reference_t<decltype(value)>>(file.read_scalar(name));
+  });
   if (parameters_.output.energies) {
     const std::vector<double> e = file.read("energies");
     state_.energies = {e.at(0), e.at(1), 0, e.at(2), e.at(3), e.at(4)};
@@ -88,11 +83,6 @@ void SolidStepper::load_state(CheckpointReader& file) {
     state_.load_work = work.at(0);
     state_.energies.initial_kinetic = work.at(1);
   }
-  if (parameters_.step_control) state_.error = file.read_scalar("error");
-  state_.dt = file.read_scalar("dt");
-  state_.stage_dt = file.read_scalar("stage-dt");
-  state_.offset_lag = file.read_scalar("offset-lag");
-  state_.steps = static_cast<int>(file.read_scalar("steps"));
 }
 
 void SolidStepper::save_guesses(CheckpointWriter& file) const {
