@@ -3,16 +3,11 @@
 
 #include <algorithm>
 
+#include "common/elasticity/vector_at.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
 namespace {
-
-Vec3 at(std::span<const double> values, Index i, int dim) {
-  Vec3 u = Vec3::Zero();
-  for (int a = 0; a < dim; ++a) u[a] = values[std::size_t(i) * dim + a];
-  return u;
-}
 
 /// A displacement with ghosts and points.
 struct Placed {
@@ -63,13 +58,13 @@ double SolidLedger::stress_work(const BodyField& stressed, const BodyField& chan
     if (owner >= n_owned) continue;  // another rank's
     const Vec3& area = mesh_.reference.face_area[f];
     Vec3 force = elastic_.stress(owner, gradients[f]) * area;
-    const Vec3 here = at(change.cells, owner, dim);
+    const Vec3 here = vector_at(change.cells, owner, dim);
     if (f < mesh_.n_interior) {
-      work += force.dot(at(change.cells, mesh_.neighbour[f], dim) - here);
+      work += force.dot(vector_at(change.cells, mesh_.neighbour[f], dim) - here);
     } else if (elastic_.condition(f) == ElasticCondition::symmetry) {
       work -= area.dot(force) * area.dot(here) / area.squaredNorm();
     } else {
-      const Vec3 there = at(change.faces, f - mesh_.n_interior, dim);
+      const Vec3 there = vector_at(change.faces, f - mesh_.n_interior, dim);
       work += force.dot(there - here);
       outside += force.dot(there);
     }
@@ -86,7 +81,8 @@ double SolidLedger::kinetic(const SolidState& state) const {
   }
   double energy = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    energy += 0.5 * body_.density(c) * mesh_.reference.volume[c] * at(state.cell_v, c, dim).squaredNorm();
+    energy +=
+        0.5 * body_.density(c) * mesh_.reference.volume[c] * vector_at(state.cell_v, c, dim).squaredNorm();
   return energy;
 }
 
@@ -134,8 +130,8 @@ void SolidLedger::add_face_work(const SolvedStage& stage) const {
   SolidEnergies& energies = after.energies;
   energies.internal_work += inside - loss;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-    loss +=
-        damping.mass / dt * body_.density(c) * mesh_.reference.volume[c] * at(cells, c, dim).squaredNorm();
+    loss += damping.mass / dt * body_.density(c) * mesh_.reference.volume[c] *
+            vector_at(cells, c, dim).squaredNorm();
   energies.damping_loss += loss;
   energies.external_work += outside;
   energies.kinetic = kinetic(after);

@@ -9,18 +9,13 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/vector_at.hpp"
 #include "common/log/doubt.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/judge.hpp"
 
 namespace couplet {
 namespace {
-
-Vec3 at(std::span<const double> values, Index i, int dim) {
-  Vec3 u = Vec3::Zero();
-  for (int a = 0; a < dim; ++a) u[a] = values[std::size_t(i) * dim + a];
-  return u;
-}
 
 /// From the owner to the node across.
 Vec3 line_of(const Mesh& mesh, Index f) {
@@ -85,14 +80,14 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
         const Tensor3 stress = body_.elastic().stress(owner, gradient);
         energy += 0.5 * volume(f) * product(stress, gradient);
         Vec3 force = stress * mesh_.reference.face_area[f];
-        const Vec3 here = at(state.cell_u, owner, dim);
+        const Vec3 here = vector_at(state.cell_u, owner, dim);
         if (f < mesh_.n_interior)
-          work += 0.5 * force.dot(at(state.cell_u, mesh_.neighbour[f], dim) - here);
+          work += 0.5 * force.dot(vector_at(state.cell_u, mesh_.neighbour[f], dim) - here);
         else if (body_.elastic().condition(f) == ElasticCondition::symmetry)
           work -= 0.5 * mesh_.reference.face_area[f].dot(force) * mesh_.reference.face_area[f].dot(here) /
                   mesh_.reference.face_area[f].squaredNorm();
         else
-          work += 0.5 * force.dot(at(state.face_u, f - mesh_.n_interior, dim) - here);
+          work += 0.5 * force.dot(vector_at(state.face_u, f - mesh_.n_interior, dim) - here);
         if (!compare) return;
         const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
         size += volume(f) * body_.elastic().lame(owner).mu * symmetric.squaredNorm();

@@ -3,24 +3,15 @@
 #include <algorithm>
 
 #include "common/elasticity/elasticity.hpp"
+#include "common/elasticity/vector_at.hpp"
 
 namespace couplet {
-namespace {
-
-Vec3 at(std::span<const double> values, Index i, int dim) {
-  Vec3 u = Vec3::Zero();
-  for (int c = 0; c < dim; ++c) u[c] = values[std::size_t(i) * dim + c];
-  return u;
-}
-
-}  // namespace
-
 Vec3 ElasticOperator::add_forces(std::span<const double> forces, std::span<double> rhs) const {
   const int dim = mesh_->dim;
   Vec3 total = Vec3::Zero();
   for (std::size_t i = 0; i < unknown_faces_.size(); ++i) {
     const Index f = unknown_faces_[i];
-    Vec3 force = at(forces, f - mesh_->n_interior, dim);
+    Vec3 force = vector_at(forces, f - mesh_->n_interior, dim);
     if (condition(f) == ElasticCondition::support)
       force -= support(f).known * force;
     else if (condition(f) != ElasticCondition::traction)
@@ -73,9 +64,9 @@ void ElasticOperator::impose_known(std::span<const double> known, std::span<doub
   const int dim = mesh_->dim;
   for (const Index f : known_faces_) {
     const Index b = f - mesh_->n_interior;
-    Vec3 value = at(known, known_of_face(f), dim);
+    Vec3 value = vector_at(known, known_of_face(f), dim);
     if (condition(f) == ElasticCondition::support) {
-      const Vec3 found = at(faces, b, dim);
+      const Vec3 found = vector_at(faces, b, dim);
       value = found + support(f).known * (value - found);
     }
     for (int a = 0; a < dim; ++a) faces[std::size_t(b) * dim + a] = value[a];
@@ -100,8 +91,8 @@ Vec3 ElasticOperator::holding_force(Index face, const Tensor3& stress, std::span
       return n * n.dot(force);
     case ElasticCondition::support: {
       const ElasticSupport& s = support(face);
-      const Vec3 stretch =
-          at(faces, face - mesh_->n_interior, mesh_->dim) - at(known, known_of_face(face), mesh_->dim);
+      const Vec3 stretch = vector_at(faces, face - mesh_->n_interior, mesh_->dim) -
+                           vector_at(known, known_of_face(face), mesh_->dim);
       const Vec3 spring = area(face) * (s.spring * stretch);
       return s.known * force - (spring - s.known * spring);
     }
