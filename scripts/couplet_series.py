@@ -113,3 +113,9 @@ def extrema(t, y, window=0.15):
                 if not found or kind != found[-1][2] or t[i] - found[-1][0] > window:
                     found.append((t[i] + shift, sign * (c + b * shift + a * shift * shift), kind))
     return sorted(found)
+
+
+def passes_a_step(folder):
+    """Mean number of passes of the coupling in a step, of a run's output folder."""
+    passes = read_csv(folder / "coupler" / "residuals.csv")
+    return len(passes["step"]) / len(set(passes["step"]))
