@@ -95,7 +95,7 @@ def cycles(method, form, degrees, n=100, chi=0.5, limit=1e-6):
                                    steps=20 * n, end=n, timeout=1800)
         t, j = rows["time [s]"], rows["least scaled Jacobian [1]"]
         if not valid:
-            return f"refused after {t[-1]:.2f} cycles", False
+            return f"refused after {t[-1]:.2f} cycles", None if limit is None else False
         first, last = j[t < 1.001].min(), j[t > n - 1.001].min()
         return (f"least scaled Jacobian {first:.4f} in the first cycle, {last:.4f} in the last; left at the end "
                 f"{last_displacement(folder) / 0.01:.1e} of the shortest edge"), limit is None or abs(last - first) <= limit
