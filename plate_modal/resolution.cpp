@@ -2,6 +2,7 @@
 #include "plate_modal/resolution.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -182,20 +183,23 @@ StepEvidence Resolution::evidence(bool at_end) const {
   return e;
 }
 
+/// All that is remembered, in the order in which it is saved.
+template <class R>
+auto Resolution::parts(R& r) {
+  return std::array{&r.sums_,        &r.moved_,     &r.swung_,  &r.coarse_,     &r.longest_step_,   &r.rate_,
+                    &r.drive_,       &r.rate_step_, &r.driven_, &r.last_load_,  &r.largest_change_, &r.load_,
+                    &r.load_square_, &r.change_,    &r.turns_,  &r.last_change_};
+}
+
 std::vector<double> Resolution::state() const {
-  std::vector<double> all = sums_;
-  for (const auto* part :
-       {&moved_, &swung_, &coarse_, &longest_step_, &rate_, &drive_, &rate_step_, &driven_, &last_load_,
-        &largest_change_, &load_, &load_square_, &change_, &turns_, &last_change_})
-    all.insert(all.end(), part->begin(), part->end());
+  std::vector<double> all;
+  for (const auto* part : parts(*this)) all.insert(all.end(), part->begin(), part->end());
   return all;
 }
 
 void Resolution::restore(const std::vector<double>& state) {
   auto at = state.begin();
-  for (auto* part :
-       {&sums_, &moved_, &swung_, &coarse_, &longest_step_, &rate_, &drive_, &rate_step_, &driven_,
-        &last_load_, &largest_change_, &load_, &load_square_, &change_, &turns_, &last_change_}) {
+  for (auto* part : parts(*this)) {
     std::copy(at, at + std::ssize(*part), part->begin());
     at += std::ssize(*part);
   }

@@ -59,6 +59,8 @@ class Resolution final {
   void restore(const std::vector<double>& state);
 
  private:
+  template <class R>
+  static auto parts(R& r);
   double displacement() const;
   void follow(std::size_t mode, double rate, double load, double dt);
   void find_resonance(StepEvidence& evidence, double all) const;
