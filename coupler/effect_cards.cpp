@@ -18,7 +18,7 @@ using Mapping = MappingParameters::Type;
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 bool iterates(const P& p) { return p.scheme != Scheme::explicit_; }
 /// Whether participants see the motion of the guess before the structure has given its own.
-bool predicts(const P& p) { return schedule_of(p).predictor > 0; }
+bool predicts(const P& p) { return predictor_order_of(p) > 0; }
 bool is_quasi_newton(const P& p) {
   return p.acceleration.type == Acceleration::iqn_ils || p.acceleration.type == Acceleration::iqn_mvj;
 }
@@ -28,7 +28,7 @@ bool is_quasi_newton(const P& p) {
 // lambda^2 + r (2 lambda - 1) = 0, which reaches -1 at r = 1/3. The error goes with r: half the limit is asked for.
 std::optional<EffectVerdict> judge_one_pass(const P& p, const CouplingEvidence& e) {
   if (p.scheme != Scheme::explicit_ || std::isnan(e.returned)) return {};
-  const double limit = schedule_of(p).predictor >= 2 ? 1.0 / 3 : 1.0;
+  const double limit = predictor_order_of(p) >= 2 ? 1.0 / 3 : 1.0;
   return EffectVerdict{
       "", e.returned, limit / 2,
       fmt::format(

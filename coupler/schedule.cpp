@@ -17,6 +17,11 @@ int Schedule::sub_steps_of(const std::string& name) const {
   return found == sub_steps.end() ? 1 : found->second;
 }
 
+int predictor_order_of(const CouplingParameters& p) {
+  const bool one_pass = p.scheme == Scheme::explicit_;
+  return int(p.predictor_order.value_or(p.exchange && one_pass ? 0 : 2));
+}
+
 Schedule schedule_of(const CouplingParameters& p) {
   Schedule s;
   s.scheme = p.scheme;
@@ -29,15 +34,14 @@ Schedule schedule_of(const CouplingParameters& p) {
     s.group = p.exchange->participants;
     s.side_by_side = p.exchange->order == CouplingParameters::Exchange::Order::parallel;
   } else {
-    s.group = {p.fluid->participant, p.structure->participant};
+    s.group = {p.fluid.value().participant, p.structure.value().participant};
     if (p.order == CouplingParameters::Exchange::Order::structure_first) std::swap(s.group[0], s.group[1]);
     s.side_by_side = p.order == CouplingParameters::Exchange::Order::parallel;
   }
-  // Without motion in it, an exchange takes what was given last.
-  s.predictor = p.predictor_order.value_or(p.exchange && !s.iterates ? 0 : 2);
+  s.predictor = predictor_order_of(p);
   if (!p.mesh) return s;
   s.mover = p.mesh->participant;
-  s.moved = p.fluid->participant;
+  s.moved = p.fluid.value().participant;
   return s;
 }
 

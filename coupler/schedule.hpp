@@ -32,7 +32,10 @@ struct Schedule {
   int sub_steps_of(const std::string& name) const;
 };
 
-/// The schedule that the roles or the exchange of `coupling:` stand for.
+/// Order of the prediction of the motion, 0 to 2. An exchange of one pass holds no motion and takes what was given last.
+int predictor_order_of(const CouplingParameters& parameters);
+
+/// The schedule that the roles or the exchange of `coupling:` stand for. Throws std::bad_optional_access without either.
 Schedule schedule_of(const CouplingParameters& parameters);
 
 }  // namespace couplet

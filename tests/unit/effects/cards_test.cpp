@@ -4,6 +4,7 @@
 
 #include "common/effects/card.hpp"
 #include "coupler/effect_cards.hpp"
+#include "coupler/schedule.hpp"
 #include "fluid_solver/effect_cards.hpp"
 #include "plate_modal/effect_cards.hpp"
 #include "solid_solver/effect_cards.hpp"
@@ -148,6 +149,12 @@ TEST(EffectCards, coupling_verdicts_turn_at_their_thresholds) {
   EXPECT_FALSE(sound("viscous coupling load", {.lost_load = 0.021}));
   EXPECT_THAT(audit(coupling_effect_cards(), iterated, CouplingEvidence{.returned = 5}), IsEmpty());
   EXPECT_THAT(audit(coupling_effect_cards(), one_pass, CouplingEvidence{}), IsEmpty());
+}
+
+// `--effects` asks before a case is read: this dereferenced the fluid that is not there yet.
+TEST(EffectCards, coupling_cards_answer_without_participants) {
+  EXPECT_NO_THROW(effects_of(coupling_effect_cards(), CouplingParameters{}));
+  EXPECT_THROW(schedule_of(CouplingParameters{}), std::bad_optional_access);
 }
 
 TEST(EffectCards, plate_verdicts_turn_at_their_thresholds) {
