@@ -32,10 +32,10 @@ class SolidEffect {
   /// The stress - p I it stands for at time t, p [Pa] per local face; empty: none.
   virtual std::vector<double> pressure(double /*t*/) { return {}; }
   virtual void accept_step() {}
-  /// An effect that wants_temperature() gets the place of the interface once, and what was given at its faces
-  /// at the start of each solve (empty: nothing yet); begin_step() follows. Collective.
+  /// An effect that wants_temperature() gets the centres of this rank's faces of the interface once, and what was given
+  /// at these at the start of each solve (empty: nothing yet); begin_step() follows. Collective.
   virtual bool wants_temperature() const { return false; }
-  virtual void set_interface(const InterfaceTemperature& /*interface*/) {}
+  virtual void set_interface(const std::vector<Vec3>& /*face_centres*/) {}
   virtual void take_temperature(const std::vector<double>& /*faces*/) {}
   /// An effect that wants_stress() gets that of the owned cells after each accepted step [Pa].
   virtual bool wants_stress() const { return false; }

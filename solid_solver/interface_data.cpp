@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "common/base/error.hpp"
+#include "common/base/point_tree.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -16,17 +18,11 @@ struct Patch {
   Eigen::Matrix3Xd gradient;
 };
 
-Patch patch_of(Index face, std::span<const Vec3> centres) {
+Patch patch_of(Index face, const std::vector<Vec3>& centres, const PointTree& tree) {
   constexpr std::size_t most = 8;
-  std::vector<Index> others(centres.size());
-  std::iota(others.begin(), others.end(), 0);
-  others.erase(others.begin() + face);
-  const auto distance = [&](Index k) { return (centres[k] - centres[face]).squaredNorm(); };
-  const auto nearer = [&](Index a, Index b) {
-    return std::pair(distance(a), a) < std::pair(distance(b), b);  // equal distances: the same on all ranks
-  };
+  std::vector<Index> others = tree.nearest(centres[face], most + 1);
+  std::erase(others, face);
   const std::size_t n = std::min(most, others.size());
-  std::partial_sort(others.begin(), others.begin() + std::ptrdiff_t(n), others.end(), nearer);
   others.resize(n);
   // Beyond the nearest ring of faces nothing is needed: in a strip that is one face to each side.
   Eigen::MatrixX3d offsets(Eigen::Index(n), 3);
@@ -44,17 +40,15 @@ Patch patch_of(Index face, std::span<const Vec3> centres) {
 
 }  // namespace
 
-FaceInterpolation::FaceInterpolation(std::span<const Vec3> centres, std::span<const Vec3> points) {
+FaceInterpolation::FaceInterpolation(const std::vector<Vec3>& centres, std::span<const Vec3> points) {
   if (centres.empty()) return;
+  const PointTree tree(centres);
   std::vector<Patch> patches(centres.size());
   std::vector<bool> made(centres.size(), false);
   first_.push_back(0);
   for (const Vec3& x : points) {
-    Index a = 0;
-    double least = (x - centres.front()).squaredNorm();
-    for (std::size_t k = 1; k < centres.size(); ++k)
-      if (const double d = (x - centres[k]).squaredNorm(); d < least) least = d, a = static_cast<Index>(k);
-    if (!made[a]) patches[a] = patch_of(a, centres), made[a] = true;
+    const Index a = tree.nearest(x, 1).front();
+    if (!made[a]) patches[a] = patch_of(a, centres, tree), made[a] = true;
     nearest_.push_back(a);
     const Eigen::RowVectorXd weights = (x - centres[a]).transpose() * patches[a].gradient;
     for (std::size_t k = 0; k < patches[a].around.size(); ++k)
@@ -108,11 +102,45 @@ std::vector<Interface::Datum> taken(const InterfaceData& data) {
   return list;
 }
 
-InterfaceTemperature::InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3>& centres)
-    : comm_(comm), centres_(all_gather(comm, centres)) {}
+// All centres are here while the nearest are looked for, and no longer.
+InterfaceTemperature::InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3>& centres,
+                                           const std::vector<std::span<const Vec3>>& places)
+    : comm_(comm) {
+  const auto n_here = static_cast<Index>(centres.size());
+  const std::vector<Index> counts = all_gather(comm, std::vector<Index>{n_here});
+  std::vector<Index> first{0};  // of each rank's faces in the list of all, and one more
+  for (const Index n : counts) first.push_back(first.back() + n);
+  const Index mine = first[comm_rank(comm)];
+  const std::vector<Vec3> all = all_gather(comm, centres);
+  for (const auto& points : places) at_.emplace_back(all, points);
 
-std::vector<double> InterfaceTemperature::everywhere(const std::vector<double>& here) const {
-  return all_gather(comm_, here);
+  std::vector<Index> local(all.size(), -1);
+  std::iota(local.begin() + mine, local.begin() + mine + n_here, 0);
+  std::vector<int> owner;
+  std::vector<Index> remote;
+  const auto number = [&](Index& f) {
+    if (local[f] < 0) {
+      local[f] = n_here + static_cast<Index>(owner.size());
+      owner.push_back(int(std::ranges::upper_bound(first, f) - first.begin()) - 1);
+      remote.push_back(f - first[owner.back()]);
+    }
+    f = local[f];
+  };
+  for (FaceInterpolation& interpolation : at_) interpolation.for_each_face(number);
+  faces_ = IndexMap(comm, n_here, owner, remote);
+}
+
+std::vector<double> InterfaceTemperature::with_others(const std::vector<double>& here) const {
+  if (!any(comm_, !here.empty())) return {};
+  const Index n_owned = faces_.n_owned();
+  if (any(comm_, std::ssize(here) != n_owned))
+    throw Error(
+        "The solid was given {} temperatures; its interface has {} faces on this rank, or another rank says so.",
+        here.size(), n_owned);
+  std::vector<double> values = here;
+  values.resize(faces_.n_local());
+  faces_.update_ghosts(values);
+  return values;
 }
 
 }  // namespace couplet

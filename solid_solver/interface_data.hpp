@@ -9,6 +9,7 @@
 #include "common/base/types.hpp"
 #include "common/config/section.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/parallel/index_map.hpp"
 
 namespace couplet {
 
@@ -41,10 +42,15 @@ class FaceInterpolation {
   /// Gradients by least squares over the nearest faces of each face; in directions in which these do not
   /// extend (through the wall, across a strip of one face's width) there is none.
   FaceInterpolation() = default;
-  FaceInterpolation(std::span<const Vec3> centres, std::span<const Vec3> points);
+  FaceInterpolation(const std::vector<Vec3>& centres, std::span<const Vec3> points);
   std::size_t size() const { return nearest_.size(); }
-  bool empty() const { return nearest_.empty(); }
   double value(std::size_t point, std::span<const double> faces) const;
+  /// Calls `change` with each face that a value is made from; it may give it another number.
+  template <class Change>
+  void for_each_face(const Change& change) {
+    for (std::vector<Index>* faces : {&nearest_, &face_})
+      for (Index& f : *faces) change(f);
+  }
 
  private:
   std::vector<Index> nearest_, first_, face_;  // first_: where the faces of a point begin, and one more
@@ -52,20 +58,25 @@ class FaceInterpolation {
 };
 
 /// Temperature given at the faces of the interface, carried into the solid along the interface: for walls
-/// so thin, or so well insulated, that they have one temperature through their thickness.
+/// so thin, or so well insulated, that they have one temperature through their thickness. A rank holds the values
+/// of its own faces and of those others' that its places are near to.
 class InterfaceTemperature final {
  public:
-  /// `centres`: of this rank's faces of the interface. Collective.
-  InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3>& centres);
+  /// `centres`: of this rank's faces of the interface, of which there are some on some rank; `places`: groups of this
+  /// rank's points that want a temperature. Collective.
+  InterfaceTemperature(MPI_Comm comm, const std::vector<Vec3>& centres,
+                       const std::vector<std::span<const Vec3>>& places);
 
-  std::size_t n_faces() const { return centres_.size(); }
-  FaceInterpolation at(std::span<const Vec3> points) const { return {centres_, points}; }
-  /// `here`: a value a face of this rank, empty if nothing was given yet; those of all ranks after the call.
-  std::vector<double> everywhere(const std::vector<double>& here) const;
+  /// `here`: a value a face of this rank. Returns these and those of other ranks that the places need; empty if no rank
+  /// was given any. Throws Error on all ranks where the number is wrong. Collective.
+  std::vector<double> with_others(const std::vector<double>& here) const;
+  /// For the places of a group, from what with_others() returned.
+  const FaceInterpolation& at(std::size_t group) const { return at_[group]; }
 
  private:
   MPI_Comm comm_;
-  std::vector<Vec3> centres_;
+  IndexMap faces_;
+  std::vector<FaceInterpolation> at_;
 };
 
 }  // namespace couplet

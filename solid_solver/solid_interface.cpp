@@ -43,18 +43,14 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
   }
   if (!parameters.interface_data || !parameters.interface_data->temperature) return;
   if (!map_) throw Error("interface: no patch has 'type: interface', where a temperature could be taken.");
-  temperature_ = std::make_unique<InterfaceTemperature>(mesh.comm, description_.face_centres);
+  takes_temperature_ = true;
   for (const auto& effect : body.effects())
-    if (effect->wants_temperature()) effect->set_interface(*temperature_);
+    if (effect->wants_temperature()) effect->set_interface(description_.face_centres);
 }
 
 void SolidInterface::take_temperature(const Exchange& in) const {
   const auto found = in.find("temperature");
-  const std::vector<double> faces =
-      temperature_->everywhere(found == in.end() ? std::vector<double>{} : found->second);
-  if (!faces.empty() && faces.size() != temperature_->n_faces())
-    throw Error("The solid was given {} temperatures; its interface has {} faces.", faces.size(),
-                temperature_->n_faces());
+  const std::vector<double> faces = found == in.end() ? std::vector<double>{} : found->second;
   for (const auto& effect : body_.effects())
     if (effect->wants_temperature()) effect->take_temperature(faces);
 }
@@ -65,7 +61,7 @@ std::vector<double> SolidInterface::load(const Exchange& in) const {
   const int dim = mesh.dim;
   std::vector<double> total(description_.face_centres.size() * dim, 0.0);
   for (const auto& [name, values] : in) {
-    if (name == "temperature" && temperature_) continue;
+    if (name == "temperature" && takes_temperature_) continue;
     if (std::ranges::none_of(description_.takes, [&](const auto& datum) { return datum.name == name; }))
       throw Error("The solid was given '{}', which it does not take.", name);
     if (name == "pressure" && values.size() * dim == total.size()) {

@@ -21,7 +21,7 @@ class SolidInterface final {
 
   const Interface& description() const { return description_; }
   /// A temperature comes with the load, so that the loads it makes cannot be prepared before.
-  bool takes_temperature() const { return temperature_ != nullptr; }
+  bool takes_temperature() const { return takes_temperature_; }
   /// Hands the temperature that was given to the effects. Collective.
   void take_temperature(const Exchange& in) const;
   /// Sum of the given forces, `dim` values a boundary face of owned cells; empty without interface.
@@ -33,8 +33,8 @@ class SolidInterface final {
   const SolidBody& body_;
   std::unique_ptr<InterfaceMap> map_;  // none: no interface patch
   Interface description_;
-  std::optional<double> surface_density_;              // [kg/m^2]; none: not given
-  std::unique_ptr<InterfaceTemperature> temperature_;  // none: not taken
+  std::optional<double> surface_density_;  // [kg/m^2]; none: not given
+  bool takes_temperature_ = false;
 };
 
 }  // namespace couplet

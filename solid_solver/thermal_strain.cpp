@@ -96,7 +96,7 @@ double ThermalStrain::three_bulk(Index cell) const {
 
 std::vector<double> ThermalStrain::cell_temperature(double t, bool trial) const {
   if (heat_) return trial ? heat_->trial().cells : heat_->accepted().cells;
-  if (given_ && !to_cells_.empty()) return given_at(to_cells_, trial);
+  if (interface_) return given_at(at_cells, trial);
   std::vector<double> values(mesh_->cells.n_local(), reference_);
   if (given_) return values;  // set_interface() comes later
   prescribed_->evaluate(mesh_->reference.cell_centre, t, values);
@@ -141,31 +141,33 @@ std::span<const LameConstants> ThermalStrain::stiffness() const {
 
 std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const {
   if (heat_) return heat_->face_temperature(trial ? heat_->trial() : heat_->accepted());
-  if (given_) return given_at(to_faces_, trial);
+  if (given_) return given_at(at_faces, trial);
   std::vector<double> values(mesh_->n_flux_faces());
   prescribed_->evaluate({mesh_->reference.face_centre.data(), values.size()}, t, values);
   return values;
 }
 
 /// Before anything was given the solid has its reference temperature.
-std::vector<double> ThermalStrain::given_at(const FaceInterpolation& places, bool trial) const {
+std::vector<double> ThermalStrain::given_at(Places places, bool trial) const {
   const std::vector<double>& faces = trial ? given_trial_ : given_accepted_;
-  std::vector<double> values(places.size(), reference_);
-  for (std::size_t i = 0; i < places.size() && !faces.empty(); ++i) values[i] = places.value(i, faces);
+  const FaceInterpolation& at = interface_.value().at(places);
+  std::vector<double> values(at.size(), reference_);
+  for (std::size_t i = 0; i < values.size() && !faces.empty(); ++i) values[i] = at.value(i, faces);
   return values;
 }
 
-void ThermalStrain::set_interface(const InterfaceTemperature& interface) {
+void ThermalStrain::set_interface(const std::vector<Vec3>& face_centres) {
   const auto& g = mesh_->reference;
-  to_faces_ = interface.at({g.face_centre.data(), std::size_t(mesh_->n_flux_faces())});
-  to_points_ = interface.at(mesh_->reference_points);
-  to_cells_ = interface.at(g.cell_centre);
+  const std::span flux_faces(g.face_centre.data(), std::size_t(mesh_->n_flux_faces()));
+  interface_.emplace(mesh_->comm, face_centres,
+                     std::vector<std::span<const Vec3>>{flux_faces, mesh_->reference_points, g.cell_centre});
   start_ = face_temperature(0, false);
   set_accepted();
 }
 
 void ThermalStrain::take_temperature(const std::vector<double>& faces) {
-  given_trial_ = faces.empty() ? given_accepted_ : faces;
+  const std::vector<double> given = interface_.value().with_others(faces);
+  given_trial_ = given.empty() ? given_accepted_ : given;
 }
 
 std::vector<double> ThermalStrain::strain(std::span<const double> temperature) const {
@@ -294,7 +296,7 @@ double ThermalStrain::coupling_number() const {
 
 std::vector<double> ThermalStrain::point_temperature() const {
   if (heat_) return heat_->point_temperature(heat_->accepted());
-  if (given_) return given_at(to_points_, false);
+  if (given_) return given_at(at_points, false);
   std::vector<double> values(mesh_->points.n_local());
   prescribed_->evaluate(mesh_->reference_points, time_, values);
   return values;
@@ -305,7 +307,7 @@ void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
   if (heat_) {
     cells_ = heat_->accepted().cells;
   } else if (given_) {
-    cells_ = given_at(to_cells_, false);
+    cells_ = given_at(at_cells, false);
   } else {
     cells_.resize(mesh_->cells.n_local());
     prescribed_->evaluate(mesh_->reference.cell_centre, time_, cells_);

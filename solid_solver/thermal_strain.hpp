@@ -34,7 +34,7 @@ class ThermalStrain final : public SolidEffect {
   std::vector<double> pressure(double t) override;
   void accept_step() override;
   bool wants_temperature() const override { return given_; }
-  void set_interface(const InterfaceTemperature& interface) override;
+  void set_interface(const std::vector<Vec3>& face_centres) override;
   void take_temperature(const std::vector<double>& faces) override;
   bool wants_stress() const override { return coupled_; }
   void take_stress(std::span<const Tensor3> stress) override;
@@ -52,10 +52,11 @@ class ThermalStrain final : public SolidEffect {
   std::vector<double> point_temperature() const;
 
  private:
+  enum Places { at_faces, at_points, at_cells };  // groups of interface_
   bool expands() const { return !expansion_.empty(); }
   /// Temperatures of the flux faces of the mesh at an end of the step: T^{n+1} of the trial, or accepted.
   std::vector<double> face_temperature(double t, bool trial) const;
-  std::vector<double> given_at(const FaceInterpolation& places, bool trial) const;
+  std::vector<double> given_at(Places places, bool trial) const;
   std::vector<double> strain(std::span<const double> temperature) const;
   double modulus(Index cell) const;  // B
   double face_modulus(Index face) const;
@@ -71,11 +72,11 @@ class ThermalStrain final : public SolidEffect {
   const ElasticOperator* elastic_;
   std::unique_ptr<Heat> heat_;  // none: prescribed
   std::optional<Expression> prescribed_;
-  bool given_ = false;                                 // at the interface
-  FaceInterpolation to_faces_, to_points_, to_cells_;  // from faces of the interface
-  std::vector<double> given_accepted_, given_trial_;   // at them [K]
-  std::vector<Property> expansion_;                    // one a material; none: no thermal strain
-  double reference_ = 0;                               // [K]
+  bool given_ = false;                                // at the interface
+  std::optional<InterfaceTemperature> interface_;     // once it is known where that is
+  std::vector<double> given_accepted_, given_trial_;  // at its faces that are needed here [K]
+  std::vector<Property> expansion_;                   // one a material; none: no thermal strain
+  double reference_ = 0;                              // [K]
   bool plane_stress_ = false;
   SolidParameters parameters_;
   std::vector<std::optional<Property>> youngs_modulus_, poissons_ratio_;  // one a material

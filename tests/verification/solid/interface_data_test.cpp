@@ -3,6 +3,7 @@
 // is linear in space and therefore exact.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/error.hpp"
@@ -158,6 +159,27 @@ TEST(FaceInterpolation, stays_within_its_faces) {
   }
   const FaceInterpolation one(std::vector<Vec3>{Vec3(0, 0, 0)}, points);
   EXPECT_EQ(one.value(3, std::vector<double>{351}), 351);
+}
+
+TEST(InterfaceTemperature, a_rank_holds_its_own_faces_and_those_that_its_places_need) {
+  // A strip of faces that the ranks share, with places a little beyond the ends of each part.
+  constexpr int faces_a_rank = 40;
+  const int begin = faces_a_rank * comm_rank(MPI_COMM_WORLD), ranks = comm_size(MPI_COMM_WORLD);
+  std::vector<Vec3> faces, places;
+  std::vector<double> here;
+  for (int k = begin; k < begin + faces_a_rank; ++k) faces.emplace_back(1, 0, k), here.push_back(300 + 2 * k);
+  for (int k = begin - 1; k <= begin + faces_a_rank; ++k) places.emplace_back(0.9, 0, k + 0.3);
+  const InterfaceTemperature temperature(MPI_COMM_WORLD, faces, {places, faces});
+  const std::vector<double> held = temperature.with_others(here);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double z = std::clamp<double>(places[i].z(), 0, faces_a_rank * ranks - 1);  // held within its faces
+    EXPECT_NEAR(temperature.at(0).value(i, held), 300 + 2 * z, 1e-9) << "z = " << z;
+  }
+  EXPECT_GE(held.size(), std::size_t(faces_a_rank));
+  EXPECT_LE(held.size(), std::size_t(faces_a_rank) + 16);
+  EXPECT_TRUE(temperature.with_others({}).empty());
+  if (begin == 0) here.pop_back();
+  EXPECT_THROW(temperature.with_others(here), Error);  // on all ranks
 }
 
 TEST(InterfaceData, the_solid_has_the_given_temperature_along_the_interface) {
