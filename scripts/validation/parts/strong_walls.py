@@ -32,6 +32,20 @@ def volume_of_a_step(name, fluid, bound, overrides=()):
     return measure
 
 
+def nearly_closed(kind, holds):
+    """Passes a step of the box with an opening of one cell, in boxes of 8, 16 and 32 cells a side, 10 steps."""
+    def measure(job):
+        found = []
+        for n in (8, 16, 32):
+            sets = [f"participants.{name}.mesh-parameters={{n: {n}}}" for name in ("fluid", "lid", "mover")]
+            run = job.case_run(job.root / "configs" / "closed-cavity" / "nearly-closed.yaml", job.scratch / f"nearly-{kind}-{n}",
+                               [*sets, "simulation.end-time=0.2", f"coupling.acceleration.type={kind}"], {}, 600)
+            rows = couplet.read_csv(run.folder / "coupler" / "residuals.csv")
+            found.append(float(np.unique(rows["step"], return_counts=True)[1].mean()))
+        return ", ".join(f"{passes:.1f}" for passes in found), holds(found)
+    return measure
+
+
 def passes_of_a_step(name, overrides=()):
     def measure(job):
         _, rows = case(job, name, overrides)
@@ -82,6 +96,9 @@ WALLS = [
     Bar("two cavities under one wall, levels, halved steps, restart", "tests pass", tested("^coupling_volume_level$")),
     Bar("closed fluids: ranks, restart bit for bit, balloon", "test passes", tested("^coupling_cavity$"), long=True),
     Bar("closed box without the key", "refused", refused_without_key),
+    Bar("box with an opening of 1/8, 1/16, 1/32 of its side: passes a step", "<= 6 on average",
+        nearly_closed("iqn-ils", lambda found: max(found) <= 6), but="10 steps; the bar asks for closed ones"),
+    Bar("the same with Aitken", "reported: the neighbour", nearly_closed("aitken", lambda found: None)),
     Bar("Robin and IQN-ILS: passes a step, rho_s h/(rho_f mu_1) 0.05 to 20, steps of 0.1 to 10 ms", "<= 4.5 on average",
         robin("Robin, IQN-ILS", 4.5, (0.05, 0.3, 1, 5, 20)), but=SHORT),
     Bar("IQN-ILS without Robin: passes a step, rho_s h/(rho_f mu_1) 0.01 to 100", "<= 30",
