@@ -12,7 +12,7 @@
 namespace couplet {
 
 struct AccelerationParameters {
-  enum class Type { constant, aitken, iqn_ils, iqn_mvj } type = Type::aitken;
+  enum class Type { constant, aitken, iqn_ils, iqn_mvj } type = Type::iqn_ils;
   double initial_relaxation = 0.5;
   double maximum_relaxation = 1.0;
   int reused_steps = 8;       // quasi-Newton: earlier steps whose differences are kept
