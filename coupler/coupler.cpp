@@ -97,6 +97,7 @@ void Coupler::initialise() {
   check_places(comm_, sides_, *links_, parameters_.mapping);
   unknown_.emplace(comm_, sides_, *links_, group_, schedule_.side_by_side);
   audit_.emplace(comm_, sides_, *links_);
+  if (simulation_.error_estimate && schedule_.iterates) errors_.emplace();
   mechanics_.emplace(comm_, sides_, *links_, labels_of(parameters_, partners_));
   if (unknown_->start_at_rest(given_)) history_.now = unknown_->gather(given_);
   volume_level_.emplace(comm_, sides_, *links_, schedule_, group_);
@@ -157,8 +158,10 @@ void Coupler::solve(const Step& step) {
   } else if (!unknown_->parts().empty()) {
     const bool constant = parameters_.acceleration.type == AccelerationParameters::Type::constant;
     iteration_guard_.start_step();
+    if (errors_) errors_->start_step();
     const IterationObserver observer = [&](int k, const Residual& residual, double omega) {
       monitor_->iteration(step, k, residual, omega);
+      if (errors_) errors_->pass(residual);
       if (!converged(residual, parameters_.convergence))
         iteration_guard_.pass(residual.absolute, omega, constant);
     };
@@ -198,6 +201,8 @@ void Coupler::accept(double time, int output) {
     // What it has learnt was in other scales.
     if (accelerator_) accelerator_ = make_accelerator(parameters_.acceleration, comm_);
   }
+  if (errors_ && history_.now.unknown.size() == last_.image.unknown.size())
+    errors_->accepted(last_.residual, worst(unknown_->measure(history_.now, last_.image)), last_dt_);
   history_.accepted(last_.image, last_dt_, schedule_.predictor);
   if (volume_level_) {
     volume_level_->accept(given_);
@@ -235,7 +240,13 @@ void Coupler::finalise() {
   if (const WorkGuard::Verdict v = work_guard_.verdict(); !v.text.empty())
     v.sound ? log::info("{}", v.text) : log::doubt(comm_rank(comm_), v.text);
   audit_->tell_at_end(parameters_);
-  finalise_all(everyone());
+  std::vector<NamedErrors> parts = finalise_all(everyone());
+  if (simulation_.error_estimate) tell_errors(std::move(parts));
+}
+
+void Coupler::tell_errors(std::vector<NamedErrors> participants) const {
+  if (errors_) participants.push_back({"coupling", {.coupling = errors_->over_size()}});
+  for (const std::string& sentence : error_sentences(participants)) log::info("{}", sentence);
 }
 
 std::string Coupler::run() {

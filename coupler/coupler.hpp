@@ -14,6 +14,7 @@
 #include "common/app/watch.hpp"
 #include "coupler/accelerator.hpp"
 #include "coupler/audit.hpp"
+#include "coupler/error_estimate.hpp"
 #include "coupler/fixed_point.hpp"
 #include "coupler/guards.hpp"
 #include "coupler/interface_output.hpp"
@@ -80,6 +81,7 @@ class Coupler {
   void accept(double time, int output);
   void watch(double time, const std::vector<SideBalance>& balances);
   void finalise();
+  void tell_errors(std::vector<NamedErrors> participants) const;
 
   MPI_Comm comm_;
   CouplingParameters parameters_;
@@ -105,7 +107,8 @@ class Coupler {
   OscillationGuard oscillation_guard_;
   WorkGuard work_guard_;
   std::optional<CouplingAudit> audit_;
-  std::string diverged_;  // empty: no guard has fired
+  std::optional<CouplingErrorEstimate> errors_;  // none: not wanted, or nothing is iterated
+  std::string diverged_;                         // empty: no guard has fired
   bool warned_ = false;
   bool answered_anew_ = false;  // somebody in the last pass
   double last_dt_ = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/error.hpp"
+#include "common/log/log.hpp"
 
 namespace couplet {
 
@@ -46,11 +47,18 @@ std::vector<Interface> initialise_all(const std::vector<Partner*>& partners) {
   return interfaces;
 }
 
-void finalise_all(const std::vector<Partner*>& partners) {
+std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners) {
+  std::vector<NamedErrors> errors;
   for (Partner* p : partners) {
     p->send({Op::finalise, {}, {}, 0, -1, ""});
-    p->receive();
+    const std::string text = p->receive().text;
+    try {
+      errors.push_back({p->name(), ErrorParts::of(text)});
+    } catch (const Error& error) {  // of a guest: no reason to lose a run that has ended
+      log::warn("'{}' says at its end what is left aside: {}", p->name(), error.what());
+    }
   }
+  return errors;
 }
 
 double advised_dt(const std::vector<Partner*>& partners) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/coupling/channel.hpp"
+#include "common/coupling/error_parts.hpp"
 
 namespace couplet {
 
@@ -34,8 +35,8 @@ struct Partner {
 void ask_all(const std::vector<Partner*>& partners, const Command& command);
 /// The interface of each, in their order.
 std::vector<Interface> initialise_all(const std::vector<Partner*>& partners);
-/// Last words, one after the other, so that they do not mix.
-void finalise_all(const std::vector<Partner*>& partners);
+/// Last words, one after the other, so that they do not mix; what each knows of its error.
+std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners);
 /// The smallest step that somebody advises [s].
 double advised_dt(const std::vector<Partner*>& partners);
 

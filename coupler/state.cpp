@@ -33,6 +33,7 @@ void Coupler::save(const std::filesystem::path& folder) {
   file.write("work", work_guard_.totals());
   if (accelerator_) accelerator_->save(file);
   if (volume_level_) volume_level_->save(file);
+  file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
   file.close();
 }
 
@@ -52,6 +53,8 @@ void Coupler::load() {
   work_guard_.restore(work);
   if (accelerator_) accelerator_->load(file);
   if (volume_level_) volume_level_->load(file);
+  const std::vector<double> errors = file.read("errors");
+  if (errors_) errors_->restore(errors);
   const RunState state = read_run_state(folders_.restart);
   loop_.restart(state);
   ask_all(everyone(), {Op::load, {}, {}, state.time, -1, folders_.restart.string()});

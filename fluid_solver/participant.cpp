@@ -239,6 +239,7 @@ StepReport FluidParticipant<D>::accept_step() {
   const long before = effort();
   displacement_ = trial_displacement_;
   fluid_->accept();
+  if (errors_) errors_->accepted(step_.dt);
   tell_sub_steps();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), step_.dt);
@@ -251,6 +252,7 @@ void FluidParticipant<D>::save(CheckpointWriter& file) const {
   write_numbering(file, mesh_);
   write_state(file, fluid_->state());
   if (statistics_) statistics_->save(file);
+  file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
 }
 
 template <int D>
@@ -258,6 +260,8 @@ void FluidParticipant<D>::load(CheckpointReader& file) {
   check_numbering(file, mesh_);
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
   if (statistics_) statistics_->load(file);
+  const std::vector<double> errors = file.read("errors");
+  if (errors_) errors_->restore(errors);
   fluid_->refresh_solvers();
 }
 

@@ -10,6 +10,7 @@
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
+#include "fluid_solver/error_estimate.hpp"
 #include "fluid_solver/fluid.hpp"
 #include "fluid_solver/output.hpp"
 
@@ -31,7 +32,7 @@ using MotionLink = std::function<std::unique_ptr<MeshMotionSource>(const Mesh&)>
 ///   implicit, explicit every solve() moves the mesh and starts from level n
 ///   standalone         interfaces are walls at rest; bodies move as the case prescribes, in every scheme
 template <int D>
-class FluidParticipant final : public Participant {
+class FluidParticipant final : public Participant, public EstimatesError {
  public:
   FluidParticipant(Mesh mesh, const FluidParameters& parameters, FluidContext context,
                    const MotionLink& link);
@@ -47,6 +48,8 @@ class FluidParticipant final : public Participant {
   void write_monitors(double time) override;
   std::vector<EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
+  void collect_errors() override { errors_.emplace(*fluid_); }
+  ErrorParts error_parts() const override { return errors_ ? errors_->parts() : ErrorParts{}; }
 
   const Fluid<D>& fluid() const { return *fluid_; }
 
@@ -76,6 +79,7 @@ class FluidParticipant final : public Participant {
   std::unique_ptr<MeshMotionSource> motion_;      // by a mesh mover
   std::unique_ptr<PrescribedMotion> prescribed_;  // by the case
   std::optional<RunningStatistics<D>> statistics_;
+  std::optional<FluidErrorEstimate<D>> errors_;  // none: not wanted
   FluidOutput<D> output_;
   Step step_;
   std::vector<Vec3> points_;  // of the first guess; semi-implicit only

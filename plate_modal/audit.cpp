@@ -173,4 +173,15 @@ std::vector<EffectVerdict> Structure::audit() const {
   return couplet::audit(plate_effect_cards(), PlateScene{parameters_}, evidence);
 }
 
+/// Where the modes come from a file nothing is known of their mesh.
+ErrorParts Structure::error_parts() const {
+  ErrorParts parts;
+  if (step_errors_ && resolution_) parts.step = step_errors_->over_size();
+  std::vector<double> gap{parameters_.modes_file || comm_rank(context_.comm) != 0 ? PlateEvidence::unknown
+                                                                                  : mesh_gap()};
+  broadcast(context_.comm, gap);
+  parts.mesh = gap[0];
+  return parts;
+}
+
 }  // namespace couplet::plate

@@ -200,6 +200,7 @@ void Structure::look_at_step() {
 
 StepReport Structure::accept_step() {
   std::swap(state_, trial_);
+  if (step_errors_ && resolution_) step_errors_->accepted(trial_, state_);
   if (resolution_) look_at_step();
   largest_ = std::max(largest_, trial_largest_);
   if (!rotations_.empty()) look_at_rotation();
@@ -243,6 +244,7 @@ void Structure::save(CheckpointWriter& file) const {
   file.write("truncation", truncation_ ? truncation_->state() : std::vector<double>(2, 0));
   file.write_scalar("dt", state_.dt);
   if (resolution_) file.write("resolution", resolution_->state());
+  file.write("errors", step_errors_ ? step_errors_->state() : std::vector<double>{});
 }
 
 void Structure::load(CheckpointReader& file) {
@@ -278,6 +280,8 @@ void Structure::load(CheckpointReader& file) {
     file.read("resolution", seen);
     resolution_->restore(seen);
   }
+  const std::vector<double> errors = file.read("errors");
+  if (step_errors_) step_errors_->restore(errors);
   trial_ = state_;
 }
 

@@ -5,9 +5,11 @@
 #include <optional>
 #include <vector>
 
+#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
 #include "plate_modal/build_model.hpp"
 #include "plate_modal/contact.hpp"
+#include "plate_modal/error_estimate.hpp"
 #include "plate_modal/oscillators.hpp"
 #include "plate_modal/pressure_load.hpp"
 #include "plate_modal/resolution.hpp"
@@ -20,7 +22,7 @@ class PlateResults;
 
 /// A structure by superposition of its modes, as a participant: takes the forces on the faces of its surface,
 /// gives displacement and velocity of its vertices.
-class Structure final : public Participant {
+class Structure final : public Participant, public EstimatesError {
  public:
   /// `raw`: mid-surface on rank 0 in place of the mesh that the parameters name. Collective.
   Structure(Parameters parameters, PlateContext context, const RawMesh* raw = nullptr);
@@ -36,6 +38,8 @@ class Structure final : public Participant {
   void write_monitors(double time) override;
   std::vector<EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
+  void collect_errors() override { step_errors_.emplace(parameters_.time_scheme); }
+  ErrorParts error_parts() const override;
 
   const Parameters& parameters() const { return parameters_; }
   const PlateContext& context() const { return context_; }
@@ -79,8 +83,9 @@ class Structure final : public Participant {
   std::unique_ptr<Share> share_;
   std::unique_ptr<Contact> contact_;  // none: no seat in this scene
   std::unique_ptr<Oscillators> oscillators_;
-  std::unique_ptr<PressureLoad> pressure_;  // none: no pressures of the case
-  std::unique_ptr<Resolution> resolution_;  // of a dynamic analysis
+  std::unique_ptr<PressureLoad> pressure_;        // none: no pressures of the case
+  std::unique_ptr<Resolution> resolution_;        // of a dynamic analysis
+  std::optional<StepErrorEstimate> step_errors_;  // none: not wanted
   std::vector<double> gravity_;
   ModalState state_, trial_;
   std::vector<double> direct_;  // static deflection of the plate itself, 3 a vertex on rank 0

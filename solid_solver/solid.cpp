@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "common/io/checkpoint.hpp"
 #include "solid_solver/effect_cards.hpp"
 #include "solid_solver/output.hpp"
 
@@ -38,6 +39,7 @@ Exchange Solid::solve(const Exchange& in) {
 StepReport Solid::accept_step() {
   if (!body_.is_dynamic()) judge_.see_inertia();
   if (body_.parameters().output.large_strain_estimate) judge_.estimate_large_strain();
+  if (errors_) errors_->see_step();
   stepper_.accept_step();
   if (!body_.is_dynamic()) judge_.look();
   for (const auto& effect : body_.effects())
@@ -74,6 +76,7 @@ void Solid::save(CheckpointWriter& file) const {
   judge_.save(file);
   for (const auto& effect : body_.effects()) effect->save(file);
   stepper_.save_guesses(file);
+  file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
 }
 
 void Solid::load(CheckpointReader& file) {
@@ -81,6 +84,8 @@ void Solid::load(CheckpointReader& file) {
   judge_.load(file);
   for (const auto& effect : body_.effects()) effect->load(file);
   stepper_.load_guesses(file);
+  const std::vector<double> errors = file.read("errors");
+  if (errors_) errors_->restore(errors);
 }
 
 }  // namespace couplet

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
+#include "solid_solver/error_estimate.hpp"
 #include "solid_solver/judge.hpp"
 #include "solid_solver/solid_body.hpp"
 #include "solid_solver/solid_context.hpp"
@@ -18,7 +21,7 @@ namespace couplet {
 class SolidOutput;
 
 /// An elastic solid as a participant: its rooms, and in which order they are asked.
-class Solid final : public Participant {
+class Solid final : public Participant, public EstimatesError {
  public:
   /// Collective over mesh.comm.
   Solid(Mesh mesh, SolidParameters parameters, SolidContext context);
@@ -37,6 +40,8 @@ class Solid final : public Participant {
   void write_monitors(double time) override;
   std::vector<EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
+  void collect_errors() override { errors_.emplace(body_, stepper_, fields_, judge_); }
+  ErrorParts error_parts() const override { return errors_ ? errors_->parts() : ErrorParts{}; }
 
   const SolidBody& body() const { return body_; }
   const SolidStepper& stepper() const { return stepper_; }
@@ -50,6 +55,7 @@ class Solid final : public Participant {
   SolidStepper stepper_;
   const SolidFields fields_;
   SolidJudge judge_;
+  std::optional<SolidErrorEstimate> errors_;  // none: not wanted
   std::unique_ptr<SolidOutput> output_;
 };
 

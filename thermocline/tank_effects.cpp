@@ -2,6 +2,7 @@
 // What a run says at its end: its books, the effects it left out and how large they are, its speed.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/log/doubt.hpp"
 #include "common/log/log.hpp"
@@ -184,6 +185,26 @@ void speed(const Speed& speed, int cells, Lines& lines) {
 }
 
 }  // namespace
+
+ErrorParts Tank::error_parts() const {
+  std::vector<double> t;
+  accepted_.bed().filler_temperature(t);
+  const std::size_t n = t.size();
+  if (n < 3 || !(peak_flow_ > 0)) return {};
+  const double mean = std::accumulate(t.begin(), t.end(), 0.0) / double(n);
+  double bends = 0, size = 0;  // second differences, dz^2 times the second derivative
+  for (std::size_t i = 0; i < n; ++i) {
+    size += std::abs(t[i] - mean);
+    if (i > 0 && i + 1 < n) bends += std::abs(t[i - 1] - 2 * t[i] + t[i + 1]);
+  }
+  if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // one temperature: nothing to be spread
+  const double one_cell = 0.5 * bends / size;                  // s = dz
+  const Advection scheme = accepted_.setup().parameters.bed.advection;
+  ErrorParts parts{.mesh = scheme == Advection::tvd ? one_cell : double(n) * one_cell};
+  if (scheme == Advection::implicit)
+    parts.step = peak_advance_ / crossing_mass(accepted_) * double(n) * double(n) * one_cell;
+  return parts;
+}
 
 std::vector<EffectVerdict> Tank::audit() const {
   const TankModel& m = accepted_;

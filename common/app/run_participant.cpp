@@ -11,6 +11,7 @@
 #include "common/app/run_report.hpp"
 #include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
+#include "common/coupling/error_parts.hpp"
 #include "common/coupling/serve.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
@@ -77,9 +78,37 @@ class Bookkeeping {
   double processor_since_ = 0;
 };
 
-void closing_words(const Job& job, Participant& participant, RunAudit& audit, double seconds) {
+/// The estimate of the run's error, from a participant that can tell it and a case that wants it.
+class Errors {
+ public:
+  Errors(const Job& job, Participant& participant)
+      : name_(job.name),
+        source_(job.simulation.error_estimate ? dynamic_cast<EstimatesError*>(&participant) : nullptr) {
+    if (source_) source_->collect_errors();
+  }
+  /// After the last step. Collective.
+  void find() {
+    if (source_) parts_ = source_->error_parts();
+  }
+  const ErrorParts& parts() const { return parts_; }
+  std::vector<std::string> sentences() const { return error_sentences({{name_, parts_}}); }
+
+ private:
+  std::string name_;
+  EstimatesError* source_;  // null: none
+  ErrorParts parts_;
+};
+
+/// `alone`: the whole job's error is this program's; else the coupler says what dominates.
+void closing_words(const Job& job, Participant& participant, RunAudit& audit, Errors& errors, bool alone,
+                   double seconds) {
   std::vector<std::string> sentences = participant.finish();
   for (std::string& line : audit.closing_lines()) sentences.push_back(std::move(line));
+  errors.find();
+  for (std::string& line : errors.sentences()) {
+    sentences.push_back(std::move(line));
+    if (!alone) break;
+  }
   const double mine = RunReport::peak_memory();
   const double most = max(job.comm, mine), all = sum(job.comm, mine);
   if (job.rank != 0) return;
@@ -168,6 +197,7 @@ class Console {
 
 int run_alone(const Job& job, Participant& participant) {
   RunReport run(job);
+  Errors errors(job, participant);
   RunAudit audit(job.rank, participant);
   OwnCommands command(job, participant, run, audit);
   StepLoop loop(job.comm, job.simulation, Scheme::standalone, job.checkpoints);
@@ -189,8 +219,8 @@ int run_alone(const Job& job, Participant& participant) {
   actions.advised_dt = [&] { return command.advised_dt(); };
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);
-  closing_words(job, participant, audit, console.seconds());
-  run.finish(console.seconds(), problem);
+  closing_words(job, participant, audit, errors, true, console.seconds());
+  run.finish(console.seconds(), problem, errors.parts());
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
   return 1;
@@ -200,6 +230,7 @@ int run_coupled(const Job& job, MPI_Comm coupler, Participant& participant) {
   const auto start = Clock::now();
   RunReport run(job);
   RunAudit audit(job.rank, participant);
+  Errors errors(job, participant);
   Bookkeeping books(job, run);
   ServeObserver observer;
   observer.waiting = [&] { books.waiting(); };
@@ -207,9 +238,10 @@ int run_coupled(const Job& job, MPI_Comm coupler, Participant& participant) {
     books.waited();
     books.received(command);
     if (command.op != Op::finalise) return;
-    closing_words(job, participant, audit, seconds_since(start));
-    run.finish(seconds_since(start), "");
+    closing_words(job, participant, audit, errors, false, seconds_since(start));
+    run.finish(seconds_since(start), "", errors.parts());
   };
+  observer.last_word = [&] { return errors.parts().text(); };
   observer.done = [&](const Command& command) { books.done(command); };
   observer.accepted = [&](const Command& command, const StepReport& report) {
     run.accepted(command.time, report);

@@ -2,6 +2,7 @@
 #include "common/app/run_report.hpp"
 
 #include <array>
+#include <cmath>
 #include <ctime>
 #include <fstream>
 #include <utility>
@@ -36,6 +37,14 @@ std::string phases() {
   for (const auto& [name, entry] : log::timers().entries())
     out += fmt::format("{}\n    {}: {:.6g}", out.empty() ? "" : ",", quoted(name), entry.seconds);
   return "{" + out + (out.empty() ? "}" : "\n  }");
+}
+
+std::string json(const ErrorParts& e) {
+  const auto number = [](double value) {
+    return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null";
+  };
+  return fmt::format("{{\"mesh\": {}, \"step\": {}, \"linear\": {}}}", number(e.mesh), number(e.step),
+                     number(e.linear));
 }
 
 }  // namespace
@@ -75,7 +84,7 @@ void RunReport::accepted(double time, StepReport report) {
       std::array{time, report.dt, double(report.iterations), report.error, report.energy, report.seconds});
 }
 
-void RunReport::finish(double wall, const std::string& problem) {
+void RunReport::finish(double wall, const std::string& problem, const ErrorParts& errors) {
   const double cpu = sum(job_.comm, processor_seconds()), working = sum(job_.comm, working_);
   const double most = max(job_.comm, peak_memory()), all = sum(job_.comm, peak_memory());
   if (job_.rank != 0) return;
@@ -85,9 +94,9 @@ void RunReport::finish(double wall, const std::string& problem) {
       "  \"state\": \"{}\",\n  \"reason\": {},\n  \"time\": {:.17g},\n  \"steps\": {},\n"
       "  \"iterations\": {},\n  \"wall\": {:.6g},\n  \"processor\": {:.6g},\n  \"processor-working\": "
       "{:.6g},\n  \"memory-most\": {:.6g},\n"
-      "  \"memory-all\": {:.6g},\n  \"phases\": {}\n}}\n",
+      "  \"memory-all\": {:.6g},\n  \"errors\": {},\n  \"phases\": {}\n}}\n",
       quoted(job_.name), quoted(version_text()), comm_size(job_.comm), problem.empty() ? "ended" : "failed",
-      quoted(problem), time_, count_, iterations_, wall, cpu, working, most, all, phases());
+      quoted(problem), time_, count_, iterations_, wall, cpu, working, most, all, json(errors), phases());
 }
 
 }  // namespace couplet

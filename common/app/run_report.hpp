@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/io/series.hpp"
 
@@ -18,7 +19,8 @@ struct Job;
 ///   steps.csv  a row an accepted step: time and dt [s], iterations of linear solvers, estimated time error
 ///   of
 ///              the step [1], energy [J], seconds; what was not computed is nan. Off with output.steps.
-///   run.json   at the end: how it ended, wall and processor seconds, memory, steps, iterations, phases.
+///   run.json   at the end: how it ended, wall and processor seconds, memory, steps, iterations, phases,
+///              estimated parts of the error (null: not known).
 /// Written by rank 0. The file of an earlier run is removed at the start: a run.json speaks of this run.
 class RunReport {
  public:
@@ -32,7 +34,7 @@ class RunReport {
   /// `time`: the end of the step [s]; report.seconds is replaced by those spent since the last call.
   void accepted(double time, StepReport report);
   /// Collective over job.comm. `wall` [s]; `problem`: why the run ended early, empty if it did not.
-  void finish(double wall, const std::string& problem);
+  void finish(double wall, const std::string& problem, const ErrorParts& errors);
 
   /// User and system seconds of this process since it began.
   static double processor_seconds();

@@ -22,6 +22,10 @@ void declare(config::Section& section, SimulationParameters& p) {
       .doc(
           "auto: dimension, inertia, turbulence model and viscous treatment that the case does not name are decided by "
           "estimates, each told with its reason");
+  section.value("error-estimate", p.error_estimate)
+      .doc(
+          "the run ends with an estimate of its error by mesh, time step and tolerances, and says which dominates; "
+          "off, nothing is collected for it");
   section.value("hang-timeout", p.hang_timeout)
       .unit("s")
       .not_negative()

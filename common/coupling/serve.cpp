@@ -159,7 +159,8 @@ void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant
     if (command.op == Op::initialise) stepping.set(command.step.sub_steps);
     if (command.op == Op::solve) ranks.receive(command.data);
     observer.received(command);
-    const Reply reply = carry_out(command, stepping, name, comm);
+    Reply reply = carry_out(command, stepping, name, comm);
+    if (command.op == Op::finalise) reply.text = observer.last_word();
     observer.done(command);
     if (command.op == Op::accept_step) observer.accepted(command, reply.report);
     const bool described = reply.status == Reply::Status::ok && command.op == Op::initialise;

@@ -20,6 +20,8 @@ struct ServeObserver {
   std::function<void()> waiting = [] {};                                 ///< before each wait for a command
   std::function<void(const Command&)> received = [](const Command&) {};  ///< before it is carried out
   std::function<void(const Command&)> done = [](const Command&) {};      ///< after that, before the reply
+  /// For the reply to `finalise`: parts of the run's error (ErrorParts::text()), or nothing.
+  std::function<std::string()> last_word = [] { return std::string(); };
   /// After each accepted step; its seconds are not filled in.
   std::function<void(const Command&, const StepReport&)> accepted = [](const Command&, const StepReport&) {};
 };

@@ -15,7 +15,9 @@ from couplet_study import table
 from couplet_study.convergence import Limit, limit_of
 
 AIM = 0.75      # of the target: the prediction may be off both ways
-NEAR = 1.6      # the final size over the largest that was tried, at most, before it is run
+NEAR = 1.6      # the final size over the largest that was tried, at most, before it is run ...
+NEAR_CHEAP = 1.3  # ... where it takes less than CHEAP: a run more costs nothing, and start-up hides the work of small runs
+TOO_GOOD = 0.4  # of the target: a run that is there and leaves less is no answer where a smaller size would do
 GROWTH = 1.4    # of the sizes tried
 PATIENCE = 9    # runs of one series
 BUDGET = 1.3    # seconds spent before the final run over its own, where that takes longer than CHEAP
@@ -30,21 +32,27 @@ def target_of(text):
     return value
 
 
+def telling(seconds):
+    """Which runs tell of larger ones: not those that cost more than a larger one, with another solver or on a busy machine."""
+    return [i for i, t in enumerate(seconds) if all(t <= 1.05 * later for later in seconds[i + 1:])]
+
+
 def power_cost(sizes, seconds):
-    """(a, b, q) of a + b n^q, both parts positive, least squares of the relative misfit."""
-    n, t = np.array(sizes, float), np.array(seconds, float)
+    """(a, b, q) of a + b n^q, start-up and work, neither negative, least squares of the relative misfit; the latest runs say most."""
+    keep = telling(seconds)
+    n, t = np.array(sizes, float)[keep], np.array(seconds, float)[keep]
     best = None
     for q in np.arange(0.5, 5.01, 0.05):
-        basis = np.column_stack([np.ones_like(n), n**q]) / t[:, None]
-        # the latest runs say most
-        weight = (n / n[-1])[:, None]
+        basis = np.column_stack([np.ones_like(n), (n / n[-1])**q]) / t[:, None]
+        weight = np.sqrt(n / n[-1])[:, None]
         ab = np.linalg.lstsq(basis * weight, weight[:, 0], rcond=None)[0]
-        ab = np.maximum(ab, 0)
-        if ab[1] == 0:
+        if ab[0] < 0:  # no start-up to be seen
+            ab = np.array([0, 1 / basis[:, 1].mean()])
+        if len(n) < 2 or ab[1] <= 0:
             continue
-        misfit = float((((basis @ ab - 1) * weight[:, 0]) ** 2).sum()) + 1e-4 * (q - 3) ** 2  # undecided: as a solver in space
+        misfit = float((((basis @ ab - 1) * weight[:, 0]) ** 2).sum()) + 1e-3 * (q - 3) ** 2  # undecided: as a solver in space
         if best is None or misfit < best[0]:
-            best = (misfit, ab[0], ab[1], q)
+            best = (misfit, ab[0], ab[1] / n[-1]**q, q)
     return best[1:] if best else (float(t[-1]), 0.0, 1.0)
 
 
@@ -133,8 +141,24 @@ def for_error(study, text, name, say):
 
 def cheapest(every, target):
     """The series of the least predicted seconds, with its prediction; (first series, None) while none has a model."""
-    known = [(p[2], i, p) for i, s in enumerate(every) if (p := s.predict(target))]
-    return (every[min(known)[1]], min(known)[2]) if known else (every[0], None)
+    priced = [(p[2], i, p) for i, s in enumerate(every) if (p := s.predict(target))]
+    return (every[min(priced)[1]], min(priced)[2]) if priced else (every[0], None)
+
+
+def known(series, row):
+    """Of a run that is there: (size, error, seconds)."""
+    return row.point.size, series.model().error(row.point.size), getattr(row.record, series.study.clock)
+
+
+def fitting(series, predicted, target, say):
+    """A run of the very size between those that are there, where the next larger one would be far better than asked; None where
+    it would not, or the run fails."""
+    there = next(r for r in series.rows if r.point.size >= predicted[0])
+    if there.point.size == predicted[0] or series.model().error(there.point.size) >= TOO_GOOD * target:
+        return None
+    say(f"{series.name}: size {there.point.size:g} would be better than asked; size {predicted[0]:g} should do in {predicted[2]:.3g} s")
+    row = series.add(predicted[0], say)
+    return row if row.good else None
 
 
 def approach(every, target, say):
@@ -144,12 +168,16 @@ def approach(every, target, say):
         series, predicted = cheapest(every, target)
         largest, refining = series.sizes()[-1], series.study.axes.refining
         if predicted and predicted[0] <= largest:  # a run that is there meets it
+            row = fitting(series, predicted, target, say)
+            if row:
+                return series, row, predicted if row.point.size == predicted[0] else known(series, row)
             row = next(r for r in series.rows if r.point.size >= predicted[0])
-            return series, row, (row.point.size, series.model().error(row.point.size), getattr(row.record, series.study.clock))
+            return series, row, known(series, row)
         following = refining.round(GROWTH * largest, up=True)
         spent = sum(s.spent() for s in every)
         dear = predicted and predicted[2] > CHEAP and spent + series.seconds(following) > BUDGET * predicted[2]
-        last = predicted and (predicted[0] <= NEAR * largest or following >= predicted[0] or dear)
+        near = NEAR if predicted and predicted[2] > CHEAP else NEAR_CHEAP
+        last = predicted and (predicted[0] <= near * largest or following >= predicted[0] or dear)
         if predicted:
             say(f"{series.name}: size {predicted[0]:g} should leave an error of {predicted[1]:.2g} and take {predicted[2]:.3g} s")
         row = series.add(predicted[0] if last else following, say)

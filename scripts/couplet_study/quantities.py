@@ -9,7 +9,7 @@ quantities:
   velocity: {field: velocity, exact: ["sin(x)*cos(y)*exp(-2*t)", ...]}  # relative L2 norm over the cells; is an error itself
   profile: {file: bed.csv, column: T, over: z, against: reference.csv}  # relative L2 norm against a table
 at: last (default), first, maximum, minimum, mean, amplitude, period, or a time; reference: a number, or finest, richardson;
-absolute: true where the error is not to be divided by the reference"""
+orders: {upwind: 1} where a series is of another order than 2 (for the estimate of errors); absolute: true where the error is not to be divided by the reference"""
 import dataclasses
 import functools
 import importlib.util
@@ -23,7 +23,7 @@ from couplet_run import expect
 
 NAMES = {name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs", "sinh", "cosh", "where", "pi")}
 KEYS = {"probe", "file", "column", "summary", "python", "item", "field", "exact", "over", "against", "at", "from", "reference", "absolute",
-        "is", "participant", "unit"}
+        "is", "participant", "unit", "orders"}
 
 
 @functools.cache
@@ -144,6 +144,9 @@ def quantities_of(case, section, participant):
         expect("file" not in content or "column" in content, f"{where}: 'file' needs a 'column'.")
         expect("field" not in content or "exact" in content, f"{where}: 'field' needs 'exact'.")
         expect("against" not in content or "over" in content, f"{where}: 'against' needs 'over', the column of the places.")
+        orders = content.get("orders", {})
+        expect(isinstance(orders, dict) and all(isinstance(p, (int, float)) and p > 0 for p in orders.values()),
+               f"{where}: orders: expected {{word in a series' name: order of convergence}}.")
         expect(content.get("is") in (None, "error"), f"{where}: is: expected error.")
         reference = content.get("reference")
         expect(reference is None or isinstance(reference, (int, float)) or reference in ("finest", "richardson"),

@@ -103,8 +103,8 @@ class Study:
                        f"Error of {name} over the size.")
         found = estimates.of(rows, quantity)
         if len(found) >= 3:
-            inside = sum(0.5 <= e / t <= 2 for e, t, _ in found)
-            report.text(f"Error estimated from a run and the next coarser ones beside the true one: within a factor of 2 on {inside} of {len(found)} runs.")
+            report.text("Error estimated from a run and what was run no finer beside the true one: within a factor of 2 on "
+                        f"{estimates.inside(found)} of {len(found)} runs.")
             report.picture(pictures.scatter(f"{self.title}: estimated and true error of {name}", found, self.out / f"estimate-{safe}.png"),
                            "Estimated error against the true one; between the dashed lines they agree within a factor of 2.")
         if not quantity.is_error:

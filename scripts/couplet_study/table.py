@@ -2,8 +2,10 @@
 """One row a run: its axes, what it gave, how far off that is, what it cost."""
 import csv
 import math
+import types
 
 from couplet_study import convergence
+from couplet_study.axes import Point
 
 COSTS = ("wall", "cpu", "work", "memory", "steps", "iterations", "spread")
 HEADS = {"wall": "wall [s]", "cpu": "processor [s]", "work": "work [s]", "memory": "memory [MB]", "spread": "spread of processor [1]"}
@@ -80,6 +82,26 @@ def set_errors(rows, quantities):
             gap = abs(row.values[name] - reference)
             row.errors[name] = gap if quantity.given.get("absolute") or reference == 0 else gap / abs(reference)
     return against
+
+
+def read(file, axes, quantities):
+    """Rows of a table that write() has written, without the records of their runs."""
+    rows = []
+    with open(file, newline="") as source:
+        for cells in csv.DictReader(source):
+            labels = {a.name: cells[a.name] for a in axes.all}
+            size = float(labels[axes.refining.name]) if axes.refining else 0
+            point = Point(labels, {}, {}, size)
+            row = Row(point, types.SimpleNamespace(reason=cells["reason"]), axes.series_of(point))
+            for q in quantities:
+                error = cells[q.name] if q.is_error and q.name in cells else cells[f"error of {q.name}"]
+                value = error if q.is_error else cells[q.name]
+                if value:
+                    row.values[q.name] = float(value)
+                if error:
+                    row.errors[q.name] = float(error)
+            rows.append(row)
+    return rows
 
 
 def write(file, rows, axes, quantities):

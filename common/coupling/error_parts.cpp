@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/coupling/error_parts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+namespace {
+
+// Of the largest part: less buys nothing.
+constexpr double nothing = 0.1;
+
+struct Kind {
+  const char* name;
+  double ErrorParts::*value;
+  const char* words;
+  const char* advice;  // where it dominates
+};
+
+constexpr std::array<Kind, 4> kinds{
+    {{"mesh", &ErrorParts::mesh, "mesh", "a finer mesh would lower it"},
+     {"step", &ErrorParts::step, "step", "a shorter time step would lower it"},
+     {"linear", &ErrorParts::linear, "linear tolerance", "a tighter tolerance of the solver would lower it"},
+     {"coupling", &ErrorParts::coupling, "coupling tolerance",
+      "a tighter 'convergence' of the coupling would lower it"}}};
+
+struct Part {
+  const Kind* kind;
+  double value;
+  std::string whose;
+};
+
+/// What would buy nothing, as words: "halving the step", ...
+std::string idle_words(const std::vector<Part>& parts, double most) {
+  std::string words;
+  for (const Part& p : parts) {
+    if (!(p.value < nothing * most)) continue;
+    const std::string_view name = p.kind->name;
+    words += words.empty() ? "" : " or ";
+    words += name == "step"   ? "halving the step"
+             : name == "mesh" ? "refining the mesh"
+                              : fmt::format("tightening the {}", p.kind->words);
+  }
+  return words;
+}
+
+}  // namespace
+
+bool ErrorParts::known() const {
+  return std::ranges::any_of(kinds, [this](const Kind& k) { return !std::isnan(this->*k.value); });
+}
+
+std::string ErrorParts::text() const {
+  std::string text;
+  for (const Kind& k : kinds)
+    if (!std::isnan(this->*k.value))
+      text += fmt::format("{}{} {:.6g}", text.empty() ? "" : " ", k.name, this->*k.value);
+  return text;
+}
+
+ErrorParts ErrorParts::of(const std::string& text) {
+  ErrorParts parts;
+  std::istringstream words(text);
+  for (std::string name; words >> name;) {
+    const auto kind = std::ranges::find_if(kinds, [&](const Kind& k) { return k.name == name; });
+    double value = 0;
+    if (kind == kinds.end() || !(words >> value))
+      throw Error(
+          "'{}' is no list of parts of an error: expected names (mesh, step, linear, coupling) each with a number.",
+          text);
+    parts.*(kind->value) = value;
+  }
+  return parts;
+}
+
+std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants) {
+  std::vector<Part> parts;
+  for (const Kind& k : kinds) {
+    const NamedErrors* largest = nullptr;
+    for (const NamedErrors& n : participants)
+      if (!std::isnan(n.parts.*k.value) && (!largest || n.parts.*k.value > largest->parts.*k.value))
+        largest = &n;
+    if (largest) parts.push_back({&k, largest->parts.*k.value, largest->name});
+  }
+  if (parts.empty()) return {};
+  std::ranges::stable_sort(parts, std::greater<>{}, &Part::value);
+  double total = 0;
+  std::string list;
+  const bool several = participants.size() > 1;
+  for (const Part& p : parts) {
+    total += p.value;
+    list += fmt::format("{}{} {:.2g}{}", list.empty() ? "" : ", ", p.kind->words, p.value,
+                        several ? " (" + p.whose + ")" : "");
+  }
+  const Part& worst = parts.front();
+  std::vector<std::string> sentences{fmt::format("estimated error {:.2g} of the solution: {}.", total, list)};
+  if (parts.size() < 2 || !(worst.value > 0)) return sentences;
+  const std::string idle = idle_words(parts, worst.value);
+  sentences.push_back(fmt::format("the {}{} dominates: {}{}.", worst.kind->words,
+                                  several ? " (" + worst.whose + ")" : "", worst.kind->advice,
+                                  idle.empty() ? "" : "; " + idle + " would buy nothing"));
+  return sentences;
+}
+
+}  // namespace couplet

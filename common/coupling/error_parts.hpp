@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace couplet {
+
+/// What a run's error is made of, as the run itself can know it cheaply, each over the size of the solution [1].
+/// Good to a factor of a few; NaN: not known.
+struct ErrorParts {
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double mesh = unknown;      ///< what cells leave
+  double step = unknown;      ///< what time steps leave
+  double linear = unknown;    ///< what solvers of linear (or Newton's) systems leave below their tolerance
+  double coupling = unknown;  ///< what the iteration between participants leaves below its tolerance
+  bool known() const;
+  /// "mesh 0.0013 step 2e-05": the known ones, for messages; empty: none.
+  std::string text() const;
+  /// Throws Error if it is no such text.
+  static ErrorParts of(const std::string& text);
+};
+
+/// The parts of one participant of a job.
+struct NamedErrors {
+  std::string name;
+  ErrorParts parts;
+};
+
+/// "estimated error 0.013: mesh 0.013, step 4.9e-05" and which part dominates, with the advice that follows. Of
+/// several participants the largest of each kind counts and is named. Empty if nothing is known.
+std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants);
+
+/// A participant that can tell its parts at the end of a run.
+class EstimatesError {
+ public:
+  virtual ~EstimatesError() = default;
+  /// Before initialise(), if the run is to end with an estimate; else nothing is collected.
+  virtual void collect_errors() = 0;
+  /// Of the accepted state, after the last step. Collective; changes nothing.
+  virtual ErrorParts error_parts() const = 0;
+};
+
+}  // namespace couplet

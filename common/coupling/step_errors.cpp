@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/coupling/step_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+namespace {
+
+// "Of late" is about this part of the time that has gone by.
+constexpr double window = 0.25;
+constexpr std::size_t scalars = 6;
+
+}  // namespace
+
+void StepErrors::add(const Seen& seen, int steps) {
+  if (!std::isfinite(seen.error + seen.rate + seen.size + seen.below + seen.highest)) return;
+  time_ += steps * seen.dt;
+  const double kept = std::exp(-steps * seen.dt / (window * time_));
+  for (const auto& [of_late, now] :
+       {std::pair{&rate_, seen.rate}, {&size_, seen.size}, {&below_, seen.below}, {&highest_, seen.highest}})
+    *of_late = std::max(now, kept * *of_late);
+  if (!(seen.error > 0) || !(rate_ > 0)) return;
+  int swing = 0;
+  double amplitude = std::numeric_limits<double>::infinity();
+  if (seen.order > 0 && below_ > 0 && highest_ > 0) {
+    const double frequency = highest_ / below_;
+    swing = std::ilogb(frequency);
+    amplitude = below_ / std::pow(frequency, seen.order);
+  }
+  errors_[{swing, std::ilogb(rate_)}] += steps * seen.error;
+  amplitude_[swing] = std::max(amplitude_[swing], amplitude);
+}
+
+double StepErrors::over_size() const {
+  if (!(size_ > 0)) return std::numeric_limits<double>::quiet_NaN();
+  std::map<int, double> left;
+  for (const auto& [key, error] : errors_) {
+    const auto [swing, level] = key;
+    const double shrunk = level >= std::ilogb(rate_) ? std::min(1.0, rate_ / std::ldexp(1.0, level)) : 1.0;
+    left[swing] += error * shrunk;
+  }
+  double all = 0;
+  for (const auto& [swing, error] : left) all += std::min(error, 2 * amplitude_.at(swing));
+  return all / size_;
+}
+
+std::vector<double> StepErrors::state() const {
+  std::vector<double> values{rate_, size_, below_, highest_, time_, double(amplitude_.size())};
+  for (const auto& [swing, amplitude] : amplitude_) values.insert(values.end(), {double(swing), amplitude});
+  for (const auto& [key, error] : errors_)
+    values.insert(values.end(), {double(key.first), double(key.second), error});
+  return values;
+}
+
+void StepErrors::restore(std::span<const double> state) {
+  *this = {};
+  if (state.empty()) return;  // of a run that did not collect them
+  const std::size_t n = state.size() < scalars ? 0 : std::size_t(state[scalars - 1]), begin = scalars + 2 * n;
+  if (state.size() < begin || (state.size() - begin) % 3 != 0)
+    throw Error("The checkpoint's errors of steps are damaged.");
+  rate_ = state[0], size_ = state[1], below_ = state[2], highest_ = state[3], time_ = state[4];
+  for (std::size_t i = scalars; i < begin; i += 2) amplitude_[int(state[i])] = state[i + 1];
+  for (std::size_t i = begin; i < state.size(); i += 3)
+    errors_[{int(state[i]), int(state[i + 1])}] = state[i + 2];
+}
+
+}  // namespace couplet

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace couplet {
+
+/// What the local errors of all steps so far leave in the solution now.
+///
+/// An error propagates by the equation linearised about the solution, and so does the solution's own rate of change
+/// where the equation does not depend on time: what was made at step k has since shrunk as the rate of change has,
+/// |u'(now)| / |u'(t_k)|. So errors on the way to a steady state are forgotten, those of an oscillation add up. None
+/// is taken to grow, and none to exceed what it is an error of: a scheme of order p errs by C dt^{p+1} u^(p+1), which
+/// belongs to a swing of frequency w = |u^(p+1)| / |u^(p)| and amplitude |u^(p)| / w^p, out of phase by at most twice
+/// that. All are norms of one kind over the whole field, the same on all ranks.
+class StepErrors {
+ public:
+  struct Seen {
+    double error = 0;               ///< what the step alone left
+    double rate = 0;                ///< |u'| at its end [1/s]
+    double size = 0;                ///< |u|
+    double dt = 0;                  ///< [s]
+    int order = 0;                  ///< p; 0: nothing more is known
+    double below = 0, highest = 0;  ///< |u^(p)|, |u^(p+1)|
+  };
+  /// `steps`: that it stands for, of which the first ones of a run cannot be judged by themselves.
+  void add(const Seen& seen, int steps = 1);
+  /// The error left over the size of the solution [1]; NaN before the first step.
+  double over_size() const;
+  /// For checkpoints.
+  std::vector<double> state() const;
+  void restore(std::span<const double> state);
+
+ private:
+  // Sums of errors, by the binary logarithms of frequency and of the rate when they were made.
+  std::map<std::pair<int, int>, double> errors_;
+  std::map<int, double> amplitude_;  // largest, by the binary logarithm of the frequency
+  // Largest of late: an oscillation passes through places of no rate or no size.
+  double rate_ = 0, size_ = 0, below_ = 0, highest_ = 0, time_ = 0;
+};
+
+}  // namespace couplet

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/error_estimate.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+constexpr double adams_bashforth = 5. / 12;
+
+/// Sums of a linear fit through the neighbours of a cell, weighted by 1 / d^2.
+template <int D>
+struct Fit {
+  Eigen::Matrix<double, D + 1, D + 1> moments = Eigen::Matrix<double, D + 1, D + 1>::Zero();
+  Eigen::Matrix<double, D + 1, D> values = Eigen::Matrix<double, D + 1, D>::Zero();
+  void add(const Vec<D>& d, const Vec<D>& value) {
+    Eigen::Matrix<double, D + 1, 1> row;
+    const double length = d.norm();
+    row << 1, d / length;
+    moments += row * row.transpose() / (length * length);
+    values += row * value.transpose() / (length * length);
+  }
+  /// In the cell itself.
+  Vec<D> value() const { return moments.completeOrthogonalDecomposition().solve(values).row(0).transpose(); }
+};
+
+}  // namespace
+
+/// Root mean square over the volume; per local cell.
+template <int D>
+double FluidErrorEstimate<D>::size(const Vectors<D>& values) const {
+  const std::vector<double>& volume = fluid_.state().placement->volume;
+  double squares = 0, whole = 0;
+  for (Index c = 0; c < fluid_.mesh().cells.n_owned(); ++c) {
+    squares += volume[c] * values[c].squaredNorm();
+    whole += volume[c];
+  }
+  squares = sum(fluid_.mesh().comm, squares), whole = sum(fluid_.mesh().comm, whole);
+  return whole > 0 ? std::sqrt(squares / whole) : 0;
+}
+
+// Divided differences of u at the ends of the last four steps, their lengths nearly alike: the rate over each step,
+// the change of the rate, the change of that.
+template <int D>
+void FluidErrorEstimate<D>::accepted(double dt) {
+  const Vectors<D>& u = fluid_.state().u;
+  const std::size_t n = std::size_t(fluid_.mesh().cells.n_owned());
+  const double apart = 0.5 * (dt + dt_old_);
+  Vectors<D> rate(n, Vec<D>::Zero()), change(n, Vec<D>::Zero()), third(n, Vec<D>::Zero());
+  if (seen_ > 0)
+    for (std::size_t c = 0; c < n; ++c) {
+      rate[c] = (u[c] - u_[c]) / dt;
+      if (seen_ > 1) change[c] = (rate[c] - rate_[c]) / apart;
+      if (seen_ > 2) third[c] = (change[c] - rate_change_[c]) / apart;
+    }
+  if (seen_ > 2) {
+    const double cut = std::max(1, fluid_.statistics().sub_steps);
+    const double highest = size(third);
+    steps_.add({.error = adams_bashforth * dt * dt * dt / (cut * cut) * highest,
+                .rate = size(rate),
+                .size = size(u),
+                .dt = dt,
+                .order = 2,
+                .below = size(change),
+                .highest = highest},
+               judged_ ? 1 : 3);
+    judged_ = true;
+  }
+  u_.assign(u.begin(), u.begin() + std::ptrdiff_t(n));
+  rate_ = std::move(rate), rate_change_ = std::move(change);
+  dt_old_ = dt;
+  ++seen_;
+}
+
+template <int D>
+double FluidErrorEstimate<D>::recovered_difference() const {
+  const State<D>& s = fluid_.state();
+  const Mesh& mesh = fluid_.mesh();
+  const Placement<D>& at = *s.placement;
+  std::vector<Fit<D>> fits(mesh.cells.n_local());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    const Vec<D> d = (at.area[f] - at.oblique_of(f)) / at.conductance[f];  // S = k + g d
+    const Index owner = mesh.owner[f];
+    if (f >= mesh.n_interior) {
+      fits[owner].add(d, s.u_boundary[f - mesh.n_interior]);
+      continue;
+    }
+    const Index neighbour = mesh.neighbour[f];
+    fits[owner].add(d, s.u[neighbour]);
+    fits[neighbour].add(-d, s.u[owner]);
+  }
+  Vectors<D> gap(mesh.cells.n_local(), Vec<D>::Zero());
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    if (!s.blocked || !(*s.blocked)[c]) gap[c] = fits[c].value() - s.u[c];
+  return size(gap);
+}
+
+template <int D>
+double FluidErrorEstimate<D>::net_outflow() const {
+  const State<D>& s = fluid_.state();
+  const Mesh& mesh = fluid_.mesh();
+  std::vector<double> net(mesh.cells.n_local()), through(mesh.cells.n_local());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    net[mesh.owner[f]] += s.phi[f], through[mesh.owner[f]] += 0.5 * std::abs(s.phi[f]);
+    if (f >= mesh.n_interior) continue;
+    net[mesh.neighbour[f]] -= s.phi[f], through[mesh.neighbour[f]] += 0.5 * std::abs(s.phi[f]);
+  }
+  double left = 0, all = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) left += net[c] * net[c], all += through[c] * through[c];
+  left = sum(mesh.comm, left), all = sum(mesh.comm, all);
+  return all > 0 ? std::sqrt(left / all) : 0;
+}
+
+template <int D>
+ErrorParts FluidErrorEstimate<D>::parts() const {
+  ErrorParts parts;
+  const double speed = size(fluid_.state().u);
+  if (!(speed > 0) || seen_ == 0) return parts;
+  parts.mesh = recovered_difference() / speed;
+  parts.step = steps_.over_size();
+  const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
+  parts.linear = net_outflow() * std::sqrt(across);
+  return parts;
+}
+
+template <int D>
+void FluidErrorEstimate<D>::restore(std::span<const double> state) {
+  seen_ = 0;
+  judged_ = !state.empty();
+  steps_.restore(state);
+}
+
+template class FluidErrorEstimate<2>;
+template class FluidErrorEstimate<3>;
+
+}  // namespace couplet::fluid

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/coupling/error_parts.hpp"
+#include "common/coupling/step_errors.hpp"
+#include "solid_solver/judge.hpp"
+#include "solid_solver/solid_body.hpp"
+#include "solid_solver/solid_fields.hpp"
+#include "solid_solver/solid_stepper.hpp"
+
+namespace couplet {
+
+/// What a solid's run leaves in its displacement:
+///   mesh    by how much the work of the stresses misses the strain energy, which equilibrium would make equal, or,
+///           if more, the square of the relative difference of two face gradients' strains: an energy errs by the
+///           square of what the strains err. A symmetric operator misses nothing by itself, there the latter counts.
+///   step    sum of the local errors C dt^{p+1} d^{p+1}u/dt^{p+1}, see StepErrors; static: none
+///   linear  static: the work of what equilibrium misses over that of the loads, which is the error of the compliance;
+///           dynamic: the relative residuals of all steps, see StepErrors
+/// At finite strain the mesh's part is not known. Collective.
+class SolidErrorEstimate {
+ public:
+  /// All by reference.
+  SolidErrorEstimate(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields,
+                     const SolidJudge& judge);
+  /// Between solve and acceptance.
+  void see_step();
+  /// After the last step.
+  ErrorParts parts() const;
+  /// For checkpoints. The two steps after a restart are not judged.
+  std::vector<double> state() const;
+  void restore(std::span<const double> state);
+
+ private:
+  StepErrors::Seen seen() const;
+  double left_by_solver() const;
+  double missed_work() const;
+  double mean_square(std::span<const double> cells) const;
+
+  const SolidBody& body_;
+  const SolidStepper& stepper_;
+  const SolidFields& fields_;
+  const SolidJudge& judge_;
+  bool judged_ = false;           // a step has been judged
+  double volume_ = 0;             // of the body [m^3]
+  std::vector<double> v_before_;  // at the start of the step before; empty: not yet
+  StepErrors steps_, linear_;
+};
+
+}  // namespace couplet
