@@ -118,12 +118,45 @@ def wrong(build, folder):
     return failed
 
 
+def made_up(order, sizes):
+    """A series whose value is 1 + n^-order and whose cost is start-up and n^3, without any run."""
+    from types import SimpleNamespace as S
+    from couplet_study.predict import Series
+
+    def row(point):
+        return S(point=point, good=True, values={"q": 1 + point.size**-order}, errors={}, record=S(cpu=0.1 + 2e-5 * point.size**3), reason="")
+    refining = S(name="n", round=lambda n, up=False: int(-(-n // 1)), sizes={})
+    axes = S(refining=refining, point=lambda labels, size: S(size=size, labels=labels, changes={}))
+    series = Series(S(axes=axes, clock="cpu", run=lambda points, *_: [row(p) for p in points]), S(name="q", is_error=False, given={}), {"n": "0", "s": "a"})
+    for size in sizes:
+        series.add(size, print)
+    return series
+
+
+def predicting():
+    """Costs, the size for an error, and what runs say of their errors, on made-up numbers."""
+    sys.path.insert(0, str(ROOT / "scripts"))
+    from couplet_study.estimates import guesses
+    from couplet_study.predict import approach, power_cost
+    a, b, q = power_cost([4, 8, 12], [0.1 + 2e-5 * 4**3, 0.5, 0.1 + 2e-5 * 12**3])  # 8 by another solver
+    ratio = (a + b * 20**q) / (0.1 + 2e-5 * 20**3)
+    failed = check("a small run that is dearer than a larger one does not spoil the cost", 0.8 < ratio < 1.25, str(ratio))
+    _, row, predicted = approach([made_up(2, [5, 40, 80])], 3e-3, lambda line: None)
+    failed += check("a run that is far better than asked is no answer", row.point.size < 40 and 0.3 < row.point.size**-2 / 3e-3 < 1.1, str(row.point.size))
+    failed += check("its cost was foreseen", abs(predicted[2] / row.record.cpu - 1) < 0.3, str(predicted))
+    found = guesses({"tvd": ([10, 20, 40], [1.04, 1.01, 1.0025]), "implicit": ([10, 20, 40], [1.17, 1.13, 1.115])})
+    failed += check("what a series cannot see another one shows", 0.1 < found["implicit", 2] < 0.12 and found["tvd", 2] < 0.005, str(found))
+    first, second = (guesses({"upwind": ([10, 20], [1.4, 1.2])}, orders)["upwind", 1] for orders in ({"upwind": 1}, None))
+    return failed + check("a series may be of another order", abs(first - 0.2) < 1e-12 and second < 0.07, f"{first} {second}")
+
+
 def main(build):
     with tempfile.TemporaryDirectory(prefix="couplet-axes-") as name:
         folder = pathlib.Path(name)
         shutil.copy(ROOT / "configs/cantilever/cantilever.geo", folder)
         (folder / "case.yaml").write_text((ROOT / "configs/cantilever/case.yaml").read_text().split("\nstudy:")[0] + STUDY)
-        failed = restartable(build, folder)
+        failed = predicting()
+        failed += restartable(build, folder)
         failed += content(folder)
         failed += looked_at(folder)
         failed += wrong(build, folder)
