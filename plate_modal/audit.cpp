@@ -29,6 +29,14 @@ double thickness_over_wave(const Parameters& p, double omega) {
   return largest;
 }
 
+/// Share of the energy of the initial velocity that no mode has.
+double velocity_lost(const Share& share, const Vec3& v) {
+  if (!(v.norm() > 0)) return PlateEvidence::unknown;
+  double kept = 0;
+  for (const double one : share.participation(v)) kept += one * one;
+  return std::max(0.0, 1 - kept / (share.mass() * v.squaredNorm()));
+}
+
 }  // namespace
 
 /// Rigid motions may go as far as they like, but a mode turns the body by its tangent only.
@@ -122,15 +130,6 @@ double Structure::mesh_gap() const {
   return all > 0 ? std::sqrt(apart / all) : PlateEvidence::unknown;
 }
 
-/// Share of the energy of the initial velocity that no mode has.
-double Structure::velocity_lost() const {
-  const Vec3& v = parameters_.initial_velocity;
-  if (!resolution_ || !(v.norm() > 0)) return PlateEvidence::unknown;
-  double kept = 0;
-  for (const double one : share_->participation(v)) kept += one * one;
-  return std::max(0.0, 1 - kept / (share_->mass() * v.squaredNorm()));
-}
-
 std::vector<EffectVerdict> Structure::audit() const {
   // What rank 0 knows of the whole surface decides on all ranks alike.
   std::vector<double> seen(7, PlateEvidence::unknown);
@@ -157,7 +156,7 @@ std::vector<EffectVerdict> Structure::audit() const {
   evidence.modes_apart = resolution_ ? seen[5] : seen[2];
   evidence.within_faces = seen[3];
   evidence.mesh_gap = seen[4];
-  evidence.velocity_lost = velocity_lost();
+  if (resolution_) evidence.velocity_lost = velocity_lost(*share_, parameters_.initial_velocity);
   if (!rotations_.empty()) evidence.rotation = largest_rotation_;
   if (!parameters_.modes_file && parameters_.analysis == Parameters::Analysis::dynamic)
     evidence.in_plane_share = in_plane_share();

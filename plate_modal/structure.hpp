@@ -75,7 +75,6 @@ class Structure final : public Participant, public EstimatesError {
   void look_at_modes();
   void add_within_faces(double t);
   double mesh_gap() const;
-  double velocity_lost() const;
 
   Parameters parameters_;
   PlateContext context_;
