@@ -145,6 +145,7 @@ void Fluid<D>::start(double time) {
   }
   s.implicit = parameters_.viscous == ViscousTreatment::implicit;
   step_.set_eddy_viscosity(s);
+  step_.keep();
 }
 
 template <int D>
@@ -341,6 +342,7 @@ void Fluid<D>::accept() {
   if (split_) std::swap(accepted_, trial_);
   split_ = false;
   step_.commit(accepted_);
+  step_.keep();
   accepted_.time = time_ + dt_;
   accepted_.turn.swap(turn_);
   accepted_.turns = boundary_.walls_turn();

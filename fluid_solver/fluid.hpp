@@ -68,8 +68,8 @@ class Fluid {
   const Placement<D>& end() const { return step_.to(); }
   /// For checkpoints: replaces the accepted state.
   void restore(State<D> state);
-  /// The preconditioner is made anew at the next solve: a run that goes on and one that restarts do the same.
-  void refresh_solvers() { step_.refresh_solvers(); }
+  /// For its save() and load(): what the solvers remember of earlier steps; load() comes after restore().
+  FractionalStep<D>& solvers() { return step_; }
   /// Time means over the coupling step of the forces on what is outside, per boundary face [N].
   const Vectors<D>& pressure_force() const { return pressure_force_; }
   const Vectors<D>& viscous_force() const { return viscous_force_; }

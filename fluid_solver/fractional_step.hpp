@@ -68,7 +68,13 @@ class FractionalStep {
   void forget_walls() { k_.assembled = nullptr; }
   /// Of the last project(), per boundary face [Pa].
   const std::vector<double>& boundary_pressure() const { return k_.p_boundary; }
-  void refresh_solvers() { projection_.equation().refresh(); }
+  /// What the next solves depend on beside the level they start from, as of the last keep(). load(): collective.
+  void keep() { projection_.equation().accept(); }
+  void save(CheckpointWriter& file) const { projection_.equation().save(file); }
+  void load(CheckpointReader& file) {
+    projection_.equation().load(file);
+    k_.assembled = nullptr;
+  }
   const StepStatistics& statistics() const { return k_.statistics; }
   double size() const { return k_.step.dt; }
   /// Of its points at the end.

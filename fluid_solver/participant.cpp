@@ -248,9 +248,9 @@ StepReport FluidParticipant<D>::accept_step() {
 
 template <int D>
 void FluidParticipant<D>::save(CheckpointWriter& file) const {
-  fluid_->refresh_solvers();
   write_numbering(file, mesh_);
   write_state(file, fluid_->state());
+  fluid_->solvers().save(file);
   if (statistics_) statistics_->save(file);
   file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
 }
@@ -259,10 +259,10 @@ template <int D>
 void FluidParticipant<D>::load(CheckpointReader& file) {
   check_numbering(file, mesh_);
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
+  fluid_->solvers().load(file);
   if (statistics_) statistics_->load(file);
   const std::vector<double> errors = file.read("errors");
   if (errors_) errors_->restore(errors);
-  fluid_->refresh_solvers();
 }
 
 template <int D>

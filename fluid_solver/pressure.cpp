@@ -82,6 +82,57 @@ void PressureEquation<D>::make_fixed(const Placement<D>& at) {
   matrix_->complete();
 }
 
+/// Of the matrix as it stands: its diagonal per owned cell, then one entry a face, which stands in it twice.
+template <int D>
+std::vector<double> PressureEquation<D>::coefficients() const {
+  const Index owned = mesh_.cells.n_owned();
+  std::vector<double> all(values_.begin(), values_.begin() + owned);
+  all.resize(std::size_t(owned) + mesh_.n_interior);
+  std::size_t next = owned;
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
+      if (cell < owned) all[owned + f] = values_[next++];
+  return all;
+}
+
+/// The other way round.
+template <int D>
+void PressureEquation<D>::fill(std::span<const double> coefficients) {
+  const Index owned = mesh_.cells.n_owned();
+  std::copy_n(coefficients.begin(), owned, values_.begin());
+  std::size_t next = owned;
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    for (const Index cell : {mesh_.owner[f], mesh_.neighbour[f]})
+      if (cell < owned) values_[next++] = coefficients[owned + f];
+  matrix_->fill(values_);
+}
+
+template <int D>
+void PressureEquation<D>::save(CheckpointWriter& file) const {
+  if (fixed_) return;
+  file.write_scalar("pressure-preconditioner-due", accepted_.memory.is_due);
+  file.write_scalar("pressure-preconditioner-single", accepted_.memory.is_single);
+  file.write_scalar("pressure-preconditioner-iterations", accepted_.memory.most_iterations);
+  file.write("pressure-preconditioner", *accepted_.made_from);
+}
+
+template <int D>
+void PressureEquation<D>::load(CheckpointReader& file) {
+  if (fixed_) return;
+  PreconditionerMemory memory;
+  memory.is_due = file.read_scalar("pressure-preconditioner-due") != 0;
+  memory.is_single = file.read_scalar("pressure-preconditioner-single") != 0;
+  memory.most_iterations = static_cast<int>(file.read_scalar("pressure-preconditioner-iterations"));
+  std::vector<double> saved = file.read("pressure-preconditioner");
+  const bool is_here = solver_->memory() == memory && *now_.made_from == saved;
+  if (any(mesh_.comm, !is_here)) {
+    if (!memory.is_due) fill(saved);
+    solver_->restore(memory);
+    now_ = {memory, std::make_shared<const std::vector<double>>(std::move(saved))};
+  }
+  accept();
+}
+
 template <int D>
 void PressureEquation<D>::set(const Placement<D>& at, bool yields, std::span<const double> admittance) {
   yields_ = yields;
@@ -125,7 +176,13 @@ SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<d
     MPI_Bcast(&pin, 1, MPI_DOUBLE, 0, mesh_.comm);
     for (Index c = 0; c < owned; ++c) p[c] -= pin;
   }
+  const int made = solver_->preconditioners_built();
   const SolveStatistics statistics = solver_->solve(b, std::span<double>(p).first(owned), relative, absolute);
+  if (!fixed_) {
+    now_.memory = solver_->memory();
+    if (solver_->preconditioners_built() != made)
+      now_.made_from = std::make_shared<const std::vector<double>>(coefficients());
+  }
   if (singular()) {
     double sums[2] = {0, 0};
     const auto add = [&](double weight, Index c) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "common/io/checkpoint.hpp"
 #include "common/linalg/linear_solver.hpp"
 #include "common/linalg/matrix.hpp"
 #include "fluid_solver/boundary.hpp"
@@ -21,6 +22,13 @@ class PressureEquation {
   PressureEquation(const Mesh& mesh, const Boundary<D>& boundary, bool fixed);
   /// `yields`: walls answer to the pressure with `admittance`, per boundary face [m]. Collective.
   void set(const Placement<D>& at, bool yields = false, std::span<const double> admittance = {});
+  /// The preconditioner lags behind a matrix that moves: what it was made from, to make it again. A fixed matrix needs
+  /// none of this.
+  void save(CheckpointWriter& file) const;
+  /// What save() saves is what there is now.
+  void accept() { accepted_ = now_; }
+  /// The matrix is then that of the preconditioner: set() has to come before the next solve. Collective.
+  void load(CheckpointReader& file);
   /// A new preconditioner at the next solve.
   void refresh() {
     if (solver_) solver_->refresh();
@@ -44,7 +52,16 @@ class PressureEquation {
   bool direct_;  // small 2-D meshes: kept Cholesky factors
   std::unique_ptr<SparseMatrix> matrix_;
   std::unique_ptr<LinearSolver> solver_;
-  std::vector<double> values_;  // of a moving mesh
+  std::vector<double> coefficients() const;
+  void fill(std::span<const double> coefficients);
+  // Of a moving mesh: the matrix's triplets, and the preconditioner with the coefficients that it was made from: now,
+  // and as the accepted level had it.
+  std::vector<double> values_;
+  struct Lagging {
+    PreconditionerMemory memory;
+    std::shared_ptr<const std::vector<double>> made_from;
+  };
+  Lagging now_, accepted_;
 };
 
 }  // namespace couplet::fluid

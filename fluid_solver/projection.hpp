@@ -37,6 +37,7 @@ class PressureProjection {
   void mark_gaps();
   void block_gaps(std::vector<double>& phi) const;
   PressureEquation<D>& equation() { return pressure_; }
+  const PressureEquation<D>& equation() const { return pressure_; }
 
  private:
   void balance_closed_domain();

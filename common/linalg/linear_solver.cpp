@@ -146,12 +146,7 @@ LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const L
   PC pc = nullptr;
   petsc_check(KSPGetPC(ksp_, &pc));
   choose_method(ksp_, pc, matrix, options.method);
-  if (options.method == LinearMethod::cg_single && comm_size(matrix.comm()) == 1) {
-    single_ = std::make_unique<SingleFactors>();
-    petsc_check(PCSetType(pc, PCSHELL));
-    petsc_check(PCShellSetContext(pc, single_.get()));
-    petsc_check(PCShellSetApply(pc, apply_single));
-  }
+  if (options.method == LinearMethod::cg_single && comm_size(matrix.comm()) == 1) use_single_precision();
   if (!is_direct(options.method)) petsc_check(KSPSetInitialGuessNonzero(ksp_, PETSC_TRUE));
   petsc_check(MatCreateVecs(matrix.petsc(), &x_, &b_));
 }
@@ -165,6 +160,15 @@ LinearSolver::~LinearSolver() {
 
 void LinearSolver::matrix_changed() {
   if (is_direct(options_.method)) rebuild_ = true;
+}
+
+void LinearSolver::use_single_precision() {
+  PC pc = nullptr;
+  petsc_check(KSPGetPC(ksp_, &pc));
+  single_ = std::make_unique<SingleFactors>();
+  petsc_check(PCSetType(pc, PCSHELL));
+  petsc_check(PCShellSetContext(pc, single_.get()));
+  petsc_check(PCShellSetApply(pc, apply_single));
 }
 
 void LinearSolver::make_single_factors() {
@@ -196,6 +200,23 @@ void LinearSolver::leave_single_precision() {
 }
 
 void LinearSolver::refresh() { rebuild_ = true; }
+
+/// By PETSc when it next sets up, of the operators it is given here.
+void LinearSolver::make_preconditioner() {
+  if (single_) make_single_factors();
+  petsc_check(KSPSetReusePreconditioner(ksp_, PETSC_FALSE));
+  petsc_check(KSPSetOperators(ksp_, matrix_->petsc(), matrix_->petsc()));
+}
+
+void LinearSolver::restore(const PreconditionerMemory& memory) {
+  if (single_ && !memory.is_single) leave_single_precision();
+  if (!single_ && memory.is_single) use_single_precision();
+  rebuild_ = memory.is_due;
+  most_iterations_ = memory.most_iterations;
+  if (rebuild_) return;
+  make_preconditioner();
+  petsc_check(KSPSetUp(ksp_));
+}
 
 SolveStatistics LinearSolver::solve(std::span<const double> b, std::span<double> x) {
   return solve(b, x, options_.relative_tolerance, options_.absolute_tolerance);
@@ -296,9 +317,10 @@ KSPConvergedReason LinearSolver::continue_by_idr(std::span<const double> b, std:
 /// One KSPSolve; a result that is not finite counts as not converged.
 KSPConvergedReason LinearSolver::attempt(std::span<const double> b, std::span<double> x,
                                          SolveStatistics& statistics) {
-  if (rebuild_ && single_) make_single_factors();
-  petsc_check(KSPSetReusePreconditioner(ksp_, rebuild_ ? PETSC_FALSE : PETSC_TRUE));
-  if (rebuild_) petsc_check(KSPSetOperators(ksp_, matrix_->petsc(), matrix_->petsc()));
+  if (rebuild_)
+    make_preconditioner();
+  else
+    petsc_check(KSPSetReusePreconditioner(ksp_, PETSC_TRUE));
   petsc_check(VecPlaceArray(b_, b.data()));
   petsc_check(VecPlaceArray(x_, x.data()));
   const PetscErrorCode code = KSPSolve(ksp_, b_, x_);

@@ -40,6 +40,15 @@ struct SolveStatistics {
   double seconds = 0;
 };
 
+/// What a solver remembers of its preconditioner but for the matrix it was made from. With that matrix it can be
+/// made again bit for bit: a run that goes on from a checkpoint has the preconditioner that it had.
+struct PreconditionerMemory {
+  bool is_due = true;  ///< made anew at the next solve
+  bool is_single = false;
+  int most_iterations = 0;
+  bool operator==(const PreconditionerMemory&) const = default;
+};
+
 /// A Krylov or direct solver whose preconditioner is kept until it is told to refresh.
 class LinearSolver {
  public:
@@ -60,12 +69,17 @@ class LinearSolver {
   void matrix_changed();
   /// Builds the preconditioner anew at the next solve.
   void refresh();
+  PreconditionerMemory memory() const { return {rebuild_, single_ != nullptr, most_iterations_}; }
+  /// Makes the preconditioner now, of the matrix as it stands: the one that `memory` goes with. Collective.
+  void restore(const PreconditionerMemory& memory);
   int preconditioners_built() const { return built_; }
   int total_iterations() const { return total_iterations_; }
 
  private:
   double norm(std::span<const double> values) const;
   double true_residual(std::span<const double> b, std::span<const double> x) const;
+  void make_preconditioner();
+  void use_single_precision();
   void make_single_factors();
   void leave_single_precision();
   KSPConvergedReason continue_by_idr(std::span<const double> b, std::span<double> x, double wanted,

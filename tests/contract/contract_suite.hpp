@@ -194,6 +194,26 @@ TYPED_TEST_P(ParticipantContract, a_checkpoint_continues_bit_for_bit) {
   if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
 }
 
+/// Whether and how often a run is saved is nothing to it: what a solver learnt from earlier steps (guesses, a
+/// preconditioner that lags behind its matrix) survives.
+TYPED_TEST_P(ParticipantContract, checkpoints_leave_a_run_as_it_is) {
+  typename TestFixture::Subject never(MPI_COMM_WORLD), once(MPI_COMM_WORLD), always(MPI_COMM_WORLD);
+  const auto save = [](const Participant& participant) {
+    StateInMemory memory;
+    CheckpointWriter writer(memory);
+    participant.save(writer);
+    writer.close();
+  };
+  const double allowed = comm_size(MPI_COMM_WORLD) == 1 ? 0 : TypeParam::restart_tolerance;
+  for (int i = 0; i < 6; ++i) {
+    const Exchange expected = never.step(1 + i);
+    EXPECT_LE(difference(expected, once.step(1 + i)), allowed) << "saved once, step " << i;
+    EXPECT_LE(difference(expected, always.step(1 + i)), allowed) << "saved always, step " << i;
+    if (i == 2) save(*once.participant);
+    save(*always.participant);
+  }
+}
+
 TYPED_TEST_P(ParticipantContract, all_ranks_together_give_what_one_rank_gives) {
   typename TestFixture::Subject together(MPI_COMM_WORLD), alone(MPI_COMM_SELF);
   for (int i = 0; i < 3; ++i) {
@@ -241,6 +261,7 @@ REGISTER_TYPED_TEST_SUITE_P(ParticipantContract, a_step_that_fails_leaves_state_
                             output_is_what_the_interface_announced, input_matters,
                             equal_input_gives_equal_output_within_a_step,
                             a_step_begun_again_forgets_what_was_tried, only_accepted_steps_change_the_state,
-                            a_checkpoint_continues_bit_for_bit, all_ranks_together_give_what_one_rank_gives);
+                            a_checkpoint_continues_bit_for_bit, checkpoints_leave_a_run_as_it_is,
+                            all_ranks_together_give_what_one_rank_gives);
 
 }  // namespace couplet::contract

@@ -73,6 +73,19 @@ TYPED_TEST_P(StandaloneContract, a_checkpoint_continues_bit_for_bit) {
   if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
 }
 
+/// As in contract_suite.hpp: what is saved in the end is the same.
+TYPED_TEST_P(StandaloneContract, checkpoints_leave_a_run_as_it_is) {
+  typename TestFixture::Subject never, once, always;
+  for (int i = 0; i < 6; ++i) {
+    for (auto* s : {&never, &once, &always}) s->step();
+    if (i == 2) TestFixture::saved(*once.participant);
+    TestFixture::saved(*always.participant);
+  }
+  const Contents expected = TestFixture::saved(*never.participant);
+  EXPECT_LE(apart(expected, TestFixture::saved(*once.participant)), TestFixture::allowed());
+  EXPECT_LE(apart(expected, TestFixture::saved(*always.participant)), TestFixture::allowed());
+}
+
 TYPED_TEST_P(StandaloneContract, steps_that_are_not_accepted_leave_the_state_bit_for_bit) {
   typename TestFixture::Subject subject;
   for (int i = 0; i < 3; ++i) subject.step();
@@ -85,6 +98,7 @@ TYPED_TEST_P(StandaloneContract, steps_that_are_not_accepted_leave_the_state_bit
 }
 
 REGISTER_TYPED_TEST_SUITE_P(StandaloneContract, a_checkpoint_continues_bit_for_bit,
+                            checkpoints_leave_a_run_as_it_is,
                             steps_that_are_not_accepted_leave_the_state_bit_for_bit);
 
 }  // namespace couplet::contract

@@ -269,6 +269,18 @@ TEST_F(Participation, a_checkpoint_continues_bit_for_bit) {
   expect_equal(*a, *b);
 }
 
+TEST_F(Participation, checkpoints_leave_a_run_as_it_is) {
+  const auto never = make(), always = make();
+  for (int n = 0; n < 60; ++n) {
+    take(*never, n), take(*always, n);
+    StateInMemory memory;
+    CheckpointWriter writer(memory);
+    always->save(writer);
+    writer.close();
+  }
+  expect_equal(*never, *always);
+}
+
 /// A wall that answers as a membrane, in place of another program: u = R (p R/(E e) + integral of alpha dT).
 TEST_F(Participation, a_wall_outside_that_is_a_membrane_gives_the_stress_of_the_rings) {
   TankParameters p = solar_one_parameters();
