@@ -33,6 +33,8 @@ from scipy.optimize import minimize
 from scipy.spatial.distance import cdist
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "scripts"))
+from couplet_run.warnings import warnings_of  # noqa: E402
 
 
 class Wrong(Exception):
@@ -94,9 +96,9 @@ def next_points(points, values, count, nearest):
     return chosen, float(best.fun)
 
 
-def search(evaluate, dimensions, runs, tolerance, together, say=print):
+def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
     """Least value of a function on the unit cube. `evaluate(points)` gives a value a point (inf: failed), `together` at a time.
-    Gives (best point, its value, all points, all values)."""
+    Gives (best point, its value, all points, all values). Says values times `sign`, and at the end why it ended."""
     points, values = [], []
     todo = first_points(dimensions)[:runs]
     quiet = 0
@@ -106,15 +108,20 @@ def search(evaluate, dimensions, runs, tolerance, together, say=print):
         finite = [v for v in values if np.isfinite(v)]
         expect(finite, "optimise: none of the first runs gave a value.")
         best = min(finite)
-        say(f"optimise: {len(points)} runs, best so far {best:.6g}")
+        say(f"optimise: {len(points)} runs, best so far {sign * best:.6g}")
         left = runs - len(points)
         if left <= 0:
+            say(f"optimise: ends because all {runs} runs are used (study.optimise.runs)")
             break
         todo, wanted = next_points(points, values, min(together, left), 0.02)
         # The surface expects nothing better three times in a row: it has converged.
         quiet = quiet + 1 if best - wanted <= tolerance * abs(best) else 0
         if quiet > 2:
+            say(f"optimise: ends after {len(points)} of {runs} runs: three times in a row nothing better by more than "
+                f"{tolerance:.2g} of it was expected (study.optimise.tolerance); a smaller tolerance looks further")
             break
+        if not todo:
+            say(f"optimise: ends after {len(points)} of {runs} runs: no place is left that is 2 % of the range from all others")
     k = int(np.argmin(np.where(np.isfinite(values), values, np.inf)))
     return points[k], values[k], points, values
 
@@ -223,11 +230,14 @@ def main(words):
     runs = Runs(arguments.case, data, section, variables, participant, arguments)
     budget = int(section.get("runs", 10 * len(variables)))
     expect(budget >= 3, f"{arguments.case}: study.optimise.runs: at least 3.")
-    point, value, points, values = search(runs, len(variables), budget, float(section.get("tolerance", 0.005)), arguments.jobs)
+    point, value, points, values = search(runs, len(variables), budget, float(section.get("tolerance", 0.005)), arguments.jobs,
+                                          sign=runs.sign)
     write(runs.folder / "optimise.csv", runs, points, values)
     where = ", ".join(f"{v.name} {v.at(x):.4g} {v.unit}".strip() for v, x in zip(variables, point))
     edge = [v.name for v, x in zip(variables, point) if x < 0.02 or x > 0.98]
     print(f"best {runs.quantity} {runs.sign * value:.6g} at {where}, after {len(points)} runs; all in {runs.folder / 'optimise.csv'}")
+    for line in warnings_of(runs.folder / f"run-{number:03d}" / "run.log" for number in range(runs.made)):
+        print(line)
     if edge:
         print(f"{', '.join(edge)}: the best lies at the border of the range given; beyond it may be better.")
     return 0

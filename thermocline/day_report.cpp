@@ -3,18 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "common/base/error.hpp"
-#include "common/base/own_file.hpp"
 #include "thermocline/celsius.hpp"
 #include "thermocline/thickness.hpp"
 
 namespace couplet::thermocline {
 namespace {
 
-constexpr double day_length = 86400, hour = 3600;  // [s]
-constexpr double megawatt_hour = 3.6e9;            // [J]
+constexpr double hour = 3600;  // [s]
 using Sums = ReportSums;
 
 double share(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
@@ -43,46 +40,19 @@ void declare(config::Section& s, ReportParameters& p) {
       "prices, in a currency of one's own: the summary then has capital and levelised cost of the "
       "electricity");
   s.value("dead-state", p.dead_state).unit("K").positive().doc("reference temperature of the exergy");
+  s.check(
+      [&p]() -> std::string {
+        if (p.dead_state >= 200) return "";
+        return fmt::format(
+            "{:g} K is {:.0f} degC, colder than any surroundings. A number without a unit is in K; write '{:g} degC' if "
+            "that is meant",
+            p.dead_state, celsius(p.dead_state), p.dead_state);
+      },
+      "dead-state");
 }
 
 void ReportSums::add(const ReportSums& other) {
   for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += other.sum[i];
-}
-
-DayReport::DayReport(const ReportParameters& parameters, const Plant& plant, const Weather& weather,
-                     const std::filesystem::path& folder, double restart_time)
-    : p_(parameters), plant_(plant), weather_(weather), folder_(folder) {
-  if (folder_.empty()) return;
-  std::vector<std::string> columns{"time [s]"};
-  for (const ReportLine& line : lines_of({}, 1))
-    columns.push_back(fmt::format("{} [{}]", line.quantity, line.unit));
-  days_ = std::make_unique<Series>(folder_ / "days.csv", columns, restart_time);
-  series_ = std::make_unique<Series>(
-      folder_ / "plant.csv",
-      std::vector<std::string>{"time [s]", "solar field [W]", "power block [W]", "tank flow [kg/s]",
-                               "top [degC]", "bottom [degC]", "thermocline thickness [m]", "losses [W]"},
-      restart_time);
-  if (p_.profile_day)
-    profiles_ = std::make_unique<Series>(
-        folder_ / "profiles.csv",
-        std::vector<std::string>{"time [s]", "z [m]", "fluid [degC]", "filler [degC]", "wall [degC]",
-                                 "share of yield strength [-]"},
-        restart_time);
-}
-
-void DayReport::write_profiles(const TankRecord& record) {
-  const double begin = *p_.profile_day * day_length;
-  const double before = std::floor((record.time - record.dt - begin) / hour + 1e-9);
-  const double now = std::floor((record.time - begin) / hour + 1e-9);
-  if (now == before || now < 0 || now > 24) return;
-  for (std::size_t i = 0; i < record.z.size(); ++i) {
-    const bool wall = i < record.wall_z.size();
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    profiles_->row(std::array{record.time, record.z[i], celsius(record.fluid_temperature[i]),
-                              celsius(record.filler_temperature[i]),
-                              wall ? celsius(record.wall_temperature[i]) : none,
-                              wall ? record.equivalent_stress[i] / record.yield_strength[i] : none});
-  }
 }
 
 /// Books one step of the bed; gives the heat that the flow brought into it [J].
@@ -98,10 +68,15 @@ double DayReport::add_step(const BedStep& step) {
   day_[Sums::duration] += dt;
   day_[Sums::asked] += block;
   day_[Sums::pumping] += step.pump_power * dt;
-  const auto sell = [&](double heat) {
-    day_[Sums::electricity] += plant.block_efficiency * heat;
-    day_[Sums::revenue] += plant_.tariff(step.t) * plant.block_efficiency * heat / megawatt_hour;
+  const auto book = [&](double electricity) {
+    day_[Sums::electricity] += electricity;
+    day_[Sums::revenue] += plant_.tariff(step.t) * electricity / megawatt_hour;
   };
+  const auto sell = [&](double heat) {
+    day_[Sums::taken] += heat;
+    book(plant.block_efficiency * heat);
+  };
+  book(-step.pump_power * dt);  // pump and fan are driven by the plant's own electricity
   sell(std::min(field, block));
   const auto mode = static_cast<PlantMode>(step.flow.mode);
   if (mode == PlantMode::standby) {
@@ -142,6 +117,7 @@ void DayReport::record(const TankRecord& record) {
     storable_ = record.heat_capacity * (plant_.parameters().hot - plant_.parameters().cold);
   }
   double brought = 0, charged = 0, charging_time = 0, moved = 0;
+  const double field = day_[Sums::field], asked = day_[Sums::asked], taken = day_[Sums::taken];
   for (const BedStep& step : record.steps) {
     const double heat = add_step(step);
     brought += heat;
@@ -156,24 +132,23 @@ void DayReport::record(const TankRecord& record) {
   add_thickness(record);
   if (!record.equivalent_stress.empty())
     stress_.see(record.time, record.wall_z, record.equivalent_stress, record.yield_strength);
-  if (series_) {
-    const double field =
-        plant_.field_heat(weather_.irradiation(record.time - record.dt, record.time)) / record.dt;
-    series_->row(std::array{
-        record.time, field, plant_.block_heat(), moved / record.dt, celsius(record.fluid_temperature.back()),
-        celsius(record.fluid_temperature.front()), last_thickness_, record.losses() / record.dt});
-  }
+  if (series_)
+    write_series(record, moved, day_[Sums::field] - field, day_[Sums::asked] - asked,
+                 day_[Sums::taken] - taken);
   if (profiles_) write_profiles(record);
+  last_time_ = record.time;
   // A hair's breadth before midnight is midnight.
-  if (record.time >= (days_seen_ + 1) * day_length - 1e-3) end_day(record.time);
+  if (record.time >= (days_seen_ + 1) * seconds_a_day - 1e-3) end_day(record.time);
 }
 
+bool DayReport::counts(int day) const { return day * seconds_a_day >= p_.run_in * seconds_a_day - 1; }
+
 void DayReport::end_day(double time) {
-  const bool counts = days_seen_ * day_length >= p_.run_in * day_length - 1;
+  const bool counted = counts(days_seen_);
   ++days_seen_;
-  stress_.end_day(counts);
+  stress_.end_day(counted);
   write_day(time);
-  if (counts) {
+  if (counted) {
     ++days_counted_;
     results_.add(day_);
   }
@@ -202,14 +177,14 @@ std::vector<ReportLine> DayReport::lines_of(const ReportSums& s, double days) co
 }
 
 std::vector<ReportLine> DayReport::lines() const {
-  std::vector<ReportLine> all = lines_of(results_, results_[Sums::duration] / day_length);
+  std::vector<ReportLine> all = lines_of(results_, results_[Sums::duration] / seconds_a_day);
   if (!(results_[Sums::duration] > 0)) {  // no day counts: zeros would look like answers
     for (ReportLine& line : all) line.value = std::numeric_limits<double>::quiet_NaN();
     return all;
   }
   if (results_[Sums::pumping] > 0)
     all.push_back({"pumping", "MWh/day",
-                   results_[Sums::pumping] / megawatt_hour / (results_[Sums::duration] / day_length)});
+                   results_[Sums::pumping] / megawatt_hour / (results_[Sums::duration] / seconds_a_day)});
   add_money(all);
   if (stress_.empty()) return all;
   const StressHistory::Factor least = stress_.static_factor(), dynamic = stress_.dynamic_factor();
@@ -219,69 +194,6 @@ std::vector<ReportLine> DayReport::lines() const {
   all.push_back({"FoS_dynamic", "-", dynamic.value});
   all.push_back({"FoS_dynamic height", "m", dynamic.z});
   return all;
-}
-
-/// Electricity and what it earns and costs, a year of days as those that count.
-void DayReport::add_money(std::vector<ReportLine>& all) const {
-  if (!p_.economics && plant_.parameters().tariff.empty()) return;
-  const double years = results_[Sums::duration] / (365 * day_length);
-  const double electricity = years > 0 ? results_[Sums::electricity] / megawatt_hour / years : 0;
-  all.push_back({"electricity", "MWh/year", electricity});
-  if (!plant_.parameters().tariff.empty())
-    all.push_back({"revenue", "1/year", years > 0 ? results_[Sums::revenue] / years : 0});
-  if (!p_.economics) return;
-  const LevelisedCost cost = levelised_cost(*p_.economics, inventory_, electricity);
-  all.push_back({"capital", "1", cost.capital});
-  all.push_back({"capital of the storage", "1", cost.storage});
-  all.push_back({"cost", "1/year", cost.per_year});
-  all.push_back({"levelised cost", "1/MWh", cost.per_energy});
-}
-
-void DayReport::write_day(double time) {
-  if (!days_) return;
-  std::vector<double> row{time};
-  for (const ReportLine& line : lines_of(day_, day_[Sums::duration] / day_length)) row.push_back(line.value);
-  days_->row(row);
-}
-
-std::vector<std::string> DayReport::doubts() const {
-  std::vector<std::string> sentences;
-  const double days = results_[Sums::duration] / day_length;
-  if (days_counted_ == 0 && p_.run_in > 0)
-    sentences.push_back(fmt::format(
-        "report: no day counts: the run has {} whole days, the first {:g} are the run-in (report.run-in); summary.csv {}",
-        days_seen_, p_.run_in,
-        days > 0 ? fmt::format("is that of its last {:.3g} h", 24 * days) : std::string("holds no numbers")));
-  constexpr double year = 365;
-  if (days > 0 && days < 0.95 * year && (p_.economics || !plant_.parameters().tariff.empty()))
-    sentences.push_back(fmt::format(
-        "report: {:.3g} days stand for a year in the electricity and its cost or revenue: they hold for a whole year's run "
-        "alone",
-        days));
-  return sentences;
-}
-
-void DayReport::finish() {
-  if (days_counted_ == 0) {
-    stress_.end_day(true);
-    results_.add(day_);
-  }
-  if (folder_.empty()) return;
-  std::ofstream summary(own_file(folder_ / "summary.csv"));
-  summary << "quantity,unit,value\n";
-  for (const ReportLine& line : lines())
-    summary << fmt::format("{},{},{}\n", line.quantity, line.unit, line.value);
-  if (!stress_.empty()) {
-    std::ofstream stress(own_file(folder_ / "stress.csv"));
-    stress << "z [m],mean daily lowest share [-],mean daily highest share [-],highest share [-]\n";
-    const std::vector<double> low = stress_.mean_lowest(), high = stress_.mean_highest();
-    for (std::size_t i = 0; i < low.size(); ++i)
-      stress << fmt::format("{},{},{},{}\n", stress_.z()[i], low[i], high[i], stress_.highest()[i]);
-    stress.flush();
-    if (!stress) throw Error("{} could not be written. Is the disk full?", (folder_ / "stress.csv").string());
-  }
-  summary.flush();
-  if (!summary) throw Error("{} could not be written. Is the disk full?", (folder_ / "summary.csv").string());
 }
 
 std::vector<double> DayReport::state() const {
@@ -296,6 +208,13 @@ std::vector<double> DayReport::state() const {
 void DayReport::restore(std::span<const double> state) {
   days_seen_ = static_cast<int>(state[0]);
   days_counted_ = static_cast<int>(state[1]);
+  int counted = 0;
+  for (int day = 0; day < days_seen_; ++day) counted += this->counts(day);
+  if (counted != days_counted_)
+    throw Error(
+        "report.run-in: the run to be continued has lived through {} days and counted {} of them; with a run-in of {:g} "
+        "days it would be {}. What was counted cannot be taken back: keep the run-in, or start anew.",
+        days_seen_, days_counted_, p_.run_in, counted);
   storable_ = state[2];
   bed_height_ = state[3];
   last_thickness_ = state[4];

@@ -18,6 +18,9 @@
 
 namespace couplet::thermocline {
 
+inline constexpr double seconds_a_day = 86400;  // [s]
+inline constexpr double megawatt_hour = 3.6e9;  // [J]
+
 struct ReportParameters {
   double run_in = 0;  ///< days before the first that counts
   /// Margins of the critical temperatures of the thermocline's thickness (5.30) [K].
@@ -49,8 +52,9 @@ struct ReportSums {
     thickness_time,
     duration,
     asked,        ///< heat that the power block asked for
-    electricity,  ///< of the heat it got
-    revenue,      ///< [currency]
+    taken,        ///< and got
+    electricity,  ///< net: of the heat it got, less what pump or fan took
+    revenue,      ///< of the net electricity [currency]
     pumping,      ///< work of pump or fan
     n_items
   };
@@ -97,10 +101,14 @@ class DayReport final : public TankObserver {
   double add_step(const BedStep& step);
   void add_thickness(const TankRecord& record);
   void end_day(double time);
+  /// Whether this day, from 0, is behind the run-in.
+  bool counts(int day) const;
   void write_profiles(const TankRecord& record);
   std::vector<ReportLine> lines_of(const ReportSums& sums, double days) const;
   void write_day(double time);
   void add_money(std::vector<ReportLine>& lines) const;
+  bool whole_years() const;
+  void write_series(const TankRecord& record, double moved, double field, double asked, double taken);
 
   ReportParameters p_;
   Plant plant_;
@@ -110,7 +118,7 @@ class DayReport final : public TankObserver {
   StressHistory stress_;
   Inventory inventory_;
   int days_seen_ = 0, days_counted_ = 0;
-  double storable_ = 0, bed_height_ = 0, last_thickness_ = 0;
+  double storable_ = 0, bed_height_ = 0, last_thickness_ = 0, last_time_ = 0;
   std::unique_ptr<Series> days_, series_, profiles_;
 };
 

@@ -48,6 +48,16 @@ V judge_sound(const P&, const E& e) {
       "pressure"};
 }
 
+V judge_capacity(const P&, const E& e) {
+  if (std::isnan(e.capacity_error)) return {};
+  return EffectVerdict{
+      "", e.capacity_error, 0.05,
+      fmt::format(
+          "between the coldest and the hottest fluid of the run air takes {:.0f} J/(kg K), {:.2g} away from the constant",
+          e.mean_capacity, e.capacity_error),
+      fmt::format("give 'fluid.specific-heat: {:.0f} J/(kg K)'", e.mean_capacity)};
+}
+
 // First order in time: a front of speed v is spread as by a diffusion v^2 dt / 2, over the way H by sqrt(v dt H). Four
 // hundred steps a crossing are 0.05 (and within 0.1 % of Schumann's gas bed, docs/validation/tank-tables.md).
 V judge_implicit(const P&, const E& e) {
@@ -72,7 +82,8 @@ const std::array cards{
          [](const P& p) { return when(p, p.tank.bed.advection == Advection::implicit, "bed.advection"); },
          {},
          "spread of a front by the step over the bed's height, 0.05",
-         judge_implicit},
+         judge_implicit,
+         true},
     Card{"yielding of the wall",
          "no key: not in the model",
          [](const P&) { return std::string(); },
@@ -85,13 +96,19 @@ const std::array cards{
          {},
          "speed between the grains over that of sound, 0.3",
          judge_sound},
+    Card{"specific heat of a gas by its temperature",
+         "no key: a constant, `fluid.specific-heat`",
+         [](const P&) { return std::string(); },
+         {},
+         "mean specific heat of the run's range of temperatures against the constant, 0.05",
+         judge_capacity},
     Card{"shell",
          "`shell`",
          [](const P& p) { return when(p, p.tank.shell.has_value(), "shell"); },
          {"rings: temperature and stress", 0, 0}},
     Card{"filler mechanics",
-         "`mechanics`",
-         [](const P& p) { return when(p, p.tank.mechanics.has_value(), "mechanics"); },
+         "`filler-mechanics`",
+         [](const P& p) { return when(p, p.tank.mechanics.has_value(), "filler-mechanics"); },
          {"contact and slip a ring", 0, 0}},
     Card{"wall as a solid",
          "`external-wall`",

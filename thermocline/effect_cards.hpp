@@ -16,6 +16,9 @@ struct Evidence {
   double largest_mach = unknown;  ///< of a gas between the grains at the largest flow
   /// Of `advection: implicit`: what its largest step spreads a front that crosses the bed by, over the bed's height.
   double implicit_spread = unknown, implicit_step = unknown;  ///< and a step that brings the limit [s]
+  /// Of a gas: by what share the mean specific heat between the coldest and the hottest fluid differs from the
+  /// constant that the run counts with, and that mean [J/(kg K)].
+  double capacity_error = unknown, mean_capacity = unknown;
   double share_of_yield = unknown;  ///< largest equivalent stress of the wall over its yield strength
 };
 using Card = EffectCard<ElementParameters, Evidence>;

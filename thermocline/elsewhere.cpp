@@ -8,7 +8,9 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/log/doubt.hpp"
 #include "common/parallel/collective.hpp"
+#include "thermocline/plausible.hpp"
 #include "thermocline/questions.hpp"
 #include "thermocline/tank.hpp"
 
@@ -28,6 +30,11 @@ const std::vector<double>* find(const Exchange& in, const char* name) {
   return found == in.end() ? nullptr : &found->second;
 }
 
+std::string other_diameter(const std::vector<double>* told, double own, double slack, const char* where) {
+  if (!told || told->empty() || !(std::abs(told->front() - own) > slack * own)) return "";
+  return fmt::format("diameter is {:.6g} m, but the tank's is {:.6g} m ({})", own, told->front(), where);
+}
+
 class GroundModel {
  public:
   GroundModel(const GroundElementParameters& p, const Weather& weather)
@@ -42,9 +49,14 @@ class GroundModel {
     i.face_centres = {{0, 0, 0}};
     i.face_areas = {{0, 0, column_.area()}};
     i.takes = {{"bottom-temperature", "K", Interface::Place::faces, 1},
-               {"bottom-coefficient", "W/(m^2 K)", Interface::Place::faces, 1}};
+               {"bottom-coefficient", "W/(m^2 K)", Interface::Place::faces, 1},
+               {"tank-diameter", "m", Interface::Place::faces, 1}};
     i.gives = {{"bottom-heat", "W", Interface::Place::faces, 1}};
     return i;
+  }
+  /// What the tank says against the geometry here: a sentence, or empty.
+  std::string contradiction(const Exchange& in) const {
+    return other_diameter(find(in, "tank-diameter"), p_.diameter, 1e-3, "inside");
   }
   Exchange advance(const Step& step, const Exchange& in, const Weather&) {
     const auto *temperature = find(in, "bottom-temperature"), *coefficient = find(in, "bottom-coefficient");
@@ -98,9 +110,13 @@ class BlanketModel {
       i.face_centres.emplace_back(p_.diameter / 2, 0, (k + 0.5) * dz_[0]);
       i.face_areas.emplace_back(-area, 0, 0);
     }
-    i.takes = {{"wall-temperature", "K", Interface::Place::faces, 1}};
+    i.takes = {{"wall-temperature", "K", Interface::Place::faces, 1},
+               {"wall-diameter", "m", Interface::Place::faces, 1}};
     i.gives = {{"wall-heat", "W", Interface::Place::faces, 1}};
     return i;
+  }
+  std::string contradiction(const Exchange& in) const {
+    return other_diameter(find(in, "wall-diameter"), p_.diameter, 0.02, "outside of the lowest plate");
   }
   Exchange advance(const Step& step, const Exchange& in, const Weather& weather) {
     if (const auto* wall = find(in, "wall-temperature")) wall_ = *wall;
@@ -144,18 +160,24 @@ class ElementParticipant final : public Participant {
       : weather_(make_weather(p.ambient, context.case_folder)),
         accepted_(p, *weather_),
         next_(accepted_),
-        comm_(context.comm) {
+        comm_(context.comm),
+        name_(context.name) {
     if (!context.coupled)
       throw Error(
           "participants.{}: an element of a tank has nothing to do without that tank. Start it together with "
           "a "
           "coupler and a thermocline that has 'elsewhere'.",
           context.name);
+    for (const std::string& sentence : weather_->doubts())
+      log::doubt(comm_rank(comm_), fmt::format("{}: {}", context.name, sentence));
   }
   Interface initialise() override { return comm_rank(comm_) == 0 ? accepted_.describe() : Interface{}; }
   void begin_step(const Step& step) override { step_ = step; }
   Exchange solve(const Exchange& in) override {
     next_ = accepted_;
+    std::string problem = comm_rank(comm_) == 0 ? accepted_.contradiction(in) : "";
+    broadcast(comm_, problem);
+    if (!problem.empty()) throw Error("participants.{}.{}.", name_, problem);
     return comm_rank(comm_) == 0 ? next_.advance(step_, in, *weather_) : Exchange{};
   }
   StepReport accept_step() override {
@@ -173,6 +195,7 @@ class ElementParticipant final : public Participant {
   Model accepted_, next_;
   Step step_;
   MPI_Comm comm_;
+  std::string name_;
 };
 
 void declare_surroundings(config::Section& s, double& initial, WeatherParameters& ambient, const char* what) {
@@ -188,6 +211,7 @@ void declare(config::Section& s, GroundElementParameters& p) {
   s.section(
       "ground", [&p](config::Section& q) { declare(q, p.ground); }, "foundation and soil under the tank");
   declare_surroundings(s, p.initial_temperature, p.ambient, "of the tank's bottom; the ground starts steady");
+  s.check([&p] { return slip_in_ground(p.ground); }, "ground");
 }
 
 void declare(config::Section& s, BlanketElementParameters& p) {
@@ -197,6 +221,7 @@ void declare(config::Section& s, BlanketElementParameters& p) {
   s.section(
       "insulation", [&p](config::Section& q) { declare(q, p.insulation); }, "blanket around the wall");
   declare_surroundings(s, p.initial_temperature, p.ambient, "of the wall; the blanket starts steady");
+  s.check([&p] { return slip_in_insulation(p.insulation, p.diameter); }, "insulation");
 }
 
 void declare(config::Section& section, ElementParameters& p) {

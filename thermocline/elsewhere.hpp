@@ -13,6 +13,7 @@ namespace couplet::thermocline {
 
 /// The ground under a tank. At the face of the tank's bottom
 ///   takes bottom-temperature K, bottom-coefficient W/(m^2 K)   of the lowest cell, t^{n+1}
+///   takes tank-diameter m                                      inner; another one here is refused
 ///   gives bottom-heat W                                        into the ground, mean over the step
 struct GroundElementParameters {
   double diameter = 0;             ///< [m]
@@ -24,6 +25,7 @@ void declare(config::Section& section, GroundElementParameters& parameters);
 
 /// The blanket around the wall. At faces along it
 ///   takes wall-temperature K   t^{n+1}
+///   takes wall-diameter m      outer, of the lowest plate; another one here (beyond 2 %) is refused
 ///   gives wall-heat W          into the blanket, mean over the step
 struct BlanketElementParameters {
   double diameter = 0, height = 0;  ///< outer diameter of the wall, its height [m]

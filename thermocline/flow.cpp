@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/flow.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "thermocline/celsius.hpp"
 #include "thermocline/plant_control.hpp"
 
 namespace couplet::thermocline {
@@ -86,16 +89,36 @@ Flow Schedule::decide(double t, double t_top, double t_bottom, const Ambient&) {
   }
   Flow flow;
   flow.until = next;
-  if (began != current_) current_ = began, stopped_ = false;
+  const bool begins = began != current_;
+  if (begins) current_ = began, stopped_ = false;
   if (!row || row->mass_flow == 0) return flow;
+  const auto number = std::size_t(row - rows_.data());
+  if (begins) began_[number] = true;
   const double outlet = row->mass_flow > 0 ? t_top : t_bottom;
   if ((row->stop_above && outlet > *row->stop_above) || (row->stop_below && outlet < *row->stop_below))
     stopped_ = true;
   if (stopped_) return flow;
   flow.mass_flow = row->mass_flow;
   flow.inlet_temperature = row->inlet_temperature;
-  flow.mode = int(row - rows_.data()) + 1;
+  flow.mode = int(number) + 1;
+  flowed_[number] = true;
   return flow;
+}
+
+std::vector<std::string> Schedule::doubts() const {
+  std::vector<std::string> sentences;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (!began_[i] || flowed_[i]) continue;
+    std::string limits;
+    if (rows_[i].stop_above) limits += fmt::format(" above {:g} degC", celsius(*rows_[i].stop_above));
+    if (rows_[i].stop_below)
+      limits +=
+          fmt::format("{} below {:g} degC", limits.empty() ? "" : " and", celsius(*rows_[i].stop_below));
+    sentences.push_back(fmt::format(
+        "flow.rows[{}] never ran: it stops{}, and so was the outlet (the {} of the tank) whenever it began",
+        i, limits, rows_[i].mass_flow > 0 ? "top" : "bottom"));
+  }
+  return sentences;
 }
 
 }  // namespace couplet::thermocline

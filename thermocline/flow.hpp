@@ -35,16 +35,23 @@ std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& parameters,
 /// Flow by the clock. Labels: the number of the row (from 1) while it flows, 0 at rest.
 class Schedule final : public FlowControl {
  public:
-  explicit Schedule(const FlowParameters& parameters) : rows_(parameters.rows), repeat_(parameters.repeat) {}
+  explicit Schedule(const FlowParameters& parameters)
+      : rows_(parameters.rows),
+        repeat_(parameters.repeat),
+        began_(rows_.size(), false),
+        flowed_(rows_.size(), false) {}
   Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
   std::vector<double> state() const override { return {current_, double(stopped_)}; }
   void restore(std::span<const double> state) override { current_ = state[0], stopped_ = state[1] != 0; }
+  /// Rows that were stopped each time before they began.
+  std::vector<std::string> doubts() const override;
 
  private:
   std::vector<ScheduleRow> rows_;
   std::optional<ScheduleRepeat> repeat_;
   double current_ = -1;  // when the row in force began
   bool stopped_ = false;
+  std::vector<bool> began_, flowed_;  // each row, in this run
 };
 
 }  // namespace couplet::thermocline

@@ -47,6 +47,8 @@ class FlowControl {
   virtual Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) = 0;
   virtual std::vector<double> state() const { return {}; }
   virtual void restore(std::span<const double>) {}
+  /// At the end of a run: why what it did may not be what was meant. Sentences.
+  virtual std::vector<std::string> doubts() const { return {}; }
 };
 
 /// One step of the bed, from t to t + dt.

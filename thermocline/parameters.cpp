@@ -5,6 +5,7 @@
 
 #include "common/base/text.hpp"
 #include "thermocline/grain_kernels.hpp"
+#include "thermocline/plausible.hpp"
 #include "thermocline/questions.hpp"
 
 namespace couplet::thermocline {
@@ -53,6 +54,18 @@ void check_together(config::Section& s, TankParameters& p) {
       },
       "report");
   s.check(
+      [&p] {
+        const PlantParameters& plant = p.flow.plant;
+        return p.report && p.flow.type == FlowParameters::Type::plant && plant.hot > plant.cold &&
+                       p.report->thickness_margin >= 0.5 * (plant.hot - plant.cold)
+                   ? fmt::format(
+                         "thickness-margin is {:g} K, half of the step from cold to hot ({:g} K) or more: nothing lies between "
+                         "the two critical temperatures",
+                         p.report->thickness_margin, plant.hot - plant.cold)
+                   : "";
+      },
+      "report");
+  s.check(
       [&p]() -> std::string {
         if (!p.elsewhere) return "";
         if (p.elsewhere->ground && p.ground) return "says that the ground is elsewhere; remove 'ground' here";
@@ -71,6 +84,12 @@ void check_together(config::Section& s, TankParameters& p) {
       "bed");
   s.check([&p] { return forgotten_unit_of_bed(p); }, "bed");
   s.check([&p] { return forgotten_unit_of_flow(p); }, "flow");
+  s.check([&p] { return slip_in_bed(p.bed, p.diameter); }, "bed");
+  s.check([&p] { return p.shell ? slip_in_plates(*p.shell, p.diameter) : ""; }, "shell");
+  s.check([&p] { return p.insulation ? slip_in_insulation(*p.insulation, p.diameter) : ""; }, "insulation");
+  s.check([&p] { return p.ground ? slip_in_ground(*p.ground) : ""; }, "ground");
+  s.check([&p] { return p.flow.type == FlowParameters::Type::plant ? slip_in_plant(p.flow.plant) : ""; },
+          "flow");
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/properties.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -61,11 +62,28 @@ Fluid caloria_ht43() {
           DensityLaw{885, -0.6617, -1.265e-4}};
 }
 
-Fluid air_at(double pressure, double reference_temperature) {
+double air_heat_between(double from, double to) {
+  // c_p/R of dry air, 300 to 1000 K, within 0.1 % there [moran2014, table A-21]; held constant beyond.
+  constexpr double r = 287.05, lowest = 300, highest = 1000;
+  constexpr double a[] = {3.653, -1.337e-3, 3.294e-6, -1.913e-9, 0.2763e-12};
+  const auto capacity = [&](double t) {
+    return r * (a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * a[4]))));
+  };
+  const auto integral = [&](double t) {
+    return r * t * (a[0] + t * (a[1] / 2 + t * (a[2] / 3 + t * (a[3] / 4 + t * a[4] / 5))));
+  };
+  const auto heat = [&](double t) {  // above `lowest`
+    const double within = std::clamp(t, lowest, highest);
+    return integral(within) - integral(lowest) + capacity(within) * (t - within);
+  };
+  return heat(to) - heat(from);
+}
+
+Fluid air_at(double pressure, double reference_temperature, double specific_heat) {
   constexpr double gas_constant = 287.05;
   Fluid air{"air",
             pressure / (gas_constant * reference_temperature),
-            1075,  // mean of 300 to 900 K
+            specific_heat,
             [](double t) { return 0.0241 * std::pow(t / 273.15, 1.5) * (273.15 + 194) / (t + 194); },
             [](double t) { return 1.716e-5 * std::pow(t / 273.15, 1.5) * (273.15 + 110.4) / (t + 110.4); },
             150,
@@ -103,7 +121,8 @@ std::vector<std::string> foundation_materials() {
 }
 
 Fluid make_fluid(const FluidParameters& p) {
-  if (p.type == FluidParameters::Type::air) return air_at(p.pressure, p.reference_temperature);
+  if (p.type == FluidParameters::Type::air)
+    return air_at(p.pressure, p.reference_temperature, p.air_specific_heat);
   if (p.type != FluidParameters::Type::custom) {
     Fluid known = p.type == FluidParameters::Type::solar_salt ? solar_salt() : caloria_ht43();
     known.real_density = p.real_density;

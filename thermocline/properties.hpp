@@ -86,7 +86,10 @@ Fluid caloria_ht43();
 /// Dry air as an ideal gas: specific heat a constant, conductivity and viscosity by Sutherland's laws. Its
 /// density at the reference temperature counts for the little heat that the pores hold, that of the moment
 /// for Ergun.
-Fluid air_at(double pressure, double reference_temperature);
+Fluid air_at(double pressure, double reference_temperature, double specific_heat = 1075);
+/// What a kilogram of dry air takes from one temperature to another [J/kg], by the standard fit of its specific heat:
+/// what a run with a constant is judged by.
+double air_heat_between(double from, double to);
 Steel steel_a537();     // A537 class 2, 477-577 K
 Steel steel_a387();     // A387 grade 91, 563-663 K
 Steel nickel_n06022();  // 563-838 K
@@ -100,6 +103,7 @@ std::vector<std::string> foundation_materials();
 struct FluidParameters {
   enum class Type { solar_salt, caloria_ht43, air, custom } type = Type::solar_salt;
   double pressure = 101325, reference_temperature = 600;  ///< of air [Pa], [K]
+  double air_specific_heat = 1075;                        ///< of air: its mean from 300 to 900 K [J/(kg K)]
   bool real_density = false;
   double density = 0, specific_heat = 0;
   std::vector<double> temperature, conductivity, viscosity;

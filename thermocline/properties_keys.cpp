@@ -55,6 +55,11 @@ void declare(config::Section& section, FluidParameters& p) {
         .doc(
             "of the density that counts for the heat in the pores; the pressure loss follows the "
             "temperature");
+    s.value("specific-heat", p.air_specific_heat)
+        .unit("J/(kg K)")
+        .range(900, 1400)
+        .doc(
+            "a constant: the default is that of air near 430 degC (it is 1007 at 50 degC, 1141 at 730 degC); the run judges it");
   };
   section.variant<Type>("type", p.type,
                         {{"solar-salt", Type::solar_salt, known},

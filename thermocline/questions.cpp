@@ -57,6 +57,12 @@ void ask_about_schedule(const FlowParameters& flow, const TankModel& model, std:
 std::string forgotten_unit_of_bed(const TankParameters& p) {
   const Fluid fluid = make_fluid(p.fluid);
   const double unsaid = BedParameters().initial_temperature;
+  for (std::size_t i = 0; i < p.bed.layers.size(); ++i)
+    if (p.bed.layers[i].melting) {
+      const double melts = p.bed.layers[i].melting->temperature;
+      std::string found = forgotten_unit(fmt::format("layers[{}].melting.temperature", i), melts, fluid);
+      if (!found.empty()) return found;
+    }
   if (p.bed.profile_temperature.empty())
     return p.bed.initial_temperature == unsaid
                ? ""
@@ -97,6 +103,36 @@ std::vector<std::string> questions(const TankParameters& p, const TankModel& mod
   if (plant) ask_about_plant(p.flow.plant, model, all);
   if (p.flow.type == FlowParameters::Type::schedule && p.flow.rows.front().at == 0)
     ask_about_schedule(p.flow, model, all);
+  return all;
+}
+
+std::vector<std::string> never_melted(const TankModel& model) {
+  std::vector<std::string> all;
+  const auto [coldest, hottest] = model.fluid_range();
+  const std::vector<BedLayer>& layers = model.setup().parameters.bed.layers;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    if (!layers[i].melting || hottest < coldest) continue;
+    const Melting& m = *layers[i].melting;
+    const double low = m.temperature - m.width / 2, high = m.temperature + m.width / 2;
+    if (hottest <= low || coldest >= high)
+      all.push_back(fmt::format(
+          "bed.layers[{}]: its capsules melt from {:.1f} to {:.1f} degC and the fluid was nowhere between, but from {:.1f} to "
+          "{:.1f} degC: their latent heat has not acted",
+          i, celsius(low), celsius(high), celsius(coldest), celsius(hottest)));
+  }
+  return all;
+}
+
+std::vector<std::string> prices_for_nothing(const EconomicsParameters& p, const Inventory& i) {
+  std::vector<std::string> all;
+  const auto look = [&](const char* name, double price, double amount, const char* why) {
+    if (price > 0 && amount == 0)
+      all.push_back(
+          fmt::format("report.economics.{} is {:g}, but there is nothing to pay for: {}", name, price, why));
+  };
+  look("steel", p.steel, i.steel, "the tank has no section 'shell'");
+  look("insulation", p.insulation, i.insulated, "the tank has no sections 'shell' and 'insulation'");
+  look("filler", p.filler, i.filler, "no layer holds grains");
   return all;
 }
 

@@ -20,6 +20,12 @@ std::string forgotten_unit_of_flow(const TankParameters& parameters);
 /// cut-off, a flow that can never begin.
 std::vector<std::string> questions(const TankParameters& parameters, const TankModel& model);
 
+/// At the end of a run: layers of capsules whose content neither melted nor froze anywhere, as sentences.
+std::vector<std::string> never_melted(const TankModel& model);
+
+/// Prices that multiply nothing, as sentences.
+std::vector<std::string> prices_for_nothing(const EconomicsParameters& prices, const Inventory& inventory);
+
 /// Throws Error if the cover shall absorb the sun (`absorptance` > 0) and it is not known where the sun
 /// stands. `key`: the full name of the key.
 void require_sun(double absorptance, const Weather& weather, const std::string& key);

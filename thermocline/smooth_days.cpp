@@ -38,6 +38,13 @@ std::string problem_of(const SmoothDays& d, std::string& key) {
   if (d.daily_sums.size() != months)
     return fmt::format("has {} values; one for each of the 12 months is needed, January first",
                        d.daily_sums.size());
+  constexpr double least = 36e3;  // [J/m^2]: 10 Wh
+  const double highest = *std::max_element(d.daily_sums.begin(), d.daily_sums.end());
+  if (highest > 0 && highest < least)
+    return fmt::format(
+        "{:g} J/m^2 is the largest of its sums: no sun. A number without a unit is in J/m^2; write '{:g} kWh/m^2' if that is "
+        "meant",
+        highest, highest);
   for (const double sum : d.daily_sums)
     if (sum < 0 || sum > 24 * 1412 * hour)
       return fmt::format(
@@ -68,7 +75,12 @@ WeatherHours with_smooth_days(WeatherHours record, const SmoothDays& d) {
   for (int day = 0; day < days_a_year; ++day) {
     const auto month = std::size_t(month_of_day(day));
     const double sum = d.daily_sums[month];
-    const double length = std::min(24.0, of_month(d.length, month) * day_length(d.latitude, day));
+    const double sunny = day_length(d.latitude, day), length = of_month(d.length, month) * sunny;
+    if (length > 24 * (1 + 1e-9))
+      throw Error(
+          "smooth days: day-length {:g} makes a day of {:.1f} h on {}, where the sun is up for {:.1f} h at latitude {:g} deg: "
+          "it would shine at midnight.",
+          of_month(d.length, month), length, date_of_day(day), sunny, d.latitude);
     const std::vector<double> mean = form(length, of_month(d.n, month), of_month(d.p, month));
     double total = 0;
     for (const double m : mean) total += m * hour;

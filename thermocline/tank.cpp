@@ -9,6 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "common/log/doubt.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/questions.hpp"
@@ -64,6 +65,8 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
   if (p.insulation)
     require_sun(p.insulation->outside.solar_absorptance, *weather_,
                 fmt::format("participants.{}.insulation.solar-absorptance", context.name));
+  for (const std::string& sentence : weather_->doubts())
+    log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
   if (files_) {
     for (const std::string& sentence : weather_->warnings()) log::warn("{}", sentence);
     if (std::isnan(context.restart_time))
@@ -73,7 +76,11 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
     auto report = std::make_unique<DayReport>(
         *p.report, Plant(p.flow.plant, make_fluid(p.fluid).specific_heat), *weather_,
         files_ ? context.output_folder : std::filesystem::path(), context.restart_time);
-    report->take_stock(inventory_of(accepted_.setup()));
+    const Inventory inventory = inventory_of(accepted_.setup());
+    report->take_stock(inventory);
+    if (p.report->economics)
+      for (const std::string& sentence : prices_for_nothing(*p.report->economics, inventory))
+        log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
     add_observer(std::move(report));
   }
 }
@@ -96,11 +103,13 @@ Interface Tank::initialise() {
   if (p.elsewhere && p.elsewhere->insulation) {
     interface.takes.push_back({"wall-heat", "W", faces, 1});
     interface.gives.push_back({"wall-temperature", "K", faces, 1});
+    interface.gives.push_back({"wall-diameter", "m", faces, 1});
   }
   if (p.elsewhere && p.elsewhere->ground) {
     interface.takes.push_back({"bottom-heat", "W", faces, 1});
     interface.gives.push_back({"bottom-temperature", "K", faces, 1});
     interface.gives.push_back({"bottom-coefficient", "W/(m^2 K)", faces, 1});
+    interface.gives.push_back({"tank-diameter", "m", faces, 1});
   }
   return interface;
 }
@@ -121,10 +130,14 @@ Exchange Tank::given() const {
   }
   if (!p.elsewhere) return out;
   const std::size_t faces = wall_ ? wall_->sections() : 1;
-  if (p.elsewhere->insulation) out["wall-temperature"] = wall_->to_sections(next_.shell()->temperature());
+  if (p.elsewhere->insulation) {
+    out["wall-temperature"] = wall_->to_sections(next_.shell()->temperature());
+    out["wall-diameter"].assign(faces, p.diameter + 2 * next_.setup().rings->thickness.front());
+  }
   if (p.elsewhere->ground) {
     out["bottom-temperature"].assign(faces, next_.bed().bottom());
     out["bottom-coefficient"].assign(faces, next_.plate_coefficient());
+    out["tank-diameter"].assign(faces, p.diameter);
   }
   return out;
 }

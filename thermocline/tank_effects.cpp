@@ -8,6 +8,7 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/effect_cards.hpp"
+#include "thermocline/questions.hpp"
 #include "thermocline/tank.hpp"
 
 namespace couplet::thermocline {
@@ -16,7 +17,14 @@ namespace {
 using Lines = std::vector<std::string>;
 
 void energy(const TankModel& m, double t, Lines& lines) {
-  const double turnover = std::max(m.ledger().turnover, 1e-300);
+  const double turnover = m.ledger().turnover,
+               hair = 1e-12 * m.bed().heat_capacity() * m.fluid_range().second;
+  if (turnover <= hair) {
+    lines.push_back(fmt::format(
+        "energy: no heat was moved; the books of the bed are off by {:.1e} J, those of the tank by {:.1e} J",
+        std::abs(m.bed_imbalance()), std::abs(m.imbalance(t))));
+    return;
+  }
   lines.push_back(fmt::format(
       "energy: {:.4g} MWh moved, {:.4g} MWh lost; the books of the bed are off by {:.1e}, those of "
       "the tank by {:.1e} of what was moved",
@@ -94,6 +102,15 @@ void fluid(const TankModel& m, double peak_flow, Lines& lines) {
         f.name, f.density, celsius(cold), celsius(hot), f.real->at(cold), f.real->at(hot)));
   if (m.bed().shells() == 1) lumped_grains(m, lines);
   if (peak_flow == 0) return;
+  // Numerical diffusion G c dz (1 - Co)/2 of the bed's whole capacity, over the way H at the front's speed.
+  const BedParameters& bed = m.setup().parameters.bed;
+  const double spread =
+      std::sqrt((bed.advection == Advection::upwind ? 1 - bed.courant : 1) / m.bed().grid().size());
+  if (bed.advection != Advection::tvd && spread > 0.05)
+    lines.push_back(fmt::format(
+        "cells: upwind differences of {} cells spread a front that crosses the bed over {:.2g} of its height (standard deviation){}",
+        m.bed().grid().size(), spread,
+        bed.advection == Advection::upwind ? "; bed.advection: tvd does not" : ""));
   if (!m.setup().parameters.pump) {
     const PressureLoss loss = pressure_loss(m.bed().grid(), f, m.bed().fluid(), peak_flow, m.bed().area());
     lines.push_back(fmt::format(
@@ -210,6 +227,10 @@ std::vector<EffectVerdict> Tank::audit() const {
   const TankModel& m = accepted_;
   Evidence evidence;
   if (m.setup().fluid.is_gas() && peak_flow_ > 0) evidence.largest_mach = largest_mach(m, peak_flow_);
+  if (const auto [cold, hot] = m.fluid_range(); m.setup().fluid.is_gas() && hot > cold + 1) {
+    evidence.mean_capacity = air_heat_between(cold, hot) / (hot - cold);
+    evidence.capacity_error = std::abs(evidence.mean_capacity / m.setup().fluid.specific_heat - 1);
+  }
   if (m.setup().parameters.bed.advection == Advection::implicit && peak_advance_ > 0) {
     const double part = peak_advance_ / crossing_mass(m);  // v dt / H
     evidence.implicit_spread = std::sqrt(part);
@@ -236,6 +257,10 @@ std::vector<std::string> Tank::finish() {
   }
   Lines lines;
   const TankModel& m = accepted_;
+  for (const std::string& sentence : control_->doubts())
+    log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
+  for (const std::string& sentence : never_melted(m))
+    log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
   const double t = step_.time + step_.dt;
   energy(m, t, lines);
   fluid(m, peak_flow_, lines);

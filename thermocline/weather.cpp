@@ -69,6 +69,7 @@ Weather::Weather(const WeatherHours& record, const WeatherPeriod& period, int sh
   hours_.state_offset = record.state_offset;
   hours_.site = record.site;
   hours_.warnings = record.warnings;
+  hours_.doubts = record.doubts;
   mean_temperature_ = kelvin(std::accumulate(record.temperature.begin(), record.temperature.end(), 0.) /
                              double(record.temperature.size()));
   for (const WeatherQuantity& q : weather_quantities)

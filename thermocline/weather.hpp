@@ -37,6 +37,8 @@ class Weather final : public AmbientSource {
   const std::string& source() const { return hours_.source; }
   /// What was mended in the record, with file:line.
   const std::vector<std::string>& warnings() const { return hours_.warnings; }
+  /// Why it may not be what was meant.
+  const std::vector<std::string>& doubts() const { return hours_.doubts; }
   /// Of the day in which t lies, as MM-DD.
   std::string date(double t) const;
 

@@ -17,11 +17,17 @@ std::vector<std::size_t> read_head(const std::string& head, const std::string& p
   for (const WeatherQuantity& q : weather_quantities) known.emplace_back(q.head);
   known.emplace_back("hour");
   std::vector<std::size_t> columns;
+  for (const char other : {';', '\t'})
+    if (head.find(other) != std::string::npos && head.find(',') == std::string::npos)
+      throw Error(
+          "{}: the columns are separated by '{}'; a weather file's are by commas, with points in the numbers.",
+          place, other == ';' ? ";" : "a tab");
   for (const std::string& field : split(head, ',')) {
     const std::string name(trim(field));
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end())
-      throw Error("{}: unknown column '{}'. {}", place, name, did_you_mean(name, known, "columns"));
+      throw Error("{}: unknown column '{}'. {}", place, name.substr(0, 80),
+                  did_you_mean(name, known, "columns"));
     const auto column = static_cast<std::size_t>(found - known.begin());
     if (std::find(columns.begin(), columns.end(), column) != columns.end())
       throw Error("{}: the column '{}' stands there twice.", place, name);

@@ -9,7 +9,7 @@ namespace couplet::thermocline {
 namespace {
 
 // The format of EnergyPlus [epw], columns counted from 0.
-constexpr std::size_t header_lines = 8, month = 1, day = 2, hour = 3, fewest_columns = 22;
+constexpr std::size_t header_lines = 8, month = 1, day = 2, hour = 3, minute = 4, fewest_columns = 22;
 constexpr double end_of_hour = 3600;  // [s]
 struct Column {
   std::size_t number;
@@ -38,6 +38,7 @@ WeatherHours read_weather_epw(const std::filesystem::path& file) {
     throw Error(
         "{}: this is not an EPW file: it must start with a line LOCATION,... and have {} header lines.",
         hours.place(1), header_lines);
+  HourMean mean(hours);
   for (std::size_t i = header_lines; i < lines.size(); ++i) {
     const int line = static_cast<int>(i) + 1;
     const std::string place = hours.place(line);
@@ -61,9 +62,10 @@ WeatherHours read_weather_epw(const std::filesystem::path& file) {
       values[q] = number_in(fields[columns[q].number], weather_quantities[q].name, place);
       if (values[q] >= columns[q].missing_from) values[q] = missing;
     }
-    hours.add(number, values, line);
+    mean.add(number, whole_number(fields, minute, "the minute", place), values, line);
   }
-  WeatherHours result = hours.finish(end_of_hour);
+  mean.flush();
+  WeatherHours result = hours.finish(mean.several() ? 60 * mean.mean_minute() : end_of_hour);
   result.site = read_site(lines[0], hours.place(1));
   return result;
 }

@@ -27,7 +27,11 @@ struct WeatherHours {
   std::vector<double> wind;         ///< [m/s]
   std::vector<double> humidity;     ///< relative, 0 to 1
   std::vector<double> pressure;     ///< [Pa]
+  /// Whole hours by which local standard time, of the longitude, is ahead of the file's clock, where that is known
+  /// not to be local (PVGIS: UTC).
+  int local_ahead = 0;
   std::vector<std::string> warnings;
+  std::vector<std::string> doubts;  ///< why it may not be what was meant
   int days() const { return static_cast<int>(dni.size()) / 24; }
 };
 
@@ -59,8 +63,8 @@ WeatherHours read_weather_sam(const std::filesystem::path& file);
 /// NREL's TMY3: site in one line, hours 01:00 to 24:00, the irradiance of the hour that ends then.
 WeatherHours read_weather_tmy3(const std::filesystem::path& file);
 
-/// The typical year of PVGIS as CSV, clock UTC, values of the moment: the mean of an hour is that of its
-/// ends.
+/// The typical year of PVGIS as CSV, clock UTC, values of the moment: the mean of an hour is that of the straight
+/// lines between them. The moment of the irradiance is that of the stamp, later by the file's "Irradiance Time Offset".
 WeatherHours read_weather_pvgis(const std::filesystem::path& file);
 
 /// By the file's first lines: EPW, PVGIS, TMY3, SAM or NSRDB, else the project's own CSV; ".gz" behind any is
@@ -70,6 +74,10 @@ WeatherHours read_weather(const std::filesystem::path& file);
 /// The same record with each hour's irradiance replaced by the mean over that hour of all days of its month
 /// (of the record): the sun as tables of average days give it. The energy of every month stays.
 WeatherHours with_mean_days(WeatherHours record);
+
+/// What speaks against the sun of a record with a site: irradiance while the sun is below the horizon, a clock far
+/// from that of the longitude. Sentences.
+std::vector<std::string> doubts_about_sun(const WeatherHours& record);
 
 inline constexpr int longest_gap = 6;  // [h]
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/weather_parameters.hpp"
 
+#include <cmath>
+
 #include "common/base/error.hpp"
 #include "thermocline/celsius.hpp"
 #include "thermocline/weather_date.hpp"
@@ -39,7 +41,15 @@ void declare_file(config::Section& s, WeatherParameters& p) {
           "compressed (.gz)");
   s.value("shift", p.shift_hours)
       .range(-12, 12)
-      .doc("hours by which the simulation's clock is ahead of the file's");
+      .doc(
+          "whole hours by which the simulation's clock is ahead of the file's; absent: 0, but for PVGIS, whose clock is UTC, "
+          "to local standard time of its longitude");
+  s.check(
+      [&p] {
+        return !p.shift_hours || *p.shift_hours == std::floor(*p.shift_hours) ? ""
+                                                                              : "is a whole number of hours";
+      },
+      "shift");
   s.choice("days", p.mean_days, {{"as-recorded", false}, {"monthly-mean", true}})
       .doc(
           "monthly-mean: each hour has the mean irradiance of that hour in its month, as tables of average "
@@ -122,9 +132,20 @@ WeatherHours record_of(const WeatherParameters& p, const std::filesystem::path& 
   if (p.kind == WeatherKind::file) {
     WeatherHours record = read_weather(case_folder / p.file);
     constexpr double hour = 3600, seconds_a_degree = 240;  // the earth turns by 15 degrees an hour
-    if (p.site)
-      record.site = WeatherHours::Site{p.site->latitude,
-                                       p.site->longitude * seconds_a_degree - p.site->time_zone * hour};
+    if (p.site) {
+      const WeatherHours::Site given{p.site->latitude,
+                                     p.site->longitude * seconds_a_degree - p.site->time_zone * hour};
+      constexpr double close = 0.1, close_time = 360;  // [deg], [s]
+      if (record.site && (std::abs(given.latitude - record.site->latitude) > close ||
+                          std::abs(given.solar_ahead - record.site->solar_ahead) > close_time))
+        record.doubts.push_back(fmt::format(
+            "{}: 'site' (latitude {:g} deg, solar time {:+.2f} h against the clock) takes the place of the file's own (latitude "
+            "{:g} deg, {:+.2f} h)",
+            record.source, given.latitude, given.solar_ahead / hour, record.site->latitude,
+            record.site->solar_ahead / hour));
+      record.site = given;
+    }
+    for (const std::string& doubt : doubts_about_sun(record)) record.doubts.push_back(doubt);
     return p.mean_days ? with_mean_days(std::move(record)) : record;
   }
   if (p.kind == WeatherKind::smooth_days) {
@@ -160,10 +181,15 @@ void declare(config::Section& section, WeatherParameters& p) {
 }
 
 std::unique_ptr<Weather> make_weather(const WeatherParameters& p, const std::filesystem::path& case_folder) {
-  const WeatherHours record = record_of(p, case_folder);
+  WeatherHours record = record_of(p, case_folder);
+  const int shift = int(p.shift_hours.value_or(record.local_ahead));
+  if (record.local_ahead != 0)
+    record.warnings.push_back(fmt::format(
+        "{}: its clock is UTC; the simulation's is {:+d} h ahead of it{}", record.source, shift,
+        p.shift_hours ? " (ambient.shift)" : ", local standard time of its longitude; 'shift: 0' keeps UTC"));
   WeatherPeriod period{day_of_year(p.from), {}};
   if (!p.to.empty()) period.to = day_of_year(p.to);
-  return std::make_unique<Weather>(record, period, p.shift_hours);
+  return std::make_unique<Weather>(record, period, shift);
 }
 
 }  // namespace couplet::thermocline

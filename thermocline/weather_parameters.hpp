@@ -29,7 +29,8 @@ struct WeatherParameters {
   std::optional<SiteParameters> site;
   ClearSky sky;
   SmoothDays smooth;
-  int shift_hours = 0;
+  std::optional<double>
+      shift_hours;  ///< absent: 0, or to local standard time where the file has another clock
   bool mean_days = false;
   std::string from = "01-01", to;  ///< dates MM-DD; empty: the whole year
   Ambient constant;

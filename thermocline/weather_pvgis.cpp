@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // PVGIS, the typical year as CSV: lines with latitude and longitude, the year of each month, column names,
 // records by time (UTC), a legend. Values belong to the moment of the record.
+#include <cmath>
+
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "thermocline/weather_columns.hpp"
@@ -11,15 +13,29 @@ namespace {
 
 const WeatherColumns::Names names{{{{"Gb(n)"}, {"T2m"}, {"WS10m"}, {"RH"}, {"SP"}}}, {}, 1, -90};
 
+/// Means over each hour of a year's moments, `offset` hours after the begin of each: the integral of the straight
+/// lines between them. The sum over the record stays.
+std::vector<double> hourly_means(const std::vector<double>& moment, double offset) {
+  const int n = int(moment.size()), whole = int(std::floor(offset));
+  const double x = offset - whole;
+  const auto at = [&](int h) { return moment[std::size_t(((h - whole) % n + n) % n)]; };
+  std::vector<double> mean(moment.size());
+  for (int h = 0; h < n; ++h)
+    mean[std::size_t(h)] =
+        0.5 * x * x * at(h - 1) + (0.5 + x - x * x) * at(h) + 0.5 * (1 - x) * (1 - x) * at(h + 1);
+  return mean;
+}
+
 /// The number behind "Latitude (decimal degrees): " and its like among the first lines.
 double number_behind(const std::vector<std::string>& lines, std::size_t end, std::string_view word,
-                     const HourCollector& hours) {
+                     const HourCollector& hours, std::optional<double> without = {}) {
   for (std::size_t i = 0; i < end; ++i)
     if (trim(lines[i]).starts_with(word)) {
       const auto colon = lines[i].find(':');
       if (colon != std::string::npos)
         return number_in(lines[i].substr(colon + 1), word, hours.place(int(i) + 1));
     }
+  if (without) return *without;
   throw Error("{}: a PVGIS file says '{} (decimal degrees): ...' in its first lines.", hours.place(1), word);
 }
 
@@ -38,7 +54,11 @@ WeatherHours read_weather_pvgis(const std::filesystem::path& file) {
         hours.place(1));
   const double latitude = number_behind(lines, head_line, "Latitude", hours),
                longitude = number_behind(lines, head_line, "Longitude", hours);
+  const double offset = number_behind(lines, head_line, "Irradiance Time Offset", hours, 0);  // [h]
+  if (!(std::abs(offset) <= 1))
+    throw Error("{}: the irradiance time offset is {:g} h; expected -1 to 1.", hours.place(1), offset);
   const WeatherHours::Site site = site_of(latitude, longitude, 0, hours.place(1));
+  std::optional<int> minutes;
   const std::vector<std::string> head = csv_fields(lines[head_line]);
   const auto time = column_of(head, "time(UTC)");
   const WeatherColumns columns(head, names, hours.place(int(head_line) + 1));
@@ -49,18 +69,24 @@ WeatherHours read_weather_pvgis(const std::filesystem::path& file) {
     const std::string& stamp = fields.at(*time);
     if (stamp.size() != 13 || stamp[8] != ':')
       throw Error("{}: '{}' is no time YYYYMMDD:HHMM.", place, stamp);
-    const std::vector<std::string> parts{stamp.substr(4, 2), stamp.substr(6, 2), stamp.substr(9, 2)};
+    const std::vector<std::string> parts{stamp.substr(4, 2), stamp.substr(6, 2), stamp.substr(9, 2),
+                                         stamp.substr(11, 2)};
+    const int minute = whole_number(parts, 3, "the minute", place);
+    if (minute < 0 || minute > 59 || minute != minutes.value_or(minute))
+      throw Error("{}: the minute is {}; all records of a PVGIS file have the same, from 0 to 59.", place,
+                  minute);
+    minutes = minute;
     const auto number =
         hour_of_year(whole_number(parts, 0, "the month", place), whole_number(parts, 1, "the day", place),
                      whole_number(parts, 2, "the hour", place), place);
     if (number) hours.add(*number, columns.values(fields, place), line);
   }
-  WeatherHours result = hours.finish(0);
+  const double stamp = minutes.value_or(0) / 60.0;  // [h]
+  WeatherHours result = hours.finish(3600 * stamp);
   result.site = site;
-  // Moments at the begin of each hour: its mean by the trapezoidal rule. The sum over the record stays.
-  const double first = result.dni.front();
-  for (std::size_t h = 0; h < result.dni.size(); ++h)
-    result.dni[h] = 0.5 * (result.dni[h] + (h + 1 < result.dni.size() ? result.dni[h + 1] : first));
+  constexpr double degrees_an_hour = 15;
+  result.local_ahead = int(std::lround(longitude / degrees_an_hour));
+  result.dni = hourly_means(result.dni, stamp + offset);
   return result;
 }
 

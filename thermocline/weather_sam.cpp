@@ -52,18 +52,6 @@ std::optional<WeatherHours::Site> read_site(const std::vector<std::string>& head
   return site_of(found[0], found[1], found[2], place);
 }
 
-/// Records of one hour, averaged: files of 5 to 30 minutes have several.
-struct HourMean {
-  int hour = -1, line = 0, count = 0;
-  std::array<double, 5> sum{};
-  void flush(HourCollector& hours) {
-    if (hour < 0) return;
-    for (double& s : sum) s /= count;
-    hours.add(hour, sum, line);
-    *this = {};
-  }
-};
-
 }  // namespace
 
 WeatherHours read_weather_sam(const std::filesystem::path& file) {
@@ -88,9 +76,8 @@ WeatherHours read_weather_sam(const std::filesystem::path& file) {
   const auto month = column_of(head, "Month"), day = column_of(head, "Day"), hour = column_of(head, "Hour"),
              minute = column_of(head, "Minute");
   if (!day || !hour) throw Error("{}: the columns Month, Day and Hour are needed.", head_place);
-  HourMean mean;
+  HourMean mean(hours);
   double offset = 1800;  // [s]; of files without minutes
-  bool several = false;
   for (std::size_t i = head_line + 1; i < lines.size(); ++i) {
     const int line = int(i) + 1;
     const std::string place = hours.place(line);
@@ -99,15 +86,12 @@ WeatherHours read_weather_sam(const std::filesystem::path& file) {
                                      whole_number(fields, *day, "the day", place),
                                      whole_number(fields, *hour, "the hour", place), place);
     if (!number) continue;
-    if (*number != mean.hour) mean.flush(hours);
-    const std::array<double, 5> values = columns.values(fields, place);
-    several = several || mean.count > 0;
-    mean.hour = *number, mean.line = line, ++mean.count;
-    for (std::size_t q = 0; q < values.size(); ++q) mean.sum[q] += values[q];
-    if (minute) offset = 60 * whole_number(fields, *minute, "the minute", place);
+    const int stamp = minute ? whole_number(fields, *minute, "the minute", place) : 0;
+    mean.add(*number, stamp, columns.values(fields, place), line);
+    if (minute) offset = 60 * stamp;
   }
-  mean.flush(hours);
-  WeatherHours result = hours.finish(several ? 1800 : offset);
+  mean.flush();
+  WeatherHours result = hours.finish(mean.several() ? 1800 : offset);
   result.site = site;
   return result;
 }

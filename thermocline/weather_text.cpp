@@ -3,6 +3,7 @@
 
 #include <zlib.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <memory>
@@ -40,6 +41,7 @@ std::vector<std::string> read_lines(const std::filesystem::path& file) {
   if (got < 0 || status != Z_OK)
     throw Error("{}: this weather file is damaged or was cut short: it cannot be decompressed to its end.",
                 file.string());
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the mark that some editors put first
   std::vector<std::string> lines = split(text, '\n');
   for (std::string& line : lines)
     if (line.ends_with('\r')) line.pop_back();
@@ -62,6 +64,10 @@ std::string HourCollector::place(int line) const { return fmt::format("{}:{}", f
 void HourCollector::add(int hour, std::array<double, 5> values, int line) {
   if (first_hour_ < 0) first_hour_ = hour;
   const int expected = first_hour_ + static_cast<int>(lines_.size());
+  constexpr int year = hours_a_day * days_a_year;
+  // A year that begins in July goes on in January.
+  if (hour < expected && expected >= year && hour + year - expected <= longest_gap && hour + year >= expected)
+    hour += year;
   if (hour < expected)
     throw Error("{}: hour {} of the year comes after hour {}: each hour must be there once, in order.",
                 place(line), hour, expected - 1);
@@ -107,6 +113,37 @@ void HourCollector::close_gaps(std::size_t quantity, std::vector<std::string>& w
   }
 }
 
+void HourMean::add(int hour, int minute, const std::array<double, 5>& values, int line) {
+  if (hour != hour_)
+    flush();
+  else if (minute <= minute_)
+    throw Error(
+        "{}: minute {} of hour {} of the year comes after minute {}: each record must be there once, in order.",
+        hours_.place(line), minute, hour, minute_);
+  several_ = several_ || count_ > 0;
+  hour_ = hour, minute_ = minute, line_ = line, ++count_;
+  minutes_ += minute, ++records_;
+  for (std::size_t q = 0; q < values.size(); ++q) sum_[q] += values[q];
+}
+
+void HourMean::flush() {
+  if (count_ == 0) return;
+  for (double& s : sum_) s /= count_;
+  hours_.add(hour_, sum_, line_);
+  hour_ = -1, count_ = 0, sum_ = {};
+}
+
+namespace {
+
+/// A column that is all too small has another unit than the one that is read.
+void refuse_other_unit(const std::string& file, const WeatherQuantity& quantity, double highest, double least,
+                       const char* other) {
+  if (highest > 0 && highest <= least)
+    throw Error("{}: the largest {} is {:g}: {}", file, quantity.name, highest, other);
+}
+
+}  // namespace
+
 WeatherHours HourCollector::finish(double state_offset) {
   if (lines_.empty()) throw Error("{}: this weather file holds no hours.", file_);
   if (first_hour_ % hours_a_day != 0)
@@ -117,17 +154,29 @@ WeatherHours HourCollector::finish(double state_offset) {
   if (lines_.size() % hours_a_day != 0)
     throw Error("{}: the file ends after {} of the 24 hours of its last day. Whole days are needed.",
                 place(lines_.back()), lines_.size() % hours_a_day);
-  if (first_hour_ + lines_.size() > hours_a_day * days_a_year)
+  constexpr std::size_t year = hours_a_day * days_a_year;
+  const bool rotated = first_hour_ > 0 && lines_.size() == year;
+  if (!rotated && first_hour_ + lines_.size() > year)
     throw Error(
         "{}: the file goes beyond hour {} of the year; a reference year has {} days (leave 29 February "
         "out).",
-        place(lines_.back()), hours_a_day * days_a_year - 1, days_a_year);
+        place(lines_.back()), year - 1, days_a_year);
   WeatherHours result;
   result.source = file_;
-  result.first_day = first_hour_ / hours_a_day;
+  result.first_day = rotated ? 0 : first_hour_ / hours_a_day;
   result.state_offset = state_offset;
   for (std::size_t q = 0; q < columns_.size(); ++q) {
     close_gaps(q, result.warnings);
+    if (rotated)
+      std::rotate(columns_[q].begin(), columns_[q].begin() + (year - first_hour_), columns_[q].end());
+    const double highest = *std::max_element(columns_[q].begin(), columns_[q].end());
+    const WeatherQuantity& quantity = weather_quantities[q];
+    if (quantity.target == &WeatherHours::dni)
+      refuse_other_unit(file_, quantity, highest, 1.412,
+                        "no sun gives so little; it is read in W/m^2, not in kW/m^2.");
+    if (quantity.target == &WeatherHours::humidity)
+      refuse_other_unit(file_, quantity, highest, 1,
+                        "no air is so dry; it is read in percent, not as a share.");
     for (double& value : columns_[q]) value *= weather_quantities[q].factor;
     result.*weather_quantities[q].target = std::move(columns_[q]);
   }

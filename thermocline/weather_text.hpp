@@ -40,4 +40,23 @@ class HourCollector {
   std::vector<int> lines_;  ///< where each hour was read, or where it should have been
 };
 
+/// Records of one hour, averaged: files of 5 to 30 minutes have several.
+class HourMean {
+ public:
+  explicit HourMean(HourCollector& hours) : hours_(hours) {}
+  /// `minute` of the stamp: it grows from record to record of an hour. Throws Error for one that is there twice.
+  void add(int hour, int minute, const std::array<double, 5>& values, int line);
+  /// After the last record.
+  void flush();
+  bool several() const { return several_; }                   ///< records in an hour
+  double mean_minute() const { return minutes_ / records_; }  ///< of all stamps
+
+ private:
+  HourCollector& hours_;
+  int hour_ = -1, minute_ = 0, line_ = 0, count_ = 0;
+  std::array<double, 5> sum_{};
+  bool several_ = false;
+  double minutes_ = 0, records_ = 0;
+};
+
 }  // namespace couplet::thermocline

@@ -53,8 +53,12 @@ std::vector<std::string> names_of(const Section::Declare& declare) {
 
 std::string kind_of(const YAML::Node& node) {
   if (node.IsSequence()) return "a list";
-  if (node.IsScalar()) return "'" + node.Scalar() + "'";
-  return "nothing";
+  if (!node.IsScalar()) return "nothing";
+  // A whole file may stand here, if it is none of ours.
+  constexpr std::size_t longest = 60;
+  const std::string& text = node.Scalar();
+  if (text.size() <= longest) return "'" + text + "'";
+  return fmt::format("'{}' and {} characters more", text.substr(0, longest), text.size() - longest);
 }
 
 }  // namespace

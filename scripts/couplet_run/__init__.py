@@ -6,3 +6,4 @@ from couplet_run.launch import Cost, RunFailed, environment, launch  # noqa: F40
 from couplet_run.pool import run_all  # noqa: F401
 from couplet_run.results import Results  # noqa: F401
 from couplet_run.task import Record, Task  # noqa: F401
+from couplet_run.warnings import warnings_of  # noqa: F401

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The elements of a tank that are participants of their own.
+#include "common/base/error.hpp"
 #include "tests/contract/contract_suite.hpp"
 #include "thermocline/elsewhere.hpp"
 
@@ -30,7 +31,7 @@ struct ElementFactory {
     for (const auto& datum : interface.takes) {
       std::vector<double> values(interface.face_centres.size());
       for (std::size_t i = 0; i < values.size(); ++i)
-        values[i] = datum.unit == "K" ? 477 + factor * (20 + double(i)) : 50;
+        values[i] = datum.unit == "K" ? 477 + factor * (20 + double(i)) : datum.unit == "m" ? 18.2 : 50;
       in[datum.name] = values;
     }
     return in;
@@ -43,6 +44,26 @@ using Blanket = ElementFactory<thermocline::ElementParameters::Type::insulation>
 
 INSTANTIATE_TYPED_TEST_SUITE_P(TankGround, ParticipantContract, Ground);
 INSTANTIATE_TYPED_TEST_SUITE_P(TankBlanket, ParticipantContract, Blanket);
+
+/// On every rank, for each element: a tank of another diameter is refused.
+template <class Factory>
+void refuses_another_diameter(const char* name, double slack) {
+  for (const double diameter : {18.2, 18.2 * (1 + 0.5 * slack), 18.2 * (1 + 2 * slack), 20.0}) {
+    const auto part = Factory::make(MPI_COMM_WORLD);
+    const Interface interface = part->initialise();
+    Exchange in = Factory::input(interface, 1);
+    if (in.count(name)) in[name].assign(in[name].size(), diameter);
+    part->begin_step({0, 900});
+    if (diameter < 18.2 * (1 + slack))
+      EXPECT_NO_THROW(part->solve(in)) << diameter;
+    else
+      EXPECT_THROW(part->solve(in), Error) << diameter;
+  }
+}
+TEST(TankParts, a_contradicting_diameter_is_refused_on_every_rank) {
+  refuses_another_diameter<Ground>("tank-diameter", 1e-3);
+  refuses_another_diameter<Blanket>("wall-diameter", 0.02);
+}
 
 }  // namespace
 }  // namespace couplet::contract

@@ -8,6 +8,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "scripts"))
 import couplet_optimise as optimise  # noqa: E402
+from couplet_run.warnings import warnings_of  # noqa: E402
 
 FUNCTIONS = {
     "valley": lambda x: 1 + 2 * (x[0] - .63) ** 2 + (x[1] - .31) ** 2 + .5 * (x[0] - .63) * (x[1] - .31),
@@ -40,6 +41,23 @@ line = optimise.search(lambda todo: [(p[0] - 0.77) ** 2 + 3 for p in todo], 1, 9
 check(abs(line[0][0] - 0.77) < 0.03 and len(line[2]) <= 9, f"one variable: {line[0]}")
 # It does not stop where it has not looked: without tolerance all runs are used.
 check(len(optimise.search(lambda todo: [FUNCTIONS["valley"](p) for p in todo], 2, 14, -1, 2, say=quiet)[2]) == 14, "all runs are used")
+
+# It says why it ended, and what it maximises as it is.
+said = []
+optimise.search(lambda todo: [-(3 - (p[0] - 0.5) ** 2) for p in todo], 1, 9, 1e-2, 1, say=said.append, sign=-1)
+check(said[0] == "optimise: 3 runs, best so far 3", f"a value that is maximised: {said[0]}")
+check("three times in a row nothing better" in said[-1] and "of 9 runs" in said[-1], f"why it ended: {said[-1]}")
+said = []
+optimise.search(lambda todo: [(p[0] - 0.3) ** 2 for p in todo], 1, 4, -1, 1, say=said.append)
+check(said[-1] == "optimise: ends because all 4 runs are used (study.optimise.runs)", f"why it ended: {said[-1]}")
+with tempfile.TemporaryDirectory() as folder:
+    logs = [pathlib.Path(folder) / name for name in ("a.log", "b.log", "c.log", "none.log")]
+    logs[0].write_text("[tank 0] warning: 8 days stand for a year\n[tank 0] warning: 8 days stand for a year\n[tank 0] all is well\n")
+    logs[1].write_text("[tank 0] warning: 9.5 days stand for a year\n")
+    logs[2].write_text("[tank 0] warning: the wall is hot\n")
+    check(warnings_of(logs) == ["warning in 2 of 4 runs, for example: 8 days stand for a year",
+                                "warning in 1 of 4 runs, for example: the wall is hot"], f"warnings: {warnings_of(logs)}")
+    check(warnings_of(logs[3:]) == [], "no warnings")
 
 HEAD = "participants: {tank: {program: thermocline}}\nstudy:\n  optimise:\n"
 WRONG = {

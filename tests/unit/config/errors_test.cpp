@@ -67,6 +67,8 @@ const Case cases[] = {
     {"limit: 0", "3:1: limit: 0 m is out of range; expected a value above 0 m."},
     {"damping: {}", "3:1: damping.mass: this required key is missing (number in 1/s)."},
     {"damping:", "3:1: damping.mass: this required key is missing (number in 1/s)."},
+    {"damping: " + std::string(100, 'x'), "3:1: damping: expected a mapping (keys with values), found '" +
+                                              std::string(60, 'x') + "' and 40 characters more."},
     {"damping: 3", "3:1: damping: expected a mapping (keys with values), found '3'."},
     {"boundaries: [left]",
      "3:1: boundaries: expected a mapping with one entry for each patch, found a list."},

@@ -200,8 +200,16 @@ TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
   };
   EXPECT_TRUE(sound("resolved grains", {.largest_biot = 19.9}));
   EXPECT_FALSE(sound("resolved grains", {.largest_biot = 20.1}));
+  const thermocline::Evidence spread{.implicit_spread = 0.051, .implicit_step = 1};
+  EXPECT_FALSE(verdict_on("implicit advection", thermocline::effect_cards(), tank, spread))
+      << "where it is off";
+  tank.tank.bed.advection = thermocline::Advection::implicit;
   EXPECT_TRUE(sound("implicit advection", {.implicit_spread = 0.049, .implicit_step = 1}));
-  EXPECT_FALSE(sound("implicit advection", {.implicit_spread = 0.051, .implicit_step = 1}));
+  EXPECT_FALSE(sound("implicit advection", spread));
+  EXPECT_TRUE(
+      sound("specific heat of a gas by its temperature", {.capacity_error = 0.049, .mean_capacity = 1e3}));
+  EXPECT_FALSE(
+      sound("specific heat of a gas by its temperature", {.capacity_error = 0.051, .mean_capacity = 1e3}));
   EXPECT_TRUE(sound("compressible flow of a gas", {.largest_mach = 0.29}));
   EXPECT_FALSE(sound("compressible flow of a gas", {.largest_mach = 0.31}));
   EXPECT_TRUE(sound("yielding of the wall", {.share_of_yield = 0.99}));

@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "thermocline/day_report.hpp"
 #include "thermocline/plant_control.hpp"
@@ -97,6 +99,53 @@ TEST(Load, report_counts_electricity_and_revenue) {
   EXPECT_NEAR(found.at("revenue"), (80 * 40 + 20 * 120) * 365, 1e-6);
   EXPECT_NEAR(found.at("levelised cost"), (0.05 + 0.02) * 1e6 / 36500, 1e-9);
   EXPECT_NEAR(found.at("Q_lacking/Q_PB"), 0, 1e-9);
+}
+
+/// A day at full load in the light of a sun that gives just that, with a pump of `pump` W.
+std::map<std::string, double> sunny_day(double pump, std::vector<std::string>* units = nullptr) {
+  WeatherParameters sunny;
+  sunny.constant.dni = 1000;
+  const auto weather = make_weather(sunny, ".");
+  PlantParameters p{40e6, 0.4, 2e5, 0.5, 673.15, 573.15, 15, 10};
+  p.tariff = {50};
+  ReportParameters parameters;
+  parameters.economics.emplace().fixed = 1e6;
+  DayReport report(parameters, Plant(p, 1500), *weather, {});
+  const std::vector<double> z{1, 2}, dz{1, 1}, t{573.15, 673.15};
+  for (int h = 0; h < 24; ++h) {
+    BedStep step;
+    step.t = h * 3600., step.dt = 3600, step.pump_power = pump;
+    step.outlet_temperature = step.flow.inlet_temperature;
+    TankRecord record;
+    record.time = step.t + 3600, record.dt = 3600;
+    record.steps = {&step, 1};
+    record.z = z, record.dz = dz, record.fluid_temperature = t, record.filler_temperature = t;
+    report.record(record);
+  }
+  report.finish();
+  std::map<std::string, double> found;
+  for (const ReportLine& line : report.lines()) {
+    found[line.quantity] = line.value;
+    if (units) units->push_back(line.unit);
+  }
+  return found;
+}
+
+TEST(Economics, pump_and_fan_take_their_work_from_what_is_sold) {
+  auto without = sunny_day(0), with = sunny_day(2e6);
+  EXPECT_NEAR(without.at("electricity"), 40 * 24 * 365, 1e-6);
+  EXPECT_NEAR(with.at("electricity"), 38 * 24 * 365, 1e-6);
+  EXPECT_NEAR(with.at("electricity of pump or fan"), 2 * 24 * 365, 1e-6);
+  EXPECT_NEAR(with.at("revenue"), 50 * 38 * 24 * 365, 1e-6);
+  EXPECT_NEAR(with.at("levelised cost") / without.at("levelised cost"), 40. / 38, 1e-9);
+  EXPECT_TRUE(std::isinf(sunny_day(41e6).at("levelised cost"))) << "it eats more than it gives";
+}
+
+TEST(Economics, what_is_no_year_is_not_called_one) {
+  std::vector<std::string> units;
+  sunny_day(0, &units);
+  EXPECT_EQ(std::count(units.begin(), units.end(), "MWh/365 such days"), 1);
+  EXPECT_EQ(std::count(units.begin(), units.end(), "MWh/year"), 0);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "common/base/error.hpp"
+#include "thermocline/plausible.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -105,6 +106,84 @@ TEST(Questions, a_temperature_without_its_unit_is_refused) {
   p.bed = sound().bed;
   p.bed.initial_temperature = 204;
   EXPECT_THAT(forgotten_unit_of_bed(p), HasSubstr("is 204 K, that is -69.1 degC"));
+}
+
+TEST(Questions, capsules_that_cannot_melt_are_refused_or_said) {
+  TankParameters p = sound();
+  p.bed.layers[0].melting = Melting{298, 4, 150e3};
+  EXPECT_THAT(forgotten_unit_of_bed(p), HasSubstr("layers[0].melting.temperature is 298 K"));
+  p.bed.layers[0].melting->temperature = kelvin(400);
+  EXPECT_EQ(forgotten_unit_of_bed(p), "");
+  p.bed.advection = Advection::implicit;
+  p.ambient_given.reset(), p.flow = {};
+  const auto after = [&](double melts) {
+    p.bed.layers[0].melting->temperature = kelvin(melts);
+    const auto weather = make_weather(p.ambient, ".");
+    TankModel model(std::make_shared<const TankSetup>(p), *weather);
+    const auto control = make_flow_control(p.flow, 1500);
+    std::vector<BedStep> steps;
+    Speed speed;
+    model.advance(0, 60, *control, *weather, steps, speed);
+    return never_melted(model);
+  };
+  ASSERT_EQ(after(400).size(), 1u) << "all is at 290 degC";
+  EXPECT_THAT(after(400)[0], HasSubstr("bed.layers[0]: its capsules melt from 398.0 to 402.0 degC"));
+  EXPECT_TRUE(after(290).empty());
+}
+
+TEST(Questions, prices_for_what_is_not_there_are_said) {
+  EconomicsParameters prices;
+  prices.steel = 6, prices.insulation = 200, prices.filler = 1, prices.field = 1;
+  Inventory nothing;
+  EXPECT_EQ(prices_for_nothing(prices, nothing).size(), 3u);
+  EXPECT_THAT(prices_for_nothing(prices, nothing)[0],
+              HasSubstr("report.economics.steel is 6, but there is nothing to pay for"));
+  EXPECT_TRUE(prices_for_nothing(prices, {.steel = 1, .filler = 1, .insulated = 1}).empty());
+  EXPECT_TRUE(prices_for_nothing({}, nothing).empty());
+}
+
+TEST(Questions, a_row_that_never_ran_is_said) {
+  FlowParameters flow;
+  flow.rows = {{0, -10, 600, {}, 500.}, {100, 10, 500, {}, 400.}};
+  Schedule schedule(flow);
+  schedule.decide(0, 450, 450, {});
+  schedule.decide(50, 450, 450, {});
+  schedule.decide(100, 450, 450, {});
+  ASSERT_EQ(schedule.doubts().size(), 1u);
+  EXPECT_THAT(schedule.doubts()[0], HasSubstr("flow.rows[0] never ran: it stops below 226.85 degC"));
+}
+
+TEST(Slips, of_a_unit_are_refused_with_the_number) {
+  TankParameters p = sound();
+  EXPECT_EQ(slip_in_bed(p.bed, p.diameter), "");
+  p.bed.layers[0].diameter = 10;
+  EXPECT_THAT(slip_in_bed(p.bed, 30), HasSubstr("layers[0].diameter is 10 m"));
+  EXPECT_THAT(slip_in_bed(p.bed, 30), HasSubstr("write '10 mm'"));
+  p = sound();
+  p.bed.layers[0].melting = Melting{600, 2, 150};
+  EXPECT_THAT(slip_in_bed(p.bed, p.diameter), HasSubstr("write '150 kJ/kg'"));
+  p.bed.layers[0].melting->latent_heat = 150e3;
+  EXPECT_EQ(slip_in_bed(p.bed, p.diameter), "");
+  ShellParameters shell;
+  shell.plates = {{6, 0.03}, {6, 30}};
+  EXPECT_THAT(slip_in_plates(shell, 30), HasSubstr("plates[1].thickness is 30 m"));
+  shell.plates[1].thickness = 0.03;
+  EXPECT_EQ(slip_in_plates(shell, 30), "");
+  InsulationParameters insulation;
+  insulation.thickness = 40;
+  EXPECT_THAT(slip_in_insulation(insulation, 30), HasSubstr("thickness is 40 m around a tank of 30 m"));
+  insulation.thickness = 0.4;
+  EXPECT_EQ(slip_in_insulation(insulation, 0.5), "") << "a laboratory's tank";
+  GroundParameters ground;
+  ground.layers = {{"foam-glass", 42}, {"soil", 20}};
+  EXPECT_THAT(slip_in_ground(ground), HasSubstr("layers[0].thickness is 42 m of foam-glass"));
+  ground.layers[0].thickness = 0.42;
+  EXPECT_EQ(slip_in_ground(ground), "");
+  PlantParameters plant;
+  plant.electric_power = 50;
+  EXPECT_THAT(slip_in_plant(plant), HasSubstr("electric-power is 50 W"));
+  plant.electric_power = 50e6;
+  EXPECT_EQ(slip_in_plant(plant), "");
 }
 
 TEST(Questions, the_sun_on_the_cover_needs_to_know_where_it_stands) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/base/error.hpp"
 #include "common/io/series.hpp"
 #include "thermocline/day_report.hpp"
 #include "thermocline/thickness.hpp"
@@ -248,6 +249,45 @@ TEST(DayReport, a_part_of_a_year_is_doubted_and_no_day_is_no_answer) {
   ASSERT_EQ(part.size(), 1u);
   EXPECT_NE(part[0].find("2 days stand for a year"), std::string::npos) << part[0];
   EXPECT_TRUE(report(4 + 365, 0).first.empty());
+  const auto odd = report(4 + 400, 0).first;
+  ASSERT_EQ(odd.size(), 1u);
+  EXPECT_NE(odd[0].find("400 days that count are no whole number of years"), std::string::npos) << odd[0];
+  EXPECT_TRUE(report(4 + 2 * 365, 0).first.empty());
+}
+
+TEST(DayReport, a_run_in_that_would_undo_what_was_counted_is_refused) {
+  IdealDay ideal;
+  DayReport first = ideal.report(2);
+  for (int h = 0; h < 126; ++h) ideal.hour(first, h);  // 5 days, of which 3 count
+  for (const double run_in : {1., 3.}) {
+    DayReport other = ideal.report(run_in);
+    try {
+      other.restore(first.state());
+      ADD_FAILURE() << run_in;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what())
+                    .find("report.run-in: the run to be continued has lived through 5 days and counted 3"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+  DayReport early = ideal.report(2), later = ideal.report(3);
+  for (int h = 0; h < 30; ++h) ideal.hour(early, h);
+  EXPECT_NO_THROW(later.restore(early.state())) << "nothing has been counted yet";
+  for (int h = 30; h < 5 * 24; ++h) ideal.hour(later, h);
+  EXPECT_EQ(later.days_counted(), 2);
+}
+
+TEST(DayReport, a_profile_day_beyond_the_run_is_said) {
+  IdealDay ideal;
+  ReportParameters p;
+  p.profile_day = 2;
+  DayReport report = ideal.report(p);
+  for (int h = 0; h < 48; ++h) ideal.hour(report, h);
+  ASSERT_EQ(report.doubts().size(), 1u);
+  EXPECT_NE(report.doubts()[0].find("before its profile-day 2 began"), std::string::npos);
+  ideal.hour(report, 48);
+  EXPECT_TRUE(report.doubts().empty());
 }
 
 }  // namespace

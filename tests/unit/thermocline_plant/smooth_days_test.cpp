@@ -92,6 +92,18 @@ TEST(SmoothDays, what_cannot_be_is_said) {
   d = granada();
   d.length = {0.2};
   EXPECT_THROW(made(d), Error);  // more than outside the atmosphere
+  d = granada();
+  d.daily_sums.assign(12, 7);
+  EXPECT_THAT(problem_of(d, key), testing::HasSubstr("write '7 kWh/m^2'"));
+  EXPECT_EQ(key, "daily-sums");
+  d = granada();
+  d.length = {2.5};
+  try {
+    made(d);
+    ADD_FAILURE() << "sun at midnight";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("it would shine at midnight"));
+  }
 }
 
 }  // namespace

@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 
 #include "common/base/error.hpp"
-#include "thermocline/weather_hours.hpp"
+#include "thermocline/weather_parameters.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -93,6 +94,81 @@ TEST_F(ForeignWeather, several_records_an_hour_are_averaged) {
   EXPECT_EQ(w.pressure[0], 83000);
   EXPECT_EQ(w.temperature[12], 6);
   EXPECT_EQ(w.state_offset, 1800);
+}
+
+TEST_F(ForeignWeather, a_record_that_is_there_twice_is_refused) {
+  EXPECT_THAT(complaint(nsrdb([](int h, std::string line) { return h == 12 ? line + line : line; })),
+              HasSubstr("weather.csv:17: minute 30 of hour 12 of the year comes after minute 30"));
+}
+
+TEST_F(ForeignWeather, a_sun_at_night_is_doubted) {
+  const auto doubts = [&](const std::string& zone, const std::string& longitude,
+                          std::optional<SiteParameters> site = {}) {
+    std::string text = nsrdb([](int h, std::string) {
+      return fmt::format("2003,1,{},{},30,{},-6,30,{},100,0.866,840,298.6,0.5\n", 1 + h / 24, h % 24,
+                         h % 24 - 5, h % 24 >= 9 && h % 24 < 15 ? 500 : 0);
+    });
+    const std::string place = "-105.26,-7,";
+    text.replace(text.find(place), place.size(), longitude + "," + zone + ",");
+    WeatherParameters p;
+    p.kind = WeatherKind::file;
+    p.file = write(text);
+    p.site = site;
+    return make_weather(p, ".")->doubts();
+  };
+  EXPECT_THAT(doubts("-7", "-105.26"), testing::IsEmpty());
+  const auto other = doubts("5", "-105.26");
+  ASSERT_EQ(other.size(), 2u);
+  EXPECT_THAT(other[0], HasSubstr("solar time of its longitude is 12.0 h behind its time zone"));
+  EXPECT_THAT(other[1],
+              HasSubstr("100 % of the irradiation falls into hours in which the sun is below the horizon"));
+  EXPECT_THAT(doubts("-7", "-105.26", SiteParameters{40.01, -105.26, -7}), testing::IsEmpty());
+  const auto moved = doubts("-7", "-105.26", SiteParameters{37, -105.26, -7});
+  ASSERT_EQ(moved.size(), 1u);
+  EXPECT_THAT(moved[0], HasSubstr("'site' (latitude 37 deg"));
+}
+
+TEST_F(ForeignWeather, other_units_and_separators_are_told_by_what_they_give) {
+  EXPECT_THAT(complaint(nsrdb([](int h, std::string) {
+                return fmt::format("2003,1,{},{},30,1,-6,30,{},100,0.866,840,298.6,0.5\n", 1 + h / 24, h % 24,
+                                   h % 24 == 12 ? 0.96 : 0);
+              })),
+              HasSubstr("not in kW/m^2"));
+  std::string own = "hour,dni_W_m2,T_degC,wind_m_s,rh_pct,p_Pa\n", dry = own;
+  for (int h = 0; h < 24; ++h)
+    own += fmt::format("{},500,10,1,40,90000\n", h), dry += fmt::format("{},500,10,1,0.4,90000\n", h);
+  EXPECT_EQ(complaint("\xEF\xBB\xBF" + own), "nothing") << "a byte order mark";
+  EXPECT_THAT(complaint(dry), HasSubstr("it is read in percent"));
+  std::replace(own.begin(), own.end(), ',', ';');
+  EXPECT_THAT(complaint(own), HasSubstr("weather.csv:1: the columns are separated by ';'"));
+}
+
+/// EPW of a site in the south of Spain; `first`: the month that it begins with, `records` an hour.
+std::string epw(int first, int records) {
+  std::string text = "LOCATION,Sevilla,-,ESP,SWEC,083910,37.00,-5.00,1.0,31.0\n";
+  for (int i = 0; i < 7; ++i) text += "COMMENTS\n";
+  constexpr int days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+  for (int m = 0; m < 12; ++m)
+    for (int d = 1; d <= days[(first - 1 + m) % 12]; ++d)
+      for (int h = 1; h <= 24; ++h)
+        for (int r = 1; r <= records; ++r)
+          text += fmt::format("1999,{},{},{},{},?,{},5,50,95000,0,0,300,0,{},0,0,0,0,0,180,2\n",
+                              (first - 1 + m) % 12 + 1, d, h, 60 * r / records, (first - 1 + m) % 12 + 1,
+                              h == 12 ? 100 * r : 0);
+  return text;
+}
+
+TEST_F(ForeignWeather, epw_may_begin_in_july_and_have_several_records_an_hour) {
+  const WeatherHours july = read_weather(write(epw(7, 1), "a.epw")),
+                     january = read_weather(write(epw(1, 1), "b.epw"));
+  EXPECT_EQ(july.first_day, 0);
+  EXPECT_EQ(july.temperature, january.temperature);
+  EXPECT_EQ(july.dni, january.dni);
+  EXPECT_EQ(january.state_offset, 3600);
+  const WeatherHours twice = read_weather(write(epw(1, 2), "c.epw"));
+  EXPECT_EQ(twice.days(), 365);
+  EXPECT_EQ(twice.dni[11], 150);
+  EXPECT_EQ(twice.state_offset, 2700) << "the mean of 12:30 and 13:00";
 }
 
 TEST_F(ForeignWeather, sam_names_and_a_leap_day_are_known) {
@@ -228,6 +304,49 @@ TEST_F(ForeignWeather, pvgis_gives_moments_and_its_legend_is_no_data) {
   EXPECT_NEAR(w.humidity[0], 0.9195, 1e-12);
   EXPECT_EQ(w.site->latitude, 45);
   EXPECT_EQ(w.site->solar_ahead, 8 * 240);
+}
+
+TEST_F(ForeignWeather, pvgis_irradiance_belongs_to_its_own_moment) {
+  const auto with = [](const std::string& head, const std::string& minute) {
+    std::string text = pvgis([&](int, std::string line) { return line.replace(11, 2, minute); });
+    return text.insert(text.find("month,year"), head);
+  };
+  const WeatherHours half = read_weather(write(with("Irradiance Time Offset (h): 0.5\n", "00")));
+  // 600 at 10:30, 800 at 11:30, 0 at 9:30 and 12:30: (0 + 6 * 600 + 800)/8 from 10 to 11.
+  EXPECT_NEAR(half.dni[9], 75, 1e-9);
+  EXPECT_NEAR(half.dni[10], 550, 1e-9);
+  EXPECT_NEAR(half.dni[11], 675, 1e-9);
+  EXPECT_NEAR(half.dni[12], 100, 1e-9);
+  EXPECT_EQ(half.state_offset, 0);
+  const WeatherHours stamp = read_weather(write(with("", "30")));
+  EXPECT_NEAR(stamp.dni[10], 550, 1e-9);
+  EXPECT_EQ(stamp.state_offset, 1800);
+  const WeatherHours earlier = read_weather(write(with("Irradiance Time Offset (h): -0.5\n", "00")));
+  EXPECT_NEAR(earlier.dni[9], 550, 1e-9);
+  EXPECT_THAT(complaint(with("Irradiance Time Offset (h): 30\n", "00")), HasSubstr("offset is 30 h"));
+  EXPECT_THAT(
+      complaint(pvgis([](int h, std::string line) { return h == 3 ? line.replace(11, 2, "10") : line; })),
+      HasSubstr("weather.csv:21: the minute is 10; all records"));
+}
+
+TEST_F(ForeignWeather, pvgis_runs_on_local_standard_time_unless_told_otherwise) {
+  WeatherParameters p;
+  p.kind = WeatherKind::file;
+  std::string text = pvgis();
+  const std::string here = "Longitude (decimal degrees): 8.000";
+  p.file = write(text.replace(text.find(here), here.size(), "Longitude (decimal degrees): 135.0"));
+  const auto noon = [&] {
+    const auto weather = make_weather(p, ".");
+    double best = 0, when = 0;
+    for (int h = 0; h < 24; ++h)
+      if (const double sum = weather->irradiation(h * 3600., h * 3600. + 3600); sum > best)
+        best = sum, when = h;
+    return when;
+  };
+  EXPECT_EQ(noon(), 19) << "10 UTC";
+  EXPECT_THAT(make_weather(p, ".")->warnings().back(), HasSubstr("the simulation's is +9 h ahead"));
+  p.shift_hours = 0;
+  EXPECT_EQ(noon(), 10);
 }
 
 TEST_F(ForeignWeather, wrong_pvgis_files_are_said_with_their_line) {
