@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The day report's year: electricity, what it earns and costs, and how far the days of the run stand for a year.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 

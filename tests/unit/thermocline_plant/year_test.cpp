@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the report says of a year that is none, and its time series.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
