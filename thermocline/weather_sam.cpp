@@ -86,8 +86,9 @@ WeatherHours read_weather_sam(const std::filesystem::path& file) {
                                      whole_number(fields, *day, "the day", place),
                                      whole_number(fields, *hour, "the hour", place), place);
     if (!number) continue;
+    const std::array<double, 5> values = columns.values(fields, place);
     const int stamp = minute ? whole_number(fields, *minute, "the minute", place) : 0;
-    mean.add(*number, stamp, columns.values(fields, place), line);
+    mean.add(*number, stamp, values, line);
     if (minute) offset = 60 * stamp;
   }
   mean.flush();

@@ -53,9 +53,15 @@ TEST(DayReport, the_series_has_what_the_block_got_and_what_it_asked_for) {
   // The field has 25 MW; nothing is asked for in the first hour, 60 MW in the second.
   const auto first = numbers(rows[1]), second = numbers(rows[2]);
   ASSERT_EQ(first.size(), 12u);
-  EXPECT_NEAR(first[1], 25e6, 1), EXPECT_EQ(first[2], 0), EXPECT_EQ(first[3], 0);
-  EXPECT_NEAR(second[1], 25e6, 1), EXPECT_NEAR(second[2], 25e6, 1), EXPECT_NEAR(second[3], 60e6, 1);
-  EXPECT_NEAR(second[9], 500, 1e-6), EXPECT_NEAR(second[10], 20, 1e-9), EXPECT_EQ(second[11], 3);
+  EXPECT_NEAR(first[1], 25e6, 1);
+  EXPECT_EQ(first[2], 0);
+  EXPECT_EQ(first[3], 0);
+  EXPECT_NEAR(second[1], 25e6, 1);
+  EXPECT_NEAR(second[2], 25e6, 1);
+  EXPECT_NEAR(second[3], 60e6, 1);
+  EXPECT_NEAR(second[9], 500, 1e-6);
+  EXPECT_NEAR(second[10], 20, 1e-9);
+  EXPECT_EQ(second[11], 3);
 }
 
 TEST(DayReport, a_year_of_a_month_that_goes_round_is_no_year) {
@@ -78,8 +84,9 @@ TEST(DayReport, a_year_of_a_month_that_goes_round_is_no_year) {
     }
     report.finish();
     for (const ReportLine& line : report.lines())
-      if (line.quantity == "electricity")
+      if (line.quantity == "electricity") {
         EXPECT_EQ(line.unit, report.doubts().empty() ? "MWh/year" : "MWh/365 such days");
+      }
     return report.doubts();
   };
   ASSERT_EQ(said(june, 365).size(), 1u);
