@@ -4,6 +4,6 @@ import importlib
 import pathlib
 
 HERE = pathlib.Path(__file__).resolve().parent
-ORDER = ("fluid", "coupler", "solid", "runs", "tank", "tests")
+ORDER = ("fluid", "coupler", "solid", "runs", "tank", "tests", "house")
 PARTS = [part for part in ORDER if (HERE / "parts" / f"trust_{part}.py").exists()]
 BARS = [bar for part in PARTS for bar in importlib.import_module(f"validation.parts.trust_{part}").BARS]

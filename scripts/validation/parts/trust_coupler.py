@@ -13,6 +13,8 @@ BARS = [
     Bar("work of fluid and structure that part is named; small steps and turning points pass", "tests pass",
         gtests("unit_coupler", "WorkGuard")),
     Bar("explicit flap at rho_s 42: refused with the added mass as the reason", "test passes", tests("^flap_explicit_added_mass_is_named$")),
+    Bar("explicit balance: each side's work is that of its own wall; the run ends with a verdict", "tests pass",
+        gtests("unit_coupler", "each_side_counts_the_way_of_its_own_wall", "convicted_at_the_end")),
     Bar("surfaces elsewhere or of another size refused, staircases said, loads that are not finite caught", "tests pass",
         gtests("unit_coupler", "Places")),
 ]

@@ -4,7 +4,7 @@
 (or the run has come to its end), none is left, one line names the one that was struck. The next run goes on from the
 last checkpoint; a run that comes to its end must leave what an undisturbed one does, bit for bit, also where it was stopped
 on request and has saved at a step at which the undisturbed one did not.
-Usage: strikes.py BIN CASE_FOLDER COUNT [SEED]"""
+Usage: strikes.py BIN CASE_FOLDER COUNT [SEED [END_TIME]]"""
 import os
 import pathlib
 import random
@@ -22,7 +22,7 @@ import numpy
 PROGRAMS = {"coupler": "coupler", "fluid": "fluid_solver", "solid": "solid_solver", "mover": "mesh_mover"}
 SIGNALS = ["KILL", "TERM", "INT", "STOP", "SEGV"]
 WITHIN = 5.0
-SETS = ["simulation.end-time=0.8", "simulation.output.interval=0.2", "simulation.checkpoint.interval=0.05",
+SETS = [f"simulation.end-time={sys.argv[5] if len(sys.argv) > 5 else 0.8}", "simulation.output.interval=0.2", "simulation.checkpoint.interval=0.05",
         "simulation.hang-timeout=2"]
 
 

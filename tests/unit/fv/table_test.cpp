@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -98,6 +99,15 @@ TEST(Table, is_read_from_a_file_by_name_or_number_of_its_column) {
               ThrowsMessage<Error>(HasSubstr("Did you mean 'temperature'?")));
   EXPECT_THAT([] { read_table("nowhere.csv", "2", Outside::clamp); },
               ThrowsMessage<Error>(HasSubstr("nowhere.csv: this file of a table cannot be read")));
+}
+
+/// Nothing ever writes into it: a reader would wait for ever.
+TEST(Table, from_a_fifo_is_refused_at_once) {
+  const auto fifo = std::filesystem::temp_directory_path() / fmt::format("couplet-fifo-{}.csv", getpid());
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  EXPECT_THAT([&] { read_table(fifo, "2", Outside::clamp); },
+              ThrowsMessage<Error>(HasSubstr("cannot be read")));
+  std::filesystem::remove(fifo);
 }
 
 TEST(Table, a_header_in_other_units_is_not_read_as_si) {

@@ -70,6 +70,22 @@ TEST_F(LoadMesh, meshes_a_geo_once_even_if_all_ask_at_the_same_time) {
   EXPECT_NE(mesh.find_patch("around"), nullptr);
 }
 
+/// A machine that went down while it wrote: no fault of the user's, who has nothing to mend.
+TEST_F(LoadMesh, a_truncated_cache_is_made_anew) {
+  const auto geo = write("square.geo", "h = 0.3;\n" + square);
+  const GlobalIndex cells = load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global();
+  const auto cache = mesh_geo(geo, 2);
+  const auto size = std::filesystem::file_size(cache);
+  for (const auto kept : {std::uintmax_t(0), size / 3, size - 20}) {
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::resize_file(cache, kept);
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global(), cells)
+        << kept << " of " << size << " bytes left";
+    EXPECT_EQ(std::filesystem::file_size(cache), size);
+  }
+}
+
 TEST_F(LoadMesh, meshes_again_when_the_geo_or_a_file_it_includes_changed) {
   write("size.geo", "h = 0.5;\n");
   const auto geo = write("square.geo", "Include \"size.geo\";\n" + square);

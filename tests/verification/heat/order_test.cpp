@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
                       SpaceCase{"mixed", BoxCells::mixed, {4, 8, 16}, 0},
                       SpaceCase{"perturbed_quadrilaterals", BoxCells::quadrilaterals, {10, 20, 40}, 0.2},
                       SpaceCase{"perturbed_hexahedra", BoxCells::hexahedra, {6, 12, 24}, 0.2},
-                      SpaceCase{"perturbed_tetrahedra", BoxCells::tetrahedra, {6, 12, 18}, 0.2}),
+                      SpaceCase{"perturbed_tetrahedra", BoxCells::tetrahedra, {4, 8, 12}, 0.2}),
     [](const auto& info) { return info.param.name; });
 
 TEST_P(OrderInSpace, of_a_steady_temperature_is_two) {

@@ -183,14 +183,21 @@ TEST_P(Growth, has_no_negative_eigenvalues_on_beams_of_stretched_cells) {
   p.analysis = SolidParameters::Analysis::dynamic;
   p.material = {1, 1, 0.3};
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  int n_negative = 0;
   for (const auto cells : {BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed, BoxCells::hexahedra})
     for (const double stretch : {1.0, 2.5, 4.0, 6.0}) {
-      if (GetParam() == FaceGradient::corrected && stretch > 2.5) continue;  // two cells across: too coarse
       const auto solid = make_solid(make_box(cells, {6, 2, 2}, Vec3::Zero(), Vec3(6 * stretch, 2, 2)), p);
       double least = std::numeric_limits<double>::max();
       for (const auto& value : eigenvalues(solid->body())) least = std::min(least, value.real());
-      EXPECT_GT(least, 0) << int(cells) << " stretched " << stretch;
+      // The limit that solid_solver/README.md names: two cells across are too few there.
+      const bool beyond =
+          GetParam() == FaceGradient::corrected && stretch > 2.5 && cells != BoxCells::hexahedra;
+      if (beyond)
+        n_negative += least < 0;
+      else
+        EXPECT_GT(least, 0) << int(cells) << " stretched " << stretch;
     }
+  EXPECT_EQ(n_negative > 0, GetParam() == FaceGradient::corrected) << "the limit has moved: say so";
 }
 
 TEST_P(Growth, of_the_trapezoidal_rule_is_predicted) {
@@ -220,6 +227,20 @@ TEST_P(Growth, of_the_trapezoidal_rule_is_predicted) {
     RecordProperty(perturbation > 0 ? "predicted_perturbed" : "predicted", fmt::format("{:.4f}", predicted));
     RecordProperty(perturbation > 0 ? "measured_perturbed" : "measured", fmt::format("{:.4f}", measured));
     EXPECT_NEAR(measured / predicted, 1, 0.1);
+  }
+}
+
+/// The same for a quarter of the time, in which the rule without dissipation grows sixfold (rates above 0.05 1/s).
+TEST_P(Growth, does_not_begin_with_dissipative_schemes) {
+  constexpr double dt = 0.01;
+  SolidParameters p = beam(GetParam());
+  const auto& values = beam_eigenvalues(GetParam(), 0.2);
+  ASSERT_GT(largest_rate(values, {TimeScheme::trapezoidal}, dt), 0.05);
+  for (const TimeSchemeParameters& scheme :
+       {TimeSchemeParameters{TimeScheme::bathe}, TimeSchemeParameters{TimeScheme::generalised_alpha, 0.5}}) {
+    EXPECT_LT(largest_rate(values, scheme, dt), 1e-5);
+    p.time_scheme = scheme;
+    EXPECT_NEAR(energy_kept(p, beam_mesh(0.2), dt, 25), 1, 0.01);
   }
 }
 

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the house: formatting, READMEs, namespaces, presets, what the demo builds, clang-tidy, the sanitizer build."""
+import collections
+import json
+import os
+import pathlib
+import re
+
+from validation.job import Bar
+from validation.parts.trust_runs import tests
+
+MOST_LINES = 40  # of a README
+PROGRAMS = ("coupler", "fluid_solver", "solid_solver", "mesh_mover")
+SANITIZER = "a build of the preset asan: build-asan, or the folder that COUPLET_ASAN_BUILD names"
+
+
+def rooms(root):
+    """Folders with sources of the programs, without tests."""
+    return sorted({path.parent for path in root.glob("*/*.cpp")} | {path.parent for path in root.glob("common/*/*.hpp")}
+                  - {root / "tests"})
+
+
+def formatting(job):
+    text = (job.root / ".clang-format").read_text()
+    off = [key for key in ("ReflowComments", "BreakStringLiterals") if re.search(rf"^{key}: false$", text, re.M)]
+    passed, total, _, _ = job.ctest("^architecture_includes")
+    return f"{' and '.join(off) or 'none'} off, {passed} of {total} tests of the format pass", len(off) == 2 and passed == total == 1
+
+
+def readmes(job):
+    lines = {room.relative_to(job.root): len((room / "README.md").read_text().splitlines()) if (room / "README.md").exists() else 0
+             for room in rooms(job.root) if room.parts[-1] not in ("build", "benchmarks")}
+    lacking = [str(room) for room, n in lines.items() if n == 0]
+    long = [f"{room} {n}" for room, n in lines.items() if n > MOST_LINES]
+    return (f"{len(lines) - len(lacking)} of {len(lines)} rooms have one{': not ' + ', '.join(lacking) if lacking else ''}; "
+            f"longer: {', '.join(long) or 'none'}"), not lacking and not long
+
+
+def namespaces(job):
+    """Outer namespaces of the headers; those of a file's own details (couplet::x within couplet) are part of it."""
+    mixed = []
+    for room in rooms(job.root):
+        found = collections.Counter()
+        for header in room.glob("*.hpp"):
+            found.update(re.findall(r"^namespace (\w+(?:::\w+)*) \{", header.read_text(), re.M))
+        homes = {name for name in found if not any(name.startswith(other + "::") for other in found if other != name)}
+        if len({home for home in homes if home.startswith("couplet")}) > 1:
+            mixed.append(f"{room.relative_to(job.root)} {sorted(homes)}")
+    return f"{len(mixed)} rooms mix them{': ' + ', '.join(mixed) if mixed else ''}", not mixed
+
+
+def demo(job):
+    text = (job.root / "scripts/demo").read_text()
+    count = lambda *targets: len(job.run(["ninja", "-C", job.build, "-t", "commands", *targets]).stdout.splitlines())
+    part, whole = count(*PROGRAMS), count("all")
+    named = re.search(r"^scripts/build release (.+)$", text, re.M)
+    return f"{part} of {whole} steps", bool(named) and set(named[1].split()) == set(PROGRAMS) and 0 < part < 0.6 * whole
+
+
+def presets(job):
+    made = json.loads((job.root / "CMakePresets.json").read_text())
+    return ", ".join(p["name"] for p in made["configurePresets"]), all(
+        any(p["name"] == "fast" for p in made[kind]) for kind in ("configurePresets", "buildPresets", "testPresets"))
+
+
+def tidy(job):
+    result = job.run([job.root / "scripts/tidy", "common/base/text.cpp"], 600, cwd=job.root)
+    return f"exit code {result.returncode} on one source", result.returncode == 0
+
+
+def documented(job):
+    text = (job.root / "docs/quickstart.md").read_text()
+    return "docs/quickstart.md, 'A case is code'", "## A case is code" in text and "--allow-commands" in text
+
+
+def sanitizer_build(job):
+    folder = pathlib.Path(os.environ.get("COUPLET_ASAN_BUILD", job.root / "build-asan"))
+    if not (folder / "bin/fluid_solver").exists():
+        raise FileNotFoundError(f"there is no {SANITIZER}")
+    return folder
+
+
+def sanitized(job):
+    result = job.run(["ctest", "--test-dir", sanitizer_build(job), "-LE", "long", "-j", os.cpu_count(), "--output-on-failure"], 4 * 3600)
+    sums = re.search(r"(\d+)% tests passed, (\d+) tests failed out of (\d+)", result.stdout)
+    lost = re.findall(r"\d+ - (\S+) \((?:Failed|Timeout|Not Run|SEGFAULT)", result.stdout)
+    reports = len(re.findall(r"ERROR: AddressSanitizer|runtime error:|LeakSanitizer", result.stdout))
+    return (f"{int(sums[3]) - int(sums[2])} of {sums[3]} tests pass, {reports} reports of the sanitizers"
+            f"{' (lost: ' + ', '.join(lost[:4]) + ')' if lost else ''}"), int(sums[2]) == 0 and int(sums[3]) > 200 and reports == 0
+
+
+def corpora(job):
+    """Whole fuzzers with the sanitizers on."""
+    counts = {"fuzz_meshes": 10000, "fuzz_checkpoints": 2000,
+              **{f"fuzz_yaml_{p}": 4000 for p in ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "coupler")}}
+    folder, failed = sanitizer_build(job), []
+    for name, count in counts.items():
+        program = next(p for p in (folder / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK))
+        result = job.run(["env", f"COUPLET_FUZZ_COUNT={count}", program], 3 * 3600, cwd=job.scratch)
+        if result.returncode != 0 or re.search(r"AddressSanitizer|runtime error:", result.stdout + result.stderr):
+            failed.append(name)
+    return f"{len(counts) - len(failed)} of {len(counts)} corpora clean{': not ' + ', '.join(failed) if failed else ''}", not failed
+
+
+BARS = [
+    Bar("house: comments and strings keep their lines, sources are formatted", "both off, test passes", formatting),
+    Bar("house: a README in each room, at most 40 lines", "all", readmes),
+    Bar("house: one namespace a folder", "none mixed", namespaces),
+    Bar("house: scripts/demo builds the programs alone", "< 60 % of all steps", demo),
+    Bar("house: a preset 'fast' to configure, build and test with", "there", presets),
+    Bar("house: clang-tidy runs (scripts/tidy)", "exit code 0", tidy, long=True),
+    Bar("tables: what only reports is not counted, what is stale is listed, what was not asked so says it", "tests pass",
+        tests("^cases_validation_tables", 1)),
+    Bar("docs: a case is code", "said", documented),
+    Bar("sanitizer build: the whole quick suite", "clean", sanitized, long=True, but="timings do not count; needs " + SANITIZER),
+    Bar("sanitizer build: the corpora", "clean", corpora, long=True, but="the 1 000 real runs are left to the release build"),
+]
