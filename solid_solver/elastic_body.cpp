@@ -110,7 +110,7 @@ bool symmetric_suits(const SolidParameters& p) {
 
 VolumeStrain volume_strain_of(const SolidParameters& p) {
   using Chosen = MethodParameters::VolumeStrain;
-  if (p.method.volume_strain == Chosen::faces) return VolumeStrain::faces;
+  if (is_updated_lagrangian(p) || p.method.volume_strain == Chosen::faces) return VolumeStrain::faces;
   if (p.method.volume_strain == Chosen::cells) return VolumeStrain::cells;
   if (p.method.volume_strain == Chosen::shared) return VolumeStrain::shared;
   const bool plane_stress = p.dimension == 2 && p.plane == SolidParameters::Plane::stress;

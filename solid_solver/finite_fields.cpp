@@ -5,18 +5,15 @@
 
 namespace couplet {
 
-/// The kernel at the accepted displacement. Collective.
-void SolidFields::linearise_accepted() const {
-  std::vector<double> rows(elastic_.n_unknowns());
-  body_.finite()->kernel().forget_start();
-  body_.finite()->kernel().linearise(body_.unknowns_of(state_.cell_u, state_.face_u), state_.known, 0, rows);
+/// F and P of the accepted state. Collective.
+void SolidFields::visit_accepted(const LargeStrain::Take& take) const {
+  body_.finite()->visit(body_.unknowns_of(state_.cell_u, state_.face_u), state_.known, take);
 }
 
 /// Cauchy's stress sigma = P F^T / J of local faces [Pa].
 std::vector<Tensor3> SolidFields::finite_face_stress(Index first, Index count) const {
-  linearise_accepted();
   std::vector<Tensor3> stress(count, Tensor3::Zero());
-  body_.finite()->kernel().visit([&](Index f, const Tensor3& deformation, const Tensor3& p) {
+  visit_accepted([&](Index f, const Tensor3& deformation, const Tensor3& p) {
     if (f < first || f >= first + count) return;
     stress[f - first] = p * deformation.transpose() / deformation.determinant();
   });
@@ -26,10 +23,9 @@ std::vector<Tensor3> SolidFields::finite_face_stress(Index first, Index count) c
 /// Of a cell by the pyramids over its faces: sum V_fP P F^T / sum V_fP J, the mean over the deformed cell. The
 /// ghosts' faces are another rank's.
 std::vector<Tensor3> SolidFields::finite_cell_stress() const {
-  linearise_accepted();
   constexpr int size = 10;
   std::vector<double> sums(std::size_t(mesh_.cells.n_local()) * size, 0);
-  body_.finite()->kernel().visit([&](Index f, const Tensor3& deformation, const Tensor3& p) {
+  visit_accepted([&](Index f, const Tensor3& deformation, const Tensor3& p) {
     const auto [here, there] = pyramids(mesh_, f);
     const Tensor3 tau = p * deformation.transpose();
     const double j = deformation.determinant();

@@ -27,8 +27,6 @@ constexpr double shortest = 1. / 128;
 // Forcing of the linear solves.
 constexpr double loosest = 0.05, tightest = 1e-4, with_pressures = 1e-6;
 constexpr std::size_t solvers_kept = 2;
-// Of a stiffness, in a residual that is nothing but rounding.
-constexpr double last_digits = 2e-15;
 // From this Poisson's ratio on pressures are carried along, and the compact operator says too little of the tangent (in
 // motion inertia helps it further); bodies of so many cells can have factors.
 constexpr double factors_from_ratio = 0.48, factors_from_dynamic = 0.499;
@@ -68,7 +66,7 @@ FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const 
   mixed_ = rows.volume_by_cells() && ratio >= factors_from_ratio;
   r_.resize(rows.n_unknowns());
   trial_ = du_ = r_;
-  noise_ = noise();
+  noise_ = rounding_of_forces(mesh, rows);
 }
 
 std::string FiniteStrain::name() const {
@@ -76,7 +74,7 @@ std::string FiniteStrain::name() const {
                      by_ == TangentSolver::By::factors ? " (factors of the tangent)" : "");
 }
 
-TangentSolver& FiniteStrain::solver_for(double mass_factor, const std::vector<double>& node_inertia) {
+TangentSolver& FiniteStrain::solver_for(double mass_factor, std::span<const double> node_inertia) {
   const auto same = [&](const std::unique_ptr<TangentSolver>& s) {
     return std::abs(s->mass_factor() - mass_factor) <= 1e-10 * mass_factor;
   };
@@ -89,18 +87,6 @@ TangentSolver& FiniteStrain::solver_for(double mass_factor, const std::vector<do
   solvers_.insert(solvers_.begin(),
                   std::make_unique<TangentSolver>(mesh_, rows_, *kernel_, mass_factor, node_inertia, by_));
   return *solvers_.front();
-}
-
-/// What rounding leaves in the rows at least: some last digits of the stiffness times the area of a face.
-double FiniteStrain::noise() const {
-  double square = 0;
-  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
-    if (mesh_.owner[f] >= mesh_.cells.n_owned()) continue;
-    const LameConstants lame = rows_.lame(mesh_.owner[f]);
-    const double force = (2 * lame.mu + lame.lambda) * mesh_.reference.face_area[f].norm();
-    square += 2 * force * force;
-  }
-  return last_digits * std::sqrt(sum(mesh_.comm, square));
 }
 
 /// r = b - A(u) and its norm; infinite where a face is inside out.
@@ -168,20 +154,9 @@ void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::sp
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += du_[i];
 }
 
-/// The face with the smallest det F of all ranks, in words.
 std::string FiniteStrain::where_worst() const {
-  struct Place {
-    double ratio, x[3];
-  };
   const FiniteKernel::Worst worst = kernel_->worst();
-  Place here{worst.ratio, {0, 0, 0}};
-  if (worst.face >= 0)
-    for (int a = 0; a < 3; ++a) here.x[a] = mesh_.reference.cell_centre[mesh_.owner[worst.face]][a];
-  const std::vector<Place> all = all_gather(mesh_.comm, std::vector<Place>{here});
-  const Place& w = *std::ranges::min_element(all, {}, &Place::ratio);
-  if (!(w.ratio < 1)) return "No cell is compressed.";
-  return fmt::format("The worst cell is at ({:.4g}, {:.4g}, {:.4g}) m (undeformed), where det F = {:.3g}.",
-                     w.x[0], w.x[1], w.x[2], w.ratio);
+  return worst_cell(mesh_, worst.ratio, worst.face);
 }
 
 /// u + s du with the largest s of 1, 1/2, ... that leaves det F positive and the residual below `most`.
@@ -210,9 +185,15 @@ double FiniteStrain::scale_of(const Load& load, std::span<const double> u, doubl
   return std::max(inner, residual);
 }
 
-SolveStatistics FiniteStrain::solve(const Load& load, const std::vector<double>& node_inertia,
-                                    std::span<double> u) {
-  TangentSolver& solver = solver_for(load.mass_factor, node_inertia);
+SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> u) {
+  if (load.is_conserving) kernel_->set_start(load.accepted, load.accepted_known);
+  const SolveStatistics statistics = iterate(load, u);
+  kernel_->forget_start();
+  return statistics;
+}
+
+SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
+  TangentSolver& solver = solver_for(load.mass_factor, load.node_inertia);
   solver.forget_factors();
   SolveStatistics statistics;
   iterates_.clear();
@@ -276,12 +257,23 @@ std::string FiniteStrain::text() const {
                      iterates_.empty() ? 1.0 : iterates_.back().ratio);
 }
 
-double FiniteStrain::energy(std::span<const double> unknowns, std::span<const double> known) {
+std::vector<double> FiniteStrain::forces(std::span<const double> unknowns, std::span<const double> known) {
   std::vector<double> rows(rows_.n_unknowns());
+  kernel_->linearise(unknowns, known, 0, rows);
+  return rows;
+}
+
+double FiniteStrain::energy(std::span<const double> unknowns, std::span<const double> known) {
   kernel_->forget_start();
   kernel_->set_own_pressures(false);
-  kernel_->linearise(unknowns, known, 0, rows);
+  forces(unknowns, known);
   return sum(mesh_.comm, kernel_->energy());
+}
+
+void FiniteStrain::visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) {
+  kernel_->forget_start();
+  forces(unknowns, known);
+  kernel_->visit(take);
 }
 
 }  // namespace couplet

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/elasticity/finite_kernel.hpp"
+#include "solid_solver/large_strain.hpp"
 #include "solid_solver/parameters.hpp"
 #include "solid_solver/tangent_solver.hpp"
 
@@ -25,36 +26,29 @@ struct NewtonIterate {
 /// 0.9 (r / r_before)^2, between 1e-4 and 0.05), and a line search that keeps det F positive. The residual may
 /// grow on the way: a beam that is bent passes states whose membrane forces are far larger than those at either
 /// end.
-class FiniteStrain {
+class FiniteStrain final : public LargeStrain {
  public:
   /// Throws Error for what finite strain cannot have. Mesh and rows by reference. Collective.
   FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters);
 
-  FiniteKernel& kernel() { return *kernel_; }
-  /// For the log.
-  std::string name() const;
-  const FiniteLaw& law(std::size_t material) const { return *laws_[material]; }
+  std::string name() const override;
   /// Of the local cells; dynamic analyses.
   void set_density(std::span<const double> of_cells) { kernel_->set_density(of_cells); }
-  struct Load {
-    std::span<const double> rows;   ///< b
-    std::span<const double> known;  ///< columns of the operator; empty: zeros
-    std::span<const double>
-        before;              ///< the known columns of the first guess, from which a first linear step leads
-                             ///< to `known`; empty: the guess has them already
-    double mass_factor = 0;  ///< m
-    bool is_conserving = false;  ///< the kernel has a start (set_start)
-    /// Of the accepted state, from which pressures of their own start; empty: from the first guess.
-    std::span<const double> accepted{}, accepted_known{};
-  };
-  /// `u`: the first guess on entry. Throws SolveFailure, `u` being of no use then. Collective.
-  SolveStatistics solve(const Load& load, const std::vector<double>& node_inertia, std::span<double> u);
+  using Load = LargeStrainLoad;
+  SolveStatistics solve(const Load& load, std::span<double> u) override;
+  void set_pressure(std::vector<double> of_faces) override { kernel_->set_pressure(of_faces); }
+  std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
+  double energy(std::span<const double> unknowns, std::span<const double> known) override;
+  void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
+  Vec3 pressure_force() override { return kernel_->pressure_force(); }
+  std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                   const ElasticLoads& loads) override {
+    return kernel_->holding_forces(unknowns, known, loads);
+  }
   /// Of the last solve.
   const std::vector<NewtonIterate>& iterates() const { return iterates_; }
   /// "3 iterations of Newton's method, ...", of the last solve.
   std::string text() const;
-  /// E of a displacement over all ranks [J]. Collective.
-  double energy(std::span<const double> unknowns, std::span<const double> known);
 
  private:
   double residual(const Load& load, std::span<const double> u, double& ratio);
@@ -63,8 +57,8 @@ class FiniteStrain {
   bool search(const Load& load, std::span<double> u, NewtonIterate& now, double most);
   void follow_known(const Load& load, TangentSolver& solver, std::span<double> u);
   double scale_of(const Load& load, std::span<const double> u, double residual);
-  double noise() const;
-  TangentSolver& solver_for(double mass_factor, const std::vector<double>& node_inertia);
+  SolveStatistics iterate(const Load& load, std::span<double> u);
+  TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia);
   std::string where_worst() const;
 
   const Mesh& mesh_;

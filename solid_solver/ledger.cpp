@@ -171,8 +171,7 @@ void SolidLedger::add_finite_work(const SolvedStage& stage) const {
   const auto& [work, last, before, after] = stage;
   const std::vector<double> change = change_over(stage);
   const std::vector<double> loads = mean_of_ends(work, last.load_rows);
-  std::vector<double> force(last.unknowns.size());
-  body_.finite()->kernel().linearise(last.unknowns, work.known, 0, force);
+  const std::vector<double> force = body_.finite()->forces(last.unknowns, work.known);
   double inside = 0, outside = 0;
   for (std::size_t i = 0; i < change.size(); ++i) {
     inside += force[i] * change[i];

@@ -20,7 +20,7 @@ void declare(config::Section& s, MethodParameters& m) {
       .doc(
           "block-coupled: one assembled system of all displacement components; segregated: one scalar system "
           "a "
-          "component and outer iterations; newton-krylov: the operator applied without a matrix; auto: by "
+          "component and outer iterations (with kinematics finite-strain: the thesis's updated-Lagrangian method); newton-krylov: the operator applied without a matrix; auto: by "
           "size and "
           "scene, the log says what and why");
   s.choice("face-gradient", m.face_gradient,

@@ -23,6 +23,31 @@ bool is_held(const SolidParameters& p) {
   });
 }
 
+/// What the thesis's own method at finite strain cannot have, each with the key to change.
+void check_updated_lagrangian(config::Section& s, SolidParameters& p) {
+  using Method = MethodParameters;
+  const auto refuse = [&](const char* key, bool is_wrong, const char* why) {
+    s.check([&p, is_wrong,
+             why] { return is_updated_lagrangian(p) && is_wrong ? std::string(why) : std::string(); },
+            key);
+  };
+  refuse(
+      "solution-method",
+      p.method.face_gradient == Method::FaceGradient::symmetric ||
+          p.method.volume_strain == Method::VolumeStrain::cells,
+      "'type: segregated' at finite strain is the thesis's updated-Lagrangian method on 'face-gradient: thesis' with "
+      "the volume strain of the faces; the symmetric gradient goes with 'type: newton-krylov' (or 'auto')");
+  refuse(
+      "materials", p.materials.size() > 1,
+      "'solution-method: {type: segregated}' at finite strain knows one material; take 'type: newton-krylov' (or 'auto')");
+  refuse(
+      "energy-momentum", p.energy_momentum,
+      "'solution-method: {type: segregated}' at finite strain has no conserving stress; take 'type: newton-krylov'");
+  refuse(
+      "output", p.output.energies,
+      "'solution-method: {type: segregated}' at finite strain writes no energies; take 'type: newton-krylov' (or 'auto')");
+}
+
 }  // namespace
 
 void check_together(config::Section& s, SolidParameters& p) {
@@ -98,12 +123,15 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
       },
       "energy-momentum");
   refuse("time-step-control", p.step_control.has_value(), "it estimates the error of the linear solid only");
+  const bool is_segregated = p.method.type == Method::Type::segregated;
   refuse(
       "solution-method",
-      p.method.type == Method::Type::segregated || p.method.type == Method::Type::block_coupled ||
-          p.method.face_gradient == Method::FaceGradient::thesis ||
-          p.method.face_gradient == Method::FaceGradient::corrected,
-      "finite strain is solved by Newton's method on 'face-gradient: symmetric' ('type: newton-krylov' or 'auto')");
+      p.method.type == Method::Type::block_coupled ||
+          p.method.face_gradient == Method::FaceGradient::corrected ||
+          (!is_segregated && p.method.face_gradient == Method::FaceGradient::thesis),
+      "finite strain is solved by Newton's method on 'face-gradient: symmetric' ('type: newton-krylov' or 'auto'), or "
+      "by 'type: segregated' on 'face-gradient: thesis'");
+  check_updated_lagrangian(s, p);
   bool has_tables = false;
   for (const SolidMaterial& m : materials_of(p))
     has_tables = has_tables || m.heat.youngs_modulus || m.heat.poissons_ratio;

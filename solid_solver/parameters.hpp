@@ -65,6 +65,12 @@ inline LameConstants lame_constants(const SolidParameters& parameters) {
   return lame_constants(parameters, parameters.material);
 }
 
+/// Large strain by the thesis's own method.
+inline bool is_updated_lagrangian(const SolidParameters& p) {
+  return p.kinematics == SolidParameters::Kinematics::finite_strain &&
+         p.analysis != SolidParameters::Analysis::thermal &&
+         p.method.type == MethodParameters::Type::segregated;
+}
 inline bool has_finite_strain(const SolidParameters& p) {
   return p.kinematics == SolidParameters::Kinematics::finite_strain &&
          p.analysis != SolidParameters::Analysis::thermal;

@@ -9,6 +9,7 @@
 #include "solid_solver/mesh_checks.hpp"
 #include "solid_solver/rigid_modes.hpp"
 #include "solid_solver/solution_method.hpp"
+#include "solid_solver/updated_lagrangian.hpp"
 
 namespace couplet {
 
@@ -39,11 +40,21 @@ SolidBody::SolidBody(Mesh mesh, SolidParameters parameters)
       kernel_(mesh_, elastic_, face_gradient_scheme(parameters_)),
       prescribed_(mesh_, boundaries_, elastic_) {
   check_supports();
-  if (has_finite_strain(parameters_)) finite_ = std::make_unique<FiniteStrain>(mesh_, elastic_, parameters_);
+  if (has_finite_strain(parameters_)) make_finite();
   find_mass();
   if (!parameters_.body_force.empty())
     body_force_ = make_expressions(parameters_.body_force, mesh_.dim, "body-force");
   effects_ = make_effects(mesh_, elastic_, parameters_);
+}
+
+void SolidBody::make_finite() {
+  if (parameters_.method.type == MethodParameters::Type::segregated) {
+    finite_ = std::make_unique<UpdatedLagrangian>(mesh_, elastic_, parameters_);
+    return;
+  }
+  auto newton = std::make_unique<FiniteStrain>(mesh_, elastic_, parameters_);
+  newton_ = newton.get();
+  finite_ = std::move(newton);
 }
 
 void SolidBody::check_supports() const {
@@ -79,7 +90,7 @@ void SolidBody::find_mass() {
   std::vector<double> densities;
   for (Index c = 0; c < mesh_.cells.n_local(); ++c) densities.push_back(density(c));
   has_mass_ = kernel_.set_density(densities);
-  if (finite_) finite_->set_density(densities);
+  if (newton_) newton_->set_density(densities);
 }
 
 bool SolidBody::apply_stiffness() {

@@ -12,6 +12,7 @@
 #include "solid_solver/boundaries.hpp"
 #include "solid_solver/effect.hpp"
 #include "solid_solver/finite_strain.hpp"
+#include "solid_solver/large_strain.hpp"
 #include "solid_solver/parameters.hpp"
 
 namespace couplet {
@@ -38,7 +39,9 @@ class SolidBody final {
   /// The rows of elastic() with the face gradient that was chosen.
   const ElasticKernel& kernel() const { return kernel_; }
   /// Large strain: in place of the kernel's Hooke's law; null: small.
-  FiniteStrain* finite() const { return finite_.get(); }
+  LargeStrain* finite() const { return finite_.get(); }
+  /// The same if Newton's method solves for it, else null.
+  FiniteStrain* newton() const { return newton_; }
   const PrescribedDisplacement& prescribed() const { return prescribed_; }
   /// Those that the scene has.
   const std::vector<std::unique_ptr<SolidEffect>>& effects() const { return effects_; }
@@ -78,6 +81,7 @@ class SolidBody final {
 
  private:
   void check_supports() const;
+  void make_finite();
   void find_mass();
 
   const Mesh mesh_;
@@ -86,7 +90,8 @@ class SolidBody final {
   SolidBoundaries boundaries_;
   ElasticOperator elastic_;
   ElasticKernel kernel_;
-  std::unique_ptr<FiniteStrain> finite_;
+  std::unique_ptr<LargeStrain> finite_;
+  FiniteStrain* newton_ = nullptr;
   bool has_mass_ = false;
   PrescribedDisplacement prescribed_;
   std::vector<Expression> body_force_;

@@ -66,6 +66,7 @@ void SolidStepper::save_state(CheckpointWriter& file) const {
   }
   if (body_.is_dynamic())
     file.write("load-work", std::vector<double>{state_.load_work, state_.energies.initial_kinetic});
+  if (body_.finite()) body_.finite()->save(file);
 }
 
 void SolidStepper::load_state(CheckpointReader& file) {
@@ -83,6 +84,8 @@ void SolidStepper::load_state(CheckpointReader& file) {
     state_.load_work = work.at(0);
     state_.energies.initial_kinetic = work.at(1);
   }
+  if (body_.finite())
+    body_.finite()->load(file, body_.unknowns_of(state_.cell_u, state_.face_u), state_.known);
 }
 
 void SolidStepper::save_guesses(CheckpointWriter& file) const {

@@ -60,7 +60,7 @@ class SolidFields final {
   std::vector<PatchForce> reactions_by_trial_functions() const;
   ElasticLoads loads_now() const;
   // Of large strain, finite_fields.cpp.
-  void linearise_accepted() const;
+  void visit_accepted(const LargeStrain::Take& take) const;
   std::vector<Tensor3> finite_face_stress(Index first, Index count) const;
   std::vector<Tensor3> finite_cell_stress() const;
 

@@ -9,7 +9,7 @@
 namespace couplet {
 
 std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) const {
-  if (body_.kernel().is_symmetric()) return reactions_by_trial_functions();
+  if (body_.kernel().is_symmetric() || body_.finite()) return reactions_by_trial_functions();
   std::vector<PatchForce> forces;
   // One pass over the faces between the first and the last that is held, often few of the boundary's.
   Index first = mesh_.n_flux_faces(), end = mesh_.n_interior;
@@ -36,10 +36,9 @@ std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) c
 std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
   std::vector<PatchForce> forces;
   const std::vector<double> u = body_.unknowns_of(state_.cell_u, state_.face_u);
-  if (body_.finite()) body_.finite()->kernel().set_pressure(body_.boundaries().pressures(state_.time));
-  const std::vector<Vec3> held = body_.finite()
-                                     ? body_.finite()->kernel().holding_forces(u, state_.known, loads_now())
-                                     : body_.kernel().holding_forces(u, state_.known, loads_now());
+  if (body_.finite()) body_.finite()->set_pressure(body_.boundaries().pressures(state_.time));
+  const std::vector<Vec3> held = body_.finite() ? body_.finite()->holding_forces(u, state_.known, loads_now())
+                                                : body_.kernel().holding_forces(u, state_.known, loads_now());
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     if (!body_.boundaries().holds(p)) continue;
     Vec3 force = held[p];
@@ -66,7 +65,7 @@ ElasticLoads SolidFields::loads_now() const {
 
 Vec3 SolidFields::total_load() const {
   Vec3 load = last_.body_force + last_.face_force;
-  if (body_.finite()) load += body_.finite()->kernel().pressure_force();
+  if (body_.finite()) load += body_.finite()->pressure_force();
   for (int a = 0; a < 3; ++a) load[a] = sum(mesh_.comm, load[a]);
   return load;
 }

@@ -107,6 +107,7 @@ void SolidStepper::solve(std::vector<double> interface_load) {
   elastic_.impose_known(trial_.known, trial_.face_u);
   elastic_.impose_known(trial_.known_rate, trial_.face_v);
   update_trial_ghosts();
+  if (body_.finite()) body_.finite()->end_step(body_.unknowns_of(trial_.cell_u, trial_.face_u), trial_.known);
   if (parameters_.step_control) judge_step();
 }
 
@@ -123,6 +124,7 @@ void SolidStepper::accept_step() {
   for (const auto& effect : body_.effects()) effect->accept_step();
   for (const StageWork& work : stages_)
     if (ResidualProjection* projection = work.system->projection()) projection->accept();
+  if (body_.finite()) body_.finite()->accept();
   std::swap(state_, trial_);
   // What is written next needs room; a dynamic run may be continued from it, with the same first guesses.
   if (step_.is_last && !body_.is_dynamic()) systems_.clear();

@@ -95,6 +95,7 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
 
 FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters) {
   using FaceGradient = MethodParameters::FaceGradient;
+  if (is_updated_lagrangian(parameters)) return FaceGradientScheme::thesis;
   if (has_finite_strain(parameters) || has_orthotropic(parameters)) return FaceGradientScheme::symmetric;
   switch (parameters.method.face_gradient) {
     case FaceGradient::symmetric:

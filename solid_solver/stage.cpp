@@ -42,9 +42,9 @@ SolidSystem& SolidStepper::system_for(double mass_factor) {
   if (mass_factor > 0)
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
       system->inertia.push_back(mass_factor * body_.density(c) * mesh_.reference.volume[c]);
-  if (body_.finite()) {
+  if (body_.newton()) {
     system->node_inertia = node_inertia(problem_of(*system));
-  } else {
+  } else if (!body_.finite()) {
     system->method = make_solution_method(problem_of(*system), parameters_.method);
     elastic_.forget_faces();  // what the method needs of them it has by now
   }
@@ -156,17 +156,15 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
 
 /// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
 SolveStatistics SolidStepper::solve_finite(const StageWork& work) {
-  body_.finite()->kernel().set_pressure(body_.boundaries().pressures(work.place_time));
-  if (parameters_.energy_momentum)
-    body_.finite()->kernel().set_start(body_.unknowns_of(state_.cell_u, state_.face_u), state_.known);
-  FiniteStrain::Load load{last_.rhs, work.known, {}, work.system->mass_factor, parameters_.energy_momentum};
+  body_.finite()->set_pressure(body_.boundaries().pressures(work.place_time));
+  LargeStrainLoad load{last_.rhs, work.known, {}, work.system->mass_factor, parameters_.energy_momentum};
   if (!body_.is_dynamic() && !work.known.empty()) load.before = state_.known;
   const std::vector<double> accepted = body_.unknowns_of(state_.cell_u, state_.face_u);
   load.accepted = accepted;
   load.accepted_known = state_.known;
-  const SolveStatistics statistics = body_.finite()->solve(load, work.system->node_inertia, last_.unknowns);
-  body_.finite()->kernel().forget_start();
-  return statistics;
+  load.inertia = work.system->inertia;
+  load.node_inertia = work.system->node_inertia;
+  return body_.finite()->solve(load, last_.unknowns);
 }
 
 void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {

@@ -35,7 +35,7 @@ Tensor3 rotation_of(const Tensor3& f) {
 }  // namespace
 
 TangentSolver::TangentSolver(const Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel,
-                             double mass_factor, const std::vector<double>& node_inertia, By by)
+                             double mass_factor, std::span<const double> node_inertia, By by)
     : mesh_(mesh),
       rows_(rows),
       kernel_(kernel),
@@ -51,7 +51,9 @@ TangentSolver::TangentSolver(const Mesh& mesh, const ElasticOperator& rows, Fini
     const GlobalIndex cells = mesh.cells.n_global();
     if (cells >= small_body) {
       const GlobalIndex aggregates = std::clamp<GlobalIndex>(cells / cells_of_aggregate, 8, most_aggregates);
-      modes_ = std::make_unique<CurrentRigidModes>(mesh, rows, static_cast<int>(aggregates), node_inertia);
+      modes_ =
+          std::make_unique<CurrentRigidModes>(mesh, rows, static_cast<int>(aggregates),
+                                              std::vector<double>(node_inertia.begin(), node_inertia.end()));
     }
     turned_.resize(n);
     correction_.resize(n);

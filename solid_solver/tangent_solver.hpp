@@ -24,7 +24,7 @@ class TangentSolver {
   /// `node_inertia`: mass factor times mass of the unknown nodes [N/m]; empty: static. All by reference.
   /// Collective.
   TangentSolver(const Mesh& mesh, const ElasticOperator& rows, FiniteKernel& kernel, double mass_factor,
-                const std::vector<double>& node_inertia, By by);
+                std::span<const double> node_inertia, By by);
 
   double mass_factor() const { return mass_factor_; }
   /// A new load or step: factors of an earlier one are not used again, so that a run that continues takes the same way.
@@ -47,7 +47,7 @@ class TangentSolver {
   const ElasticOperator& rows_;
   FiniteKernel& kernel_;
   double mass_factor_;
-  const std::vector<double>& node_inertia_;
+  std::span<const double> node_inertia_;
   By by_;
   bool is_unsymmetric_ = false;           // a pressure follows the surface
   std::unique_ptr<SparseMatrix> matrix_;  // of factors

@@ -115,7 +115,18 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
   told("material: {" + body + ", law: yeoh}\n", "with 'kinematics: finite-strain' only");
   told("energy-momentum: true\nmaterial: {" + body + "}\n", "it needs 'kinematics: finite-strain'");
   told(large + "damping: {stiffness: 1}\nmaterial: {" + body + "}\n", "damps rigid rotations");
-  told(large + "solution-method: {type: segregated}\nmaterial: {" + body + "}\n", "Newton's method");
+  told(large + "solution-method: {type: block-coupled}\nmaterial: {" + body + "}\n", "Newton's method");
+  told(large + "solution-method: {face-gradient: thesis}\nmaterial: {" + body + "}\n", "Newton's method");
+  const std::string thesis = large + "solution-method: {type: segregated}\n",
+                    of = "material: {" + body + "}\n";
+  SolidParameters segregated;
+  EXPECT_THAT(read(start + thesis + of, segregated), ::testing::IsEmpty());
+  told(large + "solution-method: {type: segregated, face-gradient: symmetric}\n" + of, "updated-Lagrangian");
+  told(large + "solution-method: {type: segregated, volume-strain: cells}\n" + of, "updated-Lagrangian");
+  told(thesis + "energy-momentum: true\n" + of, "has no conserving stress");
+  told(thesis + "output: {energies: true}\n" + of, "writes no energies");
+  told(thesis + "materials: {a: {zones: [a], " + body + "}, b: {zones: [b], " + body + "}}\n",
+       "knows one material");
   told(large + "output: {spectrum: true}\nmaterial: {" + body + "}\n", "use small-strain");
   told(large + "solution-method: {volume-strain: shared}\nmaterial: {" + body + "}\n", "no share of both");
   const std::string estimate = "output: {large-strain-estimate: true}\n";

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// The thesis's own method at large strain: its printed deflections, frames, exactness, ranks, restart, refusals.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+constexpr double E = 15.293e6, side = 0.2, length = 2;
+
+SolidParameters large(const std::string& law) {
+  SolidParameters p = box_parameters(3);
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.material = {1000, E, 0.3};
+  p.material.law = law;
+  p.method.type = MethodParameters::Type::segregated;
+  p.method.max_iterations = 20000;
+  return p;
+}
+
+/// Case E: a cantilever of square section, its tip pulled along the diagonal by K E I / L^2 times t.
+SolidParameters bent(double K) {
+  SolidParameters p = large("saint-venant-kirchhoff");
+  p.boundaries["zmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  const double force = K * E * std::pow(side, 4) / 12 / (length * length);
+  const std::string pull = fmt::format("t*{:.17g}", force / (side * side) / std::sqrt(2.0));
+  p.boundaries["zmax"] = boundary(Type::traction, {pull, pull, "0"});
+  return p;
+}
+
+RawMesh beam(int n, int along) {
+  return make_box(BoxCells::hexahedra, {n, n, along}, Vec3(-side / 2, -side / 2, 0),
+                  Vec3(side / 2, side / 2, length));
+}
+
+std::unique_ptr<Solid> make(const RawMesh& raw, const SolidParameters& p, MPI_Comm comm = MPI_COMM_WORLD) {
+  return std::make_unique<Solid>(distribute(comm, raw), p, SolidContext{});
+}
+
+/// Of the middle of the tip, over the length, on all ranks.
+double deflection(const Solid& solid) {
+  const std::vector<double> u = solid.fields().point_displacement();
+  double most = 0;
+  for (std::size_t i = 0; i < u.size(); i += 3)
+    if ((solid.body().mesh().reference_points[i / 3] - Vec3(0, 0, length)).norm() < 1e-9)
+      most = std::hypot(u[i], u[i + 1]);
+  return max(solid.body().mesh().comm, most) / length;
+}
+
+// Table 3.6, mesh 1. In one load step the frame is the undeformed body (total Lagrangian), in four it moves along.
+TEST(UpdatedLagrangian, repeats_the_printed_deflections_in_both_frames) {
+  SolidParameters p = bent(1.6);
+  if (comm_size(MPI_COMM_WORLD) > 1) return;  // ranks have tests of their own below
+  p.method.relative_tolerance = 1e-6;
+  p.method.acceleration = MethodParameters::Acceleration::aitken;
+  const auto total = make(beam(2, 20), p);
+  step(*total, 1);
+  EXPECT_NEAR(deflection(*total), 0.3922, 0.001 * 0.3922);
+  p.method.acceleration = MethodParameters::Acceleration::anderson;
+  const auto updated = make(beam(2, 20), p);
+  for (int i = 0; i < 2; ++i) step(*updated, 0.5);
+  EXPECT_NEAR(deflection(*updated), 0.3922, 0.001 * 0.3922);
+  EXPECT_NEAR(deflection(*updated), deflection(*total), 2e-4 * 0.3922);
+  EXPECT_NE(deflection(*updated), deflection(*total));
+}
+
+TEST(UpdatedLagrangian, equals_small_strain_under_small_loads) {
+  if (comm_size(MPI_COMM_WORLD) > 1) return;
+  SolidParameters p = bent(1e-6);
+  const auto finite = make(beam(2, 10), p);
+  p.kinematics = SolidParameters::Kinematics::small_strain;
+  p.method.face_gradient = FaceGradient::thesis;
+  const auto small = make(beam(2, 10), p);
+  step(*finite, 1);
+  step(*small, 1);
+  EXPECT_NEAR(deflection(*finite), deflection(*small), 1e-5 * deflection(*small));
+}
+
+/// A homogeneous deformation grows in two steps on cells that lean: F = f F_u is exact and the stress the law's.
+TEST(UpdatedLagrangian, homogeneous_deformation_is_exact_over_two_steps) {
+  SolidParameters p = large("nearly-incompressible-neo-hookean");
+  Tensor3 g;
+  g << 0.3, 0.1, 0, -0.2, 0.1, 0.05, 0.1, 0, -0.2;
+  const auto row = [&](int a) { return fmt::format("t*({}*x + {}*y + {}*z)", g(a, 0), g(a, 1), g(a, 2)); };
+  for (const char* name : {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"})
+    p.boundaries[name] = boundary(Type::fixed_displacement, {row(0), row(1), row(2)});
+  const Tensor3 f = Tensor3::Identity() + g, b = f * f.transpose();
+  const double j = f.determinant(), mu = E / 2.6, K = E / 1.2;
+  const Tensor3 wanted = K * (j - 1) * Tensor3::Identity() +
+                         mu * std::pow(j, -5. / 3) * (b - b.trace() / 3 * Tensor3::Identity());
+  for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms}) {
+    RawMesh raw = make_box(cells, {3, 3, 3}, Vec3::Zero(), Vec3::Ones());
+    perturb_interior(raw, 0.15, 7);
+    const auto solid = make(raw, p);
+    step(*solid, 0.5);
+    step(*solid, 0.5);
+    for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
+      EXPECT_LT((s - wanted).cwiseAbs().maxCoeff(), 1e-7 * wanted.norm());
+  }
+}
+
+/// A cube on three planes of symmetry that a pressure squeezes: its force follows the surface, as Newton's has it.
+TEST(UpdatedLagrangian, pressure_follows_the_surface_as_with_newton) {
+  SolidParameters p = large("neo-hookean");
+  for (const char* name : {"xmin", "ymin", "zmin"}) p.boundaries[name] = boundary(Type::symmetry);
+  p.boundaries["zmax"].type = Type::pressure;
+  p.boundaries["zmax"].pressure = {fmt::format("{}*t", 0.4 * E)};
+  const auto by = [&](MethodParameters::Type type) {
+    p.method.type = type;
+    auto solid = make(make_box(BoxCells::hexahedra, {2, 2, 2}, Vec3::Zero(), Vec3::Ones()), p);
+    step(*solid, 0.5);
+    step(*solid, 0.5);
+    const auto held = solid->fields().reactions(solid->fields().point_displacement());
+    Vec3 all = solid->fields().total_load();
+    EXPECT_GT(all.norm(), 0.4 * E);  // wider than it was
+    for (const PatchForce& one : held) all += one.force;
+    EXPECT_LT(all.norm(), 1e-7 * E);
+    return solid;
+  };
+  const auto mine = by(MethodParameters::Type::segregated), newton = by(MethodParameters::Type::automatic);
+  const auto &u = mine->stepper().state().cell_u, &v = newton->stepper().state().cell_u;
+  for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], v[i], 1e-7);
+}
+
+TEST(UpdatedLagrangian, ranks_agree) {
+  SolidParameters p = bent(1);
+  const auto whole = make(beam(2, 5), p, MPI_COMM_SELF), parts = make(beam(2, 5), p);
+  for (int i = 0; i < 2; ++i) step(*whole, 0.5), step(*parts, 0.5);
+  EXPECT_NEAR(deflection(*parts), deflection(*whole), 1e-8 * deflection(*whole));
+}
+
+TEST(UpdatedLagrangian, restart_in_the_middle_of_the_load_is_bit_for_bit) {
+  SolidParameters p = bent(2);
+  p.method.relative_tolerance = 1e-6;
+  const Mesh mesh = distribute(MPI_COMM_WORLD, beam(2, 5));
+  const auto another = [&] { return std::make_unique<Solid>(mesh, p, SolidContext{}); };
+  const auto through = another(), before = another(), after = another();
+  step(*through, 0.5);
+  step(*before, 0.5);
+  int number = getpid();
+  MPI_Bcast(&number, 1, MPI_INT, 0, MPI_COMM_WORLD);
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("updated-lagrangian-{}.h5", number);
+  {
+    CheckpointWriter writer(MPI_COMM_WORLD, file);
+    before->save(writer);
+    writer.close();
+  }
+  CheckpointReader reader(MPI_COMM_WORLD, file);
+  after->load(reader);
+  step(*through, 0.5);
+  step(*after, 0.5);
+  EXPECT_EQ(through->stepper().state().cell_u, after->stepper().state().cell_u);
+  EXPECT_EQ(through->stepper().state().face_u, after->stepper().state().face_u);
+}
+
+/// Swings like Newton's method on the other gradient: within what the gradients differ by on such cells.
+TEST(UpdatedLagrangian, swings_as_newton_does) {
+  SolidParameters p = large("neo-hookean");
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.boundaries["zmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  p.initial_velocity = {{"10*z"}, {"0"}, {"0"}};
+  p.method.relative_tolerance = 1e-7;
+  const auto tip = [&](MethodParameters::Type type) {
+    p.method.type = type;
+    const auto solid = make(make_box(BoxCells::hexahedra, {3, 3, 9}, Vec3::Zero(), Vec3(0.2, 0.2, 0.6)), p);
+    for (int i = 0; i < 5; ++i) step(*solid, 0.002);
+    double most = 0;
+    for (const double u : solid->fields().point_displacement()) most = std::max(most, u);
+    return max(MPI_COMM_WORLD, most);
+  };
+  const double mine = tip(MethodParameters::Type::segregated),
+               newton = tip(MethodParameters::Type::automatic);
+  EXPECT_GT(newton, 0.03);
+  EXPECT_NEAR(mine, newton, 0.02 * newton);
+}
+
+TEST(UpdatedLagrangian, says_what_it_cannot) {
+  SolidParameters p = bent(1);
+  p.boundaries["xmin"] = boundary(Type::spring);
+  p.boundaries["xmin"].stiffness.text = "1e6";
+  EXPECT_THAT([&] { make(beam(1, 2), p); }, ThrowsMessage<Error>(HasSubstr("not a support or springs")));
+  p = bent(1);
+  p.method.max_iterations = 5;
+  const auto solid = make(beam(2, 10), p);
+  solid->begin_step({0, 1, Scheme::standalone, 0});
+  EXPECT_THAT([&] { solid->solve({}); },
+              ThrowsMessage<SolveFailure>(HasSubstr("'solution-method.max-iterations'")));
+}
+
+}  // namespace
+}  // namespace couplet::testing
