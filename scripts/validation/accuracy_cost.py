@@ -51,9 +51,9 @@ def asked_for(name, target):
 
     def make(job):
         command = [sys.executable, job.root / "scripts/study", job.root / "configs" / f"{STUDIES[name]}.yaml", f"--build={job.build}",
-                   f"--out={job.scratch / out}-{target}", f"--for-error={target}", f"--quantity={quantity}"]
+                   f"--out={job.scratch / out}", f"--for-error={target}", f"--quantity={quantity}"]
         result = job.run(command, timeout=1800)
-        file = job.scratch / f"{out}-{target}" / f"for-error-{quantity.replace(' ', '-')}-{target.replace('%', 'pc')}.json"
+        file = job.scratch / out / f"for-error-{quantity.replace(' ', '-')}-{target.replace('%', 'pc')}.json"
         if not file.exists():
             raise RuntimeError((result.stderr or result.stdout)[-300:])
         return json.loads(file.read_text())
