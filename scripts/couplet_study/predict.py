@@ -19,6 +19,7 @@ NEAR = 1.6      # the final size over the largest that was tried, at most, befor
 NEAR_CHEAP = 1.3  # ... where it takes less than CHEAP: a run more costs nothing, and start-up hides the work of small runs
 TOO_GOOD = 0.4  # of the target: a run that is there and leaves less is no answer where a smaller size would do
 GROWTH = 1.4    # of the sizes tried
+APART = 1.25    # ratio of two sizes that an order is read from, at least
 PATIENCE = 9    # runs of one series
 BUDGET = 1.3    # seconds spent before the final run over its own, where that takes longer than CHEAP
 CHEAP = 10.0    # [s]
@@ -56,6 +57,16 @@ def power_cost(sizes, seconds):
     return best[1:] if best else (float(t[-1]), 0.0, 1.0)
 
 
+def apart(rows):
+    """Of runs by size the largest and those that are far enough below each other to show an order: between sizes that nearly agree
+    the values' noise would decide."""
+    chosen = rows[-1:]
+    for row in reversed(rows[:-1]):
+        if row.point.size * APART <= chosen[0].point.size:
+            chosen.insert(0, row)
+    return chosen
+
+
 class Series:
     """One curve: the runs of growing size of one combination."""
 
@@ -76,14 +87,15 @@ class Series:
 
     def model(self):
         """Limit by which errors fall; None while there is none. Relative errors have a limit of size 1."""
-        values = [r.values[self.quantity.name] for r in self.rows]
+        rows = apart(self.rows)
+        sizes, values = [r.point.size for r in rows], [r.values[self.quantity.name] for r in rows]
         if not self.quantity.is_error:
-            found = limit_of(self.sizes(), values)
+            found = limit_of(sizes, values)
             if found is None:
                 return None
             scale = 1 if self.quantity.given.get("absolute") else abs(found.value)
             return Limit(found.value, found.order, found.constant / scale, found.gci / scale) if scale else None
-        (n1, n2), (e1, e2) = self.sizes()[-2:], values[-2:]
+        (n1, n2), (e1, e2) = sizes[-2:], values[-2:]
         if not 0 < abs(e2) < abs(e1):
             return None
         order = math.log(abs(e1 / e2)) / math.log(n2 / n1)

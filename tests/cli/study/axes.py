@@ -144,6 +144,10 @@ def predicting():
     _, row, predicted = approach([made_up(2, [5, 40, 80])], 3e-3, lambda line: None)
     failed += check("a run that is far better than asked is no answer", row.point.size < 40 and 0.3 < row.point.size**-2 / 3e-3 < 1.1, str(row.point.size))
     failed += check("its cost was foreseen", abs(predicted[2] / row.record.cpu - 1) < 0.3, str(predicted))
+    noisy = made_up(2, [25, 50, 100])
+    noisy.add(95, print)
+    noisy.rows[-2].values["q"] += 2e-5
+    failed += check("sizes that nearly agree do not decide the order", abs(noisy.model().error(100) / 1e-4 - 1) < 0.1, str(noisy.model()))
     found = guesses({"tvd": ([10, 20, 40], [1.04, 1.01, 1.0025]), "implicit": ([10, 20, 40], [1.17, 1.13, 1.115])})
     failed += check("what a series cannot see another one shows", 0.1 < found["implicit", 2] < 0.12 and found["tvd", 2] < 0.005, str(found))
     first, second = (guesses({"upwind": ([10, 20], [1.4, 1.2])}, orders)["upwind", 1] for orders in ({"upwind": 1}, None))
