@@ -201,6 +201,8 @@ def approach(every, target, say):
             continue
         if last:
             after = series.model()
+            if after and after.error(row.point.size) < TOO_GOOD * target and series.predict(target)[0] < row.point.size:
+                continue  # what it has shown says that a smaller size does
             if after is None or after.error(row.point.size) <= 1.1 * target:
                 return series, row, predicted
             say(f"it leaves {after.error(row.point.size):.2g}, more than predicted: on")
