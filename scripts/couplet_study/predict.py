@@ -145,7 +145,7 @@ def for_error(study, text, name, say):
     expect(every, "no series could be run on its three smallest sizes.")
     best, final, predicted = approach(every, target, say)
     result = said(study, quantity, best, every, target, final, predicted)
-    (study.out / f"for-error-{quantity.name.replace(' ', '-')}-{text.strip().replace('%', 'pc')}.json").write_text(json.dumps(result, indent=1))
+    (study.out / f"for-error-{quantity.name.replace(' ', '-')}-{text.strip().replace('%', 'pc')}.json").write_text(json.dumps(result, indent=1, default=lambda v: v.item()))
     for line in result["lines"]:
         say(line)
     return 0 if result["met"] else 1
