@@ -151,8 +151,8 @@ std::vector<EffectVerdict> Structure::audit() const {
   evidence.displacement_over_size = seen[0];
   evidence.displacement_over_thickness = seen[1];
   evidence.stretch_limit = seen[6];
-  evidence.load_lost =
-      pressure_ && !load_acted_ && (pressure_->changes_in_time() || !pressure_->is_uniform());
+  evidence.load_lost = pressure_ && parameters_.analysis != Parameters::Analysis::modal && !load_acted_ &&
+                       (pressure_->changes_in_time() || !pressure_->is_uniform());
   evidence.modes_apart = resolution_ ? seen[5] : seen[2];
   evidence.within_faces = seen[3];
   evidence.mesh_gap = seen[4];

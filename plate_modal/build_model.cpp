@@ -7,8 +7,12 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/log/log.hpp"
+#include "common/mesh/msh_entities.hpp"
 #include "common/mesh/on_root.hpp"
+#include "common/modes/facing.hpp"
 #include "common/modes/modes_file.hpp"
+#include "plate_modal/outline.hpp"
 
 namespace couplet::plate {
 namespace {
@@ -102,21 +106,29 @@ void check_names(const Midsurface& s, const Parameters& p, const std::string& na
           name, patch);
 }
 
-RawMesh read(const Parameters& p, const std::filesystem::path& folder) {
+/// The file of the mid-surface, meshed if it is a drawing.
+std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / *p.mesh;
   if (!std::filesystem::is_regular_file(file))
     throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
                 file.string());
   if (file.extension() != ".msh" && file.extension() != ".geo")
     throw Error("The mesh file '{}' is neither .msh nor .geo.", file.string());
-  RawMesh raw = read_msh(file.extension() == ".geo" ? mesh_geo(file, 2, p.mesh_parameters) : file);
+  return file.extension() == ".geo" ? mesh_geo(file, 2, p.mesh_parameters) : file;
+}
+
+/// The mid-surface of the mesh that the parameters name, its lengths times their scale.
+Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
+  const std::filesystem::path file = mesh_file(p, folder);
+  RawMesh raw = read_msh(file);
   if (raw.dim != 2 || raw.cell_type.empty())
     throw Error(
         "The mesh '{}' is not a plane one. The mid-surface of a plate is a 2-D mesh with its surface in a "
         "physical "
         "group.",
-        file.string());
-  return raw;
+        (folder / *p.mesh).string());
+  for (Vec3& x : raw.points) x *= p.mesh_scale;
+  return midsurface_of(raw, read_boundary_entities(file));
 }
 
 /// Rigid motions come with the rounding of the stiffness: below this eigenvalue they are none [1/s^2].
@@ -134,14 +146,59 @@ void refuse_lost_rigid(const PlateModel& plate, const EigenModes& modes) {
       rigid, modes.eigenvalue.size(), rigid);
 }
 
+/// The key of the data with a digest of what was made of them: a file whose values were edited is not used again.
+std::string key_with_content(const std::string& key, const ModalModel& model) {
+  Key content;
+  content.add(model.vertices);
+  content.add(model.faces.offset);
+  content.add(model.faces.index);
+  for (const auto* part :
+       {&model.frequency, &model.vertex_shape, &model.face_shape, &model.participation, &model.face_density})
+    content.add(*part);
+  content.add(model.mass);
+  return key + "-" + content.text();
+}
+
+/// Takes the modes of an earlier run if they belong to the same mesh and data and are as they were written.
+bool reuse_modes(Built& built, const std::filesystem::path& file, const std::string& key) {
+  const std::string kept = key_of_modes(file);
+  if (!kept.starts_with(key + "-")) return false;
+  try {
+    ModalModel model = read_modes(file);
+    if (key_with_content(key, model) == kept) {
+      built.model = std::move(model);
+      built.reused = true;
+      return true;
+    }
+  } catch (const Error&) {  // said below
+  }
+  log::warn("'{}' is not as it was written: its modes are found again.", file.string());
+  return false;
+}
+
+/// What a user who draws a curved edge by straight lines should know; empty: there is none.
+std::string told_corners(const Midsurface& surface, const std::vector<Support>& support) {
+  const Outline outline = outline_of(surface);
+  const std::vector<Index> corners = blunt_corners(surface, outline, support);
+  if (corners.empty()) return "";
+  double least = std::numbers::pi, most = 0;
+  for (const Index p : corners)
+    least = std::min(least, std::abs(outline.turn[p])), most = std::max(most, std::abs(outline.turn[p]));
+  const Vec2& x = surface.points[corners.front()];
+  const double degree = std::numbers::pi / 180;
+  return fmt::format(
+      "the simply supported outline has {} corner{} between straight edges that turn{} by {:.3g} to {:.3g} degrees, one at "
+      "({:.4g}, {:.4g}): the plate is a polygon, which deflects less than one with a curved edge however many sides it has "
+      "(Babuska's paradox), and blunt corners take a very fine mesh: with 12 edges a side of 20 the deflection is 13 % too "
+      "large. Draw an edge that is meant to be curved by a curve (Circle, Ellipse, Spline); else compare with a finer mesh.",
+      corners.size(), corners.size() > 1 ? "s" : "", corners.size() > 1 ? "" : "s", least / degree,
+      most / degree, x.x(), x.y());
+}
+
 void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const PlateContext& context) {
   const std::filesystem::path file = context.output_folder / "modes.h5";
   const std::string key = key_of(plate, p);
-  if (!context.output_folder.empty() && key_of_modes(file) == key) {
-    built.model = read_modes(file);
-    built.reused = true;
-    return;
-  }
+  if (!context.output_folder.empty() && reuse_modes(built, file, key)) return;
   const EigenModes modes = plate.modes(p.n_modes());
   refuse_lost_rigid(plate, modes);
   if (cuts_a_group(modes, 1e-3))
@@ -155,13 +212,25 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
   for (double& f : built.model.frequency)
     if (f < least) f = 0;
   // Without the key they are found again, and what was noted is said again.
-  if (!context.output_folder.empty()) write_modes(file, built.model, built.note.empty() ? key : "");
+  if (!context.output_folder.empty())
+    write_modes(file, built.model, built.note.empty() ? key_with_content(key, built.model) : "");
+}
+
+/// Modes of another program, whose surface says by its faces alone where its outside is.
+ModalModel modes_of_file(const Parameters& p, const std::filesystem::path& file) {
+  ModalModel model = read_modes(file);
+  if (p.cavity) return model;
+  if (const std::string problem = facing_problem_of(model); !problem.empty())
+    throw Error(
+        "modes.file: the file of modes '{}' cannot be used: {}. If it is the wall of a cavity, whose outside is the space "
+        "within, say 'modes.cavity: true'. docs/formats.md says what it must hold.",
+        file.string(), problem);
+  return model;
 }
 
 }  // namespace
 
-PlateModel plate_of(const RawMesh& raw, const Parameters& p, const std::string& name) {
-  Midsurface surface = midsurface_of(raw);
+PlateModel plate_of(Midsurface surface, const Parameters& p, const std::string& name) {
   check_names(surface, p, name);
   std::vector<PlateCell> of_zone;
   for (const std::string& zone : surface.zones) {
@@ -181,12 +250,13 @@ Built build_model(const Parameters& p, const PlateContext& context, const RawMes
   const SlepcEnvironment slepc;
   on_root(context.comm, [&] {
     if (p.modes_file) {
-      built.model = read_modes(context.case_folder / *p.modes_file);
+      built.model = modes_of_file(p, context.case_folder / *p.modes_file);
       return;
     }
-    auto plate =
-        std::make_unique<PlateModel>(plate_of(raw ? *raw : read(p, context.case_folder), p, context.name));
+    auto plate = std::make_unique<PlateModel>(
+        plate_of(raw ? midsurface_of(*raw) : read(p, context.case_folder), p, context.name));
     const std::vector<Support> held = supports(plate->surface(), p);
+    built.outline = told_corners(plate->surface(), held);
     built.stretch_limit = stretch_limit(held);
     add_modes(built, *plate, p, context);
     if (p.analysis != Parameters::Analysis::modal) built.plate = std::move(plate);

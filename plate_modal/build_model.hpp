@@ -26,12 +26,13 @@ struct Built {
   bool reused = false;                ///< modes of an earlier run
   /// Of a plate with two held edges or more: deflection over thickness from which its stretch matters; 0: it has none.
   double stretch_limit = 0;
-  std::string note;  ///< something the user should know, or nothing
+  std::string outline;  ///< what the user should know of the outline, or nothing
+  std::string note;     ///< something the user should know, or nothing
 };
 
 /// Cells of the mid-surface with their materials, supports of its patches. Throws Error naming zones and
 /// patches that the mesh does not have, or that have no entry.
-PlateModel plate_of(const RawMesh& raw, const Parameters& parameters, const std::string& name);
+PlateModel plate_of(Midsurface surface, const Parameters& parameters, const std::string& name);
 
 /// Modes of the mesh (from modes.h5 of the output folder if they belong to the same mesh and data), or those
 /// of the file that the parameters name. `raw`: mesh on rank 0 in place of that of the parameters.

@@ -76,45 +76,46 @@ void add_cells(const RawMesh& raw, Midsurface& s) {
   if (s.zones.empty()) s.zones = {"plate"};
 }
 
-std::map<std::pair<Index, Index>, int> patch_of_edges(const RawMesh& raw) {
+std::map<std::pair<Index, Index>, Index> element_of_edges(const RawMesh& raw) {
   std::vector<Index> number(raw.points.size(), -1);
   Index next = 0;
   for (Index c = 0; c < raw.cell_points.size(); ++c)
     for (const Index p : raw.cell_points[c]) number[p] = 0;
   for (Index& n : number)
     if (n == 0) n = next++;
-  std::map<std::pair<Index, Index>, int> patch;
+  std::map<std::pair<Index, Index>, Index> element;
   for (Index e = 0; e < raw.boundary_points.size(); ++e) {
     const auto ends = raw.boundary_points[e];
-    const auto [found, is_new] =
-        patch.emplace(std::minmax(number[ends[0]], number[ends[1]]), raw.boundary_patch[e]);
-    if (is_new || found->second == raw.boundary_patch[e]) continue;
+    const auto [found, is_new] = element.emplace(std::minmax(number[ends[0]], number[ends[1]]), e);
+    const int patch = raw.boundary_patch[found->second];
+    if (is_new || patch == raw.boundary_patch[e]) continue;
     const Vec3 middle = 0.5 * (raw.points[ends[0]] + raw.points[ends[1]]);
     throw Error(
         "The edge of the mid-surface at ({:.6g}, {:.6g}) belongs to two patches, '{}' and '{}': it cannot be held in "
         "two ways. Put each curve into one physical curve.",
-        middle.x(), middle.y(), raw.patches[found->second], raw.patches[raw.boundary_patch[e]]);
+        middle.x(), middle.y(), raw.patches[patch], raw.patches[raw.boundary_patch[e]]);
   }
-  return patch;
+  return element;
 }
 
 /// Edges of a patch that are not on the outline would hold nothing, whatever their entry says.
-void refuse_inside(const Midsurface& s, const std::map<std::pair<Index, Index>, int>& patches,
+void refuse_inside(const Midsurface& s, const RawMesh& raw,
+                   const std::map<std::pair<Index, Index>, Index>& elements,
                    const std::map<std::pair<Index, Index>, int>& uses) {
-  for (const auto& [edge, patch] : patches) {
+  for (const auto& [edge, element] : elements) {
     const auto found = uses.find(edge);
     if (found == uses.end() || found->second < 2) continue;
     const Vec2 middle = 0.5 * (s.points[edge.first] + s.points[edge.second]);
     throw Error(
         "The patch '{}' has an edge inside the mid-surface, at ({:.6g}, {:.6g}). Only edges of the outline can be "
         "held: take the curve out of the physical curves, or cut a slit along it.",
-        s.patches[patch], middle.x(), middle.y());
+        s.patches[raw.boundary_patch[element]], middle.x(), middle.y());
   }
 }
 
 }  // namespace
 
-Midsurface midsurface_of(const RawMesh& raw) {
+Midsurface midsurface_of(const RawMesh& raw, std::span<const int> curves) {
   Midsurface s;
   s.patches = raw.patches;
   refuse_out_of_plane(raw);
@@ -123,8 +124,8 @@ Midsurface midsurface_of(const RawMesh& raw) {
   for (Index c = 0; c < s.cells.size(); ++c)
     for (std::size_t i = 0, n = s.cells[c].size(); i < n; ++i)
       ++uses[std::minmax(s.cells[c][i], s.cells[c][(i + 1) % n])];
-  const auto patches = patch_of_edges(raw);
-  refuse_inside(s, patches, uses);
+  const auto elements = element_of_edges(raw);
+  refuse_inside(s, raw, elements, uses);
   for (Index c = 0; c < s.cells.size(); ++c)
     for (std::size_t i = 0, n = s.cells[c].size(); i < n; ++i) {
       const Index from = s.cells[c][i], to = s.cells[c][(i + 1) % n];
@@ -134,14 +135,15 @@ Midsurface midsurface_of(const RawMesh& raw) {
         throw Error("{} cells of the mid-surface meet at the edge at ({:.6g}, {:.6g}); it must be one sheet.",
                     uses[edge], middle.x(), middle.y());
       if (uses[edge] == 2) continue;
-      const auto found = patches.find(edge);
-      if (found == patches.end())
+      const auto found = elements.find(edge);
+      if (found == elements.end())
         throw Error(
             "The edge of the mid-surface at ({:.6g}, {:.6g}) belongs to no patch. Put the whole outline into "
             "physical "
             "curves.",
             middle.x(), middle.y());
-      s.edges.push_back({from, to, c, found->second});
+      const Index e = found->second;
+      s.edges.push_back({from, to, c, raw.boundary_patch[e], curves.empty() ? -1 : curves[e]});
     }
   return s;
 }

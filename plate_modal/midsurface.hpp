@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ struct Midsurface {
   struct Edge {
     Index from, to;  ///< counter-clockwise about the plate: the outside lies to the right
     Index cell;
-    int patch;  ///< index into `patches`
+    int patch;       ///< index into `patches`
+    int curve = -1;  ///< of the drawing, if that is known
   };
   std::vector<Edge> edges;  ///< the whole outline, each once
   std::vector<std::string> patches;
@@ -27,7 +29,8 @@ struct Midsurface {
 
 /// Turns cells counter-clockwise, drops points that no cell uses and finds the patch of every edge of the
 /// outline. Throws Error naming the place of an edge without a patch, of two patches or of one inside the plate, of a
-/// cell without area, or of a point out of the plane.
-Midsurface midsurface_of(const RawMesh& raw);
+/// cell without area, or of a point out of the plane. `curves`: of each boundary element the curve of the drawing; empty:
+/// not known.
+Midsurface midsurface_of(const RawMesh& raw, std::span<const int> curves = {});
 
 }  // namespace couplet::plate

@@ -13,6 +13,10 @@ namespace {
 void declare_body(config::Section& s, Parameters& p) {
   s.value("mesh", p.mesh)
       .doc("mid-surface: 2-D mesh of triangles or quadrilaterals (.msh, or .geo to be meshed by gmsh)");
+  s.value("mesh-scale", p.mesh_scale)
+      .positive()
+      .doc(
+          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("numbers for names that the .geo defines by DefineConstant");
   s.section(
@@ -51,14 +55,16 @@ void declare_place(config::Section& s, Parameters& p) {
       "placement",
       [&](config::Section& q) {
         q.value("origin", p.placement.origin).doc("where the origin of the mesh lies in space [m]");
-        q.value("x-axis", p.placement.x).doc("direction of the mesh's x in space");
-        q.value("y-axis", p.placement.y).doc("direction of the mesh's y; the plate's normal is x cross y");
+        q.value("x-axis", p.placement.x).doc("direction of the mesh's x in space, of any length");
+        q.value("y-axis", p.placement.y)
+            .doc("direction of the mesh's y, of any length; the plate's normal is x cross y");
         q.check(
             [&]() -> std::string {
               const Vec3 &x = p.placement.x, &y = p.placement.y;
-              const bool sound =
-                  std::abs(x.norm() - 1) < 1e-9 && std::abs(y.norm() - 1) < 1e-9 && std::abs(x.dot(y)) < 1e-9;
-              return sound ? "" : "x-axis and y-axis must be of length 1 and at right angles";
+              const double size = x.norm() * y.norm();
+              return size > 0 && std::abs(x.dot(y)) < 1e-9 * size
+                         ? ""
+                         : "x-axis and y-axis must be at right angles, and not 0";
             },
             "x-axis");
       },
@@ -81,6 +87,12 @@ void declare_modes(config::Section& s, Parameters& p) {
             "number");
         m.value("file", p.modes_file)
             .doc("modes that another program wrote (docs/formats.md), in place of 'mesh'");
+        m.value("cavity", p.cavity)
+            .doc(
+                "with 'file': its surface is the wall of a cavity, so the normals point into the space that it encloses; "
+                "false: such a surface is refused as turned inside out");
+        m.check([&] { return p.cavity && !p.modes_file ? "it says something of a 'file' alone" : ""; },
+                "cavity");
         m.check(
             [&] {
               return p.modes_file && !p.mesh && p.number
@@ -121,7 +133,7 @@ void declare_loads(config::Section& s, Parameters& p) {
       "\"p.csv\")'");
   s.optional_section<ContactParameters>(
       "contact", p.contact, [](config::Section& c, ContactParameters& v) { declare(c, v); },
-      "a rigid seat under the structure");
+      "a rigid seat under the structure, in a dynamic analysis alone");
 }
 
 /// What describes a plate says nothing about the modes of a file, which have their own surface, place and mass.
@@ -137,6 +149,7 @@ void check_file_alone(config::Section& s, const Parameters& p) {
   };
   const char* inside = "the modes hold it already";
   of_no_use("mesh-parameters", "there is no .geo", [&p] { return !p.mesh_parameters.empty(); });
+  of_no_use("mesh-scale", "the file is in metres", [&p] { return p.mesh_scale != 1; });
   of_no_use("material", inside, [&p] {
     const Material m;
     return p.material.density != m.density || p.material.youngs_modulus != m.youngs_modulus ||
@@ -217,7 +230,9 @@ void declare(config::Section& s, ContactParameters& c) {
       .unit("m")
       .doc("of the seat along 'direction', of x, y, z of the structure at rest");
   s.value("where", c.where).doc("there is a seat where this expression of x, y, z is above 0");
-  s.value("direction", c.direction).size(3).doc("from the seat to the structure; absent: the plate's normal");
+  s.value("direction", c.direction)
+      .size(3)
+      .doc("from the seat to the structure, of any length; absent: the plate's normal");
   s.value("scale", c.scale).positive().doc("f_SI of thesis (4.33): kappa = f_SI K S / h");
   s.value("stiffness", c.stiffness)
       .unit("N/m^3")
@@ -228,18 +243,23 @@ void declare(config::Section& s, ContactParameters& c) {
           "the structure may stand in the seat at the start, whose springs then push from there; false: an error");
   s.choice("rule", c.rule, {{"conserving", ContactRule::conserving}, {"midpoint", ContactRule::midpoint}})
       .doc(
-          "conserving: a bounce keeps the energy to rounding; midpoint: the force where the scheme has "
-          "equilibrium");
+          "conserving: a bounce keeps the energy to rounding, with the trapezoidal time scheme alone; midpoint: the force "
+          "where the scheme has equilibrium, with any scheme");
   const auto problem = [](const config::ExpressionText& text) -> std::string {
     if (std::string wrong = problem_of(text); !wrong.empty()) return wrong;
     return Expression(text).uses_time() ? "a seat stands still: an expression of x, y, z, without t" : "";
   };
+  s.check(
+      [&] {
+        return c.stiffness && c.scale != 1 ? "with 'stiffness' it is of no use: it scales (4.33) alone" : "";
+      },
+      "scale");
   s.check([&] { return problem(c.height); }, "height");
   s.check([&] { return problem(c.where); }, "where");
   s.check(
       [&] {
         const auto& d = c.direction;
-        return !d.empty() && std::abs(std::hypot(d[0], d[1], d[2]) - 1) > 1e-9 ? "it must have length 1" : "";
+        return !d.empty() && !(std::hypot(d[0], d[1], d[2]) > 0) ? "a direction is needed, not 0" : "";
       },
       "direction");
 }
@@ -253,13 +273,19 @@ void declare(config::Section& s, Parameters& p) {
   declare_place(s, p);
   declare_modes(s, p);
   declare_loads(s, p);
-  s.value("initial-velocity", p.initial_velocity).doc("of the whole structure at the start [m/s]");
+  s.value("initial-velocity", p.initial_velocity).unit("m/s").doc("of the whole structure at the start");
   s.value("initial-amplitudes", p.initial_amplitudes)
-      .doc("of the modes at the start: the displacement where each is largest [m]");
+      .unit("m")
+      .doc("of the modes at the start: the displacement where each is largest");
   s.map<Watched>(
       "probes", p.probes,
       [](config::Section& q, Watched& v) {
-        q.value("point", v.point).required().doc("place on the undeformed surface [m]");
+        q.value("point", v.point)
+            .required()
+            .unit("m")
+            .doc(
+                "place on the undeformed surface, or no farther from it than the thickness or a hundredth of the structure's "
+                "size: the nearest place of the surface is taken");
       },
       "probe", "places of the surface whose displacement is written to probes.csv at each step");
   s.section(

@@ -49,7 +49,9 @@ struct Parameters {
   enum class Analysis { modal, static_, dynamic };
   Analysis analysis = Analysis::dynamic;
   std::optional<std::string> mesh, modes_file;  // one of the two
+  bool cavity = false;                          // the file's surface encloses the outside
   std::map<std::string, double> mesh_parameters;
+  double mesh_scale = 1;  // all lengths of the mesh file times this
   Material material;
   double thickness = 0;
   std::map<std::string, Zone> zones;

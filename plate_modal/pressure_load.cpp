@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
@@ -12,6 +13,8 @@ namespace {
 
 /// A side of the plate: faces whose normal is within 60 degrees of that of the plate.
 constexpr double least_cosine = 0.5;
+/// Beyond the pressure in any structure (the centre of the earth has 4e11 Pa), and far from what doubles overflow at.
+constexpr double largest_pressure = 1e15;
 
 bool is_on(const Vec3& area, const Vec3& normal, double sign) {
   return sign * area.dot(normal) > least_cosine * area.norm();
@@ -19,8 +22,8 @@ bool is_on(const Vec3& area, const Vec3& normal, double sign) {
 
 }  // namespace
 
-PressureLoad::PressureLoad(const Share& share, const Load& load, const Vec3& normal)
-    : share_(share), normal_(normal) {
+PressureLoad::PressureLoad(const Share& share, const Load& load, const Vec3& normal, std::string name)
+    : share_(share), normal_(normal), name_(std::move(name)) {
   if (load.upper) upper_.emplace(*load.upper, "load.upper-pressure");
   if (load.lower) lower_.emplace(*load.lower, "load.lower-pressure");
   int i = 0;
@@ -49,8 +52,8 @@ bool PressureLoad::is_uniform() const {
 
 double PressureLoad::push(const Vec3& area, const Vec3& x, double t) const {
   double sum = 0;
-  if (upper_ && is_on(area, normal_, 1)) sum += (*upper_)(x, t);
-  if (lower_ && is_on(area, normal_, -1)) sum += (*lower_)(x, t);
+  if (upper_ && is_on(area, normal_, 1)) sum += value(*upper_, x, t);
+  if (lower_ && is_on(area, normal_, -1)) sum += value(*lower_, x, t);
   return sum;
 }
 
@@ -59,7 +62,7 @@ void PressureLoad::add_faces(const Expression& side, double sign, double t, std:
   for (std::size_t f = 0; f < share_.n_faces(); ++f) {
     const Vec3& area = share_.areas()[f];
     if (!is_on(area, normal_, sign)) continue;
-    const double pressure = side(share_.centres()[f], t);
+    const double pressure = value(side, share_.centres()[f], t);
     for (int c = 0; c < 3; ++c) force[3 * f + c] = -pressure * area[c];
   }
   share_.add_load(force, load);
@@ -75,14 +78,44 @@ void PressureLoad::fill(double t, std::span<double> load) const {
       add_faces(**side, sign, t, load);
       continue;
     }
-    const double pressure = (**side)(Vec3::Zero(), t);
+    const double pressure = value(**side, Vec3::Zero(), t);
     for (std::size_t m = 0; m < unit.size(); ++m) load[m] += pressure * unit[m];
   }
 }
 
+double PressureLoad::value(const Expression& side, const Vec3& x, double t) const {
+  const auto fail = [&](const std::string& what) {
+    throw Error("participants.{}.load.{}-pressure: at t = {:g} s{}: {}", name_,
+                &side == &*upper_ ? "upper" : "lower", t,
+                side.uses_space() ? fmt::format(" and ({:g}, {:g}, {:g})", x.x(), x.y(), x.z()) : "", what);
+  };
+  double pressure = 0;
+  try {
+    pressure = side(x, t);
+  } catch (const Error& error) {
+    fail(error.what());
+  }
+  if (!(std::abs(pressure) <= largest_pressure))
+    fail(fmt::format("a pressure of {:g} Pa is none: sizes up to {:g} Pa are taken.", pressure,
+                     largest_pressure));
+  return pressure;
+}
+
 void PressureLoad::at(double t, std::span<double> load) const {
-  fill(t, load);
-  share_.sum(load);
+  std::string problem;
+  try {
+    fill(t, load);
+  } catch (const Error& error) {
+    problem = error.what();
+    std::ranges::fill(load, std::numeric_limits<double>::quiet_NaN());
+  }
+  share_.sum(load);  // what is no number on one rank is none on any
+  if (!std::ranges::any_of(load, [](double one) { return std::isnan(one); })) return;
+  // The same sentence on every rank: that of the first which has one.
+  if (!problem.empty()) problem += '\n';
+  const std::vector<char> all = all_gather(share_.comm(), std::vector<char>(problem.begin(), problem.end()));
+  const std::string texts(all.begin(), all.end());
+  throw Error(texts.substr(0, texts.find('\n')));
 }
 
 PressureLoad::Seen PressureLoad::seen(double t, double dt, int samples) const {

@@ -4,6 +4,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/fv/expression.hpp"
@@ -18,15 +19,19 @@ class PressureLoad final {
  public:
   /// A side are the faces whose normal is within 60 degrees of `normal` (upper) or of its opposite (lower).
   /// Collective. Throws Error if a side with a pressure has no face.
-  PressureLoad(const Share& share, const Load& load, const Vec3& normal);
+  /// `name`: of the participant, for messages.
+  PressureLoad(const Share& share, const Load& load, const Vec3& normal, std::string name = "plate");
 
   const std::optional<Expression>& upper() const { return upper_; }
   const std::optional<Expression>& lower() const { return lower_; }
   bool changes_in_time() const;
   bool is_uniform() const;  ///< in space: cheap to ask for
-  /// Loads on the modes at t [N/sqrt(kg)], of all ranks. Collective.
+  /// Loads on the modes at t [N/sqrt(kg)], of all ranks. Collective. Throws Error with key, time and place, the same on
+  /// all ranks, where a pressure has no value or one that no structure sees.
   void at(double t, std::span<double> load) const;
 
+  /// Of one of the two sides at a place and time [Pa]. Throws as at().
+  double value(const Expression& side, const Vec3& x, double t) const;
   /// Pressures at x on a face of this area, those that push against its normal [Pa].
   double push(const Vec3& area, const Vec3& x, double t) const;
 
@@ -44,6 +49,7 @@ class PressureLoad final {
 
   const Share& share_;
   Vec3 normal_;
+  std::string name_;
   std::optional<Expression> upper_, lower_;
   std::array<std::vector<double>, 2>
       of_one_pascal_;  // on this rank's faces: upper, lower; empty: not uniform

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "common/base/error.hpp"
@@ -55,6 +56,29 @@ std::vector<std::string> numbered(const std::string& before, int n, const std::s
   return result;
 }
 
+Vec3 place_in(const ModalModel& model, const SurfacePlace& place) {
+  Vec3 x = Vec3::Zero();
+  for (std::size_t i = 0; i < place.vertices.size(); ++i)
+    x += place.weights[i] * model.vertices[place.vertices[i]];
+  return x;
+}
+
+/// What a mesh in other lengths would show at once.
+void tell_size(const Structure& structure) {
+  const ModalModel& model = structure.model();
+  Vec3 low = model.vertices.front(), high = low;
+  for (const Vec3& x : model.vertices) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  Vec3 side = high - low;
+  std::string slender;
+  if (const double h = structure.parameters().thickness; structure.parameters().mesh && h > 0) {
+    std::ranges::sort(side, std::greater());
+    slender = fmt::format(", thickness over its shorter span 1/{:.3g}", side[1] / h);
+    side = high - low;
+  }
+  log::info("the structure spans {:.4g} x {:.4g} x {:.4g} m, mass {:.4g} kg{}", side.x(), side.y(), side.z(),
+            model.mass, slender);
+}
+
 }  // namespace
 
 SurfacePlace nearest_place(const ModalModel& model, const Vec3& point) {
@@ -87,9 +111,18 @@ PlateResults::PlateResults(const Structure& structure)
     for (const Vec3& x : model.vertices) size = std::max(size, (x - model.vertices.front()).norm());
     for (const auto& [name, probe] : structure.parameters().probes) {
       probes_.push_back(nearest_place(model, probe.point));
-      if (probes_.back().distance > 0.05 * size)
-        throw Error("probes.{}: ({:g}, {:g}, {:g}) is {:.3g} m away from the surface of the structure.", name,
-                    probe.point.x(), probe.point.y(), probe.point.z(), probes_.back().distance);
+      const double distance = probes_.back().distance;
+      const double allowed = std::max(0.01 * size, structure.parameters().thickness);
+      const Vec3& x = probe.point;
+      if (distance > allowed)
+        throw Error(
+            "participants.{}.probes.{}: ({:g}, {:g}, {:g}) is {:.3g} m away from the surface of the structure; {:.3g} m at "
+            "most is allowed.",
+            structure.context().name, name, x.x(), x.y(), x.z(), distance, allowed);
+      if (distance < 1e-6 * size) continue;
+      const Vec3 at = place_in(model, probes_.back());
+      log::info("probes.{}: ({:g}, {:g}, {:g}) is {:.3g} m off the surface; it stands at ({:g}, {:g}, {:g}).",
+                name, x.x(), x.y(), x.z(), distance, at.x(), at.y(), at.z());
     }
   });
 }
@@ -103,6 +136,7 @@ Series& PlateResults::series(std::optional<Series>& one, const char* file,
 
 void PlateResults::write_start() {
   if (root_) {
+    tell_size(structure_);
     const auto& frequency = structure_.model().frequency;
     std::string list;
     for (std::size_t m = 0; m < std::min<std::size_t>(8, frequency.size()); ++m)

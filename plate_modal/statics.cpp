@@ -53,8 +53,10 @@ std::vector<double> Structure::cell_pressures(double t) const {
     Vec2 middle = Vec2::Zero();
     for (const Index p : s.cells[c]) middle += s.points[p] / double(s.cells[c].size());
     const double half = 0.5 * plate.cell(c).thickness;
-    if (pressure_ && pressure_->upper()) pressure[c] -= (*pressure_->upper())(place.place(middle, half), t);
-    if (pressure_ && pressure_->lower()) pressure[c] += (*pressure_->lower())(place.place(middle, -half), t);
+    if (pressure_ && pressure_->upper())
+      pressure[c] -= pressure_->value(*pressure_->upper(), place.place(middle, half), t);
+    if (pressure_ && pressure_->lower())
+      pressure[c] += pressure_->value(*pressure_->lower(), place.place(middle, -half), t);
     if (!parameters_.gravity.empty())
       pressure[c] += plate.cell(c).surface_density() * normal.dot(Vec3(parameters_.gravity.data()));
   }

@@ -28,6 +28,17 @@ void refuse_inside(const Contact& contact, const Share& share, std::span<const d
       place.depth, place.centre.x(), place.centre.y(), place.centre.z());
 }
 
+/// A direction says where to, not how far.
+Parameters with_unit_directions(Parameters p) {
+  p.placement.x.normalize();
+  p.placement.y.normalize();
+  if (p.contact && !p.contact->direction.empty()) {
+    Eigen::Map<Vec3> direction(p.contact->direction.data());
+    direction.normalize();
+  }
+  return p;
+}
+
 double largest_of(const std::vector<double>& vectors) {
   double largest = 0;
   for (std::size_t i = 0; i < vectors.size(); i += 3) largest = std::max(largest, Vec3(&vectors[i]).norm());
@@ -37,12 +48,13 @@ double largest_of(const std::vector<double>& vectors) {
 }  // namespace
 
 Structure::Structure(Parameters parameters, PlateContext context, const RawMesh* raw)
-    : parameters_(std::move(parameters)),
+    : parameters_(with_unit_directions(std::move(parameters))),
       context_(std::move(context)),
       built_(build_model(parameters_, context_, raw)),
       share_(std::make_unique<Share>(context_.comm, built_.model)) {
   const Parameters& p = parameters_;
   if (comm_rank(context_.comm) == 0) {
+    if (!built_.outline.empty()) log::warn("{}", built_.outline);
     if (!built_.note.empty()) log::warn("{}", built_.note);
     if (built_.reused)
       log::info("modes of {} are used again", (context_.output_folder / "modes.h5").string());
@@ -56,7 +68,7 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
   if (!p.gravity.empty()) gravity_ = share_->participation(Vec3(p.gravity.data()));
   if (p.contact) make_contact();
   if (p.load && (p.load->upper || p.load->lower))
-    pressure_ = std::make_unique<PressureLoad>(*share_, *p.load, p.placement.normal());
+    pressure_ = std::make_unique<PressureLoad>(*share_, *p.load, p.placement.normal(), context_.name);
   if (p.analysis == Parameters::Analysis::dynamic)
     resolution_ = std::make_unique<Resolution>(share_->omega());
   oscillators_ =
@@ -247,6 +259,25 @@ void Structure::save(CheckpointWriter& file) const {
   file.write("errors", step_errors_ ? step_errors_->state() : std::vector<double>{});
 }
 
+/// A restart with changes may have taken away the seat, or moved it, or the gravity: the energy that the structure has
+/// in the new scene is where its balance starts from.
+void Structure::take_changed_energy() {
+  Energies& kept = state_.energies;
+  const Energies now = oscillators_->start(state_.q, state_.v).energies;
+  const double scale =
+      std::abs(kept.kinetic) + std::abs(kept.strain) + std::abs(kept.gravity) + std::abs(kept.contact);
+  const double jump = now.contact - kept.contact + now.gravity - kept.gravity;
+  if (!(std::abs(now.contact - kept.contact) + std::abs(now.gravity - kept.gravity) > 1e-9 * scale)) return;
+  if (comm_rank(context_.comm) == 0)
+    log::warn(
+        "energy: with the changes of this restart the seat holds {:.4g} J in place of {:.4g} J, and the gravity {:.4g} J in "
+        "place of {:.4g} J: this jump of {:.4g} J is no part of the balance.",
+        now.contact, kept.contact, now.gravity, kept.gravity, jump);
+  kept.contact = now.contact;
+  kept.gravity = now.gravity;
+  kept.initial += jump;
+}
+
 void Structure::load(CheckpointReader& file) {
   if (file.read("omega") != share_->omega())
     throw Error(
@@ -268,6 +299,7 @@ void Structure::load(CheckpointReader& file) {
   for (double* part : {&e.kinetic, &e.strain, &e.gravity, &e.contact, &e.initial, &e.load_work,
                        &e.impact_work, &e.damping_loss, &worst_mismatch_, &largest_exchange_, &largest_true_})
     *part = kept[i++];
+  take_changed_energy();
   std::vector<double> largest(4), left_out(2);
   file.read("largest", largest);
   largest_ = largest[0], largest_rotation_ = largest[1];

@@ -84,6 +84,7 @@ class Scanner {
       : script_(script), file_(std::move(file)), text_(text), depth_(depth) {}
 
   void scan() {
+    find_lost();
     // Whatever the lexer makes of comments and quotes: these words stand nowhere.
     std::string small(text_);
     std::transform(small.begin(), small.end(), small.begin(),
@@ -100,6 +101,16 @@ class Scanner {
   }
 
  private:
+  /// Of a last line without a newline gmsh reads one statement and leaves out the others.
+  void find_lost() {
+    const std::string_view last = text_.substr(text_.find_last_of('\n') + 1);
+    const std::size_t first = last.find(';');
+    if (!script_.lost.empty() || first == std::string_view::npos) return;
+    if (Lexer(last.substr(first + 1)).next().kind == Token::Kind::end) return;
+    script_.lost =
+        fmt::format("line {} of '{}'", 1 + std::count(text_.begin(), text_.end(), '\n'), file_.string());
+  }
+
   void statement(const std::vector<Token>& tokens, std::size_t i) {
     const std::string_view word = tokens[i].text;
     if (word == "Save" || word == "Print" || word == "CreateDir")

@@ -21,6 +21,8 @@ struct GeoScript {
   /// What in it runs commands or writes files, or cannot be looked into: "'SystemCall' in line 3 of plate.geo"; empty
   /// if nothing does.
   std::string danger;
+  /// A last line of which gmsh would leave out all but one statement: "line 3 of 'plate.geo'"; empty: there is none.
+  std::string lost;
   /// Names of the physical groups by dimension (0 to 3); nothing where one of them is computed.
   std::vector<std::optional<std::vector<std::string>>> groups;
 };

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <string>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
@@ -42,6 +44,35 @@ void check_counts(const std::filesystem::path& geo, const std::map<std::string, 
   }
 }
 
+/// Whether a .msh 4.1 of gmsh (ASCII) has a block of elements of this dimension.
+bool has_cells(const std::filesystem::path& mesh, int dim) {
+  std::ifstream in(mesh);
+  std::string line;
+  while (std::getline(in, line) && line != "$Elements") {
+  }
+  std::size_t blocks = 0, n = 0, ignored = 0;
+  in >> blocks >> ignored >> ignored >> ignored;
+  for (std::size_t b = 0; b < blocks && in; ++b) {
+    int of = 0, tag = 0, type = 0;
+    in >> of >> tag >> type >> n;
+    if (in && of == dim && n > 0) return true;
+    std::getline(in, line);
+    for (std::size_t i = 0; i < n && std::getline(in, line); ++i) {
+    }
+  }
+  return false;
+}
+
+/// gmsh calls it a success when it makes nothing, and when it makes points or curves alone.
+void refuse_empty(const std::filesystem::path& geo, const std::filesystem::path& mesh, int dim) {
+  if (has_cells(mesh, dim)) return;
+  std::filesystem::remove(mesh);
+  throw Error(
+      "gmsh made no {} of '{}'. Check that it has a {} and that the whole of it is in a physical group.",
+      dim == 3 ? "cells in three dimensions" : "triangles or quadrilaterals", geo.string(),
+      dim == 3 ? "volume" : "surface");
+}
+
 }  // namespace
 
 std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const MeshParameters& parameters) {
@@ -51,6 +82,11 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
         "The geometry has {}: gmsh would run commands or write files with your rights. If you trust the case, start with "
         "--allow-commands.",
         script.danger);
+  if (!script.lost.empty())
+    throw Error(
+        "The {} does not end with a newline: gmsh reads one statement of such a last line and leaves out the others. End it "
+        "with a newline.",
+        script.lost);
   check_names(geo, script.constants, parameters);
   check_counts(geo, script.counts, parameters);
   std::vector<std::string> numbers;
@@ -66,6 +102,7 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
   options.insert(options.end(), numbers.begin(), numbers.end());
   log::info("meshing {} with gmsh", geo.string());
   run_gmsh(options, geo, result, "mesh");
+  refuse_empty(geo, result, dim);
   return result;
 }
 

@@ -20,10 +20,11 @@ void read_nodes(MshCursor& in, MshContent& content) {
 }
 
 void read_element(MshCursor& in, const MshElementType& type, int n_tags, MshContent& content) {
-  MshContent::Element element{type.gmsh, static_cast<int>(content.groups.size()), 0, content.nodes.size()};
+  MshContent::Element element{type.gmsh, static_cast<int>(content.groups.size()), 0, content.nodes.size(), 0};
   // Tags: physical group (0: none; negative: turned), elementary entity, then partitions.
   for (int t = 0; t < n_tags; ++t) {
     const int tag = in.integer();
+    if (t == 1) element.entity = tag;
     if (t != 0 || tag == 0) continue;
     content.groups.push_back(std::abs(tag));
     element.n_groups = 1;

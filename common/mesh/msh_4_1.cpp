@@ -53,7 +53,7 @@ void MshReader41::read_elements(MshCursor& in, MshContent& content) const {
   for (std::size_t b = 0; b < n_blocks; ++b) {
     const int dim = in.integer(), tag = in.integer();
     const MshElementType& type = msh_type_or_fail(in, in.integer());
-    MshContent::Element element{type.gmsh, static_cast<int>(content.groups.size()), 0, 0};
+    MshContent::Element element{type.gmsh, static_cast<int>(content.groups.size()), 0, 0, tag};
     const auto entity = groups_of_entity_.find({dim, tag});
     if (entity != groups_of_entity_.end()) {
       content.groups.insert(content.groups.end(), entity->second.begin(), entity->second.end());

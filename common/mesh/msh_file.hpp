@@ -25,6 +25,7 @@ struct MshContent {
     int type;
     int first_group, n_groups;  ///< range in `groups`
     std::size_t first_node;     ///< index in `nodes`
+    int entity = 0;             ///< tag of the curve, surface or volume of the drawing; 0: not named
   };
   std::vector<Element> elements;
   std::vector<int> groups;  ///< tags of physical groups

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/mesh/msh_entities.hpp"
 #include "common/mesh/msh_file.hpp"
 
 namespace couplet {
@@ -119,11 +120,16 @@ CellType cell_type(int gmsh) {
   }
 }
 
+int dimension(const MshContent& content) {
+  int dim = 2;
+  for (const auto& e : content.elements)
+    if (find_msh_type(e.type)->dim == 3) dim = 3;
+  return dim;
+}
+
 RawMesh to_raw(const MshContent& content, const std::filesystem::path& file) {
   RawMesh raw;
-  raw.dim = 2;
-  for (const auto& e : content.elements)
-    if (find_msh_type(e.type)->dim == 3) raw.dim = 3;
+  raw.dim = dimension(content);
   raw.points = content.points;
   Groups zones(content, raw.dim), patches(content, raw.dim - 1);
   for (const auto& e : content.elements) {
@@ -152,9 +158,7 @@ RawMesh to_raw(const MshContent& content, const std::filesystem::path& file) {
   return raw;
 }
 
-}  // namespace
-
-RawMesh read_msh(const std::filesystem::path& file) {
+MshContent read_content(const std::filesystem::path& file) {
   MshCursor in(file, read_all(file));
   const bool is_41 = read_format(in);
   MshContent content;
@@ -171,7 +175,20 @@ RawMesh read_msh(const std::filesystem::path& file) {
       read_msh_2_2(in, section, content);
   }
   if (!nodes || !elements) in.fail("The file has no $Nodes or no $Elements. It was not written fully.");
-  return to_raw(content, file);
+  return content;
+}
+
+}  // namespace
+
+RawMesh read_msh(const std::filesystem::path& file) { return to_raw(read_content(file), file); }
+
+std::vector<int> read_boundary_entities(const std::filesystem::path& file) {
+  const MshContent content = read_content(file);
+  const int dim = dimension(content);
+  std::vector<int> entities;
+  for (const auto& e : content.elements)
+    if (find_msh_type(e.type)->dim == dim - 1) entities.insert(entities.end(), e.n_groups, e.entity);
+  return entities;
 }
 
 }  // namespace couplet

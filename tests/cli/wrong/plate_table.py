@@ -44,7 +44,7 @@ case.yaml:6:5: participants.plate.mesh: a plate needs 'thickness' above 0.
 case.yaml:6:5: participants.plate.mesh: a plate needs 'material.density' above 0.
 """, ("density: 1000, ", "")),
         plate("axes of a plate that are not at right angles", """
-case.yaml:9:17: participants.plate.placement.x-axis: x-axis and y-axis must be of length 1 and at right angles.
+case.yaml:9:17: participants.plate.placement.x-axis: x-axis and y-axis must be at right angles, and not 0.
 """,
               ("    thickness: 1 cm\n", "    thickness: 1 cm\n    placement: {x-axis: [1, 0, 0], y-axis: [1, 0, 0]}\n")),
         plate("edge held in an unknown way", """
@@ -61,9 +61,18 @@ case.yaml:16:5: participants.plate.contact: contact is part of a dynamic analysi
 case.yaml:7:5: participants.plate.damping: damping has no effect in this analysis; remove it.
 """, ("    mesh:", "    analysis: modal\n    damping: {ratio: 0.1}\n    mesh:"),
               ("    contact: {height: -1 cm}\n", "")),
-        plate("direction of a seat without length 1", """
-case.yaml:15:30: participants.plate.contact.direction: it must have length 1.
-""", ("{height: -1 cm}", "{height: -1 cm, direction: [0, 0, 2]}")),
+        plate("direction of a seat that is none", """
+case.yaml:15:30: participants.plate.contact.direction: a direction is needed, not 0.
+""", ("{height: -1 cm}", "{height: -1 cm, direction: [0, 0, 0]}")),
+        plate("stiffness of a seat and a scale", """
+case.yaml:15:54: participants.plate.contact.scale: with 'stiffness' it is of no use: it scales (4.33) alone.
+""", ("{height: -1 cm}", "{height: -1 cm, stiffness: 1e6 N/m^3, scale: 2}")),
+        plate("cavity without a file", """
+case.yaml:14:24: participants.plate.modes.cavity: it says something of a 'file' alone.
+""", ("{number: 3}", "{number: 3, cavity: true}")),
+        plate("scale of a mesh beside modes of a file", """
+case.yaml:6:5: participants.plate.mesh-scale: with 'modes.file' it is of no use: the file is in metres.
+""", *file_alone("modes.h5", "    mesh-scale: 0.001\n"), ("    contact: {height: -1 cm}\n", "")),
         plate("height of a seat that cannot be read", """
 case.yaml:15:15: participants.plate.contact.height: the expression '0.1 * r' cannot be read at column 7: unknown name 'r'. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
 """, ("{height: -1 cm}", "{height: 0.1 * r}")),
@@ -135,7 +144,7 @@ case.yaml:14:13: participants.plate.modes.number: a whole number is needed.
 [plate 0] error: load.lower-pressure: the surface of the structure has no face on this side (-0, -0, -1).
 """, ("modes: {number: 3}", "modes: {number: 3}\n    wetted: upper\n    load: {lower-pressure: 3}"), ("    contact: {height: -1 cm}\n", ""), **run),
         plate("probe far from the plate", """
-[plate 0] error: probes.tip: (0, 2, 0) is 1 m away from the surface of the structure.
+[plate 0] error: participants.plate.probes.tip: (0, 2, 0) is 1 m away from the surface of the structure; 0.0141 m at most is allowed.
 """,
               ("modes: {number: 3}", "modes: {number: 3}\n    probes: {tip: {point: [0, 2, 0]}}"), **run),
     ]

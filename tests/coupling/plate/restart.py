@@ -26,14 +26,16 @@ CASES = {
 }
 
 
-def run(folder, programs, case, sets, restart=None):
+def run(folder, programs, case, sets, restart=None, changes=()):
     command = ["mpirun", "--oversubscribe"]
     for i, program in enumerate(programs):
         command += [":"] * (i > 0) + ["-n", "1", BIN / program, case, f"--set=simulation.output.folder={folder}"]
         command += [f"--set={s}" for s in sets] + (["--restart", restart] if restart else [])
+        command += (["--restart-with-changes"] if changes else []) + [f"--set={s}" for s in changes]
     result = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=500)
     if result.returncode != 0:
         sys.exit(f"{programs}: exit code {result.returncode}\n{result.stdout[-3000:]}\n{result.stderr[-2000:]}")
+    return result.stdout + result.stderr
 
 
 def main():
@@ -69,6 +71,19 @@ def main():
         for file in ("modal.csv", "energies.csv", "contact.csv", "probes.csv"):
             compare(file, *((f / participant / file).read_text() for f in (whole, again)))
         print(f"{len(rows)} rows of four files are the same")
+        if KIND == "alone":
+            without_seat(here, programs, case, participant, sets, kept, step)
+
+
+def without_seat(here, programs, case, participant, sets, kept, step):
+    """The seat is taken away in the middle of the contact: nothing keeps its energy, and the balance goes on without it."""
+    told = run(here / "again", programs, case, sets, kept, (f"participants.{participant}.contact=",))
+    rows = list(csv.DictReader((here / "again" / participant / "energies.csv").open()))
+    left = [float(row["seat [J]"]) for row in rows[step + 1:]]
+    apart = max(abs(float(row["mismatch [J]"])) for row in rows[step + 1:]) / max(float(row["kinetic [J]"]) for row in rows)
+    print(f"without the seat: {max(left)} J in it, balance off by {apart:.1e}")
+    if max(left) != 0 or apart > 1e-9 or "this jump of" not in told:
+        sys.exit("a seat that was taken away still holds energy, or nothing was said")
 
 
 def compare(file, whole, again):

@@ -38,6 +38,16 @@ TEST_F(Geo, commands_and_written_files_are_found) {
             "'SystemCall' in line 2 of " + (folder / "a.geo").string());
 }
 
+TEST_F(Geo, a_last_line_that_gmsh_would_not_read_is_found) {
+  for (const char* text :
+       {"x = 1; y = 2;\n", "x = 1;", "x = 1;\n ", "x = 1;\ny = 2;", "x = 1; // y = 2;", "x = 1;  "})
+    EXPECT_EQ(script(text).lost, "") << text;
+  EXPECT_EQ(script("x = 1;\ny = 2; z = 3;").lost, "line 2 of '" + (folder / "a.geo").string() + "'");
+  EXPECT_EQ(script("x = 1; Include \"b.geo\";\n").lost, "");
+  script("x = 1; y = 2;", "b.geo");
+  EXPECT_EQ(script("x = 1; Include \"b.geo\";\n").lost, "line 1 of '" + (folder / "b.geo").string() + "'");
+}
+
 TEST_F(Geo, an_ordinary_geometry_is_not_suspected) {
   EXPECT_EQ(
       script(

@@ -211,5 +211,67 @@ TEST(PlateGuards, a_mesh_out_of_its_plane_is_refused) {
             std::string::npos);
 }
 
+TEST(PlateGuards, a_pressure_without_a_sound_value_names_its_key_time_and_place) {
+  const RawMesh raw = square(4);
+  const auto text = [&](const char* upper, Parameters::Analysis analysis = Parameters::Analysis::dynamic) {
+    Parameters p = plate_held({{"xmin", Support::clamped}});
+    p.analysis = analysis;
+    p.load.emplace().upper.emplace().text = upper;
+    return message_of([&] {
+      Structure plate(p, PlateContext{}, &raw);
+      plate.begin_step({2, 0.01, Scheme::standalone, 0, 1, true, true});
+      plate.solve({});
+    });
+  };
+  for (const auto analysis : {Parameters::Analysis::dynamic, Parameters::Analysis::static_}) {
+    const std::string huge = text("1e300*x", analysis);
+    EXPECT_NE(huge.find("participants.plate.load.upper-pressure: at t = 2.0"), std::string::npos) << huge;
+    EXPECT_NE(huge.find("s and ("), std::string::npos) << huge;
+    EXPECT_NE(huge.find("e+2"), std::string::npos) << huge;
+    EXPECT_NE(text("exp(1000*t)", analysis).find("load.upper-pressure: at t = 2.0"), std::string::npos);
+    EXPECT_EQ(text("1e14*x", analysis), "");
+  }
+}
+
+TEST(PlateGuards, a_modal_analysis_has_no_load_that_could_be_lost) {
+  const RawMesh raw = square(4);
+  Parameters p = plate_held({{"xmin", Support::clamped}});
+  p.load.emplace().upper.emplace().text = "100*t";
+  p.analysis = Parameters::Analysis::modal;
+  Structure plate(p, PlateContext{}, &raw);
+  plate.initialise();
+  for (const EffectVerdict& v : plate.audit()) EXPECT_NE(v.effect, "load between the faces or steps");
+}
+
+TEST(PlateGuards, a_direction_may_have_any_length) {
+  const RawMesh raw = square(4);
+  const auto force = [&](double length) {
+    Parameters p = plate_held({{"xmin", Support::clamped}});
+    p.placement.x *= 3 * length;
+    p.placement.y *= length;
+    p.contact.emplace().height.text = "-0.002";
+    p.contact->direction = {0, 0, length};
+    p.contact->starts_inside = true;
+    Structure plate(p, PlateContext{}, &raw);
+    Contact::Result seat;
+    plate.contact()->look(plate.state().q, seat);
+    return seat.total;
+  };
+  EXPECT_GT(force(1), 0);
+  EXPECT_DOUBLE_EQ(force(0.1), force(1));
+}
+
+TEST(PlateGuards, a_probe_stands_on_the_surface_or_near_it) {
+  const RawMesh raw = square(4);
+  const auto text = [&](double z) {
+    Parameters p = plate_held({{"xmin", Support::clamped}});
+    p.probes["tip"].point = Vec3(1, 0.5, z);
+    return message_of([&] { Structure(p, PlateContext{}, &raw); });
+  };
+  EXPECT_EQ(text(0.0025), "");
+  EXPECT_EQ(text(0), "");
+  EXPECT_NE(text(0.03).find("probes.tip: (1, 0.5, 0.03) is 0.0275 m away"), std::string::npos) << text(0.03);
+}
+
 }  // namespace
 }  // namespace couplet::plate

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "common/base/error.hpp"
 #include "common/io/hdf5.hpp"
+#include "common/modes/facing.hpp"
 #include "common/modes/modes_file.hpp"
 #include "common/parallel/collective.hpp"
 #include "plate_modal/structure.hpp"
@@ -214,6 +216,64 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
             std::string::npos);
   EXPECT_NE(damaged([](ModalModel& m) { m.vertex_shape.resize(m.vertex_shape.size() - 6); }).find("rows"),
             std::string::npos);
+}
+
+TEST_F(PlateModesFile, a_surface_turned_inside_out_is_refused_unless_it_is_a_cavity) {
+  if (comm_size(MPI_COMM_WORLD) > 1) return;
+  const RawMesh raw = square(6);
+  const auto text_of = [&](const Parameters& p) {
+    try {
+      build_model(p, context());
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  // The rims of held edges are not part of the surface: none, one, two opposite ones, all are missing.
+  for (const int held : {0, 1, 2, 4}) {
+    Parameters p = parameters();
+    int i = 0;
+    for (const char* patch : {"xmin", "xmax", "ymin", "ymax"})
+      p.boundaries[patch].support = i++ < held ? Support::clamped : Support::free;
+    const Built built = build_model(p, context(), &raw);
+    const std::optional<double> volume = volume_behind(built.model);
+    ASSERT_TRUE(volume);
+    EXPECT_NEAR(*volume, 0.05, held == 0 || held == 1 ? 1e-12 : 0.04) << held;
+    Parameters of_file;
+    of_file.modes_file = "other.h5";
+    write_modes(folder_ / "other.h5", built.model, "");
+    EXPECT_EQ(text_of(of_file), "") << held;
+    ModalModel turned = built.model;
+    for (Index f = 0; f < turned.faces.size(); ++f)
+      std::reverse(turned.faces.index.begin() + turned.faces.offset[f],
+                   turned.faces.index.begin() + turned.faces.offset[f + 1]);
+    write_modes(folder_ / "other.h5", turned, "");
+    EXPECT_NE(text_of(of_file).find("turned inside out"), std::string::npos) << held << text_of(of_file);
+    of_file.cavity = true;
+    EXPECT_EQ(text_of(of_file), "") << held;
+  }
+  // A sheet has no other side.
+  Parameters p = parameters();
+  p.wetted = Wetted::lower;
+  EXPECT_FALSE(volume_behind(build_model(p, context(), &raw).model));
+}
+
+TEST_F(PlateModesFile, kept_modes_that_were_edited_are_found_again) {
+  if (comm_size(MPI_COMM_WORLD) > 1) return;
+  const RawMesh raw = square(4);
+  const Built first = build_model(parameters(), context(), &raw);
+  const std::string key = key_of_modes(folder_ / "modes.h5");
+  for (int change = 0; change < 4; ++change) {
+    ModalModel edited = first.model;
+    if (change == 1) edited.frequency[5] *= 1.01;
+    if (change == 2) *std::ranges::max_element(edited.vertex_shape) *= 1.0001;
+    if (change == 3) edited.mass = -1;  // would be refused in a file of another program
+    write_modes(folder_ / "modes.h5", edited, key);
+    const Built again = build_model(parameters(), context(), &raw);
+    EXPECT_EQ(again.reused, change == 0) << change;
+    EXPECT_EQ(again.model.frequency, first.model.frequency) << change;
+    EXPECT_EQ(key_of_modes(folder_ / "modes.h5"), key) << change;
+  }
 }
 
 }  // namespace

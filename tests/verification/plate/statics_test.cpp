@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/base/error.hpp"
+#include "plate_modal/outline.hpp"
 #include "plate_modal/skin.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"
@@ -70,7 +71,7 @@ TEST(PlateStatics, a_plate_of_two_thicknesses_and_its_weight_follow_the_closed_f
                   {"xmax", {}},
                   {"ymin", {Support::symmetry}},
                   {"ymax", {Support::symmetry}}};
-  const PlateModel plate = plate_of(stepped_strip(20), p, "strip");
+  const PlateModel plate = plate_of(midsurface_of(stepped_strip(20)), p, "strip");
   const double d2 = plate.cell(plate.surface().cells.size() - 1).rigidity(), d1 = 8 * d2;
   // Cantilever of length 1 under q: w'' = q (1 - x)^2 / (2 D); tip = int (1 - x) w'' dx.
   const double pressure = 10;
@@ -130,6 +131,63 @@ TEST(PlateStatics, deflection_by_modes_tends_to_the_direct_one) {
   }
   EXPECT_LT(last, 1e-4);
   RecordProperty("by-120", fmt::format("{:.3e}", last));
+}
+
+/// The disc with its outline, and the rings within in proportion, drawn in onto the sides of a regular polygon.
+RawMesh polygon(int sides, int rings) {
+  RawMesh raw = disc(rings);
+  const double part = 2 * std::numbers::pi / sides;
+  for (Vec3& x : raw.points) {
+    const double angle = std::atan2(x.y(), x.x()) + 2 * std::numbers::pi;
+    x *= std::cos(part / 2) / std::cos(angle - part * (std::floor(angle / part + 1e-9) + 0.5));
+  }
+  return raw;
+}
+
+struct Centre {
+  double deflection;
+  std::size_t corners;  ///< blunt ones
+};
+Centre centre_of(const RawMesh& raw, std::span<const int> curves = {}) {
+  Midsurface surface = midsurface_of(raw, curves);
+  const std::size_t cells = surface.cells.size();
+  const std::vector<Support> held{Support::simply_supported};
+  const std::size_t corners = blunt_corners(surface, outline_of(surface), held).size();
+  const PlateModel plate(std::move(surface), std::vector<PlateCell>(cells, unit_cell()), held);
+  return {plate.to_points(plate.deflect(plate.load_of(std::vector<double>(cells, 1))))[0], corners};
+}
+
+// Babuska's paradox: the limit of simply supported polygons with ever more sides is 3 / 64, a circle has
+// (5 + nu) / (64 (1 + nu)). 18 sides about the radius 1: Poisson's equation twice by harmonic polynomials.
+TEST(PlateStatics, a_circle_is_a_circle_on_any_mesh_and_a_polygon_with_blunt_corners_is_told) {
+  const SlepcEnvironment slepc;
+  const double circle = 5.3 / (64 * 1.3), polygon_of_18 = 0.04493;
+  double before_circle = 1, before = 0.3;
+  for (const int rings : {6, 12, 24}) {  // 2, 4, 8 edges a side
+    const Centre round = centre_of(disc(rings)), straight = centre_of(polygon(18, rings));
+    const double of_circle = std::abs(round.deflection / circle - 1);
+    EXPECT_EQ(round.corners, 0u) << rings;
+    EXPECT_LT(of_circle, 0.3 * before_circle) << rings;
+    before_circle = of_circle;
+    const double of_polygon = straight.deflection / polygon_of_18 - 1;
+    EXPECT_EQ(straight.corners, 18u) << rings;
+    EXPECT_GT(of_polygon, 0) << rings;  // from above, and slowly
+    EXPECT_LT(of_polygon, before) << rings;
+    before = of_polygon;
+    RecordProperty(fmt::format("rings-{}", rings),
+                   fmt::format("circle {:.4f}, polygon {:.4f}", of_circle, of_polygon));
+  }
+}
+
+TEST(PlateStatics, sides_of_one_edge_are_told_from_a_curve_by_the_drawing) {
+  const SlepcEnvironment slepc;
+  const RawMesh raw = disc(3);  // 18 edges
+  std::vector<int> lines, arcs, many;
+  for (int e = 0; e < 18; ++e) lines.push_back(e), arcs.push_back(e / 9), many.push_back(e / 2);
+  EXPECT_EQ(centre_of(raw, lines).corners, 18u);
+  EXPECT_EQ(centre_of(raw, arcs).corners, 0u);
+  EXPECT_EQ(centre_of(raw, many).corners, 0u);  // nine arcs of two edges each
+  EXPECT_EQ(centre_of(raw).corners, 0u);
 }
 
 TEST(PlateStatics, a_plate_that_nothing_holds_is_refused) {

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/outline.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace couplet::plate {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double sharp = 25 * degree, least = 0.5 * degree, least_share = 0.6;
+
+struct Neighbours {
+  int in = -1, out = -1;  // edges of the outline that end and start at a point; -2: several
+};
+
+Vec2 along(const Midsurface& s, int edge) {
+  return s.points[s.edges[edge].to] - s.points[s.edges[edge].from];
+}
+
+/// Angle from one edge to the next, to the left positive.
+double turn_between(const Midsurface& s, int first, int second) {
+  const Vec2 a = along(s, first), b = along(s, second);
+  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+}
+
+/// What a curve turns between the middle of its last edge and its end, from the turn before that edge. Where nothing is
+/// known of that (the curve has one edge, or a sharp corner lies there) the curve goes on as a circle over a point within it, and as a
+/// line up to a point between two curves.
+double turn_to_end(const Midsurface& s, int edge, int beyond, int other, double turn_here) {
+  const bool is_after = beyond >= 0 && s.edges[edge].to == s.edges[beyond].from;
+  const double here = along(s, edge).norm();
+  if (beyond >= 0 && s.edges[edge].curve == s.edges[beyond].curve)
+    if (const double turn = is_after ? turn_between(s, edge, beyond) : turn_between(s, beyond, edge);
+        std::abs(turn) <= sharp)
+      // No more than the turn itself: a corner next to this point is none of the curve's own.
+      return std::clamp(turn * here / (here + along(s, beyond).norm()), -std::abs(turn_here),
+                        std::abs(turn_here));
+  const bool within = s.edges[edge].curve == s.edges[other].curve;
+  return within ? turn_here * here / (here + along(s, other).norm()) : 0;
+}
+
+}  // namespace
+
+Outline outline_of(const Midsurface& s) {
+  std::vector<Neighbours> at(s.points.size());
+  for (int e = 0; e < int(s.edges.size()); ++e) {
+    int &out = at[s.edges[e].from].out, &in = at[s.edges[e].to].in;
+    out = out == -1 ? e : -2;
+    in = in == -1 ? e : -2;
+  }
+  Outline outline{std::vector<bool>(s.points.size(), false), std::vector<double>(s.points.size(), 0)};
+  for (std::size_t p = 0; p < s.points.size(); ++p) {
+    const auto [in, out] = at[p];
+    if (in < 0 || out < 0) continue;
+    const double turn = turn_between(s, in, out);
+    const int before = at[s.edges[in].from].in, after = at[s.edges[out].to].out;
+    const double left = turn_to_end(s, in, before, out, turn);
+    const double right = turn_to_end(s, out, after, in, turn);
+    const double kink = std::abs(turn - left - right);
+    outline.turn[p] = turn;
+    outline.corner[p] = std::abs(turn) > sharp || (kink > least && kink > least_share * std::abs(turn));
+  }
+  return outline;
+}
+
+std::vector<Index> blunt_corners(const Midsurface& s, const Outline& outline,
+                                 const std::vector<Support>& support) {
+  std::vector<int> held(s.points.size(), 0);
+  for (const auto& edge : s.edges)
+    if (support[edge.patch] == Support::simply_supported) ++held[edge.from], ++held[edge.to];
+  std::vector<Index> found;
+  for (std::size_t p = 0; p < s.points.size(); ++p)
+    if (held[p] == 2 && outline.corner[p] && std::abs(outline.turn[p]) <= sharp) found.push_back(Index(p));
+  return found;
+}
+
+}  // namespace couplet::plate
