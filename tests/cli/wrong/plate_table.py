@@ -65,7 +65,7 @@ case.yaml:7:5: participants.plate.damping: damping has no effect in this analysi
 case.yaml:15:30: participants.plate.contact.direction: a direction is needed, not 0.
 """, ("{height: -1 cm}", "{height: -1 cm, direction: [0, 0, 0]}")),
         plate("stiffness of a seat and a scale", """
-case.yaml:15:54: participants.plate.contact.scale: with 'stiffness' it is of no use: it scales (4.33) alone.
+case.yaml:15:52: participants.plate.contact.scale: with 'stiffness' it is of no use: it scales (4.33) alone.
 """, ("{height: -1 cm}", "{height: -1 cm, stiffness: 1e6 N/m^3, scale: 2}")),
         plate("cavity without a file", """
 case.yaml:14:24: participants.plate.modes.cavity: it says something of a 'file' alone.
