@@ -45,6 +45,25 @@ double largest_of(const std::vector<double>& vectors) {
   return largest;
 }
 
+/// A restart with changes may have taken away the seat, or moved it, or the gravity: the energy that the structure has
+/// in the new scene is where its balance starts from.
+void take_changed_energy(const Oscillators& oscillators, bool tells, ModalState& state) {
+  Energies& kept = state.energies;
+  const Energies now = oscillators.start(state.q, state.v).energies;
+  const double scale =
+      std::abs(kept.kinetic) + std::abs(kept.strain) + std::abs(kept.gravity) + std::abs(kept.contact);
+  const double jump = now.contact - kept.contact + now.gravity - kept.gravity;
+  if (!(std::abs(now.contact - kept.contact) + std::abs(now.gravity - kept.gravity) > 1e-9 * scale)) return;
+  if (tells)
+    log::warn(
+        "energy: with the changes of this restart the seat holds {:.4g} J in place of {:.4g} J, and the gravity {:.4g} J in "
+        "place of {:.4g} J: this jump of {:.4g} J is no part of the balance.",
+        now.contact, kept.contact, now.gravity, kept.gravity, jump);
+  kept.contact = now.contact;
+  kept.gravity = now.gravity;
+  kept.initial += jump;
+}
+
 }  // namespace
 
 Structure::Structure(Parameters parameters, PlateContext context, const RawMesh* raw)
@@ -259,25 +278,6 @@ void Structure::save(CheckpointWriter& file) const {
   file.write("errors", step_errors_ ? step_errors_->state() : std::vector<double>{});
 }
 
-/// A restart with changes may have taken away the seat, or moved it, or the gravity: the energy that the structure has
-/// in the new scene is where its balance starts from.
-void Structure::take_changed_energy() {
-  Energies& kept = state_.energies;
-  const Energies now = oscillators_->start(state_.q, state_.v).energies;
-  const double scale =
-      std::abs(kept.kinetic) + std::abs(kept.strain) + std::abs(kept.gravity) + std::abs(kept.contact);
-  const double jump = now.contact - kept.contact + now.gravity - kept.gravity;
-  if (!(std::abs(now.contact - kept.contact) + std::abs(now.gravity - kept.gravity) > 1e-9 * scale)) return;
-  if (comm_rank(context_.comm) == 0)
-    log::warn(
-        "energy: with the changes of this restart the seat holds {:.4g} J in place of {:.4g} J, and the gravity {:.4g} J in "
-        "place of {:.4g} J: this jump of {:.4g} J is no part of the balance.",
-        now.contact, kept.contact, now.gravity, kept.gravity, jump);
-  kept.contact = now.contact;
-  kept.gravity = now.gravity;
-  kept.initial += jump;
-}
-
 void Structure::load(CheckpointReader& file) {
   if (file.read("omega") != share_->omega())
     throw Error(
@@ -299,7 +299,7 @@ void Structure::load(CheckpointReader& file) {
   for (double* part : {&e.kinetic, &e.strain, &e.gravity, &e.contact, &e.initial, &e.load_work,
                        &e.impact_work, &e.damping_loss, &worst_mismatch_, &largest_exchange_, &largest_true_})
     *part = kept[i++];
-  take_changed_energy();
+  take_changed_energy(*oscillators_, comm_rank(context_.comm) == 0, state_);
   std::vector<double> largest(4), left_out(2);
   file.read("largest", largest);
   largest_ = largest[0], largest_rotation_ = largest[1];

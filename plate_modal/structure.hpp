@@ -68,7 +68,6 @@ class Structure final : public Participant, public EstimatesError {
   double in_plane_share() const;
   double true_energy(const ModalState& state) const;
   void refuse_made_energy() const;
-  void take_changed_energy();
   void solve_static(double t, std::span<const double> fluid);
   std::vector<double> direct_deflection(double t) const;
   std::vector<double> cell_pressures(double t) const;
