@@ -150,6 +150,10 @@ const std::array cards{
                 return when(s.parameters.motion && s.parameters.motion->translates(), "motion.translation");
               },
               {"nothing: geometry, pressure matrix and factors are made once", 0, 0}},
+    FluidCard{"frame that turns",
+              "`rotating-frame`",
+              [](const S& s) { return when(s.parameters.rotating_frame.has_value(), "rotating-frame"); },
+              {"a force a cell", 0, 0}},
     FluidCard{"coupling load",
               "a boundary of `type: interface`",
               [](const S& s) { return when(s.coupled && has_interface(s), "a boundary of type interface"); },

@@ -8,6 +8,8 @@
 #include "common/base/error.hpp"
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/body_start.hpp"
+#include "fluid_solver/fluid_checks.hpp"
 
 namespace couplet::fluid {
 namespace {
@@ -39,32 +41,9 @@ Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving
       boundary_(mesh, parameters_),
       step_(mesh, boundary_, parameters_, moving_mesh && !translates_),
       step_size_(mesh, boundary_, parameters.viscosity / parameters.density, parameters.scheme) {
-  check_parameters();
+  check_together(mesh_, boundary_, parameters_, moving_);
+  if (moving_ && !translates_ && !mesh.neighbour_shift.empty()) periodic_.emplace(mesh);
   start(start_time);
-}
-
-template <int D>
-void Fluid<D>::check_parameters() {
-  if (!parameters_.bodies.empty()) {
-    if (!parameters_.gaps.empty())
-      throw Error("gaps: a fluid with immersed bodies has none; leave 'gaps' or 'bodies' out.");
-    if (moving_)
-      throw Error("bodies: the mesh of a fluid with immersed bodies must rest; remove its mesh mover.");
-    if (boundary_.closed())
-      throw Error("bodies: a fluid with immersed bodies needs an outlet, since they may displace fluid.");
-    if (parameters_.viscous == ViscousTreatment::implicit)
-      throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
-    parameters_.viscous = ViscousTreatment::explicit_;
-  }
-  if (!parameters_.gaps.empty() && boundary_.closed())
-    throw Error("gaps: a fluid with gaps that close needs an outlet: its blocked cells keep what they hold.");
-  if (parameters_.scheme != ExplicitScheme::runge_kutta) return;
-  if (moving_)
-    throw Error("scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover.");
-  if (parameters_.viscous == ViscousTreatment::implicit)
-    throw Error(
-        "scheme: runge-kutta takes the viscous term explicitly; use 'viscous: explicit' or adams-bashforth.");
-  parameters_.viscous = ViscousTreatment::explicit_;
 }
 
 /// The first two stages of Heun's scheme, each a step from level n with its own pressure,
@@ -126,6 +105,7 @@ void Fluid<D>::start(double time) {
       boundary_.add_turn(mesh_, mesh_.reference_points, time, s.turn);
       s.turns = true;
     }
+    if (parameters_.motion) set_body_start(mesh_, boundary_, *parameters_.motion, time, s.w, s.turn);
   }
   for (std::size_t b = 0; b < s.w.size(); ++b)
     if (boundary_.is_convective(b)) s.w[b] = s.u_boundary[b];
@@ -140,6 +120,7 @@ void Fluid<D>::start(double time) {
     level->boundary.resize(s.w.size());
     initial_pressure.evaluate(mesh_.reference.cell_centre, time, level->p);
     initial_pressure.evaluate(at.boundary_centre, time, level->boundary);
+    if (step_.frame()) add_centrifugal(*step_.frame(), at, -parameters_.density, *level);
     step_.set_gradient(at, *level);
     s.pressure[0] = level;
   }
@@ -165,6 +146,7 @@ void Fluid<D>::begin_step(double time, double dt) {
   split_ = false;
   begin_ = accepted_;
   begin_.time = time;
+  if (step_.frame()) step_size_.set_frame_rate(step_.frame()->rate(time, dt));
   if (!parameters_.time_step) statistics_.limits = step_size_.limits(accepted_);
   if (parameters_.viscous == ViscousTreatment::automatic) choose_viscous_treatment();
   statistics_.sub_steps = 0;
@@ -281,6 +263,7 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
   split_ = judged_ = false;
   history_ = begin_;
   statistics_.sub_steps = 0;
+  if (periodic_ && !points.empty()) refuse_torn(mesh_, *periodic_, points, time_ + dt_);
   pressure_done_.assign(accepted_.w.size(), Vec<D>::Zero());
   viscous_done_ = pressure_done_;
   double done = 0;

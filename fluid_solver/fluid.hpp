@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "common/mesh/periodic_points.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/fractional_step.hpp"
 #include "fluid_solver/step_size.hpp"
@@ -64,6 +65,8 @@ class Fluid {
   void accept();
 
   const State<D>& state() const { return accepted_; }
+  /// The pressure of the accepted state; null: none yet. In a frame that turns the state's lacks the centrifugal part.
+  std::shared_ptr<const PressureLevel<D>> pressure() const;
   /// Of the step that was prepared.
   const Placement<D>& end() const { return step_.to(); }
   /// For checkpoints: replaces the accepted state.
@@ -95,7 +98,6 @@ class Fluid {
  private:
   /// What the sub-step under way starts from.
   const State<D>& level() const { return split_ ? trial_ : accepted_; }
-  void check_parameters();
   void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
   void start(double time);
   void check_wall_velocity() const;
@@ -113,7 +115,8 @@ class Fluid {
   const Mesh& mesh_;
   FluidParameters parameters_;
   bool moving_;
-  bool translates_;  // the mesh moves as a frame that does not turn
+  bool translates_;                         // the mesh moves as a frame that does not turn
+  std::optional<PeriodicPoints> periodic_;  // with patches joined on a mesh that moves
   Boundary<D> boundary_;
   FractionalStep<D> step_;
   StepSize<D> step_size_;

@@ -17,6 +17,7 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       projection_(k_, moving),
       loads_(k_),
       energy_guard_(mesh, boundary, parameters.density, parameters.viscosity) {
+  if (parameters.rotating_frame) k_.frame.emplace(*parameters.rotating_frame);
   if (!parameters.bodies.empty()) k_.bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
   if (parameters.gaps.empty()) return;
   k_.gaps = std::make_unique<Gaps<D>>(mesh, parameters);

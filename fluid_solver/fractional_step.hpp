@@ -62,6 +62,8 @@ class FractionalStep {
   void set_eddy_viscosity(State<D>& state);
   /// Null: none.
   const ImmersedBodies<D>* bodies() const { return k_.bodies.get(); }
+  /// Null: none.
+  const RotatingFrame<D>* frame() const { return k_.frame ? &*k_.frame : nullptr; }
   /// Pressure that gave the interface its w, per boundary face [Pa]: for steps that yield.
   void set_wall_load(std::vector<double> load) { k_.wall_load = std::move(load); }
   /// The masses of such walls have changed: the pressure matrix is made anew when it is needed next.

@@ -91,6 +91,8 @@ void Loads<D>::extrapolate_to_walls() {
 template <int D>
 void Loads<D>::set_forces(const State<D>& from) {
   extrapolate_to_walls();
+  for (std::size_t b = 0; k_.frame && b < p_wall_.size(); ++b)
+    p_wall_[b] += k_.rho * k_.frame->potential(k_.by.time + k_.step.dt / 2, k_.step.to->boundary_centre[b]);
   pressure_force_.resize(k_.w.size());
   for (std::size_t b = 0; b < k_.w.size(); ++b) {
     const Index f = k_.mesh.n_interior + static_cast<Index>(b);

@@ -66,9 +66,9 @@ void FluidOutput<D>::write_fields(double time, const RunningStatistics<D>* stati
   const State<D>& s = fluid_.state();
   const FluidOutputParameters& wanted = fluid_.parameters().output;
   const std::vector<double> none(mesh_.cells.n_local(), 0.0);
-  std::vector<OutputField> fields{
-      {"velocity", "m/s", Place::cells, D, flat<D>(s.u)},
-      {"pressure", "Pa", Place::cells, 1, s.pressure[0] ? s.pressure[0]->p : none}};
+  const auto pressure = fluid_.pressure();
+  std::vector<OutputField> fields{{"velocity", "m/s", Place::cells, D, flat<D>(s.u)},
+                                  {"pressure", "Pa", Place::cells, 1, pressure ? pressure->p : none}};
   std::vector<double> curl, q, p_rms, shear;
   Vectors<D> u_rms;
   if (wanted.vorticity || wanted.q_criterion) {

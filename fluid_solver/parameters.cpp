@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/parameters.hpp"
 
-#include "common/base/error.hpp"
+#include "common/mesh/periodic_points.hpp"
 
 namespace couplet::fluid {
 namespace {
@@ -11,6 +11,16 @@ void declare_ramp(config::Section& s, BoundaryParameters& b) {
       .unit("s")
       .positive()
       .doc("the velocity grows from 0 as (1 - cos(pi t/ramp))/2 until t = ramp; absent: no ramp");
+}
+
+void declare_rotation(config::Section& r, RotationParameters& rotation) {
+  r.value("speed", rotation.speed)
+      .required()
+      .doc("[rad/s], expression of t [s]; where there is a ramp, it holds for it, too");
+  r.value("centre", rotation.centre).unit("m").doc("a point of the axis");
+  r.value("axis", rotation.axis).size(3).doc("3-D; a plane scene turns about z");
+  r.check([&rotation] { return rotation.axis.norm() > 0 ? std::string() : "'axis' must not be zero"; },
+          "axis");
 }
 
 /// Velocity from a file, and a rotation besides.
@@ -29,16 +39,7 @@ void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
       },
       "velocity from a file instead of 'velocity'");
   s.optional_section<RotationParameters>(
-      "rotation", b.rotation,
-      [](config::Section& r, RotationParameters& rotation) {
-        r.value("speed", rotation.speed)
-            .required()
-            .doc("[rad/s], expression of t [s]; ramp holds for it, too");
-        r.value("centre", rotation.centre).unit("m").doc("a point of the axis");
-        r.value("axis", rotation.axis).size(3).doc("3-D; a plane scene turns about z");
-        r.check([&rotation] { return rotation.axis.norm() > 0 ? std::string() : "'axis' must not be zero"; },
-                "axis");
-      },
+      "rotation", b.rotation, declare_rotation,
       "omega x (r - centre) besides the other velocity: a rotating inlet or wall; absent: none");
 }
 
@@ -130,18 +131,10 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
 }  // namespace
 
 std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters) {
-  std::vector<std::array<std::string, 2>> pairs;
-  for (const auto& [name, b] : parameters.boundaries) {
-    if (b.type != BoundaryType::periodic) continue;
-    const auto partner = parameters.boundaries.find(b.partner);
-    if (partner == parameters.boundaries.end() || partner->second.type != BoundaryType::periodic ||
-        partner->second.partner != name || b.partner == name)
-      throw Error(
-          "boundaries.{}: its partner '{}' must be another patch of type periodic whose partner is '{}'.",
-          name, b.partner, name);
-    if (name < b.partner) pairs.push_back({name, b.partner});
-  }
-  return pairs;
+  std::map<std::string, std::string> partner_of;
+  for (const auto& [name, b] : parameters.boundaries)
+    if (b.type == BoundaryType::periodic) partner_of[name] = b.partner;
+  return periodic_pairs(partner_of);
 }
 
 namespace {
@@ -268,6 +261,10 @@ void declare(config::Section& s, FluidParameters& p) {
       [](config::Section& m, MotionParameters& motion) { couplet::declare(m, motion, true); },
       "prescribed motion of the mesh, of all of it or about a body, without a mesh mover; it starts from the "
       "reference configuration; absent: none");
+  s.optional_section<RotationParameters>(
+      "rotating-frame", p.rotating_frame, declare_rotation,
+      "a frame that turns: the mesh rests in it, all velocities are relative to it, and Coriolis, centrifugal and Euler "
+      "forces act; absent: none");
   s.optional_section<TurbulenceParameters>(
       "turbulence", p.turbulence,
       [](config::Section& t, TurbulenceParameters& turbulence) {

@@ -14,6 +14,7 @@
 #include "common/io/numbering.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/body_start.hpp"
 #include "fluid_solver/cavity.hpp"
 #include "fluid_solver/derived.hpp"
 #include "fluid_solver/effect_cards.hpp"
@@ -106,10 +107,26 @@ Interface FluidParticipant<D>::initialise() {
   return description;
 }
 
+/// Forces of the first step that are none of the flow's.
+template <int D>
+void FluidParticipant<D>::tell_impulse() const {
+  const Boundary<D>& boundary = fluid_->boundary();
+  if (boundary.body_patches().empty() || fluid_->state().start != Start::at_rest) return;
+  Vectors<D> w(mesh_.boundary.n_owned()), no_turn;
+  const double speed = set_body_start(mesh_, boundary, *fluid_->parameters().motion, step_.time, w, no_turn);
+  if (speed > 0 && comm_rank(mesh_.comm) == 0)
+    log::warn(
+        "motion: at t = {:g} s its bodies move with {:.3g} m/s already, in a fluid at rest: the first step is an impulse "
+        "(its forces are that over the step's size). Let the motion grow from rest (ramp), or give the fluid's velocity "
+        "as 'initial-velocity'.",
+        step_.time, speed);
+}
+
 template <int D>
 void FluidParticipant<D>::begin_step(const Step& step) {
   if (step.number == 0 || holds_volume()) check_cavity(*fluid_, step.scheme);
   step_ = step;
+  if (step.number == 0) tell_impulse();
   passes_ = 0;
   renewed_ = renewed_now_ = false;
   fluid_->begin_step(step.time, step.dt);
@@ -242,7 +259,7 @@ StepReport FluidParticipant<D>::accept_step() {
   if (errors_) errors_->accepted(step_.dt);
   tell_sub_steps();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
-    statistics_->add(fluid_->state(), step_.dt);
+    statistics_->add(fluid_->state(), fluid_->pressure().get(), step_.dt);
   return {.dt = step_.dt, .iterations = effort() - before, .energy = fluid_->state().ledger.energy};
 }
 
@@ -290,7 +307,7 @@ std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
   double speed = 0;
   for (const Vec<D>& u : fluid_->state().u) speed = std::max(speed, u.squaredNorm());
   evidence.largest_speed = std::sqrt(max(mesh_.comm, speed));
-  if (const auto& latest = fluid_->state().pressure[0]) {
+  if (const auto latest = fluid_->pressure()) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
       low = std::min(low, latest->p[c]), high = std::max(high, latest->p[c]);

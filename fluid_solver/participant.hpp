@@ -67,6 +67,7 @@ class FluidParticipant final : public Participant, public EstimatesError {
   double contraction(const Vectors<D>& w);
   bool needs_renewal(double contraction) const;
   void set_up_motion();
+  void tell_impulse() const;
   void add_body_velocity(Vectors<D>& w) const;
   std::vector<Vec3> receive_points();
   Exchange forces() const;

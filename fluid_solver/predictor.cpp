@@ -38,7 +38,7 @@ void Predictor<D>::predict(const State<D>& from) {
     k_.right_side[c] = volume[c] * from.u[c] + (given ? dt * k_.step.rate[c] : dt * e0 * rates_.rate[c]);
   if (ratio > 0 && !given)
     for (Index c = 0; c < k_.mesh.cells.n_local(); ++c) k_.right_side[c] += dt * e1 * from.rates_old.rate[c];
-  if (!body_force_.empty()) add_body_force();
+  if (!body_force_.empty() || k_.frame) add_body_force(from, e0, e1);
   if (moving) add_swept(from, e0, e1);
   if (moving || implicit) add_old_pressure(from, implicit);
   k_.u_p.resize(from.u.size());
@@ -76,12 +76,14 @@ void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
 
 // Volume-integrated at t^{n+1/2}, where the pressure lives that may balance it.
 template <int D>
-void Predictor<D>::add_body_force() {
+void Predictor<D>::add_body_force(const State<D>& from, double e0, double e1) {
   std::vector<Vec3> places(k_.mesh.cells.n_local(), Vec3::Zero());
   for (std::size_t c = 0; c < places.size(); ++c) places[c].template head<D>() = k_.step.to->centre[c];
-  k_.force.resize(places.size());
-  for (int c = 0; c < D; ++c)
-    body_force_[c].evaluate(places, k_.by.time + k_.step.dt / 2, flat<D>(k_.force), D, c);
+  k_.force.assign(places.size(), Vec<D>::Zero());
+  if (!body_force_.empty())
+    for (int c = 0; c < D; ++c)
+      body_force_[c].evaluate(places, k_.by.time + k_.step.dt / 2, flat<D>(k_.force), D, c);
+  if (k_.frame) k_.frame->add_force(k_.by.time, k_.step.dt, places, from.u, from.u_old, {e0, e1}, k_.force);
   for (std::size_t c = 0; c < places.size(); ++c)
     k_.right_side[c] += k_.step.dt * k_.step.to->volume[c] * k_.force[c];
 }

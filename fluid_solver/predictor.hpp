@@ -28,7 +28,7 @@ class Predictor {
   RateOperator<D>& rate_operator() { return rate_operator_; }
 
  private:
-  void add_body_force();
+  void add_body_force(const State<D>& from, double e0, double e1);
   void add_swept(const State<D>& from, double e0, double e1);
   void part_from_gaps(const State<D>& from, bool implicit);
   void add_old_pressure(const State<D>& from, bool implicit);

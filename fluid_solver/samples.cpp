@@ -44,8 +44,8 @@ void PointValues<D>::fill(std::span<const Probe> probes, Flat cell_velocity, Fla
 template <int D>
 void PointValues<D>::state(std::span<const Probe> probes, std::span<double> values) const {
   const State<D>& s = fluid_.state();
-  fill(probes, flat<D>(s.u), flat<D>(s.u_boundary), s.pressure[0]->p, s.pressure[0]->boundary, values, D + 1,
-       0);
+  const auto pressure = fluid_.pressure();
+  fill(probes, flat<D>(s.u), flat<D>(s.u_boundary), pressure->p, pressure->boundary, values, D + 1, 0);
 }
 
 template <int D>

@@ -52,14 +52,14 @@ void RunningStatistics<D>::add_pressure(std::size_t i, double pressure, double d
 }
 
 template <int D>
-void RunningStatistics<D>::add(const State<D>& s, double dt) {
+void RunningStatistics<D>::add(const State<D>& s, const PressureLevel<D>* pressure, double dt) {
   duration_ += dt;
   for (std::size_t c = 0; c < cells_; ++c) add(c, s.u[c], dt);
   for (std::size_t b = 0; b < s.u_boundary.size(); ++b) add(cells_ + b, s.u_boundary[b], dt);
-  if (!s.pressure[0]) return;
-  for (std::size_t c = 0; c < cells_; ++c) add_pressure(c, s.pressure[0]->p[c], dt);
-  for (std::size_t b = 0; b < s.pressure[0]->boundary.size(); ++b)
-    add_pressure(cells_ + b, s.pressure[0]->boundary[b], dt);
+  if (!pressure) return;
+  for (std::size_t c = 0; c < cells_; ++c) add_pressure(c, pressure->p[c], dt);
+  for (std::size_t b = 0; b < pressure->boundary.size(); ++b)
+    add_pressure(cells_ + b, pressure->boundary[b], dt);
 }
 
 template <int D>

@@ -15,8 +15,8 @@ class RunningStatistics {
   RunningStatistics(std::size_t cells, std::size_t faces);
   /// What is known before the first state: NaN everywhere.
   static RunningStatistics nothing_yet(std::size_t cells, std::size_t faces);
-  /// `state` held for dt [s].
-  void add(const State<D>& state, double dt);
+  /// `state` and `pressure` (null: none) held for dt [s].
+  void add(const State<D>& state, const PressureLevel<D>* pressure, double dt);
   double duration() const { return duration_; }  ///< [s]
 
   std::size_t cells() const { return cells_; }

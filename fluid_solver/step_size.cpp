@@ -7,6 +7,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <span>
 
 #include "common/parallel/collective.hpp"
 
@@ -150,6 +151,12 @@ double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
   return largest;
 }
 
+/// No friction damps what the frame makes of the fluid as a whole.
+template <int D>
+double StepSize<D>::frame_limit() const {
+  return frame_rate_ > 0 ? explicit_limit(std::numbers::pi / 2, scheme_) / frame_rate_ : infinity;
+}
+
 template <int D>
 double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
   add_rates(s, false);
@@ -161,7 +168,7 @@ double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
     if (lowest * lowest < least * least * rate.squaredNorm())
       least = std::min(least, explicit_limit(std::atan2(rate[0], rate[1]), scheme_) / rate.norm());
   }
-  return round_down(min(mesh_.comm, least));
+  return round_down(std::min(min(mesh_.comm, least), frame_limit()));
 }
 
 /// The limit is at most that of the negative real axis, and a cell's diffusion at least that of one of its
@@ -204,6 +211,7 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
   }
   MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, mesh_.comm);
   peclet_ = -least[2];
+  for (double& limit : std::span(least, 2)) limit = std::min(limit, frame_limit());
   return {round_down(least[0]), round_down(least[1])};
 }
 

@@ -31,6 +31,8 @@ class StepSize {
  public:
   StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
            ExplicitScheme scheme = ExplicitScheme::adams_bashforth);
+  /// Largest rate of the Coriolis force [1/s]; 0: none.
+  void set_frame_rate(double rate) { frame_rate_ = rate; }
   StepLimits limits(const State<D>& state);
   /// Of limits(), for one treatment of the viscous term; one more loop over faces and cells. Collective.
   StepLimiter limiter(const State<D>& state, bool implicit);
@@ -44,9 +46,10 @@ class StepSize {
   double explicit_viscous_limit(const State<D>& state);
   double add_rates(const State<D>& state, bool peclet);
   void add_eddies(const State<D>& state);
+  double frame_limit() const;
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
-  double nu_;
+  double nu_, frame_rate_ = 0;
   ExplicitScheme scheme_;
   Vectors<2> rates_;  // of convection and diffusion
   std::vector<double> eddy_, peclet_of_;

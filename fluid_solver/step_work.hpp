@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "fluid_solver/boundary.hpp"
 #include "fluid_solver/gap_pockets.hpp"
 #include "fluid_solver/gaps.hpp"
 #include "fluid_solver/immersed.hpp"
+#include "fluid_solver/rotating_frame.hpp"
 #include "fluid_solver/state.hpp"
 
 namespace couplet::fluid {
@@ -48,6 +50,8 @@ struct StepWork {
   bool gap_changed = false;  ///< in this step cells are blocked or freed: an impulse, as in a first step
   std::shared_ptr<const Placement<D>> around_gaps{};  ///< with blocked cells only
   std::shared_ptr<const Placement<D>> assembled{};    ///< placement of the pressure matrix
+
+  std::optional<RotatingFrame<D>> frame{};  ///< empty: none
 
   SubStep<D> step{};
   History<D> by{};                  ///< how the step sees its begin

@@ -15,6 +15,11 @@ bool slips(const P& p) {
                              [](const auto& b) { return b.second.motion == BoundaryMotion::slip; });
 }
 
+bool joins(const P& p) {
+  return std::ranges::any_of(p.boundaries,
+                             [](const auto& b) { return b.second.motion == BoundaryMotion::periodic; });
+}
+
 bool moves(const P& p) {
   return std::ranges::any_of(p.boundaries,
                              [](const auto& b) { return b.second.motion == BoundaryMotion::moving; });
@@ -32,6 +37,10 @@ const std::array cards{
         {"a matrix of its own for each direction that is held differently; on curved patches the nearest place of the "
          "patch for each point",
          0, 0}},
+    Card{"periodic patches",
+         "a boundary of `type: periodic`",
+         [](const P& p) { return when(joins(p), "a boundary of type periodic"); },
+         {"a sum over the points of these patches a component and motion", 0, 0}},
     Card{"elastic mesh motion",
          "`method: pseudo-solid`",
          [](const P& p) { return when(p.method == Method::pseudo_solid, "method: pseudo-solid"); },

@@ -38,6 +38,7 @@ struct Laplacian::Equation {
 Laplacian::Laplacian(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes)
     : mesh_(mesh),
       dim_(mesh.dim),
+      periodic_(mesh),
       relative_tolerance_(parameters.linear.relative_tolerance),
       cell_displacement_(std::size_t(mesh.cells.n_local()) * mesh.dim, 0.0) {
   set_kinds(parameters);
@@ -90,6 +91,10 @@ void Laplacian::set_kinds(const Parameters& parameters) {
     const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
     const int axis = motion == BoundaryMotion::slip ? normal_axis(mesh_, patch) : -1;
     std::array<bool, 3> held{};
+    if (motion == BoundaryMotion::periodic) {  // its faces are interior ones
+      held_.push_back(held);
+      continue;
+    }
     const bool slides = motion == BoundaryMotion::slip || motion == BoundaryMotion::free;
     for (int c = 0; c < dim_; ++c) held[c] = !slides || c == axis;
     held_.push_back(held);
@@ -107,6 +112,7 @@ void Laplacian::set_kinds(const Parameters& parameters) {
           }
       }
   }
+  share_kinds();
   for (int c = 0; c < dim_; ++c)
     if (!anything_held[c])
       throw Error(
@@ -126,21 +132,35 @@ void Laplacian::set_kinds(const Parameters& parameters) {
   }
 }
 
+/// A point that is held on one side of periodic patches is held on the other.
+void Laplacian::share_kinds() {
+  if (periodic_.empty()) return;
+  std::vector<double> fixed(kind_.size() * 3, 0.0);
+  for (const Index v : periodic_.points())
+    for (int c = 0; c < dim_; ++c) fixed[std::size_t(v) * 3 + c] = kind_[v][c] == PointKind::fixed ? 1 : 0;
+  periodic_.add_up(fixed, 3);
+  for (const Index v : periodic_.points())
+    for (int c = 0; c < dim_; ++c)
+      if (fixed[std::size_t(v) * 3 + c] > 0) kind_[v][c] = PointKind::fixed;
+}
+
 // Thesis (2.49): inverse distance, so every weight is positive.
 void Laplacian::set_weights() {
   std::vector<std::vector<Index>> cells(mesh_.points.n_local());
   for (Index c = 0; c < mesh_.cells.n_local(); ++c)
     for (const Index v : mesh_.cell_points[c]) cells[v].push_back(c);
+  std::vector<double> totals(cells.size(), 0.0);
   for (Index v = 0; v < mesh_.points.n_local(); ++v) {
-    double total = 0;
-    const std::size_t first = weight_.size();
     for (const Index c : cells[v]) {
       weight_.push_back(1 / (mesh_.reference_points[v] - mesh_.reference.cell_centre[c]).norm());
-      total += weight_.back();
+      totals[v] += weight_.back();
     }
-    for (std::size_t i = first; i < weight_.size(); ++i) weight_[i] /= total;
     around_.push_row(cells[v]);
   }
+  if (!periodic_.empty())
+    periodic_.add_up(totals, 1);  // the cells around a point are those around all its copies
+  for (Index v = 0; v < mesh_.points.n_local(); ++v)
+    for (Index i = around_.offset[v]; i < around_.offset[v + 1]; ++i) weight_[i] /= totals[v];
 }
 
 void Laplacian::set_coefficients(double stiffening, std::span<const double> volumes) {
@@ -153,7 +173,8 @@ void Laplacian::set_coefficients(double stiffening, std::span<const double> volu
   for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
     const bool interior = f < mesh_.n_interior;
     const Index p = mesh_.owner[f];
-    const Vec3 d = (interior ? g.cell_centre[mesh_.neighbour[f]] : g.face_centre[f]) - g.cell_centre[p];
+    const Vec3 to = interior ? Vec3(g.cell_centre[mesh_.neighbour[f]] + mesh_.shift(f)) : g.face_centre[f];
+    const Vec3 d = to - g.cell_centre[p];
     const double e = interior ? (stiffness(p) + stiffness(mesh_.neighbour[f])) / 2 : stiffness(p);
     // A mesh that was moved (incremental form) may have faces that lean over: no negative coefficient.
     const double area = g.face_area[f].norm();
@@ -203,6 +224,12 @@ void Laplacian::interpolate(int c, std::span<const double> prescribed, const std
     for (Index i = around_.offset[v]; i < around_.offset[v + 1]; ++i)
       d += weight_[i] * cells[std::size_t(around_.index[i]) * dim_ + c];
   }
+  if (periodic_.empty()) return;
+  std::vector<double> sums(points.size() / dim_);  // what the cells around each copy give
+  for (const Index v : periodic_.points()) sums[v] = points[std::size_t(v) * dim_ + c];
+  periodic_.add_up(sums, 1);
+  for (const Index v : periodic_.points())
+    if (kind_[v][c] == PointKind::interior) points[std::size_t(v) * dim_ + c] = sums[v];
 }
 
 void Laplacian::make_shapes(int c) {

@@ -9,6 +9,7 @@
 
 #include "common/linalg/linear_solver.hpp"
 #include "common/mesh/mesh.hpp"
+#include "common/mesh/periodic_points.hpp"
 #include "mesh_mover/affine.hpp"
 #include "mesh_mover/motion_method.hpp"
 #include "mesh_mover/parameters.hpp"
@@ -46,6 +47,7 @@ class Laplacian final : public MotionMethod {
   enum class PointKind : char { interior, fixed, interface };
   struct Equation;  // matrix and solver of one set of held patches
   void set_kinds(const Parameters& parameters);
+  void share_kinds();
   void set_weights();
   void set_coefficients(double stiffening, std::span<const double> volumes);
   double boundary_value(Index face, int component, std::span<const double> prescribed) const;
@@ -58,6 +60,7 @@ class Laplacian final : public MotionMethod {
 
   const Mesh& mesh_;
   int dim_;
+  PeriodicPoints periodic_;
   double relative_tolerance_;
   std::vector<std::array<bool, 3>> held_;       // per patch and component: Dirichlet
   std::vector<int> patch_of_;                   // per boundary face

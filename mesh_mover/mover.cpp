@@ -16,9 +16,20 @@
 namespace couplet::mesh_mover {
 namespace {
 
+// Of the distance of periodic patches: how far apart their sides may move.
+constexpr double most_torn = 1e-9;
+
 Mesh load_checked(const Parameters& parameters, const ParticipantContext& context) {
-  Mesh mesh = load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
-                        parameters.mesh_parameters, {}, {}, false, parameters.mesh_scale);
+  std::map<std::string, std::string> partner_of;
+  for (const auto& [name, boundary] : parameters.boundaries)
+    if (boundary.motion == BoundaryMotion::periodic) partner_of[name] = boundary.partner;
+  if (!partner_of.empty() && parameters.method == Method::pseudo_solid)
+    throw Error(
+        "participants.{}.method: pseudo-solid knows no periodic patches, and '{}' is one; use laplacian or rotations.",
+        context.name, partner_of.begin()->first);
+  Mesh mesh =
+      load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
+                parameters.mesh_parameters, periodic_pairs(partner_of), {}, false, parameters.mesh_scale);
   std::string patches;
   for (const Patch& p : mesh.patches) patches += (patches.empty() ? "'" : ", '") + p.name + "'";
   for (const auto& [name, boundary] : parameters.boundaries)
@@ -28,8 +39,8 @@ Mesh load_checked(const Parameters& parameters, const ParticipantContext& contex
   for (const Patch& p : mesh.patches)
     if (!parameters.boundaries.contains(p.name))
       throw Error(
-          "participants.{}.boundaries: patch '{}' has no entry; give it type: interface, moving, fixed, slip or "
-          "free.",
+          "participants.{}.boundaries: patch '{}' has no entry; give it type: interface, moving, fixed, slip, "
+          "free or periodic.",
           context.name, p.name);
   return mesh;
 }
@@ -47,6 +58,7 @@ Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
     : name_(context.name),
       parameters_(parameters),
       mesh_(load_checked(parameters, context)),
+      periodic_(mesh_),
       guard_(mesh_, parameters),
       curved_(mesh_, parameters),
       interface_(mesh_, interface_patches(parameters)),
@@ -151,12 +163,26 @@ std::vector<Vec3> Mover::points_of(const std::vector<double>& displacement) cons
   return points;
 }
 
+/// What is given at one side of periodic patches alone, or otherwise at the other, leaves no mesh.
+void Mover::refuse_torn() const {
+  if (periodic_.empty()) return;
+  const double gap = periodic_.largest_gap(displacement_, mesh_.dim);
+  double size = 0;
+  for (const Vec3& shift : mesh_.neighbour_shift) size = std::max(size, shift.norm());
+  if (gap > most_torn * max(mesh_.comm, size))
+    throw SolveFailure(
+        "participant '{}': the motion from t = {:.6g} s parts the two sides of periodic patches by {:.3g} m: what moves "
+        "there must move alike on both.",
+        name_, step_.time, gap);
+}
+
 Exchange Mover::solve(const Exchange& in) {
   try {
     displacement_ = method_->solve(prescribed(in));
     if (incremental())
       for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += accepted_[i];
     curved_.put_back(displacement_);
+    refuse_torn();
     const std::vector<Vec3> points = points_of(displacement_);
     const std::string refusal = guard_.refusal(compute_geometry(mesh_, points), points);
     if (!refusal.empty())

@@ -13,6 +13,7 @@
 #include "common/fv/prescribed_motion.hpp"
 #include "common/io/field_writer.hpp"
 #include "common/io/series.hpp"
+#include "common/mesh/periodic_points.hpp"
 #include "mesh_mover/curved_slide.hpp"
 #include "mesh_mover/guard.hpp"
 #include "mesh_mover/motion_method.hpp"
@@ -52,11 +53,13 @@ class Mover final : public Participant {
   void set_up_moving();
   void make_method();
   std::vector<double> prescribed(const Exchange& in) const;
+  void refuse_torn() const;
   std::vector<Vec3> points_of(const std::vector<double>& displacement) const;
 
   std::string name_;
   Parameters parameters_;
   Mesh mesh_;
+  PeriodicPoints periodic_;
   std::unique_ptr<Mesh> base_;  // incremental: the mesh of the last step
   Guard guard_;
   CurvedSlide curved_;

@@ -6,20 +6,27 @@ namespace {
 
 void declare_boundary(config::Section& s, Boundary& b) {
   const auto nothing = [](config::Section&) {};
-  s.variant("type", b.motion,
-            {{"interface", BoundaryMotion::interface, nothing},
-             {"moving", BoundaryMotion::moving,
-              [&b](config::Section& v) {
-                v.section(
-                    "motion", [&b](config::Section& m) { couplet::declare(m, b.prescribed, false); },
-                    "the motion of the patch, relative to the reference mesh");
-              }},
-             {"fixed", BoundaryMotion::fixed, nothing},
-             {"slip", BoundaryMotion::slip, nothing},
-             {"free", BoundaryMotion::free, nothing}},
-            "interface: moves with the structure; moving: moves as 'motion' says; fixed: stays; slip: slides "
-            "along the patch (curved ones with method: pseudo-solid); free: follows what is inside",
-            true);
+  s.variant(
+      "type", b.motion,
+      {{"interface", BoundaryMotion::interface, nothing},
+       {"moving", BoundaryMotion::moving,
+        [&b](config::Section& v) {
+          v.section(
+              "motion", [&b](config::Section& m) { couplet::declare(m, b.prescribed, false); },
+              "the motion of the patch, relative to the reference mesh");
+        }},
+       {"fixed", BoundaryMotion::fixed, nothing},
+       {"slip", BoundaryMotion::slip, nothing},
+       {"free", BoundaryMotion::free, nothing},
+       {"periodic", BoundaryMotion::periodic,
+        [&b](config::Section& v) {
+          v.value("partner", b.partner)
+              .required()
+              .doc("the patch that is the translated copy of this one, as in the fluid");
+        }}},
+      "interface: moves with the structure; moving: moves as 'motion' says; fixed: stays; slip: slides "
+      "along the patch (curved ones with method: pseudo-solid); free: follows what is inside; periodic: moves as its partner, across which the mesh goes on",
+      true);
 }
 
 void declare_guard(config::Section& s, GuardParameters& g) {

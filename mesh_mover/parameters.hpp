@@ -18,6 +18,7 @@ enum class BoundaryMotion {
   fixed,      ///< not at all
   slip,       ///< along the plane of the patch
   free,       ///< with what is inside
+  periodic,   ///< as its partner, which is what lies beyond it
 };
 /// The displacement of these is given.
 inline bool is_given(BoundaryMotion m) {
@@ -27,6 +28,7 @@ inline bool is_given(BoundaryMotion m) {
 struct Boundary {
   BoundaryMotion motion = BoundaryMotion::fixed;
   MotionParameters prescribed;  ///< of `moving`
+  std::string partner;          ///< of `periodic`
 };
 
 enum class Method {

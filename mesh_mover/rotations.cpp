@@ -77,12 +77,15 @@ void Rotations::find_bodies(const Parameters& parameters) {
 }
 
 void Rotations::find_room(const Parameters& parameters) {
+  const PeriodicPoints periodic(mesh_);  // nothing turns across them
   for (Body& body : bodies_) {
     double nearest = std::numeric_limits<double>::max();
     for (const Patch& patch : mesh_.patches)
       if (patch.name != body.name && parameters.boundaries.at(patch.name).motion != BoundaryMotion::free)
         for (const Index v : points_of(mesh_, patch))
           nearest = std::min(nearest, (mesh_.reference_points[v] - body.centre).norm());
+    for (const Index v : periodic.points())
+      nearest = std::min(nearest, (mesh_.reference_points[v] - body.centre).norm());
     body.outer = min(mesh_.comm, nearest);
     if (!(body.outer > least_room * body.inner))
       throw Error(

@@ -11,6 +11,8 @@ namespace {
 
 // Of the step, for the difference quotient: its error is 1e-6 of a second order scheme's.
 constexpr double backwards = 1e-3;
+// Of starting_velocities(): a small displacement over the length, and the times tried for it [s].
+constexpr double small = 1e-6, shortest = 1e-12, longest = 1;
 
 std::vector<Expression> expressions(const std::vector<config::ExpressionText>& texts, int dim,
                                     const char* where) {
@@ -106,6 +108,26 @@ std::vector<Vec3> PrescribedMotion::velocities(std::span<const Vec3> reference, 
   const std::vector<Vec3> before = places(reference, t - h), earlier = places(reference, t - 2 * h);
   for (std::size_t i = 0; i < now.size(); ++i) now[i] = (3 * now[i] - 4 * before[i] + earlier[i]) / (2 * h);
   return now;
+}
+
+/// Of second order from t, t + h and t + 2 h, where h displaces a point by a millionth of the length. What is still there
+/// with h/10 is a velocity of the start; that of a motion that grows from rest, as t^a with a > 1, is smaller then.
+std::vector<Vec3> PrescribedMotion::starting_velocities(std::span<const Vec3> reference, double t,
+                                                        double length) const {
+  const std::vector<Vec3> start = places(reference, t);
+  std::vector<Vec3> velocities(start.size(), Vec3::Zero());
+  const auto forward = [&](std::size_t i, double h) {
+    const std::span<const Vec3> one = reference.subspan(i, 1);
+    return Vec3((4 * places(one, t + h)[0] - places(one, t + 2 * h)[0] - 3 * start[i]) / (2 * h));
+  };
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    double h = shortest;
+    for (const double least = small * length; h < longest; h *= 10)
+      if ((places(reference.subspan(i, 1), t + h)[0] - start[i]).norm() > least) break;
+    const Vec3 v = forward(i, h), sooner = forward(i, h / 10);
+    if (v.norm() > small * small * length / h && (v - sooner).norm() <= 0.3 * v.norm()) velocities[i] = v;
+  }
+  return velocities;
 }
 
 double PrescribedMotion::largest_displacement(std::span<const Vec3> reference, double t) const {

@@ -39,6 +39,9 @@ class PrescribedMotion {
   std::vector<Vec3> places(std::span<const Vec3> reference, double t) const;
   /// Their velocities [m/s], from three places not more than `dt` back: second order in a thousandth of dt.
   std::vector<Vec3> velocities(std::span<const Vec3> reference, double t, double dt) const;
+  /// Their velocities as the motion begins at t [m/s], from places after it alone; zeros where they grow from rest.
+  /// `length`: of the scene [m], a millionth of which is a small displacement.
+  std::vector<Vec3> starting_velocities(std::span<const Vec3> reference, double t, double length) const;
   /// Largest displacement at time t on this rank [m].
   double largest_displacement(std::span<const Vec3> reference, double t) const;
 

@@ -186,6 +186,13 @@ def check_links(texts, exists):
     return trouble
 
 
+def check_monitors(texts, formats):
+    """Every .csv file that a program writes is explained in docs/formats.md. `texts`: (path, text) of sources."""
+    named = set(re.findall(r"[/`]([a-z-]+\.csv)`", formats))
+    return [f"{path}: {name} is not listed in docs/formats.md" for path, text in texts if path.suffix == ".cpp" and path.parts[0] not in ("tests", "client")
+            for name in dict.fromkeys(re.findall(r'"([a-z-]+\.csv)"', text)) if name not in named]
+
+
 def main(root):
     files = project_files(root)
     trouble = check_format(root, files)
@@ -195,6 +202,7 @@ def main(root):
     notes = [(f, (root / f).read_text()) for f in paths if not any(p.startswith((".", "build")) for p in f.parts)]
     sources = [(f.relative_to(root), f.read_text()) for f in files]
     trouble += check_references((root / "docs/references.bib").read_text(), sources + notes)
+    trouble += check_monitors(sources, (root / "docs/formats.md").read_text())
     trouble += check_links(notes, lambda link: (root / link).exists())
     print("\n".join(trouble) or f"{len(files)} files: in order")
     return 1 if trouble else 0

@@ -4,7 +4,7 @@
 import pathlib
 import sys
 
-from check_sources import check_links, check_references, check_text
+from check_sources import check_links, check_monitors, check_references, check_text
 
 HEAD = "// SPDX-License-Identifier: Apache-2.0\n"
 
@@ -74,5 +74,11 @@ for text, broken in LINKS.items():
     if len(found) != broken:
         print(f"links: {text}: {broken} lead nowhere, found {found}")
         failed += 1
-print(f"{len(WRONG) + len(RIGHT) + len(REFERENCES) + len(LINKS)} samples, {failed} judged wrongly")
+MONITORS = {"| `fluid/forces.csv` | forces |": 0, "| `fluid/gaps.csv`, `fluid/forces.csv` |": 0, "forces.csv |": 1}
+for formats, missing in MONITORS.items():
+    found = check_monitors([(pathlib.PurePosixPath("fluid_solver/output.cpp"), 'open("forces.csv")')], formats)
+    if len(found) != missing:
+        print(f"monitors: {formats}: {missing} missing, found {found}")
+        failed += 1
+print(f"{len(WRONG) + len(RIGHT) + len(REFERENCES) + len(LINKS) + len(MONITORS)} samples, {failed} judged wrongly")
 sys.exit(1 if failed else 0)

@@ -31,8 +31,9 @@ class Alone {
  public:
   explicit Alone(const FluidParameters& p, int n = 16)
       : participant_(std::make_unique<FluidParticipant<2>>(
-            distribute(MPI_COMM_WORLD, comm_rank(MPI_COMM_WORLD) == 0 ? mesh(n) : RawMesh{}), p,
-            FluidContext{}, MotionLink{})) {
+            distribute(MPI_COMM_WORLD,
+                       comm_rank(MPI_COMM_WORLD) == 0 ? mesh(n, periodic_patches(p)) : RawMesh{}),
+            p, FluidContext{}, MotionLink{})) {
     participant_->initialise();
   }
   void step(double dt) {
@@ -49,9 +50,10 @@ class Alone {
   }
 
  private:
-  static RawMesh mesh(int n) {
+  static RawMesh mesh(int n, std::vector<std::array<std::string, 2>> periodic) {
     RawMesh raw = make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 1));
     perturb_interior(raw, 0.15, 5);
+    raw.periodic = std::move(periodic);
     return raw;
   }
   std::unique_ptr<FluidParticipant<2>> participant_;
@@ -139,6 +141,57 @@ TEST(PrescribedMotion, of_a_frame_does_what_the_same_motion_of_a_mesh_does) {
   EXPECT_LT((frame->state().placement->centre[0] - mesh->state().placement->centre[0]).norm(), 1e-14);
 }
 
+/// A box and its fluid that move evenly from the start on: given the fluid's velocity there is no impulse. The walls
+/// begin with the velocity of the motion, not at rest, which would make 1.3 * 0.3 / 0.01 Pa/m of it.
+TEST(PrescribedMotion, that_goes_on_at_the_start_takes_its_fluid_along) {
+  FluidParameters p = box_of_fluid();
+  p.motion->translation = {{"0.3*t"}, {"-0.1*t"}};
+  p.initial_velocity = {{"0.3"}, {"-0.1"}};
+  all_sides(p, 2, boundary(BoundaryType::body));
+  Alone run(p);
+  for (const double dt : {0.01, 0.02}) {
+    run.step(dt);
+    EXPECT_LT(run.largest([&](Index c) { return (run.state().u[c] - Vec<2>(0.3, -0.1)).norm(); }), 1e-10);
+    EXPECT_LT(run.largest([&](Index c) { return run.state().pressure[0]->p[c]; }), 1e-7);
+  }
+}
+
+/// Of a motion that grows from rest however slowly there is none; of one that goes on, whatever its time scale.
+TEST(PrescribedMotion, velocity_at_the_start) {
+  const std::vector<Vec3> at{Vec3(0.5, 0, 0)};
+  const auto start = [&](const std::string& x, const std::string& angle) {
+    MotionParameters m;
+    m.translation = {{x}, {"0"}};
+    m.angle = {angle};
+    return PrescribedMotion(m, 2).starting_velocities(at, 0, 1)[0];
+  };
+  EXPECT_LT((start("0.3*t", "0") - Vec3(0.3, 0, 0)).norm(), 1e-9);
+  EXPECT_LT((start("0.1*sin(1e6*t)", "0") - Vec3(1e5, 0, 0)).norm(), 1);
+  EXPECT_LT((start("max(0,t)", "2*t") - Vec3(1, 1, 0)).norm(), 1e-5);
+  for (const char* x : {"0", "t^2", "1-cos(7*t)", "t^1.5", "max(0,t-0.2)", "1e-3*t^3"})
+    EXPECT_EQ(start(x, "0").norm(), 0) << x;
+}
+
+/// One line says what the first step is.
+TEST(PrescribedMotion, an_impulse_at_the_start_is_said) {
+  const auto said = [](const std::string& x, bool flows) {
+    FluidParameters p = box_of_fluid();
+    p.motion->translation = {{x}, {"0"}};
+    if (flows) p.initial_velocity = {{"0.3"}, {"0"}};
+    all_sides(p, 2, boundary(BoundaryType::body));
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    Alone(p).step(0.01);
+    return testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr();
+  };
+  const std::string moving = said("0.3*t", false);
+  if (comm_rank(MPI_COMM_WORLD) == 0) {
+    EXPECT_THAT(moving, testing::HasSubstr("its bodies move with 0.3 m/s already"));
+  }
+  EXPECT_THAT(said("0.3*t^2", false), testing::Not(testing::HasSubstr("already")));
+  EXPECT_THAT(said("0.3*t", true), testing::Not(testing::HasSubstr("already")));
+}
+
 std::string refusal(const FluidParameters& p) {
   try {
     Alone run(p);
@@ -185,6 +238,26 @@ TEST(PrescribedMotion, or_an_inlet_may_begin_after_rest) {
   Alone run(p);
   for (int i = 0; i < 10; ++i) run.step(0.02);
   EXPECT_GT(run.largest([&](Index c) { return run.state().u[c].norm(); }), 0.05);
+}
+
+/// Sides that are joined stay so on a mesh that moves: a uniform flow is kept. A motion that parts them is refused.
+TEST(PrescribedMotion, of_periodic_sides_repeats_itself) {
+  FluidParameters p = box_of_fluid();
+  p.initial_velocity = {{"1"}, {"0.5"}};
+  for (const auto& [side, other] :
+       {std::pair{"xmin", "xmax"}, {"xmax", "xmin"}, {"ymin", "ymax"}, {"ymax", "ymin"}}) {
+    p.boundaries[side] = boundary(BoundaryType::periodic);
+    p.boundaries[side].partner = other;
+  }
+  p.motion->displacement = {{"0.04*sin(9*t)*cos(2*pi*x)*sin(2*pi*y)"}, {"0.04*sin(7*t)*sin(2*pi*(x-y))"}};
+  Alone run(p);
+  for (int i = 0; i < 10; ++i) run.step(0.02);
+  EXPECT_LT(run.largest([&](Index c) { return (run.state().u[c] - Vec<2>(1, 0.5)).norm(); }), 1e-11);
+  p.motion->displacement = {};
+  p.motion->angle = {"0.1*t"};
+  Alone torn(p);
+  EXPECT_THAT([&] { torn.step(0.02); },
+              testing::ThrowsMessage<Error>(testing::HasSubstr("parts the two sides")));
 }
 
 TEST(PrescribedMotion, that_turns_cells_over_fails_in_solve) {

@@ -154,7 +154,7 @@ TEST(Statistics, are_those_of_a_known_oscillation) {
     t += dt;
     const double a = 2 * std::numbers::pi * 3 * (t - dt / 2);
     s.u = {Vec<2>(1e3 + 2 * std::sin(a), std::sin(a))};
-    statistics.add(s, dt);
+    statistics.add(s, s.pressure[0].get(), dt);
   }
   EXPECT_NEAR(statistics.duration(), 1, 1e-12);
   EXPECT_NEAR(statistics.velocity_mean()[0][0], 1e3, 1e-4);
