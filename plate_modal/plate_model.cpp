@@ -15,7 +15,7 @@ namespace {
 /// Directions in which supports hold the slope of a point; those of two edges that turn by less than 25
 /// degrees are one direction (a curved edge), more is a corner: tan^2(25 deg / 2) = 0.05. At a blunt corner of a polygon both
 /// are 0 in the limit, too, but the deflection there is as smooth as r^1.1 only: with both held the middle of a plate of 20
-/// sides with 12 edges each would be 47 % too stiff, where it is 13 % too soft with one.
+/// sides with 13 edges each would be 47 % too stiff, where it is 13 % too soft with one.
 constexpr double corner_share = 0.05;
 
 Triangle corners(const Midsurface& s, const std::array<Index, 3>& p) {
