@@ -202,7 +202,7 @@ TEST(UpdatedLagrangian, says_what_it_cannot) {
   SolidParameters p = bent(1);
   p.boundaries["xmin"] = boundary(Type::spring);
   p.boundaries["xmin"].stiffness.text = "1e6";
-  EXPECT_THAT([&] { make(beam(1, 2), p); }, ThrowsMessage<Error>(HasSubstr("not a support or springs")));
+  EXPECT_THAT([&] { make(beam(2, 2), p); }, ThrowsMessage<Error>(HasSubstr("not a support or springs")));
   p = bent(1);
   p.method.max_iterations = 5;
   const auto solid = make(beam(2, 10), p);
