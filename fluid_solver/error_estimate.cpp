@@ -128,10 +128,28 @@ ErrorParts FluidErrorEstimate<D>::parts() const {
 }
 
 template <int D>
+std::vector<double> FluidErrorEstimate<D>::state() const {
+  std::vector<double> values{double(seen_), judged_ ? 1. : 0., dt_old_, double(rate_.size())};
+  for (const Vectors<D>* vectors : {&rate_, &rate_change_})
+    for (const Vec<D>& v : *vectors) values.insert(values.end(), v.begin(), v.end());
+  const std::vector<double> sums = steps_.state();
+  values.insert(values.end(), sums.begin(), sums.end());
+  return values;
+}
+
+template <int D>
 void FluidErrorEstimate<D>::restore(std::span<const double> state) {
-  seen_ = 0;
-  judged_ = !state.empty();
+  seen_ = 0, judged_ = false, steps_ = {};
+  u_.clear(), rate_.clear(), rate_change_.clear();
+  if (state.empty()) return;
+  seen_ = int(state[0]), judged_ = state[1] != 0, dt_old_ = state[2];
+  const auto n = std::size_t(state[3]);
+  state = state.subspan(4);
+  for (Vectors<D>* vectors : {&rate_, &rate_change_})
+    for (std::size_t c = 0; c < n; ++c, state = state.subspan(D)) vectors->emplace_back(state.data());
   steps_.restore(state);
+  const Vectors<D>& u = fluid_.state().u;
+  u_.assign(u.begin(), u.begin() + fluid_.mesh().cells.n_owned());
 }
 
 template class FluidErrorEstimate<2>;

@@ -27,8 +27,9 @@ class FluidErrorEstimate {
   /// After the step of `dt` [s] was accepted.
   void accepted(double dt);
   ErrorParts parts() const;
-  /// For checkpoints. The three steps after a restart are not judged.
-  std::vector<double> state() const { return steps_.state(); }
+  /// For checkpoints.
+  std::vector<double> state() const;
+  /// After the fluid's own state; empty: of a run that collected nothing.
   void restore(std::span<const double> state);
 
  private:

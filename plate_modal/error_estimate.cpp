@@ -34,10 +34,22 @@ void StepErrorEstimate::accepted(const ModalState& before, const ModalState& aft
   v_before_ = before.v;
 }
 
+std::vector<double> StepErrorEstimate::state() const {
+  std::vector<double> values{seen_ ? 1. : 0., double(v_before_.size())};
+  const std::vector<double> sums = errors_.state();
+  for (const auto* part : {&v_before_, &sums}) values.insert(values.end(), part->begin(), part->end());
+  return values;
+}
+
 void StepErrorEstimate::restore(std::span<const double> state) {
   v_before_.clear();
-  seen_ = !state.empty();
-  errors_.restore(state);
+  errors_ = {};
+  seen_ = false;
+  if (state.empty()) return;
+  seen_ = state[0] != 0;
+  const auto n = std::size_t(state[1]);
+  v_before_.assign(state.begin() + 2, state.begin() + 2 + std::ptrdiff_t(n));
+  errors_.restore(state.subspan(2 + n));
 }
 
 }  // namespace couplet::plate

@@ -19,8 +19,8 @@ class StepErrorEstimate {
   /// A step was accepted.
   void accepted(const ModalState& before, const ModalState& after);
   double over_size() const { return errors_.over_size(); }
-  /// For checkpoints. The step after a restart is not judged.
-  std::vector<double> state() const { return errors_.state(); }
+  /// For checkpoints; empty: of a run that collected nothing.
+  std::vector<double> state() const;
   void restore(std::span<const double> state);
 
  private:

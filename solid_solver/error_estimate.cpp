@@ -107,20 +107,24 @@ ErrorParts SolidErrorEstimate::parts() const {
 }
 
 std::vector<double> SolidErrorEstimate::state() const {
-  std::vector<double> values = steps_.state(), linear = linear_.state();
-  values.insert(values.begin(), double(values.size()));
-  values.insert(values.end(), linear.begin(), linear.end());
+  const std::vector<double> steps = steps_.state(), linear = linear_.state();
+  std::vector<double> values{judged_ ? 1. : 0., double(steps.size()), double(linear.size())};
+  for (const auto* part : {&steps, &linear, &v_before_})
+    values.insert(values.end(), part->begin(), part->end());
   return values;
 }
 
 void SolidErrorEstimate::restore(std::span<const double> state) {
   v_before_.clear();
   steps_ = linear_ = {};
-  judged_ = !state.empty();
-  if (state.empty()) return;  // of a run that did not collect them
-  const auto n = std::min(std::size_t(state[0]), state.size() - 1);
-  steps_.restore(state.subspan(1, n));
-  linear_.restore(state.subspan(1 + n));
+  judged_ = false;
+  if (state.empty()) return;
+  judged_ = state[0] != 0;
+  const auto n_steps = std::size_t(state[1]), n_linear = std::size_t(state[2]);
+  steps_.restore(state.subspan(3, n_steps));
+  linear_.restore(state.subspan(3 + n_steps, n_linear));
+  const auto velocity = state.subspan(3 + n_steps + n_linear);
+  v_before_.assign(velocity.begin(), velocity.end());
 }
 
 }  // namespace couplet

@@ -30,7 +30,7 @@ class SolidErrorEstimate {
   void see_step();
   /// After the last step.
   ErrorParts parts() const;
-  /// For checkpoints. The two steps after a restart are not judged.
+  /// For checkpoints; empty: of a run that collected nothing.
   std::vector<double> state() const;
   void restore(std::span<const double> state);
 

@@ -96,10 +96,9 @@ def final_state(folder):
 
 
 def differences(a, b):
-    """Names of the tables and values that differ or are in one of them alone. What the estimate of the run's error has gathered
-    ('errors') is left out: it does not judge the steps after a restart."""
+    """Names of the tables and values that differ or are in one of them alone."""
     return [key for key in sorted(a.keys() | b.keys())
-            if not key.endswith("/errors") and (key not in a or key not in b or not numpy.array_equal(a[key], b[key], equal_nan=True))]
+            if key not in a or key not in b or not numpy.array_equal(a[key], b[key], equal_nan=True)]
 
 
 def copy_case(source, folder):

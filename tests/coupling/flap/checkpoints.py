@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """How often the flap is saved is nothing to it: runs with a checkpoint at the end alone, with one in the middle besides, and
-with one a step leave the same last state bit for bit, and so does one that goes on from the middle. Coarse meshes. Of the one
-that goes on the tables 'errors' are left out: the estimate of the run's error does not judge the steps after a restart.
+with one a step leave the same last state bit for bit, and so does one that goes on from the middle. Coarse meshes.
 Usage: checkpoints.py CONFIG_FOLDER BIN RANKS"""
 import pathlib
 import shutil
@@ -62,8 +61,7 @@ def main():
         failed = False
         for what, folder in others.items():
             state = last_state(folder)
-            keys = [key for key in sorted(wanted.keys() | state.keys()) if folder.name != "on" or not key.endswith("/errors")]
-            apart = [key for key in keys
+            apart = [key for key in sorted(wanted.keys() | state.keys())
                      if key not in wanted or key not in state or not numpy.array_equal(wanted[key], state[key], equal_nan=True)]
             print(f"{what}: {len(apart)} of {len(wanted)} tables differ{': ' + ', '.join(apart[:8]) if apart else ''}")
             failed = failed or bool(apart)
