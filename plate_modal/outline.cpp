@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plate_modal/outline.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,7 +10,7 @@ namespace couplet::plate {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double sharp = 25 * degree, least = 0.5 * degree, least_share = 0.6;
+constexpr double sharp = 55 * degree, least = 0.5 * degree, least_share = 0.6;
 
 struct Neighbours {
   int in = -1, out = -1;  // edges of the outline that end and start at a point; -2: several
@@ -37,42 +38,48 @@ double turn_to_end(const Midsurface& s, int edge, int beyond, int other, double 
       // No more than the turn itself: a corner next to this point is none of the curve's own.
       return std::clamp(turn * here / (here + along(s, beyond).norm()), -std::abs(turn_here),
                         std::abs(turn_here));
-  const bool within = s.edges[edge].curve == s.edges[other].curve;
+  const bool within = std::abs(turn_here) <= sharp && s.edges[edge].curve == s.edges[other].curve;
   return within ? turn_here * here / (here + along(s, other).norm()) : 0;
 }
 
+/// The direction `a`, turned to the left.
+Vec2 turned(const Vec2& a, double angle) { return Eigen::Rotation2Dd(angle) * a.normalized(); }
+
 }  // namespace
 
-Outline outline_of(const Midsurface& s) {
+std::vector<OutlinePoint> outline_of(const Midsurface& s) {
   std::vector<Neighbours> at(s.points.size());
   for (int e = 0; e < int(s.edges.size()); ++e) {
     int &out = at[s.edges[e].from].out, &in = at[s.edges[e].to].in;
     out = out == -1 ? e : -2;
     in = in == -1 ? e : -2;
   }
-  Outline outline{std::vector<bool>(s.points.size(), false), std::vector<double>(s.points.size(), 0)};
+  std::vector<OutlinePoint> outline(s.points.size());
   for (std::size_t p = 0; p < s.points.size(); ++p) {
     const auto [in, out] = at[p];
     if (in < 0 || out < 0) continue;
     const double turn = turn_between(s, in, out);
-    const int before = at[s.edges[in].from].in, after = at[s.edges[out].to].out;
-    const double left = turn_to_end(s, in, before, out, turn);
-    const double right = turn_to_end(s, out, after, in, turn);
-    const double kink = std::abs(turn - left - right);
-    outline.turn[p] = turn;
-    outline.corner[p] = std::abs(turn) > sharp || (kink > least && kink > least_share * std::abs(turn));
+    const double left = turn_to_end(s, in, at[s.edges[in].from].in, out, turn);
+    const double right = turn_to_end(s, out, at[s.edges[out].to].out, in, turn);
+    const double kink = turn - left - right;
+    if (std::abs(turn) > sharp || (std::abs(kink) > least && std::abs(kink) > least_share * std::abs(turn))) {
+      outline[p] = {true, turn, kink, turned(along(s, in), left), turned(along(s, out), -right)};
+    } else {
+      const Vec2 tangent = turned(along(s, in), 0.5 * turn);
+      outline[p] = {true, turn, 0, tangent, tangent};
+    }
   }
   return outline;
 }
 
-std::vector<Index> blunt_corners(const Midsurface& s, const Outline& outline,
+std::vector<Index> blunt_corners(const Midsurface& s, const std::vector<OutlinePoint>& outline,
                                  const std::vector<Support>& support) {
   std::vector<int> held(s.points.size(), 0);
   for (const auto& edge : s.edges)
     if (support[edge.patch] == Support::simply_supported) ++held[edge.from], ++held[edge.to];
   std::vector<Index> found;
   for (std::size_t p = 0; p < s.points.size(); ++p)
-    if (held[p] == 2 && outline.corner[p] && std::abs(outline.turn[p]) <= sharp) found.push_back(Index(p));
+    if (held[p] == 2 && outline[p].kink != 0 && std::abs(outline[p].kink) <= sharp) found.push_back(Index(p));
   return found;
 }
 

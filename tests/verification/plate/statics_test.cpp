@@ -190,6 +190,66 @@ TEST(PlateStatics, sides_of_one_edge_are_told_from_a_curve_by_the_drawing) {
   EXPECT_EQ(centre_of(raw).corners, 0u);
 }
 
+// A circle of 12 edges in four arcs turns by 30 degrees from edge to edge: were these corners, both slopes would be held.
+TEST(PlateStatics, a_coarse_circle_is_not_held_as_a_polygon) {
+  const SlepcEnvironment slepc;
+  std::vector<int> quarters;
+  for (int e = 0; e < 12; ++e) quarters.push_back(e / 3);
+  const double circle = 5.3 / (64 * 1.3);
+  EXPECT_NEAR(centre_of(disc(2), quarters).deflection / circle, 1, 0.1);
+  EXPECT_EQ(centre_of(disc(2), quarters).corners, 0u);
+  std::vector<int> lines;
+  for (int e = 0; e < 12; ++e) lines.push_back(e);
+  EXPECT_EQ(centre_of(disc(2), lines).corners, 12u);
+}
+
+/// Sector of the unit disc between two planes of symmetry: n rings, m edges of its arc; patches arc and planes.
+RawMesh sector(double angle, int n, int m) {
+  RawMesh raw;
+  raw.dim = 2;
+  raw.points.push_back(Vec3::Zero());
+  for (int r = 1; r <= n; ++r)
+    for (int i = 0; i <= m; ++i)
+      raw.points.emplace_back(std::cos(angle * i / m) * r / n, std::sin(angle * i / m) * r / n, 0);
+  const auto at = [m](int ring, int i) { return Index(ring == 0 ? 0 : 1 + (ring - 1) * (m + 1) + i); };
+  for (int r = 1; r <= n; ++r)
+    for (int i = 0; i < m; ++i) {
+      raw.cell_points.push_row(std::array{at(r, i), at(r, i + 1), at(r - 1, i)});
+      if (r > 1) raw.cell_points.push_row(std::array{at(r, i + 1), at(r - 1, i + 1), at(r - 1, i)});
+    }
+  raw.cell_type.assign(raw.cell_points.size(), CellType::triangle);
+  raw.cell_zone.assign(raw.cell_points.size(), 0);
+  raw.zones = {"plate"};
+  raw.patches = {"arc", "planes"};
+  for (int i = 0; i < m; ++i) raw.boundary_points.push_row(std::array{at(n, i), at(n, i + 1)});
+  raw.boundary_patch.assign(m, 0);
+  for (const int side : {0, m})
+    for (int r = 1; r <= n; ++r) {
+      raw.boundary_points.push_row(std::array{at(r - 1, side), at(r, side)});
+      raw.boundary_patch.push_back(1);
+    }
+  return raw;
+}
+
+// The narrower the sector, the more its planes turn at the middle: up to 170 degrees, where they are nearly one line. Where a
+// coarse arc meets a plane, its chord does not, but the arc does, at a right angle: one slope is held there.
+TEST(PlateStatics, a_sector_deflects_as_the_disc_whatever_its_angle_and_its_arc) {
+  const SlepcEnvironment slepc;
+  const double degree = std::numbers::pi / 180;
+  struct Case {
+    double angle;
+    int edges;
+    double bound;
+  };
+  for (const auto& [kind, value] :
+       {std::pair{Support::clamped, 1. / 64}, {Support::simply_supported, 5.3 / (64 * 1.3)}})
+    for (const Case& c : {Case{10, 2, 0.03}, {20, 2, 0.03}, {24, 2, 0.03}, {90, 9, 0.04}, {90, 3, 0.12}}) {
+      const PlateModel plate =
+          make_plate(sector(c.angle * degree, 12, c.edges), {{"arc", kind}, {"planes", Support::symmetry}});
+      EXPECT_NEAR(deflection(plate, 1) / value, 1, c.bound) << c.angle << " degrees, " << c.edges << " edges";
+    }
+}
+
 TEST(PlateStatics, a_plate_that_nothing_holds_is_refused) {
   Parameters p;
   p.analysis = Parameters::Analysis::static_;
