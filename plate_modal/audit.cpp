@@ -93,7 +93,7 @@ void Structure::look_at_modes() {
   if (!(steps <= 8 || power_of_two || step_.is_last)) return;
   const double t = step_.time + 0.5 * step_.dt;
   on_root(context_.comm, [&] {
-    add_within_faces(t);
+    look_at_pressure(t);
     if (!truncation_) return;
     std::vector<double> pressure;
     try {
@@ -106,8 +106,11 @@ void Structure::look_at_modes() {
   });
 }
 
-void Structure::add_within_faces(double t) {
+void Structure::look_at_pressure(double t) {
   if (!pressure_) return;
+  const LoadOnModes now = load_on_modes(built_.model, *pressure_, t);
+  on_modes_.part += now.part;
+  on_modes_.most += now.most;
   const WithinFaces seen = within_faces(built_.model, *pressure_, t);
   within_[0] += seen.apart;
   within_[1] += seen.size;
@@ -132,7 +135,7 @@ double Structure::mesh_gap() const {
 
 std::vector<EffectVerdict> Structure::audit() const {
   // What rank 0 knows of the whole surface decides on all ranks alike.
-  std::vector<double> seen(7, PlateEvidence::unknown);
+  std::vector<double> seen(8, PlateEvidence::unknown);
   if (comm_rank(context_.comm) == 0) {
     double size = 0;
     for (const Vec3& x : built_.model.vertices)
@@ -145,14 +148,18 @@ std::vector<EffectVerdict> Structure::audit() const {
     if (within_[1] > 0) seen[3] = std::sqrt(within_[0] / within_[1]);
     if (!parameters_.modes_file) seen[4] = mesh_gap();
     if (truncation_) seen[5] = truncation_->share();
+    if (on_modes_.most > 0) seen[7] = std::sqrt(on_modes_.part / on_modes_.most);
   }
   broadcast(context_.comm, seen);
   PlateEvidence evidence;
   evidence.displacement_over_size = seen[0];
   evidence.displacement_over_thickness = seen[1];
   evidence.stretch_limit = seen[6];
-  evidence.load_lost = pressure_ && parameters_.analysis != Parameters::Analysis::modal && !load_acted_ &&
-                       (pressure_->changes_in_time() || !pressure_->is_uniform());
+  // A load that does nothing yet may come: it is judged at the end.
+  if (pressure_ && finished_ && parameters_.analysis != Parameters::Analysis::modal) {
+    evidence.load_lost = !load_acted_ && (pressure_->changes_in_time() || !pressure_->is_uniform());
+    evidence.load_on_modes = seen[7];
+  }
   evidence.modes_apart = resolution_ ? seen[5] : seen[2];
   evidence.within_faces = seen[3];
   evidence.mesh_gap = seen[4];

@@ -219,13 +219,14 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
 /// Modes of another program, whose surface says by its faces alone where its outside is.
 ModalModel modes_of_file(const Parameters& p, const std::filesystem::path& file) {
   ModalModel model = read_modes(file);
-  if (p.cavity) return model;
-  if (const std::string problem = facing_problem_of(model); !problem.empty())
-    throw Error(
-        "modes.file: the file of modes '{}' cannot be used: {}. If it is the wall of a cavity, whose outside is the space "
-        "within, say 'modes.cavity: true'. docs/formats.md says what it must hold.",
-        file.string(), problem);
-  return model;
+  const std::string problem = facing_problem_of(model, p.cavity ? Facing::inward : Facing::outward);
+  if (problem.empty()) return model;
+  throw Error(
+      "modes.file: the file of modes '{}' cannot be used: {}. {}docs/formats.md says what it must hold.",
+      file.string(), problem,
+      p.cavity
+          ? ""
+          : "If it is the wall of a cavity, whose outside is the space within, say 'modes.cavity: true'. ");
 }
 
 }  // namespace

@@ -114,6 +114,18 @@ V judge_lost(const S&, const E& e) {
       "a face or a step with the same resultant"};
 }
 
+// Rounding alone: the modes do not move along the forces, or these cancel.
+V judge_no_part(const S&, const E& e) {
+  if (!(e.load_on_modes < 1e-9)) return {};
+  return EffectVerdict{
+      "", 1, 0.5,
+      fmt::format(
+          "the pressures of the case have no part in any mode ({:.1g} of what they would have along the motion)",
+          e.load_on_modes),
+      "nothing moves by them: with 'modes.file' the upper side is where the surface looks to +z, whatever the structure's "
+      "own normal is; pressures on both sides that are alike cancel; a mode of another symmetry needs 'modes.number'"};
+}
+
 // Mindlin's plate against Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5 (1 - nu)))
 // of it, omega by 2 % where half a wave, pi / k, is ten thicknesses long.
 V judge_shear(const S& s, const E& e) {
@@ -250,6 +262,9 @@ const std::array cards{
              "share of its energy that no mode has, 0.1", judge_velocity),
     left_out("load between the faces or steps", "no key: finer mesh or step",
              "a prescribed pressure that is 0 wherever it is taken", judge_lost),
+    left_out("load that moves no mode", "no key: `load`, `modes.number`",
+             "loads of the pressures on the modes over what they would be along the motion, 1e-9",
+             judge_no_part),
     left_out("load within a face", "no key: finer mesh",
              "midpoint of each face against sixteen points, of the load's effect on the modes, 0.05",
              judge_within),

@@ -23,7 +23,9 @@ struct PlateEvidence {
   double displacement_over_size = unknown;       ///< of a structure that is held
   double displacement_over_thickness = unknown;  ///< of a plate that is held on two edges or more
   double stretch_limit = 0.5;                    ///< what it may be there
-  bool load_lost = false;     ///< prescribed pressures, which were 0 wherever they were taken
+  bool load_lost = false;  ///< prescribed pressures, which were 0 wherever they were taken
+  double load_on_modes =
+      unknown;  ///< loads of the pressures on the modes over what they would be along their motion
   double rotation = unknown;  ///< of a structure with rigid motions, as a whole [rad]
   double in_plane_share =
       unknown;  ///< of gravity or of the initial velocity of a plate, that no mode answers

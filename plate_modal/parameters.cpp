@@ -60,9 +60,9 @@ void declare_place(config::Section& s, Parameters& p) {
             .doc("direction of the mesh's y, of any length; the plate's normal is x cross y");
         q.check(
             [&]() -> std::string {
-              const Vec3 &x = p.placement.x, &y = p.placement.y;
-              const double size = x.norm() * y.norm();
-              return size > 0 && std::abs(x.dot(y)) < 1e-9 * size
+              // By their largest components first: the square of a small length is 0.
+              const Vec3 x = p.placement.x.stableNormalized(), y = p.placement.y.stableNormalized();
+              return x.norm() > 0.5 && y.norm() > 0.5 && std::abs(x.dot(y)) < 1e-9
                          ? ""
                          : "x-axis and y-axis must be at right angles, and not 0";
             },
@@ -89,7 +89,7 @@ void declare_modes(config::Section& s, Parameters& p) {
             .doc("modes that another program wrote (docs/formats.md), in place of 'mesh'");
         m.value("cavity", p.cavity)
             .doc(
-                "with 'file': its surface is the wall of a cavity, so the normals point into the space that it encloses; "
+                "with 'file': its surface is the wall of a cavity, so the normals must point into the space that it encloses; "
                 "false: such a surface is refused as turned inside out");
         m.check([&] { return p.cavity && !p.modes_file ? "it says something of a 'file' alone" : ""; },
                 "cavity");
@@ -124,8 +124,12 @@ void declare_loads(config::Section& s, Parameters& p) {
   s.optional_section<Load>(
       "load", p.load,
       [](config::Section& l, Load& v) {
-        l.value("upper-pressure", v.upper).unit("Pa").doc("on the side the normal points to, of x, y, z, t");
-        l.value("lower-pressure", v.lower).unit("Pa").doc("on the other side, of x, y, z, t");
+        l.value("upper-pressure", v.upper)
+            .unit("Pa")
+            .doc("on the side the normal points to (with 'modes.file': +z), of x, y, z, t");
+        l.value("lower-pressure", v.lower)
+            .unit("Pa")
+            .doc("on the other side (with 'modes.file': -z), of x, y, z, t");
         l.check([&] { return v.upper ? problem_of(*v.upper) : ""; }, "upper-pressure");
         l.check([&] { return v.lower ? problem_of(*v.lower) : ""; }, "lower-pressure");
       },

@@ -29,9 +29,9 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
   solved_ = trial_.q;
   std::vector<double> by_modes = share_->gather_vertices(trial_.q);
   on_root(context_.comm, [&] {
+    look_at_pressure(t);
     if (!built_.plate) return;
     direct_ = direct_deflection(t);
-    add_within_faces(t);
     Deflection& d = deflection_.emplace();
     for (std::size_t i = 0; i < direct_.size(); ++i) {
       d.direct = std::max(d.direct, std::abs(direct_[i]));

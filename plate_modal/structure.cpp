@@ -30,11 +30,11 @@ void refuse_inside(const Contact& contact, const Share& share, std::span<const d
 
 /// A direction says where to, not how far.
 Parameters with_unit_directions(Parameters p) {
-  p.placement.x.normalize();
-  p.placement.y.normalize();
+  p.placement.x.stableNormalize();
+  p.placement.y.stableNormalize();
   if (p.contact && !p.contact->direction.empty()) {
     Eigen::Map<Vec3> direction(p.contact->direction.data());
-    direction.normalize();
+    direction.stableNormalize();
   }
   return p;
 }
@@ -252,6 +252,7 @@ void Structure::write_output(double time, int) { results_->write_fields(time); }
 void Structure::write_monitors(double time) { results_->write_series(time); }
 
 std::vector<std::string> Structure::finish() {
+  finished_ = true;
   if (parameters_.analysis != Parameters::Analysis::dynamic || !(largest_exchange_ > 0)) return {};
   return {
       fmt::format("energy: the balance of the structure (4.29-4.31) is off by at most {:.2e} J, {:.2g} % of "
@@ -271,7 +272,8 @@ void Structure::save(CheckpointWriter& file) const {
   file.write("energies", std::vector<double>{e.kinetic, e.strain, e.gravity, e.contact, e.initial,
                                              e.load_work, e.impact_work, e.damping_loss, worst_mismatch_,
                                              largest_exchange_, largest_true_});
-  file.write("largest", std::vector<double>{largest_, largest_rotation_, within_[0], within_[1]});
+  file.write("largest", std::vector<double>{largest_, largest_rotation_, within_[0], within_[1],
+                                            on_modes_.part, on_modes_.most, load_acted_ ? 1. : 0.});
   file.write("truncation", truncation_ ? truncation_->state() : std::vector<double>(2, 0));
   file.write_scalar("dt", state_.dt);
   if (resolution_) file.write("resolution", resolution_->state());
@@ -285,7 +287,6 @@ void Structure::load(CheckpointReader& file) {
         "supports or the "
         "number of modes differ.");
   state_ = initial_state();
-  load_acted_ = true;  // before, for all that is known here
   for (const auto& [name, values] : {std::pair{"q", &state_.q},
                                      {"v", &state_.v},
                                      {"a", &state_.a},
@@ -300,10 +301,12 @@ void Structure::load(CheckpointReader& file) {
                        &e.impact_work, &e.damping_loss, &worst_mismatch_, &largest_exchange_, &largest_true_})
     *part = kept[i++];
   take_changed_energy(*oscillators_, comm_rank(context_.comm) == 0, state_);
-  std::vector<double> largest(4), left_out(2);
+  std::vector<double> largest(7), left_out(2);
   file.read("largest", largest);
   largest_ = largest[0], largest_rotation_ = largest[1];
   within_ = {largest[2], largest[3]};
+  on_modes_ = {largest[4], largest[5]};
+  load_acted_ = largest[6] != 0;
   file.read("truncation", left_out);
   if (truncation_) truncation_->restore(left_out);
   state_.dt = file.read_scalar("dt");

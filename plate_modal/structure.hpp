@@ -73,7 +73,7 @@ class Structure final : public Participant, public EstimatesError {
   std::vector<double> cell_pressures(double t) const;
   void take_fluid(const Exchange& in);
   void look_at_modes();
-  void add_within_faces(double t);
+  void look_at_pressure(double t);
   double mesh_gap() const;
 
   Parameters parameters_;
@@ -100,6 +100,8 @@ class Structure final : public Participant, public EstimatesError {
   std::vector<double> fluid_pressure_;      // of the last solve, a cell, on rank 0; empty: no fluid
   bool load_acted_ = false;                 // a prescribed pressure was not 0 somewhere
   std::vector<double> within_{0, 0};  // what the midpoint rule misses of prescribed pressures, on rank 0
+  LoadOnModes on_modes_;              // of prescribed pressures, on rank 0
+  bool finished_ = false;             // no step will follow
   double largest_rotation_ = 0;       // of the body as a whole [rad]
   std::unique_ptr<PlateResults> results_;
 };

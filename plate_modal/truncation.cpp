@@ -136,4 +136,27 @@ WithinFaces within_faces(const ModalModel& model, const PressureLoad& load, doub
   return seen;
 }
 
+LoadOnModes load_on_modes(const ModalModel& model, const PressureLoad& load, double t) {
+  const std::size_t n = model.n_modes();
+  std::vector<double> part(n, 0), most(n, 0);
+  const std::vector<Vec3> areas = face_areas(model), centres = face_centres(model);
+  try {
+    for (std::size_t f = 0; f < areas.size(); ++f) {
+      const double pressure = load.push(areas[f], centres[f], t);
+      if (pressure == 0) continue;
+      for (std::size_t m = 0; m < n; ++m) {
+        const double* u = model.face_shape.data() + 3 * f * n + m;
+        const Vec3 shape(u[0], u[n], u[2 * n]);
+        part[m] += pressure * shape.dot(areas[f]);
+        most[m] += std::abs(pressure) * shape.norm() * areas[f].norm();
+      }
+    }
+  } catch (const Error&) {
+    return {};  // no value there: the scheme need not ask for it
+  }
+  LoadOnModes seen;
+  for (std::size_t m = 0; m < n; ++m) seen.part += part[m] * part[m], seen.most += most[m] * most[m];
+  return seen;
+}
+
 }  // namespace couplet::plate

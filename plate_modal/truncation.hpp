@@ -49,4 +49,11 @@ struct WithinFaces {
 /// Against sixteen points a face. Zeros for pressures that are the same everywhere, or have no value at t. On rank 0.
 WithinFaces within_faces(const ModalModel& model, const PressureLoad& load, double t);
 
+/// Squares over all modes: of the loads of pressures on them, and of what these would be if every force lay along the
+/// motion of its face. Zeros where a pressure has no value at t. On rank 0.
+struct LoadOnModes {
+  double part = 0, most = 0;
+};
+LoadOnModes load_on_modes(const ModalModel& model, const PressureLoad& load, double t);
+
 }  // namespace couplet::plate

@@ -53,7 +53,7 @@ void declare(config::Section& s, SolidOutputParameters& o) {
       .range(0, 1000)
       .doc(
           "so many of the lowest free vibrations of a dynamic analysis (face-gradient: symmetric) are found at the start: "
-          "modes.csv, and modes.h5, which plate_modal reads; 0: none");
+          "modes.csv, and in 3-D modes.h5, which plate_modal reads; 0: none");
 }
 
 }  // namespace couplet

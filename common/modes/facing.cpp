@@ -3,9 +3,16 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
+
+#include "common/modes/surface_parts.hpp"
 
 namespace couplet {
 namespace {
@@ -60,13 +67,178 @@ std::optional<double> volume_behind(const ModalModel& model) {
   return by_rim;
 }
 
-std::string facing_problem_of(const ModalModel& model) {
-  const std::optional<double> volume = volume_behind(model);
-  if (!volume || !(*volume < 0)) return "";
-  return fmt::format(
-      "its faces are turned inside out: their normals point into the {:.3g} m^3 that the surface encloses, and those of a "
-      "body point out of it (vertices of a face turn right-handed about the outward normal)",
-      -*volume);
+namespace {
+
+/// Where a line meets a triangle, in its direction's lengths; NaN: nowhere [Moeller and Trumbore 1997].
+double meeting(const Vec3& from, const Vec3& along, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, p = along.cross(ac);
+  const double none = std::numeric_limits<double>::quiet_NaN(), determinant = ab.dot(p);
+  if (std::abs(determinant) <= 1e-12 * ab.norm() * ac.norm()) return none;
+  const Vec3 s = from - a, q = s.cross(ab);
+  const double u = s.dot(p) / determinant, v = along.dot(q) / determinant;
+  if (!(u >= 0 && v >= 0 && u + v <= 1)) return none;
+  return ac.dot(q) / determinant;
+}
+
+/// What a line along the normal of a face meets of the surface.
+struct Crossings {
+  int before = 0, behind = 0;                       // faces
+  bool other_before = false, other_behind = false;  // of another part
+  bool touches = false;  // a face in the same place: of a body that touches, or twice
+};
+
+/// What says on which side of its faces a part lies, by areas [m^2].
+struct Votes {
+  double outward = 0, inward = 0, all = 0;
+};
+
+class Sides {
+ public:
+  Sides(const ModalModel& model, const WeldedSurface& welded)
+      : model_(model), welded_(welded), areas_(face_areas(model)), part_of_(areas_.size()) {
+    for (std::size_t p = 0; p < welded.part.size(); ++p)
+      for (const Index f : welded.part[p]) part_of_[std::size_t(f)] = p;
+    Vec3 least = model.vertices.front(), most = least;
+    for (const Vec3& x : model.vertices) least = least.cwiseMin(x), most = most.cwiseMax(x);
+    near_ = 1e-9 * (most - least).norm();
+  }
+
+  /// Of at most so many faces of a part, evenly among all.
+  Votes of(std::size_t part, std::size_t samples) const {
+    const std::vector<Index>& faces = welded_.part[part];
+    const bool sheet = is_sheet(faces);
+    Votes votes;
+    const std::size_t n = std::min(samples, faces.size());
+    for (std::size_t i = 0; i < n; ++i) {
+      const Index f = faces[i * faces.size() / n];
+      const double area = areas_[std::size_t(f)].norm();
+      votes.all += area;
+      const Crossings seen = crossings(f);
+      const bool before = seen.before % 2 == 1, behind = seen.behind % 2 == 1;
+      if (seen.touches || before == behind) continue;
+      // A bent sheet that meets itself has no side for that.
+      if (sheet && !(before ? seen.other_before : seen.other_behind)) continue;
+      (before ? votes.inward : votes.outward) += area;
+    }
+    return votes;
+  }
+
+  /// Volume behind a part by itself.
+  std::optional<double> volume(std::size_t part) const {
+    ModalModel alone;
+    alone.vertices = model_.vertices;
+    for (const Index f : welded_.part[part])
+      if (!welded_.faces[f].empty()) alone.faces.push_row(welded_.faces[f]);
+    return volume_behind(alone);
+  }
+
+  /// Its words in a message.
+  std::string name(std::size_t part) const {
+    if (welded_.part.size() == 1) return "its faces";
+    Vec3 middle = Vec3::Zero();
+    double area = 0;
+    const std::vector<Vec3> centres = face_centres(model_);
+    for (const Index f : welded_.part[part]) {
+      middle += areas_[std::size_t(f)].norm() * centres[std::size_t(f)];
+      area += areas_[std::size_t(f)].norm();
+    }
+    middle /= area;
+    return fmt::format(
+        "the faces of part {} of {} ({} faces from face {} on, their middle at ({:.4g}, {:.4g}, {:.4g}))",
+        part + 1, welded_.part.size(), welded_.part[part].size(), welded_.part[part].front() + 1, middle.x(),
+        middle.y(), middle.z());
+  }
+
+ private:
+  bool is_sheet(const std::vector<Index>& faces) const {
+    Vec3 left = Vec3::Zero();
+    double area = 0;
+    for (const Index f : faces) left += areas_[std::size_t(f)], area += areas_[std::size_t(f)].norm();
+    return left.norm() > sheet_share * area;
+  }
+
+  /// From a place in the face that no edge of a face opposite is likely to meet.
+  Crossings crossings(Index face) const {
+    const auto corners = model_.faces[face];
+    const Vec3 from = 0.41 * model_.vertices[corners[0]] + 0.33 * model_.vertices[corners[1]] +
+                      0.26 * model_.vertices[corners[2]];
+    const Vec3 along = areas_[std::size_t(face)].normalized();
+    Crossings seen;
+    for (Index f = 0; f < model_.faces.size(); ++f) {
+      if (f == face) continue;
+      const auto v = model_.faces[f];
+      for (std::size_t i = 2; i < v.size(); ++i) {
+        const double at =
+            meeting(from, along, model_.vertices[v[0]], model_.vertices[v[i - 1]], model_.vertices[v[i]]);
+        if (std::isnan(at)) continue;
+        const bool other = part_of_[std::size_t(f)] != part_of_[std::size_t(face)];
+        seen.touches = seen.touches || std::abs(at) <= near_;
+        ++(at > 0 ? seen.before : seen.behind);
+        bool& other_there = at > 0 ? seen.other_before : seen.other_behind;
+        other_there = other_there || other;
+        break;
+      }
+    }
+    return seen;
+  }
+
+  const ModalModel& model_;
+  const WeldedSurface& welded_;
+  std::vector<Vec3> areas_;
+  std::vector<std::size_t> part_of_;
+  double near_ = 0;
+};
+
+/// Of one part. Empty: it is right, or nothing tells.
+std::string part_problem(const Sides& sides, std::size_t part, std::size_t samples, Facing wanted) {
+  constexpr const char* rule = "(vertices of a face turn right-handed about the outward normal)";
+  const Votes votes = sides.of(part, samples);
+  const double said = votes.outward + votes.inward;
+  const double right = wanted == Facing::outward ? votes.outward : votes.inward, wrong = said - right;
+  if (said >= 0.5 * votes.all) {
+    if (right >= 0.9 * said) return "";
+    if (wrong >= 0.9 * said)
+      return wanted == Facing::outward
+                 ? fmt::format(
+                       "{} are turned inside out: their normals point into the structure, whose other side lies "
+                       "before them, and those of a body point out of it {}",
+                       sides.name(part), rule)
+                 : fmt::format(
+                       "{} point out of the space that the surface encloses, and those of a cavity's wall "
+                       "('modes.cavity: true') point into it {}",
+                       sides.name(part), rule);
+  }
+  const std::optional<double> volume = sides.volume(part);
+  if (!volume) {
+    if (!(said >= 0.5 * votes.all)) return "";
+    return fmt::format(
+        "on which side of {} the structure lies cannot be told: {:.0f} % of them look away from other faces and {:.0f} % at "
+        "them. Give the whole surface of the structure, closed where it is closed",
+        sides.name(part), 100 * votes.outward / said, 100 * votes.inward / said);
+  }
+  if (wanted == Facing::outward ? !(*volume < 0) : !(*volume > 0)) return "";
+  return wanted == Facing::outward
+             ? fmt::format(
+                   "{} are turned inside out: their normals point into the {:.3g} m^3 that the surface encloses, and "
+                   "those of a body point out of it {}",
+                   sides.name(part), -*volume, rule)
+             : fmt::format(
+                   "{} point out of the {:.3g} m^3 that the surface encloses, and those of a cavity's wall "
+                   "('modes.cavity: true') point into it {}",
+                   sides.name(part), *volume, rule);
+}
+
+}  // namespace
+
+std::string facing_problem_of(const ModalModel& model, Facing wanted) {
+  const WeldedSurface welded = weld(model);
+  if (std::string problem = neighbour_problem_of(model, welded); !problem.empty()) return problem;
+  const Sides sides(model, welded);
+  const std::size_t parts = welded.part.size();
+  const std::size_t samples = std::clamp<std::size_t>(2000 / parts, 5, 64);
+  for (std::size_t p = 0; p < parts; ++p)
+    if (std::string problem = part_problem(sides, p, samples, wanted); !problem.empty()) return problem;
+  return "";
 }
 
 }  // namespace couplet

@@ -168,6 +168,7 @@ TEST(EffectCards, plate_verdicts_turn_at_their_thresholds) {
   EXPECT_TRUE(sound("stretch of the mid-surface", {.displacement_over_thickness = 0.49}));
   EXPECT_FALSE(sound("stretch of the mid-surface", {.displacement_over_thickness = 0.51}));
   EXPECT_FALSE(sound("load between the faces or steps", {.load_lost = true}));
+  EXPECT_FALSE(sound("load that moves no mode", {.load_on_modes = 1e-15}));
   EXPECT_TRUE(sound("shear and rotary inertia", {.thickness_over_wave = 0.099}));
   EXPECT_FALSE(sound("shear and rotary inertia", {.thickness_over_wave = 0.101}));
   EXPECT_TRUE(sound("balance of the energies", {.energy_mismatch = 0.0099}));

@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // What bending modes cannot answer is said, and not answered wrongly: each guard is shown to fire and not to fire.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
 
 #include "common/base/error.hpp"
+#include "common/config/load.hpp"
+#include "common/modes/modes_file.hpp"
+#include "plate_modal/build_model.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"
 
@@ -243,6 +250,75 @@ TEST(PlateGuards, a_modal_analysis_has_no_load_that_could_be_lost) {
   for (const EffectVerdict& v : plate.audit()) EXPECT_NE(v.effect, "load between the faces or steps");
 }
 
+/// Effects of the loads of which a run of ten steps of 0.01 s says that they are unsound, in its midst and at its end.
+std::vector<std::string> doubts(const Parameters& p, int told_at, const std::filesystem::path& folder = {}) {
+  const RawMesh raw = square(4);
+  PlateContext context;
+  context.case_folder = folder;
+  Structure plate(p, context, p.modes_file ? nullptr : &raw);
+  plate.initialise();
+  std::vector<std::string> unsound;
+  const auto look = [&] {
+    for (const EffectVerdict& v : plate.audit())
+      if ((v.effect == "load between the faces or steps" || v.effect == "load that moves no mode") &&
+          !v.sound())
+        unsound.push_back(v.effect);
+  };
+  for (int i = 0; i < 10; ++i) {
+    plate.begin_step({.time = 0.01 * i, .dt = 0.01, .number = i});
+    plate.solve({});
+    plate.accept_step();
+    if (told_at == i) look();
+  }
+  plate.finish();
+  if (told_at < 0) look();
+  return unsound;
+}
+
+TEST(PlateGuards, a_load_is_lost_if_it_is_0_in_no_step_and_not_before_the_end) {
+  for (const auto analysis : {Parameters::Analysis::dynamic, Parameters::Analysis::static_}) {
+    Parameters p = plate_held({{"xmin", Support::clamped}});
+    p.analysis = analysis;
+    p.load.emplace().lower.emplace().text = "t > 0.06 ? 1 : 0";
+    EXPECT_EQ(doubts(p, 0), std::vector<std::string>{});
+    EXPECT_EQ(doubts(p, -1), std::vector<std::string>{});
+    p.load->lower->text = "t > 1 ? 1 : 0";
+    EXPECT_EQ(doubts(p, 0), std::vector<std::string>{});
+    EXPECT_EQ(doubts(p, -1), std::vector<std::string>{"load between the faces or steps"});
+  }
+}
+
+TEST(PlateGuards, a_load_without_a_part_in_any_mode_is_told) {
+  for (const auto analysis : {Parameters::Analysis::dynamic, Parameters::Analysis::static_}) {
+    Parameters p = plate_held({{"xmin", Support::clamped}});
+    p.analysis = analysis;
+    p.load.emplace().upper.emplace().text = "1 + x";
+    EXPECT_EQ(doubts(p, -1), std::vector<std::string>{});
+    EXPECT_EQ(doubts(p, 3), std::vector<std::string>{});
+    p.load->lower = p.load->upper;  // they cancel
+    EXPECT_EQ(doubts(p, 3), std::vector<std::string>{});
+    EXPECT_EQ(doubts(p, -1), std::vector<std::string>{"load that moves no mode"});
+  }
+  // A plate that stands: by a file of modes its rims look up, and the bending does not move them so.
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / fmt::format("couplet-stands-{}", ::getpid());
+  std::filesystem::create_directories(folder);
+  Parameters stands = plate_held({{"xmin", Support::clamped}});
+  stands.placement.x = Vec3(0, 1, 0);
+  stands.placement.y = Vec3(0, 0, 1);
+  const RawMesh raw = square(4);
+  write_modes(folder / "stands.h5", build_model(stands, PlateContext{}, &raw).model, "");
+  Parameters p;
+  p.modes_file = "stands.h5";
+  p.load.emplace().upper.emplace().text = "1";
+  p.output.fields = false;
+  for (const auto analysis : {Parameters::Analysis::dynamic, Parameters::Analysis::static_}) {
+    p.analysis = analysis;
+    EXPECT_EQ(doubts(p, -1, folder), std::vector<std::string>{"load that moves no mode"});
+  }
+  std::filesystem::remove_all(folder);
+}
+
 TEST(PlateGuards, a_direction_may_have_any_length) {
   const RawMesh raw = square(4);
   const auto force = [&](double length) {
@@ -259,6 +335,22 @@ TEST(PlateGuards, a_direction_may_have_any_length) {
   };
   EXPECT_GT(force(1), 0);
   EXPECT_DOUBLE_EQ(force(0.1), force(1));
+  EXPECT_DOUBLE_EQ(force(1e-200), force(1));
+  EXPECT_DOUBLE_EQ(force(1e200), force(1));
+}
+
+TEST(PlateGuards, axes_are_at_right_angles_however_short_they_are) {
+  const auto messages = [](const std::string& x, const std::string& y) {
+    Parameters p;
+    const auto document = config::Document::parse(
+        "mesh: a.geo\nthickness: 1 cm\nmaterial: {density: 1, youngs-modulus: 1, poissons-ratio: 0}\nplacement: {x-axis: " +
+        x + ", y-axis: " + y + "}\n");
+    return config::load(document, "", [&](config::Section& s) { declare(s, p); });
+  };
+  EXPECT_THAT(messages("[0, 1e-200, 0]", "[0, 0, 1e200]"), testing::IsEmpty());
+  for (const char* y : {"[0, 1e-200, 1e-203]", "[0, 0, 0]"})
+    EXPECT_THAT(messages("[0, 1e-200, 0]", y),
+                testing::ElementsAre(testing::HasSubstr("must be at right angles")));
 }
 
 TEST(PlateGuards, a_probe_stands_on_the_surface_or_near_it) {

@@ -251,11 +251,98 @@ TEST_F(PlateModesFile, a_surface_turned_inside_out_is_refused_unless_it_is_a_cav
     EXPECT_NE(text_of(of_file).find("turned inside out"), std::string::npos) << held << text_of(of_file);
     of_file.cavity = true;
     EXPECT_EQ(text_of(of_file), "") << held;
+    write_modes(folder_ / "other.h5", built.model, "");
+    EXPECT_NE(text_of(of_file).find("those of a cavity's wall"), std::string::npos)
+        << held << text_of(of_file);
   }
   // A sheet has no other side.
   Parameters p = parameters();
   p.wetted = Wetted::lower;
   EXPECT_FALSE(volume_behind(build_model(p, context(), &raw).model));
+}
+
+/// Turns the faces of which it is true.
+ModalModel turned(ModalModel model, auto&& which) {
+  for (Index f = 0; f < model.faces.size(); ++f)
+    if (which(f))
+      std::reverse(model.faces.index.begin() + model.faces.offset[f],
+                   model.faces.index.begin() + model.faces.offset[f + 1]);
+  return model;
+}
+
+/// Only vertices and faces: what the sides are judged by.
+ModalModel surface_of(const ModalModel& model, auto&& own_vertices) {
+  ModalModel apart;
+  apart.vertices = model.vertices;
+  for (Index f = 0; f < model.faces.size(); ++f) {
+    std::vector<Index> corners(model.faces[f].begin(), model.faces[f].end());
+    if (own_vertices(f))
+      for (Index& v : corners) {
+        apart.vertices.push_back(model.vertices[v]);
+        v = Index(apart.vertices.size()) - 1;
+      }
+    apart.faces.push_row(corners);
+  }
+  return apart;
+}
+
+/// Both, the second moved by `shift` and `scale` times as large.
+ModalModel with(ModalModel a, const ModalModel& b, double scale, const Vec3& shift) {
+  const auto first = Index(a.vertices.size());
+  for (const Vec3& x : b.vertices) a.vertices.push_back(scale * x + shift);
+  for (Index f = 0; f < b.faces.size(); ++f) {
+    std::vector<Index> corners;
+    for (const Index v : b.faces[f]) corners.push_back(first + v);
+    a.faces.push_row(corners);
+  }
+  return a;
+}
+
+TEST_F(PlateModesFile, turned_faces_are_found_wherever_parts_share_no_vertices) {
+  if (comm_size(MPI_COMM_WORLD) > 1) return;
+  const RawMesh raw = square(5);
+  const auto all = [](Index) { return true; };
+  const ModalModel body =
+      surface_of(build_model(parameters(), PlateContext{}, &raw).model, [](Index) { return false; });
+  const auto half = [&](Index f) { return face_centres(body)[std::size_t(f)].x() > 0.5; };
+  // A seam of vertices that are there twice, and vertices of its own for each face.
+  EXPECT_EQ(facing_problem_of(surface_of(body, half)), "");
+  EXPECT_NE(facing_problem_of(surface_of(turned(body, half), half)).find("meet along an edge"),
+            std::string::npos);
+  const auto second = [](Index f) { return f % 2 == 1; };
+  EXPECT_EQ(facing_problem_of(surface_of(body, all)), "");
+  EXPECT_NE(facing_problem_of(surface_of(turned(body, second), all)).find("meet along an edge"),
+            std::string::npos);
+  // Two bodies of which one is turned, be it as large or smaller; a hollow in a body looks into it.
+  for (const double scale : {1., 0.7}) {
+    EXPECT_EQ(facing_problem_of(with(body, body, scale, Vec3(0, 0, 1))), "");
+    const std::string text = facing_problem_of(with(body, turned(body, all), scale, Vec3(0, 0, 1)));
+    EXPECT_NE(text.find("the faces of part 2 of 2"), std::string::npos) << text;
+  }
+  const Vec3 middle = 0.5 * Vec3(0.5, 0.5, 0);
+  EXPECT_EQ(facing_problem_of(with(body, turned(body, all), 0.5, middle)), "");
+  EXPECT_NE(facing_problem_of(with(body, body, 0.5, middle)).find("part 2 of 2"), std::string::npos);
+}
+
+TEST_F(PlateModesFile, of_two_sheets_each_looks_away_from_the_other) {
+  if (comm_size(MPI_COMM_WORLD) > 1) return;
+  const RawMesh raw = square(5, BoxCells::quadrilaterals);
+  Parameters p = parameters();
+  for (auto& [patch, edge] : p.boundaries) edge.support = Support::clamped;
+  const ModalModel plate = build_model(p, PlateContext{}, &raw).model;
+  EXPECT_EQ(facing_problem_of(plate), "");
+  for (const int sheet : {1, 2}) {
+    const ModalModel wrong = turned(plate, [&](Index f) { return (f < 25) == (sheet == 1); });
+    const std::string text = facing_problem_of(wrong);
+    EXPECT_NE(text.find(fmt::format("part {} of 2", sheet)), std::string::npos) << text;
+    EXPECT_NE(facing_problem_of(wrong, Facing::inward), "");
+  }
+  // A second plate above it, nearer than it is thick.
+  EXPECT_EQ(facing_problem_of(with(plate, plate, 1, Vec3(0, 0, 0.06))), "");
+  // A sheet alone may look anywhere.
+  p.wetted = Wetted::lower;
+  const ModalModel alone = build_model(p, PlateContext{}, &raw).model;
+  EXPECT_EQ(facing_problem_of(alone) + facing_problem_of(alone, Facing::inward), "");
 }
 
 TEST_F(PlateModesFile, kept_modes_that_were_edited_are_found_again) {
