@@ -71,7 +71,7 @@ def picture(sections, file):
             across = (section.now[:, 0] + section.now[:, 1]) / math.sqrt(2)
             drawn = ax.tripcolor(across, section.now[:, 2], triangles(section), getattr(section, values), vmin=low, vmax=high,
                                  shading="gouraud", cmap="viridis")
-            ax.set(aspect="equal", xlabel="along the load [m]", title=f"{name}, L = {sides} sides" if row == 0 else f"L = {sides} sides")
+            ax.set(aspect="equal", xlabel="along the load [m]", title=f"L = {sides} sides")
         figure.colorbar(drawn, ax=axes[row], label=name, shrink=0.8)
     file.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(file)
