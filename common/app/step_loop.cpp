@@ -170,7 +170,11 @@ std::string StepLoop::run(const StepActions& actions) {
       return "";
     }
     plan_.limit(actions.advised_dt());
-    const Step step{plan_.time(), plan_.dt(), scheme_, plan_.steps_accepted(), plan_.is_last()};
+    const Step step{.time = plan_.time(),
+                    .dt = plan_.dt(),
+                    .scheme = scheme_,
+                    .number = plan_.steps_accepted(),
+                    .is_last = plan_.is_last()};
     if (const auto failure = actions.attempt(step)) {
       log::warn("t = {:g} s: step {} with dt = {:g} s failed: {}", step.time, step.number + 1, step.dt,
                 failure->reason);

@@ -332,10 +332,10 @@ case.yaml:41:15: coupling.predictor.order: 3 is out of range; expected a value f
 The coupler takes no --participant: it couples those that case.yaml names.
 """, arguments=["case.yaml", "--check", "--participant", "fluid"]),
     mover("unknown motion", """
-case.yaml:32:15: participants.mover.boundaries.right.type: 'loose' is not one of: interface, moving, fixed, slip, free.
+case.yaml:32:15: participants.mover.boundaries.right.type: 'loose' is not one of: interface, moving, fixed, slip, free, periodic.
 """, ("right: {type: fixed}", "right: {type: loose}")),
     mover("motion missing", "case.yaml:32:7: participants.mover.boundaries.right.type: this required key is missing (one of: "
-          "interface, moving, fixed, slip, free).", ("right: {type: fixed}", "right: {}")),
+          "interface, moving, fixed, slip, free, periodic).", ("right: {type: fixed}", "right: {}")),
     mover("limit of the guard out of range", """
 case.yaml:27:13: participants.mover.guard.largest-angle: 100 is out of range; expected a value from 0 to 90.
 """, ("  mover:\n", "  mover:\n    guard: {largest-angle: 100}\n")),

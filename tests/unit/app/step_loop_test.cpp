@@ -39,7 +39,11 @@ class Checkpoints : public testing::Test {
       time = read_run_state(restart).time;
     }
     StepActions actions;
-    actions.attempt = [](const Step&) { return std::nullopt; };
+    steps.clear();
+    actions.attempt = [&](const Step& step) {
+      steps.push_back(step);
+      return std::nullopt;
+    };
     actions.accept = [&](double t, int) { time = t; };
     actions.write_start = [](int) {};
     actions.report = [](const Step&, double) {};
@@ -67,7 +71,18 @@ class Checkpoints : public testing::Test {
     return text.str();
   }
   fs::path folder = fs::temp_directory_path() / fmt::format("couplet-app-{}", ::getpid());
+  std::vector<Step> steps;  ///< tried in the last run
 };
+
+TEST_F(Checkpoints, a_participant_is_told_the_last_step_and_takes_one_step_of_its_own_in_each) {
+  run_to(3);
+  ASSERT_EQ(steps.size(), 3u);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    EXPECT_EQ(steps[i].is_last, i == 2) << i;
+    EXPECT_EQ(steps[i].sub_steps, 1) << i;
+    EXPECT_EQ(steps[i].number, GlobalIndex(i));
+  }
+}
 
 TEST_F(Checkpoints, the_one_that_has_gone_furthest_is_taken_not_the_newest_file) {
   run_to(4, 9);
