@@ -21,7 +21,7 @@
 
 namespace {
 
-using namespace couplet_wire;
+using namespace couplet::wire;
 
 [[noreturn]] void end_the_job(const std::string& text) {
   std::fprintf(stderr, "couplet client: %s\n", text.c_str());

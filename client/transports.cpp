@@ -9,7 +9,7 @@
 #include <fstream>
 #include <string>
 
-namespace couplet_wire {
+namespace couplet::wire {
 namespace {
 
 /// Whether a line "pml = ...", "btl = ..." or "mtl = ..." of the user's parameters chooses (a "^" only leaves out).
@@ -42,4 +42,4 @@ void choose_transports() {
   ::setenv("OMPI_MCA_btl", "self,vader", 0);
 }
 
-}  // namespace couplet_wire
+}  // namespace couplet::wire

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-namespace couplet_wire {
+namespace couplet::wire {
 
 /// Before MPI_Init: shared memory alone where all processes of the job sit on one machine and the user has not chosen.
 void choose_transports();
 
-}  // namespace couplet_wire
+}  // namespace couplet::wire

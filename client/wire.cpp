@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace couplet_wire {
+namespace couplet::wire {
 namespace {
 
 /// My entries [low, high) of n, of which coupler rank r of R has [n r / R, n (r + 1) / R).
@@ -178,4 +178,4 @@ Place join(const std::string& participant, const std::string& program) {
   return place;
 }
 
-}  // namespace couplet_wire
+}  // namespace couplet::wire

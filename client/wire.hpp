@@ -17,7 +17,7 @@
 
 #include "couplet.h"
 
-namespace couplet_wire {
+namespace couplet::wire {
 
 constexpr std::int64_t version = 4, command_mark = 0x434f4d4d, reply_mark = 0x5245504c,
                        hello_mark = 0x434f55504c4554;
@@ -147,4 +147,4 @@ inline void broadcast(MPI_Comm comm, void* data, std::size_t size) {
   wait(request);
 }
 
-}  // namespace couplet_wire
+}  // namespace couplet::wire

@@ -2,9 +2,12 @@
 #include "fluid_solver/pressure.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
+#include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/largest_entry.hpp"
 
 namespace couplet::fluid {
 
@@ -164,6 +167,20 @@ void PressureEquation<D>::remove_mean(std::vector<double>& b) const {
   for (double& value : b) value -= mean;
 }
 
+/// A tolerance that is not finite would let anything pass: fluxes whose squares overflow make one.
+template <int D>
+SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::span<const double> b,
+                                                   std::span<double> p, double relative, double absolute) {
+  const auto where = [&] { return largest_entry<D>(mesh_, at, [&](Index c) { return b[c]; }); };
+  if (!std::isfinite(absolute))
+    throw SolveFailure("The fluxes of the pressure equation are out of all bounds. {}", where());
+  try {
+    return solver_->solve(b, p, relative, absolute);
+  } catch (const SolveFailure& failure) {  // on all ranks alike
+    throw SolveFailure("{} {}", failure.what(), where());
+  }
+}
+
 template <int D>
 SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<double>& b,
                                            std::vector<double>& p, double relative, double absolute) {
@@ -177,7 +194,8 @@ SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<d
     for (Index c = 0; c < owned; ++c) p[c] -= pin;
   }
   const int made = solver_->preconditioners_built();
-  const SolveStatistics statistics = solver_->solve(b, std::span<double>(p).first(owned), relative, absolute);
+  const SolveStatistics statistics =
+      solve_or_tell(at, b, std::span<double>(p).first(owned), relative, absolute);
   if (!fixed_) {
     now_.memory = solver_->memory();
     if (solver_->preconditioners_built() != made)

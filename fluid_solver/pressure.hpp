@@ -46,6 +46,8 @@ class PressureEquation {
   bool singular() const { return boundary_.closed() && !yields_; }
   std::vector<double> diagonal(const Placement<D>& at, std::span<const double> admittance) const;
   void remove_mean(std::vector<double>& b) const;
+  SolveStatistics solve_or_tell(const Placement<D>& at, std::span<const double> b, std::span<double> p,
+                                double relative, double absolute);
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
   bool fixed_, yields_ = false;

@@ -10,6 +10,7 @@
 #include "common/log/log.hpp"
 #include "common/mesh/msh_entities.hpp"
 #include "common/mesh/on_root.hpp"
+#include "common/mesh/quality.hpp"
 #include "common/modes/facing.hpp"
 #include "common/modes/modes_file.hpp"
 #include "plate_modal/outline.hpp"
@@ -128,7 +129,10 @@ Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
         "group.",
         (folder / *p.mesh).string());
   for (Vec3& x : raw.points) x *= p.mesh_scale;
-  return midsurface_of(raw, read_boundary_entities(file));
+  Midsurface surface = midsurface_of(raw, read_boundary_entities(file));
+  for (Vec3& x : raw.points) x.z() = 0;  // what rounding the file left of another plane
+  check_and_report(distribute(MPI_COMM_SELF, raw));
+  return surface;
 }
 
 /// Rigid motions come with the rounding of the stiffness: below this eigenvalue they are none [1/s^2].

@@ -10,6 +10,8 @@ class Mutant:
     old: str
     new: str
     test: str
+    only: str = ""  # the claims of the test that are asked for (a filter of gtest); all by default
+    target: str = ""  # what is built for the test, where the two have different names
 
 
 MUTANTS = [

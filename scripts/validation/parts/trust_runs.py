@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import statistics
+import sys
 import time
 
 from validation.job import Bar
@@ -75,6 +76,18 @@ def script(path, *words, timeout=7200):
     return measure
 
 
+def wrong(*names, least):
+    """A bar of those cases of tests/cli/wrong whose names begin so."""
+    def measure(job):
+        sys.path.insert(0, str(job.root / "tests/cli/wrong"))
+        import table
+        chosen = [case.name for case in table.CASES if case.name.startswith(names)]
+        result = job.run(["/usr/bin/python3", job.root / "tests/cli/wrong/run.py", job.build / "bin", *chosen])
+        good = len(re.findall(r"^ok ", result.stdout, re.M))
+        return f"{good} of {len(chosen)} cases pass", result.returncode == 0 and good == len(chosen) >= least
+    return measure
+
+
 def start_up(job):
     folder = job.scratch / "start-up"
     folder.mkdir(exist_ok=True)
@@ -97,6 +110,8 @@ BARS = [
         gtests("unit_app", "gone_furthest", "two_sets", "flipped_bit", "half_written")),
     Bar("keys and files that changed since a checkpoint: listed, physics needs consent", "tests pass",
         gtests("unit_app", "CaseKeys")),
+    Bar("participants named '', '..', '-o', 'a/b' or like folders of the run itself are refused; 'checkpoints2' is not", "cases pass",
+        wrong("participant named", "right name", least=9)),
     Bar("only what this run wrote is deleted; links are not followed", "tests pass",
         gtests("unit_app", "only_those_of_this_run", "in_the_way", "through_a_link")),
     Bar("runs with no, one and a checkpoint each step, and continued ones: the coupled flap, on 1 and 2 ranks", "equal bit for bit",

@@ -56,6 +56,7 @@ RIGHT = [
     fluid("right fluid", "", exit_code=0),
     coupler("right coupling", "", exit_code=0),
     mover("right mover", "", exit_code=0),
+    solid("right name", "", ("  solid:", '  "checkpoints2":'), exit_code=0),
 ]
 
 FILE = [
@@ -136,6 +137,8 @@ case.yaml:2:47: simulation.output: expected a mapping (keys with values), found 
 """, ("time-step: 0.5 s", "time-step: 0.5 s, output: all")),
 ]
 
+OURS = "the run itself has a folder or file of this name; take another"
+NO_FOLDER = "the name becomes a folder: no '/', '\\', '.' or blank in it, no '-' in front"
 PARTICIPANTS = [
     solid("no participants", """
 case.yaml:1:1: there is no `participants` section, which says what solid_solver is to run.
@@ -160,6 +163,10 @@ participants:
     solid("two participants with this program", """
 case.yaml:3:1: participants: 2 of them are run by the program 'solid_solver' (other, solid): say which one with --participant.
 """, ("  solid:", "  other: {program: solid_solver}\n  solid:")),
+    *[solid(f"participant named '{name}'", f"case.yaml:3:1: participants: '{name}': {why}.", ("  solid:", f'  "{name}":'))
+      for name, why in (("", "a participant needs a name"), ("coupler", "the coupler is not a participant; its keys are in `coupling`"),
+                        ("checkpoints", OURS), ("run", OURS), ("a/b", NO_FOLDER), ("..", NO_FOLDER), ("-o", NO_FOLDER),
+                        ("a" * 51, "the name has 51 characters; at most 50 are possible"))],
     coupler("no coupling", "case.yaml:1:1: there is no `coupling` section, so there is nothing for the coupler to do.", text="simulation: {end-time: 1 s, time-step: 0.5 s}\nparticipants:\n  a: {program: b}\n"),
 ]
 

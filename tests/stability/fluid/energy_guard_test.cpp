@@ -52,6 +52,38 @@ TEST(EnergyGuard, the_same_flow_within_the_limit_goes_through) {
   EXPECT_LT(c.state().ledger.excess, 1e-3 * c.state().ledger.energy);
 }
 
+/// What is said by a channel of 8 x 8 cells that is fed so.
+std::string said(const std::string& inflow, double first_step) {
+  FluidParameters p;
+  p.density = 1;
+  p.viscosity = 0.01;
+  all_sides(p, 2, boundary(BoundaryType::slip));
+  p.boundaries["xmin"] = boundary(BoundaryType::inlet, {inflow, "0"});
+  p.boundaries["xmax"] = boundary(BoundaryType::outlet);
+  try {
+    FluidCase<2> c(MPI_COMM_WORLD, box(8), p);
+    for (int i = 0; i < 3; ++i) c.step(first_step);
+  } catch (const SolveFailure& failure) {
+    return failure.what();
+  }
+  return "";
+}
+
+TEST(EnergyGuard, fluxes_out_of_all_bounds_are_named_by_field_cell_and_place) {
+  // In the row of cells at the inlet, the second from below.
+  const std::string text = said("y > 0.13 && y < 0.24 ? 1e200 : 1", 0.01);
+  EXPECT_THAT(text, HasSubstr("pressure"));
+  EXPECT_THAT(text, HasSubstr("in cell 8 at (0.0625, 0.1875, 0) m"));
+  EXPECT_EQ(said("y > 0.13 && y < 0.24 ? 2 : 1", 0.01), "");
+}
+
+TEST(EnergyGuard, too_many_sub_steps_are_named_by_cause_cell_and_place) {
+  const std::string text = said("t > 0.015 && y > 0.13 && y < 0.24 ? 1e9 : 1", 0.01);
+  EXPECT_THAT(text, HasSubstr("more than 100000 sub-steps"));
+  EXPECT_THAT(text, HasSubstr("The velocity in cell 8 at (0.0625, 0.1875, 0) m allows no longer ones"));
+  EXPECT_EQ(said("t > 0.015 && y > 0.13 && y < 0.24 ? 2 : 1", 0.01), "");
+}
+
 /// What brings energy: a lid, an inlet, a pressure, a force, a wall that moves the mesh, from rest and at
 /// once.
 class Driven : public ::testing::TestWithParam<ViscousTreatment> {};
