@@ -193,7 +193,12 @@ double Fluid<D>::next_size(double remaining, bool& last) {
         parameters_.safety_factor * (history_.implicit ? implicit_limit(limits) : limits.explicit_viscous);
   }
   const double n = parts(remaining, limit);
-  if (!(n + statistics_.sub_steps <= most_sub_steps)) refuse_sub_steps(limit, most_sub_steps);
+  if (!(n + statistics_.sub_steps <= most_sub_steps))
+    throw SolveFailure(
+        "The fluid would need more than {} sub-steps of {:.3g} s for the step of {:.3g} s at t = {:.6g} s. {}",
+        most_sub_steps, limit, dt_, time_,
+        parameters_.time_step ? "'time-step' asks for them."
+                              : in_words(step_size_.limiter(level(), history_.implicit)));
   last = n == 1;
   return remaining / n;
 }

@@ -105,7 +105,6 @@ class Fluid {
   void choose_viscous_treatment();
   double implicit_limit(const StepLimits& limits) const;
   double next_size(double remaining, bool& last);
-  [[noreturn]] void refuse_sub_steps(double limit, int most);
   SubStep<D> make_sub_step(double dt, double done, std::span<const Vec3> points) const;
   Vectors<D> wall_velocity_at(double done, const Vectors<D>& interface_velocity,
                               const SubStep<D>& step) const;

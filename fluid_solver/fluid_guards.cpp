@@ -39,21 +39,6 @@ void Fluid<D>::refuse_inverted(const Placement<D>& at) const {
       time_, place.x(), place.y(), place.z(), least.value);
 }
 
-/// Names what asks for the sub-steps, and where: mostly a velocity that runs away in one cell.
-template <int D>
-void Fluid<D>::refuse_sub_steps(double limit, int most) {
-  std::string cause = "'time-step' asks for them.";
-  if (!parameters_.time_step) {
-    const StepLimiter by = step_size_.limiter(level(), history_.implicit);
-    cause = fmt::format("{} in cell {} at ({:.6g}, {:.6g}, {:.6g}) m allows no longer ones.",
-                        by.friction ? "Friction" : "The velocity", by.cell, by.place.x(), by.place.y(),
-                        by.place.z());
-  }
-  throw SolveFailure(
-      "The fluid would need more than {} sub-steps of {:.3g} s for the step of {:.3g} s at t = {:.6g} s. {}",
-      most, limit, dt_, time_, cause);
-}
-
 /// The layer that a wall drags along within a step is rho sqrt(nu dt) thick: a mass that acts on w* in the
 /// loop, see docs/theory.md.
 template <int D>
@@ -108,11 +93,9 @@ void Fluid<D>::check_wall_velocity() const {
 }
 
 template void Fluid<2>::refuse_inverted(const Placement<2>&) const;
-template void Fluid<2>::refuse_sub_steps(double, int);
 template double Fluid<2>::unseen_share() const;
 template void Fluid<2>::check_wall_velocity() const;
 template void Fluid<3>::refuse_inverted(const Placement<3>&) const;
-template void Fluid<3>::refuse_sub_steps(double, int);
 template double Fluid<3>::unseen_share() const;
 template void Fluid<3>::check_wall_velocity() const;
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/step_size.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -242,6 +244,12 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
   return *std::ranges::min_element(all, [](const StepLimiter& a, const StepLimiter& b) {
     return a.limit != b.limit ? a.limit < b.limit : a.cell < b.cell;
   });
+}
+
+std::string in_words(const StepLimiter& by) {
+  return fmt::format("{} in cell {} at ({:.6g}, {:.6g}, {:.6g}) m allows no longer ones.",
+                     by.friction ? "Friction" : "The velocity", by.cell, by.place.x(), by.place.y(),
+                     by.place.z());
 }
 
 template class StepSize<2>;

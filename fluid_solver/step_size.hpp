@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "fluid_solver/boundary.hpp"
 #include "fluid_solver/state.hpp"
@@ -22,6 +23,8 @@ struct StepLimiter {
   Vec3 place = Vec3::Zero();  ///< [m]
   bool friction = false;      ///< else convection has the larger share in its rate
 };
+/// "The velocity in cell 3 at (0.75, 0.75, 0) m allows no longer ones."
+std::string in_words(const StepLimiter& limiter);
 
 /// Eigenvalue bounds (Gershgorin) per cell, c = sum |phi - dV/dt| / (2 V) of convection and d = 2 nu sum g /
 /// V of diffusion, against the stability regions of AB2 or RK3 (all explicit) and of the modified
