@@ -68,6 +68,7 @@ double DayReport::add_step(const BedStep& step) {
   day_[Sums::duration] += dt;
   day_[Sums::asked] += block;
   day_[Sums::pumping] += step.pump_power * dt;
+  largest_pump_ = std::max(largest_pump_, step.pump_power);
   const auto book = [&](double electricity) {
     day_[Sums::electricity] += electricity;
     day_[Sums::revenue] += plant_.tariff(step.t) * electricity / megawatt_hour;
@@ -197,7 +198,8 @@ std::vector<ReportLine> DayReport::lines() const {
 }
 
 std::vector<double> DayReport::state() const {
-  std::vector<double> all{double(days_seen_), double(days_counted_), storable_, bed_height_, last_thickness_};
+  std::vector<double> all{double(days_seen_), double(days_counted_), storable_,
+                          bed_height_,        last_thickness_,       largest_pump_};
   all.insert(all.end(), day_.sum.begin(), day_.sum.end());
   all.insert(all.end(), results_.sum.begin(), results_.sum.end());
   const std::vector<double> stress = stress_.state();
@@ -206,6 +208,11 @@ std::vector<double> DayReport::state() const {
 }
 
 void DayReport::restore(std::span<const double> state) {
+  constexpr std::size_t scalars = 6;
+  const std::size_t sums = scalars + 2 * Sums::n_items;
+  if (state.size() < sums + 1 ||
+      double(state.size()) != double(sums) + StressHistory::state_size(state[sums]))
+    throw Error("report: the checkpoint is of another version of this program: its sums are not ours.");
   days_seen_ = static_cast<int>(state[0]);
   days_counted_ = static_cast<int>(state[1]);
   int counted = 0;
@@ -218,7 +225,8 @@ void DayReport::restore(std::span<const double> state) {
   storable_ = state[2];
   bed_height_ = state[3];
   last_thickness_ = state[4];
-  state = state.subspan(5);
+  largest_pump_ = state[5];
+  state = state.subspan(scalars);
   for (ReportSums* sums : {&day_, &results_}) {
     std::copy_n(state.begin(), sums->sum.size(), sums->sum.begin());
     state = state.subspan(sums->sum.size());

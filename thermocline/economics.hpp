@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "common/config/section.hpp"
 
 namespace couplet::thermocline {
@@ -11,6 +13,8 @@ struct EconomicsParameters {
   double block = 0;                         ///< of a kilowatt of the power block's electric output [1/kW]
   double fixed = 0;                         ///< whatever does not grow with the plant
   double steel = 0, filler = 0, fluid = 0;  ///< [1/kg]
+  std::optional<double> capsules;           ///< of the layers that melt; absent: as filler [1/kg]
+  double pump = 0;                          ///< of a kilowatt of the pump's or fan's largest power [1/kW]
   double insulation = 0, foundation = 0;    ///< of a square metre of wall and roof, of ground [1/m^2]
   double operation = 0.02;                  ///< a year, share of the capital
   double interest = 0.07;                   ///< a year
@@ -23,10 +27,12 @@ struct Inventory {
   double field_area = 0, block_power = 0;   ///< [m^2], electric [W]
   double steel = 0, filler = 0, fluid = 0;  ///< [kg]
   double insulated = 0, foundation = 0;     ///< [m^2]
+  double capsules = 0;                      ///< not in filler [kg]
+  double pump_power = 0;                    ///< largest of the run [W]
 };
 
 struct LevelisedCost {
-  double capital = 0, storage = 0;  ///< all, and the tank with its contents
+  double capital = 0, storage = 0;  ///< all, and the tank with its contents and its pump
   double annuity = 0;               ///< share of the capital to pay back each year
   double per_year = 0;              ///< annuity and operation
   double per_energy = 0;            ///< [1/MWh]; infinite without electricity

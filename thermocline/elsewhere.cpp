@@ -10,6 +10,7 @@
 #include "common/io/checkpoint.hpp"
 #include "common/log/doubt.hpp"
 #include "common/parallel/collective.hpp"
+#include "thermocline/files.hpp"
 #include "thermocline/plausible.hpp"
 #include "thermocline/questions.hpp"
 #include "thermocline/tank.hpp"
@@ -30,9 +31,10 @@ const std::vector<double>* find(const Exchange& in, const char* name) {
   return found == in.end() ? nullptr : &found->second;
 }
 
-std::string other_diameter(const std::vector<double>* told, double own, double slack, const char* where) {
+std::string other_length(const std::vector<double>* told, const char* key, double own, double slack,
+                         const char* where) {
   if (!told || told->empty() || !(std::abs(told->front() - own) > slack * own)) return "";
-  return fmt::format("diameter is {:.6g} m, but the tank's is {:.6g} m ({})", own, told->front(), where);
+  return fmt::format("{} is {:.6g} m, but the tank's is {:.6g} m{}", key, own, told->front(), where);
 }
 
 class GroundModel {
@@ -56,7 +58,7 @@ class GroundModel {
   }
   /// What the tank says against the geometry here: a sentence, or empty.
   std::string contradiction(const Exchange& in) const {
-    return other_diameter(find(in, "tank-diameter"), p_.diameter, 1e-3, "inside");
+    return other_length(find(in, "tank-diameter"), "diameter", p_.diameter, 1e-3, " (inside)");
   }
   Exchange advance(const Step& step, const Exchange& in, const Weather&) {
     const auto *temperature = find(in, "bottom-temperature"), *coefficient = find(in, "bottom-coefficient");
@@ -111,12 +113,17 @@ class BlanketModel {
       i.face_areas.emplace_back(-area, 0, 0);
     }
     i.takes = {{"wall-temperature", "K", Interface::Place::faces, 1},
-               {"wall-diameter", "m", Interface::Place::faces, 1}};
+               {"wall-diameter", "m", Interface::Place::faces, 1},
+               {"wall-height", "m", Interface::Place::faces, 1}};
     i.gives = {{"wall-heat", "W", Interface::Place::faces, 1}};
     return i;
   }
   std::string contradiction(const Exchange& in) const {
-    return other_diameter(find(in, "wall-diameter"), p_.diameter, 0.02, "outside of the lowest plate");
+    std::string problem = other_length(find(in, "wall-diameter"), "diameter", p_.diameter, 0.02,
+                                       " (outside of the lowest plate)");
+    return problem.empty() ? other_length(find(in, "wall-height"), "height", p_.height, 1e-3,
+                                          " of wall (its rings, bed and ullage)")
+                           : problem;
   }
   Exchange advance(const Step& step, const Exchange& in, const Weather& weather) {
     if (const auto* wall = find(in, "wall-temperature")) wall_ = *wall;
@@ -239,7 +246,7 @@ std::unique_ptr<Participant> make_element(const ElementParameters& p, const Part
     return std::make_unique<ElementParticipant<GroundModel>>(p.ground, context);
   if (p.type == ElementParameters::Type::insulation)
     return std::make_unique<ElementParticipant<BlanketModel>>(p.blanket, context);
-  return std::make_unique<Tank>(p.tank, context);
+  return std::make_unique<Tank>(with_files(p.tank, context.case_folder), context);
 }
 
 }  // namespace couplet::thermocline

@@ -26,6 +26,7 @@ void declare(config::Section& section, GroundElementParameters& parameters);
 /// The blanket around the wall. At faces along it
 ///   takes wall-temperature K   t^{n+1}
 ///   takes wall-diameter m      outer, of the lowest plate; another one here (beyond 2 %) is refused
+///   takes wall-height m        of the rings; another one here (beyond 0.1 %) is refused
 ///   gives wall-heat W          into the blanket, mean over the step
 struct BlanketElementParameters {
   double diameter = 0, height = 0;  ///< outer diameter of the wall, its height [m]

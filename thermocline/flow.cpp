@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "thermocline/celsius.hpp"
 #include "thermocline/plant_control.hpp"
@@ -32,6 +33,10 @@ void declare(config::Section& section, FlowParameters& p) {
   };
   const auto schedule = [&p, row](config::Section& s) {
     s.list<ScheduleRow>("rows", p.rows, row, "each in force until the next one; at rest before the first");
+    s.value("file", p.file)
+        .doc(
+            "in place of rows: a CSV with the columns time [h], mass-flow [kg/s], inlet-temperature [degC] and, where "
+            "wanted, stop-above and stop-below, each with its unit; may be compressed (.gz)");
     s.optional_section<ScheduleRepeat>(
         "repeat", p.repeat,
         [](config::Section& q, ScheduleRepeat& r) {
@@ -41,13 +46,9 @@ void declare(config::Section& section, FlowParameters& p) {
         "the schedule goes on for ever");
     s.check(
         [&p]() -> std::string {
-          if (p.rows.empty()) return "needs one row at least";
-          for (std::size_t i = 1; i < p.rows.size(); ++i)
-            if (p.rows[i].at <= p.rows[i - 1].at) return "each row must come after the one before it";
-          if (p.repeat && p.rows.back().at < p.repeat->from) return "no row is left to be repeated";
-          if (p.repeat && p.rows.back().at >= p.repeat->from + p.repeat->every)
-            return "the last row lies beyond the period that is repeated";
-          return "";
+          if (!p.file.empty())
+            return p.rows.empty() ? "" : "are given, and a 'file' of rows, too; leave one of them out";
+          return problem_of_rows(p);
         },
         "rows");
   };
@@ -58,35 +59,50 @@ void declare(config::Section& section, FlowParameters& p) {
                         "what is pumped through the tank");
 }
 
+std::string problem_of_rows(const FlowParameters& p) {
+  if (p.rows.empty()) return "needs one row at least";
+  for (std::size_t i = 1; i < p.rows.size(); ++i)
+    if (p.rows[i].at <= p.rows[i - 1].at) return "each row must come after the one before it";
+  if (p.repeat && p.rows.back().at < p.repeat->from) return "no row is left to be repeated";
+  if (p.repeat && p.rows.back().at >= p.repeat->from + p.repeat->every)
+    return "the last row lies beyond the period that is repeated";
+  return "";
+}
+
 std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& p, double specific_heat) {
   if (p.type == FlowParameters::Type::plant)
     return std::make_unique<PlantControl>(Plant(p.plant, specific_heat));
   return std::make_unique<Schedule>(p);
 }
 
+Schedule::Place Schedule::place_of(double t) const {
+  const double now = t + 1e-6;
+  auto begin = rows_.begin(), end = rows_.end();
+  const auto repeated =
+      repeat_ ? std::partition_point(begin, end, [&](const ScheduleRow& r) { return r.at < repeat_->from; })
+              : end;
+  const bool repeating = repeated != end && repeated->at <= now;
+  double shift = 0;  // to this period
+  if (repeating)
+    begin = repeated, shift = std::floor((now - repeat_->from) / repeat_->every) * repeat_->every;
+  else
+    end = repeated;
+  const auto next =
+      std::partition_point(begin, end, [&](const ScheduleRow& r) { return r.at + shift <= now; });
+  Place place;
+  if (next != begin)
+    place.row = &*std::prev(next), place.began = place.row->at + shift;
+  else if (repeating)  // the last row of the period before goes on
+    place.row = &rows_.back(), place.began = place.row->at + shift - repeat_->every;
+  if (next != end)
+    place.next = next->at + shift;
+  else if (repeated != rows_.end())
+    place.next = repeated->at + (repeating ? shift + repeat_->every : 0);
+  return place;
+}
+
 Flow Schedule::decide(double t, double t_top, double t_bottom, const Ambient&) {
-  // Rows by their times of this period; `shift` moves the repeated ones there.
-  const double tiny = 1e-6;
-  double shift = 0;
-  const bool repeating = repeat_ && t >= repeat_->from + repeat_->every - tiny;
-  if (repeating) shift = std::floor((t + tiny - repeat_->from) / repeat_->every) * repeat_->every;
-  const ScheduleRow* row = nullptr;
-  double began = -1, next = std::numeric_limits<double>::infinity();
-  const auto consider = [&](double at, const ScheduleRow* r) {
-    if (at <= t + tiny) {
-      if (at > began) row = r, began = at;
-    } else {
-      next = std::min(next, at);
-    }
-  };
-  for (const ScheduleRow& r : rows_) {
-    if (!repeat_ || r.at < repeat_->from) {
-      consider(r.at, &r);
-      continue;
-    }
-    for (const double period : {shift - repeat_->every, shift, shift + repeat_->every})
-      if (period >= 0) consider(r.at + period, &r);
-  }
+  const auto [row, began, next] = place_of(t);
   Flow flow;
   flow.until = next;
   const bool begins = began != current_;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/config/section.hpp"
@@ -25,10 +27,13 @@ struct ScheduleRepeat {
 struct FlowParameters {
   enum class Type { rest, schedule, plant } type = Type::rest;
   std::vector<ScheduleRow> rows;
+  std::string file;  ///< of the rows, in their place
   std::optional<ScheduleRepeat> repeat;
   PlantParameters plant;
 };
 void declare(config::Section& section, FlowParameters& parameters);
+/// What is wrong with the rows of a schedule; empty: nothing.
+std::string problem_of_rows(const FlowParameters& parameters);
 /// `specific_heat` of the fluid [J/(kg K)].
 std::unique_ptr<FlowControl> make_flow_control(const FlowParameters& parameters, double specific_heat);
 
@@ -47,6 +52,13 @@ class Schedule final : public FlowControl {
   std::vector<std::string> doubts() const override;
 
  private:
+  /// The row in force, when it began, and when the next one does.
+  struct Place {
+    const ScheduleRow* row = nullptr;
+    double began = -1, next = std::numeric_limits<double>::infinity();
+  };
+  Place place_of(double t) const;
+
   std::vector<ScheduleRow> rows_;
   std::optional<ScheduleRepeat> repeat_;
   double current_ = -1;  // when the row in force began

@@ -2,6 +2,7 @@
 #include "common/app/program.hpp"
 #include "thermocline/effect_cards.hpp"
 #include "thermocline/elsewhere.hpp"
+#include "thermocline/files.hpp"
 
 int main(int argc, char** argv) {
   couplet::thermocline::ElementParameters parameters;
@@ -17,6 +18,10 @@ int main(int argc, char** argv) {
       .effects =
           [&](const couplet::EffectScene&) {
             return couplet::effects_of(couplet::thermocline::effect_cards(), parameters);
+          },
+      .problems_of_files =
+          [&](const std::filesystem::path& folder) {
+            return couplet::thermocline::problems_of_files(parameters, folder);
           }};
   return couplet::run_program(argc, argv, program);
 }

@@ -12,19 +12,14 @@ namespace {
 
 constexpr double hour = 3600, tiny = 1e-9;  // [s], [h]
 
-double at_hour(const std::vector<double>& values, double t) {
-  if (values.size() == 1) return values.front();
-  const double clock = std::floor(t / hour + tiny);
-  return values[std::size_t(clock - 24 * std::floor(clock / 24))];
-}
-
-std::string problem_of_day(const std::vector<double>& values, bool share) {
-  if (values.size() != 1 && values.size() != 24)
-    return fmt::format("has {} values; give one, or 24 for the hours of the day from 00:00 on",
-                       values.size());
-  for (const double v : values)
-    if (share && !(v >= 0 && v <= 1)) return fmt::format("{:g} is no share of the load; expected 0 to 1", v);
-  return "";
+std::string problem_of_weekday(const PlantParameters& p) {
+  if (!p.start.weekday.empty() && !is_weekday(p.start.weekday))
+    return fmt::format("'{}' is no weekday: expected monday, tuesday, ... sunday", p.start.weekday);
+  const bool named = std::any_of(p.calendar.begin(), p.calendar.end(),
+                                 [](const CalendarRule& r) { return !r.days.empty(); });
+  return named && p.start.weekday.empty()
+             ? "is missing: the rules of 'calendar' name weekdays; say which one the first day is"
+             : "";
 }
 
 }  // namespace
@@ -82,24 +77,47 @@ void declare(config::Section& s, PlantParameters& p) {
           "on");
   s.value("tariff", p.tariff)
       .doc("price of the electricity per MWh, one value or 24; with it the report counts the revenue");
+  s.value("first-weekday", p.start.weekday)
+      .doc("monday to sunday: that of the first day; needed where a rule of 'calendar' names days");
+  s.list<CalendarRule>(
+      "calendar", p.calendar, [](config::Section& q, CalendarRule& r) { declare(q, r); },
+      "days on which another load or tariff holds; of several rules the first one that gives it counts");
   s.check([&] { return problem_of_day(p.load, true); }, "load");
   s.check([&] { return p.tariff.empty() ? "" : problem_of_day(p.tariff, false); }, "tariff");
+  s.check([&] { return problem_of_weekday(p); }, "first-weekday");
+  s.check(
+      [&] {
+        const bool priced = std::any_of(p.calendar.begin(), p.calendar.end(),
+                                        [](const CalendarRule& r) { return !r.tariff.empty(); });
+        return priced && p.tariff.empty() ? "is needed for the hours that no rule of 'calendar' gives a price"
+                                          : "";
+      },
+      "tariff");
   s.check([&] { return p.hot > p.cold ? "" : "'hot' must be above 'cold'."; }, "hot");
   s.check(
       [&] { return p.cut_off < p.hot - p.cold ? "" : "must be smaller than the step from 'cold' to 'hot'."; },
       "cut-off");
 }
 
-Plant::Plant(const PlantParameters& parameters, double specific_heat) : p_(parameters), c_(specific_heat) {}
+Plant::Plant(const PlantParameters& parameters, double specific_heat)
+    : p_(parameters), calendar_(parameters.calendar, parameters.start), c_(specific_heat) {}
 
 double Plant::field_heat(double irradiance) const { return irradiance * p_.field_area * p_.field_efficiency; }
 
 double Plant::block_heat() const { return p_.electric_power / p_.block_efficiency; }
 
-double Plant::load(double t) const { return at_hour(p_.load, t); }
-double Plant::tariff(double t) const { return p_.tariff.empty() ? 0 : at_hour(p_.tariff, t); }
+double Plant::load(double t) const {
+  const std::vector<double>* today = calendar_.load(t);
+  return at_hour(today ? *today : p_.load, t);
+}
+double Plant::tariff(double t) const {
+  if (p_.tariff.empty()) return 0;
+  const std::vector<double>* today = calendar_.tariff(t);
+  return at_hour(today ? *today : p_.tariff, t);
+}
 double Plant::load_until(double t) const {
-  if (p_.load.size() < 2 && p_.tariff.size() < 2) return std::numeric_limits<double>::infinity();
+  if (p_.load.size() < 2 && p_.tariff.size() < 2 && p_.calendar.empty())
+    return std::numeric_limits<double>::infinity();
   return (std::floor(t / hour + tiny) + 1) * hour;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/config/section.hpp"
+#include "thermocline/calendar.hpp"
 
 namespace couplet::thermocline {
 
@@ -23,6 +24,8 @@ struct PlantParameters {
   std::vector<double> load{
       1};  ///< share of the power block's output that is asked for, always or by the hour
   std::vector<double> tariff = {};  ///< of the electricity, always or by the hour [currency/MWh]; empty: none
+  std::vector<CalendarRule> calendar = {};  ///< days on which others hold
+  CalendarStart start = {};                 ///< its weekday is a key, its days are the weather's
 };
 void declare(config::Section& section, PlantParameters& parameters);
 
@@ -58,10 +61,11 @@ class Plant {
   double field_heat(double irradiance) const;  ///< equation 5.2 [W]
   double block_heat() const;                   ///< equation 5.1, at the design load [W]
   /// At a time [s] from 00:00 of the first day: share of the design load, price [currency/MWh], and the end
-  /// of the hour if either follows the clock (else infinity).
+  /// of the hour if either follows clock or calendar (else infinity).
   double load(double t) const;
   double tariff(double t) const;
   double load_until(double t) const;
+  const Calendar& calendar() const { return calendar_; }
   const PlantParameters& parameters() const { return p_; }
   double specific_heat() const { return c_; }
 
@@ -71,6 +75,7 @@ class Plant {
   PlantFlows discharge(double field_heat, double top, double load) const;
 
   PlantParameters p_;
+  Calendar calendar_;
   double c_;
 };
 

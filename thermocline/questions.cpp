@@ -123,7 +123,7 @@ std::vector<std::string> never_melted(const TankModel& model) {
   return all;
 }
 
-std::vector<std::string> prices_for_nothing(const EconomicsParameters& p, const Inventory& i) {
+std::vector<std::string> prices_for_nothing(const EconomicsParameters& p, const Inventory& i, bool pump) {
   std::vector<std::string> all;
   const auto look = [&](const char* name, double price, double amount, const char* why) {
     if (price > 0 && amount == 0)
@@ -132,7 +132,9 @@ std::vector<std::string> prices_for_nothing(const EconomicsParameters& p, const 
   };
   look("steel", p.steel, i.steel, "the tank has no section 'shell'");
   look("insulation", p.insulation, i.insulated, "the tank has no sections 'shell' and 'insulation'");
-  look("filler", p.filler, i.filler, "no layer holds grains");
+  look("filler", p.filler, i.filler + (p.capsules ? 0 : i.capsules), "no layer holds grains");
+  look("capsules", p.capsules.value_or(0), i.capsules, "no layer melts");
+  look("pump", p.pump, pump ? 1 : 0, "the tank has no section 'pump'");
   return all;
 }
 

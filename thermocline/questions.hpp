@@ -24,7 +24,8 @@ std::vector<std::string> questions(const TankParameters& parameters, const TankM
 std::vector<std::string> never_melted(const TankModel& model);
 
 /// Prices that multiply nothing, as sentences.
-std::vector<std::string> prices_for_nothing(const EconomicsParameters& prices, const Inventory& inventory);
+std::vector<std::string> prices_for_nothing(const EconomicsParameters& prices, const Inventory& inventory,
+                                            bool has_pump);
 
 /// Throws Error if the cover shall absorb the sun (`absorptance` > 0) and it is not known where the sun
 /// stands. `key`: the full name of the key.

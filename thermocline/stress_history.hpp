@@ -34,6 +34,8 @@ class StressHistory {
   std::span<const double> highest() const { return highest_; }
 
   std::vector<double> state() const;
+  /// How many numbers state() gives of so many rings, its first one.
+  static double state_size(double rings) { return 3 + 8 * rings; }
   /// Takes what state() gave from the front of `state` and leaves the rest.
   void restore(std::span<const double>& state);
 

@@ -28,7 +28,8 @@ Inventory inventory_of(const TankSetup& setup) {
   for (const auto& layer : p.bed.layers) {
     const Filler& filler = layer.filler ? *layer.filler : setup.filler;
     all.fluid += area * layer.height * layer.porosity * setup.fluid.density;
-    all.filler += area * layer.height * (1 - layer.porosity) * filler.density;
+    (layer.melting ? all.capsules : all.filler) +=
+        area * layer.height * (1 - layer.porosity) * filler.density;
   }
   all.foundation = area;
   if (!setup.rings) return all;
@@ -40,12 +41,19 @@ Inventory inventory_of(const TankSetup& setup) {
   return all;
 }
 
+/// The flow with the days of its calendar, which are those of the weather.
+FlowParameters dated(FlowParameters flow, const Weather& weather) {
+  flow.plant.start.day = weather.first_day();
+  flow.plant.start.period = int(std::lround(weather.period_length() / seconds_a_day));
+  return flow;
+}
+
 }  // namespace
 
 Tank::Tank(const TankParameters& p, const ParticipantContext& context)
     : name_(context.name),
       weather_(make_weather(p.ambient, context.case_folder)),
-      control_(make_flow_control(p.flow, make_fluid(p.fluid).specific_heat)),
+      control_(make_flow_control(dated(p.flow, *weather_), make_fluid(p.fluid).specific_heat)),
       accepted_(std::make_shared<const TankSetup>(p), *weather_),
       next_(accepted_),
       control_state_(control_->state()),
@@ -72,14 +80,18 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
     if (std::isnan(context.restart_time))
       for (const std::string& sentence : questions(p, accepted_)) log::warn("{}: {}", context.name, sentence);
   }
+  const PlantParameters plant = dated(p.flow, *weather_).plant;
+  for (const std::string& sentence : Calendar(plant.calendar, plant.start).doubts())
+    log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
   if (p.report) {
     auto report = std::make_unique<DayReport>(
-        *p.report, Plant(p.flow.plant, make_fluid(p.fluid).specific_heat), *weather_,
+        *p.report, Plant(plant, make_fluid(p.fluid).specific_heat), *weather_,
         files_ ? context.output_folder : std::filesystem::path(), context.restart_time);
     const Inventory inventory = inventory_of(accepted_.setup());
     report->take_stock(inventory);
     if (p.report->economics)
-      for (const std::string& sentence : prices_for_nothing(*p.report->economics, inventory))
+      for (const std::string& sentence :
+           prices_for_nothing(*p.report->economics, inventory, p.pump.has_value()))
         log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
     add_observer(std::move(report));
   }
@@ -104,6 +116,7 @@ Interface Tank::initialise() {
     interface.takes.push_back({"wall-heat", "W", faces, 1});
     interface.gives.push_back({"wall-temperature", "K", faces, 1});
     interface.gives.push_back({"wall-diameter", "m", faces, 1});
+    interface.gives.push_back({"wall-height", "m", faces, 1});
   }
   if (p.elsewhere && p.elsewhere->ground) {
     interface.takes.push_back({"bottom-heat", "W", faces, 1});
@@ -132,7 +145,9 @@ Exchange Tank::given() const {
   const std::size_t faces = wall_ ? wall_->sections() : 1;
   if (p.elsewhere->insulation) {
     out["wall-temperature"] = wall_->to_sections(next_.shell()->temperature());
-    out["wall-diameter"].assign(faces, p.diameter + 2 * next_.setup().rings->thickness.front());
+    const Rings& rings = *next_.setup().rings;
+    out["wall-diameter"].assign(faces, p.diameter + 2 * rings.thickness.front());
+    out["wall-height"].assign(faces, rings.z.back() + rings.dz.back() / 2);
   }
   if (p.elsewhere->ground) {
     out["bottom-temperature"].assign(faces, next_.bed().bottom());

@@ -86,6 +86,19 @@ double crossing_mass(const TankModel& m) {
   return capacity / f.specific_heat;
 }
 
+/// Coldest and hottest fluid of the run, and what the flow will bring: a verdict on the first hours, in which the bed is still
+/// cold, would be one on another range than the run's.
+std::pair<double, double> range_to_come(const TankModel& m) {
+  auto [cold, hot] = m.fluid_range();
+  const auto see = [&](double t) { cold = std::min(cold, t), hot = std::max(hot, t); };
+  const FlowParameters& flow = m.setup().parameters.flow;
+  if (flow.type == FlowParameters::Type::plant) see(flow.plant.cold), see(flow.plant.hot);
+  if (flow.type == FlowParameters::Type::schedule)
+    for (const ScheduleRow& row : flow.rows)
+      if (row.mass_flow != 0) see(row.inlet_temperature);
+  return {cold, hot};
+}
+
 void fluid(const TankModel& m, double peak_flow, Lines& lines) {
   if (m.inversion().depth > 0.01)
     lines.push_back(fmt::format(
@@ -227,7 +240,7 @@ std::vector<EffectVerdict> Tank::audit() const {
   const TankModel& m = accepted_;
   Evidence evidence;
   if (m.setup().fluid.is_gas() && peak_flow_ > 0) evidence.largest_mach = largest_mach(m, peak_flow_);
-  if (const auto [cold, hot] = m.fluid_range(); m.setup().fluid.is_gas() && hot > cold + 1) {
+  if (const auto [cold, hot] = range_to_come(m); m.setup().fluid.is_gas() && hot > cold + 1) {
     evidence.mean_capacity = air_heat_between(cold, hot) / (hot - cold);
     evidence.capacity_error = std::abs(evidence.mean_capacity / m.setup().fluid.specific_heat - 1);
   }

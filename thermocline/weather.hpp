@@ -42,6 +42,7 @@ class Weather final : public AmbientSource {
   /// Of the day in which t lies, as MM-DD.
   std::string date(double t) const;
 
+  int first_day() const { return first_day_; }                                ///< of the year, 0 for 01-01
   double period_length() const { return 3600. * double(hours_.dni.size()); }  ///< [s]
 
  private:

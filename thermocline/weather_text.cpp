@@ -23,14 +23,14 @@ const std::array<WeatherQuantity, 5> weather_quantities{{
     {"pressure [Pa]", "p_Pa", 40000, 110000, &WeatherHours::pressure, 1},
 }};
 
-std::vector<std::string> read_lines(const std::filesystem::path& file) {
+std::vector<std::string> read_lines(const std::filesystem::path& file, std::string_view kind) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored))
-    throw Error("{}: there is no such weather file. Relative paths start at the folder of the YAML file.",
-                file.string());
+    throw Error("{}: there is no such {}. Relative paths start at the folder of the YAML file.",
+                file.string(), kind);
   // gzread gives the content of uncompressed files as it is.
   const std::unique_ptr<gzFile_s, int (*)(gzFile)> stream(gzopen(file.c_str(), "rb"), gzclose);
-  if (!stream) throw Error("{}: this weather file cannot be read.", file.string());
+  if (!stream) throw Error("{}: this {} cannot be read.", file.string(), kind);
   std::string text;
   std::array<char, 1 << 16> buffer;
   int got = 0;
@@ -39,8 +39,8 @@ std::vector<std::string> read_lines(const std::filesystem::path& file) {
   int status = Z_OK;
   gzerror(stream.get(), &status);
   if (got < 0 || status != Z_OK)
-    throw Error("{}: this weather file is damaged or was cut short: it cannot be decompressed to its end.",
-                file.string());
+    throw Error("{}: this {} is damaged or was cut short: it cannot be decompressed to its end.",
+                file.string(), kind);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the mark that some editors put first
   std::vector<std::string> lines = split(text, '\n');
   for (std::string& line : lines)

@@ -12,8 +12,10 @@ namespace couplet::thermocline {
 
 inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// All lines of a text file, which may be compressed by gzip; without the line ends. Throws Error.
-std::vector<std::string> read_lines(const std::filesystem::path& file);
+/// All lines of a text file, which may be compressed by gzip; without the line ends. Throws Error, in which the file is
+/// called `kind`.
+std::vector<std::string> read_lines(const std::filesystem::path& file,
+                                    std::string_view kind = "weather file");
 
 /// The number in a field of `file`:`line`; NaN if it is empty or "nan". Throws Error if it is anything else.
 double number_in(const std::string& field, std::string_view name, const std::string& place);

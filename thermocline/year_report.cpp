@@ -24,6 +24,7 @@ bool DayReport::whole_years() const {
 
 /// Electricity and what it earns and costs, a year of days as those that count. Net: pump and fan take their share.
 void DayReport::add_money(std::vector<ReportLine>& all) const {
+  if (largest_pump_ > 0) all.push_back({"largest power of pump or fan", "kW", largest_pump_ / 1000});
   if (!p_.economics && plant_.parameters().tariff.empty()) return;
   const double years = results_[Sums::duration] / (year * seconds_a_day);
   const char* const per = whole_years() ? "year" : "365 such days";
@@ -36,7 +37,9 @@ void DayReport::add_money(std::vector<ReportLine>& all) const {
   if (!plant_.parameters().tariff.empty())
     all.push_back({"revenue", fmt::format("1/{}", per), yearly(results_[Sums::revenue])});
   if (!p_.economics) return;
-  const LevelisedCost cost = levelised_cost(*p_.economics, inventory_, electricity);
+  Inventory inventory = inventory_;
+  inventory.pump_power = largest_pump_;
+  const LevelisedCost cost = levelised_cost(*p_.economics, inventory, electricity);
   all.push_back({"capital", "1", cost.capital});
   all.push_back({"capital of the storage", "1", cost.storage});
   all.push_back({"cost", "1/year", cost.per_year});

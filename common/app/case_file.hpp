@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/app/command_line.hpp"
+#include "common/app/problem_of_key.hpp"
 #include "common/app/roll_call.hpp"
 #include "common/app/simulation.hpp"
 #include "common/config/load.hpp"
@@ -28,6 +30,8 @@ struct ProgramKind {
   std::function<std::vector<EffectChoice>(const ChoiceScene&)> choose = {};
   /// Memory and time of a step to be expected, for --explain; empty: not told.
   std::function<ExpectedCost(const ChoiceScene&)> expected = {};
+  /// For --check, with the parameters that were read: what is wrong with the files they name.
+  std::function<std::vector<ProblemOfKey>(const std::filesystem::path& case_folder)> problems_of_files = {};
 };
 
 /// The YAML file as one program sees it: what it could read, and all that is wrong with it.

@@ -72,8 +72,9 @@ int run(const Job& job, const Program& program) {
 }  // namespace
 
 int run_program(int argc, char** argv, const Program& program) {
-  const ProgramKind kind{program.name,    program.description, false,           program.declare,
-                         program.effects, program.choose,      program.expected};
+  const ProgramKind kind{program.name,     program.description,      false,
+                         program.declare,  program.effects,          program.choose,
+                         program.expected, program.problems_of_files};
   return run_job(argc, argv, kind, [&](const Job& job) { return run(job, program); });
 }
 

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "common/app/problem_of_key.hpp"
 #include "common/app/simulation.hpp"
 #include "common/config/section.hpp"
 #include "common/coupling/mesh_motion.hpp"
@@ -48,6 +49,9 @@ struct Program {
   std::function<std::vector<EffectChoice>(const ChoiceScene&)> choose = {};
   /// Memory and time of a step to be expected, for --explain; empty: not told.
   std::function<ExpectedCost(const ChoiceScene&)> expected = {};
+  /// For --check: what is wrong with the files that the parameters name; empty: nothing but what every program's
+  /// --check sees.
+  std::function<std::vector<ProblemOfKey>(const std::filesystem::path& case_folder)> problems_of_files = {};
 };
 
 /// main() of a physics program:

@@ -12,10 +12,22 @@
 namespace couplet {
 namespace {
 
+/// What is missing or broken among the files of a participant: what every program's --check sees, then its own.
+std::vector<std::string> problems(const CaseFile& file, const ProgramKind& kind,
+                                  const std::filesystem::path& case_folder) {
+  std::vector<std::string> all = problems_of_files(*file.document, file.participant, case_folder);
+  if (!all.empty() || !kind.problems_of_files) return all;
+  for (const ProblemOfKey& problem : kind.problems_of_files(case_folder))
+    all.push_back(fmt::format(
+        "{}: {}", config::where(*file.document, "participants." + file.participant + "." + problem.key),
+        problem.what));
+  return all;
+}
+
 int check(const CommandLine& command_line, const ProgramKind& kind, bool print) {
   CaseFile file = read_case(command_line, kind);
   if (!print && file.errors.empty() && !kind.is_coupler)
-    file.errors = problems_of_files(*file.document, file.participant, command_line.case_file.parent_path());
+    file.errors = problems(file, kind, command_line.case_file.parent_path());
   if (!file.errors.empty()) {
     for (const std::string& error : file.errors) fmt::print(stderr, "{}\n", error);
     return 2;

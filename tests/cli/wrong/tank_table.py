@@ -6,8 +6,115 @@ def cases(Case, run):
     def tank(name, message, *edits, **more):
         return Case(name, "thermocline", message, "tank", list(edits), **more)
 
-    right = [tank("right tank", "", exit_code=0)]
+    rows = """    flow:
+      type: schedule
+      rows:
+        - {at: 0 h, mass-flow: -20 kg/s, inlet-temperature: 390 degC}
+"""
+    weather = ("    flow:\n", "    ambient: {type: file, file: year.csv}\n    flow:\n")
+    plant = """    flow:
+      type: plant
+      electric-power: 50 MW
+      block-efficiency: 0.38
+      field-area: 510120 m^2
+      field-efficiency: 0.70
+      hot: 390 degC
+      cold: 290 degC
+"""
+    head = "hour,dni_W_m2,T_degC,wind_m_s,rh_pct,p_Pa\n"
+    day = "".join(f"{h},0,20,1,50,101325\n" for h in range(24))
+    from_file = (rows, "    flow: {type: schedule, file: flows.csv}\n")
+    flows = "time [h],mass-flow [kg/s],inlet-temperature [degC]\n0,-20,390\n1,20,290\n"
+
+    def with_plant(more):
+        return (rows, plant + more)
+
+    right = [
+        tank("right tank", "", exit_code=0),
+        tank("--check: weather that is whole", "", weather, files={"year.csv": head + day}, exit_code=0),
+        tank("--check: flows from a file", "", from_file, files={"flows.csv": flows}, exit_code=0),
+        tank("load and tariff by a calendar", "", with_plant("""      tariff: [50]
+      first-weekday: monday
+      calendar:
+        - {days: [weekend], load: [0.5], tariff: [30]}
+        - {from: 11-01, to: 02-28, load: [0.8]}
+"""), exit_code=0),
+    ]
     wrong = [
+        tank("--check: no such weather", """
+case.yaml:23:27: participants.tank.ambient.file: there is no file 'year.csv'.
+""", weather),
+        tank("--check: broken weather", """
+case.yaml:23:27: participants.tank.ambient.file: year.csv:6: 'cold' is not a number; air temperature [degC] was expected here.
+""",
+             weather, files={"year.csv": head + day.replace("4,0,20,", "4,0,cold,", 1)}),
+        tank("--check: weather without the day on which the run starts", """
+case.yaml:23:27: participants.tank.ambient.file: year.csv: the weather of 05-01 is not in this file, which holds 01-01 to 01-01.
+""",
+             ("    flow:\n", "    ambient: {type: file, file: year.csv, from: 05-01}\n    flow:\n"), files={"year.csv": head + day}),
+        tank("--check: air of smooth days", """
+case.yaml:23:122: participants.tank.ambient.air: air.csv: there is no such weather file. Relative paths start at the folder of the YAML file.
+""",
+             ("    flow:\n", "    ambient: {type: smooth-days, latitude: 37, daily-sums: [1e7, 1e7, 1e7, 1e7, 1e7, 1e7, 1e7, 1e7, "
+                             "1e7, 1e7, 1e7, 1e7], air: air.csv}\n    flow:\n")),
+        tank("--check: sun of a file that does not say where it is", """
+case.yaml:19:36: participants.tank.insulation.solar-absorptance: the sun's height is needed to warm the cover and is not known: year.csv does not say where it is. Add 'site: {latitude, longitude, time-zone}' to the section 'ambient', or leave solar-absorptance at 0.
+""", weather,
+             ("thickness: 0.3 m", "thickness: 0.3 m, solar-absorptance: 0.5"), files={"year.csv": head + day}),
+        tank("--check: no such file of flows", """
+case.yaml:23:28: participants.tank.flow.file: there is no file 'flows.csv'.
+""", from_file),
+        tank("--check: broken file of flows", """
+case.yaml:23:28: participants.tank.flow.file: flows.csv:4: 'x' is no number for mass-flow.
+""", from_file, files={"flows.csv": flows + "2,x,390\n"}),
+        tank("--check: flows of frozen salt", """
+case.yaml:23:28: participants.tank.flow.file: flows.csv: rows[0].inlet-temperature is 390 K, that is 116.9 degC, and solar salt is no liquid below 238 degC. A number without a unit is in K; write '390 degC' if that is meant: here, in the head of the column.
+""", from_file, files={"flows.csv": flows.replace("[degC]", "[K]")}),
+        tank("rows and a file of rows", """
+case.yaml:26:7: participants.tank.flow.rows: are given, and a 'file' of rows, too; leave one of them out.
+""", ("type: schedule\n", "type: schedule\n      file: flows.csv\n")),
+        tank("a weekday that is none", """
+case.yaml:31:7: participants.tank.flow.first-weekday: 'sonntag' is no weekday: expected monday, tuesday, ... sunday.
+""", with_plant("""      first-weekday: sonntag
+      calendar:
+        - {days: [weekend], load: [0.5]}
+""")),
+        tank("weekdays without a first one", """
+case.yaml:23:5: participants.tank.flow.first-weekday: is missing: the rules of 'calendar' name weekdays; say which one the first day is.
+""", with_plant("""      calendar:
+        - {days: [weekend], load: [0.5]}
+""")),
+        tank("rule of a calendar: a day that is none", """
+case.yaml:33:12: participants.tank.flow.calendar[0].days: 'week-end' is none of: monday, tuesday, wednesday, thursday, friday, saturday, sunday, weekdays, weekend.
+""", with_plant("""      first-weekday: monday
+      calendar:
+        - {days: [week-end], load: [0.5]}
+""")),
+        tank("rule of a calendar: half a season", """
+case.yaml:32:12: participants.tank.flow.calendar[0].from: a season needs 'from' and 'to'; 'to' is missing.
+""", with_plant("""      calendar:
+        - {from: 11-01, load: [0.5]}
+""")),
+        tank("rule of a calendar: no such date", """
+case.yaml:32:12: participants.tank.flow.calendar[0].from: '02-30' is not a date: month 2 of a year of 365 days has 28 days.
+""", with_plant("""      calendar:
+        - {from: 11-01, to: 02-30, load: [0.5]}
+""")),
+        tank("rule of a calendar that gives nothing", """
+case.yaml:32:11: participants.tank.flow.calendar[0]: a rule gives a load or a tariff.
+""", with_plant("""      calendar:
+        - {from: 11-01, to: 02-28}
+""")),
+        tank("rule of a calendar: seven loads", """
+case.yaml:32:12: participants.tank.flow.calendar[0].load: has 7 values; give one, or 24 for the hours of the day from 00:00 on.
+""", with_plant("""      calendar:
+        - {load: [0, 0, 0, 0, 0, 1, 1]}
+""")),
+        tank("prices of a calendar alone", """
+case.yaml:23:5: participants.tank.flow.tariff: is needed for the hours that no rule of 'calendar' gives a price.
+""", with_plant("""      calendar:
+        - {from: 11-01, to: 02-28, tariff: [60]}
+""")),
         tank("fluid that is not known", """
 case.yaml:7:13: participants.tank.fluid.type: 'solar-slat' is not one of: solar-salt, caloria-ht43, air, custom. Did you mean 'solar-salt'?
 """, ("type: solar-salt", "type: solar-slat")),

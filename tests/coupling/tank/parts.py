@@ -44,6 +44,14 @@ with tempfile.TemporaryDirectory(prefix="couplet-parts-") as folder:
         said = re.findall(r"(ground|insulation): .* taken from the tank, (\S+) MWh passed on; the books are off by (\S+) of", log)
         if len(said) != 2:
             sys.exit("the elements say nothing of their books:\n" + log)
+    # A blanket of another height than the wall: refused, with both.
+    case_of = [programs / "thermocline", case, "--participant"]
+    wrong = [*same, "--set=participants.blanket.height=12.5 m", f"--set=simulation.output.folder={folder}/wrong"]
+    refused = subprocess.run([str(c) for c in [*mpirun, "-n", "1", programs / "coupler", case, *wrong, ":", "-n", "1", *case_of, "tank", *wrong,
+                                               ":", "-n", "1", *case_of, "soil", *wrong, ":", "-n", "1", *case_of, "blanket", *wrong]],
+                             capture_output=True, text=True)
+    if refused.returncode == 0 or "participants.blanket.height is 12.5 m, but the tank's is 12.76 m of wall" not in refused.stderr + refused.stdout:
+        sys.exit(f"a blanket that is too low: exit code {refused.returncode}\n" + refused.stderr)
     alone = folder / "alone"
     amounts = np.genfromtxt(found[0] / "coupler" / "amounts.csv", delimiter=",", names=True)
     given = np.array([list(row)[1:] for row in amounts])

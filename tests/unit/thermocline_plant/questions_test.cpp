@@ -135,11 +135,17 @@ TEST(Questions, prices_for_what_is_not_there_are_said) {
   EconomicsParameters prices;
   prices.steel = 6, prices.insulation = 200, prices.filler = 1, prices.field = 1;
   Inventory nothing;
-  EXPECT_EQ(prices_for_nothing(prices, nothing).size(), 3u);
-  EXPECT_THAT(prices_for_nothing(prices, nothing)[0],
+  EXPECT_EQ(prices_for_nothing(prices, nothing, false).size(), 3u);
+  EXPECT_THAT(prices_for_nothing(prices, nothing, false)[0],
               HasSubstr("report.economics.steel is 6, but there is nothing to pay for"));
-  EXPECT_TRUE(prices_for_nothing(prices, {.steel = 1, .filler = 1, .insulated = 1}).empty());
-  EXPECT_TRUE(prices_for_nothing({}, nothing).empty());
+  EXPECT_TRUE(prices_for_nothing(prices, {.steel = 1, .filler = 1, .insulated = 1}, false).empty());
+  EXPECT_TRUE(prices_for_nothing({}, nothing, false).empty());
+  EconomicsParameters more;
+  more.pump = 600, more.capsules = 2;
+  EXPECT_EQ(prices_for_nothing(more, nothing, false).size(), 2u);
+  EXPECT_THAT(prices_for_nothing(more, {.capsules = 1}, false).at(0),
+              HasSubstr("report.economics.pump is 600"));
+  EXPECT_TRUE(prices_for_nothing(more, {.capsules = 1}, true).empty());
 }
 
 TEST(Questions, a_row_that_never_ran_is_said) {
