@@ -19,6 +19,7 @@ NEAR = 1.6      # the final size over the largest that was tried, at most, befor
 NEAR_CHEAP = 1.3  # ... where it takes less than CHEAP: a run more costs nothing, and start-up hides the work of small runs
 TOO_GOOD = 0.4  # of the target: a run that is there and leaves less is no answer where a smaller size would do
 GROWTH = 1.4    # of the sizes tried
+DOWN = 2        # a size below all that were tried is at most so much smaller: errors of coarse runs follow no power
 APART = 1.25    # ratio of two sizes that an order is read from, at least
 PATIENCE = 9    # runs of one series
 BUDGET = 1.3    # seconds spent before the final run over its own, where that takes longer than CHEAP
@@ -72,6 +73,7 @@ class Series:
 
     def __init__(self, study, quantity, labels):
         self.study, self.quantity, self.labels, self.rows = study, quantity, labels, []
+        self.coarse = 0  # the largest size that was seen to leave too much
         self.name = ", ".join(v for k, v in labels.items() if k != study.axes.refining.name) or "the case"
 
     def sizes(self):
@@ -101,11 +103,18 @@ class Series:
         order = math.log(abs(e1 / e2)) / math.log(n2 / n1)
         return Limit(0.0, order, abs(e2) * n2**order, 0.0)
 
+    def left(self, row):
+        """Error of a run: its distance from the limit of the finest ones (of those it is the model's); None without a model."""
+        value, model = row.values[self.quantity.name], self.model()
+        if self.quantity.is_error or model is None:
+            return abs(value) if self.quantity.is_error else None
+        return abs(value - model.value) / (1 if self.quantity.given.get("absolute") else abs(model.value))
+
     def seconds(self, size):
         a, b, q = power_cost(self.sizes(), [getattr(r.record, self.study.clock) for r in self.rows])
-        last = self.rows[-1]
-        # through the latest run: its misfit is that of the next one, too
-        scale = getattr(last.record, self.study.clock) / (a + b * last.point.size**q)
+        nearest = min(self.rows, key=lambda r: abs(math.log(r.point.size / size)))
+        # through the nearest run: its misfit is that of this one, too
+        scale = getattr(nearest.record, self.study.clock) / (a + b * nearest.point.size**q)
         return scale * (a + b * size**q)
 
     def spent(self):
@@ -116,8 +125,22 @@ class Series:
         model = self.model()
         if model is None:
             return None
-        size = self.study.axes.refining.round(max(model.size_for(AIM * target), self.sizes()[0]), up=True)
+        size = self.size_between(max(model.size_for(AIM * target), self.least(target)))
         return size, model.error(size), self.seconds(size)
+
+    def least(self, target):
+        """The smallest size that may be tried: below all that were run only where the smallest of them is far better than asked."""
+        smallest = self.rows[0]
+        return smallest.point.size / (DOWN if self.left(smallest) < TOO_GOOD * target else 1)
+
+    def size_between(self, size):
+        """A size that may be run; above those that were seen to leave too much, half-way to the next run."""
+        rounded = self.study.axes.refining.round
+        if size > self.coarse or not self.coarse:
+            return rounded(size, up=True)
+        above = next((n for n in self.sizes() if n > self.coarse), GROWTH * self.coarse)
+        between = rounded(math.sqrt(self.coarse * above), up=True)
+        return min(between, above) if between > self.coarse else above
 
 
 def started(study, quantity, say):
@@ -159,14 +182,14 @@ def cheapest(every, target):
 
 def known(series, row):
     """Of a run that is there: (size, error, seconds)."""
-    return row.point.size, series.model().error(row.point.size), getattr(row.record, series.study.clock)
+    return row.point.size, series.left(row), getattr(row.record, series.study.clock)
 
 
 def fitting(series, predicted, target, say):
     """A run of the very size between those that are there, where the next larger one would be far better than asked; None where
     it would not, or the run fails."""
     there = next(r for r in series.rows if r.point.size >= predicted[0])
-    if there.point.size == predicted[0] or series.model().error(there.point.size) >= TOO_GOOD * target:
+    if there.point.size == predicted[0] or series.left(there) >= TOO_GOOD * target:
         return None
     say(f"{series.name}: size {there.point.size:g} would be better than asked; size {predicted[0]:g} should do in {predicted[2]:.3g} s")
     row = series.add(predicted[0], say)
@@ -181,6 +204,12 @@ def approach(every, target, say):
         largest, refining = series.sizes()[-1], series.study.axes.refining
         if predicted and predicted[0] <= largest:  # a run that is there meets it
             row = fitting(series, predicted, target, say)
+            if row and series.left(row) > 1.1 * target:
+                say(f"it leaves {series.left(row):.2g}, more than asked: back")
+                series.coarse = max(series.coarse, row.point.size)
+                continue
+            if row and series.left(row) < TOO_GOOD * target and series.predict(target)[0] < row.point.size:
+                continue
             if row:
                 return series, row, predicted if row.point.size == predicted[0] else known(series, row)
             row = next(r for r in series.rows if r.point.size >= predicted[0])
@@ -218,7 +247,7 @@ def said(study, quantity, best, every, target, final, predicted):
     table.set_errors([final], [quantity]) if quantity.is_error or isinstance(quantity.reference, (int, float)) else None
     true, model = final.errors.get(quantity.name), best.model()
     seconds = getattr(final.record, study.clock)
-    estimate = model.error(final.point.size) if model else None
+    estimate = best.left(final) if model else None
     reached = true if true is not None else estimate
     settings = ", ".join(f"{k}={v}" for k, v in final.point.changes.items())
     lines = [f"Cheapest for {quantity.name} to {target:.3g}: {best.name}, size {final.point.size:g} ({settings})",

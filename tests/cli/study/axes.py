@@ -133,6 +133,12 @@ def made_up(order, sizes):
     return series
 
 
+def far(row):
+    """A run of less than 20 cells follows no power."""
+    row.values["q"] += 0.1 * (row.point.size < 20)
+    return row
+
+
 def predicting():
     """Costs, the size for an error, and what runs say of their errors, on made-up numbers."""
     sys.path.insert(0, str(ROOT / "scripts"))
@@ -144,6 +150,12 @@ def predicting():
     _, row, predicted = approach([made_up(2, [5, 40, 80])], 3e-3, lambda line: None)
     failed += check("a run that is far better than asked is no answer", row.point.size < 40 and 0.3 < row.point.size**-2 / 3e-3 < 1.1, str(row.point.size))
     failed += check("its cost was foreseen", abs(predicted[2] / row.record.cpu - 1) < 0.3, str(predicted))
+    series, row, _ = approach([made_up(2, [40, 80, 160])], 5e-2, lambda line: None)
+    failed += check("nor is the smallest run where a smaller size does", row.point.size < 10 and 0.3 < series.left(row) / 5e-2 < 1.1, str(row.point.size))
+    bent = made_up(2, [40, 80, 160])
+    bent.study.run = lambda points, *_, run=bent.study.run: [far(row) for row in run(points)]
+    series, row, _ = approach([bent], 1e-2, lambda line: None)
+    failed += check("a smaller size that leaves too much is no answer either", 20 <= row.point.size <= 40 and series.left(row) < 1.1e-2, str(row.point.size))
     noisy = made_up(2, [25, 50, 100])
     noisy.add(95, print)
     noisy.rows[-2].values["q"] += 2e-5
