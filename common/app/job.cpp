@@ -19,6 +19,7 @@
 #include "common/app/start_guard.hpp"
 #include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
+#include "common/coupling/wait.hpp"
 #include "common/log/doubt.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
@@ -117,10 +118,20 @@ int speaker(const std::vector<Attendant>& attendants) {
   return 0;
 }
 
+/// MPI_Finalize once all programs of the job have come so far. A process that dies while others wait inside
+/// MPI_Finalize can leave Open MPI's launcher (4.1 with PMIx 4.2) in a lock of its own for ever, after all
+/// processes of the job have ended; one that dies while they wait here cannot.
+void leave_together(MPI_Comm programs) {
+  MPI_Request all_here;
+  MPI_Ibarrier(programs, &all_here);
+  wait_politely(all_here, "the other programs to end");
+  MPI_Finalize();
+}
+
 int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseFile& file,
-           const std::string& label, std::optional<StartGuard>& start_guard,
+           const std::string& label, MPI_Comm programs, std::optional<StartGuard>& start_guard,
            const std::function<int(const Job&)>& run) {
-  Watch watch(shake_hands(MPI_COMM_WORLD), label);
+  Watch watch(programs, label);
   log::setup(label, 0, command_line.verbosity);
   try {
     const std::vector<Attendant> attendants = roll_call(MPI_COMM_WORLD, introduce(command_line, kind, file));
@@ -207,10 +218,11 @@ int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<
   MPI_Init(&argc, &argv);
   // Short sleeps while waiting for other programs shall be short (Linux adds 50 us to each by default).
   prctl(PR_SET_TIMERSLACK, 2000UL);
-  const int code = attend(command_line, kind, file, label, start_guard, run);
+  const MPI_Comm programs = shake_hands(MPI_COMM_WORLD);
+  const int code = attend(command_line, kind, file, label, programs, start_guard, run);
   start_guard.reset();
   std::fflush(nullptr);
-  MPI_Finalize();
+  leave_together(programs);
   Watch::finished();
   return code;
 }
