@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "common/base/disjoint_sets.hpp"
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -31,30 +31,24 @@ void add_over_ranks(MPI_Comm comm, std::vector<double>& values) {
   }
 }
 
-Index find_root(std::vector<Index>& parent, Index c) {
-  while (parent[c] != c) c = parent[c] = parent[parent[c]];
-  return c;
-}
-
 /// The body of each local cell, numbered by the smallest cell_id in it.
 std::vector<Index> bodies_of_cells(const Mesh& mesh, Index& n_bodies) {
   const Index n = mesh.cells.n_local();
-  std::vector<Index> parent(n);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto join = [&](Index a, Index b) { parent[find_root(parent, a)] = find_root(parent, b); };
-  for (Index f = 0; f < mesh.n_interior; ++f) join(mesh.owner[f], mesh.neighbour[f]);
+  DisjointSets sets(n);
+  for (Index f = 0; f < mesh.n_interior; ++f) sets.join(mesh.owner[f], mesh.neighbour[f]);
   for (std::size_t b = 0; b < mesh.twin.size(); ++b)
     if (mesh.twin[b] >= 0)
-      join(mesh.owner[mesh.n_interior + static_cast<Index>(b)], mesh.owner[mesh.n_interior + mesh.twin[b]]);
+      sets.join(mesh.owner[mesh.n_interior + static_cast<Index>(b)],
+                mesh.owner[mesh.n_interior + mesh.twin[b]]);
   std::vector<GlobalIndex> label(mesh.cell_id.begin(), mesh.cell_id.end());
   for (bool changed = true; changed;) {
     std::vector<GlobalIndex> lowest(n, std::numeric_limits<GlobalIndex>::max());
     for (Index c = 0; c < n; ++c) {
-      GlobalIndex& low = lowest[find_root(parent, c)];
+      GlobalIndex& low = lowest[sets.find(c)];
       low = std::min(low, label[c]);
     }
     const std::vector<GlobalIndex> before = label;
-    for (Index c = 0; c < n; ++c) label[c] = lowest[find_root(parent, c)];
+    for (Index c = 0; c < n; ++c) label[c] = lowest[sets.find(c)];
     mesh.cells.update_ghosts(std::span<GlobalIndex>(label));
     changed = any(mesh.comm, label != before);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/disjoint_sets.hpp"
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -35,19 +36,19 @@ std::vector<std::array<GlobalIndex, 2>> pairs_here(const Mesh& mesh) {
 
 /// From each point to the one with the least number among its copies.
 std::map<GlobalIndex, GlobalIndex> roots_of(const std::vector<std::array<GlobalIndex, 2>>& pairs) {
-  std::map<GlobalIndex, GlobalIndex> parent;
-  const auto root = [&](GlobalIndex i) {
-    for (auto up = parent.at(i); up != i; up = parent.at(i)) i = up;
-    return i;
+  std::vector<GlobalIndex> points;  // in order, each once
+  for (const auto& pair : pairs) points.insert(points.end(), pair.begin(), pair.end());
+  std::ranges::sort(points);
+  points.erase(std::ranges::unique(points).begin(), points.end());
+  const auto place = [&](GlobalIndex p) {
+    return Index(std::ranges::lower_bound(points, p) - points.begin());
   };
-  for (const auto& [a, b] : pairs) {
-    parent.try_emplace(a, a);
-    parent.try_emplace(b, b);
-    const GlobalIndex one = root(a), two = root(b);
-    parent[std::max(one, two)] = std::min(one, two);
-  }
-  for (auto& [point, up] : parent) up = root(point);
-  return parent;
+  DisjointSets sets(Index(points.size()));
+  for (const auto& [a, b] : pairs) sets.join(place(a), place(b));
+  std::map<GlobalIndex, GlobalIndex> roots;
+  for (Index i = 0; i < Index(points.size()); ++i)
+    roots.emplace_hint(roots.end(), points[i], points[sets.find(i)]);
+  return roots;
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
+#include "common/base/disjoint_sets.hpp"
 #include "common/base/point_tree.hpp"
 
 namespace couplet {
@@ -35,8 +35,6 @@ Edges edges_of(const Csr& faces) {
 
 /// How far apart vertices may stand that are the same one [m].
 double same_place(const ModalModel& model) {
-  Vec3 least = model.vertices.front(), most = least;
-  for (const Vec3& x : model.vertices) least = least.cwiseMin(x), most = most.cwiseMax(x);
   double shortest = std::numeric_limits<double>::infinity();
   for (Index f = 0; f < model.faces.size(); ++f) {
     const auto corners = model.faces[f];
@@ -44,7 +42,7 @@ double same_place(const ModalModel& model) {
       shortest = std::min(
           shortest, (model.vertices[corners[i]] - model.vertices[corners[(i + 1) % corners.size()]]).norm());
   }
-  return std::min(1e-6 * (most - least).norm(), 0.01 * shortest);
+  return std::min(1e-6 * extent_of(model).norm(), 0.01 * shortest);
 }
 
 /// Of each vertex the smallest number that stands at its place.
@@ -60,22 +58,6 @@ std::vector<Index> places_of(const ModalModel& model) {
   return place;
 }
 
-class Groups {
- public:
-  explicit Groups(Index n) : of_(std::size_t(n)) { std::iota(of_.begin(), of_.end(), Index(0)); }
-  Index find(Index i) {
-    while (of_[std::size_t(i)] != i) i = of_[std::size_t(i)] = of_[std::size_t(of_[std::size_t(i)])];
-    return i;
-  }
-  void join(Index a, Index b) {
-    a = find(a), b = find(b);
-    of_[std::size_t(std::max(a, b))] = std::min(a, b);
-  }
-
- private:
-  std::vector<Index> of_;
-};
-
 }  // namespace
 
 WeldedSurface weld(const ModalModel& model) {
@@ -90,7 +72,7 @@ WeldedSurface weld(const ModalModel& model) {
     welded.faces.push_row(corners);
   }
   // Bodies that touch have edges of four faces: there only faces with the same vertices belong together.
-  Groups groups(model.faces.size());
+  DisjointSets groups(Index(model.faces.size()));
   for (const auto& [edge, uses] : edges_of(model.faces))
     for (const Use& use : uses) groups.join(uses.front().face, use.face);
   for (const auto& [edge, uses] : edges_of(welded.faces))

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "common/base/types.hpp"
+
+namespace couplet {
+
+/// Numbers 0 to n - 1 that are joined pair by pair: which belong together.
+class DisjointSets {
+ public:
+  explicit DisjointSets(Index n) : up_(std::size_t(n)) { std::iota(up_.begin(), up_.end(), Index(0)); }
+  /// The smallest of those that belong to i.
+  Index find(Index i) {
+    while (up_[std::size_t(i)] != i) i = up_[std::size_t(i)] = up_[std::size_t(up_[std::size_t(i)])];
+    return i;
+  }
+  void join(Index a, Index b) {
+    a = find(a), b = find(b);
+    up_[std::size_t(std::max(a, b))] = std::min(a, b);
+  }
+
+ private:
+  std::vector<Index> up_;
+};
+
+}  // namespace couplet
