@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/coupling/step_errors.hpp"
+#include "common/time/step_errors.hpp"
 #include "coupler/unknown.hpp"
 
 namespace couplet {

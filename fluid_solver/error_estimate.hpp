@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/coupling/error_parts.hpp"
-#include "common/coupling/step_errors.hpp"
+#include "common/time/step_errors.hpp"
 #include "fluid_solver/fluid.hpp"
 
 namespace couplet::fluid {

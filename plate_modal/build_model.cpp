@@ -194,7 +194,8 @@ std::string told_corners(const Midsurface& surface, const std::vector<Support>& 
       "the simply supported outline has {} corner{} between straight edges that turn{} by {:.3g} to {:.3g} degrees, one at "
       "({:.4g}, {:.4g}): the plate is a polygon, which deflects less than one with a curved edge however many sides it has "
       "(Babuska's paradox), and blunt corners take a very fine mesh: with 13 edges a side of 20 the deflection is 13 % too "
-      "large, with 16 edges a side of 12 it is 22 % too small. Draw an edge that is meant to be curved by a curve (Circle, Ellipse, Spline); else compare with a finer mesh.",
+      "large, with 16 edges a side of 12 it is 22 % too small. Draw an edge that is meant to be curved by a curve (Circle, "
+      "Ellipse, Spline); else compare with a finer mesh.",
       corners.size(), corners.size() > 1 ? "s" : "", corners.size() > 1 ? "" : "s", least / degree,
       most / degree, x.x(), x.y());
 }

@@ -66,14 +66,12 @@ Vec3 place_in(const ModalModel& model, const SurfacePlace& place) {
 /// What a mesh in other lengths would show at once.
 void tell_size(const Structure& structure) {
   const ModalModel& model = structure.model();
-  Vec3 low = model.vertices.front(), high = low;
-  for (const Vec3& x : model.vertices) low = low.cwiseMin(x), high = high.cwiseMax(x);
-  Vec3 side = high - low;
+  const Vec3 side = extent_of(model);
   std::string slender;
   if (const double h = structure.parameters().thickness; structure.parameters().mesh && h > 0) {
-    std::ranges::sort(side, std::greater());
-    slender = fmt::format(", thickness over its shorter span 1/{:.3g}", side[1] / h);
-    side = high - low;
+    Vec3 sorted = side;
+    std::ranges::sort(sorted, std::greater());
+    slender = fmt::format(", thickness over its shorter span 1/{:.3g}", sorted[1] / h);
   }
   log::info("the structure spans {:.4g} x {:.4g} x {:.4g} m, mass {:.4g} kg{}", side.x(), side.y(), side.z(),
             model.mass, slender);

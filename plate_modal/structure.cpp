@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "common/base/error.hpp"
@@ -43,6 +44,10 @@ double largest_of(const std::vector<double>& vectors) {
   double largest = 0;
   for (std::size_t i = 0; i < vectors.size(); i += 3) largest = std::max(largest, Vec3(&vectors[i]).norm());
   return largest;
+}
+
+double norm_of(std::span<const double> amplitudes) {
+  return std::sqrt(std::inner_product(amplitudes.begin(), amplitudes.end(), amplitudes.begin(), 0.0));
 }
 
 /// A restart with changes may have taken away the seat, or moved it, or the gravity: the energy that the structure has
@@ -231,7 +236,8 @@ void Structure::look_at_step() {
 
 StepReport Structure::accept_step() {
   std::swap(state_, trial_);
-  if (step_errors_ && resolution_) step_errors_->accepted(trial_, state_);
+  if (step_errors_ && resolution_)  // trial_ is what it started from
+    step_errors_->add(trial_.v, state_.v, state_.dt, trial_.dt, norm_of(state_.q), norm_of);
   if (resolution_) look_at_step();
   largest_ = std::max(largest_, trial_largest_);
   if (!rotations_.empty()) look_at_rotation();

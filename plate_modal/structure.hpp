@@ -7,9 +7,9 @@
 
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
+#include "common/time/velocity_errors.hpp"
 #include "plate_modal/build_model.hpp"
 #include "plate_modal/contact.hpp"
-#include "plate_modal/error_estimate.hpp"
 #include "plate_modal/oscillators.hpp"
 #include "plate_modal/pressure_load.hpp"
 #include "plate_modal/resolution.hpp"
@@ -82,9 +82,9 @@ class Structure final : public Participant, public EstimatesError {
   std::unique_ptr<Share> share_;
   std::unique_ptr<Contact> contact_;  // none: no seat in this scene
   std::unique_ptr<Oscillators> oscillators_;
-  std::unique_ptr<PressureLoad> pressure_;        // none: no pressures of the case
-  std::unique_ptr<Resolution> resolution_;        // of a dynamic analysis
-  std::optional<StepErrorEstimate> step_errors_;  // none: not wanted
+  std::unique_ptr<PressureLoad> pressure_;     // none: no pressures of the case
+  std::unique_ptr<Resolution> resolution_;     // of a dynamic analysis
+  std::optional<VelocityErrors> step_errors_;  // of modes of unit mass; none: not wanted
   std::vector<double> gravity_;
   ModalState state_, trial_;
   std::vector<double> direct_;  // static deflection of the plate itself, 3 a vertex on rank 0

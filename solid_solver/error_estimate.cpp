@@ -10,7 +10,7 @@ namespace couplet {
 
 SolidErrorEstimate::SolidErrorEstimate(const SolidBody& body, const SolidStepper& stepper,
                                        const SolidFields& fields, const SolidJudge& judge)
-    : body_(body), stepper_(stepper), fields_(fields), judge_(judge) {
+    : body_(body), stepper_(stepper), fields_(fields), judge_(judge), steps_(body.parameters().time_scheme) {
   const Mesh& mesh = body.mesh();
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += mesh.reference.volume[c];
   volume_ = sum(mesh.comm, volume_);
@@ -26,33 +26,6 @@ double SolidErrorEstimate::mean_square(std::span<const double> cells) const {
       squares += mesh.reference.volume[c] * value * value;
     }
   return sum(mesh.comm, squares) / volume_;
-}
-
-/// Of the step just solved, root mean squares: C dt^2 d2u/dt2 by two velocities, or C dt^3 d3u/dt3 by three.
-StepErrors::Seen SolidErrorEstimate::seen() const {
-  const Mesh& mesh = body_.mesh();
-  const SolidState &now = stepper_.trial(), &before = stepper_.state();
-  const LocalError local = couplet::local_error(body_.parameters().time_scheme);
-  const double dt = now.dt, dt_old = before.dt;
-  std::vector<double> second(std::size_t(mesh.cells.n_owned()) * mesh.dim), third;
-  for (std::size_t i = 0; i < second.size(); ++i) second[i] = (now.cell_v[i] - before.cell_v[i]) / dt;
-  if (local.order > 1 && !v_before_.empty()) {
-    third.resize(second.size());
-    for (std::size_t i = 0; i < third.size(); ++i)
-      third[i] = 2 * (second[i] - (before.cell_v[i] - v_before_[i]) / dt_old) / (dt + dt_old);
-  }
-  StepErrors::Seen seen{.rate = std::sqrt(mean_square(now.cell_v)),
-                        .size = std::sqrt(mean_square(now.cell_u)),
-                        .dt = dt,
-                        .order = local.order};
-  const double by_two = std::sqrt(mean_square(second));
-  seen.below = local.order == 1 ? seen.rate : by_two;
-  if (local.order == 1)
-    seen.highest = by_two;
-  else if (!v_before_.empty())
-    seen.highest = std::sqrt(mean_square(third));
-  seen.error = std::abs(local.constant) * std::pow(dt, local.order + 1) * seen.highest;
-  return seen;
 }
 
 /// Over the size of the solution.
@@ -81,14 +54,12 @@ double SolidErrorEstimate::missed_work() const {
 
 void SolidErrorEstimate::see_step() {
   if (!body_.is_dynamic()) return;
-  const StepErrors::Seen step = seen();
-  const bool first_order = step.order == 1;
-  if (first_order || !v_before_.empty()) {
-    steps_.add(step, first_order || judged_ ? 1 : 2);
-    judged_ = true;
-  }
+  const SolidState &now = stepper_.trial(), &before = stepper_.state();
+  const std::size_t n = std::size_t(body_.mesh().cells.n_owned()) * body_.mesh().dim;
+  const auto norm = [this](std::span<const double> cells) { return std::sqrt(mean_square(cells)); };
+  const StepErrors::Seen step = steps_.add(std::span(before.cell_v).first(n), std::span(now.cell_v).first(n),
+                                           now.dt, before.dt, norm(now.cell_u), norm);
   linear_.add({.error = left_by_solver() * step.size, .rate = step.rate, .size = step.size, .dt = step.dt});
-  v_before_ = stepper_.state().cell_v;
 }
 
 ErrorParts SolidErrorEstimate::parts() const {
@@ -107,24 +78,16 @@ ErrorParts SolidErrorEstimate::parts() const {
 }
 
 std::vector<double> SolidErrorEstimate::state() const {
-  const std::vector<double> steps = steps_.state(), linear = linear_.state();
-  std::vector<double> values{judged_ ? 1. : 0., double(steps.size()), double(linear.size())};
-  for (const auto* part : {&steps, &linear, &v_before_})
-    values.insert(values.end(), part->begin(), part->end());
+  const std::vector<double> linear = linear_.state(), steps = steps_.state();
+  std::vector<double> values{double(linear.size())};
+  for (const auto* part : {&linear, &steps}) values.insert(values.end(), part->begin(), part->end());
   return values;
 }
 
 void SolidErrorEstimate::restore(std::span<const double> state) {
-  v_before_.clear();
-  steps_ = linear_ = {};
-  judged_ = false;
-  if (state.empty()) return;
-  judged_ = state[0] != 0;
-  const auto n_steps = std::size_t(state[1]), n_linear = std::size_t(state[2]);
-  steps_.restore(state.subspan(3, n_steps));
-  linear_.restore(state.subspan(3 + n_steps, n_linear));
-  const auto velocity = state.subspan(3 + n_steps + n_linear);
-  v_before_.assign(velocity.begin(), velocity.end());
+  const auto n = state.empty() ? 0 : std::size_t(state[0]);
+  linear_.restore(state.empty() ? state : state.subspan(1, n));
+  steps_.restore(state.empty() ? state : state.subspan(1 + n));
 }
 
 }  // namespace couplet

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "common/coupling/error_parts.hpp"
-#include "common/coupling/step_errors.hpp"
+#include "common/time/step_errors.hpp"
+#include "common/time/velocity_errors.hpp"
 #include "solid_solver/judge.hpp"
 #include "solid_solver/solid_body.hpp"
 #include "solid_solver/solid_fields.hpp"
@@ -17,7 +18,7 @@ namespace couplet {
 ///   mesh    by how much the work of the stresses misses the strain energy, which equilibrium would make equal, or,
 ///           if more, the square of the relative difference of two face gradients' strains: an energy errs by the
 ///           square of what the strains err. A symmetric operator misses nothing by itself, there the latter counts.
-///   step    sum of the local errors C dt^{p+1} d^{p+1}u/dt^{p+1}, see StepErrors; static: none
+///   step    sum of the local errors, see VelocityErrors; static: none
 ///   linear  static: the work of what equilibrium misses over that of the loads, which is the error of the compliance;
 ///           dynamic: the relative residuals of all steps, see StepErrors
 /// At finite strain the mesh's part is not known. Collective.
@@ -35,7 +36,6 @@ class SolidErrorEstimate {
   void restore(std::span<const double> state);
 
  private:
-  StepErrors::Seen seen() const;
   double left_by_solver() const;
   double missed_work() const;
   double mean_square(std::span<const double> cells) const;
@@ -44,10 +44,9 @@ class SolidErrorEstimate {
   const SolidStepper& stepper_;
   const SolidFields& fields_;
   const SolidJudge& judge_;
-  bool judged_ = false;           // a step has been judged
-  double volume_ = 0;             // of the body [m^3]
-  std::vector<double> v_before_;  // at the start of the step before; empty: not yet
-  StepErrors steps_, linear_;
+  double volume_ = 0;  // of the body [m^3]
+  VelocityErrors steps_;
+  StepErrors linear_;
 };
 
 }  // namespace couplet

@@ -98,9 +98,7 @@ class Sides {
       : model_(model), welded_(welded), areas_(face_areas(model)), part_of_(areas_.size()) {
     for (std::size_t p = 0; p < welded.part.size(); ++p)
       for (const Index f : welded.part[p]) part_of_[std::size_t(f)] = p;
-    Vec3 least = model.vertices.front(), most = least;
-    for (const Vec3& x : model.vertices) least = least.cwiseMin(x), most = most.cwiseMax(x);
-    near_ = 1e-9 * (most - least).norm();
+    near_ = 1e-9 * extent_of(model).norm();
   }
 
   /// Of at most so many faces of a part, evenly among all.

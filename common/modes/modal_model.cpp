@@ -16,6 +16,12 @@ std::vector<Vec3> face_centres(const ModalModel& model) {
   return centres;
 }
 
+Vec3 extent_of(const ModalModel& model) {
+  Vec3 low = model.vertices.front(), high = low;
+  for (const Vec3& x : model.vertices) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  return high - low;
+}
+
 std::vector<Vec3> face_areas(const ModalModel& model) {
   std::vector<Vec3> areas;
   for (Index f = 0; f < model.faces.size(); ++f) {

@@ -29,6 +29,8 @@ struct ModalModel {
 /// Centre (mean of the vertices) and area vector, outwards, of each face.
 std::vector<Vec3> face_centres(const ModalModel& model);
 std::vector<Vec3> face_areas(const ModalModel& model);
+/// Sides of the box around the vertices [m].
+Vec3 extent_of(const ModalModel& model);
 
 /// Sets face_shape to the mean over the vertices of each face.
 void average_faces(ModalModel& model);

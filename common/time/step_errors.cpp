@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/coupling/step_errors.hpp"
+#include "common/time/step_errors.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/time/velocity_errors.hpp"
+
+#include <cmath>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+
+StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<const double> now, double dt,
+                                     double dt_old, double size, const Norm& norm) {
+  const bool first_order = local_.order == 1, knows_third = !first_order && !v_before_.empty();
+  std::vector<double> second(now.size()), third(knows_third ? now.size() : 0);
+  for (std::size_t i = 0; i < second.size(); ++i) second[i] = (now[i] - before[i]) / dt;
+  for (std::size_t i = 0; i < third.size(); ++i)
+    third[i] = 2 * (second[i] - (before[i] - v_before_[i]) / dt_old) / (dt + dt_old);
+  StepErrors::Seen seen{.rate = norm(now), .size = size, .dt = dt, .order = local_.order};
+  const double by_two = norm(second);
+  seen.below = first_order ? seen.rate : by_two;
+  if (first_order || knows_third) {
+    seen.highest = first_order ? by_two : norm(third);
+    seen.error = std::abs(local_.constant) * std::pow(dt, local_.order + 1) * seen.highest;
+    errors_.add(seen, first_order || judged_ ? 1 : 2);
+    judged_ = true;
+  }
+  v_before_.assign(before.begin(), before.end());
+  return seen;
+}
+
+std::vector<double> VelocityErrors::state() const {
+  std::vector<double> values{judged_ ? 1. : 0., double(v_before_.size())};
+  const std::vector<double> sums = errors_.state();
+  for (const auto* part : {&v_before_, &sums}) values.insert(values.end(), part->begin(), part->end());
+  return values;
+}
+
+void VelocityErrors::restore(std::span<const double> state) {
+  v_before_.clear();
+  errors_ = {};
+  judged_ = false;
+  if (state.empty()) return;
+  const auto n = state.size() < 2 ? state.size() : std::size_t(state[1]);
+  if (state.size() < 2 + n) throw Error("The checkpoint's errors of steps are damaged.");
+  judged_ = state[0] != 0;
+  v_before_.assign(state.begin() + 2, state.begin() + 2 + std::ptrdiff_t(n));
+  errors_.restore(state.subspan(2 + n));
+}
+
+}  // namespace couplet
