@@ -2,35 +2,17 @@
 #include "fluid_solver/body_start.hpp"
 
 #include <algorithm>
-#include <array>
-#include <limits>
 
+#include "common/io/place_search.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/turning_walls.hpp"
 
 namespace couplet::fluid {
-namespace {
-
-/// Diagonal of the box around the mesh [m]. Collective.
-double length_of(const Mesh& mesh) {
-  std::array<double, 6> corner;
-  corner.fill(std::numeric_limits<double>::lowest());
-  for (const Vec3& x : mesh.reference_points)
-    for (int c = 0; c < 3; ++c) {
-      corner[c] = std::max(corner[c], x[c]);
-      corner[c + 3] = std::max(corner[c + 3], -x[c]);
-    }
-  MPI_Allreduce(MPI_IN_PLACE, corner.data(), 6, MPI_DOUBLE, MPI_MAX, mesh.comm);
-  return Vec3(corner[0] + corner[3], corner[1] + corner[4], corner[2] + corner[5]).norm();
-}
-
-}  // namespace
-
 template <int D>
 double set_body_start(const Mesh& mesh, const Boundary<D>& boundary, const MotionParameters& motion,
                       double time, Vectors<D>& w, Vectors<D>& turn) {
   const PrescribedMotion prescribed(motion, D);
-  const double length = length_of(mesh);
+  const double length = mesh_size(mesh);
   double largest = 0;
   for (const Patch* patch : boundary.body_patches()) {
     std::vector<Vec3> corners;

@@ -65,11 +65,19 @@ UpdatedFrame& UpdatedLagrangian::frame() {
   return *frame_;
 }
 
+/// `known` may be empty: zeros.
+UpdatedLagrangian::Change UpdatedLagrangian::since_start(std::span<const double> unknowns,
+                                                         std::span<const double> known) const {
+  Change change{{unknowns.begin(), unknowns.end()}, std::vector<double>(now_.known.size(), 0)};
+  std::ranges::copy(known, change.known.begin());
+  for (std::size_t i = 0; i < change.u.size(); ++i) change.u[i] -= now_.u[i];
+  for (std::size_t i = 0; i < change.known.size(); ++i) change.known[i] -= now_.known[i];
+  return change;
+}
+
 /// f at the faces for the displacement since the step began; nothing has moved: no frame is needed.
 void UpdatedLagrangian::find_change(std::span<const double> unknowns, std::span<const double> known) {
-  std::vector<double> u(unknowns.begin(), unknowns.end()), g(now_.known.size(), 0);
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] -= now_.u[i];
-  for (std::size_t i = 0; i < g.size(); ++i) g[i] = (known.empty() ? 0 : known[i]) - now_.known[i];
+  const auto [u, g] = since_start(unknowns, known);
   change_.assign(mesh_.n_flux_faces(), Tensor3::Identity());
   const auto is_zero = [](double x) { return x == 0; };
   if (!any(mesh_.comm, !std::ranges::all_of(u, is_zero) || !std::ranges::all_of(g, is_zero))) return;

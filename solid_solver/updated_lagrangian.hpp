@@ -48,6 +48,11 @@ class UpdatedLagrangian final : public LargeStrain {
   };
   /// Operators where the step begins, made when first asked for.
   UpdatedFrame& frame();
+  /// Displacement since the step began.
+  struct Change {
+    std::vector<double> u, known;
+  };
+  Change since_start(std::span<const double> unknowns, std::span<const double> known) const;
   void find_change(std::span<const double> unknowns, std::span<const double> known);
   bool find_stress();
   void add_forces(std::span<double> result);

@@ -66,9 +66,7 @@ void UpdatedLagrangian::end_step(std::span<const double> unknowns, std::span<con
   if (!look(unknowns, known))
     throw SolveFailure("The end of the step turns a cell inside out. {}", where_worst());
   const std::size_t dim = mesh_.dim;
-  std::vector<double> u(unknowns.begin(), unknowns.end()), g(now_.known.size(), 0);
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] -= now_.u[i];
-  for (std::size_t i = 0; i < g.size(); ++i) g[i] = (known.empty() ? 0 : known[i]) - now_.known[i];
+  const auto [u, g] = since_start(unknowns, known);
   std::vector<double> moved(std::size_t(mesh_.points.n_local()) * dim, 0);
   frame().kernel().point_values(u, g, moved);
   mesh_.points.update_ghosts(moved, mesh_.dim);

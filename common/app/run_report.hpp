@@ -17,8 +17,7 @@ struct Job;
 
 /// What a run leaves for scripts and studies, beside its results:
 ///   steps.csv  a row an accepted step: time and dt [s], iterations of linear solvers, estimated time error
-///   of
-///              the step [1], energy [J], seconds; what was not computed is nan. Off with output.steps.
+///              of the step [1], energy [J], seconds; what was not computed is nan. Off with output.steps.
 ///   run.json   at the end: how it ended, wall and processor seconds, memory, steps, iterations, phases,
 ///              estimated parts of the error (null: not known).
 /// Written by rank 0. The file of an earlier run is removed at the start: a run.json speaks of this run.

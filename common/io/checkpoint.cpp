@@ -16,8 +16,8 @@ namespace couplet {
 namespace {
 
 constexpr const char* format_name = "couplet checkpoint";
-// 3: errors of steps, net heat of a tank's report, what the pressure preconditioner was made from.
-constexpr int format_version = 3;
+// 3: errors of steps, net heat of a tank's report, what the pressure preconditioner was made from. 4: order of the errors.
+constexpr int format_version = 4;
 
 // FNV-1a over the bit patterns: cheap, and any flipped bit of an array is noticed when it is read.
 std::int64_t checksum(std::span<const double> values) {
