@@ -15,6 +15,20 @@ namespace {
 
 constexpr double salt = 1501.5;
 
+/// Steps of a tank at rest at 300 degC.
+void stand(DayReport& report, int steps, double dt) {
+  const std::array<double, 2> z{0.5, 1.5}, dz{1, 1}, temperature{573.15, 573.15};
+  for (int i = 0; i < steps; ++i) {
+    BedStep step;
+    step.t = i * dt, step.dt = dt;
+    TankRecord record;
+    record.time = step.t + dt, record.dt = dt;
+    record.steps = {&step, 1};
+    record.z = z, record.dz = dz, record.fluid_temperature = temperature;
+    report.record(record);
+  }
+}
+
 /// plant.csv of one hour with a third of the load.
 TEST(DayReport, the_series_has_what_the_block_got_and_what_it_asked_for) {
   const auto folder = std::filesystem::temp_directory_path() / fmt::format("couplet-series-{}", getpid());
@@ -27,16 +41,7 @@ TEST(DayReport, the_series_has_what_the_block_got_and_what_it_asked_for) {
   std::vector<std::string> rows;
   {
     DayReport report({}, Plant(p, salt), *weather, folder);
-    const std::array<double, 2> z{0.5, 1.5}, dz{1, 1}, temperature{573.15, 573.15};
-    for (int h = 0; h < 2; ++h) {
-      BedStep step;
-      step.t = h * 3600., step.dt = 3600;
-      TankRecord record;
-      record.time = step.t + 3600, record.dt = 3600;
-      record.steps = {&step, 1};
-      record.z = z, record.dz = dz, record.fluid_temperature = temperature;
-      report.record(record);
-    }
+    stand(report, 2, 3600);
   }
   std::ifstream file(folder / "plant.csv");
   for (std::string line; std::getline(file, line);) rows.push_back(line);
@@ -72,16 +77,7 @@ TEST(DayReport, a_year_of_a_month_that_goes_round_is_no_year) {
   const auto said = [&](const WeatherParameters& w, int days) {
     const auto weather = make_weather(w, ".");
     DayReport report(p, Plant({1e6, 0.4, 1, 0.5, 673.15, 573.15, 15, 10}, salt), *weather, {});
-    const std::array<double, 2> z{0.5, 1.5}, dz{1, 1}, temperature{573.15, 573.15};
-    for (int d = 0; d < days; ++d) {
-      BedStep step;
-      step.t = d * 86400., step.dt = 86400;
-      TankRecord record;
-      record.time = step.t + 86400, record.dt = 86400;
-      record.steps = {&step, 1};
-      record.z = z, record.dz = dz, record.fluid_temperature = temperature;
-      report.record(record);
-    }
+    stand(report, days, 86400);
     report.finish();
     for (const ReportLine& line : report.lines())
       if (line.quantity == "electricity") {

@@ -4,16 +4,14 @@
 
 #include <Eigen/Geometry>
 
-#include <filesystem>
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_case.hpp"
-#include "fluid_solver/derived.hpp"
-#include "fluid_solver/participant.hpp"
+#include "participant_case.hpp"
 #include "ring_mesh.hpp"
+#include "tests/support/saved_state.hpp"
 
 namespace couplet::fluid::test {
 namespace {
@@ -30,13 +28,6 @@ BoundaryParameters turning_wall(const std::string& speed) {
 void set_frame(FluidParameters& p, const std::string& speed) {
   p.rotating_frame.emplace();
   p.rotating_frame->speed.text = speed;
-}
-
-double moment(const Fluid<2>& fluid, const std::vector<std::string>& patches) {
-  CoefficientParameters wanted;
-  wanted.patches = patches;
-  wanted.speed = std::sqrt(2.0);  // rho/2 U^2 A L = 1
-  return force_coefficients(fluid, wanted).moment;
 }
 
 /// A fluid at rest outside the frame goes around in it, u = -omega x r; all forces together are the centripetal ones,
@@ -135,9 +126,7 @@ SpunUp spun_up(int n) {
   const double dt = 0.32 / n;
   for (int i = 0; i * dt < 0.6; ++i) {
     for (FluidParticipant<2>* run : {&frame, &turning}) {
-      run->begin_step({i * dt, dt, Scheme::standalone, i});
-      run->solve({});
-      run->accept_step();
+      take_steps(*run, i, i + 1, dt);
     }
     const double a = moment(frame.fluid(), all), b = moment(turning.fluid(), all);
     largest = std::max(largest, std::abs(b));
@@ -188,33 +177,17 @@ std::unique_ptr<FluidParticipant<2>> box_run(const FluidParameters& p, MPI_Comm 
   return std::make_unique<FluidParticipant<2>>(distribute(comm, raw), p, FluidContext{}, MotionLink{});
 }
 
-void steps(FluidParticipant<2>& run, int begin, int end, double dt = 0.02) {
-  for (int i = begin; i < end; ++i) {
-    run.begin_step({dt * i, dt, Scheme::standalone, i});
-    run.solve({});
-    run.accept_step();
-  }
-}
-
 TEST(RotatingFrame, goes_on_from_a_checkpoint_bit_for_bit_and_alike_on_any_number_of_ranks) {
   const FluidParameters p = in_a_box("3*sin(5*t)");
   const auto straight = box_run(p), first = box_run(p), second = box_run(p),
              alone = box_run(p, MPI_COMM_SELF);
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("couplet-frame-" + std::to_string(comm_size(MPI_COMM_WORLD)) + ".h5");
-  steps(*first, 0, 4);
-  {
-    CheckpointWriter writer(MPI_COMM_WORLD, file);
-    first->save(writer);
-    writer.close();
-  }
-  steps(*first, 4, 8);
-  CheckpointReader reader(MPI_COMM_WORLD, file);
-  second->load(reader);
-  steps(*second, 4, 8);
+  take_steps(*first, 0, 4);
+  support::SavedState(*first).load_into(*second);
+  take_steps(*first, 4, 8);
+  take_steps(*second, 4, 8);
   EXPECT_EQ(first->fluid().state().u, second->fluid().state().u);
   EXPECT_EQ(first->fluid().pressure_force(), second->fluid().pressure_force());
-  steps(*alone, 0, 8);
+  take_steps(*alone, 0, 8);
   std::vector<Vec<2>> by_id(alone->fluid().mesh().cells.n_global());
   for (Index c = 0; c < alone->fluid().mesh().cells.n_owned(); ++c)
     by_id[alone->fluid().mesh().cell_id[c]] = alone->fluid().state().u[c];
@@ -235,13 +208,13 @@ TEST(RotatingFrame, its_forces_bound_the_step) {
   FluidParameters viscous = p;
   viscous.viscosity = 0.1;
   const auto run = box_run(viscous);
-  steps(*run, 0, 40, 0.05);
+  take_steps(*run, 0, 40, 0.05);
   EXPECT_GE(run->fluid().statistics().sub_steps, 20);  // 2 * 40 * 0.05 / (0.8 * 0.25)
   double largest = 0;
   for (const Vec<2>& u : run->fluid().state().u) largest = std::max(largest, u.norm());
   EXPECT_LT(largest, 0.01);
   const auto thin = box_run(p);
-  const auto goes_on = [&] { steps(*thin, 0, 40, 0.05); };
+  const auto goes_on = [&] { take_steps(*thin, 0, 40, 0.05); };
   EXPECT_THROW(goes_on(), SolveFailure);
 }
 

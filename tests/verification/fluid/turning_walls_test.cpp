@@ -3,16 +3,14 @@
 #include <gmock/gmock.h>
 #include <Eigen/Geometry>
 
-#include <filesystem>
 #include <numbers>
 
-#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_case.hpp"
-#include "fluid_solver/derived.hpp"
-#include "fluid_solver/participant.hpp"
 #include "fluid_solver/turning_walls.hpp"
+#include "participant_case.hpp"
 #include "ring_mesh.hpp"
+#include "tests/support/saved_state.hpp"
 
 namespace couplet::fluid::test {
 namespace {
@@ -97,13 +95,6 @@ TEST(TurningWalls, no_friction_in_a_fluid_that_turns_as_a_whole) {
   no_friction_in_a_fluid_that_turns_as_a_whole<3>();
 }
 
-double moment(const Fluid<2>& fluid, const char* patch) {
-  CoefficientParameters wanted;
-  wanted.patches = {patch};
-  wanted.speed = std::sqrt(2.0);  // rho/2 U^2 A L = 1
-  return force_coefficients(fluid, wanted).moment;
-}
-
 /// The same with a mesh that turns, and its walls as bodies; du/dn alone gives -2 mu omega A = -0.314, 1.257.
 TEST(TurningWalls, no_friction_between_bodies_that_turn_with_their_fluid) {
   FluidParameters p = turning(2);
@@ -112,13 +103,9 @@ TEST(TurningWalls, no_friction_between_bodies_that_turn_with_their_fluid) {
   p.boundaries["inner"] = p.boundaries["outer"] = boundary(BoundaryType::body);
   FluidParticipant<2> run(distribute(MPI_COMM_WORLD, ring_mesh(6)), p, FluidContext{}, MotionLink{});
   run.initialise();
-  for (int i = 0; i < 20; ++i) {  // until the impulse of the start is forgotten
-    run.begin_step({0.02 * i, 0.02, Scheme::standalone, i});
-    run.solve({});
-    run.accept_step();
-  }
-  EXPECT_NEAR(moment(run.fluid(), "inner"), 0, 0.02);
-  EXPECT_NEAR(moment(run.fluid(), "outer"), 0, 0.06);
+  take_steps(run, 0, 20);  // until the impulse of the start is forgotten
+  EXPECT_NEAR(moment(run.fluid(), {"inner"}), 0, 0.02);
+  EXPECT_NEAR(moment(run.fluid(), {"outer"}), 0, 0.06);
 }
 
 /// Walls that turn unevenly, by the case and with their mesh: a run that goes on from a checkpoint has every load of
@@ -144,30 +131,15 @@ TEST(TurningWalls, go_on_from_a_checkpoint_bit_for_bit) {
       run->initialise();
       return run;
     };
-    const auto steps = [](FluidParticipant<2>& run, int begin, int end) {
-      for (int i = begin; i < end; ++i) {
-        run.begin_step({0.02 * i, 0.02, Scheme::standalone, i});
-        run.solve({});
-        run.accept_step();
-      }
-    };
     const auto first = make(), second = make();
-    const auto file = std::filesystem::temp_directory_path() /
-                      ("couplet-turn-" + std::to_string(comm_size(MPI_COMM_WORLD)) + ".h5");
-    steps(*first, 0, 3);
-    {
-      CheckpointWriter writer(MPI_COMM_WORLD, file);
-      first->save(writer);
-      writer.close();
-    }
-    steps(*first, 3, 4);
-    CheckpointReader reader(MPI_COMM_WORLD, file);
-    second->load(reader);
-    steps(*second, 3, 4);
+    take_steps(*first, 0, 3);
+    support::SavedState(*first).load_into(*second);
+    take_steps(*first, 3, 4);
+    take_steps(*second, 3, 4);
     EXPECT_EQ(first->fluid().viscous_force(), second->fluid().viscous_force()) << with_mesh;
     EXPECT_EQ(first->fluid().pressure_force(), second->fluid().pressure_force()) << with_mesh;
     EXPECT_EQ(first->fluid().state().turn, second->fluid().state().turn) << with_mesh;
-    EXPECT_NE(moment(first->fluid(), "inner"), 0) << with_mesh;
+    EXPECT_NE(moment(first->fluid(), {"inner"}), 0) << with_mesh;
   }
 }
 
@@ -187,7 +159,7 @@ std::array<double, 2> torques(int n) {
   p.boundaries["outer"] = boundary(BoundaryType::no_slip);
   FluidCase<2> c(MPI_COMM_WORLD, ring_mesh(n), p);
   c.run(1, 10);
-  return {moment(c.fluid(), "inner"), moment(c.fluid(), "outer")};
+  return {moment(c.fluid(), {"inner"}), moment(c.fluid(), {"outer"})};
 }
 
 TEST(TurningWalls, torque_between_circles) {

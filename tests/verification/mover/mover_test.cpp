@@ -8,11 +8,11 @@
 #include <numeric>
 
 #include "common/base/error.hpp"
-#include "common/io/checkpoint.hpp"
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 #include "mesh_mover/laplacian.hpp"
 #include "mesh_mover/mover.hpp"
+#include "tests/support/saved_state.hpp"
 
 namespace couplet::mesh_mover {
 namespace {
@@ -256,18 +256,11 @@ TEST(Mover, is_restored_from_a_checkpoint_bit_for_bit) {
     mover.accept_step();
   };
   step(0.1);
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("couplet-mover-" + std::to_string(comm_size(MPI_COMM_WORLD)) + ".h5");
-  {
-    CheckpointWriter writer(MPI_COMM_WORLD, file);
-    mover.save(writer);
-    writer.close();
-  }
+  const support::SavedState checkpoint(mover);
   const auto saved = mover.displacement();
   step(0.2);
   EXPECT_NE(mover.displacement(), saved);
-  CheckpointReader reader(MPI_COMM_WORLD, file);
-  mover.load(reader);
+  checkpoint.load_into(mover);
   EXPECT_EQ(mover.displacement(), saved);
 }
 

@@ -9,12 +9,12 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/io/checkpoint.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/periodic_points.hpp"
 #include "common/parallel/collective.hpp"
 #include "mesh_mover/laplacian.hpp"
 #include "plate_case.hpp"
+#include "tests/support/saved_state.hpp"
 
 namespace couplet::mesh_mover::test {
 namespace {
@@ -147,13 +147,7 @@ TEST(Periodic, sides_move_alike_from_a_checkpoint_too) {
     Mover mover(p, context());
     mover.initialise();
     run(mover, 0, 0.5, 1);
-    const auto file = std::filesystem::temp_directory_path() /
-                      ("couplet-periodic-" + std::to_string(comm_size(MPI_COMM_WORLD)) + ".h5");
-    {
-      CheckpointWriter writer(MPI_COMM_WORLD, file);
-      mover.save(writer);
-      writer.close();
-    }
+    const support::SavedState checkpoint(mover);
     run(mover, 0.5, 1, 1);
     const std::vector<double> end = mover.displacement();
     const PeriodicPoints periodic(mover.mesh());
@@ -161,8 +155,7 @@ TEST(Periodic, sides_move_alike_from_a_checkpoint_too) {
     double sideways = 0;  // the joined sides go along with the plate
     for (const Index v : periodic.points()) sideways = std::max(sideways, end[2 * std::size_t(v)]);
     EXPECT_GT(max(MPI_COMM_WORLD, sideways), 0.02);
-    CheckpointReader reader(MPI_COMM_WORLD, file);
-    mover.load(reader);
+    checkpoint.load_into(mover);
     run(mover, 0.5, 1, 1);
     EXPECT_EQ(mover.displacement(), end);
     ParticipantContext alone = context();

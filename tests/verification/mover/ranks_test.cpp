@@ -7,6 +7,7 @@
 
 #include "common/io/checkpoint.hpp"
 #include "plate_case.hpp"
+#include "tests/support/saved_state.hpp"
 
 namespace couplet::mesh_mover::test {
 namespace {
@@ -21,19 +22,12 @@ TEST_P(EveryMethod, goes_on_from_a_checkpoint_bit_for_bit) {
   Mover mover(p, context());
   mover.initialise();
   run(mover, 0, 0.4, 2);
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("couplet-motion-" + std::to_string(comm_size(MPI_COMM_WORLD)) + ".h5");
-  {
-    CheckpointWriter writer(MPI_COMM_WORLD, file);
-    mover.save(writer);
-    writer.close();
-  }
+  const support::SavedState checkpoint(mover);
   const std::vector<double> then = mover.displacement();
   run(mover, 0.4, 1, 2);
   const std::vector<double> end = mover.displacement();
   EXPECT_NE(end, then);
-  CheckpointReader reader(MPI_COMM_WORLD, file);
-  mover.load(reader);
+  checkpoint.load_into(mover);
   EXPECT_EQ(mover.displacement(), then);
   run(mover, 0.4, 1, 2);
   EXPECT_EQ(mover.displacement(), end);

@@ -132,7 +132,7 @@ TEST(PlateContact, a_mode_on_a_seat_at_its_rest_position_bounces_at_twice_its_fr
   std::vector<double> impacts;
   double before = 0;
   for (int i = 0; i < 4000; ++i) {
-    plate.begin_step({i * dt, dt, Scheme::standalone, i, false});
+    plate.begin_step({i * dt, dt, Scheme::standalone, i});
     plate.solve({});
     plate.accept_step();
     const double v = plate.state().v[0];
@@ -159,7 +159,7 @@ TEST(PlateContact, a_plate_with_modes_keeps_its_energy_through_an_impact_and_the
     const double dt = 2 * std::numbers::pi / plate.share().omega()[0] / 500;
     double deepest = 0, worst = 0;
     for (int i = 0; i < 500; ++i) {
-      plate.begin_step({i * dt, dt, Scheme::standalone, i, false});
+      plate.begin_step({i * dt, dt, Scheme::standalone, i});
       plate.solve({});
       plate.accept_step();
       deepest = std::max(deepest, plate.state().energies.contact);
@@ -184,7 +184,7 @@ TEST(PlateContact, a_run_whose_scheme_makes_more_energy_than_there_was_is_refuse
     double most = 0;
     const auto run = [&] {
       for (int i = 0; i < 20000; ++i) {
-        plate.begin_step({i * dt, dt, Scheme::standalone, i, false});
+        plate.begin_step({i * dt, dt, Scheme::standalone, i});
         plate.solve({});
         plate.accept_step();
         most = std::max(most, plate.state().energies.total());

@@ -34,7 +34,8 @@ std::vector<EffectVerdict> verdicts(const Parameters& p, int steps, double dt,
   Structure plate(p, PlateContext{}, &raw);
   plate.initialise();
   for (int i = 0; i < steps; ++i) {
-    plate.begin_step({i * dt, dt, Scheme::standalone, i, 1, true, i + 1 == steps});
+    plate.begin_step(
+        {.time = i * dt, .dt = dt, .scheme = Scheme::standalone, .number = i, .is_last = i + 1 == steps});
     plate.solve({});
     plate.accept_step();
   }
@@ -226,7 +227,7 @@ TEST(PlateGuards, a_pressure_without_a_sound_value_names_its_key_time_and_place)
     p.load.emplace().upper.emplace().text = upper;
     return message_of([&] {
       Structure plate(p, PlateContext{}, &raw);
-      plate.begin_step({2, 0.01, Scheme::standalone, 0, 1, true, true});
+      plate.begin_step({.time = 2, .dt = 0.01, .scheme = Scheme::standalone, .number = 0, .is_last = true});
       plate.solve({});
     });
   };

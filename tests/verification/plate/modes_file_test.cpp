@@ -55,7 +55,7 @@ class PlateModesFile : public ::testing::Test {
     for (const Vec3& x : interface.face_centres)
       for (const double f : {0.01, 0.02 * x.y(), 0.1 + x.x()}) in["pressure-force"].push_back(f);
     for (int i = 0; i < 10; ++i) {
-      structure.begin_step({0.01 * i, 0.01, Scheme::standalone, i, false});
+      structure.begin_step({0.01 * i, 0.01, Scheme::standalone, i});
       structure.solve(in);
       structure.accept_step();
     }

@@ -205,7 +205,8 @@ std::vector<EffectVerdict> verdicts(const std::string& pressure, double dt) {
   plate.initialise();
   const int steps = int(std::lround(2 / dt));
   for (int i = 0; i < steps; ++i) {
-    plate.begin_step({i * dt, dt, Scheme::standalone, i, 1, true, i + 1 == steps});
+    plate.begin_step(
+        {.time = i * dt, .dt = dt, .scheme = Scheme::standalone, .number = i, .is_last = i + 1 == steps});
     plate.solve({});
     plate.accept_step();
   }

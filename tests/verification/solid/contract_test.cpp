@@ -2,16 +2,14 @@
 // What the participant contract asks of the solid, on 1, 2 and 3 ranks.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "common/base/error.hpp"
-#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
+#include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
@@ -180,9 +178,6 @@ TEST_P(SolidContract, all_ranks_together_give_what_one_rank_gives) {
 }
 
 void expect_that_a_checkpoint_continues_bit_for_bit(BoxCells cells, MethodParameters method) {
-  const int process = static_cast<int>(max(MPI_COMM_WORLD, comm_rank(MPI_COMM_WORLD) == 0 ? getpid() : 0));
-  const auto file =
-      std::filesystem::temp_directory_path() / fmt::format("couplet-solid-contract-{}.h5", process);
   const Mesh mesh = distribute(MPI_COMM_WORLD, flap_mesh(cells));
   SolidParameters parameters = flap_parameters(mesh.dim);
   parameters.method = method;
@@ -191,7 +186,11 @@ void expect_that_a_checkpoint_continues_bit_for_bit(BoxCells cells, MethodParame
     const Interface interface = solid.initialise();
     Exchange out;
     for (int i = from; i < end; ++i) {
-      solid.begin_step({0.01 * i, 0.01, Scheme::implicit, i, then_ends && i + 1 == end});
+      solid.begin_step({.time = 0.01 * i,
+                        .dt = 0.01,
+                        .scheme = Scheme::implicit,
+                        .number = i,
+                        .is_last = then_ends && i + 1 == end});
       out = solid.solve(load_on(interface, 1 + i));
       solid.accept_step();
     }
@@ -200,19 +199,9 @@ void expect_that_a_checkpoint_continues_bit_for_bit(BoxCells cells, MethodParame
   const auto whole = make(), begun = make(), continued = make();
   const Exchange of_whole = advance(*whole, 0, 6, false);
   advance(*begun, 0, 3, true);
-  {
-    CheckpointWriter writer(MPI_COMM_WORLD, file);
-    begun->save(writer);
-    writer.close();
-  }
-  {
-    CheckpointReader reader(MPI_COMM_WORLD, file);
-    continued->load(reader);
-  }
+  support::SavedState(*begun).load_into(*continued);
   EXPECT_EQ(of_whole, advance(*continued, 3, 6, true));
   EXPECT_EQ(whole->stepper().state().cell_v, continued->stepper().state().cell_v);
-  MPI_Barrier(MPI_COMM_WORLD);
-  if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove(file);
 }
 
 TEST_P(SolidContract, a_loaded_checkpoint_continues_bit_for_bit) {

@@ -2,14 +2,12 @@
 // The thesis's own method at large strain: its printed deflections, frames, exactness, ranks, restart, refusals.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "common/base/error.hpp"
-#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
+#include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
@@ -160,16 +158,7 @@ TEST(UpdatedLagrangian, restart_in_the_middle_of_the_load_is_bit_for_bit) {
   const auto through = another(), before = another(), after = another();
   step(*through, 0.5);
   step(*before, 0.5);
-  int number = getpid();
-  MPI_Bcast(&number, 1, MPI_INT, 0, MPI_COMM_WORLD);
-  const auto file = std::filesystem::temp_directory_path() / fmt::format("updated-lagrangian-{}.h5", number);
-  {
-    CheckpointWriter writer(MPI_COMM_WORLD, file);
-    before->save(writer);
-    writer.close();
-  }
-  CheckpointReader reader(MPI_COMM_WORLD, file);
-  after->load(reader);
+  support::SavedState(*before).load_into(*after);
   step(*through, 0.5);
   step(*after, 0.5);
   EXPECT_EQ(through->stepper().state().cell_u, after->stepper().state().cell_u);
