@@ -3,6 +3,8 @@
 cells. At rest for icoFoam; swinging across the stream, with mesh motion by displacementLaplacian, for pimpleFoam."""
 from math import pi, sqrt
 
+from runs import put_foam
+
 RADIAL, QUARTER = 48, 40  # cells from the cylinder to the square around it, on a quarter of the cylinder
 RADIUS, CENTRE, HALF, DEPTH = 0.05, 0.2, 0.12, 0.01
 
@@ -52,32 +54,32 @@ def block_mesh():
             "defaultPatch{name frontAndBack;type empty;}\nmergePatchPairs ();"), cells, speeds
 
 
-def flow(case, foam_file, start, cylinder):
+def flow(case, start, cylinder):
     """Mesh, velocity and pressure at t = 0; gives the number of cells."""
     mesh, cells, speeds = block_mesh()
-    foam_file(case, "system/blockMeshDict", "dictionary", mesh)
+    put_foam(case, "system/blockMeshDict", "dictionary", mesh)
     inlet = f"nonuniform List<vector> {len(speeds)}({' '.join(f'({s:.9g} 0 0)' for s in speeds)})"
-    foam_file(case, "0/U", "volVectorField", f"""dimensions [0 1 -1 0 0 0 0]; internalField uniform ({start} 0);
+    put_foam(case, "0/U", "volVectorField", f"""dimensions [0 1 -1 0 0 0 0]; internalField uniform ({start} 0);
 boundaryField{{inlet{{type fixedValue;value {inlet};}} outlet{{type zeroGradient;}} walls{{type noSlip;}}
 cylinder{{{cylinder}}} frontAndBack{{type empty;}}}}""")
-    foam_file(case, "0/p", "volScalarField", """dimensions [0 2 -2 0 0 0 0]; internalField uniform 0;
+    put_foam(case, "0/p", "volScalarField", """dimensions [0 2 -2 0 0 0 0]; internalField uniform 0;
 boundaryField{inlet{type zeroGradient;} outlet{type fixedValue;value uniform 0;} walls{type zeroGradient;}
 cylinder{type zeroGradient;} frontAndBack{type empty;}}""")
     return cells
 
 
-def write_resting(case, foam_file, dt, end, tolerance):
+def write_resting(case, dt, end, tolerance):
     """All files of the case at rest (2D-2 of Schaefer and Turek) for icoFoam, forces in every step; gives the number of
     cells."""
-    cells = flow(case, foam_file, "1 0.2", "type noSlip;")
-    foam_file(case, "constant/transportProperties", "dictionary", "nu [0 2 -1 0 0 0 0] 0.001;")
-    foam_file(case, "system/fvSolution", "dictionary", f"""solvers{{p{{solver GAMG;smoother GaussSeidel;tolerance {tolerance};relTol 0.05;}}
+    cells = flow(case, "1 0.2", "type noSlip;")
+    put_foam(case, "constant/transportProperties", "dictionary", "nu [0 2 -1 0 0 0 0] 0.001;")
+    put_foam(case, "system/fvSolution", "dictionary", f"""solvers{{p{{solver GAMG;smoother GaussSeidel;tolerance {tolerance};relTol 0.05;}}
 pFinal{{$p;relTol 0;}} U{{solver smoothSolver;smoother symGaussSeidel;tolerance 1e-6;relTol 0;}}}}
 PISO{{nCorrectors 2;nNonOrthogonalCorrectors 0;}}""")
-    foam_file(case, "system/fvSchemes", "dictionary", """ddtSchemes{default backward;} gradSchemes{default Gauss linear;}
+    put_foam(case, "system/fvSchemes", "dictionary", """ddtSchemes{default backward;} gradSchemes{default Gauss linear;}
 divSchemes{default none;div(phi,U) Gauss linear;} laplacianSchemes{default Gauss linear corrected;}
 interpolationSchemes{default linear;} snGradSchemes{default corrected;}""")
-    foam_file(case, "system/controlDict", "dictionary", f"""application icoFoam; startFrom startTime; startTime 0;
+    put_foam(case, "system/controlDict", "dictionary", f"""application icoFoam; startFrom startTime; startTime 0;
 stopAt endTime; endTime {end}; deltaT {dt}; writeControl runTime; writeInterval {end}; writeFormat binary;
 timeFormat general; timePrecision 8; runTimeModifiable false;
 functions{{forces{{type forces;libs (forces);patches (cylinder);rho rhoInf;rhoInf 1;CofR (0 0 0);log false;
@@ -85,26 +87,26 @@ writeControl timeStep;writeInterval 1;}}}}""")
     return cells
 
 
-def write(case, foam_file, dt, steps, tolerance):
+def write(case, dt, steps, tolerance):
     """All files of the case; gives the number of cells."""
-    cells = flow(case, foam_file, "1 0", "type movingWallVelocity;value uniform (0 0 0);")
+    cells = flow(case, "1 0", "type movingWallVelocity;value uniform (0 0 0);")
     still = "type fixedValue;value uniform (0 0 0);"
-    foam_file(case, "0/pointDisplacement", "pointVectorField", f"""dimensions [0 1 0 0 0 0 0]; internalField uniform (0 0 0);
+    put_foam(case, "0/pointDisplacement", "pointVectorField", f"""dimensions [0 1 0 0 0 0 0]; internalField uniform (0 0 0);
 boundaryField{{inlet{{{still}}} outlet{{{still}}} walls{{{still}}} frontAndBack{{type empty;}}
 cylinder{{type oscillatingDisplacement;amplitude (0 0.02 0);omega {4 * pi:.10g};value uniform (0 0 0);}}}}""")
-    foam_file(case, "constant/dynamicMeshDict", "dictionary", """dynamicFvMesh dynamicMotionSolverFvMesh;
+    put_foam(case, "constant/dynamicMeshDict", "dictionary", """dynamicFvMesh dynamicMotionSolverFvMesh;
 motionSolverLibs (fvMotionSolvers); solver displacementLaplacian;
 displacementLaplacianCoeffs{diffusivity inverseDistance (cylinder);}""")
-    foam_file(case, "constant/transportProperties", "dictionary", "transportModel Newtonian; nu 0.001;")
-    foam_file(case, "constant/turbulenceProperties", "dictionary", "simulationType laminar;")
-    foam_file(case, "system/fvSolution", "dictionary", f"""solvers{{"(p|pcorr)"{{solver GAMG;smoother GaussSeidel;tolerance {tolerance};relTol 0.05;}}
+    put_foam(case, "constant/transportProperties", "dictionary", "transportModel Newtonian; nu 0.001;")
+    put_foam(case, "constant/turbulenceProperties", "dictionary", "simulationType laminar;")
+    put_foam(case, "system/fvSolution", "dictionary", f"""solvers{{"(p|pcorr)"{{solver GAMG;smoother GaussSeidel;tolerance {tolerance};relTol 0.05;}}
 "(pFinal|pcorrFinal)"{{$p;relTol 0;}} "U.*"{{solver smoothSolver;smoother symGaussSeidel;tolerance 1e-6;relTol 0;}}
 "cellDisplacement.*"{{solver PCG;preconditioner DIC;tolerance 1e-7;relTol 1e-3;}}}}
 PIMPLE{{nOuterCorrectors 1;nCorrectors 2;nNonOrthogonalCorrectors 0;correctPhi no;checkMeshCourantNo no;}}""")
-    foam_file(case, "system/fvSchemes", "dictionary", """ddtSchemes{default backward;} gradSchemes{default Gauss linear;}
+    put_foam(case, "system/fvSchemes", "dictionary", """ddtSchemes{default backward;} gradSchemes{default Gauss linear;}
 divSchemes{default none;div(phi,U) Gauss linear;div((nuEff*dev2(T(grad(U))))) Gauss linear;}
 laplacianSchemes{default Gauss linear corrected;} interpolationSchemes{default linear;} snGradSchemes{default corrected;}""")
-    foam_file(case, "system/controlDict", "dictionary", f"""application pimpleFoam; startFrom startTime; startTime 0;
+    put_foam(case, "system/controlDict", "dictionary", f"""application pimpleFoam; startFrom startTime; startTime 0;
 stopAt endTime; endTime {steps * dt:.10g}; deltaT {dt}; writeControl timeStep; writeInterval {steps}; writeFormat binary;
 timeFormat general; timePrecision 8; runTimeModifiable false;""")
     return cells

@@ -5,13 +5,10 @@ import pathlib
 import numpy as np
 
 from plate import POISSON, PRESSURE, THICKNESS, YOUNG, error, place
+from runs import foam_header, put_foam
 
 SOLVERS = {"GAMG": "solver GAMG; smoother GaussSeidel; nCellsInCoarsestLevel 20;",
            "PCG": "solver PCG; preconditioner DIC;"}
-
-
-def header(kind, name):
-    return f"FoamFile {{version 2.0; format ascii; class {kind}; object {name};}}\n"
 
 
 def write(folder, n, tolerance, solver="GAMG", relative=0.9):
@@ -22,7 +19,7 @@ def write(folder, n, tolerance, solver="GAMG", relative=0.9):
     write_mesh(folder / "constant/polyMesh", *n)
 
     def put(path, kind, text):
-        (folder / path).write_text(header(kind, path.split("/")[-1]) + text + "\n")
+        put_foam(folder, path, kind, text)
 
     free = "{type tractionDisplacement; traction uniform (0 0 0); pressure uniform %g; value uniform (0 0 0);}"
     put("0/D", "volVectorField",
@@ -87,7 +84,7 @@ def write_mesh(folder, nr, nt, nz):
         patches.append((name, kind, here if beyond else here[:, ::-1], cell(i, j, k)))
 
     def put(name, kind, lines, count):
-        (folder / name).write_text(header(kind, name) + f"{count}\n(\n" + "\n".join(lines) + "\n)\n")
+        (folder / name).write_text(foam_header(kind, name) + f"{count}\n(\n" + "\n".join(lines) + "\n)\n")
 
     whole = np.vstack([face] + [p[2] for p in patches])
     owners = np.concatenate([owner] + [p[3] for p in patches])

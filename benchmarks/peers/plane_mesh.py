@@ -5,6 +5,8 @@ import pathlib
 
 import numpy as np
 
+from runs import foam_header
+
 
 class PlaneMesh:
     """points: (n, 2); cells: lists of corners, counter-clockwise; edges: {patch: [(a, b), ...]}."""
@@ -112,8 +114,8 @@ class PlaneMesh:
         note = f'note "nPoints:{len(points)} nCells:{len(self.cells)} nFaces:{len(faces)} nInternalFaces:{len(inner)}";'
 
         def put(name, kind, entries):
-            text = f"FoamFile {{version 2.0; format ascii; class {kind}; {note} object {name};}}\n{len(entries)}\n("
-            (folder / name).write_text(text + "\n" + "\n".join(str(e) for e in entries) + "\n)\n")
+            text = foam_header(kind, name, note) + f"{len(entries)}\n(\n"
+            (folder / name).write_text(text + "\n".join(str(e) for e in entries) + "\n)\n")
         put("points", "vectorField", points)
         put("faces", "faceList", faces)
         put("owner", "labelList", owner)

@@ -3,7 +3,6 @@
 contenders run one thread, and other work on the machine disturbs these least). Plate of configs/elliptic-plate and vibrating
 beam of configs/vibrating-cantilever with solid_solver; the plate with OpenFOAM's solidDisplacementFoam and CalculiX, the bent
 beam with CalculiX."""
-import os
 import pathlib
 import re
 import shutil
@@ -16,8 +15,9 @@ import calculix_beam  # noqa: E402
 import calculix_plate  # noqa: E402
 import openfoam_plate  # noqa: E402
 import plate as geometry  # noqa: E402
-from couplet_run import Results, environment, launch  # noqa: E402
+from couplet_run import Results, launch  # noqa: E402
 from couplet_series import read_csv  # noqa: E402
+from runs import foam_environment  # noqa: E402
 
 METHODS = {  # keys of solution-method as in the thesis's table 3.1, and ours; its tolerance
     "S": "type: segregated, acceleration: none, face-gradient: thesis",
@@ -32,7 +32,7 @@ METHODS = {  # keys of solution-method as in the thesis's table 3.1, and ours; i
 def cost(command, folder):
     """What a program takes, with its output."""
     log = pathlib.Path(folder) / "race.log"
-    taken = launch(command, log, folder, env=dict(environment(), WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam")))
+    taken = launch(command, log, folder, env=foam_environment())
     taken.output = log.read_text(errors="replace")
     return taken
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """OpenFOAM's icoFoam on the same mesh for the pictures of scripts/study: (processor seconds, error); left out where it is not
 installed. Its step keeps the largest Courant number below 0.7, as fluid_solver's sub-steps do by themselves."""
-import json
-import os
 import pathlib
 import re
 import shutil
@@ -15,8 +13,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers"), str(HERE)]
 import coefficients  # noqa: E402
-from couplet_run import environment, launch  # noqa: E402
+from couplet_run import launch  # noqa: E402
 from plane_mesh import PlaneMesh  # noqa: E402
+from runs import foam_environment, once, put_foam  # noqa: E402
 
 DEPTH, NU, COURANT = 0.01, 1e-3, 0.7
 FLOWS = {  # mean speed, end, velocity at the start (across the channel in the place of the gust that our case sets the street going with), sizes
@@ -77,11 +76,8 @@ def icofoam(folder, flow, n):
     mesh = PlaneMesh(folder / "mesh.msh")
     middles = mesh.write_foam(folder, DEPTH, {"inlet": "patch", "outlet": "patch", "walls": "wall", "cylinder": "wall"})
     for path, (kind, text) in files(mesh, middles["inlet"], speed, end, start).items():
-        file = folder / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(f"FoamFile{{version 2.0;format ascii;class {kind};object {file.name};}}\n{text}\n")
-    env = dict(environment(), WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"))
-    cost = launch(["icoFoam"], folder / "run.log", folder, env=env)
+        put_foam(folder, path, kind, text)
+    cost = launch(["icoFoam"], folder / "run.log", folder, env=foam_environment())
     return cost.cpu, numbers(folder, flow)
 
 
@@ -90,13 +86,7 @@ def of(flow, quantity):
         """[(name, [(seconds, error)])]; each run is made once, for both quantities."""
         found = []
         for n in FLOWS[flow][3] if shutil.which("icoFoam") and shutil.which("gmsh") else ():
-            place = pathlib.Path(folder) / f"icoFoam-{flow}-{n}"
-            record = place / "record.json"
-            if not record.exists():
-                shutil.rmtree(place, ignore_errors=True)
-                place.mkdir(parents=True)
-                record.write_text(json.dumps(icofoam(place, flow, n)))
-            seconds, values = json.loads(record.read_text())
+            seconds, values = once(pathlib.Path(folder) / f"icoFoam-{flow}-{n}", lambda place, n=n: icofoam(place, flow, n))
             found.append((seconds, abs(values[quantity] / REFERENCES[quantity] - 1)))
         return [("icoFoam", found)] if found else []
     return points

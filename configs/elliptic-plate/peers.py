@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """CalculiX and OpenFOAM on the same plate for the picture of scripts/study: (processor seconds, error of the displacement);
 what is not installed is left out."""
-import json
-import os
 import pathlib
 import shutil
 import sys
@@ -11,14 +9,15 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
 import calculix_plate  # noqa: E402
 import openfoam_plate  # noqa: E402
-from couplet_run import environment, launch  # noqa: E402
+from couplet_run import launch  # noqa: E402
+from runs import foam_environment, once  # noqa: E402
 
 MESHES = ((4, 6, 3), (8, 12, 6), (16, 24, 12))
 
 
 def foam(folder, n):
     openfoam_plate.write(folder, n, 1e-5, "GAMG", 0.9)
-    env = dict(environment(), WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"))
+    env = foam_environment()
     cost = launch(["solidDisplacementFoam"], folder / "run.log", folder, env=env)
     return cost.cpu, float(openfoam_plate.plate_error(folder, n))
 
@@ -42,13 +41,7 @@ def displacement(folder):
     for name, program, run, meshes in PEERS:
         points = []
         for n in meshes if shutil.which(program) else ():
-            place = pathlib.Path(folder) / f"{name}-{n[0]}".replace(" ", "-")
-            record = place / "record.json"
-            if not record.exists():
-                shutil.rmtree(place, ignore_errors=True)
-                place.mkdir(parents=True)
-                record.write_text(json.dumps(run(place, n)))
-            points.append(tuple(json.loads(record.read_text())))
+            points.append(tuple(once(pathlib.Path(folder) / f"{name}-{n[0]}", lambda place, run=run, n=n: run(place, n))))
         if points:
             found.append((name, points))
     return found

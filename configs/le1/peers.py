@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """CalculiX (bricks) and OpenFOAM's solidDisplacementFoam on the same mesh for the picture of scripts/study:
 (processor seconds, error of the stress at D); what is not installed is left out."""
-import json
-import os
 import pathlib
 import re
 import shutil
@@ -14,8 +12,9 @@ import numpy as np
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
-from couplet_run import environment, launch  # noqa: E402
+from couplet_run import launch  # noqa: E402
 from plane_mesh import PlaneMesh  # noqa: E402
+from runs import foam_environment, once, put_foam  # noqa: E402
 
 SIZES = (16, 32, 64)
 YOUNG, POISSON, PULL, STRESS = 210e9, 0.3, 1e7, 92.66e6
@@ -62,8 +61,8 @@ def foam(folder, n):
     mesh.write_foam(folder, DEPTH, {"symmetry-x": "symmetryPlane", "symmetry-y": "symmetryPlane", "outer": "patch", "inner": "patch"})
 
     def put(path, kind, text):
-        (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        (folder / path).write_text(f"FoamFile {{version 2.0; format ascii; class {kind}; object {path.split('/')[-1]};}}\n{text}\n")
+        put_foam(folder, path, kind, text)
+
     free = "{type tractionDisplacement; traction uniform (0 0 0); pressure uniform %g; value uniform (0 0 0);}"
     put("0/D", "volVectorField", "dimensions [0 1 0 0 0 0 0]; internalField uniform (0 0 0); boundaryField {symmetry-x {type symmetryPlane;} "
         f"symmetry-y {{type symmetryPlane;}} inner {free % 0} outer {free % -PULL} frontAndBack {{type empty;}}}}")
@@ -77,7 +76,7 @@ def foam(folder, n):
         "laplacian(DT,T) Gauss linear corrected;} interpolationSchemes {default linear;} snGradSchemes {default none;}")
     put("system/controlDict", "dictionary", "application solidDisplacementFoam; startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1; "
         "writeControl timeStep; writeInterval 1; writeFormat ascii; writePrecision 10; timeFormat general;")
-    env = dict(environment(), WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"))
+    env = foam_environment()
     cost = launch(["solidDisplacementFoam"], folder / "run.log", folder, env=env)
     return cost.cpu, error(stress_at_d(folder, mesh))
 
@@ -107,13 +106,7 @@ def stress(folder):
     for name, program, run in PEERS:
         points = []
         for n in SIZES if shutil.which(program) and shutil.which("gmsh") else ():
-            place = pathlib.Path(folder) / f"{name}-{n}".replace(" ", "-")
-            record = place / "record.json"
-            if not record.exists():
-                shutil.rmtree(place, ignore_errors=True)
-                place.mkdir(parents=True)
-                record.write_text(json.dumps(run(place, n)))
-            points.append(tuple(json.loads(record.read_text())))
+            points.append(tuple(once(pathlib.Path(folder) / f"{name}-{n}", lambda place, run=run, n=n: run(place, n))))
         if points:
             found.append((name, points))
     return found

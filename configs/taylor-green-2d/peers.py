@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """OpenFOAM's icoFoam on the same cells and steps for the picture of scripts/study: (processor seconds, error of the velocity); left
 out where it is not installed."""
-import json
 import math
-import os
 import pathlib
 import re
 import shutil
@@ -12,8 +10,9 @@ import sys
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
-from couplet_run import environment, launch  # noqa: E402
+sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
+from couplet_run import launch  # noqa: E402
+from runs import foam_environment, once, put_foam  # noqa: E402
 
 SIZES = (16, 32, 64, 128)
 NU, END = 0.05, 2.0
@@ -54,10 +53,8 @@ def files(n):
 def icofoam(folder, n):
     """The mesh is made before the clock starts."""
     for path, (kind, text) in files(n).items():
-        file = folder / path
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(f"FoamFile{{version 2.0;format ascii;class {kind};object {file.name};}}\n{text}\n")
-    env = dict(environment(), WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"))
+        put_foam(folder, path, kind, text)
+    env = foam_environment()
     launch(["blockMesh"], folder / "mesh.log", folder, env=env)
     cost = launch(["icoFoam"], folder / "run.log", folder, env=env)
     last = max((f for f in folder.iterdir() if re.fullmatch(r"[0-9.]+", f.name)), key=lambda f: float(f.name))
@@ -72,11 +69,5 @@ def velocity(folder):
     """[(name, [(seconds, error)])]; each run is made once."""
     points = []
     for n in SIZES if shutil.which("icoFoam") and shutil.which("blockMesh") else ():
-        place = pathlib.Path(folder) / f"icoFoam-{n}"
-        record = place / "record.json"
-        if not record.exists():
-            shutil.rmtree(place, ignore_errors=True)
-            place.mkdir(parents=True)
-            record.write_text(json.dumps(icofoam(place, n)))
-        points.append(tuple(json.loads(record.read_text())))
+        points.append(tuple(once(pathlib.Path(folder) / f"icoFoam-{n}", lambda place, n=n: icofoam(place, n))))
     return [("icoFoam", points)] if points else []

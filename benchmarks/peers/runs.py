@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the runs of peers have in common: each is made once, and OpenFOAM wants a header in every file."""
+import json
+import os
+import pathlib
+import shutil
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT / "scripts")]
+from couplet_run import environment  # noqa: E402
+
+
+def once(folder, make):
+    """What make(folder) returned (as JSON has it), kept in the folder for the next time."""
+    folder = pathlib.Path(str(folder).replace(" ", "-"))
+    record = folder / "record.json"
+    if not record.exists():
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        record.write_text(json.dumps(make(folder)))
+    return json.loads(record.read_text())
+
+
+def foam_environment():
+    return dict(environment(), WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"))
+
+
+def foam_header(kind, name, note=""):
+    return f"FoamFile {{version 2.0; format ascii; class {kind}; {note} object {name};}}\n"
+
+
+def put_foam(folder, path, kind, text):
+    """A file of a case, its folder made where there is none."""
+    file = pathlib.Path(folder) / path
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(foam_header(kind, file.name) + text + "\n")
