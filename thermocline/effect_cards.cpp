@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -58,6 +59,16 @@ V judge_capacity(const P&, const E& e) {
       fmt::format("give 'fluid.specific-heat: {:.0f} J/(kg K)'", e.mean_capacity)};
 }
 
+V judge_pressure(const P&, const E& e) {
+  if (std::isnan(e.pumping_share)) return {};
+  return EffectVerdict{
+      "", e.pumping_share, 0.02,
+      fmt::format(
+          "at the largest flow the bed's pressure loss of {:.3g} kPa takes {:.2g} of the heat that the flow carries",
+          1e-3 * e.pressure_loss, e.pumping_share),
+      "give 'pump: {}', or look at flow and grains: no store is driven so hard"};
+}
+
 // First order in time: a front of speed v is spread as by a diffusion v^2 dt / 2, over the way H by sqrt(v dt H). Four
 // hundred steps a crossing are 0.05 (and within 0.1 % of Schumann's gas bed, docs/validation/tank-tables.md).
 V judge_implicit(const P&, const E& e) {
@@ -84,6 +95,21 @@ const std::array cards{
          "spread of a front by the step over the bed's height, 0.05",
          judge_implicit,
          true},
+    Card{"pressure loss of the bed",
+         "`pump`",
+         [](const P& p) { return when(p, p.tank.pump.has_value(), "pump"); },
+         {"Ergun's equation in each step of the bed", 0, 0},
+         "power of a pump or fan over the heat that the largest flow carries, 0.02",
+         judge_pressure},
+    Card{"melting capsules",
+         "`bed.layers[].melting`",
+         [](const P& p) {
+           const auto& layers = p.tank.bed.layers;
+           return when(p,
+                       std::any_of(layers.begin(), layers.end(), [](const BedLayer& l) { return l.melting; }),
+                       "bed.layers[].melting");
+         },
+         {"Newton's method on the heat of the shells of all cells", 0, 0}},
     Card{"yielding of the wall",
          "no key: not in the model",
          [](const P&) { return std::string(); },

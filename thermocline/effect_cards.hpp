@@ -19,6 +19,9 @@ struct Evidence {
   /// Of a gas: by what share the mean specific heat between the coldest and the hottest fluid differs from the
   /// constant that the run counts with, and that mean [J/(kg K)].
   double capacity_error = unknown, mean_capacity = unknown;
+  /// Of the largest flow: the power of a pump or fan over the heat that it carries between the coldest and the hottest fluid,
+  /// and the pressure loss [Pa].
+  double pumping_share = unknown, pressure_loss = unknown;
   double share_of_yield = unknown;  ///< largest equivalent stress of the wall over its yield strength
 };
 using Card = EffectCard<ElementParameters, Evidence>;

@@ -157,6 +157,14 @@ void TankModel::watch(double t) {
                     "where it freezes. "
                     "Raise the inlet temperature, insulate the tank, or choose another fluid.",
                     t, f.name, *low - zero_celsius, place(low), f.lowest - zero_celsius));
+  const double slack = 0.1 * (f.known_to - f.known_from);
+  const auto outside = *low < f.known_from - slack ? low : high;
+  if ((*outside < f.known_from - slack || *outside > f.known_to + slack) &&
+      !std::exchange(warned_fluid_, true))
+    warnings_.push_back(fmt::format(
+        "t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m; its conductivity and viscosity are given "
+        "from {:.1f} to {:.1f} degC (fluid.temperature), beyond them those of the nearer end are used.",
+        t, f.name, celsius(*outside), place(outside), celsius(f.known_from), celsius(f.known_to)));
   if (shell_) watch_wall(t);
 }
 

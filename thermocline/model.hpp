@@ -144,7 +144,8 @@ class TankModel {
   Ledger ledger_;
   Worst inversion_;
   double coldest_ = std::numeric_limits<double>::infinity(), hottest_ = 0;
-  bool warned_hot_ = false, warned_cold_ = false, warned_metal_ = false, warned_range_ = false;
+  bool warned_hot_ = false, warned_cold_ = false, warned_metal_ = false, warned_range_ = false,
+       warned_fluid_ = false;
   std::vector<std::string> warnings_;
 };
 

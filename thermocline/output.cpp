@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace couplet::thermocline {
 namespace {
@@ -35,21 +36,30 @@ TankOutputFiles::TankOutputFiles(const TankModel& model, const std::filesystem::
     ground_ = std::make_unique<Series>(
         folder / "ground.csv", std::vector<std::string>{"time [s]", "depth [m]", "temperature [degC]"},
         restart_time);
+  // A run that goes on writes where the one before would have.
+  if (!std::isnan(restart_time)) next_ = after(restart_time);
+}
+
+double TankOutputFiles::after(double time) const {
+  return interval_ > 0 ? (std::floor(time / interval_ * (1 + 1e-12)) + 1) * interval_ : 0;
 }
 
 void TankOutputFiles::monitor(const TankModel& model, double time, const BedStep& last) {
   if (time < next_ - 1e-9 * interval_) return;
-  if (interval_ > 0) next_ = (std::floor(time / interval_ * (1 + 1e-12)) + 1) * interval_;
+  next_ = after(time);
   double worst = 0, place = 0;
   const WallStress& s = model.stress();
   for (std::size_t i = 0; i < s.equivalent.size(); ++i)
     if (s.equivalent[i] > worst * s.yield[i])
       worst = s.equivalent[i] / s.yield[i], place = model.setup().rings->z[i];
   const Ledger& l = model.ledger();
+  // At rest nothing comes in and nothing leaves.
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const bool flows = last.flow.mass_flow != 0;
   std::vector<double> row{time,
                           last.flow.mass_flow,
-                          celsius(last.flow.inlet_temperature),
-                          celsius(last.outlet_temperature),
+                          flows ? celsius(last.flow.inlet_temperature) : none,
+                          flows ? celsius(last.outlet_temperature) : none,
                           celsius(model.bed().top()),
                           celsius(model.bed().bottom()),
                           l.flow,

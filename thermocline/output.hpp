@@ -19,6 +19,9 @@ class TankOutputFiles {
   void profiles(const TankModel& model, double time);
 
  private:
+  /// When the next row is due behind one at this time [s].
+  double after(double time) const;
+
   Series tank_, bed_;
   std::unique_ptr<Series> wall_, ground_;
   double interval_, next_ = 0;

@@ -38,9 +38,8 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
 
 std::string problem_of_profile(const BedParameters& p) {
   if (p.profile_z.size() != p.profile_temperature.size()) return "needs as many values as profile-z";
-  if (std::adjacent_find(p.profile_z.begin(), p.profile_z.end(), std::greater_equal<>()) != p.profile_z.end())
-    return "profile-z must grow from value to value";
-  return "";
+  const bool grows = std::is_sorted(p.profile_z.begin(), p.profile_z.end(), std::less_equal<>());
+  return grows ? "" : "profile-z must grow from value to value";
 }
 
 void check_together(config::Section& s, TankParameters& p) {
@@ -86,6 +85,9 @@ void check_together(config::Section& s, TankParameters& p) {
       "bed");
   s.check([&p] { return forgotten_unit_of_bed(p); }, "bed");
   s.check([&p] { return forgotten_unit_of_flow(p); }, "flow");
+  s.check([&p] { return slip_in_tank(p.bed, p.diameter); }, "diameter");
+  s.check([&p] { return slip_in_fluid(p.fluid, p.bed.advection); }, "fluid");
+  s.check([&p] { return slip_in_filler(p.filler); }, "filler");
   s.check([&p] { return slip_in_bed(p.bed, p.diameter); }, "bed");
   s.check([&p] { return p.shell ? slip_in_plates(*p.shell, p.diameter) : ""; }, "shell");
   s.check([&p] { return p.insulation ? slip_in_insulation(*p.insulation, p.diameter) : ""; }, "insulation");

@@ -11,6 +11,8 @@ std::string slip_in_bed(const BedParameters& bed, double diameter) {
   constexpr double largest_grain = 1;  // [m]
   for (std::size_t i = 0; i < bed.layers.size(); ++i) {
     const BedLayer& layer = bed.layers[i];
+    if (const std::string slip = layer.filler ? slip_in_filler(*layer.filler) : ""; !slip.empty())
+      return fmt::format("layers[{}].filler.{}", i, slip);
     const double most = std::min(diameter, largest_grain);
     if (layer.porosity < 1 && layer.diameter >= most)
       return fmt::format(
@@ -24,6 +26,47 @@ std::string slip_in_bed(const BedParameters& bed, double diameter) {
           "write '{:g} kJ/kg' if that is meant",
           i, layer.melting->latent_heat, layer.melting->latent_heat);
   }
+  return "";
+}
+
+std::string slip_in_tank(const BedParameters& bed, double diameter) {
+  constexpr double largest = 300;  // [m]
+  double height = 0;
+  for (const BedLayer& layer : bed.layers) height += layer.height;
+  if (diameter <= largest && height <= largest) return "";
+  return fmt::format(
+      "a bed {:g} m high in a tank of {:g} m: expected {:g} m at most. A number without a unit is in metres",
+      height, diameter, largest);
+}
+
+std::string slip_in_filler(const Filler& f) {
+  constexpr double lightest = 50, heaviest = 25000,
+                   least_heat = 100;  // SI; a conductivity may be as large as one likes
+  if (f.density < lightest || f.density > heaviest)
+    return fmt::format(
+        "density is {:g} kg/m^3: expected {:g} to {:g}. A number without a unit is in kg/m^3; write '{:g} kg/l' if that is meant",
+        f.density, lightest, heaviest, f.density);
+  if (f.specific_heat < least_heat)
+    return fmt::format(
+        "specific-heat is {:g} J/(kg K), less than any solid's. A number without a unit is in J/(kg K); write '{:g} kJ/(kg K)' "
+        "if that is meant",
+        f.specific_heat, f.specific_heat);
+  return "";
+}
+
+std::string slip_in_fluid(const FluidParameters& p, Advection advection) {
+  if (p.type != FluidParameters::Type::custom) return "";
+  constexpr double least_heat = 100, lightest_liquid = 50;  // SI
+  if (p.specific_heat < least_heat)
+    return fmt::format(
+        "specific-heat is {:g} J/(kg K), less than any fluid's. A number without a unit is in J/(kg K); write '{:g} kJ/(kg K)' "
+        "if that is meant",
+        p.specific_heat, p.specific_heat);
+  if (p.density < lightest_liquid && advection != Advection::implicit)
+    return fmt::format(
+        "density is {:g} kg/m^3, that of a gas, which needs bed.advection: implicit. A number without a unit is in kg/m^3; write "
+        "'{:g} kg/l' if that is meant",
+        p.density, p.density);
   return "";
 }
 

@@ -9,6 +9,9 @@
 /// refusal with the number, or nothing.
 namespace couplet::thermocline {
 
+std::string slip_in_tank(const BedParameters& bed, double diameter);
+std::string slip_in_fluid(const FluidParameters& fluid, Advection advection);
+std::string slip_in_filler(const Filler& filler);
 std::string slip_in_bed(const BedParameters& bed, double diameter);
 std::string slip_in_plates(const ShellParameters& shell, double diameter);
 std::string slip_in_insulation(const InsulationParameters& insulation, double diameter);

@@ -128,13 +128,15 @@ Fluid make_fluid(const FluidParameters& p) {
     known.real_density = p.real_density;
     return known;
   }
-  return {"fluid",
-          p.density,
-          p.specific_heat,
-          Table(p.temperature, p.conductivity),
-          Table(p.temperature, p.viscosity),
-          p.lowest,
-          p.highest};
+  Fluid own{"fluid",
+            p.density,
+            p.specific_heat,
+            Table(p.temperature, p.conductivity),
+            Table(p.temperature, p.viscosity),
+            p.lowest,
+            p.highest};
+  if (p.temperature.size() > 1) own.known_from = p.temperature.front(), own.known_to = p.temperature.back();
+  return own;
 }
 
 Steel make_steel(const SteelParameters& p) {

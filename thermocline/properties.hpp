@@ -42,6 +42,7 @@ struct Fluid {
   std::optional<DensityLaw> real = {};         // what the density really does, where that is known
   bool real_density = false;                   // the tank follows it
   double gas_constant = 0, pressure = 101325;  // of an ideal gas [J/(kg K)], [Pa]; 0: a liquid
+  double known_from = 0, known_to = 1e4;       // range of the tables of one's own [K]
   bool is_gas() const { return gas_constant > 0; }
   double volumetric() const { return density * specific_heat; }
   double density_at(double kelvin) const { return real_density ? real->at(kelvin) : density; }

@@ -201,7 +201,7 @@ StepReport Tank::accept_step() {
     peak_advance_ = std::max(peak_advance_, std::abs(s.flow.mass_flow) * s.dt);
   }
   for (const std::string& sentence : accepted_.take_warnings())
-    if (files_) log::warn("{}", sentence);
+    log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
   if (!observers_.empty()) {
     accepted_.bed().filler_temperature(filler_);
     const TankRecord r = record();

@@ -6,10 +6,13 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "tests/verification/thermocline/tank_case.hpp"
+#include "thermocline/output.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -197,6 +200,57 @@ TEST(Schedule, repeats_its_rows_and_stops_at_the_outlet) {
   EXPECT_EQ(s.decide(10 * 24 * hour + hour, hot, cold, air).mass_flow, -70);
   EXPECT_EQ(s.decide(10 * 24 * hour + hour, hot, cold, air).until, 10 * 24 * hour + 9 * hour);
   EXPECT_EQ(s.decide(10 * 24 * hour + 12 * hour, hot, cold, air).mass_flow, 70);
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(Monitor, a_run_that_goes_on_writes_the_rows_of_one_that_was_not_stopped) {
+  TankParameters p = solar_one_parameters();
+  p.bed.cells = 10;
+  p.output.monitor_interval = 600;
+  const TankRun run(p);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "monitor";
+  for (const double stop : {none, 610.0, 1195.0, 1200.0}) {
+    std::filesystem::remove_all(folder / "b");
+    for (const char* name : {"a", "b"}) std::filesystem::create_directories(folder / name);
+    auto files =
+        std::make_unique<TankOutputFiles>(run.model(), folder / (std::isnan(stop) ? "a" : "b"), none);
+    BedStep step;
+    for (double t = 5; t < 3000; t += 5) {
+      step.flow.mass_flow = t < 1000 ? 5 : 0;
+      files->monitor(run.model(), t, step);
+      if (t == stop) files = std::make_unique<TankOutputFiles>(run.model(), folder / "b", stop);
+    }
+    files.reset();
+    if (!std::isnan(stop))
+      EXPECT_EQ(text_of(folder / "a" / "tank.csv"), text_of(folder / "b" / "tank.csv")) << stop;
+  }
+  const std::string text = text_of(folder / "a" / "tank.csv");
+  EXPECT_NE(text.find("\n600,5,20,20,"), std::string::npos) << text;
+  EXPECT_NE(text.find("\n1200,0,nan,nan,"), std::string::npos) << "nothing comes in at rest";
+}
+
+TEST(Warnings, a_fluid_outside_the_range_of_its_own_tables_is_named_once) {
+  TankParameters p = solar_one_parameters();
+  p.bed.cells = 20;
+  p.fluid.type = FluidParameters::Type::custom;
+  p.fluid.density = 700, p.fluid.specific_heat = 2700;
+  p.fluid.temperature = {200, 300};  // degC were meant
+  p.fluid.conductivity = {0.1, 0.1}, p.fluid.viscosity = {1e-3, 5e-4};
+  TankRun run(p);
+  run.until(1800, 900);
+  const auto said = run.tank.take_warnings();
+  ASSERT_EQ(said.size(), 1u);
+  EXPECT_NE(said[0].find("conductivity and viscosity are given from -73.1 to 26.9 degC"), std::string::npos)
+      << said[0];
+  p.fluid.temperature = {kelvin(200), kelvin(300)};
+  TankRun inside(p);
+  inside.until(1800, 900);
+  EXPECT_TRUE(inside.tank.take_warnings().empty());
 }
 
 TEST(Warnings, a_wall_outside_the_range_of_its_table_is_named_once_with_time_and_place) {
