@@ -55,11 +55,14 @@ void declare(config::Section& s, MethodParameters& m) {
   s.choice("preconditioner", m.preconditioner,
            {{"auto", Preconditioner::automatic},
             {"multigrid", Preconditioner::multigrid},
-            {"factors", Preconditioner::factors}})
+            {"factors", Preconditioner::factors},
+            {"mixed", Preconditioner::mixed}})
       .doc(
           "of newton-krylov; multigrid: compact component-wise operator and rigid motions of aggregates; "
           "factors: LU of "
-          "the thesis's operator (symmetric: Cholesky of its own), kept for all steps of one size");
+          "the thesis's operator (symmetric: Cholesky of its own), kept for all steps of one size; mixed: of the symmetric "
+          "gradient with one volume strain a cell, whose mean stresses become unknowns too, so that nu close to 0.5 costs "
+          "hardly more iterations than 0.3; auto: factors of small bodies, else mixed from nu = 0.49 up, else multigrid");
   s.choice(
        "acceleration", m.acceleration,
        {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}})

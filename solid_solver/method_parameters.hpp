@@ -10,7 +10,7 @@ struct MethodParameters {
   enum class Type { automatic, block_coupled, segregated, newton_krylov };
   enum class FaceGradient { automatic, thesis, corrected, symmetric };
   enum class LinearSolver { automatic, direct, bicgstab_ilu, gmres_multigrid };
-  enum class Preconditioner { automatic, multigrid, factors };
+  enum class Preconditioner { automatic, multigrid, factors, mixed };
   enum class Acceleration { none, aitken, anderson };
   enum class Predictor { none, euler, adams };
   enum class VolumeStrain { automatic, faces, cells, shared };

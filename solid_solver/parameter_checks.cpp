@@ -106,6 +106,10 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
   const bool is_dynamic = p.analysis == SolidParameters::Analysis::dynamic;
   refuse("solution-method", p.method.volume_strain == MethodParameters::VolumeStrain::shared,
          "finite strain takes 'volume-strain: faces' or 'cells' and no share of both");
+  refuse(
+      "solution-method", p.method.preconditioner == MethodParameters::Preconditioner::mixed,
+      "'preconditioner: mixed' is that of small strain; at finite strain Newton's method carries the pressures of cells by "
+      "itself from nu = 0.48 up");
   refuse("plane", p.dimension == 2 && p.plane == SolidParameters::Plane::stress,
          "finite strain knows plane strain only; model the sheet in 3-D");
   refuse("thermal-expansion", p.expansion.has_value(), "finite strain has no thermal strain");

@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/block_coupled.hpp"
+#include "solid_solver/mixed_form.hpp"
 #include "solid_solver/newton_krylov.hpp"
 #include "solid_solver/segregated.hpp"
 
@@ -19,6 +21,30 @@ using Preconditioner = MethodParameters::Preconditioner;
 
 // Cells up to which factors kept for all steps win: in the plane they stay thin, in space they fill quickly.
 constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 1500;
+
+// K / mu from which conjugate gradients need more time than the mixed form, or never end: nu = 0.49.
+constexpr double bulk_of_mixed_form = 49;
+
+bool wants_mixed_form(const SolidProblem& problem) {
+  if (!problem.elastic.volume_by_cells()) return false;
+  double ratio = 0;
+  for (Index c = 0; c < problem.mesh.cells.n_owned(); ++c) {
+    const LameConstants lame = problem.elastic.lame(c);
+    ratio = std::max(ratio, bulk_modulus(lame) / lame.mu);
+  }
+  return max(problem.mesh.comm, ratio) >= bulk_of_mixed_form;
+}
+
+/// The mixed form has pressures where the volume strain is that of cells.
+void check_mixed_form(const SolidProblem& problem, const MethodParameters& parameters) {
+  if (parameters.preconditioner != Preconditioner::mixed) return;
+  if (!problem.is_symmetric())
+    throw Error("solution-method: 'preconditioner: mixed' goes with 'face-gradient: symmetric'.");
+  if (!problem.elastic.volume_by_cells())
+    throw Error(
+        "solution-method: 'preconditioner: mixed' needs 'volume-strain: cells' or 'shared' ('auto' takes cells from nu = 0.4 "
+        "up): the volume strain of faces leaves no mean stress of cells.");
+}
 
 /// Fills in what is left to the program; gives the reason.
 std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
@@ -33,7 +59,9 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
           "newton-krylov' or "
           "'auto'); 'segregated' and 'block-coupled' are those of 'face-gradient: thesis' and 'corrected'.");
     if (parameters.preconditioner == Preconditioner::automatic)
-      parameters.preconditioner = small ? Preconditioner::factors : Preconditioner::multigrid;
+      parameters.preconditioner = small                       ? Preconditioner::factors
+                                  : wants_mixed_form(problem) ? Preconditioner::mixed
+                                                              : Preconditioner::multigrid;
     parameters.type = Type::newton_krylov;
     return asked_automatic ? fmt::format("{} cells in {}-D", cells, problem.mesh.dim) : "";
   }
@@ -69,6 +97,7 @@ void SolidProblem::residual(std::span<const double> b, std::span<const double> u
 std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
                                                      const MethodParameters& asked) {
   MethodParameters parameters = asked;
+  check_mixed_form(problem, parameters);
   const std::string why = decide(problem, parameters);
   std::unique_ptr<SolutionMethod> method;
   switch (parameters.type) {
@@ -76,7 +105,10 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
       method = std::make_unique<Segregated>(problem, parameters);
       break;
     case Type::newton_krylov:
-      method = std::make_unique<NewtonKrylov>(problem, parameters);
+      if (parameters.preconditioner == Preconditioner::mixed)
+        method = std::make_unique<MixedForm>(problem, parameters);
+      else
+        method = std::make_unique<NewtonKrylov>(problem, parameters);
       break;
     default:
       method = std::make_unique<BlockCoupled>(problem, parameters);

@@ -64,4 +64,10 @@ std::vector<Vec3> ElasticKernel::holding_forces(std::span<const double> unknowns
   return implementation_->holding_forces(unknowns, known, loads);
 }
 
+void ElasticKernel::apply_mixed(std::span<const double> unknowns, std::span<const double> pressure,
+                                double mass_factor, std::span<double> result,
+                                std::span<double> defect) const {
+  implementation_->apply_mixed(unknowns, pressure, mass_factor, result, defect);
+}
+
 }  // namespace couplet

@@ -94,6 +94,13 @@ class ElasticKernel {
   /// this rank's part. Of the symmetric kernel alone. Collective.
   std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                    const ElasticLoads& loads) const;
+  /// The mixed form [boffi2013], whose unknowns are also the mean stresses p [Pa] of the owned cells, with supports
+  /// that rest:
+  ///   result = K' u + mass_factor M u + B^T p,   defect = B u - (V / K_P) p [m^3],   B u = V theta of the cells,
+  /// K' being K without the bulk modulus K_P that acts on the volume strain of cells (bulk_of_cells). defect = 0 makes
+  /// result = K u. Of the symmetric kernel with ElasticOperator::volume_by_cells() alone. Collective.
+  void apply_mixed(std::span<const double> unknowns, std::span<const double> pressure, double mass_factor,
+                   std::span<double> result, std::span<double> defect) const;
 
   class Implementation;
 

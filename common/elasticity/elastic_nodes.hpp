@@ -38,6 +38,9 @@ class ElasticKernel::Implementation {
                                            std::span<const double> /*known*/, const ElasticLoads& /*loads*/) {
     return {};
   }
+  virtual void apply_mixed(std::span<const double> /*unknowns*/, std::span<const double> /*pressure*/,
+                           double /*mass_factor*/, std::span<double> /*result*/,
+                           std::span<double> /*defect*/) {}
 };
 
 std::unique_ptr<ElasticKernel::Implementation> make_thesis_kernel(const Mesh& mesh,

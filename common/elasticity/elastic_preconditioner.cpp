@@ -14,8 +14,8 @@ using Lanes = ComponentMultigrid::Lanes;
 /// Two-point rows of the owned cells; boundary and partition faces stand on the diagonal only.
 class CompactRows {
  public:
-  CompactRows(const Mesh& mesh, const ElasticOperator& rows, double boundary_factor)
-      : mesh_(mesh), rows_(rows), boundary_factor_(boundary_factor) {}
+  CompactRows(const Mesh& mesh, const ElasticOperator& rows, double boundary_factor, VolumeStrain left_out)
+      : mesh_(mesh), rows_(rows), boundary_factor_(boundary_factor), left_out_(left_out) {}
 
   ComponentMultigrid::Rows make(std::span<const double> inertia);
 
@@ -33,10 +33,11 @@ class CompactRows {
   const Mesh& mesh_;
   const ElasticOperator& rows_;
   double boundary_factor_;
+  VolumeStrain left_out_;
 };
 
 Lanes CompactRows::coefficient(Index f) const {
-  const LameConstants lame = face_lame(mesh_, rows_, f);
+  const LameConstants lame = part_of_faces(face_lame(mesh_, rows_, f), left_out_);
   const FaceLine line = face_line(mesh_, mesh_.reference, f);
   const double scale = line.area * line.inverse_dn;
   Lanes k{};
@@ -136,11 +137,12 @@ ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOper
       rows_(&rows),
       inertia_(inertia.begin(), inertia.end()),
       between_(options.between),
-      is_symmetric_(options.scheme == FaceGradientScheme::symmetric) {
+      is_symmetric_(options.scheme == FaceGradientScheme::symmetric),
+      left_out_(options.without_cells_bulk ? rows.volume_strain() : VolumeStrain::faces) {
   // The corrected gradient has 2 (u_B - u_P) on the boundary.
   const double boundary_factor = options.scheme == FaceGradientScheme::corrected ? 2 : 1;
   ComponentMultigrid::Rows compact =
-      CompactRows(mesh, rows, boundary_factor)
+      CompactRows(mesh, rows, boundary_factor, left_out_)
           .make(options.node_inertia.empty() ? inertia
                                              : options.node_inertia.first(std::size_t(mesh.cells.n_owned())));
   if (is_symmetric_) {
@@ -159,7 +161,7 @@ ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOper
 void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<const double> node_inertia) {
   const Mesh& mesh = *mesh_;
   const auto stiffness = [&](Index f) {
-    const LameConstants lame = rows_->lame(mesh.owner[f]);
+    const LameConstants lame = part_of_faces(rows_->lame(mesh.owner[f]), left_out_);
     const FaceLine line = face_line(mesh, mesh.reference, f);
     const Vec3& n = line.normal;
     const double scale = boundary_factor * line.area * line.inverse_dn;

@@ -25,6 +25,8 @@ class ElasticPreconditioner {
     const ElasticKernel* between = nullptr;
     /// Of the symmetric operator: inertia of the unknown nodes, owned cells, then faces [N/m]; empty: none.
     std::span<const double> node_inertia = {};
+    /// Of what is left of the symmetric operator without the bulk modulus of cells: of the mixed form.
+    bool without_cells_bulk = false;
   };
   /// Collective.
   ElasticPreconditioner(const Mesh& mesh, const ElasticOperator& rows, std::span<const double> inertia,
@@ -49,6 +51,7 @@ class ElasticPreconditioner {
   std::vector<double> inertia_;
   const ElasticKernel* between_;
   bool is_symmetric_;
+  VolumeStrain left_out_;  // faces: the preconditioner is that of the whole operator
   std::vector<double> gathered_, inverse_diagonal_;  // of the symmetric form
   std::unique_ptr<ComponentMultigrid> multigrid_;
   std::vector<FaceRow> face_rows_;

@@ -223,12 +223,19 @@ void shared_second_pass(SymmetricKernel<2>&) {}
 
 }  // namespace
 
+/// V theta of the owned cells, in the places of their pressures.
 template <int D>
-void SymmetricKernel<D>::find_pressures() {
+std::span<double> SymmetricKernel<D>::sum_volumes() {
   std::ranges::fill(pressure_, 0.0);
   volumes_pass(*this);
   const std::span<double> cells = std::span(pressure_).first(std::size_t(mesh_.cells.n_local()));
   mesh_.cells.add_to_owners(cells);
+  return cells;
+}
+
+template <int D>
+void SymmetricKernel<D>::find_pressures() {
+  const std::span<double> cells = sum_volumes();
   for (std::size_t c = 0; c < bulk_.size(); ++c) cells[c] *= bulk_[c];
   mesh_.cells.update_ghosts(cells);
 }
@@ -236,6 +243,11 @@ void SymmetricKernel<D>::find_pressures() {
 template <int D>
 void SymmetricKernel<D>::internal_forces() {
   if (!pressure_.empty()) find_pressures();
+  forces_of_stress();
+}
+
+template <int D>
+void SymmetricKernel<D>::forces_of_stress() {
   faces_pass(*this);
   if (!edges_) return;
   edges_->clear();

@@ -44,6 +44,8 @@ class SymmetricKernel final : public ElasticKernel::Implementation {
   void add_pressure(std::span<const double> pressure, std::span<double> rhs) override;
   std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                    const ElasticLoads& loads) override;
+  void apply_mixed(std::span<const double> unknowns, std::span<const double> pressure, double mass_factor,
+                   std::span<double> result, std::span<double> defect) override;
 
   // The loops; public for the clones by processor.
   [[gnu::always_inline]] inline void faces_loop();
@@ -70,6 +72,8 @@ class SymmetricKernel final : public ElasticKernel::Implementation {
   [[gnu::always_inline]] inline V pressure_on(const FaceBlock<D>& block, const VolumeBlock& volume) const;
   void make_faces();
   void internal_forces();
+  void forces_of_stress();
+  std::span<double> sum_volumes();
   void find_pressures();
   void spread_pressure(std::span<const double> pressure);
 

@@ -80,7 +80,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   }
   // A restart that gains nothing means that rounding, not the method, sets the limit.
   double before = std::numeric_limits<double>::infinity();
-  bool is_hard = false;
+  bool is_hard = options.is_hard;
   while (!(statistics.residual <= wanted)) {
     bool stuck = statistics.residual > 0.9 * before;
     if (stuck && statistics.residual < at_rounding * rounding(x)) break;
@@ -94,6 +94,7 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
           "({:.3e} wanted) in {} of at most {} iterations{}.",
           what_,
           options.is_symmetric ? "CG"
+          : options.is_hard    ? "IDR(4)"
           : is_hard            ? "IDR(4) after BiCGStab"
                                : "BiCGStab",
           statistics.residual / size, options.relative_tolerance, statistics.iterations,
@@ -143,7 +144,7 @@ void KrylovSolver::run_cg(std::span<double> x, double wanted, int max_iterations
 
 void KrylovSolver::run_idr(std::span<double> x, double wanted, int max_iterations,
                            SolveStatistics& statistics) {
-  if (!is_announced_)
+  if (!is_announced_ && statistics.iterations > 0)
     log::info("{}: {} iterations of BiCGStab were not enough, IDR(4) goes on", what_, statistics.iterations);
   is_announced_ = true;
   for (auto* v : {&shadow_, &p_, &v_, &t_, &z_}) *v = std::vector<double>();

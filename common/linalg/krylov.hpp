@@ -20,6 +20,7 @@ struct KrylovOptions {
   double relative_tolerance = 1e-8;  ///< of |b - A x| / |b|
   int max_iterations = 500;
   bool is_symmetric = false;  ///< A and the preconditioner are, and positive: conjugate gradients
+  bool is_hard = false;       ///< known to be slow for BiCGStab: IDR(4) from the start
 };
 
 /// BiCGStab [vandervorst1992] preconditioned from the right, for operators that are only applied; where it
