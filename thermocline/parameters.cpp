@@ -92,6 +92,7 @@ void check_together(config::Section& s, TankParameters& p) {
   s.check([&p] { return p.shell ? slip_in_plates(*p.shell, p.diameter) : ""; }, "shell");
   s.check([&p] { return p.insulation ? slip_in_insulation(*p.insulation, p.diameter) : ""; }, "insulation");
   s.check([&p] { return p.ground ? slip_in_ground(*p.ground) : ""; }, "ground");
+  s.check([&p] { return season_without_dates(p); }, "flow");
   s.check([&p] { return p.flow.type == FlowParameters::Type::plant ? slip_in_plant(p.flow.plant) : ""; },
           "flow");
 }

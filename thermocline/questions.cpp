@@ -138,6 +138,17 @@ std::vector<std::string> prices_for_nothing(const EconomicsParameters& p, const 
   return all;
 }
 
+std::string season_without_dates(const TankParameters& p) {
+  if (p.flow.type != FlowParameters::Type::plant || p.ambient.kind != WeatherKind::constant) return "";
+  for (std::size_t i = 0; i < p.flow.plant.calendar.size(); ++i)
+    if (!p.flow.plant.calendar[i].from.empty())
+      return fmt::format(
+          "calendar[{}] has a season, whose days are those of the weather, and the weather is constant; give 'ambient' with "
+          "dates, or leave 'from' and 'to' out",
+          i);
+  return "";
+}
+
 void require_sun(double absorptance, const Weather& weather, const std::string& key) {
   if (absorptance <= 0 || weather.has_site()) return;
   throw Error(

@@ -27,6 +27,9 @@ std::vector<std::string> never_melted(const TankModel& model);
 std::vector<std::string> prices_for_nothing(const EconomicsParameters& prices, const Inventory& inventory,
                                             bool has_pump);
 
+/// Empty, or why the seasons of the plant's calendar have no dates: constant weather has none.
+std::string season_without_dates(const TankParameters& parameters);
+
 /// Throws Error if the cover shall absorb the sun (`absorptance` > 0) and it is not known where the sun
 /// stands. `key`: the full name of the key.
 void require_sun(double absorptance, const Weather& weather, const std::string& key);

@@ -38,6 +38,7 @@ def cases(Case, run):
       calendar:
         - {days: [weekend], load: [0.5], tariff: [30]}
         - {from: 11-01, to: 02-28, load: [0.8]}
+    ambient: {type: clear-sky, latitude: 37 deg}
 """), exit_code=0),
     ]
     wrong = [
@@ -109,6 +110,11 @@ case.yaml:32:11: participants.tank.flow.calendar[0]: a rule gives a load or a ta
 case.yaml:32:12: participants.tank.flow.calendar[0].load: has 7 values; give one, or 24 for the hours of the day from 00:00 on.
 """, with_plant("""      calendar:
         - {load: [0, 0, 0, 0, 0, 1, 1]}
+""")),
+        tank("season of a calendar without dates", """
+case.yaml:23:5: participants.tank.flow: calendar[0] has a season, whose days are those of the weather, and the weather is constant; give 'ambient' with dates, or leave 'from' and 'to' out.
+""", with_plant("""      calendar:
+        - {from: 11-01, to: 02-28, load: [0.8]}
 """)),
         tank("prices of a calendar alone", """
 case.yaml:23:5: participants.tank.flow.tariff: is needed for the hours that no rule of 'calendar' gives a price.

@@ -131,6 +131,17 @@ TEST(Questions, capsules_that_cannot_melt_are_refused_or_said) {
   EXPECT_TRUE(after(290).empty());
 }
 
+TEST(Questions, seasons_need_a_weather_with_dates) {
+  TankParameters p = sound();
+  p.ambient.kind = WeatherKind::constant;
+  p.flow.plant.calendar = {{{}, "", "", {0.5}, {}}};
+  EXPECT_EQ(season_without_dates(p), "") << "all year";
+  p.flow.plant.calendar.push_back({{}, "05-01", "09-30", {0.8}, {}});
+  EXPECT_THAT(season_without_dates(p), HasSubstr("calendar[1] has a season"));
+  p.ambient.kind = WeatherKind::clear_sky;
+  EXPECT_EQ(season_without_dates(p), "");
+}
+
 TEST(Questions, prices_for_what_is_not_there_are_said) {
   EconomicsParameters prices;
   prices.steel = 6, prices.insulation = 200, prices.filler = 1, prices.field = 1;
