@@ -155,7 +155,8 @@ void FractionalStep<D>::check(const State<D>& from) {
     place.template head<D>() = k_.step.to->centre[where];
     std::copy_n(place.data(), 3, data);
     data[3] = double(k_.mesh.cell_id[where]);
-    cause = likely_cause(k_.mesh, k_.boundary, energy_step(from), where, k_.nu, k_.by.implicit);
+    cause = likely_cause(k_.mesh, k_.boundary, energy_step(from), where, k_.nu, k_.by.implicit,
+                         k_.frame ? k_.frame->rate(k_.by.time, k_.step.dt) : 0);
   }
   MPI_Bcast(data, 4, MPI_DOUBLE, worst.rank, k_.mesh.comm);
   broadcast(k_.mesh.comm, cause, worst.rank);

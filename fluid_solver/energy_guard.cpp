@@ -21,6 +21,8 @@ constexpr double level_share = 1e-4;
 constexpr double largest_excess = 0.5;
 // Of the largest energy so far: below it there is only round-off.
 constexpr double least_energy = 1e-10;
+// omega h^2/nu from which friction no longer holds what a turning frame makes (docs/theory.md, frame that turns).
+constexpr double fast_frame = 4;
 // What a sub-step leaves of the energy that an excess is measured by: a flow that turns back is at rest for
 // some steps, where its own energy is no measure.
 constexpr double remembered = 0.85;
@@ -115,7 +117,7 @@ EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
 
 template <int D>
 std::string likely_cause(const Mesh& mesh, const Boundary<D>& boundary, const EnergyStep<D>& s, Index cell,
-                         double nu, bool implicit) {
+                         double nu, bool implicit, double frame_rate) {
   double convection = 0, diffusion = 0, tangent = 0;
   for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
     const bool outside = f >= mesh.n_interior;
@@ -145,14 +147,21 @@ std::string likely_cause(const Mesh& mesh, const Boundary<D>& boundary, const En
         "A face of that cell is {:.0f} degrees off the line between the cells: a smaller step does not help, "
         "a mesh without such cells does.",
         degrees);
+  const double beside_friction = 0.5 * frame_rate * std::pow(s.to.volume[cell], 2. / D) / nu;
+  if (beside_friction > fast_frame)
+    return fmt::format(
+        "The frame turns fast beside friction, omega h^2/nu = {:.3g} in that cell: what it makes at walls is not "
+        "damped from about {:g} on. A smaller step does not help; finer cells do, or a mesh that turns in a frame at rest "
+        "('motion').",
+        beside_friction, fast_frame);
   return "Try a smaller time step.";
 }
 
 template class EnergyGuard<2>;
 template class EnergyGuard<3>;
 template std::string likely_cause<2>(const Mesh&, const Boundary<2>&, const EnergyStep<2>&, Index, double,
-                                     bool);
+                                     bool, double);
 template std::string likely_cause<3>(const Mesh&, const Boundary<3>&, const EnergyStep<3>&, Index, double,
-                                     bool);
+                                     bool, double);
 
 }  // namespace couplet::fluid

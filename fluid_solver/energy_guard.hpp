@@ -55,9 +55,10 @@ class EnergyGuard {
   double rho_, mu_;
 };
 
-/// Why a step may have gone wrong in one cell, as a sentence; local. `cell`: owned.
+/// Why a step may have gone wrong in one cell, as a sentence; local. `cell`: owned. `frame_rate`: |2 omega| of a frame
+/// that turns [1/s], 0 without.
 template <int D>
 std::string likely_cause(const Mesh& mesh, const Boundary<D>& boundary, const EnergyStep<D>& step, Index cell,
-                         double kinematic_viscosity, bool implicit);
+                         double kinematic_viscosity, bool implicit, double frame_rate);
 
 }  // namespace couplet::fluid
