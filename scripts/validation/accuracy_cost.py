@@ -124,7 +124,7 @@ def flap(side, step, linear, coupling, more=(), leave=()):
     return FLAP, "tip at 0.4 s", {k: v for k, v in sources.items() if k not in leave}
 
 
-SLOW = {"coupling.predictor.order": "0", "coupling.acceleration": "{type: constant, initial-relaxation: 0.1}"}
+SLOW = {"coupling.predictor.order": "0", "coupling.acceleration": "{type: constant, initial-relaxation: 0.1}", "coupling.convergence.max-iterations": "500"}
 CASES = {  # constructed: (what must dominate, the setting)
     "solid, coarse mesh": ("mesh", beam(2, 0.2, 1e-9)), "solid, long step": ("step", beam(8, 2.0, 1e-9)),
     "solid, loose solver": ("linear tolerance", pulled(4, 1e-3)), "fluid, coarse mesh": ("mesh", green(16, 0.02, 1e-8)),
