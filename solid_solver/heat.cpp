@@ -53,6 +53,7 @@ Heat::Heat(const Mesh& mesh, std::vector<HeatProperties> materials, const HeatPa
   solver_ = std::make_unique<LinearSolver>(
       "temperature", matrix_,
       options_of(parameters_, sum(mesh.comm, static_cast<GlobalIndex>(conduction_.n_unknowns()))));
+  if (!is_steady() && parameters_.scheme == HeatParameters::Scheme::trapezoidal) swing_.emplace();
   start();
 }
 
@@ -254,7 +255,10 @@ void Heat::set_inflow(std::span<const double> source) {
   }
 }
 
-void Heat::accept_step() { std::swap(state_, trial_); }
+void Heat::accept_step() {
+  if (swing_) swing_->accepted(*mesh_, state_.cells, trial_.cells, trial_.time);
+  std::swap(state_, trial_);
+}
 
 std::vector<double> Heat::point_temperature(const HeatState& state) const {
   std::vector<double> points(mesh_->points.n_local());

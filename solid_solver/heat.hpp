@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "common/linalg/linear_solver.hpp"
 #include "solid_solver/heat_boundaries.hpp"
 #include "solid_solver/heat_parameters.hpp"
+#include "solid_solver/heat_swing.hpp"
 
 namespace couplet {
 
@@ -96,7 +98,8 @@ class Heat final {
   std::vector<double> conductivity_, face_heat_, transfer_, capacity_, rhs_, unknowns_;
   SparseMatrix matrix_;
   std::unique_ptr<LinearSolver> solver_;
-  double filled_for_ = -1;  // a_0 / dt of the matrix now there; -1: none
+  double filled_for_ = -1;          // a_0 / dt of the matrix now there; -1: none
+  std::optional<HeatSwing> swing_;  // of the one scheme that does not damp
 };
 
 }  // namespace couplet

@@ -8,7 +8,7 @@ import numpy as np
 
 import couplet_series as series
 from validation.job import Bar
-from validation.parts import effects_off
+from validation.parts import effects_off, stability_cases
 
 SOURCES = ("common/effects", "common/app", "common/time", "solid_solver", "fluid_solver", "thermocline", "plate_modal", "coupler",
            "scripts/couplet_atlas", "docs/stability")
@@ -239,6 +239,7 @@ BARS = [
     Bar("fluid: limit of the explicit viscous step, Runge-Kutta", "within 2 % of theory", limit("explicit, Runge-Kutta", 2.51)),
     Bar("coupling: limit of the explicit scheme, by bisection with the programs", "within 5 % of theory", added_mass_limit),
     Bar("coupling: implicit, Aitken, mass over added mass 0.01 to 100", "all hold within 200 passes", implicit_range),
+    *stability_cases.BARS,
     Bar("tests of label stability", "pass", ctest("^stability_", 4), long=True),
     Bar("maps: each a picture and a table", "all", pictures),
     Bar("maps: wrong answers with exit code 0 and without a word", "none", no_red),
