@@ -2,6 +2,7 @@
 #include "solid_solver/thermal_solid.hpp"
 
 #include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/thermal_strain.hpp"
 
@@ -29,6 +30,17 @@ void ThermalSolid::begin_step(const Step& step) {
 Exchange ThermalSolid::solve(const Exchange&) {
   heat_->solve(step_);
   return {};
+}
+
+void ThermalSolid::save(CheckpointWriter& file) const {
+  heat_->save(file);
+  file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
+}
+
+void ThermalSolid::load(CheckpointReader& file) {
+  heat_->load(file);
+  const std::vector<double> errors = file.read("errors");
+  if (errors_) errors_->restore(errors);
 }
 
 void ThermalSolid::write_output(double time, int) {

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/io/field_writer.hpp"
 #include "common/io/probe.hpp"
 #include "common/io/series.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/heat.hpp"
+#include "solid_solver/heat_errors.hpp"
 #include "solid_solver/parameters.hpp"
 #include "solid_solver/solid_context.hpp"
 
@@ -20,7 +22,7 @@ namespace couplet {
 /// A solid that conducts heat and does not deform (`analysis: thermal`): no elastic operator is built.
 /// Writes the fields `temperature` and `cell-temperature`, probes.csv, and heat.csv with the heat through
 /// each patch.
-class ThermalSolid final : public Participant {
+class ThermalSolid final : public Participant, public EstimatesError {
  public:
   /// Collective over mesh.comm.
   ThermalSolid(Mesh mesh, SolidParameters parameters, SolidContext context);
@@ -29,11 +31,14 @@ class ThermalSolid final : public Participant {
   void begin_step(const Step& step) override;
   Exchange solve(const Exchange& in) override;
   StepReport accept_step() override {
+    if (errors_) errors_->see_step(heat_->accepted(), heat_->trial());
     heat_->accept_step();
     return {.dt = step_.dt};
   }
-  void save(CheckpointWriter& file) const override { heat_->save(file); }
-  void load(CheckpointReader& file) override { heat_->load(file); }
+  void save(CheckpointWriter& file) const override;
+  void load(CheckpointReader& file) override;
+  void collect_errors() override { errors_.emplace(mesh_, parameters_.heat.value()); }
+  ErrorParts error_parts() const override { return errors_ ? errors_->parts(*heat_) : ErrorParts{}; }
   void write_output(double time, int number) override;
   void write_monitors(double time) override;
   std::vector<std::string> finish() override;
@@ -49,6 +54,7 @@ class ThermalSolid final : public Participant {
   const SolidParameters parameters_;
   const SolidContext context_;
   std::unique_ptr<Heat> heat_;
+  std::optional<HeatErrors> errors_;  // none: not wanted
   Step step_;
   std::vector<Probe> probes_;
   std::optional<FieldWriter> fields_;
