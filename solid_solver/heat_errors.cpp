@@ -68,7 +68,7 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
   std::vector<double> rate(n);
   for (std::size_t c = 0; c < n; ++c) rate[c] = (now.cells[c] - before.cells[c]) / now.dt;
   // Rates are those of the middles of steps, as far apart as half of both.
-  if (!rate_.empty())
+  if (dt_ > 0)  // the same on all ranks, also on one without cells
     steps_.add(rate_, rate, 0.5 * (now.dt + dt_), dt_, size(now.cells, level_),
                [this](std::span<const double> cells) { return root_mean_square(cells); });
   rate_ = std::move(rate);

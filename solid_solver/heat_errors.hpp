@@ -39,7 +39,7 @@ class HeatErrors {
   double volume_ = 0, level_ = 0;  // of the body [m^3], before the first step [K]
   bool begun_ = false;
   std::vector<double> rate_;  // of the step before [K/s]; empty: not yet
-  double dt_ = 0;
+  double dt_ = 0;             // of the step before; 0: not yet
   VelocityErrors steps_;
 };
 
