@@ -55,10 +55,10 @@ class Fluid {
   void set_turn(Vectors<D> turn) { given_turn_ = std::move(turn); }
   /// Throws SolveFailure if the flow that follows is none; everything that can fail is here and in prepare().
   void solve_pressure(const Vectors<D>& wall_velocity);
-  /// Force that friction would add if it saw the wall velocity of the last solve_pressure() instead of that
-  /// of prepare(), rho sqrt(nu dt) |w - w*| S / dt, over the load (less a uniform pressure), both as root
-  /// mean square over the interface. Collective.
-  double unseen_share() const;
+  /// Force that friction would add if it saw the wall velocity w instead of w*, that of prepare(),
+  /// rho sqrt(nu dt) |w - w*| S / dt, over the load of the last solve_pressure() (less a uniform pressure),
+  /// both as root mean square over the interface. Collective.
+  double unseen_share(const Vectors<D>& w) const;
   /// prepare and solve_pressure.
   void solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
   /// The step becomes level n. Cannot fail.

@@ -42,14 +42,14 @@ void Fluid<D>::refuse_inverted(const Placement<D>& at) const {
 /// The layer that a wall drags along within a step is rho sqrt(nu dt) thick: a mass that acts on w* in the
 /// loop, see docs/theory.md.
 template <int D>
-double Fluid<D>::unseen_share() const {
+double Fluid<D>::unseen_share(const Vectors<D>& w) const {
   const double layer = std::sqrt(parameters_.density * parameters_.viscosity / dt_);  // rho sqrt(nu dt)/dt
   double sums[4] = {};  // unseen^2, load^2, load.S, S^2
   for (std::size_t b = 0; b < guess_.size(); ++b) {
     if (!boundary_.is_interface(static_cast<Index>(b))) continue;
     const Vec<D>& area = level().placement->area[mesh_.n_interior + static_cast<Index>(b)];
     const Vec<D> load = pressure_force_[b] + viscous_force_[b];
-    sums[0] += layer * layer * area.squaredNorm() * (last_w_[b] - guess_[b]).squaredNorm();
+    sums[0] += layer * layer * area.squaredNorm() * (w[b] - guess_[b]).squaredNorm();
     sums[1] += load.squaredNorm();
     sums[2] += load.dot(area);
     sums[3] += area.squaredNorm();
@@ -93,10 +93,10 @@ void Fluid<D>::check_wall_velocity() const {
 }
 
 template void Fluid<2>::refuse_inverted(const Placement<2>&) const;
-template double Fluid<2>::unseen_share() const;
+template double Fluid<2>::unseen_share(const Vectors<2>&) const;
 template void Fluid<2>::check_wall_velocity() const;
 template void Fluid<3>::refuse_inverted(const Placement<3>&) const;
-template double Fluid<3>::unseen_share() const;
+template double Fluid<3>::unseen_share(const Vectors<3>&) const;
 template void Fluid<3>::check_wall_velocity() const;
 
 }  // namespace couplet::fluid

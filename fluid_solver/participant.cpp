@@ -23,11 +23,6 @@
 namespace couplet::fluid {
 namespace {
 
-// The prediction is renewed in the third pass at the earliest, when the wall velocity is better than the
-// guess, and where friction misses more than a share of the load. In the third pass a larger one, unless the
-// passes converge slowly: a heavy structure is about to end then.
-constexpr int first_renewal = 3;
-constexpr double largest_unseen_share = 0.01, largest_in_third_pass = 0.05, slow = 0.1;
 // At the end of a step: what a growing oscillation reaches.
 constexpr double near_limit = 0.1;
 
@@ -127,8 +122,7 @@ void FluidParticipant<D>::begin_step(const Step& step) {
   if (step.number == 0 || holds_volume()) check_cavity(*fluid_, step.scheme);
   step_ = step;
   if (step.number == 0) tell_impulse();
-  passes_ = 0;
-  renewed_ = renewed_now_ = false;
+  predicted_ = renewed_now_ = false;
   fluid_->begin_step(step.time, step.dt);
 }
 
@@ -168,39 +162,20 @@ Exchange FluidParticipant<D>::forces() const {
   return out;
 }
 
-/// How much the wall velocity changed since the pass before, over what it did then.
-template <int D>
-double FluidParticipant<D>::contraction(const Vectors<D>& w) {
-  double square = 0;
-  for (std::size_t b = 0; b < last_w_.size(); ++b) square += (w[b] - last_w_[b]).squaredNorm();
-  const double change = std::sqrt(sum(mesh_.comm, square)), before = std::exchange(last_change_, change);
-  last_w_ = w;
-  return before > 0 ? change / before : 1;
-}
-
-template <int D>
-bool FluidParticipant<D>::needs_renewal(double contraction) const {
-  if (renewed_ || passes_ < first_renewal) return false;
-  const double unseen = fluid_->unseen_share();
-  return unseen >
-         (passes_ > first_renewal || contraction > slow ? largest_unseen_share : largest_in_third_pass);
-}
-
-/// A structure heavy enough to converge fast, or whose motion was guessed well, never pays.
 template <int D>
 void FluidParticipant<D>::prepare(const Vectors<D>& w) {
-  ++passes_;
+  w_ = w;
   renewed_now_ = false;
-  if (step_.scheme != Scheme::semi_implicit || passes_ == 1) {
+  if (step_.scheme != Scheme::semi_implicit || !predicted_) {
     points_ = receive_points();
     fluid_->prepare(points_, w);
-    last_w_ = w;
-    last_change_ = 0;
+    renewal_.start(w);
+    predicted_ = true;
     return;
   }
-  if (!needs_renewal(contraction(w))) return;
-  renewed_ = renewed_now_ = true;
-  fluid_->prepare(points_, w);
+  if (!renewal_.wanted(mesh_.comm, w, fluid_->unseen_share(w))) return;
+  renewed_now_ = true;
+  fluid_->prepare(points_, renewal_.guess());
 }
 
 template <int D>
@@ -247,8 +222,8 @@ template <int D>
 StepReport FluidParticipant<D>::accept_step() {
   if (step_.scheme == Scheme::semi_implicit) {
     ++steps_;
-    renewed_steps_ += renewed_ ? 1 : 0;
-    largest_unseen_ = std::max(largest_unseen_, fluid_->unseen_share());
+    renewed_steps_ += renewal_.count() > 0 ? 1 : 0;
+    largest_unseen_ = std::max(largest_unseen_, fluid_->unseen_share(w_));
   }
   const auto effort = [&] {
     return fluid_->statistics().pressure_iterations + fluid_->statistics().viscous_iterations;
@@ -269,6 +244,7 @@ void FluidParticipant<D>::save(CheckpointWriter& file) const {
   write_state(file, fluid_->state());
   fluid_->solvers().save(file);
   if (statistics_) statistics_->save(file);
+  file.write_scalar("slowest-contraction", renewal_.slowest());
   file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
 }
 
@@ -278,6 +254,7 @@ void FluidParticipant<D>::load(CheckpointReader& file) {
   fluid_->restore(read_state<D>(file, mesh_, fluid_->moving() ? nullptr : fluid_->state().placement));
   fluid_->solvers().load(file);
   if (statistics_) statistics_->load(file);
+  renewal_.restore(file.read_scalar("slowest-contraction"));
   const std::vector<double> errors = file.read("errors");
   if (errors_) errors_->restore(errors);
 }

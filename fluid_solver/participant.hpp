@@ -13,6 +13,7 @@
 #include "fluid_solver/error_estimate.hpp"
 #include "fluid_solver/fluid.hpp"
 #include "fluid_solver/output.hpp"
+#include "fluid_solver/renewal.hpp"
 
 namespace couplet::fluid {
 
@@ -27,8 +28,8 @@ using MotionLink = std::function<std::unique_ptr<MeshMotionSource>(const Mesh&)>
 ///   equation;
 ///                      every solve() costs one pressure equation. Where friction would say something else
 ///                      with the wall velocity of a later pass than with the first guess (see
-///                      unseen_share()), that pass repeats the step's first part once, on the mesh of the
-///                      guess: equal input gives equal output before it and from it on, not across it
+///                      unseen_share()), that pass repeats the step's first part, on the mesh of the guess:
+///                      equal input gives equal output between such passes, not across them
 ///   implicit, explicit every solve() moves the mesh and starts from level n
 ///   standalone         interfaces are walls at rest; bodies move as the case prescribes, in every scheme
 template <int D>
@@ -64,8 +65,6 @@ class FluidParticipant final : public Participant, public EstimatesError {
   bool stands_still() const { return interface_ && !motion_ && step_.scheme != Scheme::standalone; }
   bool holds_volume() const { return fluid_->parameters().volume_level == VolumeLevelBy::structure; }
   void prepare(const Vectors<D>& w);
-  double contraction(const Vectors<D>& w);
-  bool needs_renewal(double contraction) const;
   void set_up_motion();
   void tell_impulse() const;
   void add_body_velocity(Vectors<D>& w) const;
@@ -84,11 +83,10 @@ class FluidParticipant final : public Participant, public EstimatesError {
   FluidOutput<D> output_;
   Step step_;
   std::vector<Vec3> points_;  // of the first guess; semi-implicit only
-  int passes_ = 0;            // of the step under way
-  bool renewed_ = false;      // its prediction
-  bool renewed_now_ = false;  // in the last pass
-  Vectors<D> last_w_;         // of the pass before
-  double last_change_ = 0;    // of w between the two passes before [m/s]
+  bool predicted_ = false;    // in the step under way
+  bool renewed_now_ = false;  // the prediction, in the last pass
+  Renewal<D> renewal_;
+  Vectors<D> w_;  // of the last pass
   // Of the interface on a mesh that stands still: largest displacement over the height of the cell there.
   double displacement_ = 0, trial_displacement_ = 0;
   long steps_ = 0, renewed_steps_ = 0;

@@ -82,7 +82,7 @@ struct StepReport {
 ///
 /// Contract (tests/contract holds every implementation to it): solve() starts from the accepted state n, so
 /// equal input gives equal output to solver tolerance (warm starts are fine; a fluid in a semi-implicit step
-/// may answer otherwise once, when it renews its prediction with the velocity of a pass, and stays with
+/// may answer otherwise whenever it renews its prediction with the velocity of a pass, and stays with
 /// that); only accept_step() changes state n; begin_step() may be called again with another dt without
 /// accept_step() in between; load(save()) continues bit for bit on equal ranks. A step that cannot be solved
 /// throws SolveFailure on every rank and leaves state n as it was.

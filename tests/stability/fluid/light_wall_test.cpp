@@ -26,7 +26,7 @@ class LightWall {
     double a = solve(guess, push);
     if (renew_) {
       fluid.solve_pressure(velocity(a));
-      unseen_ = fluid.unseen_share();
+      unseen_ = fluid.unseen_share(velocity(a));
       fluid.prepare({}, velocity(a));
       a = solve(a, push);
     }
