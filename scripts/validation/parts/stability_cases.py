@@ -62,7 +62,8 @@ BARS = [
         gtests("stability_solid_hard_cases", "with_eulers_scheme", "three_point_scheme_overshoots", "and_that_is_told"),
         but="none with Euler's scheme; up to 2.5 % in the first steps with three-point, the default, at 1000"),
     *[Bar(f"fluid: under-resolved vortices of Taylor and Green, 32^3, Re {re_:.0e}, {TURNOVERS} turnovers", "bounded without added dissipation",
-          bounded(re_), long=True) for re_ in REYNOLDS],
+          bounded(re_), long=True, but="projection: incremental, which adds none; the default takes energy out of the finest scales")
+      for re_ in REYNOLDS],
     Bar("fluid: the same vortices on a coarse eighth; steps beyond the limit", "bounded; refused by name",
         gtests("stability_fluid_under_resolved", "never_gain_energy", "beyond_the_limit")),
     Bar("fluid: backflow through an outlet", "bounded; without its stabilisation the test fails (a mutant)",
