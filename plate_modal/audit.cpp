@@ -8,6 +8,7 @@
 #include "common/mesh/on_root.hpp"
 #include "common/modes/rigid_motion.hpp"
 #include "plate_modal/effect_cards.hpp"
+#include "plate_modal/outline.hpp"
 #include "plate_modal/structure.hpp"
 
 namespace couplet::plate {
@@ -123,14 +124,14 @@ double Structure::mesh_gap() const {
   std::size_t cells = 0;
   for (const double density : built_.model.face_density) cells += density > 0;
   const std::vector<double> gaps = mesh_gaps(built_.model, cells / sides, normal);
-  if (parameters_.analysis == Parameters::Analysis::modal) return gaps.back();
+  if (parameters_.analysis == Parameters::Analysis::modal) return with_corners(gaps.back(), built_.kinks);
   double all = 0, apart = 0;
   for (std::size_t m = 0; m < gaps.size(); ++m) {
     const double moved = resolution_ ? resolution_->moved()[m] : state_.q[m] * state_.q[m];
     all += moved;
     apart += moved * gaps[m] * gaps[m];
   }
-  return all > 0 ? std::sqrt(apart / all) : PlateEvidence::unknown;
+  return all > 0 ? with_corners(std::sqrt(apart / all), built_.kinks) : PlateEvidence::unknown;
 }
 
 std::vector<EffectVerdict> Structure::audit() const {
@@ -179,12 +180,15 @@ std::vector<EffectVerdict> Structure::audit() const {
   return couplet::audit(plate_effect_cards(), PlateScene{parameters_}, evidence);
 }
 
-/// Where the modes come from a file nothing is known of their mesh.
+/// Where the modes come from a file nothing is known of their mesh. A load that cells do not resolve is an error of them.
 ErrorParts Structure::error_parts() const {
   ErrorParts parts;
   if (step_errors_ && resolution_) parts.step = step_errors_->over_size();
-  std::vector<double> gap{parameters_.modes_file || comm_rank(context_.comm) != 0 ? PlateEvidence::unknown
-                                                                                  : mesh_gap()};
+  std::vector<double> gap(1, PlateEvidence::unknown);
+  if (!parameters_.modes_file && comm_rank(context_.comm) == 0) {
+    gap[0] = mesh_gap();
+    if (within_[1] > 0) gap[0] += std::sqrt(within_[0] / within_[1]);
+  }
   broadcast(context_.comm, gap);
   parts.mesh = gap[0];
   return parts;

@@ -26,8 +26,9 @@ struct Built {
   bool reused = false;                ///< modes of an earlier run
   /// Of a plate with two held edges or more: deflection over thickness from which its stretch matters; 0: it has none.
   double stretch_limit = 0;
-  std::string outline;  ///< what the user should know of the outline, or nothing
-  std::string note;     ///< something the user should know, or nothing
+  std::vector<double> kinks;  ///< at blunt corners of hinged edges [rad]
+  std::string outline;        ///< what the user should know of the outline, or nothing
+  std::string note;           ///< something the user should know, or nothing
 };
 
 /// Cells of the mid-surface with their materials, supports of its patches. Throws Error naming zones and

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 constexpr double sharp = 55 * degree, least = 0.5 * degree, least_share = 0.6;
+// Below it a corner is told: right angles have 2.
+constexpr double least_order = 1.9;
 
 struct Neighbours {
   int in = -1, out = -1;  // edges of the outline that end and start at a point; -2: several
@@ -72,6 +74,24 @@ std::vector<OutlinePoint> outline_of(const Midsurface& s) {
   return outline;
 }
 
+double order_at_corner(double kink) {
+  const double a = std::numbers::pi / (std::numbers::pi - kink);
+  double smoothest = 2;
+  for (int k = 1; k <= 4; ++k)
+    for (const double mu : {k * a, 2 - k * a})
+      if (mu > 1 + 1e-9) smoothest = std::min(smoothest, mu);
+  return 2 * (smoothest - 1);
+}
+
+double with_corners(double gap, std::span<const double> kinks) {
+  constexpr double counts_fully = 20 * degree;
+  double most = gap;
+  for (const double kink : kinks)
+    most = std::max(most, std::min(1.0, std::abs(kink) / counts_fully) *
+                              std::pow(std::min(1.0, gap), 0.5 * order_at_corner(kink)));
+  return most;
+}
+
 std::vector<Index> blunt_corners(const Midsurface& s, const std::vector<OutlinePoint>& outline,
                                  const std::vector<Support>& support) {
   std::vector<int> held(s.points.size(), 0);
@@ -79,7 +99,8 @@ std::vector<Index> blunt_corners(const Midsurface& s, const std::vector<OutlineP
     if (support[edge.patch] == Support::simply_supported) ++held[edge.from], ++held[edge.to];
   std::vector<Index> found;
   for (std::size_t p = 0; p < s.points.size(); ++p)
-    if (held[p] == 2 && outline[p].kink != 0 && std::abs(outline[p].kink) <= sharp) found.push_back(Index(p));
+    if (held[p] == 2 && outline[p].kink != 0 && order_at_corner(outline[p].kink) < least_order)
+      found.push_back(Index(p));
   return found;
 }
 

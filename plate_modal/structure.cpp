@@ -80,6 +80,11 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
   if (comm_rank(context_.comm) == 0) {
     if (!built_.outline.empty()) log::warn("{}", built_.outline);
     if (!built_.note.empty()) log::warn("{}", built_.note);
+    if (p.modes_file)
+      log::info(
+          "modes of a file: what modes that it does not hold would add to an answer cannot be told from it. A load on few "
+          "faces, or along a direction in which the structure is stiff, needs many: have "
+          "twice as many written, and compare.");
     if (built_.reused)
       log::info("modes of {} are used again", (context_.output_folder / "modes.h5").string());
   }
@@ -136,6 +141,20 @@ std::vector<double> Structure::damping() const {
   for (const double omega : share_->omega())
     c.push_back(2 * d.ratio * omega + d.mass + d.stiffness * omega * omega);
   return c;
+}
+
+/// Rate at which damping takes away what moves as the plate does now [1/s].
+double Structure::forgetting() const {
+  if (!parameters_.damping) return 0;
+  const std::vector<double> c = damping();
+  double lost = 0, all = 0;
+  for (std::size_t m = 0; m < c.size(); ++m) {
+    const double omega = share_->omega()[m], square = state_.v[m] * state_.v[m];
+    // The slower of two rates beyond the critical damping.
+    lost += square * (c[m] <= 2 * omega ? 0.5 * c[m] : omega * omega / c[m]);
+    all += square;
+  }
+  return all > 0 ? lost / all : 0;
 }
 
 ModalState Structure::initial_state() const {
@@ -236,8 +255,9 @@ void Structure::look_at_step() {
 
 StepReport Structure::accept_step() {
   std::swap(state_, trial_);
+  met_seat_ = met_seat_ || state_.energies.impact_work != 0;
   if (step_errors_ && resolution_)  // trial_ is what it started from
-    step_errors_->add(trial_.v, state_.v, state_.dt, trial_.dt, norm_of(state_.q), norm_of);
+    step_errors_->add(trial_.v, state_.v, state_.dt, trial_.dt, norm_of(state_.q), norm_of, forgetting());
   if (resolution_) look_at_step();
   largest_ = std::max(largest_, trial_largest_);
   if (!rotations_.empty()) look_at_rotation();
@@ -259,11 +279,18 @@ void Structure::write_monitors(double time) { results_->write_series(time); }
 
 std::vector<std::string> Structure::finish() {
   finished_ = true;
-  if (parameters_.analysis != Parameters::Analysis::dynamic || !(largest_exchange_ > 0)) return {};
-  return {
-      fmt::format("energy: the balance of the structure (4.29-4.31) is off by at most {:.2e} J, {:.2g} % of "
-                  "the largest energy.",
-                  worst_mismatch_, 100 * worst_mismatch_ / largest_exchange_)};
+  std::vector<std::string> said;
+  if (contact_ && !met_seat_)
+    if (const Contact::Place nearest = contact_->deepest(state_.q); !(nearest.depth > 0))
+      said.push_back(fmt::format(
+          "contact: the seat was never met; at the end it is {:.3g} m away where it is nearest, at ({:.4g}, {:.4g}, {:.4g}).",
+          -nearest.depth, nearest.centre.x(), nearest.centre.y(), nearest.centre.z()));
+  if (parameters_.analysis == Parameters::Analysis::dynamic && largest_exchange_ > 0)
+    said.push_back(fmt::format(
+        "energy: the balance of the structure (4.29-4.31) is off by at most {:.2e} J, {:.2g} % of "
+        "the largest energy.",
+        worst_mismatch_, 100 * worst_mismatch_ / largest_exchange_));
+  return said;
 }
 
 void Structure::save(CheckpointWriter& file) const {

@@ -59,6 +59,7 @@ class Structure final : public Participant, public EstimatesError {
 
  private:
   std::vector<double> damping() const;
+  double forgetting() const;
   ModalState initial_state() const;
   void make_contact();
   void add_pressure(double t, std::span<double> load);
@@ -101,6 +102,7 @@ class Structure final : public Participant, public EstimatesError {
   bool load_acted_ = false;                 // a prescribed pressure was not 0 somewhere
   std::vector<double> within_{0, 0};  // what the midpoint rule misses of prescribed pressures, on rank 0
   LoadOnModes on_modes_;              // of prescribed pressures, on rank 0
+  bool met_seat_ = false;             // contact did work
   bool finished_ = false;             // no step will follow
   double largest_rotation_ = 0;       // of the body as a whole [rad]
   std::unique_ptr<PlateResults> results_;

@@ -99,7 +99,12 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
                         several ? " (" + p.whose + ")" : "");
   }
   const Part& worst = parts.front();
-  std::vector<std::string> sentences{fmt::format("estimated error {:.2g} of the solution: {}.", total, list)};
+  // The largest part of many a run: a number without it must not pass for the whole.
+  const bool knows_mesh =
+      std::ranges::any_of(parts, [](const Part& p) { return p.kind->value == &ErrorParts::mesh; });
+  std::vector<std::string> sentences{
+      fmt::format("estimated error {:.2g} of the solution: {}{}.", total, list,
+                  knows_mesh ? "" : "; what the mesh (or modes left out) leaves is not known and not in it")};
   if (parts.size() < 2 || !(worst.value > 0)) return sentences;
   const std::string idle = idle_words(parts, worst.value);
   sentences.push_back(fmt::format("the {}{} dominates: {}{}.", worst.kind->words,

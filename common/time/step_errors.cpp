@@ -23,6 +23,8 @@ void StepErrors::add(const Seen& seen, int steps) {
   for (const auto& [of_late, now] :
        {std::pair{&rate_, seen.rate}, {&size_, seen.size}, {&below_, seen.below}, {&highest_, seen.highest}})
     *of_late = std::max(now, kept * *of_late);
+  if (seen.forgotten > 0)
+    for (auto& [of, error] : errors_) error *= std::exp(-seen.forgotten * steps * seen.dt);
   if (!(seen.error > 0) || !(rate_ > 0)) return;
   int swing = 0;
   double amplitude = std::numeric_limits<double>::infinity();

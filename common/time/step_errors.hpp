@@ -12,7 +12,8 @@ namespace couplet {
 ///
 /// An error propagates by the equation linearised about the solution, and so does the solution's own rate of change
 /// where the equation does not depend on time: what was made at step k has since shrunk as the rate of change has,
-/// |u'(now)| / |u'(t_k)|. So errors on the way to a steady state are forgotten, those of an oscillation add up. None
+/// |u'(now)| / |u'(t_k)|. So errors on the way to a steady state are forgotten, those of an oscillation add up, unless damping is known to take
+/// them away while loads keep the solution going. None
 /// is taken to grow, and none to exceed what it is an error of: a scheme of order p errs by C dt^{p+1} u^(p+1), which
 /// belongs to a swing of frequency w = |u^(p+1)| / |u^(p)| and amplitude |u^(p)| / w^p, out of phase by at most twice
 /// that. All are norms of one kind over the whole field, the same on all ranks.
@@ -25,6 +26,7 @@ class StepErrors {
     double dt = 0;                  ///< [s]
     int order = 0;                  ///< p; 0: nothing more is known
     double below = 0, highest = 0;  ///< |u^(p)|, |u^(p+1)|
+    double forgotten = 0;           ///< rate at which damping takes errors away [1/s]; 0: not known
   };
   /// `steps`: that it stands for, of which the first ones of a run cannot be judged by themselves.
   void add(const Seen& seen, int steps = 1);

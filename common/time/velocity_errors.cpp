@@ -8,13 +8,14 @@
 namespace couplet {
 
 StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<const double> now, double dt,
-                                     double dt_old, double size, const Norm& norm) {
-  const bool first_order = local_.order == 1, knows_third = !first_order && !v_before_.empty();
+                                     double dt_old, double size, const Norm& norm, double forgotten) {
+  const bool first_order = local_.order == 1, knows_third = !first_order && has_before_;
   std::vector<double> second(now.size()), third(knows_third ? now.size() : 0);
   for (std::size_t i = 0; i < second.size(); ++i) second[i] = (now[i] - before[i]) / dt;
   for (std::size_t i = 0; i < third.size(); ++i)
     third[i] = 2 * (second[i] - (before[i] - v_before_[i]) / dt_old) / (dt + dt_old);
-  StepErrors::Seen seen{.rate = norm(now), .size = size, .dt = dt, .order = local_.order};
+  StepErrors::Seen seen{
+      .rate = norm(now), .size = size, .dt = dt, .order = local_.order, .forgotten = forgotten};
   const double by_two = norm(second);
   seen.below = first_order ? seen.rate : by_two;
   if (first_order || knows_third) {
@@ -24,11 +25,12 @@ StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<c
     judged_ = true;
   }
   v_before_.assign(before.begin(), before.end());
+  has_before_ = true;
   return seen;
 }
 
 std::vector<double> VelocityErrors::state() const {
-  std::vector<double> values{judged_ ? 1. : 0., double(v_before_.size())};
+  std::vector<double> values{(judged_ ? 1. : 0.) + (has_before_ ? 2. : 0.), double(v_before_.size())};
   const std::vector<double> sums = errors_.state();
   for (const auto* part : {&v_before_, &sums}) values.insert(values.end(), part->begin(), part->end());
   return values;
@@ -37,11 +39,12 @@ std::vector<double> VelocityErrors::state() const {
 void VelocityErrors::restore(std::span<const double> state) {
   v_before_.clear();
   errors_ = {};
-  judged_ = false;
+  judged_ = has_before_ = false;
   if (state.empty()) return;
   const auto n = state.size() < 2 ? state.size() : std::size_t(state[1]);
   if (state.size() < 2 + n) throw Error("The checkpoint's errors of steps are damaged.");
-  judged_ = state[0] != 0;
+  judged_ = state[0] == 1 || state[0] == 3;
+  has_before_ = state[0] >= 2;
   v_before_.assign(state.begin() + 2, state.begin() + 2 + std::ptrdiff_t(n));
   errors_.restore(state.subspan(2 + n));
 }

@@ -18,11 +18,12 @@ class VelocityErrors {
   using Norm = std::function<double(std::span<const double>)>;
 
   explicit VelocityErrors(const TimeSchemeParameters& scheme) : local_(local_error(scheme)) {}
-  /// A step of dt after one of dt_old took the velocity from `before` to `now` [m/s]; `size`: |u| at its end. A scheme of
+  /// A step of dt after one of dt_old took the velocity from `before` to `now` [m/s]; `size`: |u| at its end;
+  /// `forgotten`: rate at which damping takes errors away [1/s]. A scheme of
   /// second order cannot be judged in its first step; the next one stands for it. Gives what was seen. Collective if
   /// `norm` is.
   StepErrors::Seen add(std::span<const double> before, std::span<const double> now, double dt, double dt_old,
-                       double size, const Norm& norm);
+                       double size, const Norm& norm, double forgotten = 0);
   double over_size() const { return errors_.over_size(); }
   /// For checkpoints; empty: of a run that collected nothing.
   std::vector<double> state() const;
@@ -30,7 +31,8 @@ class VelocityErrors {
 
  private:
   LocalError local_;
-  std::vector<double> v_before_;  // at the start of the step before; empty: not yet
+  std::vector<double> v_before_;  // at the start of the step before
+  bool has_before_ = false;       // a rank without cells has it, too
   bool judged_ = false;           // a step has been judged
   StepErrors errors_;
 };
