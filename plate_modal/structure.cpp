@@ -69,6 +69,17 @@ void take_changed_energy(const Oscillators& oscillators, bool tells, ModalState&
   kept.initial += jump;
 }
 
+/// Rate at which damping `c` takes away what moves as the modes do now [1/s].
+double rate_of_decay(std::span<const double> omega, std::span<const double> c, std::span<const double> v) {
+  double lost = 0, all = 0;
+  for (std::size_t m = 0; m < c.size(); ++m) {
+    // The slower of two rates beyond the critical damping.
+    lost += v[m] * v[m] * (c[m] <= 2 * omega[m] ? 0.5 * c[m] : omega[m] * omega[m] / c[m]);
+    all += v[m] * v[m];
+  }
+  return all > 0 ? lost / all : 0;
+}
+
 }  // namespace
 
 Structure::Structure(Parameters parameters, PlateContext context, const RawMesh* raw)
@@ -141,20 +152,6 @@ std::vector<double> Structure::damping() const {
   for (const double omega : share_->omega())
     c.push_back(2 * d.ratio * omega + d.mass + d.stiffness * omega * omega);
   return c;
-}
-
-/// Rate at which damping takes away what moves as the plate does now [1/s].
-double Structure::forgetting() const {
-  if (!parameters_.damping) return 0;
-  const std::vector<double> c = damping();
-  double lost = 0, all = 0;
-  for (std::size_t m = 0; m < c.size(); ++m) {
-    const double omega = share_->omega()[m], square = state_.v[m] * state_.v[m];
-    // The slower of two rates beyond the critical damping.
-    lost += square * (c[m] <= 2 * omega ? 0.5 * c[m] : omega * omega / c[m]);
-    all += square;
-  }
-  return all > 0 ? lost / all : 0;
 }
 
 ModalState Structure::initial_state() const {
@@ -257,7 +254,8 @@ StepReport Structure::accept_step() {
   std::swap(state_, trial_);
   met_seat_ = met_seat_ || state_.energies.impact_work != 0;
   if (step_errors_ && resolution_)  // trial_ is what it started from
-    step_errors_->add(trial_.v, state_.v, state_.dt, trial_.dt, norm_of(state_.q), norm_of, forgetting());
+    step_errors_->add(trial_.v, state_.v, state_.dt, trial_.dt, norm_of(state_.q), norm_of,
+                      rate_of_decay(share_->omega(), damping(), state_.v));
   if (resolution_) look_at_step();
   largest_ = std::max(largest_, trial_largest_);
   if (!rotations_.empty()) look_at_rotation();

@@ -59,7 +59,6 @@ class Structure final : public Participant, public EstimatesError {
 
  private:
   std::vector<double> damping() const;
-  double forgetting() const;
   ModalState initial_state() const;
   void make_contact();
   void add_pressure(double t, std::span<double> load);

@@ -44,6 +44,11 @@ TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {
   EXPECT_EQ(
       sentences[0],
       "estimated error 0.21 of the solution: coupling tolerance 0.2 (coupling), mesh 0.01 (fluid), step 0.004 (solid).");
+  const auto without = error_sentences({{"plate", {.step = 2e-9}}});
+  EXPECT_EQ(
+      without.at(0),
+      "estimated error 2e-09 of the solution: step 2e-09; what the mesh (or modes left out) leaves is not known and "
+      "not in it.");
   EXPECT_EQ(sentences[1].rfind("the coupling tolerance (coupling) dominates", 0), 0u) << sentences[1];
 }
 

@@ -37,6 +37,21 @@ TEST(StepErrorsTest, of_a_decay_they_decay_as_it_does) {
   EXPECT_LT(errors.over_size(), 2 * 0.03);
 }
 
+TEST(StepErrorsTest, of_a_damped_motion_that_loads_keep_going_old_ones_are_forgotten) {
+  StepErrors damped,
+      undamped;  // u = sin(t) for ever; errors die at 0.5 1/s: 1e-5 / (1 - exp(-0.05)) are left
+  const double dt = 0.1;
+  for (int n = 1; n <= 5000; ++n) {
+    StepErrors::Seen seen{
+        .error = 1e-5, .rate = std::abs(std::cos(n * dt)), .size = std::abs(std::sin(n * dt)), .dt = dt};
+    undamped.add(seen);
+    seen.forgotten = 0.5;
+    damped.add(seen);
+  }
+  EXPECT_NEAR(undamped.over_size(), 5000 * 1e-5, 5e-3);
+  EXPECT_NEAR(damped.over_size(), 1e-5 / (1 - std::exp(-0.05)), 3e-5);
+}
+
 TEST(StepErrorsTest, ringing_that_steps_do_not_resolve_errs_by_no_more_than_twice_itself) {
   // u = sin(t) + 0.001 sin(50 t): errors dt^3 / 12 d3u/dt3 of the ringing would add up to 1000 times its size.
   const double dt = 0.05, w = 50, a = 1e-3;

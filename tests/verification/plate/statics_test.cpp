@@ -179,6 +179,32 @@ TEST(PlateStatics, a_circle_is_a_circle_on_any_mesh_and_a_polygon_with_blunt_cor
   }
 }
 
+// Between hinged edges the deflection is as smooth as r^(pi / angle): a hexagon converges as h, a square as h^2, an inner
+// corner of 270 degrees as h^(2/3). The hexagon of side 1 by Poisson's equation twice, extrapolated: 0.030696.
+TEST(PlateStatics, a_hexagon_converges_as_its_corners_let_it_and_is_told) {
+  const SlepcEnvironment slepc;
+  const double degree = std::numbers::pi / 180;
+  EXPECT_NEAR(order_at_corner(60 * degree), 1, 1e-12);
+  EXPECT_NEAR(order_at_corner(90 * degree), 2, 1e-12);
+  EXPECT_NEAR(order_at_corner(120 * degree), 2, 1e-12);
+  EXPECT_NEAR(order_at_corner(-90 * degree), 2. / 3, 1e-12);
+  EXPECT_NEAR(order_at_corner(30 * degree), 0.4, 1e-12);
+  double before = 0;
+  for (const int rings : {4, 8, 16}) {
+    const Centre hexagon = centre_of(polygon(6, rings));
+    const double error = std::abs(hexagon.deflection / 0.030696 - 1);
+    EXPECT_EQ(hexagon.corners, 6u) << rings;
+    if (before > 0) {
+      EXPECT_NEAR(std::log2(before / error), 1, 0.25) << rings;
+    }
+    before = error;
+  }
+  EXPECT_EQ(with_corners(0.0045, {}), 0.0045);
+  const std::array<double, 1> sixty{60 * degree}, faint{degree};
+  EXPECT_NEAR(with_corners(0.0045, sixty), std::sqrt(0.0045), 1e-12);
+  EXPECT_LT(with_corners(0.0045, faint), 0.05);
+}
+
 TEST(PlateStatics, sides_of_one_edge_are_told_from_a_curve_by_the_drawing) {
   const SlepcEnvironment slepc;
   const RawMesh raw = disc(3);  // 18 edges
