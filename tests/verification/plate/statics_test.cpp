@@ -2,6 +2,9 @@
 // Static deflections against closed forms, and by modes against the direct ones.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+
 #include "common/base/error.hpp"
 #include "plate_modal/outline.hpp"
 #include "plate_modal/skin.hpp"
