@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+
 #include <mpi.h>
 
 #include "fluid_solver/placement.hpp"

@@ -12,7 +12,8 @@ thermocline::ElementParameters element(thermocline::ElementParameters::Type type
   p.type = type;
   p.ground.diameter = 18.2, p.ground.initial_temperature = 477;
   p.ground.ground.layers = {{"steel-plate", 0.02}, {"concrete", 0.6}, {"soil", 9}};
-  p.blanket.diameter = 18.2, p.blanket.height = 14, p.blanket.sections = 30;
+  // As high as wide: one number stands for all lengths that a tank tells.
+  p.blanket.diameter = p.blanket.height = 18.2, p.blanket.sections = 30;
   p.blanket.initial_temperature = 477;
 
   return p;
@@ -45,24 +46,25 @@ using Blanket = ElementFactory<thermocline::ElementParameters::Type::insulation>
 INSTANTIATE_TYPED_TEST_SUITE_P(TankGround, ParticipantContract, Ground);
 INSTANTIATE_TYPED_TEST_SUITE_P(TankBlanket, ParticipantContract, Blanket);
 
-/// On every rank, for each element: a tank of another diameter is refused.
+/// On every rank, for each element: a tank of another diameter or height is refused.
 template <class Factory>
-void refuses_another_diameter(const char* name, double slack) {
-  for (const double diameter : {18.2, 18.2 * (1 + 0.5 * slack), 18.2 * (1 + 2 * slack), 20.0}) {
+void refuses_another_length(const char* name, double slack) {
+  for (const double length : {18.2, 18.2 * (1 + 0.5 * slack), 18.2 * (1 + 2 * slack), 20.0}) {
     const auto part = Factory::make(MPI_COMM_WORLD);
     const Interface interface = part->initialise();
     Exchange in = Factory::input(interface, 1);
-    if (in.count(name)) in[name].assign(in[name].size(), diameter);
+    if (in.count(name)) in[name].assign(in[name].size(), length);
     part->begin_step({0, 900});
-    if (diameter < 18.2 * (1 + slack))
-      EXPECT_NO_THROW(part->solve(in)) << diameter;
+    if (length < 18.2 * (1 + slack))
+      EXPECT_NO_THROW(part->solve(in)) << length;
     else
-      EXPECT_THROW(part->solve(in), Error) << diameter;
+      EXPECT_THROW(part->solve(in), Error) << length;
   }
 }
-TEST(TankParts, a_contradicting_diameter_is_refused_on_every_rank) {
-  refuses_another_diameter<Ground>("tank-diameter", 1e-3);
-  refuses_another_diameter<Blanket>("wall-diameter", 0.02);
+TEST(TankParts, a_contradicting_length_is_refused_on_every_rank) {
+  refuses_another_length<Ground>("tank-diameter", 1e-3);
+  refuses_another_length<Blanket>("wall-diameter", 0.02);
+  refuses_another_length<Blanket>("wall-height", 1e-3);
 }
 
 }  // namespace
