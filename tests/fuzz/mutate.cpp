@@ -18,6 +18,7 @@ std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
 }  // namespace
 
 std::size_t count() { return number_of("COUPLET_FUZZ_COUNT", 100); }
+std::uint64_t longest() { return number_of("COUPLET_FUZZ_SECONDS", 5); }
 std::uint64_t seed() { return number_of("COUPLET_FUZZ_SEED", 1); }
 
 std::string read_file(const std::filesystem::path& file) {
@@ -32,7 +33,8 @@ void write_file(const std::filesystem::path& file, const std::string& content) {
 }
 
 std::string mutate_bytes(std::string text, Dice& dice) {
-  static const std::string odd("\0\n\r\t \"'[]{}()#&*!|>%@`:,-+.eE0129\x7f\xff\xc3", 40);
+  static constexpr char bytes[] = "\0\n\r\t \"'[]{}()#&*!|>%@`:,-+.eE0129\x7f\xff\xc3";
+  static const std::string odd(bytes, sizeof bytes - 1);  // with the zero that it begins with
   for (std::size_t n = 1 + dice.below(4); n > 0 && !text.empty(); --n) {
     const std::size_t at = dice.below(text.size()),
                       length = 1 + dice.below(std::min<std::size_t>(40, text.size() - at));

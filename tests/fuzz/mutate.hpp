@@ -27,6 +27,8 @@ class Dice {
 
 /// Number of cases to try and first seed, from COUPLET_FUZZ_COUNT and COUPLET_FUZZ_SEED.
 std::size_t count();
+/// What one input may take [s]: COUPLET_FUZZ_SECONDS, else 5 (sanitizers take several times longer).
+std::uint64_t longest();
 std::uint64_t seed();
 
 std::string read_file(const std::filesystem::path& file);
