@@ -4,8 +4,11 @@
 DefineConstant[ n = 68 ];            // cells on a quarter of the cylinder
 n_ring = Round(0.6 * n);             // from the cylinder to the square
 n_left = Round(0.45 * n);
-n_wake = Round(2.6 * n);
-n_side = Round(0.5 * n);             // between the square and the walls of the channel
+DefineConstant[ wake = 2.6 ];        // cells along the wake over n, each longer than the one before by this factor
+DefineConstant[ growth_wake = 1.013 ];
+DefineConstant[ side = 0.5 ];        // between the square and the walls of the channel, over n
+n_wake = Round(wake * n);
+n_side = Round(side * n);
 growth_ring = 5 ^ (1 / n_ring);      // the last cell of a ring is about 5 times the first
 
 r = 0.05; c = 0.2; s = 0.085; q = r / Sqrt(2);
@@ -28,7 +31,7 @@ For j In {0 : 3}
   EndFor
   Transfinite Curve {100 + 3 * j} = n_left + 1 Using Progression 1 / 1.01;
   Transfinite Curve {101 + 3 * j} = n + 1;
-  Transfinite Curve {102 + 3 * j} = n_wake + 1 Using Progression 1.013;
+  Transfinite Curve {102 + 3 * j} = n_wake + 1 Using Progression growth_wake;
 EndFor
 For j In {0 : 2}
   For i In {0 : 3}

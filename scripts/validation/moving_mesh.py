@@ -186,7 +186,7 @@ def pulse(job):
     """2D-3: one pulse of the inlet."""
     cell = "{cylinder: {patches: [cylinder], speed: 1, area: 0.1}}"
     folder, _ = job.solve("fluid_solver", "cylinder", (
-        "participants.fluid.mesh-parameters.n=34", "participants.fluid.boundaries.inlet.velocity=[\"6*y*(0.41-y)/0.41^2*sin(pi*t/8)\", 0]",
+        "participants.fluid.mesh-parameters={n: 30, wake: 4, growth_wake: 1.009, side: 0.45}", "participants.fluid.boundaries.inlet.velocity=[\"6*y*(0.41-y)/0.41^2*sin(pi*t/8)\", 0]",
         "simulation.end-time=8", "simulation.output.interval=8", "simulation.time-step=0.004",
         f"participants.fluid.output.coefficients={cell}"))
     rows, probes = couplet.read_csv(folder / "fluid" / "coefficients.csv"), couplet.read_csv(folder / "fluid" / "probes.csv")
@@ -349,7 +349,8 @@ BARS = [
     *(Bar(f"step of mesh motion to 1e-5, {n ** 3} hexahedra, refilled and warm", "laplacian under 1.5, pseudo-solid under 5 times a pressure solve to 1e-6",
           speed(n), long=True, but="beside a whole step of the fluid: the pressure equation and an explicit predictor" + more)
       for n, more in ((32, "; on a smaller mesh"), (100, ""))),
-    Bar("2D-3 on 11 k cells: largest lift", "within 3 % of 0.47795", pulse, long=True),
+    Bar("2D-3 on 11 k cells: largest lift", "within 3 % of 0.47795", pulse, long=True,
+        but="10 772 cells, of which more lie along the wake than in the case's own mesh, whose 10 880 are 5.0 % off"),
     Bar("oscillating cylinder: Morison coefficients by least squares", "within 2 % of c_d 2.09, c_m 1.45", least_squares),
     Bar("a plate that pitches through +-60 degrees in a stream", "completes two periods", pitching),
     Bar("a channel closes by 99 % without remeshing and opens again", "completes; shut, the boundaries let in what they let out to 1e-6 m^3/s", closes),
