@@ -167,6 +167,7 @@ int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseF
     watch.limit_silence(job.simulation.hang_timeout);
     start_guard.reset();
     const int code = run(job);
+    watch.enter(Phase::waiting);  // for the others: no sign of life of this process is due
     if (code == 0 && Watch::has_stopped()) return exit_stopped;
     if (code != 0 || !command_line.strict || log::doubts() == 0) return code;
     if (job.rank == 0)
