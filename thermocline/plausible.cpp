@@ -6,6 +6,19 @@
 #include <algorithm>
 
 namespace couplet::thermocline {
+namespace {
+
+/// `whose`: "any solid's".
+std::string slip_in_heat(double specific_heat, const char* whose) {
+  constexpr double least = 100;  // [J/(kg K)]
+  if (!(specific_heat < least)) return "";
+  return fmt::format(
+      "specific-heat is {:g} J/(kg K), less than {}. A number without a unit is in J/(kg K); write '{:g} kJ/(kg K)' if that is "
+      "meant",
+      specific_heat, whose, specific_heat);
+}
+
+}  // namespace
 
 std::string slip_in_bed(const BedParameters& bed, double diameter) {
   constexpr double largest_grain = 1;  // [m]
@@ -40,28 +53,18 @@ std::string slip_in_tank(const BedParameters& bed, double diameter) {
 }
 
 std::string slip_in_filler(const Filler& f) {
-  constexpr double lightest = 50, heaviest = 25000,
-                   least_heat = 100;  // SI; a conductivity may be as large as one likes
+  constexpr double lightest = 50, heaviest = 25000;  // SI; a conductivity may be as large as one likes
   if (f.density < lightest || f.density > heaviest)
     return fmt::format(
         "density is {:g} kg/m^3: expected {:g} to {:g}. A number without a unit is in kg/m^3; write '{:g} kg/l' if that is meant",
         f.density, lightest, heaviest, f.density);
-  if (f.specific_heat < least_heat)
-    return fmt::format(
-        "specific-heat is {:g} J/(kg K), less than any solid's. A number without a unit is in J/(kg K); write '{:g} kJ/(kg K)' "
-        "if that is meant",
-        f.specific_heat, f.specific_heat);
-  return "";
+  return slip_in_heat(f.specific_heat, "any solid's");
 }
 
 std::string slip_in_fluid(const FluidParameters& p, Advection advection) {
   if (p.type != FluidParameters::Type::custom) return "";
-  constexpr double least_heat = 100, lightest_liquid = 50;  // SI
-  if (p.specific_heat < least_heat)
-    return fmt::format(
-        "specific-heat is {:g} J/(kg K), less than any fluid's. A number without a unit is in J/(kg K); write '{:g} kJ/(kg K)' "
-        "if that is meant",
-        p.specific_heat, p.specific_heat);
+  constexpr double lightest_liquid = 50;  // [kg/m^3]
+  if (std::string slip = slip_in_heat(p.specific_heat, "any fluid's"); !slip.empty()) return slip;
   if (p.density < lightest_liquid && advection != Advection::implicit)
     return fmt::format(
         "density is {:g} kg/m^3, that of a gas, which needs bed.advection: implicit. A number without a unit is in kg/m^3; write "
