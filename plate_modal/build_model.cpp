@@ -115,6 +115,10 @@ std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path
     throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
                 file.string());
   const std::string kind = file.extension().string();
+  if (kind != ".geo" && !p.mesh_parameters.empty())
+    throw Error(
+        "The mesh '{}' is finished, so 'mesh-parameters' cannot change it. Leave them out, or give the .geo it was made from.",
+        file.string());
   if (kind == ".unv" || kind == ".med" || kind == ".cgns") return convert_mesh(file);
   if (kind != ".msh" && kind != ".geo")
     throw Error("The mesh file '{}' is neither .msh nor .geo, .unv, .med or .cgns.", file.string());
@@ -199,8 +203,8 @@ void look_at_corners(Built& built, const Midsurface& surface, const std::vector<
   const double degree = std::numbers::pi / 180;
   built.outline = fmt::format(
       "the simply supported outline has {} corner{} between straight edges that turn{} by {:.3g} to {:.3g} degrees, one at "
-      "({:.4g}, {:.4g}): moments are singular there, and the error falls as the {:.2g}th power of the cells' size in place "
-      "of the second. The plate is a polygon, which deflects less than one with a curved edge however many sides it has "
+      "({:.4g}, {:.4g}): moments are singular there, and the error falls as h^{:.2g} in place of h^2, h the cells' size. "
+      "The plate is a polygon, which deflects less than one with a curved edge however many sides it has "
       "(Babuska's paradox), and blunt corners take a very fine mesh: with 13 edges a side of 20 the deflection is 13 % too "
       "large, with 16 edges a side of 12 it is 22 % too small. Draw an edge that is meant to be curved by a curve (Circle, "
       "Ellipse, Spline); else compare with a finer mesh.",

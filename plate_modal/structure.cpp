@@ -255,7 +255,7 @@ StepReport Structure::accept_step() {
   met_seat_ = met_seat_ || state_.energies.impact_work != 0;
   if (step_errors_ && resolution_)  // trial_ is what it started from
     step_errors_->add(trial_.v, state_.v, state_.dt, trial_.dt, norm_of(state_.q), norm_of,
-                      rate_of_decay(share_->omega(), damping(), state_.v));
+                      parameters_.damping ? rate_of_decay(share_->omega(), damping(), state_.v) : 0);
   if (resolution_) look_at_step();
   largest_ = std::max(largest_, trial_largest_);
   if (!rotations_.empty()) look_at_rotation();

@@ -37,6 +37,12 @@ case.yaml:4:3: participants.plate.mesh: give either 'mesh' (of the mid-surface) 
         plate("plate with mesh and modes", """
 case.yaml:6:5: participants.plate.mesh: give either 'mesh' (of the mid-surface) or 'modes.file' (modes of another program).
 """, ("modes: {number: 3}", "modes: {number: 3, file: modes.h5}")),
+        plate("parameters of a finished mesh of a plate", """
+[plate 0] error: The mesh 'square.msh' is finished, so 'mesh-parameters' cannot change it. Leave them out, or give the .geo it was made from.
+""", ("    mesh: square.msh\n", "    mesh: square.msh\n    mesh-parameters: {n: 3}\n"), **run),
+        plate("mesh of a plate of another kind", """
+[plate 0] error: The mesh file 'case.yaml' is neither .msh nor .geo, .unv, .med or .cgns.
+""", ("    mesh: square.msh\n", "    mesh: case.yaml\n"), **run),
         plate("plate without thickness", """
 case.yaml:6:5: participants.plate.mesh: a plate needs 'thickness' above 0.
 """, ("    thickness: 1 cm\n", "")),

@@ -231,6 +231,28 @@ TEST(PlateContact, a_structure_that_stands_in_its_seat_at_the_start_is_refused_u
   EXPECT_EQ(refusal(touching, 0.002), "");
 }
 
+TEST(PlateContact, a_seat_that_is_never_met_is_told_with_its_distance) {
+  for (const auto& [height, told] : {std::pair{"-6", true}, {"-0.006", false}}) {  // 6 mm without their unit
+    Parameters p = reed_like();
+    p.contact.emplace();
+    p.contact->height.text = height;
+    p.initial_amplitudes = {0.003};
+    const RawMesh raw = square(4);
+    Structure plate(p, PlateContext{}, &raw);
+    const double dt = 2 * std::numbers::pi / plate.share().omega()[0] / 200;
+    for (int i = 0; i < 200; ++i) {
+      plate.begin_step({i * dt, dt, Scheme::standalone, i});
+      plate.solve({});
+      plate.accept_step();
+    }
+    const std::vector<std::string> said = plate.finish();
+    const bool found =
+        !said.empty() &&
+        said.front().find("the seat was never met; at the end it is 6 m away") != std::string::npos;
+    EXPECT_EQ(found, told) << (said.empty() ? "nothing" : said.front());
+  }
+}
+
 TEST(PlateContact, a_seat_along_which_nothing_moves_is_refused) {
   ContactParameters seat;
   seat.height.text = "-3";
