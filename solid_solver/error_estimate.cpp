@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -86,6 +87,7 @@ std::vector<double> SolidErrorEstimate::state() const {
 
 void SolidErrorEstimate::restore(std::span<const double> state) {
   const auto n = state.empty() ? 0 : std::size_t(state[0]);
+  if (!state.empty() && n > state.size() - 1) throw Error("The checkpoint's errors of steps are damaged.");
   linear_.restore(state.empty() ? state : state.subspan(1, n));
   steps_.restore(state.empty() ? state : state.subspan(1 + n));
 }

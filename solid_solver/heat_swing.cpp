@@ -21,7 +21,8 @@ constexpr double noticeable = 1e-3;  // root mean square of a step's change over
 void HeatSwing::accepted(const Mesh& mesh, const std::vector<double>& before,
                          const std::vector<double>& after, double time) {
   if (told_) return;
-  const bool first = change_.empty();
+  const bool first = !begun_;  // the same on all ranks, also on one without cells
+  begun_ = true;
   change_.resize(after.size(), 0.0);
   double sums[4] = {};  // change.change, last.last, change.last, volume
   double range[2] = {-1e300, -1e300};

@@ -20,6 +20,7 @@ class HeatSwing {
   std::vector<double> change_;       // of the last step [K]
   double lowest_ = 0, highest_ = 0;  // that was seen [K]
   int turns_ = 0;                    // in a row
+  bool begun_ = false;
   bool told_ = false;
 };
 

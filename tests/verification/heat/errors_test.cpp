@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "common/log/doubt.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing {
@@ -78,6 +79,19 @@ TEST(HeatErrors, a_run_that_goes_on_says_the_same) {
                    stopped = slab(8, 12, HeatScheme::three_point, true).parts;
   EXPECT_EQ(whole.step, stopped.step);
   EXPECT_EQ(whole.mesh, stopped.mesh);
+}
+
+/// Hardly a cell a rank: all must agree when the swing is told.
+TEST(HeatSwing, is_told_once_on_any_number_of_ranks) {
+  HeatParameters p;
+  p.scheme = HeatScheme::trapezoidal;
+  p.initial_temperature = {"0"};
+  p.boundaries["xmin"] = heat_boundary(HeatType::temperature, "1");
+  HeatCase scene(make_box(BoxCells::quadrilaterals, {4, 1, 1}, Vec3::Zero(), Vec3(1, 0.25, 0)),
+                 {{1, 1.0, 1.0}}, p);
+  const int before = log::doubts();
+  for (int i = 0; i < 40; ++i) scene.step(1000);
+  EXPECT_EQ(log::doubts() - before, 1);
 }
 
 TEST(HeatErrors, a_linear_field_errs_nowhere_and_one_temperature_says_nothing) {
