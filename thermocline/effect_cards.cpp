@@ -39,6 +39,17 @@ V judge_yield(const P&, const E& e) {
       "the wall would yield: its stress and that of the grains are those of an elastic wall"};
 }
 
+// As a share of the strength, so that a wall that carries next to nothing is no reason for a word. Both shares grow only.
+V judge_bending(const P&, const E& e) {
+  if (std::isnan(e.share_with_bending)) return {};
+  return EffectVerdict{
+      "", e.share_with_bending - e.share_as_rings, 0.1,
+      fmt::format(
+          "the wall's largest equivalent stress had reached {:.3g} of its yield strength as rings, and {:.3g} as a shell",
+          e.share_as_rings, e.share_with_bending),
+      "factors of safety are the less by that: compute the wall as a solid ('external-wall')"};
+}
+
 V judge_sound(const P&, const E& e) {
   if (std::isnan(e.largest_mach)) return {};
   return EffectVerdict{
@@ -116,6 +127,12 @@ const std::array cards{
          {},
          "equivalent stress over the yield strength, 1",
          judge_yield},
+    Card{"bending of the wall",
+         "`external-wall`",
+         [](const P& p) { return when(p, p.tank.external_wall.has_value(), "external-wall"); },
+         {"the processes solid_solver and coupler", 0, 0},
+         "what bending adds to the largest equivalent stress, over the yield strength, 0.1",
+         judge_bending},
     Card{"compressible flow of a gas",
          "no key: not in the model",
          [](const P&) { return std::string(); },

@@ -23,6 +23,8 @@ struct Evidence {
   /// and the pressure loss [Pa].
   double pumping_share = unknown, pressure_loss = unknown;
   double share_of_yield = unknown;  ///< largest equivalent stress of the wall over its yield strength
+  /// The same with what bending would add at the wall's faces; both as looked at every two hours.
+  double share_as_rings = unknown, share_with_bending = unknown;
 };
 using Card = EffectCard<ElementParameters, Evidence>;
 std::span<const Card> effect_cards();

@@ -13,7 +13,6 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/questions.hpp"
-#include "thermocline/wall_bending.hpp"
 
 namespace couplet::thermocline {
 
@@ -221,6 +220,11 @@ void Tank::look_at_bending() {
   const WallBending bent =
       wall_bending(rings, *accepted_.setup().steel, hoop, accepted_.shell()->temperature());
   bending_.rings = std::max(bending_.rings, *std::max_element(hoop.begin(), hoop.end()));
+  if (!accepted_.stress().yield.empty()) {
+    const YieldShares now = yield_shares(accepted_.stress(), bent, accepted_.setup().steel->poissons_ratio);
+    bending_.share.rings = std::max(bending_.share.rings, now.rings);
+    bending_.share.shell = std::max(bending_.share.shell, now.shell);
+  }
   for (std::size_t i = 0; i < hoop.size(); ++i) {
     if (bent.hoop[i] > bending_.shell) bending_.shell = bent.hoop[i], bending_.shell_z = rings.z[i];
     if (std::abs(bent.axial[i]) > bending_.axial)

@@ -9,6 +9,7 @@
 #include "common/coupling/participant.hpp"
 #include "thermocline/model.hpp"
 #include "thermocline/output.hpp"
+#include "thermocline/wall_bending.hpp"
 
 namespace couplet::thermocline {
 
@@ -17,6 +18,7 @@ struct BendingSeen {
   double rings = 0, shell = 0,
          shell_z = 0;  ///< largest hoop stress, as rings and with bending, and where [Pa], [m]
   double axial = 0, axial_z = 0, axial_time = 0;  ///< largest bending stress, where and when [Pa], [m], [s]
+  YieldShares share;                              ///< largest shares of the yield strength so far
 };
 
 /// The tank as a participant: runs the elements that the YAML asks for. A tank is small, so every rank

@@ -130,10 +130,9 @@ void wall(const TankModel& m, const BendingSeen& bending, Lines& lines) {
       line += fmt::format(
           "; the largest hoop stress of {:.0f} MPa becomes {:.0f} at z = {:.2f} m, and the wall bends with "
           "up to {:.0f} "
-          "MPa along z, at z = {:.2f} m and t = {:.6g} s, {} (external-wall computes it)",
+          "MPa along z, at z = {:.2f} m and t = {:.6g} s (external-wall computes it)",
           1e-6 * bending.rings, 1e-6 * bending.shell, bending.shell_z, 1e-6 * bending.axial, bending.axial_z,
-          bending.axial_time,
-          bending.axial > 0.5 * bending.rings ? "which matters" : "small beside the hoop stress");
+          bending.axial_time);
     lines.push_back(line);
   }
   if (!m.mechanics() && !m.contact()) return;

@@ -124,6 +124,10 @@ std::vector<EffectVerdict> Tank::audit() const {
     for (std::size_t i = 0; i < stress.equivalent.size(); ++i)
       evidence.share_of_yield = std::max(evidence.share_of_yield, stress.equivalent[i] / stress.yield[i]);
   }
+  if (bending_.share.shell > 0) {
+    evidence.share_as_rings = bending_.share.rings;
+    evidence.share_with_bending = bending_.share.shell;
+  }
   ElementParameters scene;
   scene.type = ElementParameters::Type::tank;
   scene.tank = m.setup().parameters;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/wall_bending.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace couplet::thermocline {
@@ -72,6 +73,20 @@ WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const
     result.axial[i] = -6 * stiffness[i] * bent / (rings.thickness[i] * rings.thickness[i]);
   }
   return result;
+}
+
+YieldShares yield_shares(const WallStress& stress, const WallBending& bent, double poissons_ratio) {
+  YieldShares shares;
+  for (std::size_t i = 0; i < stress.hoop.size(); ++i) {
+    shares.rings = std::max(shares.rings, stress.equivalent[i] / stress.yield[i]);
+    for (const double face : {-1.0, 1.0}) {
+      const double added = face * bent.axial[i], r = stress.radial[i];
+      const double t = bent.hoop[i] + poissons_ratio * added, z = stress.axial[i] + added;
+      const double equivalent = std::sqrt(0.5 * ((t - z) * (t - z) + (z - r) * (z - r) + (r - t) * (r - t)));
+      shares.shell = std::max(shares.shell, equivalent / stress.yield[i]);
+    }
+  }
+  return shares;
 }
 
 }  // namespace couplet::thermocline

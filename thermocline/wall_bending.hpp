@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "thermocline/shell.hpp"
+#include "thermocline/mechanics.hpp"
 
 namespace couplet::thermocline {
 
@@ -20,5 +20,12 @@ struct WallBending {
 };
 WallBending wall_bending(const Rings& rings, const Steel& steel, std::span<const double> hoop,
                          std::span<const double> temperature);
+
+/// Largest share of its yield strength that the equivalent stress of a ring has: without bending, and at the worse of both
+/// faces with it, where bending adds -+6 M/e^2 along z and nu times that along the circumference [1].
+struct YieldShares {
+  double rings = 0, shell = 0;
+};
+YieldShares yield_shares(const WallStress& stress, const WallBending& bent, double poissons_ratio);
 
 }  // namespace couplet::thermocline

@@ -65,13 +65,17 @@ def coupled_wall(job):
 
 
 def coupled_maxima(job):
-    """Maxima as maxima, wherever they are; and what the bending estimate makes of the rings'."""
-    found, rings, stress, log = walls(job)
-    line = re.search(r"largest hoop stress of (\d+) MPa becomes (\d+)", log)
-    bent = float(line.group(2)) * 1e6
-    return (f"{100 * found['maximum']:.1f} %: {rings / 1e6:.0f} and {stress / 1e6:.0f} MPa at z = {found['place']:.2f} m; with the rings' "
-            f"bending estimate {bent / 1e6:.0f} MPa, {100 * abs(bent / stress - 1):.1f} %. Cause: rings have steps where plates meet, "
-            f"which bending rounds off", found["maximum"] < 0.03)
+    """Maxima as maxima, wherever they are."""
+    found, rings, stress, _ = walls(job)
+    return (f"{100 * found['maximum']:.1f} %: {rings / 1e6:.0f} and {stress / 1e6:.0f} MPa at z = {found['place']:.2f} m. Cause: rings have "
+            f"steps where plates meet, which bending rounds off", found["maximum"] < 0.03)
+
+
+def bent_maxima(job):
+    """The same with what the tank's bending estimate makes of the rings' largest stress."""
+    _, _, stress, log = walls(job)
+    bent = float(re.search(r"largest hoop stress of \d+ MPa becomes (\d+)", log).group(1)) * 1e6
+    return f"{100 * abs(bent / stress - 1):.1f} %: {bent / 1e6:.0f} and {stress / 1e6:.0f} MPa", abs(bent / stress - 1) < 0.03
 
 
 def in_parts(job):
@@ -103,6 +107,7 @@ BARS = [
     Bar("Solar One: passive yielding of the filler", "none", passive),
     Bar("Solar One: rings against the coupled finite-volume wall, height-averaged", "< 7 %", coupled_wall),
     Bar("Solar One: rings against the coupled finite-volume wall, maxima", "< 3 %", coupled_maxima),
+    Bar("Solar One: rings with their bending estimate against the coupled finite-volume wall, maxima", "< 3 %", bent_maxima),
     Bar("thermocline: closed form of the factors of safety, A and G, base, AR1, T1", "1.56 1.18 2.24 2.30 1.04 3.45 to 1 %", factors),
     Bar("Pacheco: front speed over theory (upwind, tvd, implicit)", "1 +- 0.02", between(EXPERIMENTS, "front_travels", "ratio", 0.98, 1.02, "{:.4f}")),
     Bar("Pacheco: energy closure", "<= 1e-10", at_most(EXPERIMENTS, "front_travels", "closure", 1e-10, "{:.1e}")),

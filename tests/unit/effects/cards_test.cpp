@@ -217,6 +217,8 @@ TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
   EXPECT_FALSE(sound("compressible flow of a gas", {.largest_mach = 0.31}));
   EXPECT_TRUE(sound("yielding of the wall", {.share_of_yield = 0.99}));
   EXPECT_FALSE(sound("yielding of the wall", {.share_of_yield = 1.01}));
+  EXPECT_TRUE(sound("bending of the wall", {.share_as_rings = 0.5, .share_with_bending = 0.599}));
+  EXPECT_FALSE(sound("bending of the wall", {.share_as_rings = 0.5, .share_with_bending = 0.601}));
   tank.tank.bed.shells = 5;
   EXPECT_FALSE(verdict_on("resolved grains", thermocline::effect_cards(), tank,
                           thermocline::Evidence{.largest_biot = 1e3}));

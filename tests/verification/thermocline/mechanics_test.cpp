@@ -210,6 +210,20 @@ TEST(Bending, of_a_step_in_temperature_is_the_closed_form) {
   EXPECT_NEAR(bent.hoop[699], scale / 2, 0.03 * scale);
   EXPECT_NEAR(bent.hoop[700], -scale / 2, 0.03 * scale);
   EXPECT_NEAR(bent.hoop[100], 0, 1e-4 * scale);
+  // Far from the step the wall is as rings; at it the faces carry the bending, in tension along z on one of them.
+  WallStress stress;
+  InnerPressure p{std::vector<double>(1400, 0.0), std::vector<double>(1400, 0.0)};
+  wall_stress(rings, steel, p, 0, hoop, temperature, stress);
+  const YieldShares shares = yield_shares(stress, bent, nu);
+  double largest = 0;
+  for (std::size_t i = 0; i < hoop.size(); ++i)
+    for (const double s : {-bent.axial[i], bent.axial[i]}) {
+      const double t = bent.hoop[i] + nu * s, z = stress.axial[i] + s;
+      largest = std::max(largest, std::sqrt(t * t - t * z + z * z) / stress.yield[i]);
+    }
+  EXPECT_NEAR(shares.shell, largest, 1e-9 * largest);
+  EXPECT_GT(shares.shell * stress.yield[700], 0.4 * scale);
+  EXPECT_LT(shares.rings * stress.yield[700], 0.01 * scale);
 }
 
 TEST(Bending, leaves_what_changes_slowly) {
