@@ -42,7 +42,9 @@ Fluid<D>::Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving
       step_(mesh, boundary_, parameters_, moving_mesh && !translates_),
       step_size_(mesh, boundary_, parameters.viscosity / parameters.density, parameters.scheme) {
   check_together(mesh_, boundary_, parameters_, moving_);
-  if (moving_ && !translates_ && !mesh.neighbour_shift.empty()) periodic_.emplace(mesh);
+  if (moving_ && !translates_ &&
+      any(mesh.comm, !mesh.neighbour_shift.empty()))  // a rank without cells has none
+    periodic_.emplace(mesh);
   start(start_time);
 }
 

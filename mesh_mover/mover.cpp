@@ -23,10 +23,6 @@ Mesh load_checked(const Parameters& parameters, const ParticipantContext& contex
   std::map<std::string, std::string> partner_of;
   for (const auto& [name, boundary] : parameters.boundaries)
     if (boundary.motion == BoundaryMotion::periodic) partner_of[name] = boundary.partner;
-  if (!partner_of.empty() && parameters.method == Method::pseudo_solid)
-    throw Error(
-        "participants.{}.method: pseudo-solid knows no periodic patches, and '{}' is one; use laplacian or rotations.",
-        context.name, partner_of.begin()->first);
   Mesh mesh =
       load_mesh(context.comm, context.case_folder / parameters.mesh, parameters.dimension,
                 parameters.mesh_parameters, periodic_pairs(partner_of), {}, false, parameters.mesh_scale);

@@ -106,8 +106,8 @@ void declare(config::Section& section, Parameters& p) {
         s.choice("method", p.linear.method,
                  {{"direct", LinearMethod::direct_symmetric}, {"cg-multigrid", LinearMethod::cg_multigrid}})
             .doc(
-                "direct: one factorisation for the whole run (best below about 100 000 cells; a pseudo-solid in 3-D "
-                "has none); cg-multigrid: conjugate gradients with a kept multigrid preconditioner");
+                "direct: one factorisation for the whole run (best below about 100 000 cells; a pseudo-solid in 3-D or with "
+                "periodic patches has none); cg-multigrid: conjugate gradients with a kept multigrid preconditioner");
         s.value("relative-tolerance", p.linear.relative_tolerance)
             .range(1e-14, 1e-1)
             .doc("of the residual, for cg-multigrid");

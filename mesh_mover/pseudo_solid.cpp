@@ -49,7 +49,8 @@ PseudoSolid::PseudoSolid(const Mesh& mesh, const Parameters& parameters, std::sp
   for (const Patch& patch : mesh.patches) {
     const BoundaryMotion motion = parameters.boundaries.at(patch.name).motion;
     conditions.push_back(condition_of(motion));
-    held = held || conditions.back() == ElasticCondition::prescribed;
+    // The faces of periodic patches are interior ones.
+    held = held || (motion != BoundaryMotion::periodic && conditions.back() == ElasticCondition::prescribed);
     if (!is_given(motion)) continue;
     for (const auto& [first, count] :
          {std::pair{patch.first, patch.count}, {patch.ghost_first, patch.ghost_count}})
@@ -75,7 +76,9 @@ PseudoSolid::PseudoSolid(const Mesh& mesh, const Parameters& parameters, std::sp
 }
 
 void PseudoSolid::make_solver(const LinearOptions& options) {
-  if (options.method == LinearMethod::direct_symmetric && dim_ == 2) {
+  const bool joined =
+      any(mesh_.comm, !mesh_.neighbour_shift.empty());  // its points have nodes on other ranks
+  if (options.method == LinearMethod::direct_symmetric && dim_ == 2 && !joined) {
     matrix_ = std::make_unique<SparseMatrix>(symmetric_matrix(mesh_, *rows_, {}));
     LinearOptions of_factors;
     of_factors.method = LinearMethod::direct_planar;

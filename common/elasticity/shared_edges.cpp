@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "common/elasticity/elastic_nodes.hpp"
+#include "common/mesh/periodic_points.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -18,9 +19,22 @@ struct SharedEdges::Key {
   auto same() const { return std::tuple(material, a, b); }
 };
 
+namespace {
+
+/// What a point is told by in the edges' names: on periodic patches by the point that all copies are.
+std::vector<GlobalIndex> names_of_points(const Mesh& mesh) {
+  std::vector<GlobalIndex> names = mesh.point_id;
+  const PeriodicPoints periodic(mesh);
+  for (std::size_t i = 0; i < periodic.points().size(); ++i)
+    names[periodic.points()[i]] = -1 - GlobalIndex(periodic.group(i));
+  return names;
+}
+
+}  // namespace
+
 SharedEdges::SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
                          std::span<const double> volume)
-    : edges_of_(faces.size()), parallel_(comm_size(mesh.comm) > 1) {
+    : edges_of_(faces.size()), parallel_(comm_size(mesh.comm) > 1), names_(names_of_points(mesh)) {
   number(mesh, faces);
   const std::size_t n = end_points_.size();
   value_.assign(n * stride, 0);
@@ -48,6 +62,7 @@ SharedEdges::SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::spa
   if (rows.is_anisotropic()) find_matrices(mesh, rows, faces, volume);
   find_mirrors(mesh, rows);
   end_points_ = {};
+  names_ = {};
 }
 
 /// Means of the faces' by volume.
@@ -74,11 +89,13 @@ void SharedEdges::number(const Mesh& mesh, std::span<const Index> faces) {
   std::vector<std::uint8_t> is_near(mesh.points.n_local(), 0);  // may be known elsewhere
   for (Index c = mesh.cells.n_owned(); c < mesh.cells.n_local(); ++c)
     for (const Index v : mesh.cell_points[c]) is_near[v] = 1;
+  for (std::size_t v = 0; v < names_.size(); ++v)
+    if (names_[v] < 0) is_near[v] = 1;
   std::map<std::tuple<GlobalIndex, GlobalIndex, GlobalIndex>, Index> found;
   const int rank = comm_rank(mesh.comm);
   const auto key_of = [&](Index f, std::size_t i) {
     const auto p = mesh.face_points[f];
-    const GlobalIndex a = mesh.point_id[p[i]], b = mesh.point_id[p[(i + 1) % 3]];
+    const GlobalIndex a = names_[p[i]], b = names_[p[(i + 1) % 3]];
     return Key{mesh.material_of(mesh.owner[f]), std::min(a, b), std::max(a, b), rank, -1};
   };
   std::vector<Key> mine;
@@ -137,7 +154,7 @@ void SharedEdges::find_mirrors(const Mesh& mesh, const ElasticOperator& rows) {
     const Vec3 n = mesh.reference.face_area[f].normalized();
     const auto p = mesh.face_points[f];
     for (std::size_t i = 0; i < p.size(); ++i) {
-      const GlobalIndex a = mesh.point_id[p[i]], b = mesh.point_id[p[(i + 1) % p.size()]];
+      const GlobalIndex a = names_[p[i]], b = names_[p[(i + 1) % p.size()]];
       const auto at = by_ends.find({std::min(a, b), std::max(a, b)});
       if (at == by_ends.end()) continue;
       for (const Index e : at->second) {

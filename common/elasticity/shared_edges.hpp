@@ -59,6 +59,7 @@ class SharedEdges {
   std::vector<ElasticMatrix> matrix_;                   // in its place, one an edge; empty: isotropic
   std::vector<std::pair<Index, Vec3>> mirrors_;         // edges on symmetry planes, with the normal
   std::vector<std::array<GlobalIndex, 2>> end_points_;  // while it is made
+  std::vector<GlobalIndex> names_;                      // of the local points, while it is made
 };
 
 }  // namespace couplet

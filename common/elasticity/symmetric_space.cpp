@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/elasticity/symmetric_faces.hpp"
+#include "common/parallel/collective.hpp"
 
 namespace couplet {
 
@@ -30,6 +31,9 @@ SymmetricSpace<D>::SymmetricSpace(const Mesh& mesh, const ElasticOperator& rows)
   for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
     if (rows.condition(f) == ElasticCondition::symmetry)
       symmetry_.emplace_back(f, mesh.reference.face_area[f].normalized());
+  if (!any(mesh.comm, !mesh.neighbour_shift.empty())) return;
+  joined_ = std::make_unique<JoinedVertices>(mesh, rows);
+  std::erase_if(vertices_.free, [&](Index v) { return joined_->has(v); });
 }
 
 template <int D>
@@ -100,6 +104,7 @@ void SymmetricSpace<D>::fill(std::span<const double> unknowns, std::span<const d
     for (int a = 0; a < D; ++a) at[a] = image[a];
   }
   vertices_pass(*this);
+  if (joined_) joined_->interpolate<D>(nodes_[0], points_);
   vertices_.constrain<D>(points_, stride, known);
 }
 
@@ -122,6 +127,7 @@ template <int D>
 void SymmetricSpace<D>::points_to_nodes() {
   constrain_point_forces();
   to_nodes_pass(*this);
+  if (joined_) joined_->to_nodes<D>(point_force_, force_.data());
 }
 
 /// From points and mirror images to the nodes, over the ranks, and both sides of bonded faces into one.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/elastic_vertices.hpp"
+#include "common/elasticity/joined_vertices.hpp"
 #include "common/elasticity/symmetric_faces.hpp"
 
 namespace couplet {
@@ -45,6 +47,8 @@ class SymmetricSpace {
   template <class Take>
   void visit_points(const Take& take) const {
     vertices_.visit(take);
+    if (!joined_) return;
+    for (const Index v : joined_->all()) take(v);
   }
 
   void clear_forces();
@@ -94,6 +98,7 @@ class SymmetricSpace {
   const ElasticOperator& rows_;
   ElasticNodes<D> nodes_;
   ElasticVertices vertices_;
+  std::unique_ptr<JoinedVertices> joined_;  // on periodic patches; none without such
   std::vector<double> points_, force_, point_force_;
   std::vector<std::pair<Index, Vec3>> symmetry_;  // faces and normals
   std::vector<double> volume_;                    // sum of the pyramids of each owned cell

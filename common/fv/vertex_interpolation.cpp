@@ -6,45 +6,18 @@
 #include <cassert>
 #include <cmath>
 
+#include "common/fv/vertex_weights.hpp"
 #include "common/mesh/transpose.hpp"
 
 namespace couplet {
 namespace {
 
-// Directions the nodes do not span: eigenvalues of sum r r^T below this part of the largest (r are unit
-// vectors, so that a cell of aspect ratio 1e5 still counts as spanning).
-constexpr double spanned = 1e-12;
-// No weighted mean of the nodes reaches the point: the weights cancel to this part of sum 1/d.
-constexpr double reachable = 1e-8;
-// The weighted mean of the nodes misses the point by this part of their distance: linear fields are not
-// exact.
-constexpr double exact = 1e-6;
 // Ratio of the eigenvalues of the mean of n n^T over the symmetry faces of a patch around a vertex, tan^2 of
 // half the angle between two normals: below the first (1 degree) the faces are one plane, above the second
 // (40 degrees) two.
 constexpr double one_plane = 1e-4, two_planes = 0.13;
 // Planes of different patches whose normals differ by less than this (0.06 degrees) are one.
 constexpr double new_direction = 1e-3;
-
-/// Least-norm solution of M lambda = -s.
-Vec3 solve_lambda(const Tensor3& m, const Vec3& s, int dim) {
-  if (dim == 2) {
-    const double det = m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0), trace = m(0, 0) + m(1, 1);
-    if (det > 1e-9 * trace * trace)
-      return {-(m(1, 1) * s[0] - m(0, 1) * s[1]) / det, -(m(0, 0) * s[1] - m(1, 0) * s[0]) / det, 0};
-  } else {
-    const double trace = m.trace();
-    if (m.determinant() > 1e-9 * trace * trace * trace) return -(m.inverse() * s);
-  }
-  const Eigen::SelfAdjointEigenSolver<Tensor3> eigen(m);
-  Vec3 lambda = Vec3::Zero();
-  for (int i = 0; i < 3; ++i) {
-    if (eigen.eigenvalues()[i] <= spanned * eigen.eigenvalues()[2]) continue;
-    const Vec3 v = eigen.eigenvectors().col(i);
-    lambda -= v * (v.dot(s) / eigen.eigenvalues()[i]);
-  }
-  return lambda;
-}
 
 VertexInterpolation::ByFace by_face(const Mesh& mesh, std::span<const PatchStencil> stencils) {
   assert(stencils.size() == mesh.patches.size());
@@ -229,50 +202,27 @@ bool VertexInterpolation::find_weights(Index point, std::int64_t first, std::int
 /// are.
 bool VertexInterpolation::fill_weights(Index point, std::int64_t first, std::int64_t last,
                                        const Geometry& geometry, const Vec3& at, bool least_squares) {
-  const bool symmetric = on_symmetry(point);
-  const Tensor3& projector = projectors_[projector_of_[point]];
-  const auto place = [&](std::int64_t i) -> const Vec3& {
-    return node_[i] < n_cells_ ? geometry.cell_centre[node_[i]]
-                               : geometry.face_centre[mesh_->n_interior + node_[i] - n_cells_];
+  const VertexWeights kind = least_squares ? VertexWeights::least_squares : VertexWeights::inverse_distance;
+  const Tensor3* within = on_symmetry(point) ? &projector(point) : nullptr;
+  const auto from = [&](std::int64_t i) -> Vec3 {
+    return at - (node_[i] < n_cells_ ? geometry.cell_centre[node_[i]]
+                                     : geometry.face_centre[mesh_->n_interior + node_[i] - n_cells_]);
   };
   // d is the full distance, also at symmetry planes, where r keeps its part within the planes only.
-  Tensor3 m = Tensor3::Zero();
-  Vec3 s = Vec3::Zero();
-  double sum_inverse = 0;
+  VertexSums nodes;
+  for (auto i = first; i < last; ++i) nodes.add(from(i), kind, within);
+  const Vec3 lambda = nodes.lambda(mesh_->dim, within);
+  VertexWeightSums all;
   for (auto i = first; i < last; ++i) {
-    Vec3 r = at - place(i);
-    const double d = r.norm();
-    sum_inverse += 1 / d;
-    r /= d;
-    if (symmetric) r = projector * r;
-    m += (least_squares ? d : 1) * r * r.transpose();
-    s += r;
-  }
-  // Across symmetry planes M is filled up with a diagonal: s has no part there, so lambda gets none.
-  if (symmetric) m += 0.5 * m.trace() * (Tensor3::Identity() - projector);
-  const Vec3 lambda = solve_lambda(m, s, mesh_->dim);
-  double sum = 0;
-  Vec3 miss = Vec3::Zero();
-  for (auto i = first; i < last; ++i) {
-    const Vec3 r = at - place(i);
-    const double d = r.norm();
     // (2.50) with its erratum; lambda lies within the planes.
-    weight_[i] = (1 + lambda.dot(r) / (least_squares ? 1 : d)) / d;
-    sum += weight_[i];
-    miss += weight_[i] * r;
+    weight_[i] = vertex_weight(from(i), lambda, kind);
+    all.add(weight_[i], from(i));
   }
-  bool is_exact = true;
-  if (std::abs(sum) < reachable * sum_inverse) {
-    for (auto i = first; i < last; ++i) weight_[i] = 1 / (at - place(i)).norm();
-    sum = sum_inverse;
-    is_exact = false;
-  } else {
-    // sum_inverse / (last - first) is one over the distance of the nodes.
-    if (symmetric) miss = projector * miss;
-    is_exact = miss.norm() * sum_inverse <= exact * double(last - first) * std::abs(sum);
-  }
-  for (auto i = first; i < last; ++i) weight_[i] /= sum;
-  return is_exact;
+  const bool cancels = all.cancels(nodes);
+  if (cancels)
+    for (auto i = first; i < last; ++i) weight_[i] = 1 / from(i).norm();
+  for (auto i = first; i < last; ++i) weight_[i] /= cancels ? nodes.inverse_distance : all.sum;
+  return !cancels && all.meets(nodes, within);
 }
 
 }  // namespace couplet

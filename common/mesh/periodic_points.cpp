@@ -67,7 +67,7 @@ std::vector<std::array<std::string, 2>> periodic_pairs(const std::map<std::strin
 }
 
 PeriodicPoints::PeriodicPoints(const Mesh& mesh) : mesh_(mesh) {
-  if (mesh.neighbour_shift.empty()) return;  // on all ranks
+  if (!any(mesh.comm, !mesh.neighbour_shift.empty())) return;  // a rank without cells has none
   const auto roots = roots_of(all_gather(mesh.comm, pairs_here(mesh)));
   std::map<GlobalIndex, Index> group_of;  // of the roots
   for (const auto& [point, root] : roots)
@@ -81,10 +81,11 @@ PeriodicPoints::PeriodicPoints(const Mesh& mesh) : mesh_(mesh) {
     }
 }
 
-void PeriodicPoints::add_up(std::span<double> values, int stride) const {
+void PeriodicPoints::add_up(std::span<double> values, int stride, Ghosts ghosts) const {
   std::vector<double> sums(n_groups_ * stride, 0.0);
+  const Index end = ghosts == Ghosts::count ? mesh_.points.n_local() : mesh_.points.n_owned();
   for (std::size_t i = 0; i < points_.size(); ++i)
-    for (int c = 0; c < stride && points_[i] < mesh_.points.n_owned(); ++c)
+    for (int c = 0; c < stride && points_[i] < end; ++c)
       sums[std::size_t(group_[i]) * stride + c] += values[std::size_t(points_[i]) * stride + c];
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), static_cast<int>(sums.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
   for (std::size_t i = 0; i < points_.size(); ++i)

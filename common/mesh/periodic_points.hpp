@@ -27,16 +27,19 @@ class PeriodicPoints {
   const std::vector<Index>& points() const { return points_; }
   /// How many copies there are of points()[i].
   int copies(std::size_t i) const { return copies_[group_[i]]; }
-  /// Puts the sum over its copies at each point that has some. `values`: `stride` per local point, those of ghosts do
-  /// not count. Collective.
-  void add_up(std::span<double> values, int stride) const;
+  /// The point that points()[i] is, by a number that is the same on all ranks.
+  Index group(std::size_t i) const { return group_[i]; }
+  enum class Ghosts { leave_out, count };
+  /// Puts the sum over its copies at each point that has some. `values`: `stride` per local point; those of ghosts count
+  /// where each rank holds a part of its own. Collective.
+  void add_up(std::span<double> values, int stride, Ghosts ghosts = Ghosts::leave_out) const;
   /// Largest distance of copies that should have moved alike, from `stride` values per local point. Collective.
   double largest_gap(std::span<const double> values, int stride) const;
 
  private:
   const Mesh& mesh_;
   std::size_t n_groups_ = 0;
-  std::vector<Index> points_, group_;  // of points_: which of the groups
+  std::vector<Index> points_, group_;  // of points_: which of the groups; ascending points
   std::vector<int> copies_;            // per group
 };
 

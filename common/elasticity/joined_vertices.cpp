@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/elasticity/joined_vertices.hpp"
+
+#include <algorithm>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// Of the entries of F_V at the copies of a point, which are 0 to 1.
+constexpr double alike = 1e-6;
+
+// VertexSums on their way to the other copies: m, s, sum of 1/d, number of nodes, number of copies of Mesh::wide_points.
+constexpr int sums_stride = 15;
+void put(const VertexSums& sums, bool is_wide, double* to) {
+  to = std::copy_n(sums.m.data(), 9, to);
+  to = std::copy_n(sums.s.data(), 3, to);
+  to[0] = sums.inverse_distance;
+  to[1] = sums.count;
+  to[2] = is_wide ? 1 : 0;
+}
+VertexSums sums_at(const double* from) {
+  VertexSums sums;
+  std::copy_n(from, 9, sums.m.data());
+  std::copy_n(from + 9, 3, sums.s.data());
+  sums.inverse_distance = from[12];
+  sums.count = from[13];
+  return sums;
+}
+
+// The same of VertexWeightSums.
+constexpr int weights_stride = 5;
+void put(const VertexWeightSums& sums, double* to) {
+  to[0] = sums.sum;
+  to[1] = sums.squares;
+  std::copy_n(sums.miss.data(), 3, to + 2);
+}
+
+}  // namespace
+
+JoinedVertices::JoinedVertices(const Mesh& mesh, const ElasticOperator& rows)
+    : mesh_(mesh), rows_(rows), periodic_(mesh), joined_(mesh.points.n_local(), 0) {
+  refuse_unlike();
+  for (const Index v : periodic_.points()) {
+    joined_[v] = 1;
+    if (v >= mesh.points.n_owned() || rows.constraints().is_fixed(v)) continue;
+    points_.push_back(v);
+    offset_.push_back(offset_.back() + std::ssize(rows.vertices().nodes(v)));
+  }
+  const Weights plain = weights(VertexWeights::inverse_distance),
+                least = weights(VertexWeights::least_squares);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    // As VertexInterpolation chooses.
+    const bool is_plain = !plain.is_wide[i] && plain.magnification[i] <= longest_reach;
+    const std::vector<double>& chosen = is_plain ? plain.weight : least.weight;
+    weight_.insert(weight_.end(), chosen.begin() + offset_[i], chosen.begin() + offset_[i + 1]);
+  }
+}
+
+/// What one side holds and the other does not is no periodic scene.
+void JoinedVertices::refuse_unlike() const {
+  std::vector<double> free(std::size_t(mesh_.points.n_local()) * 9, 0.0);
+  for (const Index v : periodic_.points())
+    std::copy_n(rows_.constraints().free_part(v).data(), 9, free.data() + std::size_t(v) * 9);
+  std::vector<double> sums = free;
+  periodic_.add_up(sums, 9);
+  std::vector<Vec3> unlike;
+  for (std::size_t i = 0; i < periodic_.points().size(); ++i) {
+    const Index v = periodic_.points()[i];
+    if (v >= mesh_.points.n_owned()) continue;
+    double off = 0;
+    for (int a = 0; a < mesh_.dim; ++a)
+      for (int b = 0; b < mesh_.dim; ++b) {
+        const std::size_t at = std::size_t(v) * 9 + a * 3 + b;
+        off = std::max(off, std::abs(free[at] - sums[at] / periodic_.copies(i)));
+      }
+    if (off > alike) unlike.push_back(mesh_.reference_points[v]);
+  }
+  unlike = all_gather(mesh_.comm, unlike);
+  if (unlike.empty()) return;
+  const Vec3& x = unlike.front();
+  throw Error(
+      "The two sides of periodic patches are not held alike: the patches that meet them at ({:.4g}, {:.4g}, {:.4g}) hold "
+      "the point otherwise than those at its copy. Give both ends the same type.",
+      x.x(), x.y(), x.z());
+}
+
+Vec3 JoinedVertices::from_node(Index point, Index node) const {
+  const Index n_cells = mesh_.cells.n_local();
+  return mesh_.reference_points[point] -
+         (node < n_cells ? mesh_.reference.cell_centre[node]
+                         : mesh_.reference.face_centre[mesh_.n_interior + node - n_cells]);
+}
+
+const Tensor3* JoinedVertices::within(Index point) const {
+  return rows_.vertices().on_symmetry(point) ? &rows_.vertices().projector(point) : nullptr;
+}
+
+JoinedVertices::Weights JoinedVertices::weights(VertexWeights kind) const {
+  const std::size_t n = std::size_t(mesh_.points.n_local());
+  std::vector<double> of_nodes(n * sums_stride, 0.0), of_weights(n * weights_stride, 0.0);
+  for (const Index v : points_) {
+    VertexSums sums;
+    for (const Index node : rows_.vertices().nodes(v)) sums.add(from_node(v, node), kind, within(v));
+    put(sums, mesh_.is_wide(v), of_nodes.data() + std::size_t(v) * sums_stride);
+  }
+  periodic_.add_up(of_nodes, sums_stride);
+  Weights result;
+  for (const Index v : points_) {
+    const Vec3 lambda = sums_at(of_nodes.data() + std::size_t(v) * sums_stride).lambda(mesh_.dim, within(v));
+    VertexWeightSums here;
+    for (const Index node : rows_.vertices().nodes(v)) {
+      const Vec3 from = from_node(v, node);
+      result.weight.push_back(vertex_weight(from, lambda, kind));
+      here.add(result.weight.back(), from);
+    }
+    put(here, of_weights.data() + std::size_t(v) * weights_stride);
+  }
+  periodic_.add_up(of_weights, weights_stride);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Index v = points_[i];
+    const VertexSums nodes = sums_at(of_nodes.data() + std::size_t(v) * sums_stride);
+    const double* whole = of_weights.data() + std::size_t(v) * weights_stride;
+    const bool cancels = VertexWeightSums{whole[0], whole[1], Vec3::Zero()}.cancels(nodes);
+    const auto around = rows_.vertices().nodes(v);
+    for (std::size_t k = 0; k < around.size(); ++k) {
+      double& w = result.weight[std::size_t(offset_[i]) + k];
+      w = cancels ? 1 / (from_node(v, around[k]).norm() * nodes.inverse_distance) : w / whole[0];
+    }
+    result.magnification.push_back(cancels ? 1 : nodes.count * whole[1] / (whole[0] * whole[0]));
+    result.is_wide.push_back(of_nodes[std::size_t(v) * sums_stride + 14] > 0);
+  }
+  return result;
+}
+
+template <int D>
+void JoinedVertices::interpolate(const double* nodes, std::span<double> points) const {
+  constexpr int stride = lanes::width<D>;
+  for (const Index v : periodic_.points()) std::fill_n(points.data() + std::size_t(v) * stride, stride, 0.0);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const auto around = rows_.vertices().nodes(points_[i]);
+    double* value = points.data() + std::size_t(points_[i]) * stride;
+    for (std::size_t k = 0; k < around.size(); ++k)
+      for (int a = 0; a < D; ++a)
+        value[a] += weight_[std::size_t(offset_[i]) + k] * nodes[std::size_t(around[k]) * stride + a];
+  }
+  periodic_.add_up(points, stride);
+}
+
+template <int D>
+void JoinedVertices::to_nodes(std::span<double> point_forces, double* node_forces) const {
+  constexpr int stride = lanes::width<D>;
+  periodic_.add_up(point_forces, stride, PeriodicPoints::Ghosts::count);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const auto around = rows_.vertices().nodes(points_[i]);
+    const double* force = point_forces.data() + std::size_t(points_[i]) * stride;
+    for (std::size_t k = 0; k < around.size(); ++k)
+      for (int a = 0; a < D; ++a)
+        node_forces[std::size_t(around[k]) * stride + a] += weight_[std::size_t(offset_[i]) + k] * force[a];
+  }
+}
+
+template void JoinedVertices::interpolate<2>(const double*, std::span<double>) const;
+template void JoinedVertices::interpolate<3>(const double*, std::span<double>) const;
+template void JoinedVertices::to_nodes<2>(std::span<double>, double*) const;
+template void JoinedVertices::to_nodes<3>(std::span<double>, double*) const;
+
+}  // namespace couplet
