@@ -10,6 +10,7 @@
 #include <random>
 
 #include "common/base/error.hpp"
+#include "tests/support/own_folder.hpp"
 #include "thermocline/celsius.hpp"
 
 namespace couplet::thermocline {
@@ -18,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 
 std::vector<ScheduleRow> read(const std::string& text) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "flows.csv";
+  const auto file = support::own_folder() / "flows.csv";
   std::ofstream(file) << text;
   return read_flow_file(file);
 }

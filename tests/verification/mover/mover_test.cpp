@@ -12,6 +12,7 @@
 #include "common/parallel/collective.hpp"
 #include "mesh_mover/laplacian.hpp"
 #include "mesh_mover/mover.hpp"
+#include "tests/support/own_folder.hpp"
 #include "tests/support/saved_state.hpp"
 
 namespace couplet::mesh_mover {
@@ -218,7 +219,7 @@ ParticipantContext context_of_the_test() {
   context.comm = MPI_COMM_WORLD;
   context.name = "mover";
   context.case_folder = COUPLET_TEST_DATA;
-  context.output_folder = std::filesystem::temp_directory_path();
+  context.output_folder = support::own_folder();
   return context;
 }
 

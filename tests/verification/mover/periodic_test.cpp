@@ -212,8 +212,7 @@ TEST(Periodic, sides_move_alike_from_a_checkpoint_too) {
     EXPECT_EQ(mover.displacement(), end);
     ParticipantContext alone = context();
     alone.comm = MPI_COMM_SELF;
-    alone.output_folder =
-        std::filesystem::temp_directory_path() / ("periodic-" + std::to_string(comm_rank(MPI_COMM_WORLD)));
+    alone.output_folder = support::own_folder() / ("alone-" + std::to_string(comm_rank(MPI_COMM_WORLD)));
     std::filesystem::create_directories(alone.output_folder);
     Mover reference(p, alone);
     reference.initialise();

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "common/parallel/collective.hpp"
 #include "mesh_mover/mover.hpp"
+#include "tests/support/own_folder.hpp"
 
 namespace couplet::mesh_mover::test {
 
@@ -39,7 +39,7 @@ inline ParticipantContext context() {
   c.name = "mover";
   c.case_folder = COUPLET_CONFIGS "/moving-mesh";
   c.coupled = true;  // writes no fields
-  c.output_folder = std::filesystem::temp_directory_path();
+  c.output_folder = support::own_folder();
   return c;
 }
 

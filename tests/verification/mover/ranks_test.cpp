@@ -56,8 +56,7 @@ TEST_P(EveryMethod, is_the_same_on_any_number_of_ranks) {
   p.boundaries["plate"].prescribed.displacement = {{"0"}, {"0.1*t*x^2"}};
   ParticipantContext alone = context();
   alone.comm = MPI_COMM_SELF;
-  alone.output_folder =
-      std::filesystem::temp_directory_path() / ("alone-" + std::to_string(comm_rank(MPI_COMM_WORLD)));
+  alone.output_folder = support::own_folder() / ("alone-" + std::to_string(comm_rank(MPI_COMM_WORLD)));
   std::filesystem::create_directories(alone.output_folder);
   Mover mover(p, context()), reference(p, alone);
   mover.initialise();

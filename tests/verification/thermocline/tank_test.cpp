@@ -11,6 +11,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "tests/support/own_folder.hpp"
 #include "tests/verification/thermocline/tank_case.hpp"
 #include "thermocline/output.hpp"
 
@@ -213,7 +214,7 @@ TEST(Monitor, a_run_that_goes_on_writes_the_rows_of_one_that_was_not_stopped) {
   p.output.monitor_interval = 600;
   const TankRun run(p);
   const double none = std::numeric_limits<double>::quiet_NaN();
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "monitor";
+  const std::filesystem::path folder = support::own_folder() / "monitor";
   for (const double stop : {none, 610.0, 1195.0, 1200.0}) {
     std::filesystem::remove_all(folder / "b");
     for (const char* name : {"a", "b"}) std::filesystem::create_directories(folder / name);
