@@ -86,8 +86,8 @@ void declare(config::Section& s, MethodParameters& m) {
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc(
-          "residual over right-hand side at which the iteration stops; of symmetric newton-krylov in steps so small that inertia "
-          "outweighs stiffness, over its elastic part");
+          "residual over right-hand side at which the iteration stops; of symmetric newton-krylov (and of any in 2-D with more than "
+          "5000 cells) in steps so small that inertia outweighs stiffness, over its elastic part");
   s.value("max-iterations", m.max_iterations).range(1, 1e6).doc("iterations after which a step has failed");
 }
 

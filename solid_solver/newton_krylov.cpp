@@ -42,7 +42,8 @@ double slenderness(const Mesh& mesh) {
   return longest * sum(mesh.comm, surface) / (2 * sum(mesh.comm, volume));
 }
 
-/// Mean of inertia over (2 mu + lambda) |S| / (d . n) summed over the faces of a cell.
+}  // namespace
+
 double heaviness(const SolidProblem& problem) {
   if (problem.is_static()) return 0;
   const Mesh& mesh = problem.mesh;
@@ -55,8 +56,6 @@ double heaviness(const SolidProblem& problem) {
   }
   return sum(mesh.comm, inertia) / sum(mesh.comm, stiffness);
 }
-
-}  // namespace
 
 std::vector<double> node_inertia(const SolidProblem& problem) {
   if (problem.mass_factor == 0) return {};

@@ -34,6 +34,10 @@ class NewtonKrylov final : public SolutionMethod {
   std::unique_ptr<KrylovSolver> krylov_;
 };
 
+/// Mean of inertia over (2 mu + lambda) |S| / (d . n) summed over the faces of a cell; static: 0. On squares with the trapezoidal
+/// rule it is one over the elastic Courant number squared. Collective.
+double heaviness(const SolidProblem& problem);
+
 /// Row sums of the kernel's mass times its factor, one an unknown node; empty: static.
 std::vector<double> node_inertia(const SolidProblem& problem);
 

@@ -68,7 +68,8 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   SolveStatistics statistics;
   r_.resize(n_);
   const double size = std::sqrt(over_ranks<1>(comm_, {dot_here(b, b)})[0]);
-  const double wanted = options.relative_tolerance * size;
+  // Below that the squares of what is left underflow, and no norm is right any more: a motion that has died away.
+  const double wanted = std::max(options.relative_tolerance * size, 1e-150);
   statistics.residual = true_residual(b, x);
   // Every comparison with a NaN is false, so that it would count as converged.
   if (!std::isfinite(size) || !std::isfinite(statistics.residual))

@@ -8,12 +8,12 @@ import numpy as np
 
 import couplet_series as series
 from validation.job import Bar
-from validation.parts import effects_off, stability_cases
+from validation.parts import effects_cost, effects_off, stability_cases
 
 SOURCES = ("common/effects", "common/app", "common/time", "solid_solver", "fluid_solver", "thermocline", "plate_modal", "coupler",
            "scripts/couplet_atlas", "docs/stability")
-MAPS = ("solid-energy", "solid-stretch", "solid-nu", "fluid-diffusion", "fluid-convection", "fluid-aspect", "coupling-mass", "coupling-viscous",
-        "tank-front", "tank-biot", "plate-contact")
+MAPS = ("solid-energy", "solid-stretch", "solid-nu", "large-nu", "large-swing", "large-load", "fluid-diffusion", "fluid-convection", "fluid-aspect",
+        "fluid-gap", "mover-rotation", "coupling-mass", "coupling-viscous", "strong-robin", "strong-cavity", "tank-front", "tank-biot", "plate-contact")
 
 
 # -- effects ----------------------------------------------------------------------------------------------------------
@@ -219,6 +219,7 @@ BARS = [
     Bar("effects: off, the plate's seat, damping and gravity allocate nothing and take no step of their own", "tests pass",
         tests("verification_plate_effects", "Effects")),
     *effects_off.BARS,
+    *effects_cost.BARS,
     Bar("prices: five scenes as a table and a picture", "all", priced),
     *[Bar(f"price: {scene}", "reported: processor seconds, memory and processes, and what each effect adds", lambda job, s=scene: price(job, s),
           long=True) for scene in ("static bracket", "vibrating beam", "channel", "flap", "tank")],

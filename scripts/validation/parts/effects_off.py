@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An effect that is off executes none of its own code (callgrind), and one that is on costs what its card says (callgrind, massif).
+"""An effect that is off executes none of its own code (callgrind); what one that is on costs is effects_cost.py's.
 Small scenes, a square of N x N cells, so that every number repeats to the last digit on any machine that runs the same build."""
 import dataclasses
 import itertools
@@ -113,7 +113,7 @@ def watched(job, program, keys, tool, n=6, steps=4):
     return job.once(("watched", program, keys, tool, n, steps), make)
 
 
-OPTIONS = {"callgrind": ("--demangle=no", "--compress-strings=no", "--compress-pos=no"), "massif": ("--pages-as-heap=no", "--detailed-freq=1000000")}
+OPTIONS = {"callgrind": ("--demangle=no", "--compress-strings=no", "--compress-pos=no"), "massif": ("--time-unit=i", "--max-snapshots=200", "--detailed-freq=1000000")}
 
 
 def instructions(folder):

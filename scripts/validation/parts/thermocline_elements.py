@@ -5,9 +5,10 @@ import re
 from validation.job import Bar
 from validation.parts.measures import all_pass, at_most
 
-BED, GRAINS, CONDUCTION, HARD, MECHANICS, TANK, EXPERIMENTS, SPEED = (
+BED, GRAINS, CONDUCTION, MECHANICS, TANK, EXPERIMENTS, SPEED = (
     *(f"verification_thermocline_{name}" for name in
-      ("bed", "grains", "conduction", "hard_cases", "mechanics", "tank", "solar_one")), "thermocline_speed")
+      ("bed", "grains", "conduction", "mechanics", "tank", "solar_one")), "thermocline_speed")
+HARD = "stability_thermocline_hard_cases"
 
 
 def between(executable, pattern, key, low, high, text="{:.3f}"):

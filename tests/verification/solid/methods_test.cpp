@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/solution_method.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
@@ -198,6 +199,78 @@ TEST(SolidMethods, a_segregated_run_that_is_cut_short_says_so) {
   } catch (const SolveFailure& e) {
     EXPECT_NE(std::string(e.what()).find("3 outer iterations"), std::string::npos) << e.what();
   }
+}
+
+/// A block in the plane, pulled: one step with what a method has been told.
+void pulled(const MethodParameters& m) {
+  SolidParameters p = box_parameters(2);
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmax"] = boundary(Type::traction, {"0", "1e6"});
+  p.method = m;
+  const auto solid =
+      make_solid(make_box(BoxCells::quadrilaterals, {40, 4, 1}, Vec3::Zero(), Vec3(10, 1, 0)), p);
+  step(*solid, 1);
+}
+
+struct Failing {
+  const char* advice;
+  MethodParameters running, advised;
+};
+
+/// Each method with three iterations, and what it names as another way.
+std::vector<Failing> failing_methods() {
+  std::vector<Failing> all{
+      {"{type: newton-krylov}", method(MethodType::segregated, FaceGradient::thesis), {}},
+      {"{linear-solver: direct}", method(MethodType::block_coupled, FaceGradient::thesis), {}},
+      {"{type: block-coupled, linear-solver: direct}",
+       method(MethodType::newton_krylov, FaceGradient::thesis),
+       {}},
+      {"{face-gradient: symmetric, preconditioner: factors}",
+       method(MethodType::newton_krylov, FaceGradient::symmetric),
+       {}},
+      {"{preconditioner: factors}", method(MethodType::newton_krylov, FaceGradient::symmetric), {}}};
+  all[1].running.linear_solver = Choice::bicgstab_ilu;
+  all[2].running.preconditioner = all[3].running.preconditioner = Preconditioner::multigrid;
+  all[4].running.preconditioner = Preconditioner::mixed;
+  all[4].running.volume_strain = MethodParameters::VolumeStrain::cells;
+  for (Failing& f : all) {
+    f.running.max_iterations = 3;
+    f.advised = f.running;
+  }
+  all[0].advised.type = MethodType::newton_krylov;
+  all[1].advised.linear_solver = all[2].advised.linear_solver = Choice::direct;
+  all[2].advised.type = MethodType::block_coupled;
+  all[3].advised.preconditioner = all[4].advised.preconditioner = Preconditioner::factors;
+  return all;
+}
+
+// Advice that names what has just failed helps nobody: what is named is another method, and with nothing else changed it solves.
+TEST(SolidMethods, the_advice_of_a_failed_solve_is_another_method_and_that_one_solves) {
+  for (const Failing& f : failing_methods()) {
+    EXPECT_THAT([&] { pulled(f.running); }, ::testing::ThrowsMessage<Error>(HasSubstr(f.advice)));
+    EXPECT_NO_THROW(pulled(f.advised)) << f.advice;
+  }
+}
+
+/// What `auto` takes for steps of a square of n x n steel cells at an elastic Courant number (trapezoidal rule).
+std::string chosen_for(Index n, double courant) {
+  const Mesh mesh =
+      distribute(MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {n, n, 1}, Vec3::Zero(), Vec3(1, 1, 0)));
+  const LameConstants steel{77e9, 115e9};
+  const std::vector<ElasticCondition> held(mesh.patches.size(), ElasticCondition::prescribed);
+  const ElasticOperator elastic(mesh, held, steel);
+  const ElasticKernel kernel(mesh, elastic, FaceGradientScheme::thesis);
+  const std::vector<double> inertia(mesh.cells.n_owned(),
+                                    4 * (2 * steel.mu + steel.lambda) / (courant * courant));
+  return make_solution_method({mesh, elastic, inertia, kernel, 0}, {})->name();
+}
+
+TEST(SolidMethods, auto_makes_no_factors_for_many_cells_where_inertia_makes_the_system_easy) {
+  EXPECT_THAT(chosen_for(72, 0.5),
+              AllOf(HasSubstr("newton-krylov (BiCGStab, multigrid)"), HasSubstr("short steps")));
+  EXPECT_THAT(chosen_for(72, 2),
+              AllOf(HasSubstr("block-coupled (direct)"), ::testing::Not(HasSubstr("short"))));
+  EXPECT_THAT(chosen_for(20, 0.5), HasSubstr("block-coupled (direct)"));
 }
 
 TEST(SolidMethods, a_solve_that_does_not_converge_names_method_iterations_residual_and_what_to_try) {

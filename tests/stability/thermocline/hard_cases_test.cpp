@@ -110,6 +110,24 @@ INSTANTIATE_TEST_SUITE_P(Scheme, HardCase,
                                            Case{Advection::implicit, "implicit"}),
                          [](const auto& info) { return info.param.name; });
 
+// The neighbour of all: a step that carries a front through some cells throws its temperatures out of what went in.
+TEST(Overstepped, upwind_far_beyond_its_limit_leaves_the_bounds) {
+  for (const double share : {1.0, 5.0}) {
+    BedParameters p = plain_bed(200, 10, 0.3, 0.01);
+    p.closures.film_coefficient = 100;
+    p.advection = Advection::upwind;
+    p.courant = 1;
+    p.initial_temperature = 400;
+    Audit a(PackedBed(p, constant_fluid(1800, 1500, 0.5), Filler{}, 10), 300, 400);
+    a.bed.prepare(share * a.bed.largest_step(50), 50);
+    for (int i = 0; i < 60; ++i) a.step(50, 300);
+    if (share > 1)
+      EXPECT_GT(a.beyond, 0.1);
+    else
+      EXPECT_LT(a.beyond, 1e-8);
+  }
+}
+
 TEST(Implicit, ten_times_the_advective_limit_stays_bounded_and_keeps_the_heat) {
   BedParameters p = plain_bed(200, 10, 0.3, 0.01);
   p.closures.film_coefficient = 100;

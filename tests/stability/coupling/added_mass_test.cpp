@@ -221,7 +221,7 @@ TEST(AddedMass, map_of_mass_ratio_and_scheme) {
       if (omega > 0) c.acceleration.initial_relaxation = omega;
     };
   };
-  for (const double r : {0.05, 0.2, 0.3, 0.5, 0.8, 1.3, 5., 20., 50., 100.}) {
+  for (const double r : {0.01, 0.05, 0.2, 0.3, 0.5, 0.8, 1.3, 5., 20., 50., 100.}) {
     const double rows[] = {iterations(r, explicit_of(1)),
                            iterations(r, explicit_of(2)),
                            iterations(r, of_type(Type::constant, 1)),
