@@ -36,6 +36,9 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource
   const int n = bed_.grid().size();
   bed_.prepare(1, 0);
   reference_ = bed_.bottom();
+  const auto [coldest, hottest] = std::minmax_element(bed_.fluid().begin(), bed_.fluid().end());
+  coldest_ = *coldest,
+  hottest_ = *hottest;  // the start counts: a strong flow may leave nothing of it after a step
   owed_.assign(n, 0.0), source_.assign(n, 0.0);
   if (p.shell) {
     const int rings = setup_->rings->size();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/error.hpp"
 #include "thermocline/model.hpp"
 
 namespace couplet::thermocline {
@@ -187,6 +188,20 @@ void TankModel::step_shell(double h) {
   for (double& heat : owed_) heat *= h;
 }
 
+namespace {
+
+/// A flow given in another unit than its own would fill the memory with steps before it has run for a minute.
+void refuse_hopeless_flow(double mass_flow, double limit, double span) {
+  constexpr double most = 1e6;  // a thousand times what a flow through the finest of grids asks for
+  if (span <= most * limit) return;
+  throw Error(
+      "flow: {:.3g} kg/s crosses a cell of the bed in so short a time that {:.3g} s would need {:.2g} steps of it (at most {:.0g}). Is the "
+      "unit of the flow right? 'bed.advection: implicit' takes any step.",
+      mass_flow, span, span / limit, most);
+}
+
+}  // namespace
+
 void TankModel::step_bed(double t, double end, FlowControl& control, const AmbientSource& ambient,
                          std::vector<BedStep>& steps, Speed& speed) {
   const double tiny = 1e-9 * (end - t);
@@ -209,6 +224,7 @@ void TankModel::step_bed(double t, double end, FlowControl& control, const Ambie
     if (!prepared || other_flow || too_long) {
       const Stopwatch watch(speed, Element::preparation);
       const double steps_left = std::ceil((until - t) / limit * (1 - 1e-9));
+      refuse_hopeless_flow(m, limit, until - t);
       bed_.prepare((until - t) / std::max(1.0, steps_left), m);
       prepared = true;
     }

@@ -117,6 +117,13 @@ void declare(config::Section& section, BedParameters& p) {
         s.optional_section<Melting>(
             "melting", l.melting, [](config::Section& q, Melting& v) { declare(q, v); },
             "capsules whose content melts, of density, specific heat and conductivity of 'filler'");
+        s.check(
+            [&l] {
+              return l.melting && l.porosity >= 1
+                         ? "a layer of fluid alone (porosity 1) has no capsules that could melt"
+                         : "";
+            },
+            "melting");
       },
       "from the bottom up");
   section.value("shells", p.shells)

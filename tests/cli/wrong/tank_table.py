@@ -139,6 +139,12 @@ case.yaml:8:5: participants.tank.bed.layers: needs one layer at least.
         tank("porosity in per cent without its sign", """
 case.yaml:13:25: participants.tank.bed.layers[0].porosity: 22 is out of range; expected a value from 0.01 to 1.
 """, ("porosity: 0.22", "porosity: 22")),
+        tank("capsules in a layer of fluid alone", """
+case.yaml:13:54: participants.tank.bed.layers[0].melting: a layer of fluid alone (porosity 1) has no capsules that could melt.
+""", ("advection: tvd", "advection: upwind"), ("porosity: 0.22, diameter: 5 mm", "porosity: 1, diameter: 5 mm, melting: {temperature: 340 degC, latent-heat: 100 kJ/kg}")),
+        tank("flow in another unit than its own", """
+[tank 0] error: flow: -2e+09 kg/s crosses a cell of the bed in so short a time that 600 s would need 3e+08 steps of it (at most 1e+06). Is the unit of the flow right? 'bed.advection: implicit' takes any step.
+""", ("-20 kg/s", "-2e9 kg/s"), **{**run, "exit_code": 1}),
         tank("filler mechanics without a shell", """
 case.yaml:14:5: participants.tank.filler-mechanics: presses on a shell; add one.
 """, ("    shell:\n      material: {type: a387-grade-91}\n      plates:\n        - {height: 5 m, thickness: 20 mm}\n", ""),

@@ -94,6 +94,20 @@ TEST(Elements, shorter_exchange_steps_change_little) {
   EXPECT_LT(stress, 3e6);
 }
 
+/// The range of temperatures that verdicts are made of holds the start, of which a strong flow leaves nothing after a step.
+TEST(Elements, the_range_of_temperatures_begins_with_the_start) {
+  TankParameters p;
+  p.diameter = 2;
+  p.bed.cells = 10, p.bed.layers = {{1, 0.25, 0.015}};
+  p.bed.initial_temperature = kelvin(290);
+  p.flow.type = FlowParameters::Type::schedule;
+  p.flow.rows = {{0, -2000, kelvin(390), {}, {}}};
+  TankRun run(p);
+  run.until(600, 600);
+  EXPECT_NEAR(run.model().bed().bottom(), kelvin(390), 1e-3);
+  EXPECT_DOUBLE_EQ(run.model().fluid_range().first, kelvin(290));
+}
+
 /// A plate under thin cells holds more heat than the lowest of them, and the ground takes long steps of its
 /// own.
 TEST(Elements, thin_cells_on_a_heavy_plate_cool_without_swings) {
