@@ -43,7 +43,7 @@ struct couplet_client {
   // of the command under way
   Command command;
   bool pending = false;
-  std::map<std::string, std::vector<double>> input, output;
+  std::map<std::string, std::vector<double>> input, output, spare;  // spare: arrays of outputs that were sent
   std::int64_t status = 0;
   std::string text, checkpoint;
   double time = 0, dt = 0;  // of the step that began last
@@ -75,6 +75,15 @@ std::vector<std::int64_t> cut(MPI_Comm comm, std::size_t n) {
   MPI_Allgather(&mine, 1, MPI_INT64_T, counts.data(), 1, MPI_INT64_T, comm);
   for (const std::int64_t count : counts) starts.push_back(starts.back() + count);
   return starts;
+}
+
+/// What peer `p` has of a datum, if anything, onto `parts`.
+void part_of(const couplet_client& c, const Peer& p, const Datum& d, std::vector<double>& values,
+             std::vector<Stretch>& parts) {
+  const auto n = std::size_t(d.size(c.surface.dim));
+  const std::size_t first = n * (d.place == COUPLET_VERTICES ? p.first_vertex : p.first_face),
+                    count = n * (d.place == COUPLET_VERTICES ? p.vertices : p.faces);
+  if (count > 0) parts.push_back({values.data() + first, count});
 }
 
 /// The reply to initialise: the head, then the places to those coupler ranks that get a part of them.
@@ -113,49 +122,36 @@ void send_reply(couplet_client& c) {
     for (const Peer& p : c.peers) send(c.coupler, p.rank, places_tag, c.surface.cut_out(p), MPI_BYTE);
   if (c.command.op == solve && c.status == 0)
     for (const Peer& p : c.peers) {
-      std::vector<double> values;
-      for (const auto& [name, all] : c.output) {  // by name
-        const Datum* d = find(c.gives, name);
-        const auto n = std::size_t(d->size(c.surface.dim));
-        const std::size_t at = n * (d->place == COUPLET_VERTICES ? p.first_vertex : p.first_face),
-                          count = n * (d->place == COUPLET_VERTICES ? p.vertices : p.faces);
-        values.insert(values.end(), all.begin() + std::ptrdiff_t(at),
-                      all.begin() + std::ptrdiff_t(at + count));
-      }
-      if (!values.empty()) send(c.coupler, p.rank, output_tag, values, MPI_DOUBLE);
+      std::vector<Stretch> parts;
+      for (auto& [name, values] : c.output) part_of(c, p, *find(c.gives, name), values, parts);  // by name
+      if (!parts.empty()) send(c.coupler, p.rank, output_tag, parts);
     }
+  for (auto& [name, values] : c.output) c.spare[name].swap(values);
   c.output.clear();
   c.status = 0;
   c.text.clear();
 }
 
 void receive_input(couplet_client& c) {
-  c.input.clear();
   std::vector<const Datum*> present;
   for (const std::string& name : c.command.data) {
     const Datum* d = find(c.takes, name);
     if (d == nullptr)
       end_the_job("the coupler sent '" + name + "', which '" + c.participant + "' does not take.");
-    present.push_back(d);
-    if (entries(c, *d) > 0) c.input[name].resize(entries(c, *d));
+    if (entries(c, *d) > 0) present.push_back(d);
+  }
+  // Arrays of the pass before are written over; what nobody has given this time is not there.
+  auto before = std::exchange(c.input, {});
+  for (const Datum* d : present) {
+    std::vector<double>& values = c.input[d->name];
+    values.swap(before[d->name]);
+    values.resize(entries(c, *d));
   }
   for (const Peer& p : c.peers) {
-    std::size_t total = 0;
-    for (const Datum* d : present)
-      total += std::size_t(d->size(c.surface.dim)) * (d->place == COUPLET_VERTICES ? p.vertices : p.faces);
-    if (total == 0) continue;
-    const std::vector<double> values = receive<double>(c.coupler, p.rank, input_tag, MPI_DOUBLE);
-    if (values.size() != total) end_the_job("a message with values has another length than announced.");
-    std::size_t at = 0;
-    for (const Datum* d : present) {
-      const auto n = std::size_t(d->size(c.surface.dim));
-      const std::size_t first = n * (d->place == COUPLET_VERTICES ? p.first_vertex : p.first_face),
-                        count = n * (d->place == COUPLET_VERTICES ? p.vertices : p.faces);
-      if (count == 0) continue;
-      std::copy_n(values.begin() + std::ptrdiff_t(at), count,
-                  c.input[d->name].begin() + std::ptrdiff_t(first));
-      at += count;
-    }
+    std::vector<Stretch> parts;
+    for (const Datum* d : present) part_of(c, p, *d, c.input[d->name], parts);
+    if (!parts.empty() && !receive(c.coupler, p.rank, input_tag, parts))
+      end_the_job("a message with values has another length than announced.");
   }
 }
 
@@ -276,7 +272,9 @@ const double* couplet_read(const couplet_client* c, const char* datum) {
 void couplet_write(couplet_client* c, const char* datum, const double* values) {
   const Datum* d = find(c->gives, datum);
   if (!d) end_the_job(std::string("'") + datum + "' was not announced by couplet_gives.");
-  c->output[datum].assign(values, values + entries(*c, *d));
+  std::vector<double>& to = c->output[datum];
+  if (to.empty()) to.swap(c->spare[datum]);
+  to.assign(values, values + entries(*c, *d));
 }
 
 void couplet_fail(couplet_client* c, const char* why, int halving_helps) {

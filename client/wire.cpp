@@ -115,6 +115,54 @@ std::vector<char> Surface::cut_out(const Peer& p) const {
   return out.bytes();
 }
 
+namespace {
+
+/// Stretches as one MPI datatype, taken from MPI_BOTTOM.
+class Layout {
+ public:
+  explicit Layout(const std::vector<Stretch>& parts) {
+    std::vector<int> counts;
+    std::vector<MPI_Aint> places;
+    for (const Stretch& part : parts) {
+      counts.push_back(int(part.count));
+      total_ += part.count;
+      MPI_Aint at = 0;
+      MPI_Get_address(part.first, &at);
+      places.push_back(at);
+    }
+    MPI_Type_create_hindexed(int(parts.size()), counts.data(), places.data(), MPI_DOUBLE, &type_);
+    MPI_Type_commit(&type_);
+  }
+  ~Layout() { MPI_Type_free(&type_); }
+  Layout(const Layout&) = delete;
+  MPI_Datatype type() const { return type_; }
+  std::size_t total() const { return total_; }
+
+ private:
+  MPI_Datatype type_ = MPI_DATATYPE_NULL;
+  std::size_t total_ = 0;
+};
+
+}  // namespace
+
+void send(MPI_Comm peers, int to, int tag, const std::vector<Stretch>& parts) {
+  const Layout layout(parts);
+  MPI_Request request;
+  MPI_Isend(MPI_BOTTOM, 1, layout.type(), to, tag, peers, &request);
+  wait(request);
+}
+
+bool receive(MPI_Comm peers, int from, int tag, const std::vector<Stretch>& parts) {
+  const Layout layout(parts);
+  MPI_Status status;
+  MPI_Message message = await_message(peers, from, tag, status);
+  int bytes = 0;
+  MPI_Get_count(&status, MPI_BYTE, &bytes);
+  if (std::size_t(bytes) != layout.total() * sizeof(double)) return false;
+  MPI_Mrecv(MPI_BOTTOM, 1, layout.type(), &message, MPI_STATUS_IGNORE);
+  return true;
+}
+
 Command unpack(const std::vector<char>& head) {
   Reader in(head);
   if (in.integer() != command_mark) throw std::runtime_error("a message of the coupler is no command.");

@@ -105,7 +105,7 @@ inline void pause(std::chrono::steady_clock::time_point since) {
     sched_yield();
   else
     std::this_thread::sleep_for(
-        std::min<std::chrono::duration<double>>(waited / 8, std::chrono::microseconds(500)));
+        std::min<std::chrono::duration<double>>(waited / 16, std::chrono::microseconds(250)));
 }
 
 inline void wait(MPI_Request& request) {
@@ -124,16 +124,29 @@ void send(MPI_Comm peers, int to, int tag, const std::vector<T>& values, MPI_Dat
   wait(request);
 }
 
-template <class T>
-std::vector<T> receive(MPI_Comm peers, int from, int tag, MPI_Datatype type) {
+/// Part of an array. Several travel as one message, one after the other, without being copied together.
+struct Stretch {
+  double* first;
+  std::size_t count;
+};
+void send(MPI_Comm peers, int to, int tag, const std::vector<Stretch>& parts);
+/// False if a message of another length came.
+bool receive(MPI_Comm peers, int from, int tag, const std::vector<Stretch>& parts);
+
+inline MPI_Message await_message(MPI_Comm peers, int from, int tag, MPI_Status& status) {
   const auto since = std::chrono::steady_clock::now();
   MPI_Message message;
-  MPI_Status status;
   for (int there = 0;;) {
     MPI_Improbe(from, tag, peers, &there, &message, &status);
-    if (there) break;
+    if (there) return message;
     pause(since);
   }
+}
+
+template <class T>
+std::vector<T> receive(MPI_Comm peers, int from, int tag, MPI_Datatype type) {
+  MPI_Status status;
+  MPI_Message message = await_message(peers, from, tag, status);
   int count = 0;
   MPI_Get_count(&status, type, &count);
   std::vector<T> values(static_cast<std::size_t>(count));

@@ -20,10 +20,29 @@ double dot(std::span<const double> a, std::span<const double> b) {
   return Vector(a.data(), Eigen::Index(a.size())).dot(Vector(b.data(), Eigen::Index(b.size())));
 }
 
-double squares_of_change(std::span<const double> a, std::span<const double> b) {
+ChangeSquares squares_of_change(std::span<const double> a, std::span<const double> b) {
   assert(a.size() == b.size());
   using Vector = Eigen::Map<const Eigen::VectorXd>;
-  return (Vector(a.data(), Eigen::Index(a.size())) - Vector(b.data(), Eigen::Index(b.size()))).squaredNorm();
+  ChangeSquares sums;
+  for_blocks(a.size(), [&](std::size_t first, std::size_t count) {
+    const Vector here(a.data() + first, Eigen::Index(count)), there(b.data() + first, Eigen::Index(count));
+    sums.change += (here - there).squaredNorm();
+    sums.size += here.squaredNorm();
+  });
+  return sums;
+}
+
+namespace {
+
+void relax(std::vector<double>& x, double omega, const std::vector<double>& image) {
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += omega * (image[i] - x[i]);
+}
+
+}  // namespace
+
+void relax(Iterate& x, double omega, const Iterate& image) {
+  relax(x.unknown, omega, image.unknown);
+  relax(x.rider, omega, image.rider);
 }
 
 std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& parameters, MPI_Comm comm) {

@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -32,8 +33,9 @@ class Accelerator {
   virtual ~Accelerator() = default;
   /// A step begins; one that was not accepted is forgotten.
   virtual void start_step() = 0;
-  /// The next x after a pass from x to image = H(x).
-  virtual Iterate next(const Iterate& x, const Iterate& image) = 0;
+  /// The next x after a pass from x to image = H(x). Give x away where it is not needed any more: a relaxation
+  /// works in its place.
+  virtual Iterate next(Iterate x, const Iterate& image) = 0;
   /// The step has converged with this last pass, which `next` was not called for.
   virtual void accept(const Iterate& x, const Iterate& image) = 0;
   /// H is another map from now on, though the step goes on: no difference is taken across this.
@@ -51,10 +53,22 @@ class Accelerator {
 
 std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& parameters, MPI_Comm comm);
 
+/// x += omega (image - x), of unknown and rider.
+void relax(Iterate& x, double omega, const Iterate& image);
 /// Sums over all ranks of a few values at once, in place.
 void sum_over(MPI_Comm comm, std::span<double> values);
 double dot(std::span<const double> a, std::span<const double> b);  // of this rank
-/// |a - b|^2 of this rank.
-double squares_of_change(std::span<const double> a, std::span<const double> b);
+/// Of this rank, in one sweep.
+struct ChangeSquares {
+  double change = 0, size = 0;  ///< |a - b|^2, |a|^2
+};
+ChangeSquares squares_of_change(std::span<const double> a, std::span<const double> b);
+/// Calls work(first, count) for stretches of `rows` entries that stay in the cache: operations on the same arrays read
+/// them from memory once.
+template <class Work>
+void for_blocks(std::size_t rows, Work work) {
+  constexpr std::size_t block = 1024;
+  for (std::size_t first = 0; first < rows; first += block) work(first, std::min(block, rows - first));
+}
 
 }  // namespace couplet

@@ -132,6 +132,7 @@ void Coupler::solve(const Step& step) {
   bool first = true;
   std::vector<Exchange> outputs;
   const auto pass_from = [&](std::vector<Exchange> known) {
+    give_back(std::move(outputs));
     outputs = pass(std::move(known), std::exchange(first, false));
   };
   const FixedPointMap map = [&](const Iterate& x) {
@@ -171,8 +172,12 @@ void Coupler::solve(const Step& step) {
     last_ =
         solve_fixed_point(std::move(last_.x), map, measure, parameters_.convergence, *accelerator_, observer);
   }
-  given_ = std::move(outputs);
+  give_back(std::exchange(given_, std::move(outputs)));
   last_dt_ = step.dt;
+}
+
+void Coupler::give_back(std::vector<Exchange> given) {
+  for (std::size_t i = 0; i < given.size(); ++i) partners_[i].channel->reuse(std::move(given[i]));
 }
 
 void Coupler::pass_once(const Step& step, const FixedPointMap& map) {
@@ -262,6 +267,7 @@ std::string Coupler::run() {
                    simulation_.end_time, restart_time);
   if (parameters_.interface_output)
     interface_output_.emplace(comm_, folders_.output / "interface", sides_, restart_time);
+  monitor_->start(partners_);
   StepActions actions;
   actions.attempt = [&](const Step& step) { return attempt(step); };
   actions.accept = [&](double time, int output) { accept(time, output); };

@@ -77,6 +77,8 @@ class Coupler {
   void ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh);
   void guess_motion(const std::vector<Exchange>& known, bool first);
   void answer(std::size_t i, Exchange& given, bool move_mesh);
+  /// To the channels, for the next replies.
+  void give_back(std::vector<Exchange> given);
   void hold_volume(std::size_t i, std::vector<Exchange>& known);
   void accept(double time, int output);
   void watch(double time, const std::vector<SideBalance>& balances);

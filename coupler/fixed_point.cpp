@@ -41,7 +41,7 @@ FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const Re
       result.image = std::move(image);
       return result;
     }
-    x = accelerator.next(x, image);
+    x = accelerator.next(std::move(x), image);
   }
   throw SolveFailure(
       "the coupling did not converge in {} iterations: the relative residual is {:.2e} ({:.1e} is asked "

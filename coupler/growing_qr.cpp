@@ -11,14 +11,6 @@
 namespace couplet {
 namespace {
 
-/// Rows that stay in the cache while all columns pass by: the columns are read once, not once for each operation.
-constexpr std::size_t block = 1024;
-
-template <class Work>
-void for_blocks(std::size_t rows, Work work) {
-  for (std::size_t first = 0; first < rows; first += block) work(first, std::min(block, rows - first));
-}
-
 /// Rows `row` and `row` + 1 of R and the columns of Q that belong to them turn.
 struct Rotation {
   int row;

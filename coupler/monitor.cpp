@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/coupling/wait.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "common/parallel/collective.hpp"
@@ -30,6 +31,7 @@ std::vector<std::string> participant_columns(const std::vector<std::string>& nam
   for (const std::string& name : names)
     for (const char* what : {"working [s]", "waiting [s]", "linear iterations", "time error", "energy [J]"})
       columns.push_back(name + " " + what);
+  columns.push_back("coupler working [s]");
   return columns;
 }
 
@@ -97,6 +99,22 @@ void Monitor::volume(double time, const VolumeLevel& level) {
   volume_->row(row);
 }
 
+namespace {
+
+/// Processor seconds of this process without what it waited for replies.
+double own_seconds(const std::vector<Partner>& partners) {
+  double seconds = processor_seconds();
+  for (const Partner& p : partners) seconds -= p.channel->waiting_seconds();
+  return seconds;
+}
+
+}  // namespace
+
+void Monitor::start(const std::vector<Partner>& partners) {
+  step_start_ = Clock::now();
+  own_before_ = own_seconds(partners);
+}
+
 void Monitor::step(const Step& step, double time, const FixedPointResult& result,
                    const std::vector<Partner>& partners) {
   const auto now = Clock::now();
@@ -117,6 +135,9 @@ void Monitor::step(const Step& step, double time, const FixedPointResult& result
     row.insert(row.end(), {worked, std::max(0., wall - worked), double(partners[i].report.iterations),
                            partners[i].report.error, partners[i].report.energy});
   }
+  const double own = own_seconds(partners);
+  row.push_back(own - own_before_);
+  own_ += own - std::exchange(own_before_, own);
   if (!writes_) return;
   participants_->row(row);
   if (step.scheme == Scheme::explicit_ && std::chrono::duration<double>(now - last_line_).count() < 0.5 &&
@@ -141,6 +162,8 @@ std::string Monitor::summary(int halvings) const {
   for (std::size_t i = 0; i < names_.size(); ++i)
     text += fmt::format("\n  {:<20} {:>9.2f} s {:>9.2f} s {:>9.3f} ms a step", names_[i], worked_[i],
                         std::max(0., wall_ - worked_[i]), 1e3 * worked_[i] / steps);
+  text += fmt::format("\n  {:<20} {:>9.2f} s {:>11} {:>9.3f} ms a step (of the processor)", "coupler", own_,
+                      "", 1e3 * own_ / steps);
   return text;
 }
 

@@ -20,7 +20,7 @@
 namespace couplet {
 
 /// The coupler's own output, by its rank 0: residuals.csv (a row a pass), participants.csv (a row a step:
-/// what each worked and waited, what it says of its step), balance.csv (forces, moments and work),
+/// what each worked and waited, what it says of its step, the coupler's own work), balance.csv (forces, moments and work),
 /// amounts.csv (sums that go over), volume.csv (levels of closed fluids), the console line of each step and the closing summary.
 class Monitor {
  public:
@@ -28,6 +28,8 @@ class Monitor {
   Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names,
           const std::vector<std::string>& balanced, int dim, double end_time, double restart_time);
 
+  /// The first step begins now: what went before is not its work.
+  void start(const std::vector<Partner>& partners);
   void iteration(const Step& step, int number, const Residual& residual, double omega);
   void balance(double time, const std::vector<SideBalance>& sides);
   void amounts(double time, const std::vector<Links::Amount>& amounts);
@@ -49,6 +51,8 @@ class Monitor {
   long steps_ = 0, iterations_ = 0, most_iterations_ = 0;
   std::vector<double> worked_;  // seconds of each over the run
   double wall_ = 0;
+  double own_ = 0,
+         own_before_ = 0;  // processor seconds of the coupler: of the run, up to this step since it began
 };
 
 }  // namespace couplet

@@ -28,7 +28,7 @@ void Coupler::answer(std::size_t i, Exchange& given, bool move_mesh) {
   }
   try {
     Reply reply = partners_[i].receive();
-    given = std::move(reply.data);
+    partners_[i].channel->reuse(std::exchange(given, std::move(reply.data)));
     answered_anew_ = answered_anew_ || reply.anew;
   } catch (const SolveFailure&) {
     if (!mover_failed) throw;

@@ -4,18 +4,6 @@
 #include "common/io/checkpoint.hpp"
 
 namespace couplet {
-namespace {
-
-Iterate relaxed(const Iterate& x, double omega, const Iterate& image) {
-  Iterate next = x;
-  for (std::size_t i = 0; i < x.unknown.size(); ++i)
-    next.unknown[i] += omega * (image.unknown[i] - x.unknown[i]);
-  for (std::size_t i = 0; i < x.rider.size(); ++i) next.rider[i] += omega * (image.rider[i] - x.rider[i]);
-  return next;
-}
-
-}  // namespace
-
 // -- least squares
 // --------------------------------------------------------------------------------------------
 
@@ -65,7 +53,7 @@ void LeastSquaresNewton::learn(const Iterate& x, const Iterate& image) {
   }
 }
 
-Iterate LeastSquaresNewton::next(const Iterate& x, const Iterate& image) {
+Iterate LeastSquaresNewton::next(Iterate x, const Iterate& image) {
   learn(x, image);
   used_earlier_ = !step_of_.empty() && step_of_.back() != step_;
   Iterate next = image;
@@ -73,7 +61,8 @@ Iterate LeastSquaresNewton::next(const Iterate& x, const Iterate& image) {
   if (pairs_.columns() == 0 || !secants_.finite(next)) {
     if (pairs_.columns() > 0) ++resets_;
     clear();
-    next = relaxed(x, parameters_.initial_relaxation, image);
+    next = x;
+    relax(next, parameters_.initial_relaxation, image);
   }
   share_ = secants_.share(x, next);
   return next;
@@ -132,7 +121,7 @@ void MultiVectorNewton::learn(const Iterate& x, const Iterate& image) {
   steps_.front().drop(parameters_.filter);
 }
 
-Iterate MultiVectorNewton::next(const Iterate& x, const Iterate& image) {
+Iterate MultiVectorNewton::next(Iterate x, const Iterate& image) {
   learn(x, image);
   Iterate next = image;
   // What the columns of one step leave of the residual goes on to the step before.
@@ -146,7 +135,8 @@ Iterate MultiVectorNewton::next(const Iterate& x, const Iterate& image) {
   if (empty || !secants_.finite(next)) {
     if (!empty) ++resets_;
     steps_.assign(1, SecantPairs(comm_));
-    next = relaxed(x, parameters_.initial_relaxation, image);
+    next = x;
+    relax(next, parameters_.initial_relaxation, image);
   }
   share_ = secants_.share(x, next);
   return next;

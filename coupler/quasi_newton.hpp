@@ -69,7 +69,7 @@ class LeastSquaresNewton final : public Accelerator {
  public:
   LeastSquaresNewton(const AccelerationParameters& parameters, MPI_Comm comm);
   void start_step() override;
-  Iterate next(const Iterate& x, const Iterate& image) override;
+  Iterate next(Iterate x, const Iterate& image) override;
   void accept(const Iterate& x, const Iterate& image) override;
   void map_changed() override { secants_.forget_pass(); }
   double relaxation() const override { return share_; }
@@ -101,7 +101,7 @@ class MultiVectorNewton final : public Accelerator {
  public:
   MultiVectorNewton(const AccelerationParameters& parameters, MPI_Comm comm);
   void start_step() override;
-  Iterate next(const Iterate& x, const Iterate& image) override;
+  Iterate next(Iterate x, const Iterate& image) override;
   void accept(const Iterate& x, const Iterate& image) override;
   void map_changed() override { secants_.forget_pass(); }
   double relaxation() const override { return share_; }

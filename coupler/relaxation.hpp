@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <vector>
 
 #include "coupler/accelerator.hpp"
 
@@ -12,7 +12,7 @@ class ConstantRelaxation final : public Accelerator {
  public:
   explicit ConstantRelaxation(double omega) : omega_(omega) {}
   void start_step() override {}
-  Iterate next(const Iterate& x, const Iterate& image) override;
+  Iterate next(Iterate x, const Iterate& image) override;
   void accept(const Iterate&, const Iterate&) override {}
   void map_changed() override {}
   double relaxation() const override { return omega_; }
@@ -37,22 +37,25 @@ class AitkenRelaxation final : public Accelerator {
  public:
   AitkenRelaxation(const AccelerationParameters& parameters, MPI_Comm comm);
   void start_step() override;
-  Iterate next(const Iterate& x, const Iterate& image) override;
+  Iterate next(Iterate x, const Iterate& image) override;
   void accept(const Iterate& x, const Iterate& image) override;
-  void map_changed() override { last_residual_.reset(); }
+  void map_changed() override { forget_pass(); }
   double relaxation() const override { return omega_; }
   void save(CheckpointWriter& file) const override;
   void load(CheckpointReader& file) override;
 
  private:
-  std::vector<double> residual_of(const Iterate& x, const Iterate& image);
-  void learn(std::span<const double> residual);
+  void take_residual(const Iterate& x, const Iterate& image);
+  void learn();
+  void forget_pass() { knows_pass_ = false; }
+
   AccelerationParameters parameters_;
   MPI_Comm comm_;
-  double omega_, first_;                              // in use; for the first update of the next step
-  double rider_weight_ = 0;                           // of this step, from its first residual
-  bool second_pass_ = false;                          // of this step comes next
-  std::optional<std::vector<double>> last_residual_;  // none at the start of a step
+  double omega_, first_;                          // in use; for the first update of the next step
+  double rider_weight_ = 0;                       // of this step, from its first residual
+  bool second_pass_ = false;                      // of this step comes next
+  bool knows_pass_ = false;                       // of this step: last_residual_ is its residual
+  std::vector<double> residual_, last_residual_;  // buffers that stay from pass to pass
 };
 
 /// The factor itself, over the values of this rank.

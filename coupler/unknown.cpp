@@ -58,17 +58,18 @@ bool Unknown::complete(const std::vector<Exchange>& given) const {
 }
 
 Iterate Unknown::gather(const std::vector<Exchange>& given) const {
-  Iterate x{std::vector<double>(n_unknown_), std::vector<double>(n_rider_)};
+  Iterate x;
+  x.unknown.reserve(n_unknown_);
+  x.rider.reserve(n_rider_);
   for (const Part& p : parts_) {
     const std::vector<double>& values = given[p.giver].at(p.datum.name);
     if (values.size() != p.count)
       throw Error("A participant gave {} values of '{}' where {} had been announced.", values.size(),
                   p.datum.name, p.count);
-    std::vector<double>& to = p.rides ? x.rider : x.unknown;
-    if (p.weight == 1)
-      std::ranges::copy(values, to.begin() + std::ptrdiff_t(p.first));
-    else
-      for (std::size_t i = 0; i < p.count; ++i) to[p.first + i] = p.weight * values[i];
+    std::vector<double>& to = p.rides ? x.rider : x.unknown;  // parts lie in it one after the other
+    to.insert(to.end(), values.begin(), values.end());
+    if (p.weight != 1)
+      for (std::size_t i = p.first; i < p.first + p.count; ++i) to[i] *= p.weight;
   }
   return x;
 }
@@ -124,8 +125,8 @@ std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) c
     if (p.rides) continue;
     const std::span<const double> here(x.unknown.data() + p.first, p.count),
         there(image.unknown.data() + p.first, p.count);
-    sums.insert(sums.end(),
-                {squares_of_change(there, here), dot(there, there), double(p.count) / p.components});
+    const ChangeSquares squares = squares_of_change(there, here);
+    sums.insert(sums.end(), {squares.change, squares.size, double(p.count) / p.components});
   }
   sum_over(comm_, sums);
   std::vector<Residual> list;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -17,10 +18,11 @@ namespace couplet {
 /// The pressure level of closed fluids. An incompressible fluid without an outlet knows its pressure up to a
 /// constant lambda only, which is what holds its volume: in each pass the structure's answer is moved by lambda
 /// until its wall lets through what the fluid lets in,
-///   g = sum w . S - Q + 2 E / dt = 0,   load + lambda S                                                     (16)
-/// with E the volume gained by the end of the step over the inflow's. The first part alone keeps the flux right and
-/// lets E drift by what the turning of the faces leaves, E = 0 alone would make w swing from step to step; together
-/// E is half of what one step leaves, whatever came before.
+///   g = 2 (E - E*) / dt = 0,   load + lambda S                                                              (16)
+/// with E the volume gained by the end of the step over the inflow's. E* is zero but where the flux through the wall,
+/// h = sum w . S - Q, swings from step to step: E = 0 alone would let a swing go on for ever under the trapezoidal rule
+/// (h^{n+1} + h^n = 0), E* = 0.15 dt/2 (h^n - h^{n-1})/2 makes it 0.61 of itself a step. A swing of less than a
+/// hundred thousandth of what has flowed is left alone, so that the volume is exact wherever the motion is smooth.
 /// lambda follows from g by Newton's method with dg/dlambda from the structure's answer to
 /// a further pressure (once a step size, then by Broyden's updates): one solve of the structure more a pass where
 /// that is linear. A fluid asks for it by giving "inflow" [m^3/s] at its faces (shares of Q at the end and at the
@@ -56,13 +58,24 @@ class VolumeLevel {
     CavityWall wall;
     double level = 0, accepted_level = 0;  // [Pa]
     double change = 0, inflow = 0;         // of the volume since the start [m^3]
-    std::vector<double> place{};           // displacement of its vertices at t^n
-    std::vector<double> load{};            // without the level, of this pass [N]
-    std::vector<Vec3> areas{};             // that the level acts on in this pass
+    std::array<double, 2> swing{};         // h at t^n and t^{n-1} [m^3/s]
+    double flow = 0;              // the largest of the last steps through its wall and openings [m^3/s]
+    double allowed = 0;           // E* of the step under way [m^3]
+    bool begun = false;           // a step has been accepted
+    std::vector<double> place{};  // displacement of its vertices at t^n
+    std::vector<double> load{};   // without the level, of this pass [N]
+    std::vector<Vec3> areas{};    // that the level acts on in this pass
   };
   struct Defect {
     Eigen::VectorXd value, size;
   };
+  /// Of one cavity's wall and openings, where all have given what they gave; over all ranks.
+  struct Flow {
+    double mismatch, size;  ///< h; all that flows [m^3/s]
+    double end, begin;      ///< Q [m^3/s]
+    double swept;           ///< since t^n [m^3]
+  };
+  Flow flow(const Cavity& cavity, const std::vector<Exchange>& known) const;
   Defect defect(const std::vector<Exchange>& known) const;
   Defect answer_to(std::vector<Exchange>& known, const std::function<void()>& answer);
   void put(const Cavity& cavity, Exchange& given) const;

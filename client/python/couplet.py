@@ -44,7 +44,7 @@ INITIALISE, SOLVE, FINALISE = 1, 3, 8
 def _pause(since):
     """Between two looks at what is awaited: the core belongs to the others."""
     waited = time.monotonic() - since
-    time.sleep(0 if waited < 8e-5 else min(waited / 8, 5e-4))
+    time.sleep(0 if waited < 8e-5 else min(waited / 16, 2.5e-4))
 
 
 def _wait(request):

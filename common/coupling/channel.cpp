@@ -39,8 +39,10 @@ void MpiChannel::send(const Command& command) {
 Reply MpiChannel::receive() {
   const std::string what = fmt::format("'{}' to answer {}", name_, couplet::name(pending_));
   std::vector<char> head;
+  const double begun = processor_seconds();
   if (comm_rank(comm_) == 0) head = receive_bytes(peers_, 0, reply_tag, what);
   broadcast_bytes(comm_, head, "");
+  waiting_seconds_ += processor_seconds() - begun;
   Cut cut;
   Reply reply = unpack_reply(head, cut);
   if (reply.status != Reply::Status::ok) return reply;
@@ -67,9 +69,12 @@ void MpiChannel::receive_values(Exchange& data) {
   const auto list = present(data, gives_, name_);
   for (const auto& datum : list) {
     const Starts& starts = datum.place == Interface::Place::vertices ? mine_.vertices : mine_.faces;
-    data[datum.name].resize(std::size_t(starts[std::size_t(rank) + 1] - starts[std::size_t(rank)]) *
-                            std::size_t(datum.size(dim_)));
+    std::vector<double>& values = data[datum.name];
+    if (const auto old = spare_.find(datum.name); old != spare_.end()) values = std::move(old->second);
+    values.resize(std::size_t(starts[std::size_t(rank) + 1] - starts[std::size_t(rank)]) *
+                  std::size_t(datum.size(dim_)));
   }
+  spare_.clear();
   for (const auto& [other, slice] : exchanged(mine_, rank, theirs_))
     if (const auto to = places_in(data, list, dim_, slice, name_); !to.empty())
       receive_stretches(peers_, other, output_tag, to, "values of '" + name_ + "'");
@@ -81,7 +86,9 @@ LocalChannel::~LocalChannel() = default;
 
 void LocalChannel::send(const Command& command) {
   if (command.op == Op::initialise) participant_->set(command.step.sub_steps);
+  const double begun = processor_seconds();
   reply_ = carry_out(command, *participant_, name_, comm_);
+  waiting_seconds_ += processor_seconds() - begun;
 }
 
 }  // namespace couplet

@@ -19,6 +19,10 @@ class Channel {
   virtual const std::string& name() const = 0;
   virtual void send(const Command& command) = 0;
   virtual Reply receive() = 0;
+  /// Arrays of an earlier reply, for the values of the next: what has its size need not be made and zeroed anew.
+  virtual void reuse(Exchange) {}
+  /// Processor seconds that this process has spent waiting for replies so far, or has lent to the participant.
+  virtual double waiting_seconds() const { return 0; }
 };
 
 /// To another program: heads from rank 0 to rank 0 of the intercommunicator, values from rank to rank. The
@@ -31,6 +35,10 @@ class MpiChannel final : public Channel {
   const std::string& name() const override { return name_; }
   void send(const Command& command) override;
   Reply receive() override;
+  void reuse(Exchange old) override {
+    if (!old.empty()) spare_ = std::move(old);
+  }
+  double waiting_seconds() const override { return waiting_seconds_; }
 
  private:
   void receive_places(Interface& interface);
@@ -41,6 +49,8 @@ class MpiChannel final : public Channel {
   Op pending_ = Op::initialise;
   int dim_ = 0;
   std::vector<Interface::Datum> takes_, gives_;
+  Exchange spare_;
+  double waiting_seconds_ = 0;
   Cut theirs_, mine_;  // the same list of places, cut over the participant's and the coupler's ranks
 };
 
@@ -53,12 +63,14 @@ class LocalChannel final : public Channel {
   const std::string& name() const override { return name_; }
   void send(const Command& command) override;
   Reply receive() override { return std::move(reply_); }
+  double waiting_seconds() const override { return waiting_seconds_; }
 
  private:
   std::string name_;
   std::unique_ptr<class SubStepping> participant_;
   MPI_Comm comm_;
   Reply reply_;
+  double waiting_seconds_ = 0;
 };
 
 /// Which rank of the other side takes or gives which of my places, both kinds at once.

@@ -19,7 +19,7 @@ void PoliteWait::pause() {
     sched_yield();
     return;
   }
-  std::this_thread::sleep_for(std::min<std::chrono::duration<double>>(waited / 8, 500us));
+  std::this_thread::sleep_for(std::min<std::chrono::duration<double>>(waited / 16, 250us));
   if (waited > notice_ && !what_.empty()) {
     log::info("waiting for {} for {:.0f} s", what_, waited.count());
     notice_ *= 2;

@@ -73,7 +73,9 @@ class Bag final : public Participant {
   double weight_at(std::size_t f) const { return weight_ * (1 + 1e-14 * std::sin(double(f + 1))); }
   /// A pressure that is there at rest [Pa].
   void weigh(double weight) { weight_ = weight; }
-  double inflow(double t) const { return q_ * std::pow(std::sin(std::numbers::pi * t), 2); }
+  double inflow(double t) const { return at_once_ ? q_ : q_ * std::pow(std::sin(std::numbers::pi * t), 2); }
+  /// The inflow has its size from the start.
+  void begin_at_once(bool yes) { at_once_ = yes; }
   StepReport accept_step() override {
     now_ = next_;
     return {.dt = step_.dt};
@@ -85,6 +87,7 @@ class Bag final : public Participant {
 
  private:
   double a_, h_, mass_, q_, fails_above_, weight_ = 0;
+  bool at_once_ = false;
   Step step_;
   std::vector<double> now_, next_;
 };
@@ -94,6 +97,7 @@ struct BagRun {
   SimulationParameters simulation;
   toy::SpringParameters spring;
   int bags = 1;
+  bool at_once = false;
   double added_mass = 2, fails_above = 1, weight = 0, pumped = 0.1;
   fs::path folder = fs::temp_directory_path() / ("couplet-bag-" + std::to_string(::getpid())), restart;
   std::string problem;
@@ -120,6 +124,7 @@ struct BagRun {
     Bag left(0, bags == 1 ? 1 : 0.5, bags == 1 ? 8 : 4, added_mass, pumped, fails_above),
         right(0.5, 1, 4, added_mass, 0.03, fails_above);
     left.weigh(weight);
+    left.begin_at_once(at_once);
     toy::Spring wall(MPI_COMM_SELF, spring);
     std::vector<std::unique_ptr<Channel>> channels;
     coupling.exchange->participants = {"left", "wall"};
@@ -220,6 +225,27 @@ TEST(VolumeLevel, two_cavities_under_one_wall_hold_their_own_volumes) {
   EXPECT_NEAR(run.under(0, 4), 0.05, 1e-10);
   EXPECT_NEAR(run.under(4, 8), 0.015, 1e-10);
   EXPECT_LE(run.iterations, 6);
+}
+
+/// A wall at rest cannot follow an inflow that is there at once: it overshoots, and the volume alone would let it
+/// swing about the inflow for ever.
+TEST(VolumeLevel, an_inflow_that_is_there_at_once_does_not_swing_on) {
+  BagRun run;
+  run.at_once = true;
+  run.simulation.end_time = 0.8;
+  run();
+  ASSERT_EQ(run.problem, "");
+  ASSERT_EQ(run.volume.size(), 40u);
+  const auto flow = [&](std::size_t n) { return (run.volume[n][2] - run.volume[n - 1][2]) / 0.02; };
+  double early = 0, late = 0, volume = 0;
+  for (std::size_t n = 2; n < 8; ++n)
+    early = std::max(early, std::abs(run.volume[n][1] - run.volume[n - 1][1]));
+  for (std::size_t n = 34; n < 40; ++n)
+    late = std::max(late, std::abs(run.volume[n][1] - run.volume[n - 1][1]));
+  for (std::size_t n = 34; n < 40; ++n) volume = std::max(volume, std::abs(flow(n) / 0.1 - 1));
+  EXPECT_GT(early, 100 * late);  // of the level, from step to step
+  EXPECT_LT(volume, 1e-4);
+  RecordProperty("level_swing", fmt::format("{:.2e} to {:.2e}", early, late));
 }
 
 TEST(VolumeLevel, a_step_that_is_halved_finds_it_anew) {
