@@ -64,6 +64,12 @@ std::string explanation(const std::vector<Effect>& effects) {
                : fmt::format(
                      "  off  {}: {}{}\n", e.name, e.keys,
                      e.judged_when_on || e.judged_by.empty() ? "" : "; a run judges it: " + e.judged_by);
+  const bool has_numbers = std::ranges::any_of(effects, [](const Effect& e) {
+    return e.on() && (e.cost.bytes_a_cell > 0 || e.cost.share_of_step > 0);
+  });
+  if (has_numbers)
+    lines +=
+        "  (numbers: measured in the plane on one rank, of a step of a small scene without the effect; docs/effects.md)\n";
   return lines;
 }
 

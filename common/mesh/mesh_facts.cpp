@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <regex>
+
+#include "common/mesh/geo_script.hpp"
 
 namespace couplet {
 
@@ -37,10 +36,10 @@ MeshFacts facts_of(const RawMesh& raw) {
 
 MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters) {
   if (file.extension() != ".geo") return facts_of(read_msh(file));
-  std::ifstream in(file);
-  const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  const int dim = std::regex_search(text, std::regex("Physical\\s+Volume")) ? 3 : 2;
-  return facts_of(read_msh(mesh_geo(file, dim, parameters)));
+  const GeoScript script = read_geo(file);
+  const bool is_solid =
+      !script.groups.at(3) || !script.groups.at(3)->empty();  // nothing: some name is computed
+  return facts_of(read_msh(mesh_geo(file, is_solid ? 3 : 2, parameters)));
 }
 
 }  // namespace couplet

@@ -3,7 +3,14 @@
 import importlib
 import pathlib
 
+from validation.parts import trust_items
+
 HERE = pathlib.Path(__file__).resolve().parent
 ORDER = ("fluid", "coupler", "solid", "runs", "tank", "tests", "house")
 PARTS = [part for part in ORDER if (HERE / "parts" / f"trust_{part}.py").exists()]
 BARS = [bar for part in PARTS for bar in importlib.import_module(f"validation.parts.trust_{part}").BARS]
+BARS += trust_items.rows(BARS)
+
+
+def items():
+    return trust_items.table(BARS)

@@ -8,22 +8,26 @@ import re
 from validation.job import Bar
 from validation.parts.effects_off import EFFECTS, Own, watched
 
-CELLS = 24  # along a side of the square; the bed of a tank has 200
+CELLS = 32  # along a side of the square; the bed of a tank has 200
 STEPS = {"fluid_solver": (20, 120), "solid_solver": (20, 120), "mesh_mover": (10, 60), "plate_modal": (50, 400), "thermocline": (20, 120)}
 FEW = {"geometric non-linearity": (4, 12)}  # its steps are dear enough to be seen
 OFF_ONLY = ("implicit viscous term", "step control", "vorticity and Q", "lines and planes", "velocity from a file", "free vibrations")
+SYMMETRIC = ("solution-method={type: newton-krylov, face-gradient: symmetric}",)  # what an orthotropic body takes
 MORE = [
     Own("fluid_solver", "body force", ("body-force=['1', '0']",), ()),
     Own("fluid_solver", "energy budget", ("output={energy-budget: true}",), ()),
     Own("solid_solver", "near incompressibility", ("solution-method={type: newton-krylov, face-gradient: symmetric, volume-strain: cells}",), (),
         ("solution-method={type: newton-krylov, face-gradient: symmetric, volume-strain: faces}",)),
     Own("solid_solver", "gravity", ("gravity=['0', '-9.81']",), ()),
+    Own("solid_solver", "body force", ("body-force=['1', '0']",), ()),
     Own("solid_solver", "structural damping", ("damping={stiffness: 1e-4}",), ()),
     Own("plate_modal", "damping", ("damping={ratio: 0.01}",), ()),
-    Own("thermocline", "resolved grains", ("bed.shells=5",), ()),
+    Own("thermocline", "resolved grains", ("bed.shells=5",), (), ("bed.shells=1",)),
 ]
-PRICED = [own for own in (*EFFECTS, *MORE) if own.effect not in OFF_ONLY]
-LEAST_BYTES, LEAST_SHARE = 8, 0.03  # what a card need not name: a number a cell, a thirtieth of a step
+PRICED = [dataclasses.replace(own, needs=SYMMETRIC) if own.effect == "orthotropic elasticity" else own
+          for own in (*EFFECTS, *MORE) if own.effect not in OFF_ONLY]
+LEAST_BYTES, LEAST_SHARE = 16, 0.03  # what a card need not name: two numbers a cell, a thirtieth of a step
+NOT_BY_CELLS = ("geometric non-linearity", "ground")  # another solver in place of factors; a column of its own
 
 
 @dataclasses.dataclass
@@ -81,6 +85,8 @@ def claims(kind):
     def measure(job):
         found = {f"{own.program} {own.effect}": job.once(("cost", own.program, own.effect), lambda own=own: compare(job, own)) for own in PRICED}
         right = 4 if kind == "memory" else 5
+        if kind == "memory":
+            found = {name: r for name, r in found.items() if not name.endswith(NOT_BY_CELLS)}
         wrong = [f"{name} {r[0]:.0f} for {r[2]:g} B" if kind == "memory" else f"{name} {100 * r[1]:+.0f} for {100 * r[3]:+g} %"
                  for name, r in found.items() if not r[right]]
         named = sum(bool(r[2 if kind == "memory" else 3]) for r in found.values())
@@ -89,10 +95,10 @@ def claims(kind):
     return measure
 
 
-BUT = "in the plane, one rank, on the square of 24 x 24 cells (a bed of 200) of the row, {}"
+BUT = "in the plane, one rank, on the square of 32 x 32 cells (a bed of 200) of the row, {}"
 BARS = [
     Bar("a card's claimed memory against the heap of the run (massif)", "within 20 %", claims("memory"), long=True,
-        but=BUT.format("and without a number below 8 B a cell")),
+        but=BUT.format("without a number below 16 B a cell, and but for what does not go by cells: large strain's other solver, the ground's column")),
     Bar("a card's claimed share of a step against the instructions of the run (massif)", "within 50 %", claims("time"), long=True,
         but=BUT.format("whose step is what the share is of, in instructions, and without a number below 3 %")),
 ]

@@ -122,6 +122,8 @@ BARS = [
     Bar("real solvers killed in every phase, clock from their death", "ended in 5 s, named", tests("^kill_solvers$")),
     Bar("a .geo that runs commands or writes files is refused; includes are looked into", "tests pass",
         gtests("unit_mesh_files", "Geo")),
+    Bar("hundreds of kilobytes of .geo in one blank, comment, name or bracket end nothing; the dimension is that of the groups", "tests pass",
+        gtests("unit_mesh_files", "hundreds_of_kilobytes", "however_they_are_written")),
     Bar("a number of cells that is none (n_length: -3, 0, 2.5) is refused before gmsh makes another mesh of it", "tests pass",
         gtests("unit_mesh", "number_of_cells_that_is_none")),
     Bar("a table from a FIFO is refused at once; columns that are not there, too", "tests pass",

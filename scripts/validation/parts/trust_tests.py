@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the tests themselves: mutants, guards that stay silent on sound cases, and what the guards cost."""
+import json
 import pathlib
 import re
 import signal
@@ -134,8 +135,30 @@ def fluid_cost(job):
     return f"{100 * guard / step:.2f} % of the instructions of its steps", guard < 0.03 * step
 
 
+def limits(job):
+    """Time limits of the quick tests against what each took on average in the build at hand (CTestCostData)."""
+    file = job.build / "Testing/Temporary/CTestCostData.txt"
+    cost = {w[0]: float(w[2]) for w in map(str.split, file.read_text().splitlines()) if len(w) == 3}
+    registered, short, seen = json.loads(job.run(["ctest", "--test-dir", job.build, "--show-only=json-v1"]).stdout)["tests"], [], 0
+    for test in registered:
+        settings = {p["name"]: p["value"] for p in test.get("properties", [])}
+        if "long" in settings.get("LABELS", ()) or not cost.get(test["name"]):
+            continue
+        seen += 1
+        if (limit := settings.get("TIMEOUT", 1500)) < 10 * cost[test["name"]]:
+            short.append(f"{test['name']} {limit:.0f} s for {cost[test['name']]:.1f} s")
+    return f"{seen} quick tests that were run" + (f"; too short: {'; '.join(short)}" if short else ""), seen >= 250 and not short
+
+
+def paraview(job):
+    passed, total, skipped, _ = job.ctest("^cli_output_of_")
+    return f"{passed} of {total} passed, {skipped} skipped", None if skipped else passed == total == 2
+
+
 COUNTED = "instructions under callgrind in place of paired times"
 BARS = [
+    Bar("time limits of the suite: at least ten times what a test takes", "all quick tests", limits, but="the times of the last runs in the build at hand, which should be of a quiet machine"),
+    Bar("ParaView opens what solid_solver and fluid_solver write: times, points and fields", "tests pass", paraview, long=True),
     Bar("mutants that survived are killed", "all", script("tests/mutants/run.py", "{root}", "{bin}/.."), long=True),
     Bar("false alarms of guards on the committed cases", "none", false_alarms, long=True,
         but=f"the first {SECONDS} s of wall time of each case, with its own settings; the validation runs are judged by their own rows"),

@@ -20,7 +20,8 @@ for name, (setting, is_sound) in CASES.items():
         steps = [line for line in probes.read_text().splitlines()[1:] if line] if probes.exists() else []
         reached_end = any(line.startswith("1,") for line in steps)
         told = "did not converge" in run.stdout + run.stderr
-        good = (run.returncode == 0 and reached_end) if is_sound else (run.returncode != 0 and told and not reached_end)
+        tries = (run.stdout + run.stderr).count("step 1 with dt")  # a shorter static step meets the same equations: one try
+        good = (run.returncode == 0 and reached_end) if is_sound else (run.returncode != 0 and told and not reached_end and tries == 1)
         print("ok    " if good else "FAILED", name, f"(exit code {run.returncode}, told {told}, end reached {reached_end})")
         if not good:
             print(run.stdout[-1500:], run.stderr[-1500:])

@@ -6,8 +6,11 @@
 #include <unistd.h>
 
 #include <fstream>
+#include <tuple>
+#include <vector>
 
 #include "common/base/error.hpp"
+#include "common/mesh/mesh_facts.hpp"
 
 namespace couplet {
 namespace {
@@ -75,6 +78,36 @@ TEST_F(Geo, names_are_found_as_they_stand) {
   EXPECT_THAT(*s.groups[1], ElementsAre("top", "bottom"));
   EXPECT_THAT(*s.groups[2], ElementsAre("all"));
   EXPECT_FALSE(s.groups[3]) << "computed";
+}
+
+// A regular expression of the standard library goes one call deeper with each character that it takes: hundreds of kilobytes in one
+// go ended the program.
+TEST_F(Geo, hundreds_of_kilobytes_of_blanks_comments_names_and_brackets_end_nothing) {
+  constexpr std::size_t much = 400000;
+  const std::vector<std::tuple<std::string, char, std::string>> texts{
+      {"Physical", ' ', "Surface(\"all\") = {1};\n"},
+      {"//", 'x', "\nx = 1;\n"},
+      {"/*", '*', "*/ x = 1;\n"},
+      {"a", 'a', " = 1;\n"},
+      {"x = ", '(', ";\n"},
+      {"\"", 'q', "\";\n"},
+      {"DefineConstant [ n = ", '{', "];\n"}};
+  for (const auto& [head, filling, tail] : texts)
+    EXPECT_EQ(script(head + std::string(much, filling) + tail).danger, "") << head;
+  EXPECT_NE(script("SystemCall" + std::string(much, ' ') + "\"x\";\n").danger, "");
+}
+
+TEST_F(Geo, the_dimension_of_a_mesh_is_that_of_its_groups_however_they_are_written) {
+  const std::string square =
+      "Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {1, 1, 0}; Point(4) = {0, 1, 0};\n"
+      "Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1}; Transfinite Curve {1:4} = 3;\n"
+      "Curve Loop(1) = {1:4}; Plane Surface(1) = {1}; Transfinite Surface {1}; Recombine Surface {1};\n"
+      "Physical Curve(\"side\") = {1:4};\n// Physical Volume is for others\nPhysical" +
+      std::string(400000, ' ') + "Surface(\"all\") = {1};\n";
+  script(square, "square.geo");
+  const MeshFacts facts = facts_of_file(folder / "square.geo", {});
+  EXPECT_EQ(facts.dim, 2);
+  EXPECT_EQ(facts.cells, 4u);
 }
 
 }  // namespace
