@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A participant that costs nothing but its data: n vertices on a sheet, three numbers each way, y_i = c_i - g_i x_i.
-// Usage: dummy one|two VERTICES   or   dummy plain VERTICES on two processes: the same bytes to and fro by MPI alone.
+// Usage: dummy one|two VERTICES [changing]   (with the word g is another one in each step, so that what an accelerator has
+// learnt helps little)   or   dummy plain VERTICES on two processes: the same bytes to and fro by MPI alone.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -53,13 +54,17 @@ int main(int argc, char** argv) {
   job.takes(first ? "force" : "motion", first ? "Pa" : "m", COUPLET_VERTICES);
   job.gives(first ? "motion" : "force", first ? "m" : "Pa", COUPLET_VERTICES);
   std::vector<double> answer(3 * std::size_t(n)), push(answer), slope(answer);
-  for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = 0.05 + 0.9 * double(i % 97) / 97;
+  const bool changing = argc > 3;
+  std::size_t steps = 0;
   auto before = Clock::now();
   double own = 0, all = 0;
   int passes = 0;
   for (couplet_event event; (event = job.next()) != COUPLET_END;) {
     if (event == COUPLET_BEGIN) {
       for (std::size_t i = 0; i < push.size(); ++i) push[i] = std::sin(10 * job.time() + 1e-4 * double(i));
+      for (std::size_t i = 0; i < slope.size(); ++i)
+        slope[i] = 0.05 + 0.9 * double((i + 13 * steps) % 97) / 97;
+      steps += changing;
       before = Clock::now();
     }
     if (event != COUPLET_SOLVE) continue;
