@@ -8,6 +8,7 @@ import numpy as np
 import couplet_series as couplet
 from couplet_run.launch import RunFailed
 from validation.job import Bar
+from validation.parts.strong_flap_3d import FLAP_3D
 from validation.parts.strong_tube import ROBIN_TUBE
 from validation.parts.strong_walls import WALLS
 
@@ -127,6 +128,7 @@ def implicit_at_its_edge(on_guess):
 BARS = [
     *WALLS,
     *ROBIN_TUBE,
+    *FLAP_3D,
     Bar("order in the step, flap, mu 1, default settings", "slope >= 1.8", order(1, mesh=COARSE), but="20 cells a side, rho_s 3000, to 0.2 s"),
     Bar("order in the step, flap, mu 0.1, default settings", "slope >= 1.8", order(0.1, mesh=COARSE), but="20 cells a side, rho_s 3000, to 0.2 s"),
     *(Bar(f"order in the step, flap, mu {mu}, implicit-stretch 4", "slope >= 1.8",
