@@ -101,8 +101,9 @@ void Mover::make_method() {
   const Mesh* on = &mesh_;
   if (incremental()) {
     if (!base_) base_ = std::make_unique<Mesh>(mesh_);
-    base_->reference_points = points_of(accepted_);
-    base_->reference = compute_geometry(mesh_, base_->reference_points);
+    place();  // displacement_ is accepted_ where a method is made
+    base_->reference_points = points_;
+    base_->reference = moved_;
     on = base_.get();
   }
   const std::vector<double>& volumes = parameters_.stiffening_volumes == StiffeningVolumes::current
@@ -152,11 +153,13 @@ std::vector<double> Mover::prescribed(const Exchange& in) const {
   return values;
 }
 
-std::vector<Vec3> Mover::points_of(const std::vector<double>& displacement) const {
-  std::vector<Vec3> points = mesh_.reference_points;
-  for (std::size_t v = 0; v < points.size(); ++v)
-    for (int c = 0; c < mesh_.dim; ++c) points[v][c] += displacement[v * mesh_.dim + c];
-  return points;
+void Mover::place() {
+  if (placed_) return;
+  points_ = mesh_.reference_points;
+  for (std::size_t v = 0; v < points_.size(); ++v)
+    for (int c = 0; c < mesh_.dim; ++c) points_[v][c] += displacement_[v * mesh_.dim + c];
+  moved_ = compute_geometry(mesh_, points_);
+  placed_ = true;
 }
 
 /// What is given at one side of periodic patches alone, or otherwise at the other, leaves no mesh.
@@ -173,14 +176,15 @@ void Mover::refuse_torn() const {
 }
 
 Exchange Mover::solve(const Exchange& in) {
+  placed_ = false;
   try {
     displacement_ = method_->solve(prescribed(in));
     if (incremental())
       for (std::size_t i = 0; i < displacement_.size(); ++i) displacement_[i] += accepted_[i];
     curved_.put_back(displacement_);
     refuse_torn();
-    const std::vector<Vec3> points = points_of(displacement_);
-    const std::string refusal = guard_.refusal(compute_geometry(mesh_, points), points);
+    place();
+    const std::string refusal = guard_.refusal(moved_, points_);
     if (!refusal.empty())
       throw SolveFailure(
           "participant '{}': the mesh motion from t = {:.6g} s {}{}", name_, step_.time, refusal,
@@ -203,9 +207,9 @@ StepReport Mover::accept_step() {
   return report;
 }
 
-MeshState Mover::state() const {
-  const std::vector<Vec3> points = points_of(displacement_);
-  return guard_.measure(compute_geometry(mesh_, points), points);
+MeshState Mover::state() {
+  place();
+  return guard_.measure(moved_, points_);
 }
 
 void Mover::save(CheckpointWriter& file) const {
@@ -218,6 +222,7 @@ void Mover::load(CheckpointReader& file) {
   check_numbering(file, mesh_);
   file.read("displacement", accepted_);
   displacement_ = accepted_;
+  placed_ = false;
   if (incremental())
     make_method();
   else
@@ -236,13 +241,12 @@ void Mover::write_monitors(double time) {
 
 void Mover::write_output(double time, int) {
   if (!fields_) return;
-  const std::vector<Vec3> points = points_of(displacement_);
-  const Geometry moved = compute_geometry(mesh_, points);
+  place();
   using Place = OutputField::Place;
-  const std::vector<double> volume = guard_.of_cells(MeshState::volume_ratio, moved, points),
-                            jacobian = guard_.of_cells(MeshState::scaled_jacobian, moved, points),
-                            edges = guard_.of_cells(MeshState::edge_ratio, moved, points);
-  fields_->write(time, points,
+  const std::vector<double> volume = guard_.of_cells(MeshState::volume_ratio, moved_, points_),
+                            jacobian = guard_.of_cells(MeshState::scaled_jacobian, moved_, points_),
+                            edges = guard_.of_cells(MeshState::edge_ratio, moved_, points_);
+  fields_->write(time, points_,
                  {{"displacement", "m", Place::points, mesh_.dim, displacement_},
                   {"volume-ratio", "1", Place::cells, 1, volume},
                   {"scaled-jacobian", "1", Place::cells, 1, jacobian},

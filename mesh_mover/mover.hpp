@@ -42,7 +42,7 @@ class Mover final : public Participant {
   /// dim values per local point, of the last solve [m].
   const std::vector<double>& displacement() const { return displacement_; }
   /// Of the mesh of the last solve. Collective.
-  MeshState state() const;
+  MeshState state();
 
  private:
   struct Moving {
@@ -54,7 +54,8 @@ class Mover final : public Participant {
   void make_method();
   std::vector<double> prescribed(const Exchange& in) const;
   void refuse_torn() const;
-  std::vector<Vec3> points_of(const std::vector<double>& displacement) const;
+  /// Points and geometry for displacement_, made once a motion. Collective.
+  void place();
 
   std::string name_;
   Parameters parameters_;
@@ -69,6 +70,9 @@ class Mover final : public Participant {
   std::unique_ptr<MeshMotionSink> sink_;
   Step step_;
   std::vector<double> displacement_, accepted_;
+  bool placed_ = false;  // the next two are those of displacement_
+  std::vector<Vec3> points_;
+  Geometry moved_;
   std::unique_ptr<Series> quality_;
   std::unique_ptr<FieldWriter> fields_;  // alone only
 };

@@ -117,15 +117,14 @@ TEST(Periodic, a_wave_on_the_floor_knows_no_side) {
 
 /// The elastic body, too; three-cornered faces share their strain over the edges of both sides.
 TEST(Periodic, a_wave_on_the_floor_of_an_elastic_mesh_knows_no_side) {
-  for (const bool simplices : {false, true})
-    for (const int dim : {2, 3}) {
-      const int n = dim == 2 ? 8 : 4;
-      const Mesh mesh = joined_box(dim, n, simplices);
-      Parameters p = floor_moves(dim);
-      p.linear.relative_tolerance = 1e-9;
-      PseudoSolid solid(mesh, p);
-      expect_no_side(mesh, solid, n, 1e-7);
-    }
+  for (const int dim : {2, 3}) {
+    const int n = dim == 2 ? 8 : 4;
+    const Mesh mesh = joined_box(dim, n, dim == 3);
+    Parameters p = floor_moves(dim);
+    p.linear.relative_tolerance = 1e-9;
+    PseudoSolid solid(mesh, p);
+    expect_no_side(mesh, solid, n, 1e-7);
+  }
 }
 
 /// Where the floor ends in a patch of its own on one side, its corner there would move and its copy rest.
