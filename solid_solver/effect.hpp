@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elasticity.hpp"
@@ -50,6 +51,10 @@ class SolidEffect {
   virtual void add_fields(std::vector<OutputField>& /*fields*/) {}
   /// Adds what it has seen, for the verdicts on what was left out. Collective.
   virtual void add_evidence(SolidEvidence& /*evidence*/) const {}
+  /// Before the first step, if the run is to end with an estimate of its error; else nothing is collected.
+  virtual void collect_errors() {}
+  /// Of what it loads the solid with, over the size of that. Collective.
+  virtual ErrorParts error_parts() const { return {}; }
   /// For Participant::finish(), beside the verdicts of the cards.
   virtual void judge(std::vector<std::string>& /*sentences*/) const {}
 };

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
@@ -53,6 +54,78 @@ double SolidErrorEstimate::missed_work() const {
   return work != 0 ? std::abs(missed / work) : 0;
 }
 
+/// What effects load the solid with errs, too: the displacement that follows from it by as much, |u . b_effect| / u . K u of the whole.
+void SolidErrorEstimate::add_loads(ErrorParts& parts) const {
+  const MPI_Comm comm = body_.mesh().comm;
+  const SolidState& state = stepper_.state();
+  const std::vector<double> u = body_.unknowns_of(state.cell_u, state.face_u);
+  std::vector<double> force(u.size());
+  body_.kernel().apply(u, {}, force);
+  const double energy = sum(comm, std::inner_product(u.begin(), u.end(), force.begin(), 0.0));
+  for (const auto& effect : body_.effects()) {
+    const ErrorParts load = effect->error_parts();
+    if (!load.known()) continue;
+    std::vector<double> forces(u.size(), 0.0);
+    effect->add_loads(state.time, body_.kernel(), forces);
+    const double work = sum(comm, std::inner_product(u.begin(), u.end(), forces.begin(), 0.0));
+    const double share = energy > 0 ? std::min(1.0, std::abs(work) / energy) : 1;
+    for (const auto part : {&ErrorParts::mesh, &ErrorParts::step})
+      parts.*part = std::fmax(parts.*part, share * load.*part);  // fmax: a number beats NaN
+  }
+}
+
+/// Of the gradient in use and the corrected one, over that in use: sqrt(sum V mu |E1 - E2|^2 / sum V mu |E1|^2),
+/// E = (H + H^T + H^T H) / 2, which turning the body leaves as it is.
+double SolidErrorEstimate::green_strain_difference() const {
+  const Mesh& mesh = body_.mesh();
+  const SolidState& state = stepper_.state();
+  const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
+  const std::vector<double> known =
+      body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()});
+  const auto strain = [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose() + h.transpose() * h)); };
+  std::vector<Tensor3> used(std::size_t(mesh.n_flux_faces()), Tensor3::Zero());
+  double difference = 0, size = 0;
+  const auto visit = [&](const ElasticKernel& kernel, auto take) {
+    kernel.face_gradients(
+        unknowns, known,
+        [&](Index f, const Tensor3& gradient) {
+          const Index owner = mesh.owner[f];
+          if (owner >= mesh.cells.n_owned()) return;
+          const Geometry& g = mesh.reference;
+          const Vec3 across =
+              f < mesh.n_interior ? Vec3(g.cell_centre[mesh.neighbour[f]] + mesh.shift(f)) : g.face_centre[f];
+          const double weight =
+              std::abs(g.face_area[f].dot(across - g.cell_centre[owner])) * body_.elastic().lame(owner).mu;
+          take(f, weight, strain(gradient));
+        },
+        0, mesh.n_flux_faces());
+  };
+  visit(body_.kernel(), [&](Index f, double weight, const Tensor3& e) {
+    used[std::size_t(f)] = e;
+    size += weight * e.squaredNorm();
+  });
+  visit(ElasticKernel(mesh, body_.elastic(), FaceGradientScheme::corrected),
+        [&](Index f, double weight, const Tensor3& e) {
+          difference += weight * (e - used[std::size_t(f)]).squaredNorm();
+        });
+  size = sum(mesh.comm, size);
+  return size > 0 ? std::sqrt(sum(mesh.comm, difference) / size) : 0;
+}
+
+/// An energy errs by the square of what the strains err, of which half of the difference's is each gradient's; the displacement
+/// follows as softly as the deformed body does. NaN: its tangent has no solution.
+double SolidErrorEstimate::finite_mesh_error() const {
+  const double difference = green_strain_difference(), energy = 0.5 * difference * difference;
+  FiniteStrain* newton = body_.newton();
+  if (body_.is_dynamic() || !newton) return energy;
+  const SolidState& state = stepper_.state();
+  try {
+    return energy * newton->softness(body_.unknowns_of(state.cell_u, state.face_u), state.known);
+  } catch (const SolveFailure&) {
+    return ErrorParts::unknown;
+  }
+}
+
 void SolidErrorEstimate::see_step() {
   if (!body_.is_dynamic()) return;
   const SolidState &now = stepper_.trial(), &before = stepper_.state();
@@ -72,9 +145,13 @@ ErrorParts SolidErrorEstimate::parts() const {
   } else {
     parts.linear = body_.finite() ? left_by_solver() : missed_work();
   }
-  if (body_.finite()) return parts;
+  if (body_.finite()) {
+    parts.mesh = finite_mesh_error();
+    return parts;
+  }
   const StrainAudit audit = judge_.audit_strain(fields_.point_displacement(), true);
   parts.mesh = std::max(audit.mismatch(), audit.gradient_difference * audit.gradient_difference);
+  add_loads(parts);
   return parts;
 }
 

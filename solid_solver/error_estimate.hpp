@@ -21,7 +21,9 @@ namespace couplet {
 ///   step    sum of the local errors, see VelocityErrors; static: none
 ///   linear  static: the work of what equilibrium misses over that of the loads, which is the error of the compliance;
 ///           dynamic: the relative residuals of all steps, see StepErrors
-/// At finite strain the mesh's part is not known. Collective.
+/// Temperatures that are solved for add what they err by, over their distance from the reference, times the share of the strain energy
+/// that their strain makes. At finite strain the mesh's part is half the square of the difference of two gradients' Green strains, times
+/// how softly the deformed body follows a change of its stiffness (a static run: one linear solve with the tangent). Collective.
 class SolidErrorEstimate {
  public:
   /// All by reference.
@@ -38,6 +40,9 @@ class SolidErrorEstimate {
  private:
   double left_by_solver() const;
   double missed_work() const;
+  void add_loads(ErrorParts& parts) const;
+  double green_strain_difference() const;
+  double finite_mesh_error() const;
   double mean_square(std::span<const double> cells) const;
 
   const SolidBody& body_;

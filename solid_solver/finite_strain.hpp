@@ -40,6 +40,10 @@ class FiniteStrain final : public LargeStrain {
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
+  /// Of a state at rest in equilibrium: by how much it would give way, over itself, were the whole body softer by a (small)
+  /// share, over that share; of a linear body under loads 1, near a buckling load large. What is moved by prescribed
+  /// displacements gives way to nothing and counts as 1. Throws SolveFailure. Collective.
+  double softness(std::span<const double> unknowns, std::span<const double> known);
   Vec3 pressure_force() override { return kernel_->pressure_force(); }
   std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                    const ElasticLoads& loads) override {

@@ -97,15 +97,17 @@ std::vector<double> HeatErrors::gaps(const Heat& heat) const {
   return gap;
 }
 
-ErrorParts HeatErrors::parts(const Heat& heat) const {
+ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double> reference) const {
   const HeatState& now = heat.accepted();
   ErrorParts parts;
   if (now.steps == 0) return parts;
   const double level = steady_ || !begun_ ? mean(now.cells) : level_;
   const double varies = size(now.cells, level);
-  if (!(varies > 1e-12 * std::abs(level))) return parts;  // one temperature: nothing errs
-  parts.mesh = root_mean_square(gaps(heat)) / varies;
-  if (!steady_) parts.step = steps_.over_size();
+  const double size = reference ? this->size(now.cells, *reference) : varies;
+  if (!(varies > 1e-12 * std::abs(level)) || !(size > 1e-12 * std::abs(level)))
+    return parts;  // one temperature: nothing errs
+  parts.mesh = root_mean_square(gaps(heat)) / size;
+  if (!steady_) parts.step = steps_.over_size() * varies / size;
   return parts;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,8 +23,8 @@ class HeatErrors {
   HeatErrors(const Mesh& mesh, const HeatParameters& parameters);
   /// Between solve and acceptance of a transient.
   void see_step(const HeatState& before, const HeatState& now);
-  /// Of what was accepted.
-  ErrorParts parts(const Heat& heat) const;
+  /// Of what was accepted; with `reference` [K] over the distance from that.
+  ErrorParts parts(const Heat& heat, std::optional<double> reference = {}) const;
   /// For checkpoints; empty: of a run that collected nothing.
   std::vector<double> state() const;
   void restore(std::span<const double> state);

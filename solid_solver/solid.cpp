@@ -47,6 +47,11 @@ StepReport Solid::accept_step() {
   return {.dt = stepper_.state().dt, .iterations = stepper_.effort().iterations};
 }
 
+void Solid::collect_errors() {
+  errors_.emplace(body_, stepper_, fields_, judge_);
+  for (const auto& effect : body_.effects()) effect->collect_errors();
+}
+
 std::vector<EffectVerdict> Solid::audit() const {
   return couplet::audit(solid_effect_cards(), body_.parameters(), judge_.evidence());
 }

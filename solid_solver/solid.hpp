@@ -40,7 +40,7 @@ class Solid final : public Participant, public EstimatesError {
   void write_monitors(double time) override;
   std::vector<EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
-  void collect_errors() override { errors_.emplace(body_, stepper_, fields_, judge_); }
+  void collect_errors() override;
   ErrorParts error_parts() const override { return errors_ ? errors_->parts() : ErrorParts{}; }
 
   const SolidBody& body() const { return body_; }

@@ -221,6 +221,7 @@ std::vector<double> ThermalStrain::pressure(double t) {
 }
 
 void ThermalStrain::accept_step() {
+  if (errors_) errors_->see_step(heat_->accepted(), heat_->trial());
   if (heat_) heat_->accept_step();
   given_accepted_ = given_trial_;
   time_ = step_.time + step_.dt;
@@ -317,7 +318,8 @@ void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
 }
 
 void ThermalStrain::save(CheckpointWriter& file) const {
-  if (heat_) heat_->save(file);
+  if (heat_)
+    heat_->save(file), file.write("temperature-errors", errors_ ? errors_->state() : std::vector<double>{});
   if (given_) file.write("interface-temperature", given_accepted_);
   if (coupled_) {
     file.write("dilation", dilation_);
@@ -332,7 +334,11 @@ void ThermalStrain::save(CheckpointWriter& file) const {
 }
 
 void ThermalStrain::load(CheckpointReader& file) {
-  if (heat_) heat_->load(file);
+  if (heat_) {
+    heat_->load(file);
+    const std::vector<double> errors = file.read("temperature-errors");
+    if (errors_) errors_->restore(errors);
+  }
   if (given_) given_trial_ = given_accepted_ = file.read("interface-temperature");
   if (coupled_) {
     file.read("dilation", dilation_);
@@ -349,6 +355,14 @@ void ThermalStrain::load(CheckpointReader& file) {
   highest_ = file.read_scalar("highest-temperature");
   start_ = face_temperature(time_, false);
   set_accepted();
+}
+
+void ThermalStrain::collect_errors() {
+  if (heat_ && expands()) errors_.emplace(*mesh_, parameters_.heat.value());
+}
+
+ErrorParts ThermalStrain::error_parts() const {
+  return errors_ ? errors_->parts(*heat_, reference_) : ErrorParts{};
 }
 
 void ThermalStrain::judge(std::vector<std::string>& sentences) const {

@@ -11,6 +11,7 @@
 #include "common/fv/table.hpp"
 #include "solid_solver/effect.hpp"
 #include "solid_solver/heat.hpp"
+#include "solid_solver/heat_errors.hpp"
 
 namespace couplet {
 
@@ -45,6 +46,9 @@ class ThermalStrain final : public SolidEffect {
   void add_fields(std::vector<OutputField>& fields) override;
   void add_evidence(SolidEvidence& evidence) const override;
   void judge(std::vector<std::string>& sentences) const override;
+  void collect_errors() override;
+  /// Of the temperature that is solved for, over its distance from the reference: the strain errs by as much.
+  ErrorParts error_parts() const override;
 
   /// None: the temperature is prescribed.
   const Heat* heat() const { return heat_.get(); }
@@ -70,7 +74,8 @@ class ThermalStrain final : public SolidEffect {
 
   const Mesh* mesh_;
   const ElasticOperator* elastic_;
-  std::unique_ptr<Heat> heat_;  // none: prescribed
+  std::unique_ptr<Heat> heat_;        // none: prescribed
+  std::optional<HeatErrors> errors_;  // none: not wanted
   std::optional<Expression> prescribed_;
   bool given_ = false;                                // at the interface
   std::optional<InterfaceTemperature> interface_;     // once it is known where that is

@@ -5,12 +5,71 @@
 #include <cmath>
 
 #include "common/parallel/collective.hpp"
+#include "tests/support/saved_state.hpp"
 #include "tests/verification/heat/thermoelastic.hpp"
 
 namespace couplet::testing {
 namespace {
 
 constexpr double modulus = 200e9, nu = 0.3, alpha = 1.2e-5;
+
+/// A slab that cools by its slowest mode (Bi = 1), free to shrink along x: what the steps of the conduction leave in its displacement.
+struct Shrunk {
+  double end = 0;  ///< displacement of x = 1 [m]
+  ErrorParts parts;
+};
+
+Shrunk shrunk(int cells, int steps, const char* pull, bool again = false) {
+  SolidParameters p = box_parameters(2);
+  p.expansion = ThermalExpansion{300};
+  p.material.heat.expansion = config::ExpressionText{"1.2e-5"};
+  p.material.heat.conductivity = p.material.heat.specific_heat = config::ExpressionText{"1"};
+  p.material.density = 1;
+  for (const char* name : {"xmin", "ymin"}) p.boundaries[name] = boundary(Type::symmetry);
+  p.boundaries["xmax"] = boundary(Type::traction, {pull, "0"});
+  p.heat.emplace();
+  p.heat->scheme = HeatParameters::Scheme::euler;
+  p.heat->initial_temperature = {"300 + 100*cos(0.8603335890193797*x)"};
+  HeatBoundary& air = p.heat->boundaries["xmax"];
+  air.type = HeatBoundary::Type::convection, air.coefficient = {"1"}, air.ambient = {"300"};
+  const Mesh mesh = distribute(
+      MPI_COMM_WORLD, make_box(BoxCells::quadrilaterals, {cells, 2, 1}, Vec3::Zero(), Vec3(1, 0.5, 0)));
+  auto solid = std::make_unique<Solid>(mesh, p, SolidContext{});
+  solid->collect_errors();
+  for (int i = 0; i < steps; ++i) {
+    step(*solid, 0.5 / steps);
+    if (!again) continue;
+    auto next = std::make_unique<Solid>(mesh, p, SolidContext{});
+    next->collect_errors();
+    support::SavedState(*solid).load_into(*next);
+    solid = std::move(next);
+  }
+  const std::vector<double> u = solid->fields().point_displacement();
+  Shrunk found{0, solid->error_parts()};
+  for (std::size_t i = 0; i < u.size(); i += 2)
+    if (std::abs(mesh.reference_points[i / 2].x() - 1) < 1e-9) found.end = u[i];
+  return found;
+}
+
+TEST(HeatInASolid, the_step_of_the_conduction_is_told_within_a_factor_of_two) {
+  const double fine = shrunk(32, 640, "0").end;
+  for (const int steps : {5, 10, 20}) {
+    const Shrunk found = shrunk(32, steps, "0");
+    const double wrong = std::abs(found.end / fine - 1);
+    fmt::print("{} steps: estimated {:.3g}, true {:.3g}\n", steps, found.parts.step, wrong);
+    EXPECT_GT(found.parts.step, wrong / 2) << steps;
+    EXPECT_LT(found.parts.step, wrong * 2) << steps;
+    EXPECT_GT(found.parts.step, found.parts.mesh) << steps;
+  }
+}
+
+TEST(HeatInASolid, counts_by_the_share_of_what_it_moves_and_over_a_restart) {
+  const ErrorParts free = shrunk(8, 8, "0").parts, again = shrunk(8, 8, "0", true).parts,
+                   pulled = shrunk(8, 8, "1e10").parts;
+  EXPECT_EQ(free.step, again.step);
+  EXPECT_EQ(free.mesh, again.mesh);
+  EXPECT_LT(pulled.step, 0.1 * free.step) << "nearly all of the displacement is that of the load";
+}
 
 // A cylinder 1 m < r < 1.5 m between two rigid planes across its axis, T - T_ref = 100 ln(b / r) / ln(b / a)
 // (Timoshenko and Goodier, Theory of Elasticity, art. 151): with C = E alpha 100 / (2 (1 - nu) ln(b / a)),

@@ -62,6 +62,31 @@ TEST(FiniteStrain, bends_as_converged_finite_elements_do) {
   EXPECT_NEAR(deflection(*neo), 0.430758, 0.01 * 0.43);
 }
 
+/// Of the whole tip displacement, beside a mesh twice as fine.
+TEST(FiniteStrain, the_estimate_of_the_mesh_is_within_a_factor_of_two) {
+  const auto tip = [](const Solid& solid) {
+    const std::vector<double> u = solid.fields().point_displacement();
+    std::array<double, 3> found{0, 0, 0};
+    for (std::size_t i = 0; i < u.size(); i += 3)
+      if ((solid.body().mesh().reference_points[i / 3] - Vec3(side / 2, side / 2, length)).norm() < 1e-9)
+        found = {u[i], u[i + 1], u[i + 2]};
+    for (double& v : found) v = max(solid.body().mesh().comm, v) + min(solid.body().mesh().comm, v);
+    return Vec3(found[0], found[1], found[2]);
+  };
+  for (const double K : {0.1, 3.0}) {
+    const auto coarse = make(beam(BoxCells::hexahedra, 1, 10), bent("neo-hookean", K)),
+               fine = make(beam(BoxCells::hexahedra, 2, 20), bent("neo-hookean", K));
+    coarse->collect_errors();
+    for (int i = 0; i < 3; ++i) step(*coarse, 1. / 3), step(*fine, 1. / 3);
+    const double wrong = (tip(*coarse) - tip(*fine)).norm() / tip(*fine).norm();
+    const ErrorParts parts = coarse->error_parts();
+    fmt::print("K {}: estimated {:.3g}, true {:.3g}\n", K, parts.mesh, wrong);
+    EXPECT_GT(parts.mesh, wrong / 2) << K;
+    EXPECT_LT(parts.mesh, wrong * 2) << K;
+    EXPECT_TRUE(std::isnan(fine->error_parts().mesh)) << "not asked for";
+  }
+}
+
 TEST(FiniteStrain, equals_small_strain_under_small_loads) {
   SolidParameters p = bent("", 1e-6);
   const auto large = make(beam(BoxCells::hexahedra, 2, 20), p);
