@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/elasticity/current_rigid_modes.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/elasticity/elastic_preconditioner.hpp"
 #include "common/linalg/krylov.hpp"
@@ -23,12 +24,14 @@ class NewtonKrylov final : public SolutionMethod {
 
  private:
   void choose_multigrid(const MethodParameters& parameters);
+  void add_rigid_motions(const std::vector<double>& inertia);
   void choose_factors();
 
   SolidProblem problem_;
   KrylovOptions options_;
   std::unique_ptr<ElasticKernel> between_;
   std::unique_ptr<ElasticPreconditioner> multigrid_;
+  std::unique_ptr<CurrentRigidModes> modes_;  // of slender bodies with the symmetric operator
   std::unique_ptr<SparseMatrix> matrix_;
   std::unique_ptr<LinearSolver> factors_;
   std::unique_ptr<KrylovSolver> krylov_;

@@ -26,6 +26,8 @@ METHODS = {  # keys of solution-method as in the thesis's table 3.1, and ours; i
     "C": "type: block-coupled, linear-solver: bicgstab-ilu, face-gradient: thesis",
     "newton-krylov": "type: newton-krylov, preconditioner: multigrid, face-gradient: thesis",
     "newton-krylov, corrected": "type: newton-krylov, preconditioner: multigrid, face-gradient: corrected",
+    "symmetric": "type: newton-krylov, preconditioner: multigrid, face-gradient: symmetric",
+    "symmetric, shared": "type: newton-krylov, preconditioner: multigrid, face-gradient: symmetric, volume-strain: shared",
 }
 
 

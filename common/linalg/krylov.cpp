@@ -100,13 +100,16 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
                                : "BiCGStab",
           statistics.residual / size, options.relative_tolerance, statistics.iterations,
           options.max_iterations, stuck ? " and a restart gains nothing" : "");
+    // A start that is nearly there already would end a hair further on, which is not what "gains nothing" means.
+    const bool is_near = std::isfinite(before) && statistics.residual < 2 * wanted;
+    const double aim = is_near ? wanted / 2 : wanted;
     before = statistics.residual;
     if (options.is_symmetric)
-      run_cg(x, wanted, options.max_iterations, statistics);
+      run_cg(x, aim, options.max_iterations, statistics);
     else if (is_hard)
-      run_idr(x, wanted, options.max_iterations, statistics);
+      run_idr(x, aim, options.max_iterations, statistics);
     else
-      run_bicgstab(x, wanted, std::min(options.max_iterations, patience), statistics);
+      run_bicgstab(x, aim, std::min(options.max_iterations, patience), statistics);
     statistics.residual = true_residual(b, x);
   }
   if (projection) projection->finish(r_, x);

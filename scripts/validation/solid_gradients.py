@@ -109,6 +109,7 @@ SCENES = [
     ("Kirsch's hole, triangles, stress of cells", "kirsch-hole", (mesh(n=24, nr=32, growth=10, shape=1),), KIRSCH),
     ("cylinder under pressure, quadrilaterals 16x24", "lame-cylinder", (mesh(nr=16, nt=24, shape=0),), LAME_ERRORS),
     ("cylinder under pressure, triangles 16x24", "lame-cylinder", (mesh(nr=16, nt=24, shape=1),), LAME_ERRORS),
+    ("spherical cavity, hexahedra n 16, stress at the equator", "spherical-cavity", (mesh(n=16, nr=48),), {"s": at("equator stress-zz [Pa]", 2.04545e6)}),
     ("heated cylinder, hexahedra, 20 through the wall, hoop stress", "heated-cylinder", (mesh(nr=20),), HOOP),
     ("cantilever C, cubes 20x2x2, tip", "cantilever", (mesh(n_length=20, n_side=2),), {"u": at("tip y [m]", 0.10008)}),
     ("cantilever C, cubes 40x4x4, tip", "cantilever", (mesh(n_length=40, n_side=4),), {"u": at("tip y [m]", 0.10008)}),

@@ -135,12 +135,19 @@ class SolidOrder : public ::testing::TestWithParam<Study> {};
 
 std::string name_of(const ::testing::TestParamInfo<Study>& info) {
   const auto& [meshes, gradient] = info.param;
-  return fmt::format("{}_{}", meshes.name, gradient == FaceGradient::thesis ? "thesis" : "corrected");
+  const char* name = gradient == FaceGradient::thesis      ? "thesis"
+                     : gradient == FaceGradient::corrected ? "corrected"
+                                                           : "symmetric";
+  return fmt::format("{}_{}", meshes.name, name);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SolidOrder,
                          ::testing::Combine(::testing::ValuesIn(all_meshes),
                                             ::testing::Values(FaceGradient::thesis, FaceGradient::corrected)),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(OnAnEnergy, SolidOrder,
+                         ::testing::Combine(::testing::ValuesIn(all_meshes),
+                                            ::testing::Values(FaceGradient::symmetric)),
                          name_of);
 
 /// Prints what was measured and judges the slope of the last refinement.

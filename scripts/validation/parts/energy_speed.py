@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the symmetric gradient's speed and memory on the elliptic plate, beside OpenFOAM and CalculiX: whole processes on one core."""
+from validation.job import Bar
+from validation.parts.solid_speed import FINE, FINEST, cells_per_second, memory, race
+
+COARSE = (16, 24, 12)
+
+
+def sooner(job, error, mine, other, who, wanted):
+    if other is None:
+        return f"{who} is not installed", False
+    ratio = other["seconds"] / mine["seconds"]
+    text = (f"{100 * mine['error']:.3f} % in {mine['seconds']:.2f} s, {who} {100 * other['error']:.2f} % in {other['seconds']:.2f} s: "
+            f"{ratio:.1f} times")
+    return text, mine["error"] <= error and ratio >= wanted
+
+
+def beside(error, mesh, method, peer_mesh, element, solver, wanted, times=3):
+    def measure(job):
+        mine = race(job).our_plate(job, mesh, method, times=times)
+        other = race(job).calculix(job, peer_mesh, element, solver)
+        return sooner(job, error, mine, other, f"CalculiX {element} {'x'.join(map(str, peer_mesh))}", wanted)
+    return measure
+
+
+def ranks(job):
+    """Wall seconds of the solve on one rank and on two, turn by turn, the better of two."""
+    best = {}
+    for _ in range(2):
+        for n in (1, 2):
+            run = job.case_run(job.root / "configs/elliptic-plate/case.yaml", job.scratch / f"plate-{n}",
+                               ("participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d}" % FINEST,
+                                "participants.solid.solution-method={face-gradient: symmetric, relative-tolerance: 1e-8}"), {"solid": n}, 1200)
+            line = next(line for line in run.log.splitlines() if line.startswith("solid: linear solver"))
+            best[n] = min(best.get(n, 1e9), float(line.split()[3]))
+    return f"{best[1]:.2f} s and {best[2]:.2f} s: {best[1] / best[2]:.2f} times", best[1] / best[2] >= 1.8
+
+
+SHARED = "volume-strain: shared, which is not the default below nu 0.4"
+BARS = [
+    Bar("plate B 32x48x24 to 1e-8: cells per second over solidDisplacementFoam's", ">= 20", cells_per_second("symmetric", 20)),
+    Bar("plate B 64x96x48: memory of the whole process a cell", "<= 2.0 kB", memory("symmetric"), long=True),
+    Bar("plate B, u to 1 %, beside CalculiX's quadratic elements at 1 %", ">= 6 times sooner",
+        beside(0.01, COARSE, "symmetric", (8, 12, 6), "C3D20", "SPOOLES", 6)),
+    Bar("plate B, u to 0.3 %, beside CalculiX at 0.2 to 0.3 %", ">= 15 times sooner",
+        beside(0.003, FINE, "symmetric", FINE, "C3D8I", "ITERATIVE CHOLESKY", 15)),
+    Bar("the same with volume-strain: shared on 16x24x12", ">= 15 times sooner",
+        beside(0.003, COARSE, "symmetric, shared", FINE, "C3D8I", "ITERATIVE CHOLESKY", 15), but=SHARED),
+    Bar("plate B, u to 0.1 %, beside CalculiX's quadratic elements at 0.1 %", ">= 25 times sooner",
+        beside(0.001, FINEST, "symmetric", FINE, "C3D20", "ITERATIVE CHOLESKY", 25, times=1), long=True),
+    Bar("the same with volume-strain: shared on 16x24x12", ">= 25 times sooner",
+        beside(0.001, COARSE, "symmetric, shared", FINE, "C3D20", "ITERATIVE CHOLESKY", 25), but=SHARED, long=True),
+    Bar("plate B 64x96x48 on two ranks over one, solve alone", ">= 1.8 times", ranks, long=True),
+]
