@@ -23,6 +23,9 @@ constexpr int fewest_aggregates = 8;
 // Length over thickness 2 V / S from which bending is slow without the rigid coarse space in front: a cube
 // has 3.
 constexpr double slender = 12;
+// The same of the symmetric operator: from here on, or from the first where there are so many cells.
+constexpr double very_slender = 60;
+constexpr GlobalIndex many_cells = 20000;
 // Inertia over the stiffness of a cell's faces from which no motion is slow.
 constexpr double heavy = 0.03;
 // Residual over right-hand side that double precision still gives.
@@ -116,8 +119,9 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
     const std::vector<double> inertia = node_inertia(problem_);
     options.node_inertia = inertia;
     multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
-    if (heavy_here <= heavy && slenderness(mesh) > slender && !has_springs(problem_))
-      add_rigid_motions(inertia);
+    const double length = slenderness(mesh);
+    const bool is_slender = length > very_slender || (length > slender && mesh.cells.n_global() > many_cells);
+    if (heavy_here <= heavy && is_slender && !has_springs(problem_)) add_rigid_motions(inertia);
     name_ = modes_ ? fmt::format(
                          "newton-krylov (conjugate gradients, multigrid and rigid motions of {} aggregates)",
                          modes_->n_aggregates())

@@ -190,18 +190,18 @@ TEST(SolidMethods, predictors_save_iterations_and_change_nothing) {
   }
 }
 
-/// Iterations and the last displacement along z of a bar ten times as long as wide, bent; by conjugate gradients.
+/// Iterations and the sum of the displacements along z of a bar 100:1, bent; by conjugate gradients.
 std::pair<int, double> bent_bar(bool on_springs, MPI_Comm comm = MPI_COMM_WORLD) {
   SolidParameters p = box_parameters(3);
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "0", "1e5"});
   if (on_springs) {
     p.boundaries["ymin"] = boundary(Type::spring);
-    p.boundaries["ymin"].stiffness = {{"1"}};  // [N/m^3]: nothing
+    p.boundaries["ymin"].stiffness = {{"1e-3"}};  // [N/m^3]: nothing
   }
   p.method = method(MethodType::newton_krylov, FaceGradient::symmetric, 1e-9);
   p.method.preconditioner = Preconditioner::multigrid;
-  Solid solid(distribute(comm, make_box(BoxCells::hexahedra, {40, 4, 4}, Vec3::Zero(), Vec3(10, 1, 1))), p,
+  Solid solid(distribute(comm, make_box(BoxCells::hexahedra, {100, 3, 3}, Vec3::Zero(), Vec3(100, 1, 1))), p,
               SolidContext{});
   step(solid, 1);
   double sum_z = 0;
@@ -211,14 +211,16 @@ std::pair<int, double> bent_bar(bool on_springs, MPI_Comm comm = MPI_COMM_WORLD)
 }
 
 // The rigid motions of aggregates, which a bar on springs does not have.
-TEST(SolidMethods, slender_bodies_bend_in_few_iterations) {
-  const auto [with, bent] = bent_bar(false);
+TEST(SolidMethods, slender_bodies_bend) {
+  const auto [iterations, bent] = bent_bar(false);
+  RecordProperty("iterations", iterations);
+  fmt::print("{} iterations\n", iterations);
+  EXPECT_NEAR(bent_bar(false, MPI_COMM_SELF).second, bent, 1e-6 * std::abs(bent));
   const auto [without, same] = bent_bar(true);
-  RecordProperty("with", with);
   RecordProperty("without", without);
-  EXPECT_LT(with, 0.7 * without);
-  EXPECT_NEAR(same, bent, 1e-6 * std::abs(bent));
-  EXPECT_NEAR(bent_bar(false, MPI_COMM_SELF).second, bent, 1e-7 * std::abs(bent));
+  fmt::print("{} without\n", without);
+  EXPECT_LT(iterations, 0.8 * without);
+  EXPECT_NEAR(same, bent, 1e-4 * std::abs(bent));
 }
 
 TEST(SolidMethods, a_segregated_run_that_is_cut_short_says_so) {

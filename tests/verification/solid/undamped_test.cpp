@@ -23,7 +23,7 @@ double drift(BoxCells cells, double dt, int steps, FaceGradient gradient) {
   p.material = {2600, 1e7, 0.3};
   p.time_scheme.type = TimeScheme::trapezoidal;
   p.method.face_gradient = gradient;
-  p.method.relative_tolerance = 1e-12;
+  p.method.relative_tolerance = 1e-14;
   p.output.energies = true;
   p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(std::size_t(dim), "0"));
   p.initial_velocity = {{"0.1*x*sin(9*y)"}, {"0.2*x*x"}};
