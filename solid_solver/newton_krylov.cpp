@@ -20,6 +20,7 @@ constexpr GlobalIndex cells_of_aggregate = 64;
 // The same of the symmetric operator, whose slender bodies alone have them; and fewest of either.
 constexpr GlobalIndex cells_of_slender_aggregate = 32;
 constexpr int fewest_aggregates = 8;
+constexpr GlobalIndex fewest_cells = 4;
 // Length over thickness 2 V / S from which bending is slow without the rigid coarse space in front: a cube
 // has 3.
 constexpr double slender = 12;
@@ -155,8 +156,11 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
 /// one of 295 000 had no gain at all.
 void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia) {
   const Mesh& mesh = problem_.mesh;
-  const GlobalIndex aggregates =
-      std::min<GlobalIndex>(most_aggregates, mesh.cells.n_global() / cells_of_slender_aggregate);
+  // Half as long as thick, where the cells are fine enough for that.
+  const GlobalIndex cells = mesh.cells.n_global();
+  const GlobalIndex aggregates = std::min<GlobalIndex>(
+      most_aggregates, std::max(cells / cells_of_slender_aggregate,
+                                std::min(static_cast<GlobalIndex>(slenderness(mesh)), cells / fewest_cells)));
   if (aggregates < fewest_aggregates) return;
   modes_ = std::make_unique<CurrentRigidModes>(mesh, problem_.elastic, static_cast<int>(aggregates), inertia);
   DeformedBody at_rest;
