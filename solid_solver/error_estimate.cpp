@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/inner_variation.hpp"
 
 namespace couplet {
 
@@ -112,10 +113,25 @@ double SolidErrorEstimate::green_strain_difference() const {
   return size > 0 ? std::sqrt(sum(mesh.comm, difference) / size) : 0;
 }
 
+/// Of Green strains, by the law's moduli at rest.
+double SolidErrorEstimate::inner_variation() const {
+  const Mesh& mesh = body_.mesh();
+  if (!InnerVariation::is_needed(mesh, body_.elastic())) return 0;
+  const SolidState& state = stepper_.state();
+  const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
+  InnerVariation variation(mesh, body_.elastic());
+  body_.kernel().face_gradients(
+      unknowns, body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()}),
+      [&](Index f, const Tensor3& h) { variation.add(f, 0.5 * (h + h.transpose() + h.transpose() * h)); }, 0,
+      mesh.n_flux_faces());
+  return variation.missed();
+}
+
 /// An energy errs by the square of what the strains err, of which half of the difference's is each gradient's; the displacement
 /// follows as softly as the deformed body does. NaN: its tangent has no solution.
 double SolidErrorEstimate::finite_mesh_error() const {
-  const double difference = green_strain_difference(), energy = 0.5 * difference * difference;
+  const double difference = green_strain_difference();
+  const double energy = std::max(0.5 * difference * difference, inner_variation());
   FiniteStrain* newton = body_.newton();
   if (body_.is_dynamic() || !newton) return energy;
   const SolidState& state = stepper_.state();
@@ -151,6 +167,7 @@ ErrorParts SolidErrorEstimate::parts() const {
   }
   const StrainAudit audit = judge_.audit_strain(fields_.point_displacement(), true);
   parts.mesh = std::max(audit.mismatch(), audit.gradient_difference * audit.gradient_difference);
+  parts.mesh = std::max(parts.mesh, audit.inner_variation);
   add_loads(parts);
   return parts;
 }

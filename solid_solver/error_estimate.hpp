@@ -42,6 +42,7 @@ class SolidErrorEstimate {
   double missed_work() const;
   void add_loads(ErrorParts& parts) const;
   double green_strain_difference() const;
+  double inner_variation() const;
   double finite_mesh_error() const;
   double mean_square(std::span<const double> cells) const;
 

@@ -70,7 +70,7 @@ class FiniteStrain final : public LargeStrain {
   TangentSolver::By by_ = TangentSolver::By::frames;
   bool mixed_ = false;       // pressures of their own on the way to equilibrium
   bool is_carried_ = false;  // in the solve under way
-  double tolerance_, noise_;
+  double tolerance_, noise_, noise_of_motion_;
   double whole_ = 0;  // norm of the last residual with U'(J) in place of those pressures
   int most_linear_;
   std::vector<std::unique_ptr<FiniteLaw>> laws_;

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "common/fv/face_gradient.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -25,6 +27,18 @@ double rounding_of_forces(const Mesh& mesh, const ElasticOperator& rows) {
     square += 2 * force * force;
   }
   return last_digits * std::sqrt(sum(mesh.comm, square));
+}
+
+double rounding_of_motion(const Mesh& mesh, const ElasticOperator& rows) {
+  double square = 0;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    if (mesh.owner[f] >= mesh.cells.n_owned()) continue;
+    const LameConstants lame = rows.lame(mesh.owner[f]);
+    const FaceLine line = face_line(mesh, mesh.reference, f);
+    const double stiffness = (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
+    square += 2 * stiffness * stiffness;
+  }
+  return std::numeric_limits<double>::epsilon() * std::sqrt(sum(mesh.comm, square));
 }
 
 std::string worst_cell(const Mesh& mesh, double ratio, Index face) {

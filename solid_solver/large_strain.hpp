@@ -61,6 +61,9 @@ class LargeStrain {
 /// What rounding leaves in the rows at least [N]: some last digits of the stiffness times the area of a face.
 /// Collective.
 double rounding_of_forces(const Mesh& mesh, const ElasticOperator& rows);
+/// What the last digit of a displacement makes of forces, over that displacement [N/m]: a slender body moves by many times the distance
+/// of its cells, and no equilibrium is nearer than the numbers are. Collective.
+double rounding_of_motion(const Mesh& mesh, const ElasticOperator& rows);
 /// The face with the smallest det F of all ranks, in words; `face` of this rank, -1: none is below 1. Collective.
 std::string worst_cell(const Mesh& mesh, double ratio, Index face);
 

@@ -32,7 +32,17 @@ constexpr double heavy = 0.03;
 // Residual over right-hand side that double precision still gives.
 constexpr double finest_tolerance = 1e-15;
 
-/// Largest extent over the mean thickness 2 V / S.
+/// Those hold what the rigid motions of aggregates know nothing of.
+bool has_springs(const SolidProblem& problem) {
+  const auto is_sprung = [&](Index f) {
+    return problem.elastic.condition(f) == ElasticCondition::support &&
+           !problem.elastic.support(f).spring.isZero(0);
+  };
+  return any(problem.mesh.comm, std::ranges::any_of(problem.elastic.known_faces(), is_sprung));
+}
+
+}  // namespace
+
 double slenderness(const Mesh& mesh) {
   double volume = 0, surface = 0;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
@@ -48,17 +58,6 @@ double slenderness(const Mesh& mesh) {
   }
   return longest * sum(mesh.comm, surface) / (2 * sum(mesh.comm, volume));
 }
-
-/// Those hold what the rigid motions of aggregates know nothing of.
-bool has_springs(const SolidProblem& problem) {
-  const auto is_sprung = [&](Index f) {
-    return problem.elastic.condition(f) == ElasticCondition::support &&
-           !problem.elastic.support(f).spring.isZero(0);
-  };
-  return any(problem.mesh.comm, std::ranges::any_of(problem.elastic.known_faces(), is_sprung));
-}
-
-}  // namespace
 
 double heaviness(const SolidProblem& problem) {
   if (problem.is_static()) return 0;

@@ -37,6 +37,9 @@ class NewtonKrylov final : public SolutionMethod {
   std::unique_ptr<KrylovSolver> krylov_;
 };
 
+/// Largest extent of a body over its mean thickness 2 V / S: a beam in the plane L/h, one of square section 2 L/h, a cube 3. Collective.
+double slenderness(const Mesh& mesh);
+
 /// Mean of inertia over (2 mu + lambda) |S| / (d . n) summed over the faces of a cell; static: 0. On squares with the trapezoidal
 /// rule it is one over the elastic Courant number squared. Collective.
 double heaviness(const SolidProblem& problem);

@@ -12,6 +12,7 @@
 #include "common/elasticity/vector_at.hpp"
 #include "common/log/doubt.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/inner_variation.hpp"
 #include "solid_solver/judge.hpp"
 
 namespace couplet {
@@ -38,7 +39,8 @@ double StrainAudit::mismatch() const {
 }
 
 bool StrainAudit::is_doubtful() const {
-  return mismatch() > most_mismatch || (compares_gradients && gradient_difference > most_difference);
+  return mismatch() > most_mismatch || (compares_gradients && gradient_difference > most_difference) ||
+         inner_variation > most_variation;
 }
 
 std::string StrainAudit::text() const {
@@ -48,6 +50,11 @@ std::string StrainAudit::text() const {
   if (compares_gradients)
     text +=
         fmt::format("; the strains of the two face gradients differ by {:.2g} %", 100 * gradient_difference);
+  if (inner_variation > most_variation)
+    text += fmt::format(
+        "; the strains within its quadrilaterals vary so much that they are {:.2g} % too stiff (more cells across, or 'volume-strain: "
+        "shared')",
+        100 * inner_variation);
   return text;
 }
 
@@ -67,6 +74,11 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   std::vector<std::array<float, 6>> strains(compare ? mesh_.n_flux_faces() : 0);
   const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
   const std::vector<double> known = body_.known_of({state.cell_u, state.face_u, points});
+  const ElasticOperator& rows = body_.elastic();
+  std::optional<InnerVariation> variation;  // thermal strain would count as one
+  if (compare && body_.kernel().is_symmetric() && body_.effects().empty() &&
+      InnerVariation::is_needed(mesh_, rows))
+    variation.emplace(mesh_, rows);
   const auto is_mine = [&](Index f) { return mesh_.owner[f] < mesh_.cells.n_owned(); };
   const auto volume = [&](Index f) {
     return std::abs(mesh_.reference.face_area[f].dot(line_of(mesh_, f))) / dim;
@@ -75,6 +87,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   body_.kernel().face_gradients(
       unknowns, known,
       [&](Index f, const Tensor3& gradient) {
+        if (variation) variation->add(f, 0.5 * (gradient + gradient.transpose()));
         if (!is_mine(f)) return;  // another rank's
         const Index owner = mesh_.owner[f];
         const Tensor3 stress = body_.elastic().stress(owner, gradient);
@@ -116,6 +129,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   }
   audit.strain_energy = sum(mesh_.comm, energy);
   audit.stress_work = sum(mesh_.comm, work);
+  if (variation) audit.inner_variation = variation->missed();
   if (size > 0) audit.gradient_difference = std::sqrt(difference / size);
   return audit;
 }

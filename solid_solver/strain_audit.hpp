@@ -17,11 +17,13 @@ struct StrainAudit {
   /// the one in use (mu alone: near nu = 1/2 the volume strain is nothing beside it).
   double gradient_difference = 0;
   bool compares_gradients = false;
+  /// InnerVariation::missed() of the symmetric gradient in the plane, else 0.
+  double inner_variation = 0;
 
   /// Part of the strain energy by which it misses the work; a symmetric operator has none.
   double mismatch() const;
   /// Above these the answer is not to be trusted (docs/theory.md, "Does the answer fit itself?").
-  static constexpr double most_mismatch = 0.35, most_difference = 1.0;
+  static constexpr double most_mismatch = 0.35, most_difference = 1.0, most_variation = 0.2;
   bool is_doubtful() const;
   /// One sentence with the numbers.
   std::string text() const;

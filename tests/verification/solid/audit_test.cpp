@@ -80,6 +80,40 @@ TEST(Audit, says_that_stretched_tetrahedra_are_stiff) {
             2 * sound->judge().last_audit()->gradient_difference);
 }
 
+/// Tip deflection of a bar 20:1 of square quadrilaterals, n across, and the estimate of the mesh.
+std::pair<double, double> plane_bar(int n, bool finite, const char* load) {
+  SolidParameters p = box_parameters(2);
+  p.material = {1000, 1e6, 0.3};
+  p.method.face_gradient = FaceGradient::symmetric;
+  if (finite) p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmax"] = boundary(Type::traction, {"0", load});
+  const auto solid =
+      make_solid(make_box(BoxCells::quadrilaterals, {20 * n, n, 1}, Vec3::Zero(), Vec3(20, 1, 0)), p);
+  solid->collect_errors();
+  step(*solid, 1);
+  double tip = 0;
+  for (const double u : solid->fields().point_displacement()) tip = std::max(tip, u);
+  return {tip, solid->error_parts().mesh};
+}
+
+// Quadrilaterals are 1/(2 n^2) too stiff in bending, of which the difference of two gradients knows nothing.
+TEST(Audit, estimates_how_stiff_quadrilaterals_bend) {
+  for (const bool finite : {false, true}) {
+    const char* load = finite ? "30" : "1";
+    const double fine = plane_bar(12, finite, load).first;
+    for (const int n : {2, 4}) {
+      const auto [tip, told] = plane_bar(n, finite, load);
+      const double wrong = std::abs(tip / fine - 1);
+      fmt::print("{} across, {} strain: estimated {:.3g}, true {:.3g}\n", n, finite ? "large" : "small", told,
+                 wrong);
+      EXPECT_GT(told, wrong / 2);
+      EXPECT_LT(told, wrong * 2);
+    }
+  }
+  EXPECT_GT(plane_bar(1, false, "1").second, 0.2);
+}
+
 /// A sheet that swings freely, judged every 0.2 s for as long as the run lasts.
 struct Swing {
   double first_told = 0,

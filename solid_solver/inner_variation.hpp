@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/elasticity/elasticity.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// How stiff the strains of a quadrilateral's four faces make it beside their mean. Over n cells across a bar that bends, the second
+/// moment of area is 1 + 1/(2 n^2) of the right one by the faces' strains and 1 - 1/n^2 by the cells' mean: a third of what they
+/// differ is what the symmetric gradient with the volume strain of faces errs, in energy and so in displacement. The difference of
+/// two face gradients does not see it. In space x-, y- and z-faces cancel.
+class InnerVariation {
+ public:
+  /// Keeps both by reference.
+  InnerVariation(const Mesh& mesh, const ElasticOperator& rows);
+  /// The plane, isotropic or not, where the operator takes the volume strain of faces.
+  static bool is_needed(const Mesh& mesh, const ElasticOperator& rows);
+  /// Strain of a flux face; those of partition faces on both ranks.
+  void add(Index face, const Tensor3& strain);
+  /// Over the strain energy of all cells; 0 where there is none. Collective.
+  double missed() const;
+
+ private:
+  void add_to(Index cell, double volume, const Tensor3& strain);
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  std::vector<double> energy_;   // of owned cells: sum V_fP e : C : e
+  std::vector<Tensor3> strain_;  // sum V_fP e
+  std::vector<double> volume_;   // sum V_fP
+};
+
+}  // namespace couplet
