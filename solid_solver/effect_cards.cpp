@@ -36,7 +36,7 @@ V verdict(double number, double threshold, std::string sentence, std::string rec
 }
 
 V judge_inertia(const P& p, const E& e) {
-  if (!is_elastic(p)) return {};
+  if (!is_elastic(p) || has_finite_strain(p)) return {};  // whose static steps are load steps: t is no time
   return verdict(e.inertia_over_load, 0.01,
                  fmt::format("it would have reached {:.2g} of the load", e.inertia_over_load),
                  "use 'analysis: dynamic'");

@@ -155,7 +155,7 @@ void SolidOutput::write_modes() {
   const std::optional<SolidProblem> problem = vibration(body_);
   if (!problem)
     throw Error(
-        "output.modes: free vibrations want 'analysis: dynamic' and 'solution-method: {{face-gradient: symmetric}}': the "
+        "output.modes: free vibrations want 'analysis: dynamic' and 'solution-method: {face-gradient: symmetric}': the "
         "stiffness of the other face gradients is not symmetric.");
   std::vector<double> mass;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
