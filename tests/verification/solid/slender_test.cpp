@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slender bodies at large strain, which bend far under loads that are small beside their stiffness.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+/// 1 m long, two quadrilaterals across, E = 1 GPa, nu = 0.
+SolidParameters plane_bar() {
+  SolidParameters p = box_parameters(2);
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.material = {1000, 1e9, 0};
+  p.material.law = "neo-hookean";
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  return p;
+}
+
+/// Largest displacement upwards of any point at 1 s.
+double deflection(const SolidParameters& p, double height, int along, int steps = 1) {
+  const auto solid =
+      make_solid(make_box(BoxCells::quadrilaterals, {along, 2, 1}, Vec3::Zero(), Vec3(1, height, 0)), p);
+  for (int i = 0; i < steps; ++i) step(*solid, 1. / steps);
+  const std::vector<double> u = solid->fields().point_displacement();
+  double most = 0;
+  for (std::size_t v = 0; v < u.size() / 2; ++v) most = std::max(most, u[2 * v + 1]);
+  return most;
+}
+
+// Conjugate gradients ended beyond where they had begun: no step however small was solved. q L^4 / (8 E I), an eighth less stiff.
+TEST(Slender, a_pressure_that_follows_bends_a_bar_100_to_1) {
+  SolidParameters p = plane_bar();
+  p.boundaries["ymin"] = boundary(Type::pressure);
+  p.boundaries["ymin"].pressure = {"0.1*t"};
+  const double small = 0.1 / (8 * 1e9 * 1e-6 / 12);
+  EXPECT_NEAR(deflection(p, 0.01, 60), small / 1.125, 0.02 * small);
+}
+
+// Forces have no more digits than the displacements that they follow from: equilibrium to 1e-10 of the load is beyond them.
+TEST(Slender, equilibrium_is_as_near_as_the_numbers_are) {
+  SolidParameters p = plane_bar();
+  p.boundaries["xmax"] = boundary(Type::traction, {"0", "83.3*t"});
+  EXPECT_NEAR(deflection(p, 0.002, 250, 15), 0.0833 / 1.125, 0.002);  // F L^3 / (3 E I), an eighth too stiff
+}
+
+}  // namespace
+}  // namespace couplet::testing
