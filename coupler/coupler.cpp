@@ -102,6 +102,7 @@ void Coupler::initialise() {
   if (unknown_->start_at_rest(given_)) history_.now = unknown_->gather(given_);
   volume_level_.emplace(comm_, sides_, *links_, schedule_, group_);
   if (volume_level_->empty()) volume_level_.reset();
+  if (!parameters_.watch.empty()) watched_.emplace(comm_, sides_, parameters_.watch);
 }
 
 std::optional<StepFailure> Coupler::attempt(const Step& step) {
@@ -216,6 +217,7 @@ void Coupler::accept(double time, int output) {
   const std::vector<SideBalance> balances = mechanics_->accepted(given_, taken_);
   if (!balances.empty()) monitor_->balance(time, balances);
   if (parameters_.exchange) monitor_->amounts(time, links_->amounts(given_));
+  if (watched_) monitor_->watched(time, watched_->columns(), watched_->row(given_, taken_));
   if (output >= 0 && interface_output_) interface_output_->write(time, output, given_, taken_);
   watch(time, balances);
 }

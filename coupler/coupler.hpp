@@ -25,6 +25,7 @@
 #include "coupler/schedule.hpp"
 #include "coupler/unknown.hpp"
 #include "coupler/volume_level.hpp"
+#include "coupler/watch_integrals.hpp"
 
 namespace couplet {
 
@@ -99,6 +100,7 @@ class Coupler {
   std::optional<Mechanics> mechanics_;
   std::optional<Monitor> monitor_;
   std::optional<InterfaceOutput> interface_output_;  // none: not asked for
+  std::optional<WatchIntegrals> watched_;            // the same
   StepLoop loop_;
   std::unique_ptr<Accelerator> accelerator_;  // none: one pass a step
   History history_;                           // of accepted steps; empty before all has been given

@@ -124,6 +124,11 @@ const std::array cards{
                  [](const P& p) { return when(p.interface_output, "interface-output"); },
                  {"a file of each interface with each output", 0, 0}},
     CouplingCard{
+        "integrals over interfaces",
+        "`watch`",
+        [](const P& p) { return when(!p.watch.empty(), "watch"); },
+        {"coordinates of the corners of each interface that is watched, a loop over its faces a step", 0, 0}},
+    CouplingCard{
         "guards that stop",
         "`on-divergence: stop`",
         [](const P& p) { return when(p.on_divergence == P::OnDivergence::stop, "on-divergence: stop"); },

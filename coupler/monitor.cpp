@@ -50,7 +50,7 @@ Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::s
   if (!writes_) return;
   // Not every run writes these: what an earlier run has left in the folder would be taken for this one's.
   if (std::isnan(restart_time))
-    for (const char* file : {"balance.csv", "amounts.csv", "volume.csv"})
+    for (const char* file : {"balance.csv", "amounts.csv", "volume.csv", "watch.csv"})
       std::filesystem::remove(folder_ / file);
   residuals_.emplace(folder_ / "residuals.csv",
                      std::vector<std::string>{"time [s]", "dt [s]", "step", "iteration", "relative residual",
@@ -97,6 +97,19 @@ void Monitor::volume(double time, const VolumeLevel& level) {
   std::vector<double> row{time};
   for (const double value : level.row()) row.push_back(value);
   volume_->row(row);
+}
+
+void Monitor::watched(double time, const std::vector<std::string>& columns,
+                      const std::vector<double>& values) {
+  if (!writes_) return;
+  if (!watched_) {
+    std::vector<std::string> all{"time [s]"};
+    all.insert(all.end(), columns.begin(), columns.end());
+    watched_.emplace(folder_ / "watch.csv", all, restart_time_);
+  }
+  std::vector<double> row{time};
+  row.insert(row.end(), values.begin(), values.end());
+  watched_->row(row);
 }
 
 namespace {

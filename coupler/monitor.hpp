@@ -21,7 +21,8 @@ namespace couplet {
 
 /// The coupler's own output, by its rank 0: residuals.csv (a row a pass), participants.csv (a row a step:
 /// what each worked and waited, what it says of its step, the coupler's own work), balance.csv (forces, moments and work),
-/// amounts.csv (sums that go over), volume.csv (levels of closed fluids), the console line of each step and the closing summary.
+/// amounts.csv (sums that go over), volume.csv (levels of closed fluids), watch.csv (integrals asked for), the console line of
+/// each step and the closing summary.
 class Monitor {
  public:
   /// `names`: of everyone; `balanced`: of those in balance.csv. restart_time: NaN for a fresh start.
@@ -34,6 +35,7 @@ class Monitor {
   void balance(double time, const std::vector<SideBalance>& sides);
   void amounts(double time, const std::vector<Links::Amount>& amounts);
   void volume(double time, const VolumeLevel& level);
+  void watched(double time, const std::vector<std::string>& columns, const std::vector<double>& values);
   void step(const Step& step, double time, const FixedPointResult& result,
             const std::vector<Partner>& partners);
   /// Mean and largest number of iterations, time by participant.
@@ -44,7 +46,7 @@ class Monitor {
   std::filesystem::path folder_;
   bool writes_;
   std::vector<std::string> names_;
-  std::optional<Series> residuals_, participants_, balance_, amounts_, volume_;
+  std::optional<Series> residuals_, participants_, balance_, amounts_, volume_, watched_;
   int dim_;
   double end_time_, restart_time_, start_time_;
   Clock::time_point start_ = Clock::now(), step_start_ = Clock::now(), last_line_{};

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/text.hpp"
+
 namespace couplet {
 namespace {
 
@@ -56,12 +58,36 @@ std::string problem_of_roles(const CouplingParameters& p) {
              : "fluid and structure must be two different participants";
 }
 
-/// Whole numbers, of participants that there are; the mesh mover's follow the fluid's.
-std::string problem_of_sub_steps(const CouplingParameters& p) {
+/// Those with an interface that the coupler knows.
+std::vector<std::string> partners_of(const CouplingParameters& p) {
   std::vector<std::string> names;
   if (p.exchange) names = p.exchange->participants;
   if (p.fluid) names.push_back(p.fluid->participant);
   if (p.structure) names.push_back(p.structure->participant);
+  return names;
+}
+
+void declare(config::Section& section, WatchParameters& p, const std::vector<std::string>& partners) {
+  section.value("participant", p.participant)
+      .required()
+      .doc("whose interface: its name under `participants`");
+  section.value("data", p.data)
+      .required()
+      .doc("name of what it gives or takes, as pressure-force, velocity or heat");
+  section.value("part", p.part).doc("patch of the interface; absent: all of it");
+  section.check(
+      [partners, &p] {
+        return std::ranges::find(partners, p.participant) != partners.end()
+                   ? ""
+                   : fmt::format("'{}' takes no part in the coupling. {}", p.participant,
+                                 did_you_mean(p.participant, partners, "participants"));
+      },
+      "participant");
+}
+
+/// Whole numbers, of participants that there are; the mesh mover's follow the fluid's.
+std::string problem_of_sub_steps(const CouplingParameters& p) {
+  const std::vector<std::string> names = partners_of(p);
   for (const auto& [name, n] : p.sub_steps) {
     if (std::ranges::find(names, name) == names.end())
       return fmt::format("there is no participant '{}' that could take sub-steps", name);
@@ -225,6 +251,11 @@ void declare(config::Section& section, CouplingParameters& p) {
       .doc(
           "with each output the data of all interfaces are written for ParaView, too: "
           "coupler/interface/<name>.pvd");
+  section.map<WatchParameters>(
+      "watch", p.watch, [&p](config::Section& s, WatchParameters& w) { declare(s, w, partners_of(p)); },
+      "integral",
+      "integrals over interfaces, a row a step in coupler/watch.csv: sums of amounts (N, W), fluxes of vectors, "
+      "integral and mean of scalars");
   using OnDivergence = CouplingParameters::OnDivergence;
   section
       .choice("on-divergence", p.on_divergence, {{"stop", OnDivergence::stop}, {"warn", OnDivergence::warn}})

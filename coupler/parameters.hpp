@@ -31,6 +31,12 @@ struct MappingParameters {
   std::optional<double> tolerance;  // [m]
 };
 
+/// One integral over an interface.
+struct WatchParameters {
+  std::string participant, data;
+  std::string part;  // of the interface; empty: all of it
+};
+
 struct CouplingParameters {
   Scheme scheme = Scheme::semi_implicit;
   struct Role {
@@ -54,6 +60,7 @@ struct CouplingParameters {
   bool mesh_on_guess = false;  // in each pass of the implicit scheme
   MappingParameters mapping;
   bool interface_output = false;  // for ParaView
+  std::map<std::string, WatchParameters> watch;
   /// What follows when a guard finds that the coupling itself makes the motion.
   enum class OnDivergence { stop, warn } on_divergence = OnDivergence::stop;
 };

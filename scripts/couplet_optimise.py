@@ -13,17 +13,14 @@ The section of the case:
         cut-off: {key: flow.cut-off, from: 5, to: 30, unit: K}
         height: {from: 8, to: 16, unit: m, sets: {bed.layers.0.height: 0.01, bed.layers.1.height: 0.99}}   # key: share
 A surface of cubic radial functions through the runs so far says where the best is expected; the next runs go there, as many at a
-time as there are processors, the others of a round to where the surface is known least."""
+time as there are processors, the others of a round to where the surface is known least. optimise.csv has all runs so far; a
+search that was interrupted and is started again finds the runs that are done. --again makes them anew."""
 import argparse
-import concurrent.futures
 import csv
 import itertools
-import json
 import math
 import os
 import pathlib
-import re
-import subprocess
 import sys
 
 import numpy as np
@@ -34,16 +31,8 @@ from scipy.spatial.distance import cdist
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts"))
-from couplet_run.warnings import warnings_of  # noqa: E402
-
-
-class Wrong(Exception):
-    """Something the user can mend."""
-
-
-def expect(condition, text):
-    if not condition:
-        raise Wrong(text)
+from couplet_run import Case, Wrong, expect, run_all, warnings_of  # noqa: E402
+from couplet_study.variants import Variant  # noqa: E402
 
 
 # -- the search -------------------------------------------------------------------------------------------------------
@@ -106,7 +95,7 @@ def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
         values += list(evaluate(todo))
         points += todo
         finite = [v for v in values if np.isfinite(v)]
-        expect(finite, "optimise: none of the first runs gave a value.")
+        expect(finite, f"optimise: none of the first {len(points)} runs gave a value; what each says stands above.")
         best = min(finite)
         say(f"optimise: {len(points)} runs, best so far {sign * best:.6g}")
         left = runs - len(points)
@@ -127,93 +116,124 @@ def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
 
 
 # -- a case -----------------------------------------------------------------------------------------------------------
-def full_key(key, participant):
-    return key if re.match(r"(simulation|participants|coupling)\.", key) else f"participants.{participant}.{key}"
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
 class Variable:
+    """One of the file's variables: its keys and what they are at a place x of its range, 0 <= x <= 1."""
+
     def __init__(self, name, spec, place):
-        expect(isinstance(spec, dict), f"{place}.{name}: expected {{from: ..., to: ...}}.")
+        place = f"{place}.{name}"
+        expect(isinstance(spec, dict), f"{place}: expected {{from: ..., to: ...}}.")
         unknown = set(spec) - {"key", "from", "to", "unit", "sets"}
-        expect(not unknown, f"{place}.{name}: unknown key '{next(iter(unknown), '')}'; valid are key, from, to, unit, sets.")
+        expect(not unknown, f"{place}: unknown key '{next(iter(unknown), '')}'; valid are key, from, to, unit, sets.")
         low, high = spec.get("from"), spec.get("to")
-        expect(isinstance(low, (int, float)) and isinstance(high, (int, float)) and low < high,
-               f"{place}.{name}: 'from' and 'to' must be numbers, the first below the second; the unit stands in 'unit'.")
+        expect(is_number(low) and is_number(high) and low < high,
+               f"{place}: 'from' and 'to' must be numbers, the first below the second; the unit stands in 'unit'.")
         self.name, self.low, self.high, self.unit = name, low, high, spec.get("unit", "")
-        self.sets = spec.get("sets") or {spec.get("key", name): 1}
+        expect(isinstance(self.unit, str), f"{place}.unit: expected a text, not {self.unit!r}.")
+        expect(not ("sets" in spec and "key" in spec), f"{place}: give either 'key' or 'sets'.")
+        self.sets = spec["sets"] if "sets" in spec else {spec.get("key", name): 1}
+        expect(isinstance(self.sets, dict) and self.sets and all(isinstance(k, str) and is_number(v) for k, v in self.sets.items()),
+               f"{place}.sets: expected {{key: share of the variable, ...}}, the shares numbers.")
 
     def at(self, x):
         return self.low + x * (self.high - self.low)
 
-    def changes(self, x, participant):
-        for key, share in self.sets.items():
-            yield f"{full_key(key, participant)}={self.at(x) * share:.9g} {self.unit}".strip()
+    def changes(self, x, case, participant):
+        return {case.absolute(key, participant): f"{self.at(x) * share:.9g} {self.unit}".strip() for key, share in self.sets.items()}
 
 
-def read(case):
-    expect(case.is_file(), f"{case}: this file does not exist.")
-    data = yaml.safe_load(case.read_text()) or {}
-    section = (data.get("study") or {}).get("optimise")
-    place = f"{case}: study.optimise"
-    expect(isinstance(section, dict), f"{place}: this section does not exist.")
-    unknown = set(section) - {"minimise", "maximise", "runs", "tolerance", "variables", "set"}
-    expect(not unknown, f"{place}: unknown key '{next(iter(unknown), '')}'; valid are minimise, maximise, runs, tolerance, variables, set.")
-    expect(("minimise" in section) != ("maximise" in section), f"{place}: give either 'minimise' or 'maximise'.")
-    variables = [Variable(name, spec, f"{place}.variables") for name, spec in (section.get("variables") or {}).items()]
-    expect(1 <= len(variables) <= 4, f"{place}.variables: one to four are needed.")
-    participants = data.get("participants") or {}
-    participant = data["study"].get("participant", next(iter(participants), None))
-    expect(participant in participants, f"{case}: study.participant: there is no participant '{participant}'.")
-    return data, section, variables, participant
+class Search:
+    """The section of a case: what is sought, over which variables, in how many runs."""
+
+    def __init__(self, case):
+        section, place = case.study.get("optimise"), f"{case.asked}: study.optimise"
+        expect(isinstance(section, dict), f"{place}: this section does not exist.")
+        unknown = set(section) - {"minimise", "maximise", "runs", "tolerance", "variables", "set"}
+        expect(not unknown, f"{place}: unknown key '{next(iter(unknown), '')}'; valid are minimise, maximise, runs, tolerance, variables, set.")
+        expect(("minimise" in section) != ("maximise" in section), f"{place}: give either 'minimise' or 'maximise'.")
+        self.case, self.sign = case, 1 if "minimise" in section else -1
+        self.quantity = section.get("minimise", section.get("maximise"))
+        expect(isinstance(self.quantity, str), f"{place}: what is sought is the name of a quantity of summary.csv, not {self.quantity!r}.")
+        found = section.get("variables") or {}
+        expect(isinstance(found, dict), f"{place}.variables: expected {{name: {{from: ..., to: ...}}}}.")
+        self.variables = [Variable(name, spec, f"{place}.variables") for name, spec in found.items()]
+        expect(1 <= len(self.variables) <= 4, f"{place}.variables: one to four are needed.")
+        self.runs = section.get("runs", 10 * len(self.variables))
+        expect(is_number(self.runs) and self.runs == int(self.runs) and self.runs >= 3, f"{place}.runs: expected a whole number of at least 3.")
+        self.tolerance = section.get("tolerance", 0.005)
+        expect(is_number(self.tolerance) and self.tolerance >= 0, f"{place}.tolerance: expected a number of at least 0.")
+        expect(isinstance(case.participants, dict), f"{case.file}: participants: expected a mapping.")
+        self.participant = case.study.get("participant", next(iter(case.participants), None))
+        expect(self.participant in case.participants, f"{case.asked}: study.participant: there is no participant '{self.participant}'.")
+        expect(case.program(self.participant).is_file(), f"{case.program(self.participant)}: there is no such program. Build it, or name the "
+                                                         "folder of the build by --build.")
+        fixed = section.get("set") or {}
+        expect(isinstance(fixed, dict), f"{place}.set: expected {{key: value, ...}}.")
+        self.fixed = {case.absolute(key, self.participant): value for key, value in fixed.items()}
+        self.check_keys(place)
+
+    def check_keys(self, place):
+        """A key that two of them set would have the value of one."""
+        seen = dict.fromkeys(self.fixed, "'set'")
+        for variable in self.variables:
+            for key in variable.changes(0, self.case, self.participant):
+                expect(key not in seen, f"{place}.variables.{variable.name}: {key} is set by {seen.get(key)}, too.")
+                seen[key] = f"variable '{variable.name}'"
+
+    def changes(self, point, further):
+        found = dict(self.fixed)
+        for variable, x in zip(self.variables, point):
+            found |= variable.changes(x, self.case, self.participant)
+        double = found.keys() & further.keys() - self.fixed.keys()
+        expect(not double, f"--set {next(iter(double), '')}: this is one of the variables.")
+        return found | further
 
 
 class Runs:
-    """Runs of a case, one a point; each in a folder of its own."""
+    """Runs of a case, one a point; each in a folder of its own, found again if it was made before. `table`: written after each
+    round."""
 
-    def __init__(self, case, data, section, variables, participant, arguments):
-        self.case, self.variables, self.participant, self.arguments = case, variables, participant, arguments
-        self.program = arguments.build / "bin" / data["participants"][participant].get("program", "?")
-        self.quantity = section.get("minimise", section.get("maximise"))
-        self.sign = 1 if "minimise" in section else -1
-        self.folder = arguments.out or case.parent / "out" / "optimise"
-        self.made = 0
-        self.fixed = [f"{full_key(key, participant)}={value if isinstance(value, str) else json.dumps(value)}"
-                      for key, value in (section.get("set") or {}).items()]
+    def __init__(self, search, folder, jobs, further=None, again=False, say=print):
+        self.search, self.folder, self.jobs, self.further, self.again, self.say = search, pathlib.Path(folder), jobs, further or {}, again, say
+        self.points, self.values = [], []
 
-    def one(self, number, point):
-        out = self.folder / f"run-{number:03d}"
-        out.mkdir(parents=True, exist_ok=True)
-        summary = out / self.participant / "summary.csv"
-        summary.unlink(missing_ok=True)
-        changes = [c for v, x in zip(self.variables, point) for c in v.changes(x, self.participant)]
-        command = [str(self.program), str(self.case), "--participant", self.participant]
-        for change in [*self.fixed, *changes, *self.arguments.set, f"simulation.output.folder={out.resolve()}"]:
-            command += ["--set", change]
-        environment = dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
-                           OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        with open(out / "run.log", "w") as log:
-            code = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, env=environment).returncode
-        if code != 0 or not summary.exists():
-            print(f"optimise: run {number} failed with exit code {code}, see {out / 'run.log'}", flush=True)
+    def task(self, number, point):
+        name = f"run-{number:03d}"
+        return Variant(self.search.case, name, self.folder / name, self.search.changes(point, self.further), alone=self.search.participant,
+                       timeout=86400)
+
+    def value(self, task, record):
+        """What the search makes small; infinite where there is none."""
+        if record.state != "done":
             return math.inf
-        with open(summary, newline="") as file:
-            values = {row["quantity"]: float(row["value"]) for row in csv.DictReader(file)}
-        expect(self.quantity in values, f"{self.case}: study.optimise: summary.csv has no '{self.quantity}'; it has {', '.join(values)}.")
-        return self.sign * values[self.quantity]
+        found = {quantity: value for (quantity, _), value in task.summary().items()}
+        wanted = self.search.quantity
+        expect(wanted in found, f"{self.search.case.asked}: study.optimise: summary.csv has no '{wanted}'; it has {', '.join(found)}.")
+        if not math.isfinite(found[wanted]):
+            self.say(f"optimise: {task.name}: '{wanted}' is {found[wanted]:g}: it counts as failed, see {task.folder / 'run.log'}")
+            return math.inf
+        return self.search.sign * found[wanted]
 
     def __call__(self, points):
-        numbers = range(self.made, self.made + len(points))
-        self.made += len(points)
-        with concurrent.futures.ThreadPoolExecutor(self.arguments.jobs) as pool:
-            return list(pool.map(self.one, numbers, points))
+        tasks = [self.task(len(self.points) + i, point) for i, point in enumerate(points)]
+        records = run_all(tasks, self.jobs, self.again, self.say)
+        values = [self.value(task, records[task]) for task in tasks]
+        self.points += list(points)
+        self.values += values
+        self.write()
+        return values
 
-
-def write(file, runs, points, values):
-    with open(file, "w", newline="") as out:
-        writer = csv.writer(out)
-        writer.writerow([*(f"{v.name} [{v.unit}]" for v in runs.variables), runs.quantity])
-        for point, value in zip(points, values):
-            writer.writerow([*(f"{v.at(x):.9g}" for v, x in zip(runs.variables, point)), f"{runs.sign * value:.9g}"])
+    def write(self):
+        self.folder.mkdir(parents=True, exist_ok=True)
+        with open(self.folder / "optimise.csv", "w", newline="") as out:
+            writer = csv.writer(out)
+            writer.writerow([*(f"{v.name} [{v.unit}]" for v in self.search.variables), self.search.quantity])
+            for point, value in zip(self.points, self.values):
+                shown = f"{self.search.sign * value:.9g}" if math.isfinite(value) else "failed"
+                writer.writerow([*(f"{v.at(x):.9g}" for v, x in zip(self.search.variables, point)), shown])
 
 
 def main(words):
@@ -224,20 +244,24 @@ def main(words):
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--set", action="append", default=[])
     parser.add_argument("--out", type=pathlib.Path)
+    parser.add_argument("--again", action="store_true")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build")
     arguments = parser.parse_args(words)
-    data, section, variables, participant = read(arguments.case)
-    runs = Runs(arguments.case, data, section, variables, participant, arguments)
-    budget = int(section.get("runs", 10 * len(variables)))
-    expect(budget >= 3, f"{arguments.case}: study.optimise.runs: at least 3.")
-    point, value, points, values = search(runs, len(variables), budget, float(section.get("tolerance", 0.005)), arguments.jobs,
-                                          sign=runs.sign)
-    write(runs.folder / "optimise.csv", runs, points, values)
-    where = ", ".join(f"{v.name} {v.at(x):.4g} {v.unit}".strip() for v, x in zip(variables, point))
-    edge = [v.name for v, x in zip(variables, point) if x < 0.02 or x > 0.98]
-    print(f"best {runs.quantity} {runs.sign * value:.6g} at {where}, after {len(points)} runs; all in {runs.folder / 'optimise.csv'}")
-    for line in warnings_of(runs.folder / f"run-{number:03d}" / "run.log" for number in range(runs.made)):
+    expect(arguments.jobs >= 1, "--jobs: at least one.")
+    expect(all("=" in change for change in arguments.set), "--set: expected KEY=VALUE.")
+    wanted = Search(Case(arguments.case, arguments.build))
+    further = dict(change.split("=", 1) for change in arguments.set)
+    runs = Runs(wanted, arguments.out or wanted.case.file.parent / "out" / "optimise", arguments.jobs, further, arguments.again,
+                lambda line: print(line, flush=True))
+    point, value, points, _ = search(runs, len(wanted.variables), int(wanted.runs), wanted.tolerance, arguments.jobs, runs.say, wanted.sign)
+    where = ", ".join(f"{v.name} {v.at(x):.4g} {v.unit}".strip() for v, x in zip(wanted.variables, point))
+    edge = [v.name for v, x in zip(wanted.variables, point) if x < 0.02 or x > 0.98]
+    print(f"best {wanted.quantity} {wanted.sign * value:.6g} at {where}, after {len(points)} runs; all in {runs.folder / 'optimise.csv'}")
+    for line in warnings_of(runs.folder / f"run-{number:03d}" / "run.log" for number in range(len(points))):
         print(line)
+    failed = sum(not math.isfinite(v) for v in runs.values)
+    if failed:
+        print(f"{failed} of {len(points)} runs gave no value: the search went around them")
     if edge:
         print(f"{', '.join(edge)}: the best lies at the border of the range given; beyond it may be better.")
     return 0
@@ -247,5 +271,7 @@ def run(words):
     """main() with its complaints as one line."""
     try:
         return main(words)
-    except (Wrong, yaml.YAMLError) as error:
+    except (Wrong, yaml.YAMLError, UnicodeDecodeError) as error:
         sys.exit(f"scripts/study: {error}")
+    except KeyboardInterrupt:
+        sys.exit("scripts/study: interrupted; started again it goes on from here")

@@ -80,6 +80,18 @@ V judge_pressure(const P&, const E& e) {
       "give 'pump: {}', or look at flow and grains: no store is driven so hard"};
 }
 
+// A power block makes some 0.4 of the heat electricity, and pump or fan run in charge and in discharge: a tenth of the heat
+// is half of all that is sold.
+V judge_driving(const P&, const E& e) {
+  if (std::isnan(e.driving_power)) return {};
+  return EffectVerdict{
+      "", e.driving_power / e.carried_heat, 0.1,
+      fmt::format(
+          "at the largest flow pump or fan take {:.3g} MW for the {:.3g} MW of heat that it carries, {:.2g} of it",
+          1e-6 * e.driving_power, 1e-6 * e.carried_heat, e.driving_power / e.carried_heat),
+      "they take half of the electricity or more: take less flow, a wider or lower bed, or larger grains"};
+}
+
 // First order in time: a front of speed v is spread as by a diffusion v^2 dt / 2, over the way H by sqrt(v dt H). Four
 // hundred steps a crossing are 0.05 (and within 0.1 % of Schumann's gas bed, docs/validation/tank-tables.md).
 V judge_implicit(const P&, const E& e) {
@@ -112,6 +124,13 @@ const std::array cards{
          {"Ergun's equation in each step of the bed", 0, 0},
          "power of a pump or fan over the heat that the largest flow carries, 0.02",
          judge_pressure},
+    Card{"work of pump or fan",
+         "`pump`",
+         [](const P& p) { return when(p, p.tank.pump.has_value(), "pump"); },
+         {},
+         "power of pump or fan over the heat that the largest flow carries, 0.1",
+         judge_driving,
+         true},
     Card{"melting capsules",
          "`bed.layers[].melting`",
          [](const P& p) {

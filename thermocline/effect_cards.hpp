@@ -22,6 +22,8 @@ struct Evidence {
   /// Of the largest flow: the power of a pump or fan over the heat that it carries between the coldest and the hottest fluid,
   /// and the pressure loss [Pa].
   double pumping_share = unknown, pressure_loss = unknown;
+  /// Of a scene with `pump`, for the largest flow: that power [W] and that heat [W].
+  double driving_power = unknown, carried_heat = unknown;
   double share_of_yield = unknown;  ///< largest equivalent stress of the wall over its yield strength
   /// The same with what bending would add at the wall's faces; both as looked at every two hours.
   double share_as_rings = unknown, share_with_bending = unknown;

@@ -37,8 +37,9 @@ TankModel::TankModel(std::shared_ptr<const TankSetup> setup, const AmbientSource
   bed_.prepare(1, 0);
   reference_ = bed_.bottom();
   const auto [coldest, hottest] = std::minmax_element(bed_.fluid().begin(), bed_.fluid().end());
-  coldest_ = *coldest,
-  hottest_ = *hottest;  // the start counts: a strong flow may leave nothing of it after a step
+  // The start counts: a strong flow may leave nothing of it after a step.
+  coldest_ = *coldest;
+  hottest_ = *hottest;
   owed_.assign(n, 0.0), source_.assign(n, 0.0);
   if (p.shell) {
     const int rings = setup_->rings->size();
@@ -143,7 +144,8 @@ void TankModel::watch(double t) {
   if (const auto now = inversion_of(bed_); now.depth > inversion_.depth) inversion_ = {now.depth, now.z, t};
   const auto fluid = bed_.fluid();
   const auto [low, high] = std::minmax_element(fluid.begin(), fluid.end());
-  coldest_ = std::min(coldest_, *low), hottest_ = std::max(hottest_, *high);
+  coldest_ = std::min(coldest_, *low);
+  hottest_ = std::max(hottest_, *high);
   const auto place = [&](auto it) { return bed_.grid().z[it - fluid.begin()]; };
   const Fluid& f = setup_->fluid;
   if (!std::isfinite(*high) || !std::isfinite(*low) || *low < 0)

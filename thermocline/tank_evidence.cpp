@@ -65,6 +65,17 @@ std::pair<double, double> pumping_share(const TankModel& m, double peak_flow) {
   return {loss / (density * efficiency * f.specific_heat * (hot - cold)), loss};
 }
 
+/// Of the scene's own pump or fan at the largest flow, the bed all at the mean of both temperatures: its power [W], and the heat
+/// that the flow carries between them [W].
+std::pair<double, double> driving_power(const TankModel& m, double peak_flow) {
+  const Fluid& f = m.setup().fluid;
+  const auto [cold, hot] = range_to_come(m);
+  const std::vector<double> mean(std::size_t(m.bed().grid().size()), 0.5 * (cold + hot));
+  const PressureLoss loss = pressure_loss(m.bed().grid(), f, mean, peak_flow, m.bed().area());
+  return {pump_power(loss, f, cold, peak_flow, m.setup().parameters.pump->efficiency),
+          peak_flow * f.specific_heat * (hot - cold)};
+}
+
 /// Heat capacity of the whole bed over that of a kilogram of fluid [kg]: what must flow in for a front to cross it.
 double crossing_mass(const TankModel& m) {
   const Fluid& f = m.setup().fluid;
@@ -109,9 +120,12 @@ std::vector<EffectVerdict> Tank::audit() const {
     evidence.mean_capacity = air_heat_between(cold, hot) / (hot - cold);
     evidence.capacity_error = std::abs(evidence.mean_capacity / m.setup().fluid.specific_heat - 1);
   }
-  if (const auto [cold, hot] = range_to_come(m);
-      !m.setup().parameters.pump && peak_flow_ > 0 && hot > cold + 1)
-    std::tie(evidence.pumping_share, evidence.pressure_loss) = pumping_share(m, peak_flow_);
+  if (const auto [cold, hot] = range_to_come(m); peak_flow_ > 0 && hot > cold + 1) {
+    if (m.setup().parameters.pump)
+      std::tie(evidence.driving_power, evidence.carried_heat) = driving_power(m, peak_flow_);
+    else
+      std::tie(evidence.pumping_share, evidence.pressure_loss) = pumping_share(m, peak_flow_);
+  }
   if (m.setup().parameters.bed.advection == Advection::implicit && peak_advance_ > 0) {
     const double part = peak_advance_ / crossing_mass(m);  // v dt / H
     evidence.implicit_spread = std::sqrt(part);

@@ -57,6 +57,11 @@ std::vector<std::string> DayReport::doubts() const {
   if (p_.profile_day && *p_.profile_day * seconds_a_day >= last_time_)
     sentences.push_back(fmt::format(
         "report: the run ended before its profile-day {:g} began: profiles.csv is empty", *p_.profile_day));
+  if (const double sold = results_[Sums::electricity] / megawatt_hour;
+      days > 0 && p_.economics && !(sold > 0))
+    sentences.push_back(fmt::format(
+        "report: the levelised cost is infinite: the block's electricity less what pump and fan take is {:.3g} MWh{}",
+        sold, sold < 0 ? "; they take more than it makes" : ", no hour of the days that count had any"));
   if (days <= 0 || whole_years() || !(p_.economics || !plant_.parameters().tariff.empty())) return sentences;
   const double period = weather_.period_length() / seconds_a_day;
   if (period < 0.98 * year && days > period)

@@ -47,6 +47,11 @@ def run_all(tasks, jobs=1, again=False, say=print):
             tell(task, record, f"{record.wall:.1f} s, processor {record.cpu:.1f} s")
 
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
-        for future in [pool.submit(worker) for _ in range(jobs)]:
-            future.result()
+        try:
+            for future in [pool.submit(worker) for _ in range(jobs)]:
+                future.result()
+        except BaseException:  # the user stops it: what is running ends, nothing new begins
+            with mutex:
+                queue.clear()
+            raise
     return {task: records[task] for task in tasks}

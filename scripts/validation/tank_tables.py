@@ -129,13 +129,9 @@ def optimise(job):
     spec = importlib.util.spec_from_file_location("couplet_optimise", job.root / "scripts/couplet_optimise.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    case = job.root / "configs/thermocline-andasol/case.yaml"
-    data, section, variables, participant = module.read(case)
-    coarse = ["participants.tank.bed.cells=60", "simulation.end-time=12 day", "participants.tank.report.run-in=4 day"]
-
-    class Arguments:
-        jobs, set, out, build = 2, coarse, job.scratch / "optimise", job.build
-    runs = module.Runs(case, data, section, variables, participant, Arguments)
+    wanted = module.Search(module.Case(job.root / "configs/thermocline-andasol/case.yaml", job.build))
+    coarse = {"participants.tank.bed.cells": 60, "simulation.end-time": "12 day", "participants.tank.report.run-in": "4 day"}
+    runs = module.Runs(wanted, job.scratch / "optimise", 2, coarse, say=lambda line: None)
     grid = [(a / 8, b / 8) for a in range(9) for b in range(9)]
     best = min(runs(grid))
     _, value, points, _ = module.search(runs, 2, 16, 0.002, 2, say=lambda line: None)
@@ -176,21 +172,20 @@ def year(job):
 def before(job):
     """The program and the case as they were before these bars were set, built with the compiler and options of today's build."""
     def make():
-        tree, build = job.scratch / "before", job.scratch / "before-build"
+        # An archive, not a worktree: the repository would remember that one after its folder has gone.
+        tree, build, archive = (job.scratch / f"before{end}" for end in ("", "-build", ".tar"))
+        tree.mkdir()
         kept = [line.split("=", 1) for line in (job.build / "CMakeCache.txt").read_text().splitlines() if "=" in line]
         options = {name.split(":")[0]: value for name, value in kept}
         keep = ("CMAKE_BUILD_TYPE", "CMAKE_CXX_FLAGS", "CMAKE_CXX_COMPILER_LAUNCHER", "CMAKE_INTERPROCEDURAL_OPTIMIZATION")
-        for command in (["git", "-C", job.root, "worktree", "add", "--detach", tree, BEFORE],
+        for command in (["git", "-C", job.root, "archive", f"--output={archive}", BEFORE], ["tar", "-xf", archive, "-C", tree],
                         ["cmake", "-G", "Ninja", "-S", tree, "-B", build, *(f"-D{k}={options[k]}" for k in keep if options.get(k))],
                         ["ninja", "-C", build, "bin/thermocline"]):
             result = job.run(command, timeout=7200)
             if result.returncode != 0:
                 raise RuntimeError((result.stderr or result.stdout)[-300:])
         return build / "bin/thermocline", tree / "configs/thermocline-andasol/case.yaml"
-    try:
-        return job.once("before", make)
-    finally:
-        job.run(["git", "-C", job.root, "worktree", "prune"])
+    return job.once("before", make)
 
 
 def pairs(job, days=60, turns=7):

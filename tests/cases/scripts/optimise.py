@@ -59,24 +59,73 @@ with tempfile.TemporaryDirectory() as folder:
                                 "warning in 1 of 4 runs, for example: the wall is hot"], f"warnings: {warnings_of(logs)}")
     check(warnings_of(logs[3:]) == [], "no warnings")
 
-HEAD = "participants: {tank: {program: thermocline}}\nstudy:\n  optimise:\n"
+HEAD = "simulation: {output: {}}\nparticipants: {tank: {program: echo}}\nstudy:\n  optimise:\n"
+ONE = "    variables: {diameter: {from: 1, to: 2}}\n"
 WRONG = {
     "    minimise: cost\n": "variables: one to four are needed",
-    "    minimise: cost\n    maximise: heat\n    variables: {diameter: {from: 1, to: 2}}\n": "give either 'minimise' or 'maximise'",
+    "    minimise: cost\n    maximise: heat\n" + ONE: "give either 'minimise' or 'maximise'",
     "    minimise: cost\n    variables: {diameter: {from: 2, to: 1}}\n": "diameter: 'from' and 'to' must be numbers, the first below the second",
     "    minimise: cost\n    variables: {diameter: {from: 1 m, to: 2 m}}\n": "the unit stands in 'unit'",
+    "    minimise: cost\n    variables: {diameter: {from: true, to: 2}}\n": "'from' and 'to' must be numbers",
+    "    minimise: cost\n    variables: {diameter: {from: 1, to: .inf}}\n": "'from' and 'to' must be numbers",
+    "    minimise: cost\n    variables: {diameter: {from: 1, to: 2, unit: 5}}\n": "diameter.unit: expected a text",
+    "    minimise: cost\n    variables: {diameter: {from: 1, to: 2, sets: [a]}}\n": "diameter.sets: expected {key: share",
+    "    minimise: cost\n    variables: {diameter: {from: 1, to: 2, sets: {a: x}}}\n": "diameter.sets: expected {key: share",
+    "    minimise: cost\n    variables: {diameter: {from: 1, to: 2, key: b, sets: {a: 1}}}\n": "give either 'key' or 'sets'",
+    "    minimise: cost\n    variables: {diameter: {from: 1, to: 2}, width: {key: diameter, from: 1, to: 2}}\n": "participants.tank.diameter is set by variable 'diameter', too",
+    "    minimise: cost\n    set: {diameter: 5 m}\n" + ONE: "participants.tank.diameter is set by 'set', too",
+    "    minimise: cost\n    set: [a]\n" + ONE: "set: expected {key: value",
+    "    minimise: cost\n    variables: [diameter]\n": "variables: expected {name:",
+    "    minimise: cost\n    runs: many\n" + ONE: "runs: expected a whole number",
+    "    minimise: cost\n    runs: 3.5\n" + ONE: "runs: expected a whole number",
+    "    minimise: cost\n    tolerance: small\n" + ONE: "tolerance: expected a number",
+    "    minimise: 5\n" + ONE: "the name of a quantity of summary.csv, not 5",
     "    minimise: cost\n    variabels: {}\n": "unknown key 'variabels'",
 }
+ECHO = """#!/usr/bin/python3
+import pathlib, sys
+sets = dict(word.split("=", 1) for word in sys.argv if "=" in word)
+x = float(sets["participants.tank.diameter"].split()[0])
+if x > 1.8:
+    sys.exit("error: too wide")
+out = pathlib.Path(sets["simulation.output.folder"]) / "tank"
+out.mkdir(parents=True, exist_ok=True)
+(out / "summary.csv").write_text(f"quantity,unit,value\\ncost,1,{'inf' if x < 1.15 else (x - 1.4) ** 2 + 1}\\n")
+"""
 with tempfile.TemporaryDirectory() as folder:
-    file = pathlib.Path(folder) / "case.yaml"
-    for text, wanted in WRONG.items():
+    file, bin = pathlib.Path(folder) / "case.yaml", pathlib.Path(folder) / "bin"
+    bin.mkdir()
+    (bin / "echo").write_text(ECHO)
+    (bin / "echo").chmod(0o755)
+
+    def read(text):
         file.write_text(HEAD + text)
+        return optimise.Search(optimise.Case(file, file.parent))
+
+    for text, wanted in WRONG.items():
         try:
-            optimise.read(file)
+            read(text)
             sys.exit(f"FAILED: accepted {text}")
         except optimise.Wrong as error:
             check(wanted in str(error), f"'{error}' does not say '{wanted}'")
-    file.write_text(HEAD + "    maximise: heat\n    variables: {height: {from: 8, to: 16, unit: m, sets: {bed.layers.0.height: 0.25}}}\n")
-    _, _, (height,), participant = optimise.read(file)
-    check(list(height.changes(0.5, participant)) == ["participants.tank.bed.layers.0.height=3 m"], "shares of a variable")
+    shares = read("    maximise: heat\n    variables: {height: {from: 8, to: 16, unit: m, sets: {bed.layers.0.height: 0.25}}}\n")
+    check(shares.changes([0.5], {}) == {"participants.tank.bed.layers.0.height": "3 m"}, "shares of a variable")
+    # A search over a program: one place fails, one gives no number; started again it finds what is done.
+    said, section = [], "    minimise: cost\n    runs: 6\n    variables: {diameter: {from: 1, to: 2, unit: m}}\n"
+    runs = optimise.Runs(read(section), file.parent / "out", 2, say=said.append)
+    _, value, points, values = optimise.search(runs, 1, 6, 0, 1, say=quiet)
+    check(value < 1.01 and sum(map(math.isinf, values)) == 2, f"search over a program: {values}")
+    check(any("exit code 1: error: too wide" in line for line in said), f"the run that failed: {said}")
+    check(any("'cost' is inf: it counts as failed" in line for line in said), f"the run without a number: {said}")
+    rows = (file.parent / "out" / "optimise.csv").read_text().split()
+    check(len(rows) == 1 + 1 + len(points) and sum("failed" in row for row in rows) == 2, f"optimise.csv: {rows}")
+    said.clear()
+    again = optimise.Runs(read(section), file.parent / "out", 2, say=said.append)
+    check(again([points[k] for k in range(3)]) == values[:3] and all("done before" in line or "counts as" in line or "wide" in line for line in said), f"again: {said}")
+    for sets, wanted in (({"participants.tank.diameter": "3 m"}, "this is one of the variables"), ({}, "summary.csv has no 'price'; it has cost")):
+        try:
+            optimise.Runs(read(section.replace("cost", "cost" if sets else "price")), file.parent / "other", 1, sets, say=quiet)([[0.5]])
+            sys.exit(f"FAILED: accepted {sets}")
+        except optimise.Wrong as error:
+            check(wanted in str(error), f"'{error}' does not say '{wanted}'")
 print("ok")

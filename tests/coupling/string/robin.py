@@ -42,6 +42,15 @@ def run(name, inverse, *sets, ranks=(1, 1, 1), restart=None):
     return len(passes) / len({row[2] for row in passes}), motion
 
 
+def watched(name):
+    """Rows of watch.csv: time, force as the fluid gives it, flux of the wall's velocity, force as the wall takes it."""
+    return table(f"{name}/coupler/watch.csv")
+
+
+WATCH = ("coupling.watch={out: {participant: fluid, data: velocity, part: wall}, given: {participant: fluid, data: pressure-force}, "
+         "taken: {participant: wall, data: pressure-force}}")
+
+
 def robin(inverse, share=1.0):
     return ["coupling.order=structure-first", f"participants.fluid.boundaries.wall.surface-density={share * MU * inverse}"]
 
@@ -65,7 +74,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-robin-") as folder:
         shutil.copy(HERE / file, folder)
     os.chdir(folder)
     for inverse in (0.05, 20):
-        few, motion = run(f"robin-{inverse}", inverse, *robin(inverse))
+        few, motion = run(f"robin-{inverse}", inverse, *robin(inverse), WATCH)
         many, same = run(f"aitken-{inverse}", inverse, "coupling.acceleration.type=aitken", "coupling.acceleration.initial-relaxation=0.05")
         check(f"rho_s h/(rho_f mu_1) {inverse}: passes a step, Robin at most 4.5, Aitken more", few <= 4.5 and many > few, f"{few} and {many}")
         check(f"rho_s h/(rho_f mu_1) {inverse}: the same motion", apart(motion, same) < 1e-5, apart(motion, same))
@@ -83,16 +92,31 @@ with tempfile.TemporaryDirectory(prefix="couplet-robin-") as folder:
     light = launch(0.05, [*TOLD, "participants.fluid.boundaries.wall.surface-density=1"], (1, 1, 1), None)
     check("both keys: refused", light.returncode == 2 and "the structure says it" in light.stdout, f"exit code {light.returncode}")
 
-    few, motion = run("closed", 0.5, *robin(0.5), CLOSED, PUMP)
+    few, motion = run("closed", 0.5, *robin(0.5), CLOSED, PUMP, WATCH)
     check("closed and pumped: passes a step at most 4.5", few <= 4.5, few)
+    # What the pump brings in through 5 m goes out through the wall; the same forces on both sides.
+    through = max(abs(row[3] / (5e-7 * math.sin(100 * math.pi * row[0])) - 1) for row in watched("closed"))
+    check("closed and pumped: flux watched through the wall over what is pumped in, apart", through < 1e-8, through)
+    forces = max(abs(row[k] - row[k + 3]) for row in watched("closed") for k in (1, 2)) / max(abs(row[2]) for row in watched("closed"))
+    check("forces watched on both sides, apart (the wall has those of the pass before)", forces < 1e-6, forces)
+    nobody = launch(0.5, [*robin(0.5), "coupling.watch={out: {participant: fluid, data: heat}}"], (1, 1, 1), None)
+    check("a datum that there is not: refused", nobody.returncode != 0 and "coupling.watch.out.data: 'fluid' neither gives nor takes 'heat'" in
+          nobody.stdout, f"exit code {nobody.returncode}")
+    stranger = launch(0.5, [*robin(0.5), "coupling.watch={out: {participant: fluids, data: velocity}}"], (1, 1, 1), None)
+    check("a participant that there is not: refused", stranger.returncode == 2 and "'fluids' takes no part in the coupling" in stranger.stdout,
+          f"exit code {stranger.returncode}")
     _, level = run("level", 0.5, CLOSED, PUMP, "participants.fluid.volume-level=structure", "coupling.convergence.relative=1e-8")
     check("closed and pumped: the motion is that of the level from the structure", apart(motion, level) < 1e-4, apart(motion, level))
 
-    _, motion = run("ranks", 0.05, *robin(0.05), ranks=(2, 3, 1))
+    _, motion = run("ranks", 0.05, *robin(0.05), WATCH, ranks=(2, 3, 1))
     check("2 + 3 ranks: motion apart", apart(motion, table("robin-0.05/wall/mode.csv")) < 1e-5, apart(motion, table("robin-0.05/wall/mode.csv")))
-    run("first", 0.05, *robin(0.05), "simulation.end-time=0.004")
-    _, second = run("second", 0.05, *robin(0.05), restart="first/checkpoints")
-    check("restart bit for bit", second == table("robin-0.05/wall/mode.csv")[4:], f"{len(second)} rows")
+    run("first", 0.05, *robin(0.05), WATCH, "simulation.end-time=0.004")
+    _, second = run("second", 0.05, *robin(0.05), WATCH, restart="first/checkpoints")
+    check("restart bit for bit", second == table("robin-0.05/wall/mode.csv")[4:] and watched("second") == watched("robin-0.05")[4:],
+          f"{len(second)} rows")
+    ranked, alone = ([list(column) for column in zip(*watched(name))] for name in ("ranks", "robin-0.05"))
+    differ = max(max(abs(x - y) for x, y in zip(a, b)) / max(map(abs, b)) for a, b in zip(ranked, alone) if max(map(abs, b)) > 1e-15)
+    check("2 + 3 ranks: integrals watched, apart", differ < 1e-5, differ)
 
     refused = launch(1, ["participants.fluid.boundaries.wall.surface-density=1"], (1, 1, 1), None)
     check("without structure-first: refused", refused.returncode != 0 and "structure-first" in refused.stdout, f"exit code {refused.returncode}")

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/coupling/participant.hpp"
+#include "common/parallel/collective.hpp"
 #include "coupler/mapping.hpp"
 
 namespace couplet::tests {
@@ -52,6 +53,29 @@ inline Interface plate(int n, bool triangles, double sign, double z = 0) {
         add_face(s, {a, b, c, d}, area);
     }
   return s;
+}
+
+/// This rank's part of a whole surface, cut evenly; vertices and faces each their own way.
+inline Interface part_of(MPI_Comm world, const Interface& whole) {
+  const auto rank = std::size_t(comm_rank(world));
+  const Starts v = even_starts(GlobalIndex(whole.vertices.size()), comm_size(world)),
+               f = even_starts(GlobalIndex(whole.face_centres.size()), comm_size(world));
+  Interface part;
+  part.dim = whole.dim;
+  part.takes = whole.takes, part.gives = whole.gives;
+  part.vertices.assign(whole.vertices.begin() + v[rank], whole.vertices.begin() + v[rank + 1]);
+  part.face_centres.assign(whole.face_centres.begin() + f[rank], whole.face_centres.begin() + f[rank + 1]);
+  part.face_areas.assign(whole.face_areas.begin() + f[rank], whole.face_areas.begin() + f[rank + 1]);
+  if (!whole.face_offset.empty()) part.face_offset.push_back(0);
+  part.parts = whole.parts;
+  if (!whole.face_part.empty())
+    part.face_part.assign(whole.face_part.begin() + f[rank], whole.face_part.begin() + f[rank + 1]);
+  for (GlobalIndex face = f[rank]; face < f[rank + 1] && !whole.face_offset.empty(); ++face) {
+    part.face_vertices.insert(part.face_vertices.end(), whole.face_vertices.begin() + whole.face_offset[face],
+                              whole.face_vertices.begin() + whole.face_offset[face + 1]);
+    part.face_offset.push_back(Index(part.face_vertices.size()));
+  }
+  return part;
 }
 
 inline PointSet vertices_of(const Interface& s) { return {"vertices", s.vertices, {}, &s}; }

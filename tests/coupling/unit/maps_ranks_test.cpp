@@ -78,32 +78,13 @@ TEST(MapsOverRanks, matched_points_find_their_twins_on_any_rank) {
   for (std::size_t i = 0; i < carried.size(); ++i) EXPECT_EQ(carried[i], to.points[i].z());
 }
 
-/// This rank's part of a whole surface, cut evenly; vertices and faces each their own way.
-Interface part_of(const Interface& whole) {
-  const auto rank = std::size_t(comm_rank(world));
-  const Starts v = even_starts(GlobalIndex(whole.vertices.size()), comm_size(world)),
-               f = even_starts(GlobalIndex(whole.face_centres.size()), comm_size(world));
-  Interface part;
-  part.dim = whole.dim;
-  part.vertices.assign(whole.vertices.begin() + v[rank], whole.vertices.begin() + v[rank + 1]);
-  part.face_centres.assign(whole.face_centres.begin() + f[rank], whole.face_centres.begin() + f[rank + 1]);
-  part.face_areas.assign(whole.face_areas.begin() + f[rank], whole.face_areas.begin() + f[rank + 1]);
-  part.face_offset.push_back(0);
-  for (GlobalIndex face = f[rank]; face < f[rank + 1]; ++face) {
-    part.face_vertices.insert(part.face_vertices.end(), whole.face_vertices.begin() + whole.face_offset[face],
-                              whole.face_vertices.begin() + whole.face_offset[face + 1]);
-    part.face_offset.push_back(Index(part.face_vertices.size()));
-  }
-  return part;
-}
-
 /// Both kinds of maps of second order between parts, against those between the whole surfaces on one rank.
 void expect_as_on_one_rank(const Interface& a, const Interface& b, MappingParameters::Type type) {
   using Place = Interface::Place;
   MappingParameters parameters;
   parameters.type = type;
-  const Side from(world, "a", part_of(a)), to(world, "b", part_of(b)), all_from(MPI_COMM_SELF, "a", a),
-      all_to(MPI_COMM_SELF, "b", b);
+  const Side from(world, "a", tests::part_of(world, a)), to(world, "b", tests::part_of(world, b)),
+      all_from(MPI_COMM_SELF, "a", a), all_to(MPI_COMM_SELF, "b", b);
   for (const auto kind : {Mapping::Kind::consistent, Mapping::Kind::conservative})
     for (const Place place : {Place::vertices, Place::faces}) {
       if (kind == Mapping::Kind::conservative && place == Place::vertices) continue;
@@ -133,7 +114,7 @@ TEST(MapsOverRanks, of_second_order_are_built_in_parts_as_on_one_rank) {
 }
 
 TEST(MapsOverRanks, need_of_the_other_surface_what_is_near_alone) {
-  const Side sheet(world, "sheet", part_of(tests::plate(24, false, 1)));
+  const Side sheet(world, "sheet", tests::part_of(world, tests::plate(24, false, 1)));
   const PointSet mine = sheet.places(Interface::Place::faces);
   const Nearby near = nearby(world, mine.points, {}, 4, mine);
   // A rank's own part (rows of the sheet) and the row beside it on each side.
@@ -151,7 +132,7 @@ TEST(MapsOverRanks, a_closed_curve_has_as_many_faces_as_vertices_and_values_at_f
   for (int i = 0; i < n; ++i)
     ring.vertices.emplace_back(std::cos(2 * M_PI * i / n), std::sin(2 * M_PI * i / n), 0);
   for (Index i = 0; i < n; ++i) tests::add_face(ring, {i, (i + 1) % n}, Vec3(1, 0, 0));
-  const Side side(world, "ring", part_of(ring));
+  const Side side(world, "ring", tests::part_of(world, ring));
   const PointSet faces = side.places(Interface::Place::faces);
   MappingParameters parameters;
   parameters.type = MappingParameters::Type::projection;

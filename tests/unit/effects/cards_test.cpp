@@ -219,6 +219,9 @@ TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
   EXPECT_FALSE(sound("yielding of the wall", {.share_of_yield = 1.01}));
   EXPECT_TRUE(sound("bending of the wall", {.share_as_rings = 0.5, .share_with_bending = 0.599}));
   EXPECT_FALSE(sound("bending of the wall", {.share_as_rings = 0.5, .share_with_bending = 0.601}));
+  tank.tank.pump.emplace();
+  EXPECT_TRUE(sound("work of pump or fan", {.driving_power = 0.99e6, .carried_heat = 1e7}));
+  EXPECT_FALSE(sound("work of pump or fan", {.driving_power = 4e7, .carried_heat = 2.8e7}));
   tank.tank.bed.shells = 5;
   EXPECT_FALSE(verdict_on("resolved grains", thermocline::effect_cards(), tank,
                           thermocline::Evidence{.largest_biot = 1e3}));

@@ -79,11 +79,17 @@ TEST(DayReport, a_year_of_a_month_that_goes_round_is_no_year) {
     DayReport report(p, Plant({1e6, 0.4, 1, 0.5, 673.15, 573.15, 15, 10}, salt), *weather, {});
     stand(report, days, 86400);
     report.finish();
+    std::vector<std::string> doubts = report.doubts();
+    // No heat, no electricity: that is said beside it.
+    EXPECT_EQ(
+        std::erase_if(doubts,
+                      [](const std::string& s) { return s.find("levelised cost is infinite") != s.npos; }),
+        1u);
     for (const ReportLine& line : report.lines())
       if (line.quantity == "electricity") {
-        EXPECT_EQ(line.unit, report.doubts().empty() ? "MWh/year" : "MWh/365 such days");
+        EXPECT_EQ(line.unit, doubts.empty() ? "MWh/year" : "MWh/365 such days");
       }
-    return report.doubts();
+    return doubts;
   };
   ASSERT_EQ(said(june, 365).size(), 1u);
   EXPECT_NE(said(june, 365)[0].find("the weather's 30 days went round 12.2 times"), std::string::npos);
