@@ -123,6 +123,12 @@ Flow Schedule::decide(double t, double t_top, double t_bottom, const Ambient&) {
 
 std::vector<std::string> Schedule::doubts() const {
   std::vector<std::string> sentences;
+  const auto flows = [](const ScheduleRow& row) { return row.mass_flow != 0; };
+  const auto first = std::ranges::find_if(rows_, flows);
+  if (first != rows_.end() && !(current_ >= first->at))
+    sentences.push_back(fmt::format(
+        "nothing has flowed: the first row of the schedule that flows, flow.rows[{}], begins at {:g} s",
+        first - rows_.begin(), first->at));
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (!began_[i] || flowed_[i]) continue;
     std::string limits;

@@ -89,7 +89,10 @@ ScheduleRow row_of(const FlowColumns& columns, const std::vector<std::string>& c
   for (const std::size_t c : {0, 1})
     if (!v[c]) throw Error("{}: {} is empty.", place, known[c].name);
   if (*v[0] < 0) throw Error("{}: time {:g} s is before the start.", place, *v[0]);
-  if (*v[1] != 0 && !(v[2].value_or(0) > 0))
+  constexpr double coldest = 100, hottest = 3000;  // [K]
+  if (v[2] && !(*v[2] >= coldest && *v[2] <= hottest))
+    throw Error("{}: inlet-temperature is {:g} K; expected {:g} to {:g} K.", place, *v[2], coldest, hottest);
+  if (*v[1] != 0 && !v[2])
     throw Error("{}: inlet-temperature is missing; say how hot the fluid is that this flow brings.", place);
   return {*v[0], *v[1], v[2].value_or(0), v[3], v[4]};
 }

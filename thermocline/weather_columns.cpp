@@ -58,9 +58,16 @@ WeatherColumns::WeatherColumns(const std::vector<std::string>& head, const Names
       if (const auto found = column_of(head, name)) return found;
     return {};
   };
+  const auto once = [&](std::optional<std::size_t> column) {
+    for (std::size_t i = 0; column && i < head.size(); ++i)
+      if (i != *column && lower(head[i]) == lower(head[*column]))
+        throw Error("{}: the column '{}' stands there twice.", place, trim(head[i]));
+  };
   dew_point_ = find(names.dew_point);
+  once(dew_point_);
   for (std::size_t q = 0; q < column_.size(); ++q) {
     column_[q] = find(names.of[q]);
+    once(column_[q]);
     if (column_[q] || (q == humidity && dew_point_)) continue;
     std::vector<std::string> known(names.of[q].begin(), names.of[q].end());
     if (q == humidity) known.insert(known.end(), names.dew_point.begin(), names.dew_point.end());

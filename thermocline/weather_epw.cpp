@@ -62,7 +62,9 @@ WeatherHours read_weather_epw(const std::filesystem::path& file) {
       values[q] = number_in(fields[columns[q].number], weather_quantities[q].name, place);
       if (values[q] >= columns[q].missing_from) values[q] = missing;
     }
-    mean.add(number, whole_number(fields, minute, "the minute", place), values, line);
+    const int stamp = whole_number(fields, minute, "the minute", place);
+    if (stamp < 0 || stamp > 60) throw Error("{}: the minute is {}; it must be from 0 to 60.", place, stamp);
+    mean.add(number, stamp, values, line);
   }
   mean.flush();
   WeatherHours result = hours.finish(mean.several() ? 60 * mean.mean_minute() : end_of_hour);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // PVGIS, the typical year as CSV: lines with latitude and longitude, the year of each month, column names,
 // records by time (UTC), a legend. Values belong to the moment of the record.
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "common/base/error.hpp"
@@ -24,6 +26,22 @@ std::vector<double> hourly_means(const std::vector<double>& moment, double offse
     mean[std::size_t(h)] =
         0.5 * x * x * at(h - 1) + (0.5 + x - x * x) * at(h) + 0.5 * (1 - x) * (1 - x) * at(h + 1);
   return mean;
+}
+
+/// The line after the last record: an empty one, and behind it a legend.
+std::size_t end_of_records(const std::vector<std::string>& lines, std::size_t first,
+                           const HourCollector& hours) {
+  const auto is_record = [](const std::string& line) {
+    return line.size() > 13 && line[8] == ':' && line[13] == ',' &&
+           std::all_of(line.begin(), line.begin() + 8, [](unsigned char c) { return std::isdigit(c); });
+  };
+  std::size_t end = first;
+  while (end < lines.size() && !trim(lines[end]).empty()) ++end;
+  for (std::size_t i = end; i < lines.size(); ++i)
+    if (is_record(lines[i]))
+      throw Error("{}: a record after the empty line {}, with which the records of a PVGIS file end.",
+                  hours.place(int(i) + 1), end + 1);
+  return end;
 }
 
 /// The number behind "Latitude (decimal degrees): " and its like among the first lines.
@@ -62,7 +80,8 @@ WeatherHours read_weather_pvgis(const std::filesystem::path& file) {
   const std::vector<std::string> head = csv_fields(lines[head_line]);
   const auto time = column_of(head, "time(UTC)");
   const WeatherColumns columns(head, names, hours.place(int(head_line) + 1));
-  for (std::size_t i = head_line + 1; i < lines.size() && !trim(lines[i]).empty(); ++i) {
+  const std::size_t end = end_of_records(lines, head_line + 1, hours);
+  for (std::size_t i = head_line + 1; i < end; ++i) {
     const int line = int(i) + 1;
     const std::string place = hours.place(line);
     const std::vector<std::string> fields = csv_fields(lines[i]);

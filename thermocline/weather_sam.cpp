@@ -88,6 +88,7 @@ WeatherHours read_weather_sam(const std::filesystem::path& file) {
     if (!number) continue;
     const std::array<double, 5> values = columns.values(fields, place);
     const int stamp = minute ? whole_number(fields, *minute, "the minute", place) : 0;
+    if (stamp < 0 || stamp > 59) throw Error("{}: the minute is {}; it must be from 0 to 59.", place, stamp);
     mean.add(*number, stamp, values, line);
     if (minute) offset = 60 * stamp;
   }

@@ -41,6 +41,10 @@ std::vector<std::string> read_lines(const std::filesystem::path& file, std::stri
   if (got < 0 || status != Z_OK)
     throw Error("{}: this {} is damaged or was cut short: it cannot be decompressed to its end.",
                 file.string(), kind);
+  if (text.find('\0') != std::string::npos)
+    throw Error(
+        "{}: this {} is no plain text: it holds zero bytes, as UTF-16 and binary files do. Save it as UTF-8.",
+        file.string(), kind);
   if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the mark that some editors put first
   std::vector<std::string> lines = split(text, '\n');
   for (std::string& line : lines)
@@ -172,8 +176,8 @@ WeatherHours HourCollector::finish(double state_offset) {
     const double highest = *std::max_element(columns_[q].begin(), columns_[q].end());
     const WeatherQuantity& quantity = weather_quantities[q];
     if (quantity.target == &WeatherHours::dni)
-      refuse_other_unit(file_, quantity, highest, 1.412,
-                        "no sun gives so little; it is read in W/m^2, not in kW/m^2.");
+      refuse_other_unit(file_, quantity, highest, 5.1,  // the solar constant in MJ/m^2 an hour
+                        "no sun gives so little; it is read in W/m^2, not in kW/m^2 or in MJ/m^2 an hour.");
     if (quantity.target == &WeatherHours::humidity)
       refuse_other_unit(file_, quantity, highest, 1,
                         "no air is so dry; it is read in percent, not as a share.");

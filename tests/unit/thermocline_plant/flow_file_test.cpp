@@ -60,6 +60,9 @@ TEST(FlowFile, what_is_wrong_is_said_with_file_and_line) {
   EXPECT_THAT(said(h + "-1,-100,390\n"), HasSubstr("flows.csv:2: time -3600 s is before the start"));
   EXPECT_THAT(said(h + "0,,390\n"), HasSubstr("flows.csv:2: mass-flow is empty"));
   EXPECT_THAT(said(h + "0,nan,390\n"), HasSubstr("flows.csv:2: 'nan' is no number"));
+  EXPECT_THAT(said(h + "0,50,-300\n"),
+              HasSubstr("flows.csv:2: inlet-temperature is -26.85 K; expected 100 to 3000 K"));
+  EXPECT_THAT(said(h + "0,50,1e6\n"), HasSubstr("flows.csv:2: inlet-temperature is 1.00027e+06 K"));
   EXPECT_THAT(said(h), HasSubstr("there is no row"));
   EXPECT_THAT(said("time [h],mass-flow [kg/s]\n0,1\n"),
               HasSubstr("flows.csv:1: the column 'inlet-temperature' is missing"));

@@ -166,6 +166,16 @@ TEST(Questions, a_row_that_never_ran_is_said) {
   schedule.decide(0, 450, 450, {});
   schedule.decide(50, 450, 450, {});
   schedule.decide(100, 450, 450, {});
+  flow.rows = {{0, 0, 600, {}, {}}, {3600, 10, 500, {}, {}}};
+  Schedule resting(flow);
+  resting.decide(0, 450, 450, {});
+  ASSERT_EQ(resting.doubts().size(), 1u);
+  EXPECT_THAT(
+      resting.doubts()[0],
+      HasSubstr(
+          "nothing has flowed: the first row of the schedule that flows, flow.rows[1], begins at 3600 s"));
+  resting.decide(3600, 450, 450, {});
+  EXPECT_TRUE(resting.doubts().empty());
   ASSERT_EQ(schedule.doubts().size(), 1u);
   EXPECT_THAT(schedule.doubts()[0], HasSubstr("flow.rows[0] never ran: it stops below 226.85 degC"));
 }

@@ -134,6 +134,19 @@ TEST_F(ForeignWeather, other_units_and_separators_are_told_by_what_they_give) {
                                    h % 24 == 12 ? 0.96 : 0);
               })),
               HasSubstr("not in kW/m^2"));
+  EXPECT_THAT(complaint(nsrdb([](int h, std::string line) {
+                return h % 24 == 12 ? line.replace(line.find(",960,"), 5, ",3.4,") : line;
+              })),
+              HasSubstr("is 3.4: no sun gives so little"));
+  WeatherParameters p;
+  p.kind = WeatherKind::file;
+  for (const bool sun : {false, true}) {
+    std::string text = "hour,dni_W_m2,T_degC,wind_m_s,rh_pct,p_Pa\n";
+    for (int h = 0; h < 24 * 20; ++h)
+      text += fmt::format("{},{},10,1,40,90000\n", h, sun && h == 36 ? 600 : 0);
+    p.file = write(text);
+    EXPECT_THAT(make_weather(p, ".")->doubts(), testing::SizeIs(sun ? 0 : 1)) << "20 days without any sun";
+  }
   std::string own = "hour,dni_W_m2,T_degC,wind_m_s,rh_pct,p_Pa\n", dry = own;
   for (int h = 0; h < 24; ++h)
     own += fmt::format("{},500,10,1,40,90000\n", h), dry += fmt::format("{},500,10,1,0.4,90000\n", h);
@@ -199,6 +212,15 @@ TEST_F(ForeignWeather, gaps_and_codes_for_missing_values_are_closed_or_refused) 
 }
 
 TEST_F(ForeignWeather, wrong_nsrdb_files_are_said_with_their_line) {
+  EXPECT_THAT(complaint(nsrdb([](int h, std::string line) {
+                return h == 3 ? line.replace(line.find(",30,"), 4, ",60,") : line;
+              })),
+              HasSubstr("weather.csv:7: the minute is 60"));
+  std::string twice = nsrdb();
+  twice.replace(twice.find(",GHI,Surface"), 4, ",DNI");
+  EXPECT_THAT(complaint(twice), HasSubstr("weather.csv:3: the column 'DNI' stands there twice"));
+  EXPECT_THAT(complaint(nsrdb() + std::string(1, '\0')),
+              HasSubstr("weather.csv: this weather file is no plain text"));
   EXPECT_THAT(complaint(nsrdb(same, "Pa")),
               HasSubstr("weather.csv:2: 'Pressure Units' is 'Pa'; only mbar is read"));
   EXPECT_THAT(complaint(nsrdb([](int h, std::string line) {
@@ -350,6 +372,8 @@ TEST_F(ForeignWeather, pvgis_runs_on_local_standard_time_unless_told_otherwise) 
 }
 
 TEST_F(ForeignWeather, wrong_pvgis_files_are_said_with_their_line) {
+  EXPECT_THAT(complaint(pvgis([](int h, std::string line) { return h == 24 ? "\n" + line : line; })),
+              HasSubstr("a record after the empty line 42, with which"));
   EXPECT_THAT(complaint(pvgis([](int h, std::string line) {
                 return h == 2 ? "2009-01-01,1,90,0,0,0,320,2,334,99573\n" : line;
               })),
