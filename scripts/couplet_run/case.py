@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A case file as the runner sees it: who takes part, what changes become on a command line, what a result depends on."""
+import copy
 import functools
 import hashlib
 import json
@@ -24,6 +25,12 @@ def expect(condition, text):
 def text_of(value):
     """As it would stand in the YAML."""
     return value if isinstance(value, str) else json.dumps(value)
+
+
+def mapping_of(value):
+    """A mapping, also one that stands as text; an empty one of anything else."""
+    found = yaml.safe_load(value) if isinstance(value, str) else value
+    return found if isinstance(found, dict) else {}
 
 
 @functools.lru_cache(maxsize=256)
@@ -65,13 +72,15 @@ class Case:
         return key if re.match(r"(simulation|participants|coupling)\.", key) else f"participants.{participant}.{key}"
 
     def assignments(self, changes):
-        """Arguments of --set. A key below a mapping that the case does not have is given with that mapping."""
-        added, plain = {}, []
+        """Arguments of --set. A key below a mapping that the case does not have is given with that mapping, which an earlier change
+        may have given whole; of two changes of the same key the later counts."""
+        added, plain, whole = {}, [], {}
         for key, value in changes.items():
             parts, node = key.split("."), self.data
             for depth, part in enumerate(parts[:-1]):
                 if isinstance(node, dict) and part not in node:
-                    place = added.setdefault(".".join(parts[:depth + 1]), {})
+                    above = ".".join(parts[:depth + 1])
+                    place = added.setdefault(above, copy.deepcopy(mapping_of(whole.get(above))))
                     for inner in parts[depth + 1:-1]:
                         place = place.setdefault(inner, {})
                     place[parts[-1]] = value
@@ -79,6 +88,8 @@ class Case:
                 node = node[part] if isinstance(node, dict) else None
             else:
                 plain.append(f"{key}={text_of(value)}")
+                whole[key] = value
+                added.pop(key, None)
         return plain + [f"{key}={json.dumps(value)}" for key, value in added.items()]
 
     def program(self, participant):

@@ -15,8 +15,13 @@ CLOCKS = {"cpu": "processor time of the run [s]", "wall": "wall time of the run 
 MARKS = "osD^vP*Xh<>"
 
 
-def figure(title):
-    made, axes = plt.subplots(figsize=(6.6, 4.4), dpi=130, constrained_layout=True)
+LINES = ("-", "--", ":", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 2)))
+BESIDE = 9  # names in a legend from which on it stands beside the picture
+
+
+def figure(title, series=0):
+    """`series`: how many are to be drawn."""
+    made, axes = plt.subplots(figsize=(6.6 + (2.6 if series >= BESIDE else 0), 4.4), dpi=130, constrained_layout=True)
     axes.set_title(title, fontsize=10)
     return made, axes
 
@@ -30,11 +35,30 @@ def plain(axis):
         axis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
 
 
+def styles(rows):
+    """{series: keywords of its line}. Where series differ in two things or three, colour, mark and line tell which."""
+    series, found = series_of(rows), {}
+    sizes = {a for some in series.values() for r in some for a, v in r.point.labels.items() if v not in r.series.split(", ")}
+    axes = [a for a in next(iter(series.values()))[0].point.labels if a not in sizes] if series else []
+    values = {a: list(dict.fromkeys(some[0].point.labels[a] for some in series.values())) for a in axes}
+    several = [a for a in axes if len(values[a]) > 1]
+    for k, (name, some) in enumerate(series.items()):
+        of = [values[a].index(some[0].point.labels[a]) for a in several]
+        if len(of) < 2:
+            found[name] = {"marker": MARKS[k % len(MARKS)], "linestyle": "-"}
+        else:
+            found[name] = {"color": f"C{of[0] % 10}", "marker": MARKS[of[1] % len(MARKS)], "linestyle": LINES[of[2] % len(LINES)] if len(of) > 2 else "-"}
+        found[name].update(markersize=4, lw=1)
+    return found
+
+
 def finish(made, axes, file):
     axes.grid(which="both", alpha=0.25)
     plain(axes.xaxis), plain(axes.yaxis)
     handles, labels = axes.get_legend_handles_labels()
-    if 1 < len(labels) <= 14:
+    if len(labels) >= BESIDE:
+        axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.01, 0.5))
+    elif len(labels) > 1:
         axes.legend(fontsize=7)
     made.savefig(file)
     plt.close(made)
@@ -43,13 +67,14 @@ def finish(made, axes, file):
 
 def error_against_time(title, rows, quantity, clock, file, others=()):
     """`others`: (name, [(cost, error)]) of other programs."""
-    made, axes = figure(title)
+    looks = styles(rows)
+    made, axes = figure(title, len(looks) + len(others) + 1)
     points = []
     for k, (name, some) in enumerate(series_of(rows).items()):
         xy = [(getattr(r.record, clock), r.errors[quantity.name], r) for r in some if r.errors.get(quantity.name, 0) > 0]
         if not xy:
             continue
-        line, = axes.loglog([p[0] for p in xy], [p[1] for p in xy], f"{MARKS[k % len(MARKS)]}-", markersize=4, lw=1, label=name)
+        line, = axes.loglog([p[0] for p in xy], [p[1] for p in xy], **looks[name], label=name)
         points += [p[:2] for p in xy]
         if len(points) <= 24 or k == 0:
             for x, y, row in xy:
@@ -65,9 +90,9 @@ def error_against_time(title, rows, quantity, clock, file, others=()):
 
 
 def order(title, rows, quantity, refinement, file):
-    made, axes = figure(title)
-    drawn = False
-    for k, (name, some) in enumerate(series_of(rows).items()):
+    looks, drawn = styles(rows), False
+    made, axes = figure(title, len(looks) + 2)
+    for name, some in series_of(rows).items():
         xy = [(r.point.size, r.errors[quantity.name]) for r in some if r.errors.get(quantity.name, 0) > 0]
         if len(xy) < 2:
             continue
@@ -75,7 +100,7 @@ def order(title, rows, quantity, refinement, file):
         if steep is None or last is None:
             continue
         drawn = True
-        axes.loglog(*zip(*xy), f"{MARKS[k % len(MARKS)]}-", markersize=4, lw=1, label=f"{name}: order {-steep:.2f}, of the last two {-last:.2f}")
+        axes.loglog(*zip(*xy), **looks[name], label=f"{name}: order {-steep:.2f}, of the last two {-last:.2f}")
     axes.set(xlabel=f"{refinement} (size n, cells or steps a length)", ylabel=f"error of {quantity.name}")
     if not drawn:
         return plt.close(made)
@@ -83,14 +108,13 @@ def order(title, rows, quantity, refinement, file):
     top = max(max(line.get_ydata()) for line in axes.get_lines())
     for p, style in ((1, ":"), (2, "--")):
         axes.plot([low, high], [top, top * (high / low)**-p], style, color="0.7", lw=0.8, label=f"order {p}")
-    axes.legend(fontsize=7)
     return finish(made, axes, file)
 
 
 def growth(title, rows, clock, refinement, file):
-    made, axes = figure(title)
-    drawn = False
-    for k, (name, some) in enumerate(series_of(rows).items()):
+    looks, drawn = styles(rows), False
+    made, axes = figure(title, len(looks))
+    for name, some in series_of(rows).items():
         xy = [(r.point.size, getattr(r.record, clock)) for r in some]
         if len(xy) < 2:
             continue
@@ -98,7 +122,7 @@ def growth(title, rows, clock, refinement, file):
         if exponent is None:
             continue
         drawn = True
-        axes.loglog(*zip(*xy), f"{MARKS[k % len(MARKS)]}-", markersize=4, lw=1, label=f"{name}: n^{exponent:.2f}")
+        axes.loglog(*zip(*xy), **looks[name], label=f"{name}: n^{exponent:.2f}")
     axes.set(xlabel=f"{refinement} (size n)", ylabel=CLOCKS[clock])
     return finish(made, axes, file) if drawn else plt.close(made)
 

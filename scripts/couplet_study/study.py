@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A study by axes: its runs, its table, its pictures, its report."""
 import pathlib
+import re
 
 from couplet_run import Task, expect, run_all
 from couplet_run.launch import machine
@@ -11,6 +12,12 @@ from couplet_study.report import Report
 
 KEYS = {"participant", "alone", "axes", "quantities", "set", "leave-out", "clock", "repeats", "timeout", "title", "text", "variants", "sweeps",
         "peers", "sources"}
+
+
+def short(reason):
+    """Of a failed run, for a table: without the arguments that a refusal begins with."""
+    refused = re.sub(r"^exit code \d+: couplet: The job cannot start: / \[\w+\] (--set .*?: (?=\w+\.))?", "refused: ", reason)
+    return (refused if refused != reason else f"failed: {reason}")[:260]
 
 
 class Study:
@@ -123,7 +130,7 @@ class Study:
         body = []
         for row in rows:
             if not row.good:
-                body.append((*row.point.labels.values(), *("" for _ in names), "", "", "", f"failed: {row.reason[:160]}"))
+                body.append((*row.point.labels.values(), *("" for _ in names), "", "", "", short(row.reason)))
                 continue
             shown = [f"{row.values[n]:.5g}" + (f" ({100 * row.errors[n]:.2g} %)" if n in row.errors and not q.is_error and not q.given.get("absolute") else "")
                      for n, q in zip(names, self.quantities)]

@@ -2,6 +2,7 @@
 """One row a run: its axes, what it gave, how far off that is, what it cost."""
 import csv
 import math
+import re
 import types
 
 from couplet_study import convergence
@@ -14,7 +15,7 @@ HEADS = {"wall": "wall [s]", "cpu": "processor [s]", "work": "work [s]", "memory
 class Row:
     def __init__(self, point, record, series):
         self.point, self.record, self.series = point, record, series
-        self.values, self.errors, self.reason = {}, {}, record.reason
+        self.values, self.errors, self.reason = {}, {}, re.sub(r" \(see \S+\)$", "", record.reason)  # a log's place says nothing elsewhere
 
     @property
     def good(self):

@@ -18,7 +18,8 @@ STUDIES = {  # folder in docs/validation/studies: file in configs
     "elliptic-plate": "elliptic-plate/case", "le1": "le1/case", "le11": "le11/case", "cantilever": "cantilever/case",
     "vibrating-cantilever": "vibrating-cantilever/case", "heated-cylinder": "heated-cylinder/case", "taylor-green-2d": "taylor-green-2d/case",
     "cylinder-2d-1": "cylinder/study-2d-1", "cylinder-2d-2": "cylinder/study-2d-2", "cavity": "cavity/study",
-    "perpendicular-flap": "perpendicular-flap/study", "schumann": "schumann/case", "thermocline-andasol": "thermocline-andasol/study"}
+    "perpendicular-flap": "perpendicular-flap/study", "schumann": "schumann/case", "thermocline-andasol": "thermocline-andasol/study",
+    "bent-beam": "bent-beam/study"}
 TARGETS = {  # study: (quantity, three targets)
     "elliptic-plate": ("displacement", ("2%", "1%", "0.4%")), "le11": ("stress at A", ("8%", "4%", "2%")),
     "vibrating-cantilever": ("period", ("0.3%", "0.1%", "0.03%")), "taylor-green-2d": ("velocity", ("1%", "0.3%", "0.1%")),
@@ -236,6 +237,7 @@ BARS = [
         "the thesis's (in brackets) within a factor of 1.5", table_3_3, long=True),
     *(Bar(f"peers on the same plot: {title}", ", ".join(peers), on_the_plot(name, peers)) for title, name, peers in (
         ("plate B", "elliptic-plate", ("CalculiX", "solidDisplacementFoam")), ("LE1", "le1", ("CalculiX", "solidDisplacementFoam")),
-        ("Taylor-Green", "taylor-green-2d", ("icoFoam",)), ("2D-1", "cylinder-2d-1", ("icoFoam",)), ("2D-2", "cylinder-2d-2", ("icoFoam",)))),
+        ("Taylor-Green", "taylor-green-2d", ("icoFoam",)), ("2D-1", "cylinder-2d-1", ("icoFoam",)), ("2D-2", "cylinder-2d-2", ("icoFoam",)),
+        ("case E", "bent-beam", ("CalculiX C3D8", "CalculiX C3D8I", "CalculiX C3D20")))),
     Bar("accuracy, validate, benchmarks by the runner: lines", "fewer than before", less_code),
 ]

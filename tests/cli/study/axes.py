@@ -118,6 +118,20 @@ def wrong(build, folder):
     return failed
 
 
+def mappings(folder):
+    """A key that changes within a mapping that the case lacks and another axis has given keeps the rest of it, and the later counts."""
+    sys.path.insert(0, str(ROOT / "scripts"))
+    from couplet_run import Case
+    case, method = Case(folder / "case.yaml"), "participants.solid.solution-method"
+    given = {method: {"type": "segregated", "acceleration": "aitken"}, f"{method}.face-gradient": "thesis", "simulation.end-time": "1 s"}
+    both = case.assignments(given)[-1] == method + '={"type": "segregated", "acceleration": "aitken", "face-gradient": "thesis"}'
+    text = case.assignments({**given, method: "{type: newton-krylov}"})[-1] == method + '={"type": "newton-krylov", "face-gradient": "thesis"}'
+    later = case.assignments(dict(reversed(given.items())))[-1].startswith(f'{method}={{"type": "segregated"') and given[method] == {
+        "type": "segregated", "acceleration": "aitken"}
+    return check("keys within a mapping that another axis gave keep the rest of it", both and text and later,
+                 str([case.assignments(given), case.assignments(dict(reversed(given.items())))]))
+
+
 def made_up(order, sizes):
     """A series whose value is 1 + n^-order and whose cost is start-up and n^3, without any run."""
     from types import SimpleNamespace as S
@@ -172,6 +186,7 @@ def main(build):
         shutil.copy(ROOT / "configs/cantilever/cantilever.geo", folder)
         (folder / "case.yaml").write_text((ROOT / "configs/cantilever/case.yaml").read_text().split("\nstudy:")[0] + STUDY)
         failed = predicting()
+        failed += mappings(folder)
         failed += restartable(build, folder)
         failed += content(folder)
         failed += looked_at(folder)
