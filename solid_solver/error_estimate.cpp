@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/inner_variation.hpp"
 
@@ -75,68 +77,53 @@ void SolidErrorEstimate::add_loads(ErrorParts& parts) const {
   }
 }
 
-/// Of the gradient in use and the corrected one, over that in use: sqrt(sum V mu |E1 - E2|^2 / sum V mu |E1|^2),
-/// E = (H + H^T + H^T H) / 2, which turning the body leaves as it is.
-double SolidErrorEstimate::green_strain_difference() const {
+/// Share of the strain energy that the mesh misses: half of sum V mu |E1 - E2|^2 / sum V mu |E1|^2 of the Green strains
+/// E = (H + H^T + H^T H) / 2 of the gradient in use and the corrected one, which turning the body leaves as they are, half
+/// since each gradient errs; or, if more, what quadrilaterals miss, by the law's moduli at rest.
+double SolidErrorEstimate::missed_of_large_strain(const SolidState& state,
+                                                  std::span<const double> unknowns) const {
   const Mesh& mesh = body_.mesh();
-  const SolidState& state = stepper_.state();
-  const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
+  const ElasticOperator& rows = body_.elastic();
   const std::vector<double> known =
       body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()});
   const auto strain = [](const Tensor3& h) { return Tensor3(0.5 * (h + h.transpose() + h.transpose() * h)); };
-  std::vector<Tensor3> used(std::size_t(mesh.n_flux_faces()), Tensor3::Zero());
-  double difference = 0, size = 0;
-  const auto visit = [&](const ElasticKernel& kernel, auto take) {
-    kernel.face_gradients(
-        unknowns, known,
-        [&](Index f, const Tensor3& gradient) {
-          const Index owner = mesh.owner[f];
-          if (owner >= mesh.cells.n_owned()) return;
-          const Geometry& g = mesh.reference;
-          const Vec3 across =
-              f < mesh.n_interior ? Vec3(g.cell_centre[mesh.neighbour[f]] + mesh.shift(f)) : g.face_centre[f];
-          const double weight =
-              std::abs(g.face_area[f].dot(across - g.cell_centre[owner])) * body_.elastic().lame(owner).mu;
-          take(f, weight, strain(gradient));
-        },
-        0, mesh.n_flux_faces());
+  const auto weight = [&](Index f) {
+    if (mesh.owner[f] >= mesh.cells.n_owned()) return 0.0;
+    const auto [here, there] = pyramids(mesh, f);
+    return (here + there) * rows.lame(mesh.owner[f]).mu;
   };
-  visit(body_.kernel(), [&](Index f, double weight, const Tensor3& e) {
-    used[std::size_t(f)] = e;
-    size += weight * e.squaredNorm();
-  });
-  visit(ElasticKernel(mesh, body_.elastic(), FaceGradientScheme::corrected),
-        [&](Index f, double weight, const Tensor3& e) {
-          difference += weight * (e - used[std::size_t(f)]).squaredNorm();
-        });
-  size = sum(mesh.comm, size);
-  return size > 0 ? std::sqrt(sum(mesh.comm, difference) / size) : 0;
+  std::optional<InnerVariation> inner;
+  if (InnerVariation::is_needed(mesh, rows)) inner.emplace(mesh, rows);
+  std::vector<Tensor3> used(std::size_t(mesh.n_flux_faces()));
+  double difference = 0, size = 0;
+  body_.kernel().face_gradients(
+      unknowns, known,
+      [&](Index f, const Tensor3& gradient) {
+        const Tensor3 e = used[std::size_t(f)] = strain(gradient);
+        size += weight(f) * e.squaredNorm();
+        if (inner) inner->add(f, e);
+      },
+      0, mesh.n_flux_faces());
+  ElasticKernel(mesh, rows, FaceGradientScheme::corrected)
+      .face_gradients(
+          unknowns, known,
+          [&](Index f, const Tensor3& gradient) {
+            difference += weight(f) * (strain(gradient) - used[std::size_t(f)]).squaredNorm();
+          },
+          0, mesh.n_flux_faces());
+  size = sum(mesh.comm, size), difference = sum(mesh.comm, difference);
+  return std::max(size > 0 ? 0.5 * difference / size : 0, inner ? inner->missed() : 0);
 }
 
-/// Of Green strains, by the law's moduli at rest.
-double SolidErrorEstimate::inner_variation() const {
-  const Mesh& mesh = body_.mesh();
-  if (!InnerVariation::is_needed(mesh, body_.elastic())) return 0;
+/// The displacement follows as softly as the deformed body does. NaN: its tangent has no solution.
+double SolidErrorEstimate::finite_mesh_error() const {
   const SolidState& state = stepper_.state();
   const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
-  InnerVariation variation(mesh, body_.elastic());
-  body_.kernel().face_gradients(
-      unknowns, body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()}),
-      [&](Index f, const Tensor3& h) { variation.add(f, 0.5 * (h + h.transpose() + h.transpose() * h)); }, 0,
-      mesh.n_flux_faces());
-  return variation.missed();
-}
-
-/// An energy errs by the square of what the strains err, of which half of the difference's is each gradient's; the displacement
-/// follows as softly as the deformed body does. NaN: its tangent has no solution.
-double SolidErrorEstimate::finite_mesh_error() const {
-  const double difference = green_strain_difference();
-  const double energy = std::max(0.5 * difference * difference, inner_variation());
+  const double energy = missed_of_large_strain(state, unknowns);
   FiniteStrain* newton = body_.newton();
   if (body_.is_dynamic() || !newton) return energy;
-  const SolidState& state = stepper_.state();
   try {
-    return energy * newton->softness(body_.unknowns_of(state.cell_u, state.face_u), state.known);
+    return energy * newton->softness(unknowns, state.known);
   } catch (const SolveFailure&) {
     return ErrorParts::unknown;
   }

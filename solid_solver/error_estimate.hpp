@@ -41,8 +41,7 @@ class SolidErrorEstimate {
   double left_by_solver() const;
   double missed_work() const;
   void add_loads(ErrorParts& parts) const;
-  double green_strain_difference() const;
-  double inner_variation() const;
+  double missed_of_large_strain(const SolidState& state, std::span<const double> unknowns) const;
   double finite_mesh_error() const;
   double mean_square(std::span<const double> cells) const;
 

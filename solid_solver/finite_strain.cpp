@@ -37,6 +37,8 @@ constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 4000;
 constexpr double slender_2d = 12, slender_3d = 60;
 // A correction of this size beside the displacement is rounding.
 constexpr double rounding = 1e-14;
+// Left of a load by rounding: told.
+constexpr double drowned = 0.01;
 
 }  // namespace
 
@@ -205,7 +207,7 @@ SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
   SolveStatistics statistics;
   iterates_.clear();
   start_pressures(load, u);
-  if (!load.before.empty()) follow_known(load, solver, u);
+  if (any(mesh_.comm, !load.before.empty())) follow_known(load, solver, u);
   NewtonIterate now;
   now.residual = residual(load, u, now.ratio);
   if (!std::isfinite(now.residual))
@@ -254,8 +256,23 @@ SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
   kernel_->set_own_pressures(false);
   is_carried_ = false;
   statistics.residual = iterates_.back().residual;
+  const double left = std::max(now.residual, whole_);
+  if (load.mass_factor == 0 && left > tolerance_ * scale)
+    statistics.residual = judge_rounding(load, scale, left);
   log::debug("{}", text());
   return statistics;
+}
+
+double FiniteStrain::judge_rounding(const Load& load, double scale, double left) {
+  const double loads = presses_ ? scale : norm(mesh_.comm, load.rows);
+  if (loads == 0) return 0;
+  if (left > drowned * loads && !is_drowned_told_)
+    log::warn(
+        "The load ({:.2g} N) is hardly larger than the rounding of the inner forces of a body this stiff that was "
+        "moved this far ({:.2g} N): what it does to the body is not resolved.",
+        loads, left);
+  is_drowned_told_ = is_drowned_told_ || left > drowned * loads;
+  return left / loads;
 }
 
 std::string FiniteStrain::text() const {
@@ -273,6 +290,11 @@ std::vector<double> FiniteStrain::forces(std::span<const double> unknowns, std::
   std::vector<double> rows(rows_.n_unknowns());
   kernel_->linearise(unknowns, known, 0, rows);
   return rows;
+}
+
+void FiniteStrain::set_pressure(std::vector<double> of_faces) {
+  presses_ = any(mesh_.comm, std::ranges::any_of(of_faces, [](double p) { return p != 0; }));
+  kernel_->set_pressure(of_faces);
 }
 
 double FiniteStrain::energy(std::span<const double> unknowns, std::span<const double> known) {

@@ -36,7 +36,7 @@ class FiniteStrain final : public LargeStrain {
   void set_density(std::span<const double> of_cells) { kernel_->set_density(of_cells); }
   using Load = LargeStrainLoad;
   SolveStatistics solve(const Load& load, std::span<double> u) override;
-  void set_pressure(std::vector<double> of_faces) override { kernel_->set_pressure(of_faces); }
+  void set_pressure(std::vector<double> of_faces) override;
   std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
@@ -62,6 +62,8 @@ class FiniteStrain final : public LargeStrain {
   void follow_known(const Load& load, TangentSolver& solver, std::span<double> u);
   double scale_of(const Load& load, std::span<const double> u, double residual);
   SolveStatistics iterate(const Load& load, std::span<double> u);
+  /// Over the load what rounding ended the iteration with; much of it is said once, nothing is left of no load. Collective.
+  double judge_rounding(const Load& load, double scale, double left);
   TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia);
   std::string where_worst() const;
 
@@ -70,6 +72,7 @@ class FiniteStrain final : public LargeStrain {
   TangentSolver::By by_ = TangentSolver::By::frames;
   bool mixed_ = false;       // pressures of their own on the way to equilibrium
   bool is_carried_ = false;  // in the solve under way
+  bool presses_ = false, is_drowned_told_ = false;
   double tolerance_, noise_, noise_of_motion_;
   double whole_ = 0;  // norm of the last residual with U'(J) in place of those pressures
   int most_linear_;

@@ -121,7 +121,7 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
     multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
     const double length = slenderness(mesh);
     const bool is_slender = length > very_slender || (length > slender && mesh.cells.n_global() > many_cells);
-    if (heavy_here <= heavy && is_slender && !has_springs(problem_)) add_rigid_motions(inertia);
+    if (heavy_here <= heavy && is_slender && !has_springs(problem_)) add_rigid_motions(inertia, length);
     name_ = modes_ ? fmt::format(
                          "newton-krylov (conjugate gradients, multigrid and rigid motions of {} aggregates)",
                          modes_->n_aggregates())
@@ -153,13 +153,13 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
 /// iterations and 1.5 s of processor time with them, 234 and 2.6 s without, and one 100:1 of 400x4x4 cubes took 513, where
 /// without them 2000 were too few. A plate of 37 000 cells gained a quarter of its iterations and lost a fifth of its time,
 /// one of 295 000 had no gain at all.
-void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia) {
+void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia, double length) {
   const Mesh& mesh = problem_.mesh;
   // Half as long as thick, where the cells are fine enough for that.
   const GlobalIndex cells = mesh.cells.n_global();
   const GlobalIndex aggregates = std::min<GlobalIndex>(
       most_aggregates, std::max(cells / cells_of_slender_aggregate,
-                                std::min(static_cast<GlobalIndex>(slenderness(mesh)), cells / fewest_cells)));
+                                std::min(static_cast<GlobalIndex>(length), cells / fewest_cells)));
   if (aggregates < fewest_aggregates) return;
   modes_ = std::make_unique<CurrentRigidModes>(mesh, problem_.elastic, static_cast<int>(aggregates), inertia);
   DeformedBody at_rest;

@@ -24,7 +24,7 @@ class NewtonKrylov final : public SolutionMethod {
 
  private:
   void choose_multigrid(const MethodParameters& parameters);
-  void add_rigid_motions(const std::vector<double>& inertia);
+  void add_rigid_motions(const std::vector<double>& inertia, double length);
   void choose_factors();
 
   SolidProblem problem_;

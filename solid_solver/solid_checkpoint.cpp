@@ -19,8 +19,8 @@ void visit_arrays(State& s, bool has_mass, Visit visit) {
   visit("cell-displacement", s.cell_u);
   visit("cell-velocity", s.cell_v);
   if (!s.cell_a.empty()) visit("cell-acceleration", s.cell_a);
-  if (has_mass && !s.face_a.empty()) visit("nodes-face-acceleration", s.face_a);
-  if (has_mass && !s.face_u_old.empty()) {
+  if (has_mass && !s.cell_a.empty()) visit("nodes-face-acceleration", s.face_a);
+  if (has_mass && !s.cell_u_old.empty()) {
     visit("old-face-displacement", s.face_u_old);
     visit("old-face-velocity", s.face_v_old);
   }

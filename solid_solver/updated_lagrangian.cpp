@@ -175,7 +175,7 @@ SolveStatistics UpdatedLagrangian::solve(const LargeStrainLoad& load, std::span<
   ScalarSystems& systems = frame().systems(load.mass_factor, load.inertia);
   SolveStatistics statistics;
   std::vector<double> r(u.size()), step(u.size());
-  if (!load.before.empty()) follow_known(load, u);
+  if (any(mesh_.comm, !load.before.empty())) follow_known(load, u);
   accelerator_.restart();
   double size = residual(load, u, r);
   if (!std::isfinite(size))

@@ -2,6 +2,7 @@
 """Bars of the symmetric face gradient in bending and near incompressibility: Cook's membrane, the elliptic plate."""
 import couplet_series as couplet
 from validation.job import Bar
+from validation.parts.energy_defaults import hexahedra
 from validation.parts.solid_cases import probe
 
 SYMMETRIC = "participants.solid.solution-method={face-gradient: symmetric, relative-tolerance: 1e-10}"
@@ -36,14 +37,7 @@ def ratios(shape, limit):
 
 def plate(limits, volume="auto"):  # limits: None to report
     def measure(job):
-        nine = job.beside("configs/elliptic-plate/nine_points.py")
-        got = []
-        for mesh in ((16, 24, 12), (32, 48, 24)):
-            folder, _ = job.solve("solid_solver", "elliptic-plate",
-                                  ("participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d}" % mesh,
-                                   "participants.solid.solution-method={face-gradient: symmetric, relative-tolerance: 1e-8, "
-                                   "volume-strain: %s}" % volume))
-            got.append([100 * e for e in nine.errors(folder / "solid")[:2]])
+        got = [hexahedra(job, n, volume) for n in ((16, 24, 12), (32, 48, 24))]
         return ("; ".join(f"u {u:.3f} %, stress {s:.3f} %" for u, s in got),
                 None if limits is None else all(u <= limit for (u, _), limit in zip(got, limits)))
     return measure

@@ -34,28 +34,31 @@ def plate(shape, limit):
     return measure
 
 
+NINE_POINTS = tuple(solid_gradients.nine_points(which) for which in (0, 1))
+
+
+def hexahedra(job, n, volume="auto"):
+    """Errors of displacement and von Mises stress [%] at the nine points on n = (nr, nt, nz) hexahedra."""
+    run = job.solve_run("solid_solver", "elliptic-plate", (
+        "participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d}" % n,
+        "participants.solid.solution-method={face-gradient: symmetric, relative-tolerance: 1e-8, volume-strain: %s}" % volume))
+    return [error(job, run) for error in NINE_POINTS]
+
+
 def finest(job):
-    nine = job.beside("configs/elliptic-plate/nine_points.py")
-    folder, _ = job.solve("solid_solver", "elliptic-plate", (
-        solid_gradients.mesh(nr=64, nt=96, nz=48), "participants.solid.solution-method={face-gradient: symmetric, relative-tolerance: 1e-8}"))
-    u, stress, _ = nine.errors(folder / "solid")
-    return f"u {100 * u:.3f} %, stress {100 * stress:.3f} %", u <= 0.0005
+    u, stress = hexahedra(job, (64, 96, 48))
+    return f"u {u:.3f} %, stress {stress:.3f} %", u <= 0.05
 
 
 def plate_stress(job):
-    nine = job.beside("configs/elliptic-plate/nine_points.py")
-    got = []
-    for n in ((16, 24, 12), (32, 48, 24), (64, 96, 48)):
-        folder, _ = job.solve("solid_solver", "elliptic-plate", (
-            "participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d}" % n,
-            "participants.solid.solution-method={face-gradient: symmetric, relative-tolerance: 1e-8, volume-strain: auto}"))
-        got.append(100 * nine.errors(folder / "solid")[1])
+    got = [hexahedra(job, n)[1] for n in ((16, 24, 12), (32, 48, 24), (64, 96, 48))]
     return ", ".join(f"{s:.3f} %" for s in got), all(s <= limit for s, limit in zip(got, (0.5, 0.3, 0.2)))
 
 
 POINT = "at one point, (2, 0, 0.6), against 64x96x48 hexahedra of the same gradient"
 BARS = [
-    *(Bar(f"{name}: error of the default beside the corrected gradient's", "at most as large", default(name), long=name == "LE10")
+    *(Bar(f"{name}: error of the default beside the corrected gradient's", "at most as large", default(name), long=name == "LE10",
+          but="the default of these scenes is still the corrected gradient")
       for name in SCENES),
     Bar("plate B, hexahedra 64x96x48: displacement at the nine points", "within 0.05 %", finest, long=True),
     Bar("plate B, hexahedra 16x24x12, 32x48x24, 64x96x48: von Mises stress", "within 0.5, 0.3, 0.2 %", plate_stress, long=True,

@@ -45,13 +45,11 @@ inline std::vector<std::string> traction_text(const SolidParameters& p, const Li
 /// A mesh and a face gradient; names such as "prisms_corrected".
 using CellsAndGradient = std::tuple<BoxCells, FaceGradient>;
 inline const auto all_cells_and_gradients = ::testing::Combine(
-    ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
-                      BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed),
+    ::testing::ValuesIn(all_cells),
     ::testing::Values(FaceGradient::thesis, FaceGradient::corrected, FaceGradient::symmetric));
 inline std::string name_of(const ::testing::TestParamInfo<CellsAndGradient>& info) {
-  constexpr std::array names{"quadrilaterals", "triangles", "hexahedra", "tetrahedra", "prisms", "mixed"};
   const auto& [cells, gradient] = info.param;
-  return fmt::format("{}_{}", names.at(std::size_t(cells)),
+  return fmt::format("{}_{}", name(cells),
                      gradient == FaceGradient::thesis      ? "thesis"
                      : gradient == FaceGradient::corrected ? "corrected"
                                                            : "symmetric");

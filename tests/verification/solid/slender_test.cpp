@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "tests/verification/solid/support.hpp"
 
@@ -44,6 +45,26 @@ TEST(Slender, equilibrium_is_as_near_as_the_numbers_are) {
   SolidParameters p = plane_bar();
   p.boundaries["xmax"] = boundary(Type::traction, {"0", "83.3*t"});
   EXPECT_NEAR(deflection(p, 0.002, 250, 15), 0.0833 / 1.125, 0.002);  // F L^3 / (3 E I), an eighth too stiff
+}
+
+/// What a static run says of a bar that is carried `far` metres and then sheared by `pull` at its end.
+std::string said(double far, double pull) {
+  SolidParameters p = plane_bar();
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {fmt::format("{}*min(2*t, 1)", far), "0"});
+  p.boundaries["xmax"] = boundary(Type::traction, {"0", fmt::format("{}*max(2*t - 1, 0)", pull)});
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  deflection(p, 0.1, 20, 2);
+  return ::testing::internal::GetCapturedStdout() + ::testing::internal::GetCapturedStderr();
+}
+
+// Equilibrium within rounding says nothing of a load that is smaller.
+TEST(Slender, a_load_below_rounding_is_said_to_be_lost) {
+  constexpr const char* lost = "is not resolved";
+  EXPECT_NE(said(1000, 1e-6).find(lost), std::string::npos);
+  EXPECT_EQ(said(0, 1e-2).find(lost), std::string::npos);
+  EXPECT_EQ(said(1000, 1e3).find(lost), std::string::npos);
+  EXPECT_EQ(said(1000, 0).find(lost), std::string::npos);  // no load
 }
 
 }  // namespace

@@ -49,6 +49,14 @@ inline void step(Solid& solid, double dt) {
   solid.accept_step();
 }
 
+inline constexpr std::array all_cells{BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                                      BoxCells::tetrahedra,     BoxCells::prisms,    BoxCells::mixed};
+
+inline const char* name(BoxCells cells) {
+  constexpr std::array names{"quadrilaterals", "triangles", "hexahedra", "tetrahedra", "prisms", "mixed"};
+  return names.at(std::size_t(cells));
+}
+
 inline int dimension_of(BoxCells cells) {
   return cells == BoxCells::quadrilaterals || cells == BoxCells::triangles ? 2 : 3;
 }

@@ -13,12 +13,6 @@
 namespace couplet::testing {
 namespace {
 
-constexpr std::array all_cells{BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
-                               BoxCells::tetrahedra,     BoxCells::prisms,    BoxCells::mixed};
-constexpr std::array cell_names{"quadrilaterals", "triangles", "hexahedra", "tetrahedra", "prisms", "mixed"};
-
-const char* name(BoxCells cells) { return cell_names.at(std::size_t(cells)); }
-
 std::vector<double> random_values(MPI_Comm comm, std::size_t n, unsigned seed) {
   std::mt19937 generator(seed + 100 * comm_rank(comm));
   std::uniform_real_distribution<double> any_value(-1, 1);
