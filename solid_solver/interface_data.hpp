@@ -25,11 +25,20 @@ struct InterfaceData {
 };
 void declare(config::Section& section, InterfaceData& data);
 
-/// The mass of the body over the area of its interface [kg/m^2]: what answers to a pressure that changes on all of
-/// these faces at once, the density times the thickness of a wall that is wet on one side and half of it on both.
-/// `densities`, `volumes`: of this rank's cells; `areas`: of its faces of the interface. Collective.
-double surface_density(MPI_Comm comm, std::span<const double> densities, std::span<const double> volumes,
-                       std::span<const Vec3> areas);
+/// What answers to a pressure that changes on all faces of the interface at once.
+struct WallImpedance {
+  double mass = 0;      ///< of the body over the area of its interface [kg/m^2]
+  double crossing = 0;  ///< thickness (volume over that area) over the speed of pressure waves [s]
+
+  /// What of the mass answers within a step [kg/m^2]: mass tanh(x)/x, x = 2 crossing / dt. That is Z dt/2 with the impedance
+  /// Z(s) = rho c tanh(s h/c) of a layer of thickness h, free behind, at s = 2/dt: all of it in long steps, rho c dt/2
+  /// where the wave does not get through.
+  double in_step(double dt) const;
+};
+/// The density times the thickness of a wall that is wet on one side, half of it on both. `densities`, `speeds` (of pressure
+/// waves; infinite: rigid), `volumes`: of this rank's cells; `areas`: of its faces of the interface. Collective.
+WallImpedance wall_impedance(MPI_Comm comm, std::span<const double> densities, std::span<const double> speeds,
+                             std::span<const double> volumes, std::span<const Vec3> areas);
 
 /// The data to announce at the faces of the interface.
 std::vector<Interface::Datum> taken(const InterfaceData& data);

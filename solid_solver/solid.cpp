@@ -22,6 +22,7 @@ Solid::~Solid() = default;
 
 void Solid::begin_step(const Step& step) {
   const SolidOutputParameters& chosen = body_.parameters().output;
+  dt_ = step.dt;
   stepper_.begin_step(step, !interface_.takes_temperature());
   if (chosen.spectrum && body_.is_dynamic() && step.number == 0) output_->write_spectrum(step.dt);
   if (chosen.modes > 0 && step.number == 0) output_->write_modes();
@@ -33,7 +34,7 @@ Exchange Solid::solve(const Exchange& in) {
     stepper_.prepare_loads();
   }
   stepper_.solve(interface_.load(in));
-  return interface_.values(stepper_.trial());
+  return interface_.values(stepper_.trial(), dt_);
 }
 
 StepReport Solid::accept_step() {

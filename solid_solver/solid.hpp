@@ -52,6 +52,7 @@ class Solid final : public Participant, public EstimatesError {
   const SolidContext context_;
   SolidBody body_;
   const SolidInterface interface_;
+  double dt_ = 0;  // of the step that was begun
   SolidStepper stepper_;
   const SolidFields fields_;
   SolidJudge judge_;

@@ -2,6 +2,8 @@
 #include "solid_solver/solid_interface.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "common/base/error.hpp"
 
@@ -9,8 +11,15 @@ namespace couplet {
 
 namespace {
 
-/// What `interface: {surface-density: true}` gives [kg/m^2]. Collective.
-double density_behind(const SolidBody& body, const Interface& interface) {
+/// Of pressure waves without motion across [m/s]; infinite for materials of which it is not known.
+double speed_in(const SolidMaterial& m) {
+  const double nu = m.poissons_ratio, modulus = m.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+  return modulus > 0 && m.density > 0 ? std::sqrt(modulus / m.density)
+                                      : std::numeric_limits<double>::infinity();
+}
+
+/// For `interface: {surface-density: true}`. Collective.
+WallImpedance impedance_of(const SolidBody& body, const Interface& interface) {
   const Mesh& mesh = body.mesh();
   if (body.boundaries().interface_patches().empty())
     throw Error("interface: surface-density: no patch has 'type: interface', where it could be given.");
@@ -18,10 +27,13 @@ double density_behind(const SolidBody& body, const Interface& interface) {
     throw Error(
         "interface: surface-density: a static solid answers without its mass; take 'analysis: dynamic' or remove "
         "the key.");
-  std::vector<double> densities, volumes;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    densities.push_back(body.density(c)), volumes.push_back(mesh.reference.volume[c]);
-  return surface_density(mesh.comm, densities, volumes, interface.face_areas);
+  std::vector<double> densities, speeds, volumes;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    densities.push_back(body.density(c));
+    speeds.push_back(speed_in(body.materials()[std::size_t(mesh.material_of(c))]));
+    volumes.push_back(mesh.reference.volume[c]);
+  }
+  return wall_impedance(mesh.comm, densities, speeds, volumes, interface.face_areas);
 }
 
 }  // namespace
@@ -38,7 +50,7 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
   description_.gives = {{"displacement", "m", Interface::Place::vertices},
                         {"velocity", "m/s", Interface::Place::vertices}};
   if (parameters.interface_data && parameters.interface_data->surface_density) {
-    surface_density_ = density_behind(body, description_);
+    impedance_ = impedance_of(body, description_);
     description_.gives.push_back({"surface-density", "kg/m^2", Interface::Place::faces, 1});
   }
   if (!parameters.interface_data || !parameters.interface_data->temperature) return;
@@ -83,7 +95,7 @@ std::vector<double> SolidInterface::load(const Exchange& in) const {
   return force;
 }
 
-Exchange SolidInterface::values(const SolidState& state) const {
+Exchange SolidInterface::values(const SolidState& state, double dt) const {
   if (!map_) return {};
   const int dim = body_.mesh().dim;
   Exchange out;
@@ -91,7 +103,7 @@ Exchange SolidInterface::values(const SolidState& state) const {
       map_->gather_vertices(body_.at_points(map_->points(), state.cell_u, state.face_u, state.known), dim);
   out["velocity"] = map_->gather_vertices(
       body_.at_points(map_->points(), state.cell_v, state.face_v, state.known_rate), dim);
-  if (surface_density_) out["surface-density"].assign(description_.face_areas.size(), *surface_density_);
+  if (impedance_) out["surface-density"].assign(description_.face_areas.size(), impedance_->in_step(dt));
   return out;
 }
 

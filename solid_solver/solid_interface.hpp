@@ -26,14 +26,14 @@ class SolidInterface final {
   void take_temperature(const Exchange& in) const;
   /// Sum of the given forces, `dim` values a boundary face of owned cells; empty without interface.
   std::vector<double> load(const Exchange& in) const;
-  /// Displacement and velocity at the vertices, and the surface density if it was asked for. Collective.
-  Exchange values(const SolidState& state) const;
+  /// Displacement and velocity at the vertices, and what answers within a step `dt` if it was asked for. Collective.
+  Exchange values(const SolidState& state, double dt) const;
 
  private:
   const SolidBody& body_;
   std::unique_ptr<InterfaceMap> map_;  // none: no interface patch
   Interface description_;
-  std::optional<double> surface_density_;  // [kg/m^2]; none: not given
+  std::optional<WallImpedance> impedance_;  // none: not given
   bool takes_temperature_ = false;
 };
 

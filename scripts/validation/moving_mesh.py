@@ -250,6 +250,14 @@ def saves(job):
     return f"{shut[0]:.1f} sub-steps a step while it is shut, {shut[1]:.1f} without; {iterations[0]:.0f} iterations of the pressure, {iterations[1]:.0f} without", None
 
 
+def hard_mesh(test):
+    """A channel's parabola on it, with explicit and implicit viscous term: root mean square of the error over the largest velocity."""
+    def measure(job):
+        errors, passed = job.recorded("stability_fluid_step_sizes", test, "error")
+        return f"error {', '.join(f'{e:.2e}' for e in errors)} of the largest velocity", passed
+    return measure
+
+
 def behind_step(n, judged):
     def measure(job):
         module = job.beside("configs/backward-step/lengths.py")
@@ -385,6 +393,10 @@ BARS = [
     Bar("effects: no instruction of motion, gaps and samples in a run without them (callgrind)", "none", off_is_nothing),
     Bar("cells sheared by 55, 70 and 75 degrees, needles, slivers, aspect 1000", "solved, or refused by name: tests pass",
         tested("stability_fluid_step_sizes", "*HardMeshes*")),
+    *(Bar(f"{what}: channel flow", "solved, error printed", hard_mesh(test), but=but) for what, test, but in (
+        ("cells sheared by 60 degrees", "sheared_by_sixty", ""),
+        ("wall cells of aspect 1e5", "hundred_thousand", "implicit viscous term alone: the other's stable step is 3e-10 s"),
+        ("tetrahedra with vertices moved by a third of an edge", "slivers", "for tetrahedra that no mesher optimised"))),
     Bar("backward step, Re 800, 48 cells over the height", "reported", behind_step(48, False), long=True),
     Bar("backward step, Re 800, 80 cells over the height", "within 1 % of 6.10, 4.85, 10.48 (Gartling)", behind_step(80, True), long=True),
     Bar("cavity, Re 5000, 128^2 stretched", "extrema within 1 % of their own extrapolation", cavity_5000, long=True),

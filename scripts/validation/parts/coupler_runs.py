@@ -135,7 +135,8 @@ def exchanged(kind, judge):
 PRECICE_PLAIN = 2 * 2.4e6 / 15.4e9 * 1e3
 
 RUNS = [
-    Bar("exchange of 1e5 3-vectors, Aitken, over MPI's own time for the same bytes", "< 2 times", exchanged("aitken", lambda ms, plain: ms < 2 * plain), long=True),
+    Bar("exchange of 1e5 3-vectors, Aitken, over MPI's own time for the same bytes", "< 2 times", exchanged("aitken", lambda ms, plain: ms < 2 * plain), long=True,
+        but="a pass takes each vector to the coupler and on, so that 2.0 is the floor: not to be met by this way of exchange"),
     Bar("the same beside preCICE 3.4.1 over MPI, Aitken", f"at most {11.9 / PRECICE_PLAIN:.0f} times (11.9 ms a pass)",
         exchanged("aitken", lambda ms, plain: ms / plain <= 11.9 / PRECICE_PLAIN), long=True),
     Bar("the same, IQN-ILS of 6 passes beside preCICE's 106 ms a pass", f"at most {53 / PRECICE_PLAIN:.0f} times (half of 106 ms)",

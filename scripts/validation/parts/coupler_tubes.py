@@ -56,9 +56,14 @@ def euler(job):
 def step(job):
     t, y = radial(tube(job, "semi-implicit", "coupling.scheme=semi-implicit"))
     fine, z = radial(tube(job, "fine", "simulation.time-step=0.025 ms", "simulation.end-time=4 ms"))
+    half, h = radial(tube(job, "half", "simulation.time-step=0.05 ms", "simulation.end-time=4 ms"))
     then = [i for i, at in enumerate(t) if 3e-3 - 1e-9 <= at <= 4e-3 + 1e-9]
-    gap = max(abs(y[i] - z[np.abs(fine - t[i]).argmin()]) for i in then)
-    return f"{100 * gap / y.max():.2f} % of the largest motion apart at most, {len(then)} times", len(then) == 11 and bool(gap <= 0.01 * y.max())
+    at = [np.array([values[np.abs(times - t[i]).argmin()] for i in then]) for times, values in ((t, y), (half, h), (fine, z))]
+    gap = np.abs(at[0] - at[2]).max()
+    first, second = (100 * np.sqrt(np.mean((a - b) ** 2)) / y.max() for a, b in zip(at, at[1:]))
+    return (f"{100 * gap / y.max():.2f} % of the largest motion apart at most, {len(then)} times; root mean square of 0.1 to 0.05 ms {first:.2f} %, "
+            f"of 0.05 to 0.025 ms {second:.2f} %: order {np.log2(first / second):.2f}. The wave that runs ahead in the wall, 8 steps a period, "
+            "lags by the second-order error of the step"), len(then) == 11 and bool(gap <= 0.01 * y.max())
 
 
 def hours(job):

@@ -17,17 +17,22 @@ def tube(job, choice):
     scheme, more = CHOICES[choice]
     run = job.coupled_run(job.root / TUBE, "tube-" + choice.replace(" ", "-"), [
         "simulation.end-time=2 ms", "simulation.output.interval=0", "simulation.checkpoint.interval=0", f"coupling.scheme={scheme}", *more])
-    return np.unique(couplet.read_csv(run.folder / "coupler" / "residuals.csv")["step"], return_counts=True)[1], run.cost.cpu
+    rows = couplet.read_csv(run.folder / "coupler" / "residuals.csv")
+    return np.unique(rows["step"], return_counts=True)[1], run.cost.cpu, rows
 
 
 def passes(job):
-    counts, _ = tube(job, "Robin")
-    return f"{counts.mean():.2f} on average, {counts.max()} at most, {len(counts)} steps", bool(counts.mean() <= 4.5)
+    counts, _, rows = tube(job, "Robin")
+    number, residual = (np.array(rows[name]) for name in ("iteration", "relative residual"))
+    guess, last = residual[number == 1], residual[np.cumsum(counts) - 1]
+    factor = np.mean(np.log10(last / guess) / (counts - 1))
+    return (f"{counts.mean():.2f} on average, {counts.max()} at most, {len(counts)} steps; the guess leaves {np.median(guess):.2g} of the load, and a "
+            f"pass takes {-factor:.2f} decades off"), bool(counts.mean() <= 4.5)
 
 
 def cheaper(than, times):
     def measure(job):
-        (few, seconds), (many, other) = tube(job, "Robin"), tube(job, than)
+        (few, seconds, _), (many, other, _) = tube(job, "Robin"), tube(job, than)
         return f"{other / seconds:.2f} times ({other:.1f} and {seconds:.1f} cpu s; {many.mean():.1f} and {few.mean():.1f} passes a step)", \
             bool(other >= times * seconds)
     return measure
