@@ -28,7 +28,8 @@ def environment():
 def last_words(text):
     """What a program said at its end, without the frames that MPI draws around it."""
     lines = [line.strip() for line in text.strip().splitlines() if line.strip() and not set(line.strip()) <= set("-=")]
-    named = [line for line in lines if "error" in line.lower()]
+    # "error:" before other mentions: the estimate of the error is written at a failed run's end, too.
+    named = [line for line in lines if "error:" in line.lower()] or [line for line in lines if "error" in line.lower()]
     return (named or lines or [""])[-1] if named else " / ".join(lines[-3:])
 
 
