@@ -26,7 +26,8 @@ RigidMotion rigid_motion(const ModalModel& model, std::size_t mode) {
     inertia += r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose();
     moment += r.cross(shape(v));
   }
-  motion.rotation = inertia.completeOrthogonalDecomposition().solve(moment);
+  // Of sizes known at run time: of a fixed 3x3 GCC 12 takes Eigen's AVX code for a read past its end.
+  motion.rotation = Eigen::MatrixXd(inertia).completeOrthogonalDecomposition().solve(Eigen::VectorXd(moment));
   double left = 0, all = 0;
   for (std::size_t v = 0; v < n_vertices; ++v) {
     const Vec3 u = shape(v);
