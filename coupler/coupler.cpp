@@ -2,6 +2,7 @@
 #include "coupler/coupler.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "common/base/error.hpp"
@@ -103,6 +104,10 @@ void Coupler::initialise() {
   volume_level_.emplace(comm_, sides_, *links_, schedule_, group_);
   if (volume_level_->empty()) volume_level_.reset();
   if (!parameters_.watch.empty()) watched_.emplace(comm_, sides_, parameters_.watch);
+  // Sub-steps see a line through what was given; the level of closed fluids answers by itself.
+  if (simulation_.error_estimate && !schedule_.iterates && schedule_.sub_steps.empty() && !volume_level_)
+    lag_.emplace(comm_, *unknown_);
+  if (lag_ && !lag_->possible()) lag_.reset();
 }
 
 std::optional<StepFailure> Coupler::attempt(const Step& step) {
@@ -127,6 +132,7 @@ std::optional<StepFailure> Coupler::attempt(const Step& step) {
 void Coupler::solve(const Step& step) {
   Step begun = step;
   begun.waveform = schedule_.waveform;
+  look_at_lag(begun);
   ask_all(everyone(), {Op::begin_step, begun, {}, 0, -1, ""});
   enter_(Phase::solve, step.time);
   if (volume_level_) volume_level_->start_step(step.dt);
@@ -181,20 +187,6 @@ void Coupler::give_back(std::vector<Exchange> given) {
   for (std::size_t i = 0; i < given.size(); ++i) partners_[i].channel->reuse(std::move(given[i]));
 }
 
-void Coupler::pass_once(const Step& step, const FixedPointMap& map) {
-  last_.image = map(last_.x);
-  last_.residual = worst(unknown_->measure(last_.x, last_.image));
-  last_.iterations = 1;
-  // Not where sub-steps see a line through what was given: each pass would bend it.
-  if (step.scheme != Scheme::explicit_ || !schedule_.sub_steps.empty() ||
-      !CouplingAudit::looks_at(step.number))
-    return;
-  const Iterate again = map(last_.image);
-  audit_->returned(last_.residual, worst(unknown_->measure(last_.image, again)));
-  last_.image = map(last_.x);  // the step is what it is without this look
-  iterations_ -= 2;            // nor are these its passes
-}
-
 void Coupler::accept(double time, int output) {
   enter_(Phase::accept, {});
   ask_all(everyone(), {Op::accept_step, {}, {}, time, output, ""});
@@ -209,6 +201,7 @@ void Coupler::accept(double time, int output) {
   }
   if (errors_ && history_.now.unknown.size() == last_.image.unknown.size())
     errors_->accepted(last_.residual, worst(unknown_->measure(history_.now, last_.image)), last_dt_);
+  if (lag_ && !history_.now.rider.empty()) lag_->accepted(last_.x, last_.image, last_dt_);
   history_.accepted(last_.image, last_dt_, schedule_.predictor);
   if (volume_level_) {
     volume_level_->accept(given_);
@@ -254,6 +247,7 @@ void Coupler::finalise() {
 void Coupler::tell_errors(std::vector<NamedErrors> participants) const {
   if (errors_) participants.push_back({"coupling", {.coupling = errors_->over_size()}});
   for (const std::string& sentence : error_sentences(participants)) log::info("{}", sentence);
+  if (!schedule_.iterates) log::info("{}", lag_ ? lag_->sentence(participants) : LagEstimate::not_possible());
 }
 
 std::string Coupler::run() {

@@ -18,6 +18,7 @@
 #include "coupler/fixed_point.hpp"
 #include "coupler/guards.hpp"
 #include "coupler/interface_output.hpp"
+#include "coupler/lag_estimate.hpp"
 #include "coupler/mechanics.hpp"
 #include "coupler/monitor.hpp"
 #include "coupler/parameters.hpp"
@@ -73,6 +74,8 @@ class Coupler {
   void solve(const Step& step);
   /// One pass from x, the explicit scheme's step.
   void pass_once(const Step& step, const FixedPointMap& map);
+  /// What the prediction of explicit coupling costs, at some steps, before they begin.
+  void look_at_lag(const Step& step);
   /// One pass through the group from what is known to what all give.
   std::vector<Exchange> pass(std::vector<Exchange> known, bool first);
   void ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh);
@@ -112,6 +115,7 @@ class Coupler {
   WorkGuard work_guard_;
   std::optional<CouplingAudit> audit_;
   std::optional<CouplingErrorEstimate> errors_;  // none: not wanted, or nothing is iterated
+  std::optional<LagEstimate> lag_;               // none: not wanted, not explicit, or it could not tell
   std::string diverged_;                         // empty: no guard has fired
   bool warned_ = false;
   bool answered_anew_ = false;  // somebody in the last pass

@@ -84,4 +84,49 @@ std::vector<Exchange> Coupler::pass(std::vector<Exchange> known, bool first) {
   return given;
 }
 
+/// Tries the step and one half as long, two passes each; both are forgotten.
+void Coupler::look_at_lag(const Step& step) {
+  if (!lag_ || history_.now.rider.empty() || !CouplingAudit::looks_at(step.number)) return;
+  std::vector<Exchange> outputs;
+  const auto answer_to = [&](const Iterate& x) {
+    std::vector<Exchange> known(partners_.size());
+    unknown_->scatter(x, known);
+    give_back(std::move(outputs));
+    outputs = pass(std::move(known), true);  // the mesh moves, too
+    --iterations_;
+    return unknown_->gather(outputs);
+  };
+  const auto look = [&](double dt) {
+    Step tried = step;
+    tried.dt = dt;
+    ask_all(everyone(), {Op::begin_step, tried, {}, 0, -1, ""});
+    LagEstimate::Look look;
+    look.x = predict(*unknown_, history_, dt, schedule_.predictor);
+    look.image = answer_to(look.x);
+    look.again = answer_to(look.image);
+    return look;
+  };
+  try {
+    const LagEstimate::Look half = look(step.dt / 2);
+    lag_->looked(look(step.dt), half, step.dt);
+  } catch (const SolveFailure&) {
+    return;  // nothing is learnt; why the step itself fails is said there
+  }
+  give_back(std::move(outputs));
+}
+
+void Coupler::pass_once(const Step& step, const FixedPointMap& map) {
+  last_.image = map(last_.x);
+  last_.residual = worst(unknown_->measure(last_.x, last_.image));
+  last_.iterations = 1;
+  // Not where sub-steps see a line through what was given: each pass would bend it.
+  if (step.scheme != Scheme::explicit_ || !schedule_.sub_steps.empty() ||
+      !CouplingAudit::looks_at(step.number))
+    return;
+  const Iterate again = map(last_.image);
+  audit_->returned(last_.residual, worst(unknown_->measure(last_.image, again)));
+  last_.image = map(last_.x);  // the step is what it is without this look
+  iterations_ -= 2;            // nor are these its passes
+}
+
 }  // namespace couplet

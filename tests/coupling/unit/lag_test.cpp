@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// What explicit coupling is told to leave, against what it leaves: the same masses on springs coupled implicitly.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <regex>
+
+#include "common/log/log.hpp"
+#include "coupler/coupler.hpp"
+#include "tests/coupling/toy/piston.hpp"
+#include "tests/coupling/toy/spring.hpp"
+
+namespace couplet {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The piston, whose fluid drags the wall as well: F -= C w, w the mean velocity of a face's ends.
+class Drag final : public Participant {
+ public:
+  Drag(toy::Piston& piston, double C) : piston_(piston), C_(C) {}
+  Interface initialise() override { return piston_.initialise(); }
+  void begin_step(const Step& step) override { piston_.begin_step(step); }
+  Exchange solve(const Exchange& in) override {
+    Exchange out = piston_.solve(in);
+    if (in.contains("velocity")) {
+      const std::vector<double>& w = in.at("velocity");
+      out.at("pressure-force")[1] -= C_ * (w[1] + w[3]) / 2;
+    }
+    return out;
+  }
+  StepReport accept_step() override { return piston_.accept_step(); }
+  void save(CheckpointWriter& file) const override { piston_.save(file); }
+  void load(CheckpointReader& file) override { piston_.load(file); }
+  void write_output(double, int) override {}
+  void write_monitors(double) override {}
+
+ private:
+  toy::Piston& piston_;
+  double C_;
+};
+
+/// The spring, its way kept; a step above `fails_above` fails once it was not the first try.
+class Watched final : public Participant {
+ public:
+  Watched(const toy::SpringParameters& p, std::vector<double>& way) : spring_(MPI_COMM_SELF, p), way_(way) {}
+  Interface initialise() override { return spring_.initialise(); }
+  void begin_step(const Step& step) override {
+    if (step.dt < fails_below) throw SolveFailure("dt is too short.");
+    spring_.begin_step(step);
+  }
+  Exchange solve(const Exchange& in) override {
+    Exchange out = spring_.solve(in);
+    y_ = out.at("displacement")[1];
+    return out;
+  }
+  StepReport accept_step() override {
+    way_.push_back(y_);
+    return spring_.accept_step();
+  }
+  void save(CheckpointWriter& file) const override { spring_.save(file); }
+  void load(CheckpointReader& file) override { spring_.load(file); }
+  void write_output(double, int) override {}
+  void write_monitors(double) override {}
+  double fails_below = 0;
+
+ private:
+  toy::Spring spring_;
+  std::vector<double>& way_;
+  double y_ = 0;
+};
+
+struct LagRun {
+  double mu = 0.1, drag = 0, end = 10, dt = 0.05, fails_below = 0;  // mu: added mass over the structure's
+  int order = 2;
+  Scheme scheme = Scheme::explicit_;
+  bool estimates = true;
+  fs::path restart{}, folder = fs::temp_directory_path() / ("couplet-lag-" + std::to_string(::getpid()));
+  std::vector<double> way{};
+  std::string text{};
+
+  /// Two masses of 0.5 kg, which swing with 1 rad/s together with the fluid.
+  void operator()() {
+    fs::create_directories(folder);
+    CouplingParameters coupling;
+    coupling.scheme = scheme;
+    coupling.convergence.relative = 1e-12;
+    coupling.predictor_order = order;
+    SimulationParameters simulation;
+    simulation.end_time = end, simulation.time_step = dt, simulation.error_estimate = estimates;
+    toy::PistonParameters fluid;
+    fluid.added_mass = mu, fluid.driving_force = 1;
+    ParticipantContext context;
+    context.comm = MPI_COMM_SELF;
+    toy::Piston piston(context, fluid);
+    Drag dragged(piston, drag);
+    Watched spring({.mass = 0.5, .stiffness = (1 + mu) / 2}, way);
+    spring.fails_below = fails_below;
+    CouplerChannels channels{std::make_unique<LocalChannel>("fluid", dragged),
+                             std::make_unique<LocalChannel>("solid", spring), nullptr};
+    Coupler coupler(coupling, simulation, std::move(channels), {folder, folder / "checkpoints", restart});
+    spdlog::set_level(spdlog::level::info);
+    testing::internal::CaptureStdout();
+    const std::string problem = coupler.run();
+    spdlog::default_logger()->flush();
+    text = testing::internal::GetCapturedStdout();
+    EXPECT_EQ(problem, "");
+  }
+  ~LagRun() { fs::remove_all(folder); }
+
+  /// The lower and the upper number of the sentence; NaN: none.
+  std::pair<double, double> told() const {
+    std::smatch found;
+    if (!std::regex_search(text, found,
+                           std::regex("explicit coupling leaves between ([-+.e0-9]+) and ([-+.e0-9]+) of")))
+      return {std::nan(""), std::nan("")};
+    return {std::stod(found[1]), std::stod(found[2])};
+  }
+};
+
+struct Setting {
+  double mu, drag, end, dt;
+  int order;
+};
+
+TEST(LagEstimate, is_within_a_factor_of_two_of_what_explicit_coupling_leaves) {
+  // Added mass alone (errors of single steps cancel), drag alone (they add up), both; starts that jerk; a tenth of a
+  // swing to eight swings; steps from 1/60 to 1/500 of a swing; motion that has died away to a tenth.
+  const Setting settings[] = {{0.2, 0, 10, 0.1, 2},    {0.2, 0, 10, 0.0125, 2}, {0.2, 0, 50, 0.05, 2},
+                              {0.2, 0, 10, 0.05, 1},   {0.2, 0, 50, 0.05, 1},   {0.02, 0, 10, 0.05, 2},
+                              {0.02, 0, 1, 0.02, 2},   {0, 0.1, 10, 0.1, 2},    {0, 0.1, 10, 0.0125, 2},
+                              {0, 0.1, 50, 0.05, 2},   {0, 0.1, 10, 0.05, 1},   {0.1, 0.1, 10, 0.05, 2},
+                              {0.1, 0.1, 50, 0.05, 2}, {0.1, 0.1, 10, 0.05, 1}, {0.02, 0.02, 10, 0.0125, 2}};
+  for (const Setting& s : settings) {
+    LagRun lags{.mu = s.mu, .drag = s.drag, .end = s.end, .dt = s.dt, .order = s.order}, true_;
+    lags();
+    true_.mu = s.mu, true_.drag = s.drag, true_.end = s.end, true_.dt = s.dt, true_.scheme = Scheme::implicit;
+    true_();
+    ASSERT_EQ(lags.way.size(), true_.way.size());
+    double error = 0, size = 0;
+    for (std::size_t i = 0; i < lags.way.size(); ++i) {
+      size = std::max(size, std::abs(lags.way[i]));
+      if (4 * i >= 3 * lags.way.size()) error = std::max(error, std::abs(lags.way[i] - true_.way[i]));
+    }
+    const auto [least, most] = lags.told();
+    const double ratio = least / (error / size);
+    EXPECT_TRUE(ratio > 0.5 && ratio < 2)
+        << "mu " << s.mu << " drag " << s.drag << " end " << s.end << " dt " << s.dt << " order " << s.order
+        << ": told " << least << ", true " << error / size;
+    EXPECT_GE(most, 0.9 * error / size);
+    EXPECT_EQ(true_.text.find("explicit coupling leaves"), std::string::npos);
+  }
+}
+
+TEST(LagEstimate, is_said_to_be_unknown_where_no_step_could_be_looked_at) {
+  LagRun shorter{.end = 0.15};
+  shorter();
+  EXPECT_TRUE(std::isnan(shorter.told().first)) << shorter.text;
+  EXPECT_THAT(shorter.text,
+              testing::HasSubstr("what explicit coupling leaves is not known (no step could be looked at"));
+  LagRun fails{.end = 1, .fails_below = 0.04};  // halves of 0.05
+  fails();
+  EXPECT_THAT(fails.text, testing::HasSubstr("what explicit coupling leaves is not known"));
+  LagRun off{.end = 1, .estimates = false};
+  off();
+  EXPECT_EQ(off.text.find("what explicit coupling leaves"), std::string::npos);
+}
+
+TEST(LagEstimate, changes_nothing_and_continues_over_a_restart_bit_for_bit) {
+  LagRun whole{.drag = 0.1, .end = 2}, off{.drag = 0.1, .end = 2, .estimates = false},
+      first{.drag = 0.1, .end = 1};
+  whole();
+  off();
+  EXPECT_EQ(whole.way, off.way);
+  first.folder += "-first";
+  first();
+  LagRun second{.drag = 0.1, .end = 2};
+  second.folder += "-second";
+  second.restart = find_checkpoint(first.folder / "checkpoints");
+  second();
+  EXPECT_EQ(second.way, std::vector(whole.way.begin() + 20, whole.way.end()));
+  EXPECT_EQ(second.told(), whole.told());
+  EXPECT_FALSE(std::isnan(whole.told().first));
+}
+
+}  // namespace
+}  // namespace couplet
