@@ -56,9 +56,9 @@ void CouplingAudit::tell(const CouplingParameters& parameters, double time) {
     log::doubt(comm_rank(comm_), fmt::format("t = {:g} s: {}", time, text(v)));
 }
 
-void CouplingAudit::tell_at_end(const CouplingParameters& parameters) const {
+void CouplingAudit::tell_at_end(const CouplingParameters& parameters, bool with_sound) const {
   for (const EffectVerdict& v : audit(coupling_effect_cards(), parameters, evidence_))
-    log::info("{}", text(v));
+    if (with_sound || !v.sound()) log::info("{}", text(v));
 }
 
 }  // namespace couplet

@@ -35,7 +35,8 @@ class CouplingAudit {
   const CouplingEvidence& evidence() const { return evidence_; }
   /// The verdicts that the coupling's cards give; those that turn bad are told once.
   void tell(const CouplingParameters& parameters, double time);
-  void tell_at_end(const CouplingParameters& parameters) const;
+  /// `with_sound`: else only those that were not: what a failed run saw until then proves nothing sound.
+  void tell_at_end(const CouplingParameters& parameters, bool with_sound) const;
 
  private:
   struct Force {

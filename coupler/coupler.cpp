@@ -234,14 +234,15 @@ void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
   warned_ = true;
 }
 
-void Coupler::finalise() {
+/// `problem`: why the run stopped before its end; then nothing is said of what its answer errs by.
+void Coupler::finalise(const std::string& problem) {
   enter_(Phase::finalise, {});
   log::info("{}", monitor_->summary(loop_.halvings()));
   if (const WorkGuard::Verdict v = work_guard_.verdict(); !v.text.empty())
     v.sound ? log::info("{}", v.text) : log::doubt(comm_rank(comm_), v.text);
-  audit_->tell_at_end(parameters_);
-  std::vector<NamedErrors> parts = finalise_all(everyone());
-  if (simulation_.error_estimate) tell_errors(std::move(parts));
+  audit_->tell_at_end(parameters_, problem.empty());
+  std::vector<NamedErrors> parts = finalise_all(everyone(), problem);
+  if (simulation_.error_estimate && problem.empty()) tell_errors(std::move(parts));
 }
 
 void Coupler::tell_errors(std::vector<NamedErrors> participants) const {
@@ -272,7 +273,7 @@ std::string Coupler::run() {
   actions.report = [&](const Step& step, double time) { monitor_->step(step, time, last_, partners_); };
   actions.advised_dt = [&] { return advised_dt(everyone()); };
   std::string problem = loop_.run(actions);
-  finalise();
+  finalise(problem);
   return problem;
 }
 

@@ -86,7 +86,7 @@ class Coupler {
   void hold_volume(std::size_t i, std::vector<Exchange>& known);
   void accept(double time, int output);
   void watch(double time, const std::vector<SideBalance>& balances);
-  void finalise();
+  void finalise(const std::string& problem);
   void tell_errors(std::vector<NamedErrors> participants) const;
 
   MPI_Comm comm_;

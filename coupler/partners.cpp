@@ -47,10 +47,10 @@ std::vector<Interface> initialise_all(const std::vector<Partner*>& partners) {
   return interfaces;
 }
 
-std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners) {
+std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners, const std::string& problem) {
   std::vector<NamedErrors> errors;
   for (Partner* p : partners) {
-    p->send({Op::finalise, {}, {}, 0, -1, ""});
+    p->send({Op::finalise, {}, {}, 0, -1, problem});
     const std::string text = p->receive().text;
     try {
       errors.push_back({p->name(), ErrorParts::of(text)});

@@ -35,8 +35,9 @@ struct Partner {
 void ask_all(const std::vector<Partner*>& partners, const Command& command);
 /// The interface of each, in their order.
 std::vector<Interface> initialise_all(const std::vector<Partner*>& partners);
-/// Last words, one after the other, so that they do not mix; what each knows of its error.
-std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners);
+/// Last words, one after the other, so that they do not mix; what each knows of its error. `problem`: why the run stopped before its
+/// end; empty: it did not.
+std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners, const std::string& problem);
 /// The smallest step that somebody advises [s].
 double advised_dt(const std::vector<Partner*>& partners);
 

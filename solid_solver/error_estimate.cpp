@@ -10,6 +10,7 @@
 #include "common/elasticity/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/inner_variation.hpp"
+#include "solid_solver/weighted_estimate.hpp"
 
 namespace couplet {
 
@@ -129,6 +130,21 @@ double SolidErrorEstimate::finite_mesh_error() const {
   }
 }
 
+/// At least `known`. Energies are no measure of it where heat strains the body; one in motion need not be held, so that nothing is known.
+double SolidErrorEstimate::thermal_mesh_error(double known) const {
+  if (body_.is_dynamic()) return ErrorParts::unknown;
+  const SolidState& state = stepper_.state();
+  std::vector<double> pressure(std::size_t(body_.mesh().n_faces()), 0);
+  for (const auto& effect : body_.effects()) {
+    const std::vector<double> one = effect->pressure(state.time);
+    for (std::size_t f = 0; f < one.size(); ++f) pressure[f] += one[f];
+  }
+  const double weighted = weighted_mesh_error(
+      body_, body_.unknowns_of(state.cell_u, state.face_u),
+      body_.known_of({state.cell_u, state.face_u, fields_.point_displacement()}), pressure);
+  return std::isnan(weighted) ? weighted : std::max(known, weighted);
+}
+
 void SolidErrorEstimate::see_step() {
   if (!body_.is_dynamic()) return;
   const SolidState &now = stepper_.trial(), &before = stepper_.state();
@@ -156,6 +172,7 @@ ErrorParts SolidErrorEstimate::parts() const {
   parts.mesh = std::max(audit.mismatch(), audit.gradient_difference * audit.gradient_difference);
   parts.mesh = std::max(parts.mesh, audit.inner_variation);
   add_loads(parts);
+  if (body_.parameters().expansion) parts.mesh = thermal_mesh_error(parts.mesh);
   return parts;
 }
 

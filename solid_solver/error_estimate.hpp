@@ -21,6 +21,7 @@ namespace couplet {
 ///   step    sum of the local errors, see VelocityErrors; static: none
 ///   linear  static: the work of what equilibrium misses over that of the loads, which is the error of the compliance;
 ///           dynamic: the relative residuals of all steps, see StepErrors
+/// Thermal strain: see weighted_mesh_error; in motion it makes the mesh's part unknown.
 /// Temperatures that are solved for add what they err by, over their distance from the reference, times the share of the strain energy
 /// that their strain makes. At finite strain the mesh's part is half the square of the difference of two gradients' Green strains, times
 /// how softly the deformed body follows a change of its stiffness (a static run: one linear solve with the tangent). Collective.
@@ -42,6 +43,7 @@ class SolidErrorEstimate {
   double missed_work() const;
   void add_loads(ErrorParts& parts) const;
   double missed_of_large_strain(const SolidState& state, std::span<const double> unknowns) const;
+  double thermal_mesh_error(double known) const;
   double finite_mesh_error() const;
   double mean_square(std::span<const double> cells) const;
 

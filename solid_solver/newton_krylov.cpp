@@ -32,15 +32,6 @@ constexpr double heavy = 0.03;
 // Residual over right-hand side that double precision still gives.
 constexpr double finest_tolerance = 1e-15;
 
-/// Those hold what the rigid motions of aggregates know nothing of.
-bool has_springs(const SolidProblem& problem) {
-  const auto is_sprung = [&](Index f) {
-    return problem.elastic.condition(f) == ElasticCondition::support &&
-           !problem.elastic.support(f).spring.isZero(0);
-  };
-  return any(problem.mesh.comm, std::ranges::any_of(problem.elastic.known_faces(), is_sprung));
-}
-
 }  // namespace
 
 double slenderness(const Mesh& mesh) {
@@ -121,7 +112,7 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
     multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
     const double length = slenderness(mesh);
     const bool is_slender = length > very_slender || (length > slender && mesh.cells.n_global() > many_cells);
-    if (heavy_here <= heavy && is_slender && !has_springs(problem_)) add_rigid_motions(inertia, length);
+    if (heavy_here <= heavy && is_slender) add_rigid_motions(inertia, length);
     name_ = modes_ ? fmt::format(
                          "newton-krylov (conjugate gradients, multigrid and rigid motions of {} aggregates)",
                          modes_->n_aggregates())

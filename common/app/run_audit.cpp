@@ -17,10 +17,11 @@ void RunAudit::accepted(double time, bool output) {
   if (output || std::has_single_bit(static_cast<unsigned long>(steps_)) || steps_ % 100 == 0) look();
 }
 
-std::vector<std::string> RunAudit::closing_lines() {
+std::vector<std::string> RunAudit::closing_lines(bool with_sound) {
   look();
   std::vector<std::string> lines;
-  for (const EffectVerdict& verdict : trail_.worst()) lines.push_back(text(verdict));
+  for (const EffectVerdict& verdict : trail_.worst())
+    if (with_sound || !verdict.sound()) lines.push_back(text(verdict));
   return lines;
 }
 

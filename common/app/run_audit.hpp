@@ -16,8 +16,9 @@ class RunAudit {
   /// After an accepted step. Asks at outputs, after 1, 2, 4, 8 ... steps and after each hundredth: a part of a
   /// per cent of a run, and early where it matters most. Collective.
   void accepted(double time, bool output);
-  /// Asks a last time; a line for each verdict, the worst of the run. Collective.
-  std::vector<std::string> closing_lines();
+  /// Asks a last time; a line for each verdict, the worst of the run. `with_sound`: else only those that were not: of a run
+  /// that failed, what was seen until then proves nothing sound. Collective.
+  std::vector<std::string> closing_lines(bool with_sound = true);
 
  private:
   void look();

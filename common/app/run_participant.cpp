@@ -99,15 +99,25 @@ class Errors {
   ErrorParts parts_;
 };
 
-/// `alone`: the whole job's error is this program's; else the coupler says what dominates.
-void closing_words(const Job& job, Participant& participant, RunAudit& audit, Errors& errors, bool alone,
-                   double seconds) {
+/// How a run is told of at its end.
+struct Closing {
+  bool is_alone = true;  ///< the whole job's error is this program's; else the coupler says what dominates
+  bool has_failed =
+      false;  ///< what it left out then counts only where it was not sound, and nothing says what its answer errs by
+};
+
+void closing_words(const Job& job, Participant& participant, RunAudit& audit, Errors& errors,
+                   const Closing& closing, double seconds) {
   std::vector<std::string> sentences = participant.finish();
-  for (std::string& line : audit.closing_lines()) sentences.push_back(std::move(line));
-  errors.find();
+  for (std::string& line : audit.closing_lines(!closing.has_failed)) sentences.push_back(std::move(line));
+  if (closing.has_failed)
+    sentences.push_back(
+        "the run failed: what it left out and its error are not judged, but for what is said above.");
+  else
+    errors.find();
   for (std::string& line : errors.sentences()) {
     sentences.push_back(std::move(line));
-    if (!alone) break;
+    if (!closing.is_alone) break;
   }
   const double mine = RunReport::peak_memory();
   const double most = max(job.comm, mine), all = sum(job.comm, mine);
@@ -219,7 +229,7 @@ int run_alone(const Job& job, Participant& participant) {
   actions.advised_dt = [&] { return command.advised_dt(); };
   const std::string problem = loop.run(actions);
   job.enter(Phase::finalise);
-  closing_words(job, participant, audit, errors, true, console.seconds());
+  closing_words(job, participant, audit, errors, {.has_failed = !problem.empty()}, console.seconds());
   run.finish(console.seconds(), problem, errors.parts());
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
@@ -238,7 +248,8 @@ int run_coupled(const Job& job, MPI_Comm coupler, Participant& participant) {
     books.waited();
     books.received(command);
     if (command.op != Op::finalise) return;
-    closing_words(job, participant, audit, errors, false, seconds_since(start));
+    closing_words(job, participant, audit, errors, {.is_alone = false, .has_failed = !command.folder.empty()},
+                  seconds_since(start));
     run.finish(seconds_since(start), "", errors.parts());
   };
   observer.last_word = [&] { return errors.parts().text(); };

@@ -32,7 +32,7 @@ struct Command {
   Exchange data;       ///< solve: the input, this rank's entries
   double time = 0;     ///< accept_step, write_output: the accepted time t^{n+1} [s]
   int output = -1;     ///< accept_step, write_output: number of the output that is due; -1: none
-  std::string folder;  ///< save, load: the checkpoint's folder; the participant's file in it is <name>.h5
+  std::string folder;  ///< save, load: of the checkpoint, with <name>.h5; finalise: why the run failed
 };
 
 /// Participant to coupler. Every command has exactly one reply.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/face_stencil.hpp"
@@ -140,6 +141,42 @@ void CurrentRigidModes::add_faces(const DeformedBody& body, std::vector<double>&
   }
 }
 
+/// S k of the springs on the mean motions of their faces, which they resist even where an aggregate carries out all of it.
+template <int D>
+void CurrentRigidModes::add_springs(const DeformedBody& body, std::vector<double>& matrix) const {
+  FaceStencil stencil(mesh_, rows_, number_);
+  const std::size_t n = centre_.size() * std::size_t(modes_);
+  for (const Index f : rows_.known_faces()) {
+    if (mesh_.owner[f] >= mesh_.cells.n_owned() || rows_.condition(f) != ElasticCondition::support) continue;
+    const ElasticSupport& s = rows_.support(f);
+    if (s.spring.isZero(0)) continue;
+    const Tensor3 open = Tensor3::Identity() - s.known;
+    const Tensor3 spring = mesh_.reference.face_area[f].norm() * open * s.spring * open;
+    std::map<Index, Eigen::Matrix<double, 3, 6>> motion;  // of the face by the modes of each aggregate
+    for (const FaceStencil::Term& t : stencil.of_mean<D>(f)) {
+      const Index a = aggregate_of(t.node);
+      auto& moves = motion.try_emplace(a, Eigen::Matrix<double, 3, 6>::Zero()).first->second;
+      for (int m = 0; m < modes_; ++m)
+        moves.col(m) += t.b[0] * (t.turn * mode(m, D, place(t.node, body) - centre_[a]));
+    }
+    for (const auto& [i, of_i] : motion)
+      for (const auto& [j, of_j] : motion) {
+        const Block block = of_i.transpose() * spring * of_j;
+        for (int a = 0; a < modes_; ++a)
+          for (int b = 0; b < modes_; ++b)
+            matrix[(std::size_t(i) * modes_ + a) * n + std::size_t(j) * modes_ + b] += block(a, b);
+      }
+  }
+}
+
+/// Of a vector at an unknown node: supports know the rest, and no mode moves it.
+Vec3 CurrentRigidModes::free_part(std::size_t i, const Vec3& v) const {
+  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned());
+  if (i < n_cells) return v;
+  const Index f = rows_.unknown_faces()[i - n_cells];
+  return rows_.condition(f) == ElasticCondition::support ? Vec3(v - rows_.support(f).known * v) : v;
+}
+
 void CurrentRigidModes::add_inertia(std::vector<double>& matrix) const {
   const std::size_t n = centre_.size() * std::size_t(modes_);
   for (std::size_t i = 0; i < inertia_.size(); ++i) {
@@ -156,9 +193,9 @@ void CurrentRigidModes::update(const DeformedBody& body) {
   const Index n = static_cast<Index>(centre_.size()) * modes_;
   std::vector<double> matrix(std::size_t(n) * n, 0);
   if (mesh_.dim == 2)
-    add_faces<2>(body, matrix);
+    add_faces<2>(body, matrix), add_springs<2>(body, matrix);
   else
-    add_faces<3>(body, matrix);
+    add_faces<3>(body, matrix), add_springs<3>(body, matrix);
   add_inertia(matrix);
   sum_over_ranks(mesh_.comm, matrix);
   double largest = 0;
@@ -181,6 +218,7 @@ void CurrentRigidModes::add_correction(std::span<const double> r, std::span<doub
   for (std::size_t i = 0; i < arm_.size(); ++i) {
     Vec3 force = Vec3::Zero();
     for (int a = 0; a < dim; ++a) force[a] = r[i * dim + a];
+    force = free_part(i, force);
     const Index first = aggregate_of(unknown_node(i)) * modes_;
     for (int m = 0; m < modes_; ++m) coarse[first + m] += force.dot(mode(m, dim, arm_[i]));
   }
@@ -190,6 +228,7 @@ void CurrentRigidModes::add_correction(std::span<const double> r, std::span<doub
     const Index first = aggregate_of(unknown_node(i)) * modes_;
     Vec3 u = Vec3::Zero();
     for (int m = 0; m < modes_; ++m) u += motion[first + m] * mode(m, dim, arm_[i]);
+    u = free_part(i, u);
     for (int a = 0; a < dim; ++a) z[i * dim + a] += u[a];
   }
 }

@@ -21,7 +21,7 @@ struct DeformedBody {
 /// Rigid motions of aggregates of cells about their present places: what bends a slender body is a slow
 /// variation of rotations, which no component-wise operator sees cheaply, and which a body that has turned
 /// carries out about where it is now. The correction is Z (Z^T A Z)^-1 Z^T r with the tangent's part that
-/// strains, V dE : C : dE with dE = sym(F^T dF) and the law's constants at small strain: never indefinite. A face
+/// strains, V dE : C : dE with dE = sym(F^T dF) and the law's constants at small strain, and the springs: never indefinite. A face
 /// all of whose stencil lies in one aggregate carries nothing. Factorised whole on every rank.
 class CurrentRigidModes {
  public:
@@ -41,7 +41,10 @@ class CurrentRigidModes {
   Index unknown_node(std::size_t i) const;
   template <int D>
   void add_faces(const DeformedBody& body, std::vector<double>& matrix) const;
+  template <int D>
+  void add_springs(const DeformedBody& body, std::vector<double>& matrix) const;
   void add_inertia(std::vector<double>& matrix) const;
+  Vec3 free_part(std::size_t i, const Vec3& v) const;
   void find_arms(const DeformedBody& body);
 
   const Mesh& mesh_;

@@ -60,6 +60,19 @@ const std::vector<FaceStencil::Term>& FaceStencil::of(const SymmetricFace<D>& fa
   return terms_;
 }
 
+template <int D>
+const std::vector<FaceStencil::Term>& FaceStencil::of_mean(Index f) {
+  terms_.clear();
+  take_boundary(f, Vec3(1.0 / D, 0, 0));
+  const auto shares = point_shares(mesh_, f);
+  const auto points = mesh_.face_points[f];
+  for (std::size_t i = 0; i < points.size(); ++i)
+    take_point(points[i], Vec3((1 - 1.0 / D) * shares[i], 0, 0));
+  return terms_;
+}
+
+template const std::vector<FaceStencil::Term>& FaceStencil::of_mean<2>(Index);
+template const std::vector<FaceStencil::Term>& FaceStencil::of_mean<3>(Index);
 template const std::vector<FaceStencil::Term>& FaceStencil::of<2>(const SymmetricFace<2>&, Index);
 template const std::vector<FaceStencil::Term>& FaceStencil::of<3>(const SymmetricFace<3>&, Index);
 

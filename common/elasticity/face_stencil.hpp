@@ -25,6 +25,9 @@ class FaceStencil {
   /// Of a flux face; valid until the next call.
   template <int D>
   const std::vector<Term>& of(const SymmetricFace<D>& face, Index f);
+  /// Of the mean displacement on a boundary face by the trial functions, u = sum_i b_x T_i u_i; valid until the next call.
+  template <int D>
+  const std::vector<Term>& of_mean(Index f);
   Index node_of(Index f) const { return mesh_.cells.n_local() + f - mesh_.n_interior; }
 
  private:
