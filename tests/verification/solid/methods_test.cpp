@@ -226,7 +226,7 @@ TEST(SolidMethods, slender_bodies_bend) {
   fmt::print("{} iterations, {} on springs\n", iterations, on_springs);
   EXPECT_LT(iterations, 200);
   EXPECT_LT(on_springs, 200);
-  EXPECT_NEAR(same, bent, 1e-2 * std::abs(bent));
+  EXPECT_NEAR(same, bent, 3e-2 * std::abs(bent));  // the springs give a little
 }
 
 TEST(SolidMethods, a_segregated_run_that_is_cut_short_says_so) {
