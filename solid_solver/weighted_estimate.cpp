@@ -7,11 +7,11 @@
 #include <limits>
 #include <vector>
 
-#include "solid_solver/stress.hpp"
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/solution_method.hpp"
+#include "solid_solver/stress.hpp"
 
 namespace couplet {
 namespace {
