@@ -153,6 +153,17 @@ void SolidErrorEstimate::see_step() {
   const StepErrors::Seen step = steps_.add(std::span(before.cell_v).first(n), std::span(now.cell_v).first(n),
                                            now.dt, before.dt, norm(now.cell_u), norm);
   linear_.add({.error = left_by_solver() * step.size, .rate = step.rate, .size = step.size, .dt = step.dt});
+  if (!body_.finite()) see_swing(now, step);
+}
+
+/// Half of u . K u is the strain energy, of the gradients without an energy nearly so.
+void SolidErrorEstimate::see_swing(const SolidState& now, const StepErrors::Seen& step) {
+  const MPI_Comm comm = body_.mesh().comm;
+  const std::vector<double> u = body_.unknowns_of(now.cell_u, now.face_u);
+  std::vector<double> force(u.size());
+  body_.kernel().apply(u, now.known, force);
+  const double strain = 0.5 * std::abs(sum(comm, std::inner_product(u.begin(), u.end(), force.begin(), 0.0)));
+  drift_.add(now.dt, step.rate, step.size, sum(comm, stepper_.ledger().kinetic(now)), strain);
 }
 
 ErrorParts SolidErrorEstimate::parts() const {
@@ -171,6 +182,8 @@ ErrorParts SolidErrorEstimate::parts() const {
   const StrainAudit audit = judge_.audit_strain(fields_.point_displacement(), true);
   parts.mesh = std::max(audit.mismatch(), audit.gradient_difference * audit.gradient_difference);
   parts.mesh = std::max(parts.mesh, audit.inner_variation);
+  if (!(audit.strain_energy > 0)) parts.mesh = ErrorParts::unknown;
+  if (body_.is_dynamic()) parts.mesh += drift_.over_size(parts.mesh);
   add_loads(parts);
   if (body_.parameters().expansion) parts.mesh = thermal_mesh_error(parts.mesh);
   return parts;
@@ -178,16 +191,20 @@ ErrorParts SolidErrorEstimate::parts() const {
 
 std::vector<double> SolidErrorEstimate::state() const {
   const std::vector<double> linear = linear_.state(), steps = steps_.state();
+  const std::vector<double> drift = drift_.state();
   std::vector<double> values{double(linear.size())};
-  for (const auto* part : {&linear, &steps}) values.insert(values.end(), part->begin(), part->end());
+  for (const auto* part : {&linear, &drift, &steps}) values.insert(values.end(), part->begin(), part->end());
   return values;
 }
 
 void SolidErrorEstimate::restore(std::span<const double> state) {
   const auto n = state.empty() ? 0 : std::size_t(state[0]);
-  if (!state.empty() && n > state.size() - 1) throw Error("The checkpoint's errors of steps are damaged.");
+  constexpr std::size_t n_drift = PhaseDrift::n_values;
+  if (!state.empty() && n + n_drift > state.size() - 1)
+    throw Error("The checkpoint's errors of steps are damaged.");
   linear_.restore(state.empty() ? state : state.subspan(1, n));
-  steps_.restore(state.empty() ? state : state.subspan(1 + n));
+  steps_.restore(state.empty() ? state : state.subspan(1 + n + n_drift));
+  if (!state.empty()) drift_.restore(state.subspan(1 + n, n_drift));
 }
 
 }  // namespace couplet

@@ -8,6 +8,7 @@
 #include "common/time/step_errors.hpp"
 #include "common/time/velocity_errors.hpp"
 #include "solid_solver/judge.hpp"
+#include "solid_solver/phase_drift.hpp"
 #include "solid_solver/solid_body.hpp"
 #include "solid_solver/solid_fields.hpp"
 #include "solid_solver/solid_stepper.hpp"
@@ -18,6 +19,7 @@ namespace couplet {
 ///   mesh    by how much the work of the stresses misses the strain energy, which equilibrium would make equal, or,
 ///           if more, the square of the relative difference of two face gradients' strains: an energy errs by the
 ///           square of what the strains err. A symmetric operator misses nothing by itself, there the latter counts.
+///           In motion what that makes of the phase comes beside it, see PhaseDrift. A body at rest tells nothing.
 ///   step    sum of the local errors, see VelocityErrors; static: none
 ///   linear  static: the work of what equilibrium misses over that of the loads, which is the error of the compliance;
 ///           dynamic: the relative residuals of all steps, see StepErrors
@@ -39,6 +41,7 @@ class SolidErrorEstimate {
   void restore(std::span<const double> state);
 
  private:
+  void see_swing(const SolidState& now, const StepErrors::Seen& step);
   double left_by_solver() const;
   double missed_work() const;
   void add_loads(ErrorParts& parts) const;
@@ -54,6 +57,7 @@ class SolidErrorEstimate {
   double volume_ = 0;  // of the body [m^3]
   VelocityErrors steps_;
   StepErrors linear_;
+  PhaseDrift drift_;
 };
 
 }  // namespace couplet

@@ -35,6 +35,9 @@ constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 4000;
 // Slenderness from which static bodies of so many cells have them, too: 120 quadrilaterals of a bar 100:1 under a pressure that
 // follows were not solved without, a beam 1:20 in four times the time.
 constexpr double slender_2d = 12, slender_3d = 60;
+// Up to so many in space, where factors soon cost more than they save: of a beam 32:1 of 128, 432, 1024 and 2048 hexahedra or prisms they
+// took 1.4, 14, over 24 and over 25 s of processor time for 5.9, 14, 7.0 and 3.7 s without.
+constexpr GlobalIndex slender_up_to_3d = 400;
 // A correction of this size beside the displacement is rounding.
 constexpr double rounding = 1e-14;
 // Left of a load by rounding: told.
@@ -64,7 +67,8 @@ FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const 
   const bool is_small = cells <= (mesh.dim == 2 ? factors_up_to_2d : factors_up_to_3d);
   const double ratio = largest_poissons_ratio(parameters);
   const bool is_dynamic = parameters.analysis == SolidParameters::Analysis::dynamic;
-  const bool is_slender = !is_dynamic && slenderness(mesh) > (mesh.dim == 2 ? slender_2d : slender_3d);
+  const bool is_slender = !is_dynamic && (mesh.dim == 2 || cells <= slender_up_to_3d) &&
+                          slenderness(mesh) > (mesh.dim == 2 ? slender_2d : slender_3d);
   const bool wants_factors =
       is_slender ||
       (rows.volume_by_cells() && ratio >= (is_dynamic ? factors_from_dynamic : factors_from_ratio));

@@ -18,6 +18,7 @@
 #include "solid_solver/modal_analysis.hpp"
 #include "solid_solver/spectrum.hpp"
 #include "solid_solver/stress.hpp"
+#include "solid_solver/weighted_estimate.hpp"
 
 namespace couplet {
 namespace {
@@ -167,6 +168,9 @@ void SolidOutput::write_modes() {
   } catch (const SolveFailure& e) {
     throw Error("output.modes: {}", e.what());  // no shorter step would help
   }
+  double coarse = 0;  // relative error of the worst frequency
+  for (std::size_t m = 0; m < found.shape.size(); ++m)
+    if (found.eigenvalue[m] > 0) coarse = std::max(coarse, 0.5 * energy_mesh_error(body_, found.shape[m]));
   ModalModel model = modal_model(*problem, found);
   model.mass = 0;
   for (const double m : mass) model.mass += m;
@@ -182,10 +186,10 @@ void SolidOutput::write_modes() {
   }
   if (mesh.dim == 3) couplet::write_modes(context_.output_folder / "modes.h5", model, "");
   log::info(
-      "modes: {} free vibrations from {:.6g} to {:.6g} Hz in modes.csv{}; largest residual {:.1e}", n,
-      model.frequency.front(), model.frequency.back(),
+      "modes: {} free vibrations from {:.6g} to {:.6g} Hz in modes.csv{}; largest residual {:.1e}; the mesh leaves an estimated {:.2g} % in the worst of them",
+      n, model.frequency.front(), model.frequency.back(),
       mesh.dim == 3 ? ", their shapes on the surface in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
-      found.worst_residual);
+      found.worst_residual, 100 * coarse);
 }
 
 void SolidOutput::write_probes(double time, std::span<const double> points) {

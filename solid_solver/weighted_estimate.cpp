@@ -10,6 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/inner_variation.hpp"
 #include "solid_solver/solution_method.hpp"
 #include "solid_solver/stress.hpp"
 
@@ -125,6 +126,25 @@ double weighted_mesh_error(const SolidBody& body, std::span<const double> unknow
   const Strains u2 = strains(other, mesh, unknowns, known), z2 = strains(other, mesh, z, {});
   missed += gap_of_gradients(body, {&u1, &u2}, {&z1, &z2});
   return sum(mesh.comm, missed) / size;
+}
+
+double energy_mesh_error(const SolidBody& body, std::span<const double> shape) {
+  const Mesh& mesh = body.mesh();
+  const ElasticKernel other(mesh, body.elastic(),
+                            body.is_corrected() ? FaceGradientScheme::thesis : FaceGradientScheme::corrected);
+  const Strains used = strains(body.kernel(), mesh, shape, {}), compared = strains(other, mesh, shape, {});
+  double gap = 0, size = 0;
+  visit_sides(mesh, [&](Index c, Index f, double v) {
+    const Tensor3 e = unpacked(used[f]);
+    const double weight = v * body.elastic().lame(c).mu;
+    gap += weight * (unpacked(compared[f]) - e).squaredNorm(), size += weight * e.squaredNorm();
+  });
+  gap = sum(mesh.comm, gap), size = sum(mesh.comm, size);
+  double missed = size > 0 ? gap / size : 0;
+  if (!InnerVariation::is_needed(mesh, body.elastic())) return missed;
+  InnerVariation variation(mesh, body.elastic());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) variation.add(f, unpacked(used[f]));
+  return std::max(missed, variation.missed());
 }
 
 }  // namespace couplet

@@ -67,5 +67,22 @@ TEST(Slender, a_load_below_rounding_is_said_to_be_lost) {
   EXPECT_EQ(said(1000, 0).find(lost), std::string::npos);  // no load
 }
 
+/// Name of the method of a beam 40:1 of n cubes along.
+std::string method_of(int along) {
+  SolidParameters p = box_parameters(3);
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0", "0"});
+  return make_solid(make_box(BoxCells::hexahedra, {along, 2, 2}, Vec3::Zero(), Vec3(40, 1, 1)), p)
+      ->body()
+      .newton()
+      ->name();
+}
+
+// A thousand cells took over four times as long with factors as without.
+TEST(Slender, factors_in_space_are_for_few_cells) {
+  EXPECT_NE(method_of(40).find("factors"), std::string::npos);
+  EXPECT_EQ(method_of(160).find("factors"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace couplet::testing

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run tells of the error that its mesh leaves where heat bends the body.
+// What a run tells of the error that its mesh leaves: where heat bends the body, and in motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -81,6 +81,51 @@ TEST(ThermalEstimate, of_motion_is_not_told) {
   p.analysis = SolidParameters::Analysis::dynamic;
   EXPECT_TRUE(std::isnan(strip(p, BoxCells::quadrilaterals, 2).told));
 }
+
+/// Sag of the end of a clamped bar 20:1 let loose, n quadrilaterals across, after `periods` of its first swing; and the estimate.
+std::pair<double, double> swung(int n, double periods, const char* hold = nullptr) {
+  SolidParameters p = box_parameters(2);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.material = {1000, 1e6, 0};
+  p.method.face_gradient = FaceGradient::symmetric;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  if (hold)
+    p.boundaries["xmax"] = boundary(Type::traction, {"0", hold});
+  else
+    p.initial_velocity = {{"0"}, {"1e-3*x*x"}};
+  const auto solid =
+      make_solid(make_box(BoxCells::quadrilaterals, {20 * n, n, 1}, Vec3::Zero(), Vec3(20, 1, 0)), p);
+  solid->collect_errors();
+  // First period of a cantilever: 2 pi L^2 / 3.516 sqrt(rho A / (E I)).
+  const double period = 6.2831853 * 400 / 3.5160 * std::sqrt(1000 * 12 / 1e6);
+  const int steps = int(60 * periods);
+  for (int i = 0; i < steps; ++i) step(*solid, period * periods / steps);
+  double end = 0, most = 0;
+  const std::vector<double> u = solid->fields().point_displacement();
+  for (std::size_t i = 1; i < u.size(); i += 2)
+    if (std::abs(u[i]) > most) most = std::abs(u[i]), end = u[i];
+  return {end, solid->error_parts().mesh};
+}
+
+// Two across swing 5.5 % too fast: wrong by a third after a turn, upside down after ten.
+TEST(PhaseOfAMotion, the_mesh_is_told_to_put_it_off_the_longer_the_more) {
+  const auto [end, one] = swung(2, 1.5);
+  const double two = swung(2, 2.5).second, amplitude = swung(6, 0.25).first;
+  const double wrong = std::abs((end - swung(6, 1.5).first) / amplitude);
+  fmt::print("estimated {:.3g} and {:.3g} after 1.5 and 2.5 periods, true {:.3g} after 1.5\n", one, two,
+             wrong);
+  EXPECT_GT(one, wrong / 2);
+  EXPECT_LT(one, wrong * 2);
+  EXPECT_GT(two, 1.4 * one);
+  EXPECT_LT(swung(2, 12.25).second, 2.3) << "twice the amplitude at most";
+}
+
+TEST(PhaseOfAMotion, a_load_that_the_body_follows_has_none) {
+  EXPECT_LT(swung(2, 12, "0.02*(1 - cos(0.0073*t))").second,
+            0.3);  // eleven times slower than the first swing
+}
+
+TEST(PhaseOfAMotion, a_body_at_rest_tells_nothing) { EXPECT_TRUE(std::isnan(swung(2, 0.05, "0").second)); }
 
 }  // namespace
 }  // namespace couplet::testing
