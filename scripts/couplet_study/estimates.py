@@ -46,9 +46,9 @@ def guesses(series, orders=None):
 
 
 def uncertainty(rows, quantity):
-    """Of the reference, where it is the study's own best value, over its size; 0 of a number or of an exact field."""
+    """Of the reference over its size, where it is the study's own best value or a number that says what it is good to; else 0."""
     if quantity.is_error or isinstance(quantity.reference, (int, float)):
-        return 0.0
+        return float(quantity.given.get("good-to", 0))
     limits = [(max(r.point.size for r in some), limit.gci / abs(limit.value or 1)) for some, limit in
               ((table.series_of(rows)[s], limit) for s, limit in table.limits_of(rows, quantity).items()) if limit]
     if quantity.reference == "finest" or not limits:

@@ -9,6 +9,7 @@ quantities:
   velocity: {field: velocity, exact: ["sin(x)*cos(y)*exp(-2*t)", ...]}  # relative L2 norm over the cells; is an error itself
   profile: {file: bed.csv, column: T, over: z, against: reference.csv}  # relative L2 norm against a table
 at: last (default), first, maximum, minimum, mean, amplitude, period, or a time; reference: a number, or finest, richardson;
+good-to: 5.0e-4, what a number given as reference is itself uncertain by, over its size (for the estimate of errors);
 orders: {upwind: 1} where a series is of another order than 2 (for the estimate of errors); absolute: true where the error is not to be divided by the reference"""
 import dataclasses
 import functools
@@ -23,7 +24,7 @@ from couplet_run import expect
 
 NAMES = {name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs", "sinh", "cosh", "where", "pi")}
 KEYS = {"probe", "file", "column", "summary", "python", "item", "field", "exact", "over", "against", "at", "from", "reference", "absolute",
-        "is", "participant", "unit", "orders"}
+        "is", "participant", "unit", "orders", "good-to"}
 
 
 @functools.cache

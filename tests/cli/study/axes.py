@@ -156,7 +156,8 @@ def far(row):
 def predicting():
     """Costs, the size for an error, and what runs say of their errors, on made-up numbers."""
     sys.path.insert(0, str(ROOT / "scripts"))
-    from couplet_study.estimates import guesses
+    from types import SimpleNamespace as S
+    from couplet_study.estimates import guesses, uncertainty
     from couplet_study.predict import approach, power_cost
     a, b, q = power_cost([4, 8, 12], [0.1 + 2e-5 * 4**3, 0.5, 0.1 + 2e-5 * 12**3])  # 8 by another solver
     ratio = (a + b * 20**q) / (0.1 + 2e-5 * 20**3)
@@ -177,6 +178,8 @@ def predicting():
     found = guesses({"tvd": ([10, 20, 40], [1.04, 1.01, 1.0025]), "implicit": ([10, 20, 40], [1.17, 1.13, 1.115])})
     failed += check("what a series cannot see another one shows", 0.1 < found["implicit", 2] < 0.12 and found["tvd", 2] < 0.005, str(found))
     first, second = (guesses({"upwind": ([10, 20], [1.4, 1.2])}, orders)["upwind", 1] for orders in ({"upwind": 1}, None))
+    left = [uncertainty([], S(is_error=False, reference=1.0, given=given)) for given in ({"good-to": 1e-3}, {})]
+    failed += check("a reference may be good to so much only", left == [1e-3, 0], str(left))
     return failed + check("a series may be of another order", abs(first - 0.2) < 1e-12 and second < 0.07, f"{first} {second}")
 
 
