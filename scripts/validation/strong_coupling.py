@@ -19,8 +19,8 @@ END = 0.2  # s; long rows go on to 0.6 s
 
 
 def flap(job, rho, mu, scheme="semi-implicit", dt=0.01, end=END, more=()):
-    """One rung: tip displacements, coupling iterations a step, cpu seconds of all programs, which hold about 0.5 s of start-up, and where
-    it ended if the mesh did not allow more."""
+    """One rung: tip displacements, coupling iterations a step, cpu seconds of all programs, which hold about 0.5 s of start-up (not
+    known of a run that failed), and where it ended if the mesh did not allow more."""
     def make():
         name = f"ladder-{rho}-{mu}-{scheme}-{dt}-{end}-{zlib.crc32(' '.join(more).encode())}"  # runs are kept by their folder
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -58,7 +58,7 @@ def rung(rho, mu, dt=0.01, end=END):
         value = zigzag(tip)
         # Beyond the short rows' end the bar asks for 0.6 s or what the mesh allows.
         far = len(tip) == round(end / dt) or (ended and end > END and len(tip) * dt >= END)
-        return f"{ended}{len(tip)} steps, tip {tip[-1]:.5f} m, {passes:.1f} passes, {seconds:.1f} cpu s, zigzag {value:.3f}", bool(far and value < 0.15)
+        return f"{ended}{len(tip)} steps, tip {tip[-1]:.5f} m, {passes:.1f} passes, {'' if ended else f'{seconds:.1f} cpu s, '}zigzag {value:.3f}", bool(far and value < 0.15)
     return measure
 
 
@@ -66,7 +66,7 @@ def zigzag_of_implicit(rho, mu, end):
     """What of the zigzag is the flap itself: that of the implicit scheme with the same step."""
     def measure(job):
         tip, passes, seconds, ended = flap(job, rho, mu, "implicit", end=end, more=("coupling.acceleration.type=iqn-ils",))
-        return f"{ended}{len(tip)} steps, tip {tip[-1]:.5f} m, {passes:.1f} passes, {seconds:.1f} cpu s, zigzag {zigzag(tip):.3f}", None
+        return f"{ended}{len(tip)} steps, tip {tip[-1]:.5f} m, {passes:.1f} passes, {'' if ended else f'{seconds:.1f} cpu s, '}zigzag {zigzag(tip):.3f}", None
     return measure
 
 
