@@ -250,10 +250,13 @@ def said(study, quantity, best, every, target, final, predicted):
     estimate = best.left(final) if model else None
     reached = true if true is not None else estimate
     settings = ", ".join(f"{k}={v}" for k, v in final.point.changes.items())
+    if reached is None:  # the last run has shown that there is no limit yet
+        return {"met": False, "target": target, "lines": [f"No setting was found for an error of {target:.3g}: with the last run, {best.name}, size {final.point.size:g}, which "
+                                                          "should have met it, the values approach no limit any more. A finer start may help."]}
     lines = [f"Cheapest for {quantity.name} to {target:.3g}: {best.name}, size {final.point.size:g} ({settings})",
              f"error: {reached:.3g} {'against the reference' if true is not None else 'by extrapolation'} (predicted {predicted[1]:.3g}"
              + (f", estimated afterwards {estimate:.3g})" if estimate is not None else ")"),
              f"time: {seconds:.3g} s (predicted {predicted[2]:.3g} s); the runs before it took {spent - seconds:.3g} s"]
-    return {"met": reached is not None and reached <= 1.1 * target, "target": target, "quantity": quantity.name, "series": best.name,
+    return {"met": reached <= 1.1 * target, "target": target, "quantity": quantity.name, "series": best.name,
             "size": final.point.size, "predicted error": predicted[1], "predicted seconds": predicted[2], "error": reached, "estimate": estimate,
             "seconds": seconds, "before": spent - seconds, "lines": lines}

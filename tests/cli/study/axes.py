@@ -158,7 +158,7 @@ def predicting():
     sys.path.insert(0, str(ROOT / "scripts"))
     from types import SimpleNamespace as S
     from couplet_study.estimates import guesses, uncertainty
-    from couplet_study.predict import approach, power_cost
+    from couplet_study.predict import approach, power_cost, said
     a, b, q = power_cost([4, 8, 12], [0.1 + 2e-5 * 4**3, 0.5, 0.1 + 2e-5 * 12**3])  # 8 by another solver
     ratio = (a + b * 20**q) / (0.1 + 2e-5 * 20**3)
     failed = check("a small run that is dearer than a larger one does not spoil the cost", 0.8 < ratio < 1.25, str(ratio))
@@ -178,6 +178,10 @@ def predicting():
     found = guesses({"tvd": ([10, 20, 40], [1.04, 1.01, 1.0025]), "implicit": ([10, 20, 40], [1.17, 1.13, 1.115])})
     failed += check("what a series cannot see another one shows", 0.1 < found["implicit", 2] < 0.12 and found["tvd", 2] < 0.005, str(found))
     first, second = (guesses({"upwind": ([10, 20], [1.4, 1.2])}, orders)["upwind", 1] for orders in ({"upwind": 1}, None))
+    lost = made_up(2, [20, 40])
+    lost.add(80, print).values["q"] += 1  # away from where the others tend to
+    none = said(lost.study, S(name="q", is_error=False, reference=None), lost, [lost], 1e-3, lost.rows[-1], (80, 1e-3, 1.0))
+    failed += check("a last run that shows no limit is no answer", not none["met"] and "approach no limit any more" in none["lines"][0], str(none))
     left = [uncertainty([], S(is_error=False, reference=1.0, given=given)) for given in ({"good-to": 1e-3}, {})]
     failed += check("a reference may be good to so much only", left == [1e-3, 0], str(left))
     return failed + check("a series may be of another order", abs(first - 0.2) < 1e-12 and second < 0.07, f"{first} {second}")
