@@ -82,7 +82,7 @@ void Solid::save(CheckpointWriter& file) const {
   judge_.save(file);
   for (const auto& effect : body_.effects()) effect->save(file);
   stepper_.save_guesses(file);
-  file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
+  file.write("errors-and-drift", errors_ ? errors_->state() : std::vector<double>{});
 }
 
 void Solid::load(CheckpointReader& file) {
@@ -90,7 +90,7 @@ void Solid::load(CheckpointReader& file) {
   judge_.load(file);
   for (const auto& effect : body_.effects()) effect->load(file);
   stepper_.load_guesses(file);
-  const std::vector<double> errors = file.read("errors");
+  const std::vector<double> errors = file.read("errors-and-drift");
   if (errors_) errors_->restore(errors);
 }
 
