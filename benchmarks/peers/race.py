@@ -115,7 +115,7 @@ def calculix(job, n, element, solver="SPOOLES", times=1):
 
 def our_beam(job, across, along, load):
     """Case E, Saint Venant-Kirchhoff, in one load step: (processor seconds of the whole process, deflection over the length, iterations)."""
-    force = load * calculix_beam.YOUNG * 0.2**4 / 12 / (0.04 * 2.0**2) / 2**0.5
+    force = load * calculix_beam.CASE_E.young * 0.2**4 / 12 / (0.04 * 2.0**2) / 2**0.5
     sets = ["participants.solid.mesh-parameters={n: %d, m: %d}" % (across, along), "participants.solid.material.law=saint-venant-kirchhoff",
             f"participants.solid.boundaries.tip.value=[{force!r}*t, {force!r}*t, 0]"]
     run, folder, iterations = ours(job, "bent-beam", sets)

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Error of a run on hexahedra at the nine points of reference/nine_points.csv: relative L2 norm over the points of the
-displacement vector and of the von Mises stress. The values of the cells are interpolated by cubic splines in (s, phi) and
-by four points over the thickness, so that the error is the discretisation's, not the interpolation's.
+"""Error of a run at the nine points of reference/nine_points.csv: relative L2 norm over the points of the displacement vector
+and of the von Mises stress. The values of the cells (of the two prisms or six tetrahedra that fill one place of the grid: their
+mean) are interpolated by cubic splines in (s, phi) and by four points over the thickness, so that the error is the
+discretisation's, not the interpolation's.
 Usage: nine_points.py [FOLDER]     FOLDER: output of the solid, by default out/solid beside this file"""
 import pathlib
 import sys
@@ -34,15 +35,21 @@ def von_mises(s):
     return np.sqrt(((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2))
 
 
-def order(places, shape):
-    """Indices that bring structured places into (s, phi, z) order."""
-    s, phi = map_back(places[:, 0], places[:, 1])
-    ranks = [np.rint((v - v.min()) / (v.max() - v.min()) * (n - 1)).astype(int)
-             for v, n in zip((s, phi, places[:, 2]), shape)]
-    key = np.ravel_multi_index(ranks, shape)
-    if len(np.unique(key)) != len(key) or len(key) != np.prod(shape):
-        raise ValueError(f"the mesh is no {shape} grid of hexahedra in (s, phi, z)")
-    return np.argsort(key)
+def grid(centres, shape):
+    """Place of each cell in a grid of `shape` places in (s, phi, z), and how many share it: one hexahedron, two prisms, six tetrahedra."""
+    s, phi = map_back(centres[:, 0], centres[:, 1])
+    ranks = [np.floor(v / end * n).astype(int) for v, end, n in zip((s, phi, centres[:, 2]), (1, np.pi / 2, THICKNESS), shape)]
+    place = np.ravel_multi_index(ranks, shape)
+    share = np.bincount(place, minlength=np.prod(shape))
+    if share.min() != share.max():
+        raise ValueError(f"the cells do not fill a {shape} grid in (s, phi, z) evenly")
+    return place, share[0]
+
+
+def means(values, place, share, shape):
+    """Of the cells at each place of the grid."""
+    columns = values.reshape(len(values), -1).T
+    return np.stack([np.bincount(place, column) for column in columns], axis=-1).reshape(*shape, len(columns)) / share
 
 
 def at_middle(values, z):
@@ -67,11 +74,11 @@ class Plate:
         nodes = [len(np.unique(np.round(v, 9))) for v in (*map_back(points[:, 0], points[:, 1]), points[:, 2])]
         cell_shape = [n - 1 for n in nodes]
         self.cells = len(cells)
-        by_cell = order(points[cells].mean(axis=1), cell_shape)
+        by_place = (*grid(points[cells].mean(axis=1), cell_shape), cell_shape)
         axes = [np.linspace(0, end, n) for end, n in zip((1, np.pi / 2, THICKNESS), nodes)]
         centres = [(a[1:] + a[:-1]) / 2 for a in axes]
-        u = series.field(last, "cell-displacement")[by_cell].reshape(*cell_shape, 3)
-        stress = np.stack([series.field(last, name)[by_cell] for name in STRESS], axis=-1).reshape(*cell_shape, 6)
+        u = means(series.field(last, "cell-displacement"), *by_place)
+        stress = means(np.stack([series.field(last, name) for name in STRESS], axis=-1), *by_place)
         self.first_centre = centres[0][0]
         self.u = self.splines(centres, at_middle(u, centres[2]))
         self.stress_ = self.splines(centres, at_middle(stress, centres[2]))

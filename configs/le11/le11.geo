@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Quarter of the NAFEMS LE11 body: a sphere's cap, a taper and a cylinder, revolved about z. Hexahedra in four bands along
+// Quarter of the NAFEMS LE11 body: a sphere's cap, a taper and a cylinder, revolved about z. Four bands of cells along
 // the wall; 2 x 3 x 10 cells times `refine` in each direction.
 DefineConstant [
-  refine = 4 // 1, 2, 4, 8: the four meshes of the thesis
+  refine = 4, // 1, 2, 4, 8: the four meshes of the thesis
+  shape = 0   // 0 hexahedra, 1 prisms (two a hexahedron), 2 tetrahedra (three a prism)
 ];
 s = Sqrt(0.5);
 Point(1) = {0, 0, 0};
@@ -42,13 +43,15 @@ Transfinite Curve {30 : 34} = n_wall + 1;
 Transfinite Curve {10, 20} = n_first + 1;
 Transfinite Curve {11 : 13, 21 : 23} = n_other + 1;
 Transfinite Surface {1 : 4};
-Recombine Surface {1 : 4};
+If (shape == 0)
+  Recombine Surface {1 : 4};
+EndIf
 // out: {surface at x = 0, volume, base side, outside, top side, inside} for each band
-out() = Extrude {{0, 0, 1}, {0, 0, 0}, Pi / 2} {
-  Surface {1 : 4};
-  Layers {3 * refine};
-  Recombine;
-};
+If (shape < 2)
+  out() = Extrude {{0, 0, 1}, {0, 0, 0}, Pi / 2} { Surface {1 : 4}; Layers {3 * refine}; Recombine; };
+Else
+  out() = Extrude {{0, 0, 1}, {0, 0, 0}, Pi / 2} { Surface {1 : 4}; Layers {3 * refine}; };
+EndIf
 Physical Surface("symmetry-y") = {1 : 4};
 Physical Surface("symmetry-x") = {out(0), out(6), out(12), out(18)};
 Physical Surface("base") = {out(2)};

@@ -126,9 +126,18 @@ class Axes:
         expect(len(refining) <= 1, f"{case.file}: study.axes: one axis may have 'sizes'; it may set mesh and step together.")
         self.refining = refining[0] if refining else None
         self.common = {case.absolute(k, participant): v for k, v in (section.get("set") or {}).items()}
+        self.refuse_covered()
         self.leave_out = section.get("leave-out") or []
         expect(all(isinstance(rule, dict) and set(rule) <= {a.name for a in self.all} for rule in self.leave_out),
                f"{case.file}: study.leave-out: expected a list of {{axis: value or [values]}}.")
+
+    def refuse_covered(self):
+        """A mapping that a later axis gives whole would take away the key that an earlier one set in it."""
+        for first, later in itertools.combinations(self.all, 2):
+            for key in {k for found in first.values.values() for k in found}:
+                for above in {k for found in later.values.values() for k in found}:
+                    expect(not key.startswith(above + "."), f"{self.case.file}: study.axes: '{above}' of '{later.name}' would replace '{key}' of "
+                           f"'{first.name}': name '{later.name}' first, or give its keys one by one.")
 
     def left_out(self, labels):
         def fits(rule):

@@ -16,12 +16,14 @@ MARKS = "osD^vP*Xh<>"
 
 
 LINES = ("-", "--", ":", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3)), (0, (8, 2)))
+MANY = 16  # series from which on a legend names colours, marks and lines instead of each
 BESIDE = 9  # names in a legend from which on it stands beside the picture
 
 
 def figure(title, series=0):
     """`series`: how many are to be drawn."""
-    made, axes = plt.subplots(figsize=(6.6 + (2.6 if series >= BESIDE else 0), 4.4), dpi=130, constrained_layout=True)
+    beside = series >= BESIDE
+    made, axes = plt.subplots(figsize=(6.6 + (2.6 if beside else 0), max(4.4, 0.152 * series + 0.1) if beside else 4.4), dpi=130, constrained_layout=True)
     axes.set_title(title, fontsize=10)
     return made, axes
 
@@ -35,13 +37,19 @@ def plain(axis):
         axis.set_major_formatter(FuncFormatter(lambda v, _: f"{v:g}"))
 
 
-def styles(rows):
-    """{series: keywords of its line}. Where series differ in two things or three, colour, mark and line tell which."""
-    series, found = series_of(rows), {}
+def differing(rows):
+    """Series, and the axes in which they differ with the labels of each."""
+    series = series_of(rows)
     sizes = {a for some in series.values() for r in some for a, v in r.point.labels.items() if v not in r.series.split(", ")}
     axes = [a for a in next(iter(series.values()))[0].point.labels if a not in sizes] if series else []
     values = {a: list(dict.fromkeys(some[0].point.labels[a] for some in series.values())) for a in axes}
-    several = [a for a in axes if len(values[a]) > 1]
+    return series, {a: values[a] for a in axes if len(values[a]) > 1}
+
+
+def styles(rows):
+    """{series: keywords of its line}. Where series differ in two things or three, colour, mark and line tell which."""
+    (series, values), found = differing(rows), {}
+    several = list(values)
     for k, (name, some) in enumerate(series.items()):
         of = [values[a].index(some[0].point.labels[a]) for a in several]
         if len(of) < 2:
@@ -50,6 +58,16 @@ def styles(rows):
             found[name] = {"color": f"C{of[0] % 10}", "marker": MARKS[of[1] % len(MARKS)], "linestyle": LINES[of[2] % len(LINES)] if len(of) > 2 else "-"}
         found[name].update(markersize=4, lw=1)
     return found
+
+
+def common(rows):
+    """Legend of many series that differ in two things or three: [(label, keywords)] of a colour, a mark, a line each; else none."""
+    series, values = differing(rows)
+    if len(series) < MANY or len(values) not in (2, 3):
+        return []
+    looks = ([{"color": f"C{k % 10}", "lw": 3} for k in range(10)], [{"color": "0.4", "marker": m, "ls": "", "markersize": 4} for m in MARKS],
+             [{"color": "0.4", "linestyle": line, "lw": 1} for line in LINES])
+    return [(label, look) for some, of in zip(values.values(), looks) for label, look in zip(some, of)]
 
 
 def finish(made, axes, file):
@@ -67,14 +85,16 @@ def finish(made, axes, file):
 
 def error_against_time(title, rows, quantity, clock, file, others=()):
     """`others`: (name, [(cost, error)]) of other programs."""
-    looks = styles(rows)
-    made, axes = figure(title, len(looks) + len(others) + 1)
+    looks, names = styles(rows), common(rows)
+    made, axes = figure(title, (len(names) or len(looks)) + len(others) + 1)
     points = []
+    for label, look in names:
+        axes.plot([], [], **look, label=label)
     for k, (name, some) in enumerate(series_of(rows).items()):
         xy = [(getattr(r.record, clock), r.errors[quantity.name], r) for r in some if r.errors.get(quantity.name, 0) > 0]
         if not xy:
             continue
-        line, = axes.loglog([p[0] for p in xy], [p[1] for p in xy], **looks[name], label=name)
+        line, = axes.loglog([p[0] for p in xy], [p[1] for p in xy], **looks[name], label=None if names else name)
         points += [p[:2] for p in xy]
         if len(points) <= 24 or k == 0:
             for x, y, row in xy:

@@ -19,7 +19,8 @@ STUDIES = {  # folder in docs/validation/studies: file in configs
     "vibrating-cantilever": "vibrating-cantilever/case", "heated-cylinder": "heated-cylinder/case", "taylor-green-2d": "taylor-green-2d/case",
     "cylinder-2d-1": "cylinder/study-2d-1", "cylinder-2d-2": "cylinder/study-2d-2", "cavity": "cavity/study",
     "perpendicular-flap": "perpendicular-flap/study", "schumann": "schumann/case", "thermocline-andasol": "thermocline-andasol/study",
-    "bent-beam": "bent-beam/study"}
+    "bent-beam": "bent-beam/study",
+    **{f"{case}-gradients": f"{case}/study-gradients" for case in ("elliptic-plate", "le1", "le10", "le11", "cantilever")}}
 TARGETS = {  # study: (quantity, three targets)
     "elliptic-plate": ("displacement", ("2%", "1%", "0.4%")), "le11": ("stress at A", ("8%", "4%", "2%")),
     "vibrating-cantilever": ("period", ("0.3%", "0.1%", "0.03%")), "taylor-green-2d": ("velocity", ("1%", "0.3%", "0.1%")),

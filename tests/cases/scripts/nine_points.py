@@ -15,13 +15,24 @@ assert np.allclose((2 + 1.25 * s) * np.cos(phi), x) and np.allclose((1 + 1.75 * 
 assert np.isclose(nine_points.von_mises(np.array([3.0, 0, 0, 0, 0, 0])), 3)
 assert np.isclose(nine_points.von_mises(np.array([1.0, 1, 1, 0, 2, 0])), 2 * np.sqrt(3))
 
-# a grid in scrambled order comes back in the order of (s, phi, z); fields of low degree are interpolated exactly
+# cells in scrambled order come back by their place in (s, phi, z), the mean of those that share one; fields of low degree are interpolated exactly
 shape = (7, 9, 5)
 axes = [np.linspace(0, end, n) for end, n in zip((1, np.pi / 2, nine_points.THICKNESS), shape)]
 S, F, Z = (a.ravel() for a in np.meshgrid(*axes, indexing="ij"))
-places = np.stack([(2 + 1.25 * S) * np.cos(F), (1 + 1.75 * S) * np.sin(F), Z], axis=-1)
-scramble = np.random.default_rng(7).permutation(len(S))
-assert (nine_points.order(places[scramble], shape) == np.argsort(scramble)).all()
+middles = np.meshgrid(*((np.arange(n) + 0.5) * end / n for n, end in zip(shape, (1, np.pi / 2, nine_points.THICKNESS))), indexing="ij")
+for share in (1, 2, 6):
+    s, phi, z = (np.repeat(a.ravel(), share) for a in middles)
+    scramble = np.random.default_rng(7).permutation(len(s))
+    places = np.stack([(2 + 1.25 * s) * np.cos(phi), (1 + 1.75 * s) * np.sin(phi), z], axis=-1)[scramble]
+    values = np.arange(float(len(s)))
+    place, found = nine_points.grid(places, shape)
+    assert found == share
+    assert np.allclose(nine_points.means(values[scramble], place, found, shape).ravel(), values.reshape(-1, share).mean(axis=1))
+try:
+    nine_points.grid(places[1:], shape)
+    raise SystemExit("a grid with a hole passed")
+except ValueError:
+    pass
 for n in (3, 4, 5):
     z = np.linspace(0, nine_points.THICKNESS, n)
     assert np.isclose(nine_points.at_middle((1 + z + 2 * z**2)[None, None], z)[0, 0], 1 + 0.3 + 2 * 0.09)

@@ -132,6 +132,19 @@ def mappings(folder):
                  str([case.assignments(given), case.assignments(dict(reversed(given.items())))]))
 
 
+def covered(build, folder):
+    """A mapping of a later axis would take away an earlier one's key in it: refused, with both names; the other way round it runs."""
+    place = folder / "covered"
+    place.mkdir()
+    axes = ["gradient: {key: solution-method.face-gradient, values: [thesis]}", "method: {values: {direct: {solution-method: {type: block-coupled}}}}"]
+    found = []
+    for order in (axes, axes[::-1]):
+        (place / "study.yaml").write_text("case: ../case.yaml\nstudy:\n  axes:\n" + "".join(f"    {a}\n" for a in order) + "  quantities: {tip: {probe: \"tip y [m]\"}}\n")
+        found.append(subprocess.run([ROOT / "scripts/study", place / "study.yaml", f"--build={build}", "--list"], capture_output=True, text=True))
+    return check("a mapping that would replace another axis's key is refused", found[0].returncode != 0 and "'solution-method' of 'method' would replace" in
+                 found[0].stderr + found[0].stdout and found[1].returncode == 0 and '"face-gradient": "thesis"' in found[1].stdout, str(found))
+
+
 def made_up(order, sizes):
     """A series whose value is 1 + n^-order and whose cost is start-up and n^3, without any run."""
     from types import SimpleNamespace as S
@@ -194,6 +207,7 @@ def main(build):
         (folder / "case.yaml").write_text((ROOT / "configs/cantilever/case.yaml").read_text().split("\nstudy:")[0] + STUDY)
         failed = predicting()
         failed += mappings(folder)
+        failed += covered(build, folder)
         failed += restartable(build, folder)
         failed += content(folder)
         failed += looked_at(folder)
