@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/symmetric_matrix.hpp"
+#include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -87,7 +88,10 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
   else
     choose_multigrid(parameters);
   const std::size_t n = problem.elastic.n_unknowns();
-  const LinearMap apply = [this](std::span<const double> x, std::span<double> y) { problem_.apply(x, y); };
+  const LinearMap apply = [this](std::span<const double> x, std::span<double> y) {
+    const log::ScopedTimer timer(log::timers(), "solid: products");
+    problem_.apply(x, y);
+  };
   const LinearMap precondition = [this](std::span<const double> r, std::span<double> z) {
     if (modes_) {
       multigrid_->apply(r, z);

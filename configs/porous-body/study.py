@@ -12,6 +12,7 @@ METHODS = {  # keys of solution-method; the thesis's operator and tolerance
     "block-coupled": "type: block-coupled, linear-solver: bicgstab-ilu, face-gradient: thesis, relative-tolerance: 1e-7",
     "newton-krylov": "type: newton-krylov, face-gradient: thesis, relative-tolerance: 1e-7",
     "newton-krylov, corrected": "type: newton-krylov, face-gradient: corrected, relative-tolerance: 1e-7",
+    "newton-krylov, symmetric": "type: newton-krylov, face-gradient: symmetric, relative-tolerance: 1e-7",
 }
 
 
@@ -34,4 +35,5 @@ def run(job, n, ranks=1, method="newton-krylov", extra=()):
     reactions, solver, report = results.table("solid", "reactions.csv"), results.table("solid", "solver.csv"), results.report("solid")
     return {"cells": tets, "force": reactions["bottom z [N]"][-1], "iterations": int(solver["iterations"][-1]),
             "inner": int(solver["inner iterations"][-1]), "seconds": report["wall"],
+            "solve": report["phases"]["solid: linear solver"],
             "memory": report["memory-most"], "memory on all": report["memory-all"]}
