@@ -22,6 +22,15 @@ def once(folder, make):
     return json.loads(record.read_text())
 
 
+def series(folder, peers):
+    """[(name, [(seconds, error)])] for the picture of scripts/study, of peers (name, its program, run, meshes): each run(folder, mesh) is
+    made once; what is not installed is left out."""
+    def one(name, run, mesh):
+        label = "x".join(map(str, mesh)) if isinstance(mesh, tuple) else mesh
+        return tuple(once(pathlib.Path(folder) / f"{name}-{label}", lambda place: run(place, mesh)))
+    return [(name, [one(name, run, mesh) for mesh in meshes]) for name, program, run, meshes in peers if shutil.which(program)]
+
+
 def foam_environment():
     return dict(environment(), WM_PROJECT_DIR=os.environ.get("WM_PROJECT_DIR", "/usr/share/openfoam"))
 

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """CalculiX on the same beam for the picture of scripts/study: (processor seconds, error of the deflection); left out where it is not installed."""
 import pathlib
-import shutil
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
 import calculix_beam  # noqa: E402
 from couplet_run import launch  # noqa: E402
-from runs import once  # noqa: E402
+from runs import series  # noqa: E402
 
 LOAD, CONVERGED = 1.6, 0.431338  # K; deflection over the length
 MESHES = {"C3D8": ((2, 20), (4, 40), (8, 80)), "C3D8I": ((2, 20), (4, 40), (8, 80)), "C3D20": ((2, 10), (2, 20), (4, 40))}
@@ -20,9 +19,9 @@ def median_of(run, times=3):
     return first if first[0] > 0.6 else sorted([first, *(run() for _ in range(times - 1))])[times // 2]
 
 
-def calculix(element, across, along):
-    def run(folder):
-        calculix_beam.write(folder / "beam.inp", across, along, element, LOAD)
+def calculix(element):
+    def run(folder, mesh):
+        calculix_beam.write(folder / "beam.inp", *mesh, element, LOAD)
 
         def one():
             seconds = launch(["ccx", "beam"], folder / "run.log", folder).cpu
@@ -32,8 +31,4 @@ def calculix(element, across, along):
 
 
 def deflection(folder):
-    """[(name, [(seconds, error)])]; each run is made once."""
-    if not shutil.which("ccx"):
-        return []
-    return [(f"CalculiX {element}", [tuple(once(pathlib.Path(folder) / f"{element}-{n}x{m}", calculix(element, n, m))) for n, m in meshes])
-            for element, meshes in MESHES.items()]
+    return series(folder, [(f"CalculiX {element}", "ccx", calculix(element), meshes) for element, meshes in MESHES.items()])

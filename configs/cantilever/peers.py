@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """CalculiX on the same beam for the picture of scripts/study: (processor seconds, error of the deflection); left out where it is not installed."""
 import pathlib
-import shutil
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
 import calculix_beam  # noqa: E402
 from couplet_run import launch  # noqa: E402
-from runs import once  # noqa: E402
+from runs import series  # noqa: E402
 
 BEAM = calculix_beam.Beam(side=2.0, length=20.0, young=10e6, large=False)
 FORCE, CONVERGED = 500.0, 0.10008  # [N]; [m]
@@ -16,8 +15,8 @@ LOAD = FORCE / (BEAM.young * BEAM.side**4 / 12 / BEAM.length**2)  # along the di
 MESHES = {"C3D8": (2, 4, 8), "C3D8I": (2, 4, 8), "C3D20": (2, 4)}  # across; ten times as many along
 
 
-def calculix(element, across):
-    def run(folder):
+def calculix(element):
+    def run(folder, across):
         calculix_beam.write(folder / "beam.inp", across, 10 * across, element, LOAD, BEAM)
         seconds = launch(["ccx", "beam"], folder / "run.log", folder).cpu
         return seconds, abs(BEAM.length * calculix_beam.deflection(folder / "beam.dat", BEAM.length) / CONVERGED - 1)
@@ -25,8 +24,4 @@ def calculix(element, across):
 
 
 def tip(folder):
-    """[(name, [(seconds, error)])]; each run is made once."""
-    if not shutil.which("ccx"):
-        return []
-    return [(f"CalculiX {element}", [tuple(once(pathlib.Path(folder) / f"{element}-{n}", calculix(element, n))) for n in meshes])
-            for element, meshes in MESHES.items()]
+    return series(folder, [(f"CalculiX {element}", "ccx", calculix(element), meshes) for element, meshes in MESHES.items()])

@@ -2,7 +2,6 @@
 """CalculiX and OpenFOAM on the same plate for the picture of scripts/study: (processor seconds, error of the displacement);
 what is not installed is left out."""
 import pathlib
-import shutil
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -10,7 +9,7 @@ sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
 import calculix_plate  # noqa: E402
 import openfoam_plate  # noqa: E402
 from couplet_run import launch  # noqa: E402
-from runs import foam_environment, once  # noqa: E402
+from runs import foam_environment, series  # noqa: E402
 
 MESHES = ((4, 6, 3), (8, 12, 6), (16, 24, 12))
 
@@ -24,7 +23,6 @@ def foam(folder, n):
 
 def calculix(element, solver):
     def run(folder, n):
-        folder.mkdir(parents=True, exist_ok=True)
         calculix_plate.write(folder / "plate.inp", n, element, solver)
         cost = launch(["ccx", "plate"], folder / "run.log", folder)
         return cost.cpu, float(calculix_plate.plate_error(folder / "plate.frd", n, element))
@@ -36,12 +34,4 @@ PEERS = (("CalculiX C3D8I", "ccx", calculix("C3D8I", "ITERATIVE CHOLESKY"), MESH
 
 
 def displacement(folder):
-    """[(name, [(seconds, error)])]; each run is made once."""
-    found = []
-    for name, program, run, meshes in PEERS:
-        points = []
-        for n in meshes if shutil.which(program) else ():
-            points.append(tuple(once(pathlib.Path(folder) / f"{name}-{n[0]}", lambda place, run=run, n=n: run(place, n))))
-        if points:
-            found.append((name, points))
-    return found
+    return series(folder, PEERS)

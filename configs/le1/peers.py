@@ -14,7 +14,7 @@ ROOT = HERE.parents[1]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
 from couplet_run import launch  # noqa: E402
 from plane_mesh import PlaneMesh  # noqa: E402
-from runs import foam_environment, once, put_foam  # noqa: E402
+from runs import foam_environment, put_foam, series  # noqa: E402
 
 SIZES = (16, 32, 64)
 YOUNG, POISSON, PULL, STRESS = 210e9, 0.3, 1e7, 92.66e6
@@ -97,16 +97,8 @@ def stress_at_d(folder, mesh):
     return float(np.polyval(np.polyfit([mesh.centres()[c][0] - 2 for c in nearest], [stress[c] for c in nearest], 2), 0))
 
 
-PEERS = (("CalculiX C3D8I", "ccx", calculix), ("solidDisplacementFoam", "solidDisplacementFoam", foam))
+PEERS = (("CalculiX C3D8I", "ccx", calculix, SIZES), ("solidDisplacementFoam", "solidDisplacementFoam", foam, SIZES))
 
 
 def stress(folder):
-    """[(name, [(seconds, error)])]; each run is made once."""
-    found = []
-    for name, program, run in PEERS:
-        points = []
-        for n in SIZES if shutil.which(program) and shutil.which("gmsh") else ():
-            points.append(tuple(once(pathlib.Path(folder) / f"{name}-{n}", lambda place, run=run, n=n: run(place, n))))
-        if points:
-            found.append((name, points))
-    return found
+    return series(folder, PEERS if shutil.which("gmsh") else [])

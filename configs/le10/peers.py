@@ -2,21 +2,20 @@
 """CalculiX on the same plate, held in the same strip, for the picture of scripts/study: (processor seconds, error of the stress
 at D); left out where it is not installed."""
 import pathlib
-import shutil
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
 import calculix_plate  # noqa: E402
 from couplet_run import launch  # noqa: E402
-from runs import once  # noqa: E402
+from runs import series  # noqa: E402
 
 STRESS = -5.38e6  # [Pa], yy at D
 MESHES = {"C3D8I": ((4, 6, 24), (8, 12, 24), (16, 24, 24)), "C3D20": ((4, 6, 24), (8, 12, 24))}
 
 
-def calculix(element, n):
-    def run(folder):
+def calculix(element):
+    def run(folder, n):
         calculix_plate.write(folder / "plate.inp", n, element, "SPOOLES", le10=True)
         seconds = launch(["ccx", "plate"], folder / "run.log", folder).cpu
         number, _ = calculix_plate.numbers(n, element)
@@ -25,8 +24,4 @@ def calculix(element, n):
 
 
 def stress(folder):
-    """[(name, [(seconds, error)])]; each run is made once."""
-    if not shutil.which("ccx"):
-        return []
-    return [(f"CalculiX {element}", [tuple(once(pathlib.Path(folder) / f"{element}-{n[0]}", calculix(element, n))) for n in meshes])
-            for element, meshes in MESHES.items()]
+    return series(folder, [(f"CalculiX {element}", "ccx", calculix(element), meshes) for element, meshes in MESHES.items()])

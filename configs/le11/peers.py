@@ -13,7 +13,7 @@ ROOT = HERE.parents[1]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
 import calculix_plate  # noqa: E402
 from couplet_run import launch  # noqa: E402
-from runs import once  # noqa: E402
+from runs import series  # noqa: E402
 
 YOUNG, POISSON, EXPANSION, TOP, STRESS = 210e9, 0.3, 2.3e-4, 1.79, -105.67e6
 MESHES = {"C3D8I": (1, 2, 4), "C3D20": (1, 2)}  # refine
@@ -44,8 +44,8 @@ def write(folder, element, refine):
     return int(number[np.argmin(np.linalg.norm(place - (1, 0, 0), axis=1))])
 
 
-def calculix(element, refine):
-    def run(folder):
+def calculix(element):
+    def run(folder, refine):
         a = write(folder, element, refine)
         seconds = launch(["ccx", "body"], folder / "run.log", folder).cpu
         return seconds, abs(calculix_plate.stress_at(folder / "body.frd", a, 2) / STRESS - 1)
@@ -53,8 +53,4 @@ def calculix(element, refine):
 
 
 def stress(folder):
-    """[(name, [(seconds, error)])]; each run is made once."""
-    if not (shutil.which("ccx") and shutil.which("gmsh")):
-        return []
-    return [(f"CalculiX {element}", [tuple(once(pathlib.Path(folder) / f"{element}-{n}", calculix(element, n))) for n in sizes])
-            for element, sizes in MESHES.items()]
+    return series(folder, [(f"CalculiX {element}", "ccx", calculix(element), meshes) for element, meshes in MESHES.items()] if shutil.which("gmsh") else [])

@@ -37,6 +37,19 @@ inline Interface flap(int along, int across, double sign, double shift = 0) {
   return s;
 }
 
+/// The unit circle by n edges; areas outwards.
+inline Interface ring(int n) {
+  Interface s;
+  s.dim = 2;
+  const auto angle = [n](double i) { return 2 * std::numbers::pi * i / n; };
+  for (int i = 0; i < n; ++i) s.vertices.emplace_back(std::cos(angle(i)), std::sin(angle(i)), 0);
+  for (Index i = 0; i < n; ++i)
+    add_face(
+        s, {i, (i + 1) % n},
+        2 * std::sin(std::numbers::pi / n) * Vec3(std::cos(angle(i + 0.5)), std::sin(angle(i + 0.5)), 0));
+  return s;
+}
+
 /// (0, 2) x (0, 1) at height `z`, n quadrilaterals on a length of 1, or each cut into two triangles; areas
 /// along sign z.
 inline Interface plate(int n, bool triangles, double sign, double z = 0) {

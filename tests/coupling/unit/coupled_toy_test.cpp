@@ -11,6 +11,7 @@
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/coupling/support/passing.hpp"
 #include "tests/coupling/toy/piston.hpp"
 #include "tests/coupling/toy/spring.hpp"
 
@@ -55,29 +56,22 @@ class RecordingMover final : public Participant {
 };
 
 /// A piston that pushes harder from the second pass of a step on, as a fluid that has renewed its prediction.
-class RenewingPiston final : public Participant {
+class RenewingPiston final : public tests::Passing<toy::Piston&> {
  public:
   RenewingPiston(toy::Piston& piston, double push, bool tells)
-      : piston_(piston), push_(push), tells_(tells) {}
-  Interface initialise() override { return piston_.initialise(); }
+      : Passing(piston), push_(push), tells_(tells) {}
   void begin_step(const Step& step) override {
     passes_ = 0;
-    piston_.begin_step(step);
+    inner.begin_step(step);
   }
   Exchange solve(const Exchange& in) override {
-    Exchange out = piston_.solve(in);
+    Exchange out = inner.solve(in);
     if (++passes_ > 1) out.at("pressure-force")[1] += push_;
     return out;
   }
   bool answered_anew() const override { return tells_ && passes_ == 2; }
-  StepReport accept_step() override { return piston_.accept_step(); }
-  void save(CheckpointWriter& file) const override { piston_.save(file); }
-  void load(CheckpointReader& file) override { piston_.load(file); }
-  void write_output(double, int) override {}
-  void write_monitors(double) override {}
 
  private:
-  toy::Piston& piston_;
   double push_;
   bool tells_;
   int passes_ = 0;

@@ -11,6 +11,7 @@
 
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/coupling/support/passing.hpp"
 #include "tests/coupling/toy/spring.hpp"
 
 namespace couplet {
@@ -77,25 +78,18 @@ class Strait final : public Participant {
 };
 
 /// A spring that stands elsewhere.
-class Shifted final : public Participant {
+class Shifted final : public tests::Passing<toy::Spring> {
  public:
-  Shifted(double x, double stiffness) : spring_(MPI_COMM_SELF, {2, 0.5, stiffness}), x_(x) {}
+  Shifted(double x, double stiffness)
+      : Passing(MPI_COMM_SELF, toy::SpringParameters{2, 0.5, stiffness}), x_(x) {}
   Interface initialise() override {
-    Interface i = spring_.initialise();
+    Interface i = inner.initialise();
     for (auto* places : {&i.vertices, &i.face_centres})
       for (Vec3& p : *places) p.x() += x_;
     return i;
   }
-  void begin_step(const Step& step) override { spring_.begin_step(step); }
-  Exchange solve(const Exchange& in) override { return spring_.solve(in); }
-  StepReport accept_step() override { return spring_.accept_step(); }
-  void save(CheckpointWriter& file) const override { spring_.save(file); }
-  void load(CheckpointReader& file) override { spring_.load(file); }
-  void write_output(double, int) override {}
-  void write_monitors(double) override {}
 
  private:
-  toy::Spring spring_;
   double x_;
 };
 

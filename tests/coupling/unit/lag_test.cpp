@@ -10,6 +10,7 @@
 
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
+#include "tests/coupling/support/passing.hpp"
 #include "tests/coupling/toy/piston.hpp"
 #include "tests/coupling/toy/spring.hpp"
 
@@ -19,56 +20,42 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The piston, whose fluid drags the wall as well: F -= C w, w the mean velocity of a face's ends.
-class Drag final : public Participant {
+class Drag final : public tests::Passing<toy::Piston&> {
  public:
-  Drag(toy::Piston& piston, double C) : piston_(piston), C_(C) {}
-  Interface initialise() override { return piston_.initialise(); }
-  void begin_step(const Step& step) override { piston_.begin_step(step); }
+  Drag(toy::Piston& piston, double C) : Passing(piston), C_(C) {}
   Exchange solve(const Exchange& in) override {
-    Exchange out = piston_.solve(in);
+    Exchange out = inner.solve(in);
     if (in.contains("velocity")) {
       const std::vector<double>& w = in.at("velocity");
       out.at("pressure-force")[1] -= C_ * (w[1] + w[3]) / 2;
     }
     return out;
   }
-  StepReport accept_step() override { return piston_.accept_step(); }
-  void save(CheckpointWriter& file) const override { piston_.save(file); }
-  void load(CheckpointReader& file) override { piston_.load(file); }
-  void write_output(double, int) override {}
-  void write_monitors(double) override {}
 
  private:
-  toy::Piston& piston_;
   double C_;
 };
 
-/// The spring, its way kept; a step above `fails_above` fails once it was not the first try.
-class Watched final : public Participant {
+/// The spring, its way kept; steps shorter than `fails_below` fail.
+class Watched final : public tests::Passing<toy::Spring> {
  public:
-  Watched(const toy::SpringParameters& p, std::vector<double>& way) : spring_(MPI_COMM_SELF, p), way_(way) {}
-  Interface initialise() override { return spring_.initialise(); }
+  Watched(const toy::SpringParameters& p, std::vector<double>& way) : Passing(MPI_COMM_SELF, p), way_(way) {}
   void begin_step(const Step& step) override {
     if (step.dt < fails_below) throw SolveFailure("dt is too short.");
-    spring_.begin_step(step);
+    inner.begin_step(step);
   }
   Exchange solve(const Exchange& in) override {
-    Exchange out = spring_.solve(in);
+    Exchange out = inner.solve(in);
     y_ = out.at("displacement")[1];
     return out;
   }
   StepReport accept_step() override {
     way_.push_back(y_);
-    return spring_.accept_step();
+    return inner.accept_step();
   }
-  void save(CheckpointWriter& file) const override { spring_.save(file); }
-  void load(CheckpointReader& file) override { spring_.load(file); }
-  void write_output(double, int) override {}
-  void write_monitors(double) override {}
   double fails_below = 0;
 
  private:
-  toy::Spring spring_;
   std::vector<double>& way_;
   double y_ = 0;
 };

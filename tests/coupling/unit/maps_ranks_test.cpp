@@ -126,12 +126,8 @@ TEST(MapsOverRanks, need_of_the_other_surface_what_is_near_alone) {
 }
 
 TEST(MapsOverRanks, a_closed_curve_has_as_many_faces_as_vertices_and_values_at_faces_stay_there) {
-  Interface ring;
-  ring.dim = 2;
   constexpr int n = 40;
-  for (int i = 0; i < n; ++i)
-    ring.vertices.emplace_back(std::cos(2 * M_PI * i / n), std::sin(2 * M_PI * i / n), 0);
-  for (Index i = 0; i < n; ++i) tests::add_face(ring, {i, (i + 1) % n}, Vec3(1, 0, 0));
+  const Interface ring = tests::ring(n);
   const Side side(world, "ring", tests::part_of(world, ring));
   const PointSet faces = side.places(Interface::Place::faces);
   MappingParameters parameters;

@@ -97,15 +97,8 @@ TEST(WatchIntegrals, a_flux_goes_through_the_moved_surface) {
 }
 
 TEST(WatchIntegrals, in_the_plane_a_growing_circle_sweeps_its_circumference) {
-  Interface ring;
-  ring.dim = 2;
   constexpr int n = 64;
-  for (int i = 0; i < n; ++i)
-    ring.vertices.emplace_back(std::cos(2 * M_PI * i / n), std::sin(2 * M_PI * i / n), 0);
-  for (Index i = 0; i < n; ++i) {
-    const Vec3 middle = ring.vertices[std::size_t(i)] + ring.vertices[std::size_t((i + 1) % n)];
-    tests::add_face(ring, {i, (i + 1) % n}, middle.normalized() * 2 * std::sin(M_PI / n));
-  }
+  Interface ring = tests::ring(n);
   ring.gives = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
   const auto row =
       watch(ring, {{"v", {"sheet", "velocity", ""}}}, [](const Interface& i, Exchange& given, Exchange&) {
