@@ -98,7 +98,7 @@ WatchIntegrals::Surface WatchIntegrals::surface_of(const Side& side, std::size_t
 }
 
 WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, const WatchParameters& p,
-                                                     const Side& side) const {
+                                                     const Side& side, const Surface& surface) const {
   const Datum* datum = find(side.interface, p.data);
   if (!datum)
     throw Error("coupling.watch.{}.data: '{}' neither gives nor takes '{}'. It has: {}.", name, p.participant,
@@ -118,7 +118,7 @@ WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, co
     throw Error(
         "coupling.watch.{}.data: '{}' has {} components; those with 1 or {} can be integrated over the surface.",
         name, p.data, n, side.interface.dim);
-  if (datum->place == Place::vertices && !surfaces_.back().knows_corners)
+  if (datum->place == Place::vertices && !surface.knows_corners)
     throw Error(
         "coupling.watch.{}.data: '{}' does not tell the corners of its faces, which the integral of '{}' needs. "
         "Watch that of the participant on the other side.",
@@ -136,9 +136,11 @@ WatchIntegrals::WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
     if (side == sides.end())
       throw Error("coupling.watch.{}.participant: '{}' is no participant of this coupling.", name,
                   p.participant);
-    surfaces_.push_back(surface_of(*side, std::size_t(side - sides.begin())));
-    integrals_.push_back(integral_of(name, p, *side));
-    integrals_.back().surface = surfaces_.size() - 1;
+    const auto index = std::size_t(side - sides.begin());
+    auto surface = std::ranges::find(surfaces_, index, &Surface::side);
+    if (surface == surfaces_.end()) surface = surfaces_.insert(surface, surface_of(*side, index));
+    integrals_.push_back(integral_of(name, p, *side, *surface));
+    integrals_.back().surface = std::size_t(surface - surfaces_.begin());
     const Integral& i = integrals_.back();
     const std::string what = name + " " + p.data, &unit = i.datum.unit;
     const std::string times_area = unit == "m/s"  ? "m^3/s"

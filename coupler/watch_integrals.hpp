@@ -50,7 +50,8 @@ class WatchIntegrals {
     std::size_t columns;
   };
   Surface surface_of(const Side& side, std::size_t index) const;
-  Integral integral_of(const std::string& name, const WatchParameters& p, const Side& side) const;
+  Integral integral_of(const std::string& name, const WatchParameters& p, const Side& side,
+                       const Surface& surface) const;
   std::vector<Vec3> areas(const Surface& s, const Exchange& given, const Exchange& taken) const;
   void add_up(const Integral& i, const std::vector<double>& values, const std::vector<Vec3>& areas,
               double* sums) const;
