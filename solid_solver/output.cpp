@@ -149,7 +149,7 @@ void SolidOutput::write_spectrum(double dt) {
       values.size(), n_complex, growth, name(p.time_scheme.type), dt, p.damping ? ", damped," : "", discrete);
 }
 
-void SolidOutput::write_modes() {
+void SolidOutput::write_modes(bool estimates) {
   if (context_.output_folder.empty() || modes_written_) return;
   modes_written_ = true;
   const Mesh& mesh = body_.mesh();
@@ -168,9 +168,15 @@ void SolidOutput::write_modes() {
   } catch (const SolveFailure& e) {
     throw Error("output.modes: {}", e.what());  // no shorter step would help
   }
-  double coarse = 0;  // relative error of the worst frequency
-  for (std::size_t m = 0; m < found.shape.size(); ++m)
-    if (found.eigenvalue[m] > 0) coarse = std::max(coarse, 0.5 * energy_mesh_error(body_, found.shape[m]));
+  std::string errs;
+  if (estimates) {
+    std::vector<std::span<const double>> swinging;
+    for (std::size_t m = 0; m < found.shape.size(); ++m)
+      if (found.eigenvalue[m] > 0) swinging.push_back(found.shape[m]);
+    if (!swinging.empty())
+      errs = fmt::format("; the mesh leaves an estimated {:.2g} % in the worst of them",
+                         100 * 0.5 * energy_mesh_error(body_, swinging));
+  }
   ModalModel model = modal_model(*problem, found);
   model.mass = 0;
   for (const double m : mass) model.mass += m;
@@ -186,10 +192,10 @@ void SolidOutput::write_modes() {
   }
   if (mesh.dim == 3) couplet::write_modes(context_.output_folder / "modes.h5", model, "");
   log::info(
-      "modes: {} free vibrations from {:.6g} to {:.6g} Hz in modes.csv{}; largest residual {:.1e}; the mesh leaves an estimated {:.2g} % in the worst of them",
-      n, model.frequency.front(), model.frequency.back(),
+      "modes: {} free vibrations from {:.6g} to {:.6g} Hz in modes.csv{}; largest residual {:.1e}{}", n,
+      model.frequency.front(), model.frequency.back(),
       mesh.dim == 3 ? ", their shapes on the surface in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
-      found.worst_residual, 100 * coarse);
+      found.worst_residual, errs);
 }
 
 void SolidOutput::write_probes(double time, std::span<const double> points) {

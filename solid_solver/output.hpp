@@ -28,8 +28,8 @@ class SolidOutput {
   void write_series(double time, std::span<const double> points);
   /// spectrum.csv and a sentence in the log, for steps of dt. Collective.
   void write_spectrum(double dt);
-  /// modes.csv and, of a body in space, modes.h5. Collective.
-  void write_modes();
+  /// modes.csv and, of a body in space, modes.h5; `estimates`: what the mesh leaves in the frequencies is told. Collective.
+  void write_modes(bool estimates);
 
  private:
   void write_probes(double time, std::span<const double> points);

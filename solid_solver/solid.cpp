@@ -25,7 +25,7 @@ void Solid::begin_step(const Step& step) {
   dt_ = step.dt;
   stepper_.begin_step(step, !interface_.takes_temperature());
   if (chosen.spectrum && body_.is_dynamic() && step.number == 0) output_->write_spectrum(step.dt);
-  if (chosen.modes > 0 && step.number == 0) output_->write_modes();
+  if (chosen.modes > 0 && step.number == 0) output_->write_modes(errors_.has_value());
 }
 
 Exchange Solid::solve(const Exchange& in) {

@@ -103,6 +103,28 @@ double gap_of_gradients(const SolidBody& body, const std::array<const Strains*, 
   return all;
 }
 
+/// With the gradient that the body's is compared with.
+ElasticKernel other_kernel(const SolidBody& body) {
+  return {body.mesh(), body.elastic(),
+          body.is_corrected() ? FaceGradientScheme::thesis : FaceGradientScheme::corrected};
+}
+
+double energy_missed(const SolidBody& body, const Strains& used, const Strains& compared) {
+  const Mesh& mesh = body.mesh();
+  double gap = 0, size = 0;
+  visit_sides(mesh, [&](Index c, Index f, double v) {
+    const Tensor3 e = unpacked(used[f]);
+    const double weight = v * body.elastic().lame(c).mu;
+    gap += weight * (unpacked(compared[f]) - e).squaredNorm(), size += weight * e.squaredNorm();
+  });
+  gap = sum(mesh.comm, gap), size = sum(mesh.comm, size);
+  const double missed = size > 0 ? gap / size : 0;
+  if (!InnerVariation::is_needed(mesh, body.elastic())) return missed;
+  InnerVariation variation(mesh, body.elastic());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) variation.add(f, unpacked(used[f]));
+  return std::max(missed, variation.missed());
+}
+
 }  // namespace
 
 double weighted_mesh_error(const SolidBody& body, std::span<const double> unknowns,
@@ -121,30 +143,19 @@ double weighted_mesh_error(const SolidBody& body, std::span<const double> unknow
   }
   const Strains u1 = strains(body.kernel(), mesh, unknowns, known), z1 = strains(body.kernel(), mesh, z, {});
   double missed = variation_in_cells(body, u1, z1, pressure) / 3;
-  const ElasticKernel other(mesh, body.elastic(),
-                            body.is_corrected() ? FaceGradientScheme::thesis : FaceGradientScheme::corrected);
+  const ElasticKernel other = other_kernel(body);
   const Strains u2 = strains(other, mesh, unknowns, known), z2 = strains(other, mesh, z, {});
   missed += gap_of_gradients(body, {&u1, &u2}, {&z1, &z2});
   return sum(mesh.comm, missed) / size;
 }
 
-double energy_mesh_error(const SolidBody& body, std::span<const double> shape) {
-  const Mesh& mesh = body.mesh();
-  const ElasticKernel other(mesh, body.elastic(),
-                            body.is_corrected() ? FaceGradientScheme::thesis : FaceGradientScheme::corrected);
-  const Strains used = strains(body.kernel(), mesh, shape, {}), compared = strains(other, mesh, shape, {});
-  double gap = 0, size = 0;
-  visit_sides(mesh, [&](Index c, Index f, double v) {
-    const Tensor3 e = unpacked(used[f]);
-    const double weight = v * body.elastic().lame(c).mu;
-    gap += weight * (unpacked(compared[f]) - e).squaredNorm(), size += weight * e.squaredNorm();
-  });
-  gap = sum(mesh.comm, gap), size = sum(mesh.comm, size);
-  double missed = size > 0 ? gap / size : 0;
-  if (!InnerVariation::is_needed(mesh, body.elastic())) return missed;
-  InnerVariation variation(mesh, body.elastic());
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) variation.add(f, unpacked(used[f]));
-  return std::max(missed, variation.missed());
+double energy_mesh_error(const SolidBody& body, std::span<const std::span<const double>> shapes) {
+  const ElasticKernel other = other_kernel(body);
+  double most = 0;
+  for (const std::span<const double> shape : shapes)
+    most = std::max(most, energy_missed(body, strains(body.kernel(), body.mesh(), shape, {}),
+                                        strains(other, body.mesh(), shape, {})));
+  return most;
 }
 
 }  // namespace couplet

@@ -17,8 +17,8 @@ namespace couplet {
 double weighted_mesh_error(const SolidBody& body, std::span<const double> unknowns,
                            std::span<const double> known, std::span<const double> pressure);
 
-/// By how much the strain energy of a shape errs, relatively, where what is held rests: twice that of its frequency. The square of the
-/// difference of two gradients' strains, or what InnerVariation takes if that is more. Collective.
-double energy_mesh_error(const SolidBody& body, std::span<const double> shape);
+/// By how much the strain energy of a shape errs, relatively, where what is held rests: twice that of its frequency; the most of these
+/// shapes. The square of the difference of two gradients' strains, or what InnerVariation takes if that is more. Collective.
+double energy_mesh_error(const SolidBody& body, std::span<const std::span<const double>> shapes);
 
 }  // namespace couplet
