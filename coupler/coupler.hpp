@@ -74,8 +74,8 @@ class Coupler {
   void solve(const Step& step);
   /// One pass from x, the explicit scheme's step.
   void pass_once(const Step& step, const FixedPointMap& map);
-  /// What the prediction of explicit coupling costs, at some steps, before they begin.
-  void look_at_lag(const Step& step);
+  /// What comes back in a step half as long, of some steps of explicit coupling before they begin.
+  void look_at_lag(Step step);
   /// One pass through the group from what is known to what all give.
   std::vector<Exchange> pass(std::vector<Exchange> known, bool first);
   void ask(std::size_t i, const std::vector<Exchange>& known, bool move_mesh);
@@ -116,6 +116,7 @@ class Coupler {
   std::optional<CouplingAudit> audit_;
   std::optional<CouplingErrorEstimate> errors_;  // none: not wanted, or nothing is iterated
   std::optional<LagEstimate> lag_;               // none: not wanted, not explicit, or it could not tell
+  std::optional<LagEstimate::Look> half_;        // of the step under way; none: it is not looked at
   std::string diverged_;                         // empty: no guard has fired
   bool warned_ = false;
   bool answered_anew_ = false;  // somebody in the last pass

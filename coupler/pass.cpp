@@ -84,31 +84,28 @@ std::vector<Exchange> Coupler::pass(std::vector<Exchange> known, bool first) {
   return given;
 }
 
-/// Tries the step and one half as long, two passes each; both are forgotten.
-void Coupler::look_at_lag(const Step& step) {
+/// Tries a step half as long, two passes, which are forgotten; pass_once() has the whole one.
+void Coupler::look_at_lag(Step step) {
+  half_.reset();
   if (!lag_ || history_.now.rider.empty() || !CouplingAudit::looks_at(step.number)) return;
+  step.dt /= 2;
   std::vector<Exchange> outputs;
+  bool first = true;
   const auto answer_to = [&](const Iterate& x) {
     std::vector<Exchange> known(partners_.size());
     unknown_->scatter(x, known);
     give_back(std::move(outputs));
-    outputs = pass(std::move(known), true);  // the mesh moves, too
+    outputs = pass(std::move(known), std::exchange(first, false));
     --iterations_;
     return unknown_->gather(outputs);
   };
-  const auto look = [&](double dt) {
-    Step tried = step;
-    tried.dt = dt;
-    ask_all(everyone(), {Op::begin_step, tried, {}, 0, -1, ""});
+  try {
+    ask_all(everyone(), {Op::begin_step, step, {}, 0, -1, ""});
     LagEstimate::Look look;
-    look.x = predict(*unknown_, history_, dt, schedule_.predictor);
+    look.x = predict(*unknown_, history_, step.dt, schedule_.predictor);
     look.image = answer_to(look.x);
     look.again = answer_to(look.image);
-    return look;
-  };
-  try {
-    const LagEstimate::Look half = look(step.dt / 2);
-    lag_->looked(look(step.dt), half, step.dt);
+    half_ = std::move(look);
   } catch (const SolveFailure&) {
     return;  // nothing is learnt; why the step itself fails is said there
   }
@@ -125,6 +122,7 @@ void Coupler::pass_once(const Step& step, const FixedPointMap& map) {
     return;
   const Iterate again = map(last_.image);
   audit_->returned(last_.residual, worst(unknown_->measure(last_.image, again)));
+  if (half_) lag_->looked({last_.x, last_.image, again}, *half_, step.dt);
   last_.image = map(last_.x);  // the step is what it is without this look
   iterations_ -= 2;            // nor are these its passes
 }

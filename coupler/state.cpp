@@ -33,7 +33,8 @@ void Coupler::save(const std::filesystem::path& folder) {
   file.write("work", work_guard_.totals());
   if (accelerator_) accelerator_->save(file);
   if (volume_level_) volume_level_->save(file);
-  file.write("errors", errors_ ? errors_->state() : lag_ ? lag_->state() : std::vector<double>{});
+  file.write("errors", errors_ ? errors_->state() : std::vector<double>{});
+  file.write("lag", lag_ ? lag_->state() : std::vector<double>{});
   if (lag_)
     for (std::size_t k = 0; const auto* field : lag_->fields())
       file.write("lag-" + std::to_string(k++), *field);
@@ -58,8 +59,9 @@ void Coupler::load() {
   if (volume_level_) volume_level_->load(file);
   const std::vector<double> errors = file.read("errors");
   if (errors_) errors_->restore(errors);
-  if (lag_) lag_->restore(errors);
-  if (lag_ && !errors.empty())
+  const std::vector<double> lag = file.read("lag");
+  if (lag_) lag_->restore(lag);
+  if (lag_ && !lag.empty())
     for (std::size_t k = 0; auto* field : lag_->fields()) *field = file.read("lag-" + std::to_string(k++));
   const RunState state = read_run_state(folders_.restart);
   loop_.restart(state);
