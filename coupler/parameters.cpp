@@ -79,8 +79,8 @@ void declare(config::Section& section, WatchParameters& p, const std::vector<std
       [partners, &p] {
         return std::ranges::find(partners, p.participant) != partners.end()
                    ? ""
-                   : fmt::format("'{}' takes no part in the coupling. {}", p.participant,
-                                 did_you_mean(p.participant, partners, "participants"));
+                   : fmt::format("'{}' takes no part in the coupling; those that do: {}", p.participant,
+                                 join(partners));
       },
       "participant");
 }
