@@ -7,7 +7,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 /// Short vectors for loops over packed fields: the components of one node, padded to a power of two (2 in the
-/// plane, 4 in space). GCC's vector extension: one register where the processor has it, several where it has
+/// plane, 4 in space). The vector extension of GCC and Clang: one register where the processor has it, several where it has
 /// not.
 namespace couplet::lanes {
 
@@ -55,10 +55,9 @@ template <int D>
 
 /// In space; the padding becomes zero if it is finite.
 [[gnu::always_inline]] inline Lane<3> cross(const Lane<3>& a, const Lane<3>& b) {
-  using Mask [[gnu::vector_size(sizeof(double) * 4)]] = long long;
-  constexpr Mask next{1, 2, 0, 3};
-  const Lane<3> turned = a * __builtin_shuffle(b, next) - __builtin_shuffle(a, next) * b;
-  return __builtin_shuffle(turned, next);
+  const Lane<3> turned =
+      a * __builtin_shufflevector(b, b, 1, 2, 0, 3) - __builtin_shufflevector(a, a, 1, 2, 0, 3) * b;
+  return __builtin_shufflevector(turned, turned, 1, 2, 0, 3);
 }
 
 }  // namespace couplet::lanes

@@ -47,14 +47,13 @@ template <int D>
                                           lanes::Lane<3> (&to)[D]) {
   using V = lanes::Lane<3>;
   if constexpr (D == 3) {
-    using Mask [[gnu::vector_size(32)]] = long long;
     const V a = wide(values + std::size_t(at[0]) * 4), b = wide(values + std::size_t(at[1]) * 4),
             c = wide(values + std::size_t(at[2]) * 4), d = wide(values + std::size_t(at[3]) * 4);
-    const V ab = __builtin_shuffle(a, b, Mask{0, 4, 2, 6}), cd = __builtin_shuffle(c, d, Mask{0, 4, 2, 6});
-    const V y = __builtin_shuffle(a, b, Mask{1, 5, 3, 7}), w = __builtin_shuffle(c, d, Mask{1, 5, 3, 7});
-    to[0] = __builtin_shuffle(ab, cd, Mask{0, 1, 4, 5});
-    to[1] = __builtin_shuffle(y, w, Mask{0, 1, 4, 5});
-    to[2] = __builtin_shuffle(ab, cd, Mask{2, 3, 6, 7});
+    const V ab = __builtin_shufflevector(a, b, 0, 4, 2, 6), cd = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+    const V y = __builtin_shufflevector(a, b, 1, 5, 3, 7), w = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+    to[0] = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+    to[1] = __builtin_shufflevector(y, w, 0, 1, 4, 5);
+    to[2] = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
   } else {
     for (int a = 0; a < D; ++a) {
       const double of_faces[4] = {values[std::size_t(at[0]) * 2 + a], values[std::size_t(at[1]) * 2 + a],
@@ -67,16 +66,15 @@ template <int D>
 /// The components of four faces as vectors.
 [[gnu::always_inline]] inline void transpose(const lanes::Lane<3> (&from)[3], lanes::Lane<3> (&to)[4]) {
   using V = lanes::Lane<3>;
-  using Mask [[gnu::vector_size(32)]] = long long;
   const V zero{};
-  const V low = __builtin_shuffle(from[0], from[1], Mask{0, 4, 2, 6});  // x0 y0 x2 y2
-  const V high = __builtin_shuffle(from[0], from[1], Mask{1, 5, 3, 7});
-  const V z = __builtin_shuffle(from[2], zero, Mask{0, 4, 2, 6});
-  const V zh = __builtin_shuffle(from[2], zero, Mask{1, 5, 3, 7});
-  to[0] = __builtin_shuffle(low, z, Mask{0, 1, 4, 5});
-  to[1] = __builtin_shuffle(high, zh, Mask{0, 1, 4, 5});
-  to[2] = __builtin_shuffle(low, z, Mask{2, 3, 6, 7});
-  to[3] = __builtin_shuffle(high, zh, Mask{2, 3, 6, 7});
+  const V low = __builtin_shufflevector(from[0], from[1], 0, 4, 2, 6);  // x0 y0 x2 y2
+  const V high = __builtin_shufflevector(from[0], from[1], 1, 5, 3, 7);
+  const V z = __builtin_shufflevector(from[2], zero, 0, 4, 2, 6);
+  const V zh = __builtin_shufflevector(from[2], zero, 1, 5, 3, 7);
+  to[0] = __builtin_shufflevector(low, z, 0, 1, 4, 5);
+  to[1] = __builtin_shufflevector(high, zh, 0, 1, 4, 5);
+  to[2] = __builtin_shufflevector(low, z, 2, 3, 6, 7);
+  to[3] = __builtin_shufflevector(high, zh, 2, 3, 6, 7);
 }
 
 /// values[plus] += force, values[minus] -= force, of each of the four.
