@@ -37,18 +37,20 @@ struct WatchParameters {
   std::string part;  // of the interface; empty: all of it
 };
 
+/// Participants of any kind that exchange data once a step, in place of fluid, structure and mesh.
+struct ExchangeParameters {
+  enum class Order { serial, parallel, structure_first };
+  std::vector<std::string> participants;
+  Order order = Order::serial;
+};
+
 struct CouplingParameters {
   Scheme scheme = Scheme::semi_implicit;
   struct Role {
     std::string participant;
   };
   std::optional<Role> fluid, structure, mesh;
-  /// Participants of any kind that exchange data once a step, in place of fluid, structure and mesh.
-  struct Exchange {
-    enum class Order { serial, parallel, structure_first };
-    std::vector<std::string> participants;
-    Order order = Order::serial;
-  };
+  using Exchange = ExchangeParameters;
   std::optional<Exchange> exchange;
   AccelerationParameters acceleration;
   ConvergenceParameters convergence;

@@ -32,7 +32,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
     look_at_pressure(t);
     if (!built_.plate) return;
     direct_ = direct_deflection(t);
-    Deflection& d = deflection_.emplace();
+    Deflection& d = deflection_.emplace(Deflection{});
     for (std::size_t i = 0; i < direct_.size(); ++i) {
       d.direct = std::max(d.direct, std::abs(direct_[i]));
       d.by_modes = std::max(d.by_modes, std::abs(by_modes[i]));

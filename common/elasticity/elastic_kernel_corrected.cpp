@@ -10,6 +10,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/elastic_rows.hpp"
 #include "common/elasticity/elastic_vertices.hpp"
+#include "common/elasticity/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -309,36 +310,22 @@ inline void CorrectedKernel<D>::collect_forces(std::span<const double> known, st
 
 // The loops for several generations of processors; the right one is picked when the program starts. Halo
 // exchanges stand between them.
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void cells_pass(
-    CorrectedKernel<3>& kernel) {
-  kernel.find_cell_gradients();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void boundary_pass(
-    CorrectedKernel<3>& kernel) {
-  kernel.find_boundary_gradients();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
-    CorrectedKernel<3>& kernel, std::span<const Index> points) {
+COUPLET_PROCESSOR_CLONES void cells_pass(CorrectedKernel<3>& kernel) { kernel.find_cell_gradients(); }
+COUPLET_PROCESSOR_CLONES void boundary_pass(CorrectedKernel<3>& kernel) { kernel.find_boundary_gradients(); }
+COUPLET_PROCESSOR_CLONES void vertices_pass(CorrectedKernel<3>& kernel, std::span<const Index> points) {
   kernel.find_vertices(points);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
-    CorrectedKernel<3>& kernel, std::span<const double> known, std::span<double> result) {
+COUPLET_PROCESSOR_CLONES void faces_pass(CorrectedKernel<3>& kernel, std::span<const double> known,
+                                         std::span<double> result) {
   kernel.collect_forces(known, result);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void cells_pass(
-    CorrectedKernel<2>& kernel) {
-  kernel.find_cell_gradients();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void boundary_pass(
-    CorrectedKernel<2>& kernel) {
-  kernel.find_boundary_gradients();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
-    CorrectedKernel<2>& kernel, std::span<const Index> points) {
+COUPLET_PROCESSOR_CLONES void cells_pass(CorrectedKernel<2>& kernel) { kernel.find_cell_gradients(); }
+COUPLET_PROCESSOR_CLONES void boundary_pass(CorrectedKernel<2>& kernel) { kernel.find_boundary_gradients(); }
+COUPLET_PROCESSOR_CLONES void vertices_pass(CorrectedKernel<2>& kernel, std::span<const Index> points) {
   kernel.find_vertices(points);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
-    CorrectedKernel<2>& kernel, std::span<const double> known, std::span<double> result) {
+COUPLET_PROCESSOR_CLONES void faces_pass(CorrectedKernel<2>& kernel, std::span<const double> known,
+                                         std::span<double> result) {
   kernel.collect_forces(known, result);
 }
 /// All that stands before the faces: node records, vertices.

@@ -6,6 +6,7 @@
 #include "common/elasticity/elastic_nodes.hpp"
 #include "common/elasticity/elastic_rows.hpp"
 #include "common/elasticity/elastic_vertices.hpp"
+#include "common/elasticity/processor_clones.hpp"
 
 namespace couplet {
 namespace {
@@ -250,20 +251,14 @@ inline void ThesisKernel<D>::collect_forces_with(const Vectors& vectors, std::sp
 }
 
 // The loops for several generations of processors; the right one is picked when the program starts.
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
-    ThesisKernel<3>& kernel) {
-  kernel.interpolate_free();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
-    ThesisKernel<3>& kernel, std::span<const double> known, std::span<double> result) {
+COUPLET_PROCESSOR_CLONES void vertices_pass(ThesisKernel<3>& kernel) { kernel.interpolate_free(); }
+COUPLET_PROCESSOR_CLONES void faces_pass(ThesisKernel<3>& kernel, std::span<const double> known,
+                                         std::span<double> result) {
   kernel.collect_forces(known, result);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
-    ThesisKernel<2>& kernel) {
-  kernel.interpolate_free();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
-    ThesisKernel<2>& kernel, std::span<const double> known, std::span<double> result) {
+COUPLET_PROCESSOR_CLONES void vertices_pass(ThesisKernel<2>& kernel) { kernel.interpolate_free(); }
+COUPLET_PROCESSOR_CLONES void faces_pass(ThesisKernel<2>& kernel, std::span<const double> known,
+                                         std::span<double> result) {
   kernel.collect_forces(known, result);
 }
 

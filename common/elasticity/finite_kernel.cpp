@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/elasticity/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -15,33 +16,29 @@ namespace {
 constexpr std::size_t chunk = 16;
 
 // The loops for several generations of processors; the right one is picked when the program starts.
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void deform_pass(
-    std::span<const finite::FiniteBlock<3>> blocks, const finite::Values<3>& at, finite::State* states,
-    Invariants* found) {
+COUPLET_PROCESSOR_CLONES void deform_pass(std::span<const finite::FiniteBlock<3>> blocks,
+                                          const finite::Values<3>& at, finite::State* states,
+                                          Invariants* found) {
   finite::deform_loop<3>(blocks, at, states, found);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void deform_pass(
-    std::span<const finite::FiniteBlock<2>> blocks, const finite::Values<2>& at, finite::State* states,
-    Invariants* found) {
+COUPLET_PROCESSOR_CLONES void deform_pass(std::span<const finite::FiniteBlock<2>> blocks,
+                                          const finite::Values<2>& at, finite::State* states,
+                                          Invariants* found) {
   finite::deform_loop<2>(blocks, at, states, found);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void stress_pass(
-    finite::Group<3>& group, const finite::Values<3>& at) {
+COUPLET_PROCESSOR_CLONES void stress_pass(finite::Group<3>& group, const finite::Values<3>& at) {
   group.law->has_second_invariant() ? finite::stress_loop<3, true>(group, at)
                                     : finite::stress_loop<3, false>(group, at);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void stress_pass(
-    finite::Group<2>& group, const finite::Values<2>& at) {
+COUPLET_PROCESSOR_CLONES void stress_pass(finite::Group<2>& group, const finite::Values<2>& at) {
   group.law->has_second_invariant() ? finite::stress_loop<2, true>(group, at)
                                     : finite::stress_loop<2, false>(group, at);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void tangent_pass(
-    const finite::Group<3>& group, const finite::Values<3>& at) {
+COUPLET_PROCESSOR_CLONES void tangent_pass(const finite::Group<3>& group, const finite::Values<3>& at) {
   group.law->has_second_invariant() ? finite::tangent_loop<3, true>(group, at)
                                     : finite::tangent_loop<3, false>(group, at);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void tangent_pass(
-    const finite::Group<2>& group, const finite::Values<2>& at) {
+COUPLET_PROCESSOR_CLONES void tangent_pass(const finite::Group<2>& group, const finite::Values<2>& at) {
   group.law->has_second_invariant() ? finite::tangent_loop<2, true>(group, at)
                                     : finite::tangent_loop<2, false>(group, at);
 }

@@ -4,16 +4,15 @@
 #include <cmath>
 
 #include "common/elasticity/finite_kernel_of.hpp"
+#include "common/elasticity/processor_clones.hpp"
 
 namespace couplet {
 namespace {
 
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void volume_pass(
-    const finite::Group<3>& group, const finite::Values<3>& at) {
+COUPLET_PROCESSOR_CLONES void volume_pass(const finite::Group<3>& group, const finite::Values<3>& at) {
   finite::volume_loop<3>(group, at);
 }
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void volume_pass(
-    const finite::Group<2>& group, const finite::Values<2>& at) {
+COUPLET_PROCESSOR_CLONES void volume_pass(const finite::Group<2>& group, const finite::Values<2>& at) {
   finite::volume_loop<2>(group, at);
 }
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/elasticity/processor_clones.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -194,30 +195,12 @@ inline void SymmetricKernel<D>::shared_second_loop() {
 namespace {
 
 // The loops for several generations of processors; the right one is picked when the program starts.
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
-    SymmetricKernel<3>& kernel) {
-  kernel.faces_loop();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void faces_pass(
-    SymmetricKernel<2>& kernel) {
-  kernel.faces_loop();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void shared_first_pass(
-    SymmetricKernel<3>& kernel) {
-  kernel.shared_first_loop();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void shared_second_pass(
-    SymmetricKernel<3>& kernel) {
-  kernel.shared_second_loop();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void volumes_pass(
-    SymmetricKernel<3>& kernel) {
-  kernel.volumes_loop();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void volumes_pass(
-    SymmetricKernel<2>& kernel) {
-  kernel.volumes_loop();
-}
+COUPLET_PROCESSOR_CLONES void faces_pass(SymmetricKernel<3>& kernel) { kernel.faces_loop(); }
+COUPLET_PROCESSOR_CLONES void faces_pass(SymmetricKernel<2>& kernel) { kernel.faces_loop(); }
+COUPLET_PROCESSOR_CLONES void shared_first_pass(SymmetricKernel<3>& kernel) { kernel.shared_first_loop(); }
+COUPLET_PROCESSOR_CLONES void shared_second_pass(SymmetricKernel<3>& kernel) { kernel.shared_second_loop(); }
+COUPLET_PROCESSOR_CLONES void volumes_pass(SymmetricKernel<3>& kernel) { kernel.volumes_loop(); }
+COUPLET_PROCESSOR_CLONES void volumes_pass(SymmetricKernel<2>& kernel) { kernel.volumes_loop(); }
 void shared_first_pass(SymmetricKernel<2>&) {}
 void shared_second_pass(SymmetricKernel<2>&) {}
 

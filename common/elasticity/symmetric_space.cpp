@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/elasticity/processor_clones.hpp"
 #include "common/elasticity/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -75,22 +76,10 @@ inline void SymmetricSpace<D>::to_nodes_loop() {
 namespace {
 
 // The loops for several generations of processors; the right one is picked when the program starts.
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
-    SymmetricSpace<3>& space) {
-  space.interpolate_free();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void vertices_pass(
-    SymmetricSpace<2>& space) {
-  space.interpolate_free();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void to_nodes_pass(
-    SymmetricSpace<3>& space) {
-  space.to_nodes_loop();
-}
-[[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]] void to_nodes_pass(
-    SymmetricSpace<2>& space) {
-  space.to_nodes_loop();
-}
+COUPLET_PROCESSOR_CLONES void vertices_pass(SymmetricSpace<3>& space) { space.interpolate_free(); }
+COUPLET_PROCESSOR_CLONES void vertices_pass(SymmetricSpace<2>& space) { space.interpolate_free(); }
+COUPLET_PROCESSOR_CLONES void to_nodes_pass(SymmetricSpace<3>& space) { space.to_nodes_loop(); }
+COUPLET_PROCESSOR_CLONES void to_nodes_pass(SymmetricSpace<2>& space) { space.to_nodes_loop(); }
 
 }  // namespace
 
