@@ -40,9 +40,10 @@ class Tank final : public Participant, public EstimatesError {
   std::vector<EffectVerdict> audit() const override;
   std::vector<std::string> finish() override;
   void collect_errors() override {}  // the last profile and the largest flow, which are known, are enough
-  /// Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over the way H by
-  /// s^2 = dz H and v dt H, which changes the profile by s^2 / 2 of its second derivative. The limited scheme is
-  /// taken to spread by a cell. Over the profile's distance from its mean, sums over the height.
+  /// Upwind advection spreads a front as a diffusion v dz / 2 does, implicit steps as v^2 dt / 2: over the way w by
+  /// s^2 = dz w and v dt w, which changes the profile by s^2 / 2 of its second derivative; w is what the largest flow
+  /// can have gone since time 0, at most the height. The limited scheme is taken to spread by a cell. Over the
+  /// profile's distance from its mean, sums over the height.
   ErrorParts error_parts() const override;
 
   const TankModel& model() const { return accepted_; }

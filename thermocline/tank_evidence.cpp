@@ -106,9 +106,10 @@ ErrorParts Tank::error_parts() const {
   if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // one temperature: nothing to be spread
   const double one_cell = 0.5 * bends / size;                  // s = dz
   const Advection scheme = accepted_.setup().parameters.bed.advection;
-  ErrorParts parts{.mesh = scheme == Advection::tvd ? one_cell : double(n) * one_cell};
-  if (scheme == Advection::implicit)
-    parts.step = peak_advance_ / crossing_mass(accepted_) * double(n) * double(n) * one_cell;
+  const double crossing = crossing_mass(accepted_);
+  const double way = double(n) * std::min(1., peak_flow_ * (step_.time + step_.dt) / crossing);  // in cells
+  ErrorParts parts{.mesh = scheme == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
+  if (scheme == Advection::implicit) parts.step = peak_advance_ / crossing * double(n) * way * one_cell;
   return parts;
 }
 

@@ -72,6 +72,7 @@ def alone(folder):
     check(True, "fluid, loosest tolerance")
     whole(folder)
     off(folder)
+    young_front(folder)
 
 
 def ranks(folder):
@@ -97,6 +98,20 @@ def whole(folder):
     run("solid_solver", "vibrating-cantilever", sets, folder, 1, ["--restart", newest(folder)])
     both = errors(folder, "solid")["step"]
     check(half < 0.7 * one and 0.8 * one < both <= 1.05 * one, "restart: step", half, one, both)
+
+
+def young_front(folder):
+    """A front that has just come in has been spread over the little way that it came, not over the height: within a factor of 2."""
+    def profile(cells, advection, time):
+        run("thermocline", "schumann", [f"participants.tank.bed.cells={cells}", f"participants.tank.bed.advection={advection}",
+                                        f"simulation.end-time={time} s", f"simulation.time-step={time} s"], folder)
+        rows = [[float(v) for v in line.split(",")] for line in (pathlib.Path(folder) / "tank/bed.csv").read_text().splitlines()[1:]]
+        return [row[3] for row in rows if row[0] == rows[-1][0]]
+    for time in (50, 200, 1000):
+        fine, coarse = profile(3200, "tvd", time), profile(200, "upwind", time)
+        estimated, mean = errors(folder, "tank")["mesh"], sum(coarse) / len(coarse)
+        true = sum(abs(t - sum(fine[16 * i:16 * i + 16]) / 16) for i, t in enumerate(coarse)) / sum(abs(t - mean) for t in coarse)
+        check(true / 2 <= estimated <= 2 * true, f"tank, front after {time} s: estimated and true error", estimated, true)
 
 
 def newest(folder):
