@@ -152,6 +152,18 @@ TEST(AddedMass, plain_iteration_contracts_by_the_first_mass_ratio) {
   }
 }
 
+TEST(AddedMass, plain_iteration_diverges_above_a_mass_ratio_of_one) {
+  ModalRun run;
+  run.coupling.acceleration.type = Type::constant;
+  run.coupling.acceleration.initial_relaxation = 1;
+  run.coupling.convergence.relative = 1e-10;
+  run.ratio(1.25);
+  run.steps(1, 1e-3);
+  run();
+  EXPECT_NE(run.problem, "");
+  RecordProperty("cause", run.problem);
+}
+
 int most_iterations(ModalRun& run) {
   std::size_t most = 0;
   for (const auto& step : run.residuals.steps) most = std::max(most, step.size());

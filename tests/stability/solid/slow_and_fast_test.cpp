@@ -44,5 +44,17 @@ TEST(FastSwings, at_a_courant_number_of_a_thousand_do_not_grow_with_bathes_schem
   }
 }
 
+// The neighbour: the trapezoidal rule keeps all of what an operator without symmetry makes, also of what it does not resolve
+// (at 1000 too little for a test: a swing that is turned round in each step feels next to nothing of the operator).
+TEST(FastSwings, at_a_courant_number_of_ten_grow_with_the_trapezoidal_rule_and_the_thesiss_gradient) {
+  for (const TimeScheme scheme : {TimeScheme::trapezoidal, TimeScheme::bathe}) {
+    SolidParameters p = free_swing(scheme, FaceGradient::thesis);
+    p.method.relative_tolerance = 1e-10;
+    const Swing s = swing(sheet(0.5), p, {step_at(10)}, 4000);
+    EXPECT_EQ(s.ended, scheme == TimeScheme::trapezoidal) << s.cause;
+    EXPECT_EQ(s.growth > 1e-3, scheme == TimeScheme::trapezoidal) << s.growth;
+  }
+}
+
 }  // namespace
 }  // namespace couplet::testing

@@ -19,15 +19,15 @@ struct Cycles {
 };
 
 /// `hot` as it is in cycle k: constant, or scattered by up to `scatter` [K].
-Cycles run(double hot, double scatter, int count) {
+Cycles run(double hot, double scatter, int count, const Filler& filler = {}) {
   const BedGrid bed({{10, 0.22, 0.005}}, 10);
   ShellParameters shell;
   shell.plates = {{10, 0.02}};
   const Rings rings(shell, bed, 18, 0);
-  const Filler filler;
   const InnerPressure p = inner_pressure(rings, bed, caloria_ht43(), filler, 0);
   const std::vector<double> cold(10, 400);
-  FillerMechanics m(rings, steel_a537(), filler, p, cold, cold);
+  const Steel steel = steel_a537();
+  FillerMechanics m(rings, steel, filler, p, cold, cold);
   Cycles result;
   std::vector<double> second;
   for (int k = 0; k < count; ++k) {
@@ -66,9 +66,17 @@ TEST(Ratcheting, of_3650_scattered_cycles_stays_between_the_active_and_the_passi
   EXPECT_LE(slides.highest, 3 + 1e-9);
 }
 
-// The neighbour: a filler that never slides passively builds up what cooling brings, beyond what small cycles do.
+// The neighbour: grains that friction holds whatever pushes them (80 degrees: K_p 130) take the whole squeeze of each cooling.
+TEST(Ratcheting, of_a_filler_that_does_not_slide_passes_that_load) {
+  Filler stuck;
+  stuck.friction_angle = 80 * M_PI / 180;
+  const Cycles held = run(600, 0, 3650, stuck);
+  EXPECT_GT(held.highest, 3.3);
+}
+
+// Cycles of 5 K; of 10 K slide.
 TEST(Ratcheting, of_small_cycles_never_reaches_the_passive_load) {
-  const Cycles held = run(420, 0, 3650);
+  const Cycles held = run(405, 0, 3650);
   EXPECT_FALSE(held.slides);
   EXPECT_LT(held.highest, 3);
   EXPECT_LT(held.drift, 1e-9);
