@@ -7,6 +7,7 @@ import numpy as np
 
 import couplet_series as couplet
 from validation.job import Bar
+from validation.parts.fluid_speed import ratio, second_core
 
 SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "common/elasticity", "mesh_mover",
            "fluid_solver", "configs/moving-mesh", "configs/oscillating-cylinder", "configs/cylinder", "configs/closing-gap",
@@ -400,4 +401,8 @@ BARS = [
     Bar("backward step, Re 800, 48 cells over the height", "reported", behind_step(48, False), long=True),
     Bar("backward step, Re 800, 80 cells over the height", "within 1 % of 6.10, 4.85, 10.48 (Gartling)", behind_step(80, True), long=True),
     Bar("cavity, Re 5000, 128^2 stretched", "extrema within 1 % of their own extrapolation", cavity_5000, long=True),
+    *(Bar(f"speed: {what}", f">= {wanted} times", ratio(only, wanted), long=True) for what, only, wanted in (
+        ("cavity 128^2 against icoFoam, one core", "cavity-2d", 13), ("cavity 64^3 against icoFoam, one core", "cavity-3d", 5),
+        ("24 000 cells around a swinging cylinder against pimpleFoam, one core", "moving-cylinder", 8))),
+    Bar("speed: second core on 64^3", ">= 1.7 times", second_core(1.7), long=True),
 ]

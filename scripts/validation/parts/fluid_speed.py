@@ -30,9 +30,11 @@ def memory(job):
     return f"{found[1]} kB a cell", float(found[1]) <= 1.5
 
 
-def second_core(job):
-    found = re.search(r"two ranks: .*, ([\d.]+) times", benchmark(job, "cavity-3d"))
-    return f"{found[1]} times", float(found[1]) >= 1.5
+def second_core(wanted):
+    def measure(job):
+        found = re.search(r"two ranks: .*, ([\d.]+) times", benchmark(job, "cavity-3d"))
+        return f"{found[1]} times", float(found[1]) >= wanted
+    return measure
 
 
 BARS = [
@@ -41,6 +43,6 @@ BARS = [
     Bar("speed: 24 000 cells around a swinging cylinder against pimpleFoam, one core", ">= 8 times", ratio("moving-cylinder", 8), long=True),
     Bar("time to equal error: cavity Re 1000, icoFoam on 128^2", ">= 10 times", ratio("equal-error", 10), long=True),
     Bar("time to equal error: vortex street 2D-2, icoFoam on 24 330 cells", ">= 5 times", ratio("shedding", 5), long=True),
-    Bar("speed: second core on 64^3", ">= 1.5 times", second_core, long=True),
+    Bar("speed: second core on 64^3", ">= 1.5 times", second_core(1.5), long=True),
     Bar("memory on 64^3", "<= 1.5 kB a cell", memory, long=True),
 ]
