@@ -112,7 +112,7 @@ TEST(Predictor, data_without_velocity_follow_the_polynomial_through_their_last_v
     history.accepted({{f(t)}, {}}, dt, 2);
   EXPECT_NEAR(predict(forces, history, 0.3, 2).unknown[0], f(1.0), 1e-14);
   EXPECT_NEAR(predict(forces, history, 0.3, 1).unknown[0], f(0.7) + 0.3 * (f(0.7) - f(0.5)) / 0.2, 1e-14);
-  EXPECT_EQ(predict(forces, history, 0.3, 0).unknown[0], f(0.7));
+  EXPECT_DOUBLE_EQ(predict(forces, history, 0.3, 0).unknown[0], f(0.7));
 }
 
 }  // namespace
