@@ -169,7 +169,7 @@ const std::array cards{
     SolidCard{"energies",
               "`output.energies: true`",
               [](const P& p) { return when(p.output.energies, "output.energies"); },
-              {"energies.csv, work of the step summed over the faces", 140, 1.06}},
+              {"energies.csv, work of the step summed over the faces", 78, 1.06}},
     SolidCard{
         "free vibrations",
         "`output.modes` above 0",
