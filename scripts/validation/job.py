@@ -53,7 +53,7 @@ class Job:
                               env=self.environment, **options)
 
     # -- test executables ---------------------------------------------------------------------------------------------
-    def gtest(self, name, filter_="*", timeout=1200):
+    def gtest(self, name, filter_="*", timeout=7200):
         """Runs a test executable; gives {"Suite.test": {"passed": bool, **recorded properties}} and its output."""
         def make():
             program = next((p for p in (self.build / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK)), None)
