@@ -12,6 +12,7 @@
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/numbering.hpp"
+#include "common/log/doubt.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/body_start.hpp"
@@ -28,6 +29,8 @@ constexpr double near_limit = 0.1;
 
 // Sub-steps of a step over those of the step last told in the log, or the other way round.
 constexpr double most_times_as_many = 2;
+// Of the limits of a step that is given: what is certain to go wrong.
+constexpr double far_above = 2;
 
 }  // namespace
 
@@ -86,8 +89,8 @@ void FluidParticipant<D>::set_up_motion() {
 template <int D>
 Interface FluidParticipant<D>::initialise() {
   if (!interface_) return {};
-  Interface description = interface_->describe();
-  if (description.empty()) return description;
+  Interface description =
+      interface_->describe();  // of this rank, which may hold no part; the data are those of all
   using Place = Interface::Place;
   description.takes = {{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
   description.gives = {{"pressure-force", "N", Place::faces}, {"viscous-force", "N", Place::faces}};
@@ -192,6 +195,25 @@ Exchange FluidParticipant<D>::solve(const Exchange& in) {
   return forces();
 }
 
+/// A step that is given is kept, also where it is too long for the implicit term on cells with few faces (StepSize). Looked at for
+/// the longest so far.
+template <int D>
+void FluidParticipant<D>::doubt_given_step() {
+  const double size = step_.dt / fluid_->statistics().sub_steps;
+  if (!fluid_->parameters().time_step || !fluid_->state().implicit || size <= longest_looked_at_) return;
+  longest_looked_at_ = size;
+  const StepLimiter by = fluid_->step_limiter();
+  if (!by.friction || size <= far_above * by.limit) return;
+  log::doubt(
+      comm_rank(mesh_.comm),
+      fmt::format(
+          "t = {:.6g} s: time-step: sub-steps of {:.3g} s are {:.1f} times what friction in cell {} at ({:.4g}, {:.4g}, "
+          "{:.4g}) m allows an implicit viscous term on its cells: pressures and forces grow out of nothing. "
+          "Leave 'time-step' out, or give at most {:.3g} s.",
+          step_.time + step_.dt, size, size / by.limit, by.cell, by.place.x(), by.place.y(), by.place.z(),
+          by.limit));
+}
+
 /// One line where a step took many more parts than when it was last told, or many fewer, with the cell that
 /// asks for them.
 template <int D>
@@ -233,6 +255,7 @@ StepReport FluidParticipant<D>::accept_step() {
   fluid_->accept();
   if (errors_) errors_->accepted(step_.dt);
   tell_sub_steps();
+  doubt_given_step();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), fluid_->pressure().get(), step_.dt);
   return {.dt = step_.dt, .iterations = effort() - before, .energy = fluid_->state().ledger.energy};

@@ -62,7 +62,7 @@ Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
       accepted_(displacement_) {
   set_up_moving();
   if (!context.coupled && moving_.empty() && context.mesh_peer == MPI_COMM_NULL &&
-      interface_.points().empty())
+      interface_patches(parameters).empty())
     log::warn("participant '{}': no patch moves (type: moving, or interface in a coupled job).", name_);
   make_method();
   if (parameters.form == Form::automatic && comm_rank(mesh_.comm) == 0)
@@ -124,7 +124,9 @@ void Mover::make_method() {
 
 Interface Mover::initialise() {
   Interface interface = interface_.describe();
-  if (!interface.empty()) interface.takes = {{"displacement", "m", Interface::Place::vertices}};
+  // All ranks say so, whether or not they hold a part of the interface: rank 0 may hold none.
+  if (!interface_patches(parameters_).empty())
+    interface.takes = {{"displacement", "m", Interface::Place::vertices}};
   return interface;
 }
 

@@ -14,12 +14,35 @@
 namespace couplet {
 namespace {
 
+/// The coupler knows the data as rank 0 describes them. A rank whose list is another one would be passed over without a
+/// word, and with it what its part of the interface gives or takes; none at all is right where rank 0 describes all.
+void check_lists(MPI_Comm comm, const Interface& interface) {
+  const auto described = [&](const std::vector<Interface::Datum>& takes,
+                             const std::vector<Interface::Datum>& gives) {
+    Reply lists;
+    lists.interface.dim = interface.dim;
+    lists.interface.takes = takes, lists.interface.gives = gives;
+    return pack(lists, Cut{});
+  };
+  const std::vector<char> here = described(interface.takes, interface.gives);
+  std::vector<char> first = here;
+  broadcast_bytes(comm, first, "");
+  const bool differs = here != first && here != described({}, {});
+  const int rank = static_cast<int>(max(comm, differs ? comm_rank(comm) : -1));
+  if (rank >= 0)
+    throw Error(
+        "rank {} describes other data to give or take than rank 0. All ranks describe the same data, also those "
+        "without places, or rank 0 alone describes them.",
+        rank);
+}
+
 void dispatch(const Command& command, Participant& participant, const std::string& name, MPI_Comm comm,
               Reply& reply) {
   const auto file = [&] { return std::filesystem::path(command.folder) / (name + ".h5"); };
   switch (command.op) {
     case Op::initialise:
       reply.interface = participant.initialise();
+      check_lists(comm, reply.interface);
       reply.suggested_dt = participant.suggest_dt();
       return;
     case Op::begin_step:
