@@ -7,6 +7,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/laws/laws.hpp"
 #include "solid_solver/parameters.hpp"
+#include "solid_solver/solution_method.hpp"
 
 namespace couplet {
 namespace {
@@ -110,7 +111,8 @@ bool symmetric_suits(const SolidParameters& p) {
 
 VolumeStrain volume_strain_of(const SolidParameters& p) {
   using Chosen = MethodParameters::VolumeStrain;
-  if (is_updated_lagrangian(p) || p.method.volume_strain == Chosen::faces) return VolumeStrain::faces;
+  if (face_gradient_scheme(p) != FaceGradientScheme::symmetric || p.method.volume_strain == Chosen::faces)
+    return VolumeStrain::faces;
   if (p.method.volume_strain == Chosen::cells) return VolumeStrain::cells;
   if (p.method.volume_strain == Chosen::shared) return VolumeStrain::shared;
   const bool plane_stress = p.dimension == 2 && p.plane == SolidParameters::Plane::stress;

@@ -136,7 +136,7 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
                                             : ", thesis's face gradient";
   if (asked.face_gradient == MethodParameters::FaceGradient::automatic)
     method->name_ += problem.elastic.is_anisotropic() ? " (auto: orthotropic)"
-                     : problem.is_symmetric()         ? " (auto: nu from 0.4 up)"
+                     : problem.is_symmetric()         ? " (auto: nu from 0.4 up, or as 'volume-strain' asks)"
                      : problem.is_static()            ? " (auto: static, where it errs less)"
                                            : " (auto: dynamic, where the corrected one's growth is faster)";
   return method;
@@ -156,7 +156,11 @@ FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters) {
     default:
       break;
   }
-  if (largest_poissons_ratio(parameters) >= nearly_incompressible && symmetric_suits(parameters))
+  using VolumeStrain = MethodParameters::VolumeStrain;
+  const bool asks_for_cells = parameters.method.volume_strain == VolumeStrain::cells ||
+                              parameters.method.volume_strain == VolumeStrain::shared;
+  if ((asks_for_cells || largest_poissons_ratio(parameters) >= nearly_incompressible) &&
+      symmetric_suits(parameters))
     return FaceGradientScheme::symmetric;
   return parameters.analysis == SolidParameters::Analysis::static_ ? FaceGradientScheme::corrected
                                                                    : FaceGradientScheme::thesis;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/symmetric_faces.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -178,7 +179,32 @@ std::vector<double> ThermalStrain::strain(std::span<const double> temperature) c
 }
 
 void ThermalStrain::set_accepted() {
-  if (expands()) accepted_strain_ = strain(start_);
+  if (!expands()) return;
+  accepted_strain_ = strain(start_);
+  if (by_cells()) accepted_stress_ = stress_of(accepted_strain_);
+}
+
+std::vector<double> ThermalStrain::stress_of(const std::vector<double>& strain) const {
+  std::vector<double> stress = strain;
+  for (std::size_t f = 0; f < stress.size(); ++f) stress[f] *= face_modulus(static_cast<Index>(f));
+  if (!by_cells()) return stress;
+  std::vector<double> of_cells = pyramid_means(strain);
+  of_cells.resize(std::size_t(mesh_->cells.n_local()));
+  const auto bulk = [&](Index c) { return 3 * bulk_of_cells(elastic_->lame(c), elastic_->volume_strain()); };
+  for (Index c = 0; c < mesh_->cells.n_owned(); ++c) of_cells[c] *= bulk(c);
+  mesh_->cells.update_ghosts(of_cells);
+  for (Index f = 0; f < std::ssize(stress); ++f) {
+    const Index owner = mesh_->owner[f];
+    if (f >= mesh_->n_interior) {
+      stress[f] += of_cells[owner] - bulk(owner) * strain[f];
+      continue;
+    }
+    const Index neighbour = mesh_->neighbour[f];
+    const auto [here, there] = pyramids(*mesh_, f);
+    stress[f] += (here * of_cells[owner] + there * of_cells[neighbour]) / (here + there) -
+                 0.5 * (bulk(owner) + bulk(neighbour)) * strain[f];
+  }
+  return stress;
 }
 
 void ThermalStrain::begin_step(const Step& step) {
@@ -213,8 +239,7 @@ std::vector<double> ThermalStrain::pressure(double t) {
     if (part > 0)
       for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
   }
-  std::vector<double> pressure = strain(temperature);
-  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) pressure[f] *= face_modulus(f);
+  std::vector<double> pressure = stress_of(strain(temperature));
   pressure.resize(mesh_->n_faces());
   mesh_->boundary.update_ghosts(std::span(pressure).subspan(mesh_->n_interior));
   return pressure;
@@ -238,27 +263,32 @@ void ThermalStrain::add_face_stress(Index first, std::span<Tensor3> stress) cons
   if (!expands()) return;
   for (std::size_t i = 0; i < stress.size(); ++i) {
     const Index f = first + static_cast<Index>(i);
-    stress[i].diagonal().array() -= face_modulus(f) * accepted_strain_[f];
+    stress[i].diagonal().array() -= by_cells() ? accepted_stress_[f] : face_modulus(f) * accepted_strain_[f];
   }
 }
 
-// Mean over the faces by the pyramids on them, as the displacement gradient is.
-std::vector<double> ThermalStrain::cell_strain() const {
+std::vector<double> ThermalStrain::pyramid_means(const std::vector<double>& of_faces) const {
   const Index n_owned = mesh_->cells.n_owned();
   std::vector<double> total(n_owned, 0), weight(n_owned, 0);
   for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
-    const auto add = [&](Index c) {
+    const auto add = [&](Index c, double pyramid) {
       if (c >= n_owned) return;
-      const Vec3 arm = mesh_->reference.face_centre[f] - mesh_->reference.cell_centre[c];
-      const double pyramid = std::abs(arm.dot(mesh_->reference.face_area[f]));
-      total[c] += pyramid * accepted_strain_[f];
+      total[c] += pyramid * of_faces[f];
       weight[c] += pyramid;
     };
-    add(mesh_->owner[f]);
-    if (f < mesh_->n_interior) add(mesh_->neighbour[f]);
+    const auto [here, there] = pyramids(*mesh_, f);
+    add(mesh_->owner[f], here);
+    if (f < mesh_->n_interior) add(mesh_->neighbour[f], there);
   }
   for (Index c = 0; c < n_owned; ++c) total[c] /= weight[c];
   return total;
+}
+
+std::vector<double> ThermalStrain::cell_strain() const {
+  if (!by_cells()) return pyramid_means(accepted_strain_);
+  std::vector<double> result = pyramid_means(accepted_stress_);
+  for (std::size_t c = 0; c < result.size(); ++c) result[c] /= modulus(static_cast<Index>(c));
+  return result;
 }
 
 void ThermalStrain::add_cell_stress(std::span<Tensor3> stress) const {

@@ -22,7 +22,8 @@ std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& paramet
 ///   sigma = sigma(grad u) - B epsilon I,   epsilon = integral of alpha dT from T_ref on,   B = 3 lambda + 2 mu
 /// (plane stress: B = 2 lambda + 2 mu with the effective lambda). alpha is the instantaneous coefficient: 3 K
 /// alpha (T - T0) of (5.10) holds for a constant one only. In the equations B epsilon S is a known force of
-/// each face at its own temperature: uniform temperatures leave a free body without stress, exactly.
+/// each face at its own temperature (or, with one volume strain a cell, at that of its cells): uniform temperatures leave a
+/// free body without stress, exactly.
 /// With thermoelastic coupling the strain rate of the step before gives the heat -3 K alpha T tr(d eps/dt)
 /// (2.27).
 class ThermalStrain final : public SolidEffect {
@@ -62,9 +63,17 @@ class ThermalStrain final : public SolidEffect {
   std::vector<double> face_temperature(double t, bool trial) const;
   std::vector<double> given_at(Places places, bool trial) const;
   std::vector<double> strain(std::span<const double> temperature) const;
+  /// B epsilon of the flux faces [Pa] from their epsilon. With one volume strain a cell the bulk modulus acts on the cell's
+  /// mean of grad u, and so does epsilon: K (tr e_P - 3 epsilon_P), to the faces by their pyramids as K tr e_P is.
+  /// Otherwise each face's own temperature would pull on the mean of all, with K: at nu 0.499 and a temperature that
+  /// is linear in x 20 MPa in a body of 1 GPa that is free of stress. Collective.
+  std::vector<double> stress_of(const std::vector<double>& strain) const;
+  bool by_cells() const { return elastic_->volume_by_cells() && !plane_stress_; }
   double modulus(Index cell) const;  // B
   double face_modulus(Index face) const;
-  double three_bulk(Index cell) const;      // 3 K
+  double three_bulk(Index cell) const;  // 3 K
+  /// Means over the faces by the pyramids on them, as the displacement gradient of a cell is; owned cells.
+  std::vector<double> pyramid_means(const std::vector<double>& of_faces) const;
   std::vector<double> cell_strain() const;  // thermal, of owned cells at the accepted time
   double coupling_number() const;
   void set_accepted();
@@ -96,6 +105,7 @@ class ThermalStrain final : public SolidEffect {
   double time_ = 0;                      // of the accepted state
   std::vector<double> start_, end_;      // face temperatures at both ends of the step
   std::vector<double> accepted_strain_;  // per flux face of the mesh, at the accepted time
+  std::vector<double> accepted_stress_;  // the same times B [Pa]: see stress_of(); if by_cells()
   std::vector<double> points_, cells_;   // of the last fields written
   double lowest_ = 0, highest_ = 0;      // temperatures seen on this rank
 };
