@@ -21,6 +21,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // AB2 is not quite stable on the imaginary axis: growth per step that the scheme's own damping elsewhere
 // makes up for.
 constexpr double tolerated_growth = 5e-4;
+// Of cells with few faces, in limits of the explicit term: see StepSize.
+constexpr double longest_implicit = 16;
 constexpr double largest_courant =
     1;  // accuracy: beyond it the explicit convection is no longer resolved in time
 
@@ -109,7 +111,20 @@ double explicit_limit(double angle, ExplicitScheme scheme) {
 template <int D>
 StepSize<D>::StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
                       ExplicitScheme scheme)
-    : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), scheme_(scheme) {}
+    : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), scheme_(scheme) {
+  std::vector<int> faces(std::size_t(mesh.cells.n_local()), 0);
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    ++faces[mesh.owner[f]];
+    if (f < mesh.n_interior) ++faces[mesh.neighbour[f]];
+  }
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) few_faces_.push_back(faces[c] < 2 * D);
+}
+
+/// Of the implicit term, by what friction does in a cell whose explicit rates have this angle and size.
+template <int D>
+double StepSize<D>::friction_limit(Index cell, double angle, double size) const {
+  return few_faces_[cell] && size > 0 ? longest_implicit * explicit_limit(angle, scheme_) / size : infinity;
+}
 
 // The stress nu_t (grad u + grad u^T) has at most twice the rate of nu_t grad u.
 template <int D>
@@ -205,6 +220,8 @@ StepLimits StepSize<D>::limits(const State<D>& s) {
     const double size = std::sqrt(convection * convection + diffusion * diffusion);
     if (lowest_limit(convection, diffusion, scheme_) < least[0] * size)
       least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion), scheme_) / size);
+    if (few_faces_[c] && longest_implicit * lowest_limit(convection, diffusion, scheme_) < least[1] * size)
+      least[1] = std::min(least[1], friction_limit(c, std::atan2(convection, diffusion), size));
     if (lowest_implicit < least[1] * convection)
       least[1] = std::min(least[1], implicit_convective_limit(4 / peclet_of_[c]) / convection);
     if (eddy > 0)  // the eddy part stays explicit
@@ -229,14 +246,18 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
     const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
     const double diffusion = rates_[c][1] / at.volume[c] + eddy;
     const double size = std::hypot(convection, diffusion);
-    double limit = size > 0 ? explicit_limit(std::atan2(convection, diffusion), scheme_) / size : infinity;
+    const double angle = std::atan2(convection, diffusion);
+    double limit = size > 0 ? explicit_limit(angle, scheme_) / size : infinity;
+    bool friction = diffusion > convection;
     if (implicit) {
       limit = convection > 0 ? implicit_convective_limit(4 / peclet_of_[c]) / convection : infinity;
       if (eddy > 0)
         limit = std::min(limit, explicit_limit(std::atan2(convection, eddy)) / std::hypot(convection, eddy));
+      friction = eddy > convection;
+      if (const double own = friction_limit(c, angle, size); own < limit) limit = own, friction = true;
     }
     if (limit >= found.limit) continue;
-    found = {limit, mesh_.cell_id[c], Vec3::Zero(), (implicit ? eddy : diffusion) > convection};
+    found = {limit, mesh_.cell_id[c], Vec3::Zero(), friction};
     where = c;
   }
   if (where >= 0) found.place.template head<D>() = at.centre[where];

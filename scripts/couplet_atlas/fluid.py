@@ -83,7 +83,7 @@ MAPS = [
         theory=[(["explicit, Adams-Bashforth"], "1/(4 (2 + tan^2))", [(1 / (4 * (2 + s * s)), s) for s in np.linspace(0, 3, 61)]),
                 (["explicit, Runge-Kutta"], "2.51/(4 (2 + tan^2))", [(2.51 / (4 * (2 + s * s)), s) for s in np.linspace(0, 3, 61)])],
         about="""Mechanism: explicit diffusion beyond the largest eigenvalue, 4 nu (2 + tan^2)/h^2 on cells sheared by that angle: Adams-Bashforth 2 holds
-to 1, three stages to 2.51 of it. The energy guard of the fluid ends such a run. The implicit term has no limit."""),
+to 1, three stages to 2.51 of it. The energy guard of the fluid ends such a run. The implicit term has no limit on these quadrilaterals; on triangles, tetrahedra and prisms it is bounded (theory, oblique cells)."""),
     Map("fluid-convection", "Fluid: Courant number on sheared cells", "largest kinetic energy over the first, 300 steps",
         Axis("Courant number", [0.2, 0.5, 1, 1.5, 2, 3]), Axis("tangent of the shear angle", LEANS[:4], log=False), list(PANELS), convection,
         lambda g: g < 1.05,
@@ -93,5 +93,5 @@ to 1, three stages to 2.51 of it. The energy guard of the fluid ends such a run.
         Axis("length over height of a cell", [1, 10, 100, 1000]), Axis("nu dt over height squared", [0.1, 0.2, 1, 10]), list(PANELS)[:2], aspect,
         lambda g: g < 1.05,
         about="""Mechanism: the flat side alone decides the explicit viscous step (1/4 in one direction); the pressure matrix becomes stiff by the square
-of the ratio. The implicit term holds at any step."""),
+of the ratio. The implicit term holds at any step on these boxes."""),
 ]

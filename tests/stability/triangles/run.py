@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Long steps with an implicit viscous term on triangles: bounded by friction there, so that pressure and forces stay right; given from
+outside ('time-step') they grow out of nothing beside it, and the run says so.
+Usage: run.py FLUID_SOLVER"""
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+program, case = sys.argv[1], pathlib.Path(__file__).parent / "case.yaml"
+SPEED, INNER, OUTER, VISCOSITY = 2, 0.5, 1.0, 0.5
+failed = []
+
+
+def check(claim, holds, detail=""):
+    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
+    if not holds:
+        failed.append(claim)
+
+
+def last(file):
+    names, *rows = [line.split(",") for line in file.read_text().splitlines()]
+    return dict(zip((n.split(" [")[0] for n in names), map(float, rows[-1])))
+
+
+def run(*sets):
+    """Exit code, output, coefficients and energies at the end."""
+    with tempfile.TemporaryDirectory() as folder:
+        done = subprocess.run([program, case, "--strict", f"--set=simulation.output.folder={folder}", *(f"--set={s}" for s in sets)],
+                              capture_output=True, text=True, timeout=200)
+        files = pathlib.Path(folder) / "fluid"
+        return done.returncode, done.stdout + done.stderr, last(files / "coefficients.csv"), last(files / "energy.csv")
+
+
+# Couette's flow between cylinders: v = a r + b/r; the shear 2 mu b/r^2 on the inner wall, over rho U^2/2 with A = L = 1.
+b = SPEED * INNER**2 * OUTER**2 / (OUTER**2 - INNER**2)
+moment = -2 * math.pi * INNER**2 * 2 * VISCOSITY * b / INNER**2 / 0.5
+code, text, coefficients, energy = run()
+check("exit code 0, nothing is doubted", code == 0 and "warning" not in text, text[-500:] if code else "")
+check("moment within 1 %", abs(coefficients["inner moment"] / moment - 1) < 0.01, f"{coefficients['inner moment']:.4f} and {moment:.4f}")
+sides = max(abs(coefficients["inner drag"]), abs(coefficients["inner lift"]))
+check("no force to the side", sides < 0.03, f"{sides:.3g}")
+power = -moment * 0.5 * SPEED  # what the inner wall gives (but for that of viscous power's own form: 2 mu e:e less a rotation)
+check("viscous power of the order of the wall's", energy["viscous power"] < 1.5 * power, f"{energy['viscous power']:.3g} and {power:.3g} W")
+code, text, coefficients, energy = run("participants.fluid.time-step=10 ms")
+check("the neighbour, whose step is given, fails with --strict", code != 0, code)
+check("and says why", "what friction in cell" in text and "Leave 'time-step' out" in text)
+check("and is wrong by far", energy["viscous power"] > 10 * power, f"{energy['viscous power']:.3g} and {power:.3g} W")
+sys.exit(1 if failed else 0)
