@@ -248,6 +248,7 @@ void Coupler::finalise(const std::string& problem) {
 void Coupler::tell_errors(std::vector<NamedErrors> participants) const {
   if (errors_) participants.push_back({"coupling", {.coupling = errors_->over_size()}});
   for (const std::string& sentence : error_sentences(participants)) log::info("{}", sentence);
+  if (total_error(participants) >= as_large_as_the_solution) log::doubt(comm_rank(comm_), worthless_words);
   if (!schedule_.iterates) log::info("{}", lag_ ? lag_->sentence(participants) : LagEstimate::not_possible());
 }
 

@@ -50,6 +50,19 @@ std::string idle_words(const std::vector<Part>& parts, double most) {
   return words;
 }
 
+/// Of each kind the participant's that has most.
+std::vector<Part> largest_parts(const std::vector<NamedErrors>& participants) {
+  std::vector<Part> parts;
+  for (const Kind& k : kinds) {
+    const NamedErrors* largest = nullptr;
+    for (const NamedErrors& n : participants)
+      if (!std::isnan(n.parts.*k.value) && (!largest || n.parts.*k.value > largest->parts.*k.value))
+        largest = &n;
+    if (largest) parts.push_back({&k, largest->parts.*k.value, largest->name});
+  }
+  return parts;
+}
+
 }  // namespace
 
 bool ErrorParts::known() const {
@@ -79,22 +92,19 @@ ErrorParts ErrorParts::of(const std::string& text) {
   return parts;
 }
 
+double total_error(const std::vector<NamedErrors>& participants) {
+  double total = 0;
+  for (const Part& p : largest_parts(participants)) total += p.value;
+  return total;
+}
+
 std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants) {
-  std::vector<Part> parts;
-  for (const Kind& k : kinds) {
-    const NamedErrors* largest = nullptr;
-    for (const NamedErrors& n : participants)
-      if (!std::isnan(n.parts.*k.value) && (!largest || n.parts.*k.value > largest->parts.*k.value))
-        largest = &n;
-    if (largest) parts.push_back({&k, largest->parts.*k.value, largest->name});
-  }
+  std::vector<Part> parts = largest_parts(participants);
   if (parts.empty()) return {};
   std::ranges::stable_sort(parts, std::greater<>{}, &Part::value);
-  double total = 0;
   std::string list;
   const bool several = participants.size() > 1;
   for (const Part& p : parts) {
-    total += p.value;
     list += fmt::format("{}{} {:.2g}{}", list.empty() ? "" : ", ", p.kind->words, p.value,
                         several ? " (" + p.whose + ")" : "");
   }
@@ -103,7 +113,7 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
   const bool knows_mesh =
       std::ranges::any_of(parts, [](const Part& p) { return p.kind->value == &ErrorParts::mesh; });
   std::vector<std::string> sentences{
-      fmt::format("estimated error {:.2g} of the solution: {}{}.", total, list,
+      fmt::format("estimated error {:.2g} of the solution: {}{}.", total_error(participants), list,
                   knows_mesh ? "" : "; what the mesh (or modes left out) leaves is not known and not in it")};
   if (parts.size() < 2 || !(worst.value > 0)) return sentences;
   const std::string idle = idle_words(parts, worst.value);

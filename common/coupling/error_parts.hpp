@@ -32,6 +32,13 @@ struct NamedErrors {
 /// several participants the largest of each kind counts and is named. Empty if nothing is known.
 std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants);
 
+/// The number of the first of these sentences; 0 if nothing is known.
+double total_error(const std::vector<NamedErrors>& participants);
+/// An error as large as the solution: what a run then says in place of an answer, and a run with --strict fails by.
+constexpr double as_large_as_the_solution = 1;
+inline constexpr const char* worthless_words =
+    "the estimated error is as large as the solution itself: it is not to be trusted.";
+
 /// A participant that can tell its parts at the end of a run.
 class EstimatesError {
  public:
