@@ -36,10 +36,19 @@ void check_frame(const Mesh& mesh, const Boundary<D>& boundary, const FluidParam
     refuse("the centrifugal force is not the same at periodic patches that are not shifted along the axis.");
 }
 
+void check_axes(const FluidParameters& parameters, int dim) {
+  if (parameters.rotating_frame) check_axis(parameters.rotating_frame->axis, dim, "rotating-frame.axis");
+  for (const auto& [name, b] : parameters.boundaries)
+    if (b.rotation) check_axis(b.rotation->axis, dim, "boundaries." + name + ".rotation.axis");
+  for (const auto& [name, c] : parameters.output.coefficients)
+    check_axis(c.axis, dim, "output.coefficients." + name + ".axis");
+}
+
 }  // namespace
 
 template <int D>
 void check_together(const Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters, bool moving) {
+  check_axes(parameters, D);
   check_frame(mesh, boundary, parameters, moving);
   if (!parameters.bodies.empty()) {
     if (!parameters.gaps.empty())

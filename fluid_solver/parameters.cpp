@@ -56,6 +56,9 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
       [&b] {
         const int given = !b.velocity.empty() + b.mean_speed.has_value() + b.table.has_value();
         if (given != 1) return std::string("give either 'velocity', 'mean-speed' or 'table'");
+        if (b.profile == InletProfile::parabolic && !b.mean_speed)
+          return std::string(
+              "'profile: parabolic' is that of 'mean-speed'; give 'mean-speed' in place of the other, or leave 'profile' out");
         return std::string();
       },
       "type");

@@ -31,12 +31,15 @@ int main(int argc, char** argv) {
           [&](const couplet::ChoiceScene& scene) {
             return couplet::choose_effects(
                 parameters,
-                couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters), scene);
+                couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
+                                       parameters.mesh_scale),
+                scene);
           },
       .expected =
           [&](const couplet::ChoiceScene& scene) {
-            return couplet::expected_cost(parameters, couplet::facts_of_file(scene.folder / parameters.mesh,
-                                                                             parameters.mesh_parameters));
+            return couplet::expected_cost(
+                parameters, couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
+                                                   parameters.mesh_scale));
           }};
   return couplet::run_program(argc, argv, program);
 }

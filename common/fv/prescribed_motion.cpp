@@ -53,6 +53,13 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
       with_radii ? "outer-radius" : "axis");
 }
 
+void check_axis(const Vec3& axis, int dim, const std::string& key) {
+  if (dim == 2 && (axis[0] != 0 || axis[1] != 0 || !(axis[2] > 0)))
+    throw Error(
+        "{}: a plane scene turns about z, [0, 0, 1]; to turn the other way give the negative angle or speed.",
+        key);
+}
+
 PrescribedMotion::PrescribedMotion(const MotionParameters& parameters, int dim)
     : parameters_(parameters),
       translation_(expressions(parameters.translation, dim, "motion.translation")),
@@ -66,6 +73,7 @@ PrescribedMotion::PrescribedMotion(const MotionParameters& parameters, int dim)
           key, e.text());
   };
   refuse(angle_, "angle");
+  check_axis(parameters.axis, dim, "motion.axis");
   for (const Expression& e : translation_) refuse(e, "translation");
 }
 

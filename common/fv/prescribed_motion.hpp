@@ -25,6 +25,9 @@ struct MotionParameters {
 /// `with_radii`: the keys inner-radius and outer-radius, too.
 void declare(config::Section& section, MotionParameters& parameters, bool with_radii);
 
+/// In the plane the axis of a rotation is that of z, or Error that names the key.
+void check_axis(const Vec3& axis, int dim, const std::string& key);
+
 /// A motion that the case prescribes, of points: a whole mesh, a body in its midst, or a wall:
 ///   X(x, t) = c + R(s phi(t)) (x - c) + s [T(t) + d(x, t)]
 /// about the centre c, by the angle phi, the translation T and the displacement field d. s = 1 everywhere

@@ -34,12 +34,24 @@ MeshFacts facts_of(const RawMesh& raw) {
   return facts;
 }
 
-MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters) {
-  if (file.extension() != ".geo") return facts_of(read_msh(file));
+namespace {
+
+RawMesh read_raw(const std::filesystem::path& file, const MeshParameters& parameters) {
+  if (file.extension() != ".geo") return read_msh(file);
   const GeoScript script = read_geo(file);
   const bool is_solid =
       !script.groups.at(3) || !script.groups.at(3)->empty();  // nothing: some name is computed
-  return facts_of(read_msh(mesh_geo(file, is_solid ? 3 : 2, parameters)));
+  return read_msh(mesh_geo(file, is_solid ? 3 : 2, parameters));
+}
+
+}  // namespace
+
+MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale) {
+  MeshFacts facts = facts_of(read_raw(file, parameters));
+  facts.size *= scale;
+  facts.shortest_edge *= scale;
+  facts.mean_cell *= scale;
+  return facts;
 }
 
 }  // namespace couplet

@@ -19,7 +19,8 @@ struct MeshFacts {
 };
 MeshFacts facts_of(const RawMesh& raw);
 
-/// Of a .msh or .geo (meshed, with its cache): in three dimensions if it names a physical volume. Throws Error.
-MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters);
+/// Of a .msh or .geo (meshed, with its cache), its lengths times `scale`: in three dimensions if it names a physical
+/// volume. Throws Error.
+MeshFacts facts_of_file(const std::filesystem::path& file, const MeshParameters& parameters, double scale);
 
 }  // namespace couplet

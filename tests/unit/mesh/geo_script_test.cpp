@@ -105,7 +105,7 @@ TEST_F(Geo, the_dimension_of_a_mesh_is_that_of_its_groups_however_they_are_writt
       "Physical Curve(\"side\") = {1:4};\n// Physical Volume is for others\nPhysical" +
       std::string(400000, ' ') + "Surface(\"all\") = {1};\n";
   script(square, "square.geo");
-  const MeshFacts facts = facts_of_file(folder / "square.geo", {});
+  const MeshFacts facts = facts_of_file(folder / "square.geo", {}, 1);
   EXPECT_EQ(facts.dim, 2);
   EXPECT_EQ(facts.cells, 4u);
 }
