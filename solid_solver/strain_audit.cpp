@@ -71,7 +71,9 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   const int dim = mesh_.dim;
   StrainAudit audit;
   audit.compares_gradients = compare;
-  std::vector<std::array<float, 6>> strains(compare ? mesh_.n_flux_faces() : 0);
+  const Index n_faces = mesh_.n_flux_faces(), half = n_faces / 2;
+  Index first = 0;  // face of the first of the strains below
+  std::vector<std::array<float, 6>> strains(compare ? std::size_t(n_faces - half) : 0);
   const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
   const std::vector<double> known = body_.known_of({state.cell_u, state.face_u, points});
   const ElasticOperator& rows = body_.elastic();
@@ -84,41 +86,42 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
     return std::abs(mesh_.reference.face_area[f].dot(line_of(mesh_, f))) / dim;
   };
   double energy = 0, work = 0, difference = 0, size = 0;
-  body_.kernel().face_gradients(
-      unknowns, known,
-      [&](Index f, const Tensor3& gradient) {
-        if (variation) variation->add(f, 0.5 * (gradient + gradient.transpose()));
-        if (!is_mine(f)) return;  // another rank's
-        const Index owner = mesh_.owner[f];
-        const Tensor3 stress = body_.elastic().stress(owner, gradient);
-        energy += 0.5 * volume(f) * product(stress, gradient);
-        Vec3 force = stress * mesh_.reference.face_area[f];
-        const Vec3 here = vector_at(state.cell_u, owner, dim);
-        if (f < mesh_.n_interior)
-          work += 0.5 * force.dot(vector_at(state.cell_u, mesh_.neighbour[f], dim) - here);
-        else if (body_.elastic().condition(f) == ElasticCondition::symmetry)
-          work -= 0.5 * mesh_.reference.face_area[f].dot(force) * mesh_.reference.face_area[f].dot(here) /
-                  mesh_.reference.face_area[f].squaredNorm();
-        else
-          work += 0.5 * force.dot(vector_at(state.face_u, f - mesh_.n_interior, dim) - here);
-        if (!compare) return;
-        const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
-        size += volume(f) * body_.elastic().lame(owner).mu * symmetric.squaredNorm();
-        const PackedTensor strain = pack(symmetric);
-        std::ranges::copy(strain, strains[f].begin());
-      },
-      0, mesh_.n_flux_faces());
-  if (compare) {
-    ElasticKernel(mesh_, body_.elastic(), other_scheme(body_.kernel().scheme()))
-        .face_gradients(
-            unknowns, known,
-            [&](Index f, const Tensor3& gradient) {
-              if (!is_mine(f)) return;
-              PackedTensor gap = pack(0.5 * (gradient + gradient.transpose()));
-              for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= strains[f][i];
-              difference += volume(f) * body_.elastic().lame(mesh_.owner[f]).mu * unpack(gap).squaredNorm();
-            },
-            0, mesh_.n_flux_faces());
+  const auto own = [&](Index f, const Tensor3& gradient) {
+    if (variation) variation->add(f, 0.5 * (gradient + gradient.transpose()));
+    if (!is_mine(f)) return;  // another rank's
+    const Index owner = mesh_.owner[f];
+    const Tensor3 stress = rows.stress(owner, gradient);
+    energy += 0.5 * volume(f) * product(stress, gradient);
+    Vec3 force = stress * mesh_.reference.face_area[f];
+    const Vec3 here = vector_at(state.cell_u, owner, dim);
+    if (f < mesh_.n_interior)
+      work += 0.5 * force.dot(vector_at(state.cell_u, mesh_.neighbour[f], dim) - here);
+    else if (rows.condition(f) == ElasticCondition::symmetry)
+      work -= 0.5 * mesh_.reference.face_area[f].dot(force) * mesh_.reference.face_area[f].dot(here) /
+              mesh_.reference.face_area[f].squaredNorm();
+    else
+      work += 0.5 * force.dot(vector_at(state.face_u, f - mesh_.n_interior, dim) - here);
+    if (!compare) return;
+    const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
+    size += volume(f) * rows.lame(owner).mu * symmetric.squaredNorm();
+    std::ranges::copy(pack(symmetric), strains[f - first].begin());
+  };
+  const auto other = [&](Index f, const Tensor3& gradient) {
+    if (!is_mine(f)) return;
+    PackedTensor gap = pack(0.5 * (gradient + gradient.transpose()));
+    for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= strains[f - first][i];
+    difference += volume(f) * rows.lame(mesh_.owner[f]).mu * unpack(gap).squaredNorm();
+  };
+  if (!compare) {
+    body_.kernel().face_gradients(unknowns, known, own, 0, n_faces);
+  } else {
+    // Half of the faces after the other: the run needs most memory here, and half of the strains is a fiftieth of it.
+    const ElasticKernel beside(mesh_, rows, other_scheme(body_.kernel().scheme()));
+    for (const Index end : {half, n_faces}) {
+      body_.kernel().face_gradients(unknowns, known, own, first, end);
+      beside.face_gradients(unknowns, known, other, first, end);
+      first = end;
+    }
     difference = sum(mesh_.comm, difference);
     size = sum(mesh_.comm, size);
   }

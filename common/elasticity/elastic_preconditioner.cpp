@@ -146,6 +146,7 @@ ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOper
           .make(options.node_inertia.empty() ? inertia
                                              : options.node_inertia.first(std::size_t(mesh.cells.n_owned())));
   if (is_symmetric_) {
+    inverse_diagonal_.reserve(std::size_t(mesh.cells.n_owned()) * mesh.dim);
     for (Index c = 0; c < mesh.cells.n_owned(); ++c)
       for (int a = 0; a < mesh.dim; ++a) inverse_diagonal_.push_back(1 / compact.diagonal[c][a]);
     gathered_.resize(inverse_diagonal_.size());

@@ -51,8 +51,9 @@ class ElasticPreconditioner {
   std::vector<double> inertia_;
   const ElasticKernel* between_;
   bool is_symmetric_;
-  VolumeStrain left_out_;  // faces: the preconditioner is that of the whole operator
-  std::vector<double> gathered_, inverse_diagonal_;  // of the symmetric form
+  VolumeStrain left_out_;         // faces: the preconditioner is that of the whole operator
+  std::vector<double> gathered_;  // of the symmetric form, as the next
+  std::vector<float> inverse_diagonal_;
   std::unique_ptr<ComponentMultigrid> multigrid_;
   std::vector<FaceRow> face_rows_;
   std::unique_ptr<RigidCoarseSpace> coarse_;
