@@ -53,6 +53,8 @@ def uncertainty(rows, quantity):
               ((table.series_of(rows)[s], limit) for s, limit in table.limits_of(rows, quantity).items()) if limit]
     if quantity.reference == "finest" or not limits:
         good = [r for r in rows if r.good]
+        if not good:  # nothing to compare: the table of all runs says why
+            return math.inf
         finest = max(r.point.size for r in good)
         others = [r.errors[quantity.name] for r in good if r.point.size == finest and r.errors.get(quantity.name, 0) > 0]
         return min(others, default=math.inf)

@@ -110,6 +110,18 @@ class Series:
             return abs(value) if self.quantity.is_error else None
         return abs(value - model.value) / (1 if self.quantity.given.get("absolute") else abs(model.value))
 
+    def scatter(self):
+        """What noise may make of the limit, over its size: by how much the larger half of the sizes turn back against the way that all values
+        go, times what an extrapolation over APART makes of it."""
+        model, rows = self.model(), [r for r in self.rows if 2 * r.point.size >= self.rows[-1].point.size]
+        if self.quantity.is_error or model is None or len(rows) < 3:
+            return 0.0
+        values = [r.values[self.quantity.name] for r in rows]
+        way = math.copysign(1, self.rows[-1].values[self.quantity.name] - self.rows[0].values[self.quantity.name])
+        back = max(way * (a - b) for i, a in enumerate(values) for b in values[i:])
+        scale = 1 if self.quantity.given.get("absolute") else abs(model.value)
+        return back * (1 + 1 / (APART**min(max(model.order, 1), 2) - 1)) / scale
+
     def seconds(self, size):
         a, b, q = power_cost(self.sizes(), [getattr(r.record, self.study.clock) for r in self.rows])
         nearest = min(self.rows, key=lambda r: abs(math.log(r.point.size / size)))
@@ -204,6 +216,8 @@ def approach(every, target, say):
         largest, refining = series.sizes()[-1], series.study.axes.refining
         if predicted and predicted[0] <= largest:  # a run that is there meets it
             row = fitting(series, predicted, target, say)
+            if row and series.left(row) is None:  # it has shown that there is no limit to go by
+                return series, row, predicted
             if row and series.left(row) > 1.1 * target:
                 say(f"it leaves {series.left(row):.2g}, more than asked: back")
                 series.coarse = max(series.coarse, row.point.size)
@@ -248,14 +262,16 @@ def said(study, quantity, best, every, target, final, predicted):
     true, model = final.errors.get(quantity.name), best.model()
     seconds = getattr(final.record, study.clock)
     estimate = best.left(final) if model else None
-    reached = true if true is not None else estimate
+    noise = best.scatter() if true is None else 0
+    reached = true if true is not None else estimate if estimate is None else max(estimate, noise)
     settings = ", ".join(f"{k}={v}" for k, v in final.point.changes.items())
     if reached is None:  # the last run has shown that there is no limit yet
         return {"met": False, "target": target, "lines": [f"No setting was found for an error of {target:.3g}: with the last run, {best.name}, size {final.point.size:g}, which "
                                                           "should have met it, the values approach no limit any more. A finer start may help."]}
     lines = [f"Cheapest for {quantity.name} to {target:.3g}: {best.name}, size {final.point.size:g} ({settings})",
              f"error: {reached:.3g} {'against the reference' if true is not None else 'by extrapolation'} (predicted {predicted[1]:.3g}"
-             + (f", estimated afterwards {estimate:.3g})" if estimate is not None else ")"),
+             + (f", estimated afterwards {estimate:.3g})" if estimate is not None else ")")
+             + ("; by as much the values of nearby sizes scatter, which an extrapolation cannot see through" if estimate is not None and noise > estimate else ""),
              f"time: {seconds:.3g} s (predicted {predicted[2]:.3g} s); the runs before it took {spent - seconds:.3g} s"]
     return {"met": reached <= 1.1 * target, "target": target, "quantity": quantity.name, "series": best.name,
             "size": final.point.size, "predicted error": predicted[1], "predicted seconds": predicted[2], "error": reached, "estimate": estimate,

@@ -89,6 +89,9 @@ study = Fake(lambda s: None if s["method"] == "good" else 1 + 3 * float(s["n"])*
 assert asked(study, 0.01)[0].name == "dear", "a series whose runs fail is left out"
 study = Fake(lambda s: float(s["n"]) % 4, lambda s: 1.0, {})
 assert not asked(study, 0.01)[3]["met"], "values without a limit are not called an answer"
+for scatter in (0, 1e-3):  # from size to size, as of a probe that sees one cell after the other
+    said = asked(Fake(lambda s: -1 - 3 * float(s["n"])**-2 + scatter * (round(float(s["n"])) % 3), lambda s: 1.0, {}), 1e-3)[3]
+    assert said["met"] == (scatter == 0), "an extrapolation from values that scatter by the target is no answer"
 
 # -- what dominates: value = 1 + mesh + step + what the solver leaves, in turn the largest
 for worst in ("mesh", "step", "solver"):
