@@ -2,6 +2,7 @@
 #include "fluid_solver/fluid_checks.hpp"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
@@ -41,7 +42,8 @@ void check_axes(const FluidParameters& parameters, int dim) {
   for (const auto& [name, b] : parameters.boundaries)
     if (b.rotation) check_axis(b.rotation->axis, dim, "boundaries." + name + ".rotation.axis");
   for (const auto& [name, c] : parameters.output.coefficients)
-    check_axis(c.axis, dim, "output.coefficients." + name + ".axis");
+    check_axis(Vec3(c.axis[0], c.axis[1], std::abs(c.axis[2])), dim,  // a moment may be taken about -z
+               "output.coefficients." + name + ".axis");
 }
 
 }  // namespace
