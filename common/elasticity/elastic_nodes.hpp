@@ -96,8 +96,7 @@ class ElasticNodes {
   ElasticNodes(const Mesh& mesh, const ElasticOperator& rows)
       : mesh_(&mesh),
         rows_(&rows),
-        value_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * stride, 0.0),
-        force_(std::size_t(mesh.cells.n_local()) * stride, 0.0) {}
+        value_(std::size_t(mesh.cells.n_local() + mesh.boundary.n_local()) * stride, 0.0) {}
 
   const double* operator[](Index node) const { return value_.data() + std::size_t(node) * stride; }
   double* value(Index node) { return at(node); }
@@ -105,7 +104,8 @@ class ElasticNodes {
     return (*this)[mesh_->cells.n_local() + face - mesh_->n_interior];
   }
   double* force(Index cell) { return force_.data() + std::size_t(cell) * stride; }
-  void clear_forces() { std::fill(force_.begin(), force_.end(), 0.0); }
+  /// First of all that touches forces: who asks for gradients alone has none.
+  void clear_forces() { force_.assign(std::size_t(mesh_->cells.n_local()) * stride, 0.0); }
 
   /// Node values of all local nodes. `supports_hold`: supports have their known components, whatever the
   /// unknowns say. Collective.
