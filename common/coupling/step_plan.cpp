@@ -46,7 +46,11 @@ double StepPlan::nominal_time(GlobalIndex i) const {
 double StepPlan::nominal_length() const {
   if (nominal_ + 1 < n_nominal_) return nominal_dt_;
   const double rest = end_time_ - double(nominal_) * nominal_dt_;
-  return std::abs(rest - nominal_dt_) > 1e-9 * nominal_dt_ ? rest : nominal_dt_;
+  // Where rounding alone parts it from a step or one of its halves, it is that: matrices made for the one serve the other
+  // bit for bit, also in a run that was continued and has made none yet.
+  for (int level = 0; level <= max_halvings_; ++level)
+    if (const double dt = std::ldexp(nominal_dt_, -level); std::abs(rest - dt) <= 1e-9 * dt) return dt;
+  return rest;
 }
 
 double StepPlan::time() const {

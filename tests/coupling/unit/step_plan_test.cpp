@@ -129,6 +129,18 @@ TEST(StepPlan, halving_stops_at_the_limit) {
   EXPECT_EQ(plan.dt(), 0.025);
 }
 
+TEST(StepPlan, a_rest_that_rounding_parts_from_half_a_step_is_that_half) {
+  StepPlan plan(2.9, 0.2, 6);  // 2.9 - 14 * 0.2 is not 0.1
+  ASSERT_NE(2.9 - 14 * 0.2, 0.1);
+  while (!plan.is_last()) plan.accepted();
+  EXPECT_EQ(plan.dt(), 0.1);
+  plan.accepted();
+  EXPECT_EQ(plan.time(), 2.9);
+  StepPlan odd(2.93, 0.2, 6);
+  while (!odd.is_last()) odd.accepted();
+  EXPECT_EQ(odd.dt(), 2.93 - 14 * 0.2);
+}
+
 TEST(StepPlan, obeys_advice) {
   StepPlan plan(1, 0.1, 6);
   plan.limit(0.03);
