@@ -212,6 +212,12 @@ void declare(config::Section& section, CouplingParameters& p) {
                 "keeps the semi-implicit scheme second order; data without a velocity by a polynomial of "
                 "this order. "
                 "By default 2, and 0 in an explicit exchange");
+        s.check(
+            [&p] {
+              const double order = p.predictor_order.value_or(0);
+              return order == std::round(order) ? "" : "it is a whole number: 0, 1 or 2";
+            },
+            "order");
       },
       "the first guess of a step");
   section.value("sub-steps", p.sub_steps)

@@ -196,6 +196,13 @@ void declare(config::Section& s, FluidParameters& p) {
           "largest step with an implicit viscous term, in limits of the explicit one: bounds it by accuracy, since the "
           "second order of the implicit term shows where nu dt / h^2 is about 1 or less only (4 gives it on the flap); "
           "absent: by stability alone, which is cheaper");
+  s.check(
+      [&p] {
+        return p.implicit_stretch && p.viscous == ViscousTreatment::explicit_
+                   ? "it bounds steps with an implicit viscous term, and 'viscous' is explicit; remove it"
+                   : "";
+      },
+      "implicit-stretch");
   s.value("pressure-tolerance", p.pressure_tolerance)
       .range(1e-14, 1e-1)
       .doc(

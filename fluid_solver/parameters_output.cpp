@@ -24,6 +24,12 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
   s.value("lift", c.lift).doc("direction of the second coefficient");
   s.value("centre", c.centre).unit("m").doc("point about which the moment is taken; it rests");
   s.value("axis", c.axis).size(3).doc("of the moment; a plane scene turns about z");
+  const auto needs_direction = [&s](const char* key, const auto& value) {
+    s.check([&value] { return value.norm() > 0 ? "" : "a direction must not be zero"; }, key);
+  };
+  needs_direction("drag", c.drag);
+  needs_direction("lift", c.lift);
+  needs_direction("axis", c.axis);
 }
 
 void declare_sample(config::Section& s, SampleParameters& p) {

@@ -10,16 +10,25 @@
 namespace couplet {
 namespace {
 
+/// Of any condition, those of parts of patches too.
+template <class Test>
+bool any_condition(const SolidParameters& p, const Test& test) {
+  return std::any_of(p.boundaries.begin(), p.boundaries.end(), [&](const auto& entry) {
+    const auto& parts = entry.second.parts;
+    return test(entry.second) || std::any_of(parts.begin(), parts.end(), test);
+  });
+}
+
+bool has_interface(const SolidParameters& p) {
+  return any_condition(p, [](const SolidCondition& c) { return c.type == SolidCondition::Type::interface_; });
+}
+
 /// Whether a condition of any kind keeps some displacement from being free.
 bool is_held(const SolidParameters& p) {
-  const auto holds = [](const SolidCondition& c) {
+  return any_condition(p, [](const SolidCondition& c) {
     using Type = SolidCondition::Type;
     return c.type != Type::traction && c.type != Type::pressure && c.type != Type::free &&
            c.type != Type::zero_normal_gradient;
-  };
-  return std::any_of(p.boundaries.begin(), p.boundaries.end(), [&](const auto& entry) {
-    const auto& parts = entry.second.parts;
-    return holds(entry.second) || std::any_of(parts.begin(), parts.end(), holds);
   });
 }
 
@@ -71,6 +80,28 @@ void check_together(config::Section& s, SolidParameters& p) {
                    : "";
       },
       "damping");
+  s.check(
+      [&] {
+        return p.time_scheme.type != TimeScheme::trapezoidal &&
+                       p.analysis == SolidParameters::Analysis::static_
+                   ? "a static analysis has no inertia to integrate in time; remove it"
+                   : "";
+      },
+      "time-scheme");
+  s.check(
+      [&] {
+        return !p.initial_velocity.empty() && p.analysis != SolidParameters::Analysis::dynamic
+                   ? "it has an effect with 'analysis: dynamic' only; remove it"
+                   : "";
+      },
+      "initial-velocity");
+  s.check(
+      [&] {
+        return p.interface_data && p.analysis != SolidParameters::Analysis::thermal && !has_interface(p)
+                   ? "no patch is an interface: give one 'type: interface', or remove this section"
+                   : "";
+      },
+      "interface");
   s.check(
       [&] {
         return p.boundaries.empty() && p.analysis != SolidParameters::Analysis::thermal

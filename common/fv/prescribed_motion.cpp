@@ -45,6 +45,8 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
   }
   s.check(
       [&m] {
+        if (!m.outer_radius && m.inner_radius > 0)
+          return std::string("'inner-radius' has no effect without 'outer-radius'; give both or neither");
         if (m.outer_radius && *m.outer_radius <= m.inner_radius)
           return std::string("'outer-radius' must be larger than 'inner-radius'");
         if (!(m.axis.norm() > 0)) return std::string("'axis' must not be zero");

@@ -37,6 +37,15 @@ case.yaml:12:7: participants.fluid.boundaries.right.partner: this required key i
     fluid("component with a wrong unit", """
 case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 2 of the list: '0 Pa': the unit 'Pa' does not convert to m/s; expected m/s or a unit that converts to it.
 """, ("0 m/s]", "0 Pa]")),
+    fluid("forces without a direction", """
+case.yaml:10:68: participants.fluid.output.coefficients.a.drag: a direction must not be zero.
+""", ("    boundaries:\n", "    output: {coefficients: {a: {patches: [top], speed: 1, area: 1, drag: [0, 0, 0]}}}\n    boundaries:\n")),
+    fluid("bound of implicit steps where steps are explicit", """
+case.yaml:11:5: participants.fluid.implicit-stretch: it bounds steps with an implicit viscous term, and 'viscous' is explicit; remove it.
+""", ("    boundaries:\n", "    viscous: explicit\n    implicit-stretch: 4\n    boundaries:\n")),
+    fluid("inner radius without an outer one", """
+case.yaml:10:5: participants.fluid.motion.outer-radius: 'inner-radius' has no effect without 'outer-radius'; give both or neither.
+""", ("    boundaries:\n", "    motion: {angle: 0.1*t, inner-radius: 0.1}\n    boundaries:\n")),
     fluid("outlet with a velocity", """
 case.yaml:12:29: participants.fluid.boundaries.right.velocity: this key does not belong here; it goes with type: inlet or type: moving-wall.
 """, ("pressure: 0", "velocity: [1, 0]")),

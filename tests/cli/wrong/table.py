@@ -232,6 +232,15 @@ case.yaml:9:5: participants.solid.time-step-control: a static analysis has no ti
     solid("probe of an unknown field", """
 case.yaml:19:28: participants.solid.probes.tip.fields: there is no field 'stres'; the fields are displacement, velocity, acceleration, stress, equivalent-stress, principal-stress, strain, temperature.
 """, ("      top: {type: free}", "      top: {type: free}\n    probes:\n      tip: {point: [1, 1], fields: [stres]}")),
+    solid("time scheme of a static analysis", """
+case.yaml:9:5: participants.solid.time-scheme: a static analysis has no inertia to integrate in time; remove it.
+""", ("analysis: dynamic", "analysis: static\n    time-scheme: {type: bathe}")),
+    solid("initial velocity of a static analysis", """
+case.yaml:9:5: participants.solid.initial-velocity: it has an effect with 'analysis: dynamic' only; remove it.
+""", ("analysis: dynamic", "analysis: static\n    initial-velocity: [1, 0]")),
+    solid("data of an interface that is not there", """
+case.yaml:9:5: participants.solid.interface: no patch is an interface: give one 'type: interface', or remove this section.
+""", ("analysis: dynamic", "analysis: dynamic\n    interface: {load: pressure}")),
     solid("unknown time scheme", """
 case.yaml:9:19: participants.solid.time-scheme.type: 'bath' is not one of: euler, three-point, trapezoidal, bathe, generalised-alpha. Did you mean 'bathe'?
 """, ("analysis: dynamic", "analysis: dynamic\n    time-scheme: {type: bath}")),
@@ -332,6 +341,9 @@ case.yaml:41:17: coupling.convergence.relative: 2 is out of range; expected a va
     coupler("unknown key of convergence", """
 case.yaml:41:17: coupling.convergence.relativ: unknown key. Did you mean 'relative'?
 """, ("relative: 1e-5", "relativ: 1e-5")),
+    coupler("half an order of the predictor", """
+case.yaml:41:15: coupling.predictor.order: it is a whole number: 0, 1 or 2.
+""", ("  convergence", "  predictor: {order: 1.5}\n  convergence")),
     coupler("order of the predictor", """
 case.yaml:41:15: coupling.predictor.order: 3 is out of range; expected a value from 0 to 2.
 """, ("  convergence", "  predictor: {order: 3}\n  convergence")),
