@@ -246,6 +246,11 @@ enum couplet_event couplet_next(couplet_client* c) try {
     receive_command(*c);
     switch (c->command.op) {
       case initialise:
+        if (c->command.sub_steps > 1)
+          end_the_job(
+              "'coupling.sub-steps' of '" + c->participant +
+              "': this library takes one step a coupling step; remove it, and cut the step in your own program.");
+        continue;
       case finalise:
         continue;  // answered by this library
       default:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
+#include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/load.hpp"
 #include "fluid_solver/auto_effects.hpp"
 #include "fluid_solver/effect_cards.hpp"
@@ -29,6 +30,7 @@ int main(int argc, char** argv) {
                 std::move(mesh), parameters, {context.name, context.output_folder, context.restart_time},
                 link);
           },
+      .environment = couplet::petsc_environment,
       .effects =
           [&](const couplet::EffectScene& scene) {
             return couplet::effects_of(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
+#include "common/linalg/petsc_environment.hpp"
 #include "mesh_mover/effect_cards.hpp"
 #include "mesh_mover/mover.hpp"
 
@@ -14,6 +15,7 @@ int main(int argc, char** argv) {
           [&](const couplet::ParticipantContext& context) {
             return std::make_unique<couplet::mesh_mover::Mover>(parameters, context);
           },
+      .environment = couplet::petsc_environment,
       .effects =
           [&](const couplet::EffectScene&) {
             return couplet::effects_of(couplet::mesh_mover::effect_cards(), parameters);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
+#include "common/linalg/petsc_environment.hpp"
 #include "plate_modal/effect_cards.hpp"
 #include "plate_modal/structure.hpp"
 
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
                 parameters, couplet::plate::PlateContext{c.comm, c.name, c.case_folder, c.output_folder,
                                                          c.restart_time, c.simulation.time_step});
           },
+      .environment = couplet::petsc_environment,
       .effects =
           [&](const couplet::EffectScene& scene) {
             return couplet::effects_of(

@@ -42,6 +42,22 @@ class FieldSeries:
                 return step[place][name][...]
         raise KeyError(f"no field '{name}' in {self.file.filename}")
 
+    def is_at_points(self, i, name):
+        """field() takes the one of the cells where both have it."""
+        step = self.file["steps"][self.steps[i]]
+        return not ("cells" in step and name in step["cells"])
+
+    def reference(self):
+        """Points of the undeformed mesh."""
+        return self.file["mesh/coordinates"][...]
+
+    def shares_of_points(self):
+        """Volumes (2-D: areas) of the cells, dealt out evenly to their points."""
+        shares = np.zeros(len(self.reference()))
+        for cell, volume in zip(self.cells, self.volumes()):
+            shares[cell] += volume / len(cell)
+        return shares
+
     def centres(self):
         """Means of the points of each cell in the undeformed mesh."""
         points = self.file["mesh/coordinates"][...]

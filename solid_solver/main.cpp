@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
+#include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/load.hpp"
 #include "solid_solver/auto_effects.hpp"
 #include "solid_solver/effect_cards.hpp"
@@ -23,6 +24,7 @@ int main(int argc, char** argv) {
           return std::make_unique<couplet::ThermalSolid>(std::move(mesh), parameters, where);
         return std::make_unique<couplet::Solid>(std::move(mesh), parameters, where);
       },
+      .environment = couplet::petsc_environment,
       .effects =
           [&](const couplet::EffectScene&) {
             return couplet::effects_of(couplet::solid_effect_cards(), parameters);

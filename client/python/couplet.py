@@ -159,6 +159,9 @@ class Client:
                     self._over = True
                     return None
             self._receive_command()
+            if self.operation == INITIALISE and self.sub_steps > 1:
+                self._end(f"'coupling.sub-steps' of '{self.participant}': this library takes one step a coupling step; remove it, and cut the "
+                          "step in your own program.")
             if self.operation in EVENTS:
                 return EVENTS[self.operation]
 

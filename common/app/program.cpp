@@ -10,7 +10,6 @@
 #include "common/config/load.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "common/parallel/environment.hpp"
 
 namespace couplet {
 namespace {
@@ -40,7 +39,7 @@ void write_effective(const Job& job, const Program& program) {
 }
 
 int run(const Job& job, const Program& program) {
-  const PetscEnvironment petsc(job.comm);
+  const std::shared_ptr<void> environment = program.environment ? program.environment(job.comm) : nullptr;
   Watch::install();
   ParticipantContext context;
   context.comm = job.comm;

@@ -43,6 +43,9 @@ struct Program {
   config::Section::Declare declare;
   /// Called once after reading; the parameters are those that `declare` filled.
   std::function<std::unique_ptr<Participant>(const ParticipantContext&)> make;
+  /// What the program's libraries need from before the participant is made until after it is gone (petsc_environment());
+  /// empty: nothing. A program without one links no PETSc, whose libraries take 60 ms to load.
+  std::function<std::shared_ptr<void>(MPI_Comm)> environment = {};
   /// What the program can simulate, looked at with the parameters that `declare` filled; empty: not told.
   std::function<std::vector<Effect>(const EffectScene&)> effects = {};
   /// What `simulation.effects: auto` decides where the YAML leaves it open; empty: nothing.

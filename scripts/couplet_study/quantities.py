@@ -119,15 +119,17 @@ class Quantity:
         return float(np.linalg.norm(gap) / np.linalg.norm(wanted))
 
     def norm(self, series):
-        """Relative L2 norm of the difference from the exact field over the cells, at the last output."""
+        """Relative L2 norm of the difference from the exact field at the last output: over the cells, or over the points by their
+        shares of them."""
         i = len(series.times) - 1
-        field, centres = series.field(i, self.given["field"]), series.centres()
+        field, at_points = series.field(i, self.given["field"]), series.is_at_points(i, self.given["field"])
+        centres, weight = (series.reference(), series.shares_of_points()) if at_points else (series.centres(), series.volumes())
         field = field.reshape(len(field), -1)
         names = {**NAMES, "x": centres[:, 0], "y": centres[:, 1], "z": centres[:, 2] if centres.shape[1] > 2 else 0 * centres[:, 0],
                  "t": series.times[i]}
         exact = self.given["exact"] if isinstance(self.given["exact"], list) else [self.given["exact"]]
         wanted = np.stack([np.broadcast_to(eval(str(e).replace("^", "**"), {"__builtins__": {}}, names), len(centres)) for e in exact], axis=1)
-        weight = series.volumes()[:, None]
+        weight = weight[:, None]
         return float(np.sqrt((weight * (field[:, :wanted.shape[1]] - wanted) ** 2).sum() / (weight * wanted**2).sum()))
 
 

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "common/parallel/environment.hpp"
+#include "common/linalg/petsc_environment.hpp"
 
 namespace {
 

@@ -145,6 +145,24 @@ def covered(build, folder):
                  found[0].stderr + found[0].stdout and found[1].returncode == 0 and '"face-gradient": "thesis"' in found[1].stdout, str(found))
 
 
+def of_fields(build, folder):
+    """A bar pulled without contraction: its displacement is the exact field in cells and at points."""
+    place = folder / "bar"
+    place.mkdir()
+    shutil.copy(folder / "cantilever.geo", place)
+    (place / "case.yaml").write_text((folder / "case.yaml").read_text().split("\nstudy:")[0] + """
+study:
+  axes: {pulled: {values: {along: {material.poissons-ratio: 0, boundaries.tip: "{type: traction, value: [125, 0, 0]}"}}},
+         mesh: {sizes: [2], set: {mesh-parameters: "{n_length: <10*n>, n_side: <n>}"}}}
+  quantities:
+    points: {field: displacement, exact: ["1.25e-5*x", "0", "0"]}
+    cells: {field: cell-displacement, exact: ["1.25e-5*x", "0", "0"]}
+""")
+    said = study(build, place)
+    rows = rows_of(place)
+    return check("norms of fields of points and of cells", all(float(rows[0][f"error of {q}"]) < 1e-6 for q in ("points", "cells")), said.stdout + said.stderr)
+
+
 def made_up(order, sizes):
     """A series whose value is 1 + n^-order and whose cost is start-up and n^3, without any run."""
     from types import SimpleNamespace as S
@@ -208,6 +226,7 @@ def main(build):
         failed = predicting()
         failed += mappings(folder)
         failed += covered(build, folder)
+        failed += of_fields(build, folder)
         failed += restartable(build, folder)
         failed += content(folder)
         failed += looked_at(folder)

@@ -126,7 +126,11 @@ def handshake():
         said = run(folder, body_of["c++"], code=2)
         check("a guest whom nobody asked for is named", "'somebody' was started" in said.stderr + said.stdout)
         check("so is who is missing", "participant 'body' (spring_cylinder) is missing" in said.stderr + said.stdout)
-
+        parameters = ["body", *parameters[1:]]
+        for language, body in body_of.items():
+            if language != "python" or python_is_there():
+                said = run(folder, body, sets=["coupling.sub-steps={body: 2}"], code=1)
+                check(f"{language}: sub-steps that nobody would take are refused", "takes one step a coupling step" in said.stderr + said.stdout)
 
     if not python_is_there():
         return

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "common/io/field_writer.hpp"
+#include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
-#include "common/parallel/environment.hpp"
 
 namespace {
 

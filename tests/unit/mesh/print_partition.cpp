@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/partition.hpp"
-#include "common/parallel/environment.hpp"
 
 int main(int argc, char** argv) {
   using couplet::Index;

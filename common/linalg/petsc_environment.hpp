@@ -3,6 +3,8 @@
 
 #include <mpi.h>
 
+#include <memory>
+
 namespace couplet {
 
 /// PETSc on the communicator of one program. MPI must be up before and stay up until after.
@@ -14,5 +16,8 @@ class PetscEnvironment {
   PetscEnvironment(const PetscEnvironment&) = delete;
   PetscEnvironment& operator=(const PetscEnvironment&) = delete;
 };
+
+/// One that lives as long as what is returned: for Program::environment.
+std::shared_ptr<void> petsc_environment(MPI_Comm program);
 
 }  // namespace couplet

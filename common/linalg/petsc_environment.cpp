@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/parallel/environment.hpp"
+#include "common/linalg/petsc_environment.hpp"
 
 #include <petscsys.h>
 
@@ -20,6 +20,10 @@ PetscEnvironment::PetscEnvironment(MPI_Comm program) {
 PetscEnvironment::~PetscEnvironment() {
   // PetscFinalize is collective: never during unwinding.
   if (std::uncaught_exceptions() == 0) PetscFinalize();
+}
+
+std::shared_ptr<void> petsc_environment(MPI_Comm program) {
+  return std::make_shared<PetscEnvironment>(program);
 }
 
 }  // namespace couplet
