@@ -402,8 +402,9 @@ BARS = [
     Bar("backward step, Re 800, 48 cells over the height", "reported", behind_step(48, False), long=True),
     Bar("backward step, Re 800, 80 cells over the height", "within 1 % of 6.10, 4.85, 10.48 (Gartling)", behind_step(80, True), long=True),
     Bar("cavity, Re 5000, 128^2 stretched", "extrema within 1 % of their own extrapolation", cavity_5000, long=True),
-    *(Bar(f"speed: {what}", f">= {wanted} times", ratio(only, wanted), long=True) for what, only, wanted in (
-        ("cavity 128^2 against icoFoam, one core", "cavity-2d", 13), ("cavity 64^3 against icoFoam, one core", "cavity-3d", 5),
-        ("24 000 cells around a swinging cylinder against pimpleFoam, one core", "moving-cylinder", 8))),
+    *(Bar(f"speed: {what}", f">= {wanted} times", ratio(only, wanted), long=True, but=but) for what, only, wanted, but in (
+        ("cavity 128^2 against icoFoam, one core", "cavity-2d", 13, ""), ("cavity 64^3 against icoFoam, one core", "cavity-3d", 5, ""),
+        ("24 000 cells around a swinging cylinder against pimpleFoam, one core", "moving-cylinder", 8,
+         "by a test program, fluid and mover in one process"))),
     Bar("speed: second core on 64^3", ">= 1.7 times", second_core(1.7), long=True),
 ]
