@@ -31,6 +31,7 @@ constexpr double near_limit = 0.1;
 constexpr double most_times_as_many = 2;
 // Of the limits of a step that is given: what is certain to go wrong.
 constexpr double far_above = 2;
+constexpr int steps_between_looks = 10;
 
 }  // namespace
 
@@ -195,15 +196,20 @@ Exchange FluidParticipant<D>::solve(const Exchange& in) {
   return forces();
 }
 
-/// A step that is given is kept, also where it is too long for the implicit term on cells with few faces (StepSize). Looked at for
-/// the longest so far.
+/// A step that is given is kept, also where it is too long for the implicit term on cells with few faces (StepSize). Looked at where
+/// it is the longest so far, and every few steps where the limit itself changes: cells that move, viscosity of eddies.
 template <int D>
 void FluidParticipant<D>::doubt_given_step() {
   const double size = step_.dt / fluid_->statistics().sub_steps;
-  if (!fluid_->parameters().time_step || !fluid_->state().implicit || size <= longest_looked_at_) return;
-  longest_looked_at_ = size;
+  if (!fluid_->parameters().time_step || !fluid_->state().implicit) return;
+  const bool changes = fluid_->moving() || fluid_->parameters().turbulence.has_value();
+  const bool due = changes && ++steps_since_look_ >= steps_between_looks;
+  if (size <= longest_looked_at_ && !due) return;
+  longest_looked_at_ = std::max(longest_looked_at_, size);
+  steps_since_look_ = 0;
   const StepLimiter by = fluid_->step_limiter();
-  if (!by.friction || size <= far_above * by.limit) return;
+  if (!by.friction || size <= far_above * by.limit || size / by.limit <= 2 * doubted_times_) return;
+  doubted_times_ = size / by.limit;
   log::doubt(
       comm_rank(mesh_.comm),
       fmt::format(

@@ -93,7 +93,9 @@ class FluidParticipant final : public Participant, public EstimatesError {
   long steps_ = 0, renewed_steps_ = 0;
   int told_sub_steps_ = 1;        // in the log
   double longest_looked_at_ = 0;  // of given sub-steps [s]
-  double largest_unseen_ = 0;     // share of the load, of the accepted steps
+  int steps_since_look_ = 0;
+  double doubted_times_ = 0;   // the limit that such a one was when it was last doubted
+  double largest_unseen_ = 0;  // share of the load, of the accepted steps
 };
 
 /// The participant of the dimension that the parameters name.

@@ -74,6 +74,7 @@ EffectChoice inertia(const SolidParameters& p, const MeshFacts& mesh, const Choi
     return choose(true, "the forces of its partner change in time");
   if (!p.initial_velocity.empty()) return choose(true, "'initial-velocity' sets it moving");
   if (p.damping) return choose(true, "'damping' is given");
+  if (p.time_scheme.type != TimeScheme::trapezoidal) return choose(true, "'time-scheme' is given");
   const double change = time_of_change(loads_of(p), 0.5 * mesh.size, scene.end_time);
   if (std::isinf(change)) return choose(false, "no load changes in time");
   const double period = lowest_period(p, mesh);

@@ -28,6 +28,8 @@ class SolidEffect {
   /// Elastic constants that the operator must get for the step now tried, one a local cell; empty: its own
   /// hold. The same answer on all ranks.
   virtual std::span<const LameConstants> stiffness() const { return {}; }
+  /// The operator has got other constants since the last call. Collective.
+  virtual void stiffness_changed() {}
   /// Adds its forces [N] at time t within the step to the rows of the kernel.
   virtual void add_loads(double t, const ElasticKernel& kernel, std::span<double> rhs) = 0;
   /// The stress - p I it stands for at time t, p [Pa] per local face; empty: none.

@@ -34,7 +34,8 @@ void declare(config::Section& s, MethodParameters& m) {
           "symmetric: "
           "from an energy, so that nothing grows on any mesh, by conjugate gradients; "
           "auto: "
-          "corrected in static analyses, thesis in dynamic ones");
+          "corrected in static analyses, thesis in dynamic ones, and symmetric with 'volume-strain: cells' or 'shared' and from "
+          "nu = 0.4 up");
   using VolumeStrain = MethodParameters::VolumeStrain;
   s.choice("volume-strain", m.volume_strain,
            {{"auto", VolumeStrain::automatic},
@@ -46,6 +47,17 @@ void declare(config::Section& s, MethodParameters& m) {
           "face; shared: a tenth of the bulk modulus, at most a third of the shear modulus, on the faces', the rest on the "
           "cells': best in plane strain and for plates, too soft for bars in space with few cells across; auto: cells from "
           "nu = 0.4 up, else faces");
+  s.check(
+      [&m] {
+        const bool asked = m.volume_strain == VolumeStrain::cells || m.volume_strain == VolumeStrain::shared;
+        const bool other = m.face_gradient == FaceGradient::thesis ||
+                           m.face_gradient == FaceGradient::corrected || m.type == Type::block_coupled ||
+                           m.type == Type::segregated;
+        return asked && other
+                   ? "it is of 'face-gradient: symmetric' with 'type: newton-krylov'; change these, or remove it"
+                   : "";
+      },
+      "volume-strain");
   s.choice("linear-solver", m.linear_solver,
            {{"auto", LinearSolver::automatic},
             {"direct", LinearSolver::direct},

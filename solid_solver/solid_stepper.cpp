@@ -57,7 +57,9 @@ void SolidStepper::start_from_rest() {
 
 // All that was made for the old constants goes.
 void SolidStepper::apply_stiffness() {
-  if (body_.apply_stiffness()) systems_.clear();
+  if (!body_.apply_stiffness()) return;
+  systems_.clear();
+  for (const auto& effect : body_.effects()) effect->stiffness_changed();
 }
 
 void SolidStepper::begin_step(const Step& step, bool has_loads) {

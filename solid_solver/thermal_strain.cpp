@@ -178,6 +178,8 @@ std::vector<double> ThermalStrain::strain(std::span<const double> temperature) c
   return result;
 }
 
+void ThermalStrain::stiffness_changed() { set_accepted(); }
+
 void ThermalStrain::set_accepted() {
   if (!expands()) return;
   accepted_strain_ = strain(start_);

@@ -32,6 +32,7 @@ class ThermalStrain final : public SolidEffect {
 
   void begin_step(const Step& step) override;
   std::span<const LameConstants> stiffness() const override;
+  void stiffness_changed() override;
   void add_loads(double t, const ElasticKernel& kernel, std::span<double> rhs) override;
   std::vector<double> pressure(double t) override;
   void accept_step() override;

@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
 
 #include "common/app/case_keys.hpp"
@@ -20,7 +19,6 @@
 #include "common/app/start_guard.hpp"
 #include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
-#include "common/base/own_file.hpp"
 #include "common/coupling/wait.hpp"
 #include "common/log/doubt.hpp"
 #include "common/log/log.hpp"
@@ -94,11 +92,7 @@ void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
         "another "
         "folder with --set simulation.output.folder=....",
         job.output_folder.string());
-  const std::filesystem::path log_file = job.output_folder / (job.name + ".log");
-  // A run from the start has a log of its own, one that goes on adds to it.
-  if (job.rank == 0 && command_line.restart_folder.empty())
-    std::ofstream(own_file(log_file), std::ios::trunc);
-  log::setup(job.name, job.rank, command_line.verbosity, log_file.string());
+  log::setup(job.name, job.rank, command_line.verbosity, (job.output_folder / (job.name + ".log")).string());
   job.restart_time = std::numeric_limits<double>::quiet_NaN();
   if (is_driver) job.simulation.keys = case_keys(*job.document, job.case_folder);
   if (!command_line.restart_folder.empty()) find_restart(job, command_line, is_driver);

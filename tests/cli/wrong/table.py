@@ -235,6 +235,9 @@ case.yaml:19:28: participants.solid.probes.tip.fields: there is no field 'stres'
     solid("time scheme of a static analysis", """
 case.yaml:9:5: participants.solid.time-scheme: a static analysis has no inertia to integrate in time; remove it.
 """, ("analysis: dynamic", "analysis: static\n    time-scheme: {type: bathe}")),
+    solid("volume strain of another gradient", """
+case.yaml:9:49: participants.solid.solution-method.volume-strain: it is of 'face-gradient: symmetric' with 'type: newton-krylov'; change these, or remove it.
+""", ("analysis: dynamic", "analysis: dynamic\n    solution-method: {face-gradient: corrected, volume-strain: cells}")),
     solid("initial velocity of a static analysis", """
 case.yaml:9:5: participants.solid.initial-velocity: it has an effect with 'analysis: dynamic' only; remove it.
 """, ("analysis: dynamic", "analysis: static\n    initial-velocity: [1, 0]")),

@@ -47,4 +47,12 @@ code, text, coefficients, energy = run("participants.fluid.time-step=10 ms")
 check("the neighbour, whose step is given, fails with --strict", code != 0, code)
 check("and says why", "what friction in cell" in text and "Leave 'time-step' out" in text)
 check("and is wrong by far", energy["viscous power"] > 10 * power, f"{energy['viscous power']:.3g} and {power:.3g} W")
+# Sound at the start; the limit falls with the square of the cells' size as the walls draw together.
+shrinking = [f"participants.fluid.{key}" for key in (
+    'motion={displacement: ["-0.55*x*sin(pi*t/4)^2", "-0.55*y*sin(pi*t/4)^2"]}', "boundaries.inner={type: body}",
+    "boundaries.outer={type: outlet, pressure: 0}", "time-step=1 ms")]
+for end, sound in (("0.5 s", True), ("1.5 s", False)):
+    code, text, _, _ = run(*shrinking, f"simulation.end-time={end}")
+    said = "what friction in cell" in text
+    check(f"cells that shrink until {end}: {'nothing' if sound else 'the given step'} is doubted", (code == 0) == sound and said != sound, text[-300:])
 sys.exit(1 if failed else 0)

@@ -141,5 +141,22 @@ TEST(VolumeStrain, a_varying_temperature_leaves_a_free_body_without_stress) {
     }
 }
 
+// The constants of a table come after the effects are made: the stress of what heat strains at the start had those without it.
+TEST(VolumeStrain, heat_strains_at_the_start_by_the_constants_of_tables) {
+  for (const Volume volume : {Volume::cells, Volume::faces}) {
+    SolidParameters p = with(volume, 2);
+    p.material = {1000, 2e9, 0.45};
+    p.material.heat.expansion = {"1e-4"};
+    p.material.heat.youngs_modulus = config::ExpressionText{"1e9"};
+    p.temperature = {"10"};
+    p.expansion.emplace().reference_temperature = 0;
+    p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+    const auto solid =
+        make_solid(make_box(BoxCells::quadrilaterals, {4, 4, 1}, Vec3::Zero(), Vec3(1, 1, 0)), p);
+    for (const Tensor3& s : solid->fields().cell_stress(solid->fields().point_displacement()))
+      EXPECT_NEAR(s(0, 0), -1e9 / (1 - 2 * 0.45) * 1e-4 * 10, 1) << int(volume);  // 3 K alpha dT
+  }
+}
+
 }  // namespace
 }  // namespace couplet::testing
