@@ -122,7 +122,8 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
   SolidParameters segregated;
   EXPECT_THAT(read(start + thesis + of, segregated), ::testing::IsEmpty());
   told(large + "solution-method: {type: segregated, face-gradient: symmetric}\n" + of, "updated-Lagrangian");
-  told(large + "solution-method: {type: segregated, volume-strain: cells}\n" + of, "it is of 'face-gradient: symmetric'");
+  told(large + "solution-method: {type: segregated, volume-strain: cells}\n" + of,
+       "it is of 'face-gradient: symmetric'");
   told(thesis + "energy-momentum: true\n" + of, "has no conserving stress");
   told(thesis + "output: {energies: true}\n" + of, "writes no energies");
   told(thesis + "materials: {a: {zones: [a], " + body + "}, b: {zones: [b], " + body + "}}\n",
