@@ -33,7 +33,7 @@ class FieldSeries:
 
     def coordinates(self, i):
         step = self.file["steps"][self.steps[i]]
-        return step["coordinates"][...] if "coordinates" in step else self.file["mesh/coordinates"][...]
+        return step["coordinates"][...] if "coordinates" in step else self.reference()
 
     def field(self, i, name):
         step = self.file["steps"][self.steps[i]]
@@ -60,12 +60,12 @@ class FieldSeries:
 
     def centres(self):
         """Means of the points of each cell in the undeformed mesh."""
-        points = self.file["mesh/coordinates"][...]
+        points = self.reference()
         return np.array([points[cell].mean(axis=0) for cell in self.cells])
 
     def volumes(self):
         """Areas (2-D) of the cells in the undeformed mesh; in 3-D those of hulls, which for planar faces are the volumes."""
-        points = self.file["mesh/coordinates"][...]
+        points = self.reference()
         if len(points[0]) == 2 or np.ptp(points[:, 2]) == 0:
             found = []
             for cell in self.cells:

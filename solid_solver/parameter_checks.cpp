@@ -41,9 +41,7 @@ void check_updated_lagrangian(config::Section& s, SolidParameters& p) {
             key);
   };
   refuse(
-      "solution-method",
-      p.method.face_gradient == Method::FaceGradient::symmetric ||
-          p.method.volume_strain == Method::VolumeStrain::cells,
+      "solution-method", p.method.face_gradient == Method::FaceGradient::symmetric,
       "'type: segregated' at finite strain is the thesis's updated-Lagrangian method on 'face-gradient: thesis' with "
       "the volume strain of the faces; the symmetric gradient goes with 'type: newton-krylov' (or 'auto')");
   refuse(

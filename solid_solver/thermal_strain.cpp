@@ -178,12 +178,14 @@ std::vector<double> ThermalStrain::strain(std::span<const double> temperature) c
   return result;
 }
 
-void ThermalStrain::stiffness_changed() { set_accepted(); }
-
 void ThermalStrain::set_accepted() {
   if (!expands()) return;
   accepted_strain_ = strain(start_);
-  if (by_cells()) accepted_stress_ = stress_of(accepted_strain_);
+  stiffness_changed();
+}
+
+void ThermalStrain::stiffness_changed() {
+  if (expands() && by_cells()) accepted_stress_ = stress_of(accepted_strain_);
 }
 
 std::vector<double> ThermalStrain::stress_of(const std::vector<double>& strain) const {

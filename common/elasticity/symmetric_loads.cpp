@@ -8,10 +8,10 @@ namespace couplet {
 template <int D>
 void SymmetricKernel<D>::spread_pressure(std::span<const double> pressure) {
   std::vector<double> shared(shared_mine_.size());
-  for (std::size_t i = 0; i < shared.size(); ++i) shared[i] = pressure[shared_mine_[i]];
-  // One volume strain a cell takes no part in the sharing of edges, nor does the pressure that acts on it.
-  if (edges_ && !rows_.volume_by_cells()) {
-    std::ranges::fill(shared, 0.0);
+  if (rows_.volume_by_cells()) {
+    // It takes no part in the sharing of edges, nor does the pressure that acts on it.
+    for (std::size_t i = 0; i < shared.size(); ++i) shared[i] = pressure[shared_mine_[i]];
+  } else if (edges_) {
     edges_->clear();
     for (std::size_t i = 0; i < shared_mine_.size(); ++i)
       for (const Index e : edges_->edges_of(i))
