@@ -281,8 +281,7 @@ def cavity_5000(job):
         found[n] = module.extrema(folder / "fluid")
     limit = {k: found[128][k] + (found[128][k] - found[96][k]) / ((128 / 96) ** 2 - 1) for k in ghia}
     off = {k: found[128][k] / limit[k] - 1 for k in ghia}
-    return ("cells at the walls about a tenth of those in the middle: "
-            + "; ".join(f"{k} {found[128][k]:.5f} ({100 * off[k]:+.2f} % of {limit[k]:.5f}, Ghia {g})" for k, g in ghia.items()),
+    return ("; ".join(f"{k} {found[128][k]:.5f} ({100 * off[k]:+.2f} % of {limit[k]:.5f}, Ghia {g})" for k, g in ghia.items()),
             all(abs(v) <= 0.01 for v in off.values()))
 
 
@@ -401,7 +400,8 @@ BARS = [
         ("tetrahedra with vertices moved by a third of an edge", "slivers", "for tetrahedra that no mesher optimised"))),
     Bar("backward step, Re 800, 48 cells over the height", "reported", behind_step(48, False), long=True),
     Bar("backward step, Re 800, 80 cells over the height", "within 1 % of 6.10, 4.85, 10.48 (Gartling)", behind_step(80, True), long=True),
-    Bar("cavity, Re 5000, 128^2 stretched", "extrema within 1 % of their own extrapolation", cavity_5000, long=True),
+    Bar("cavity, Re 5000, 128^2 stretched", "extrema within 1 % of their own extrapolation", cavity_5000, long=True,
+        but="cells at the walls about a tenth of those in the middle, chosen for this row; with the case's own quarter 1.64 % off"),
     *(Bar(f"speed: {what}", f">= {wanted} times", ratio(only, wanted), long=True, but=but) for what, only, wanted, but in (
         ("cavity 128^2 against icoFoam, one core", "cavity-2d", 13, ""), ("cavity 64^3 against icoFoam, one core", "cavity-3d", 5, ""),
         ("24 000 cells around a swinging cylinder against pimpleFoam, one core", "moving-cylinder", 8,
