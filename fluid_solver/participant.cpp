@@ -197,16 +197,21 @@ Exchange FluidParticipant<D>::solve(const Exchange& in) {
 }
 
 /// A step that is given is kept, also where it is too long for the implicit term on cells with few faces (StepSize). Looked at where
-/// it is the longest so far, and every few steps where the limit itself changes: cells that move, viscosity of eddies.
+/// it is the longest so far, and, where the limit itself changes (cells that move, viscosity of eddies), every few steps and at the
+/// end.
 template <int D>
-void FluidParticipant<D>::doubt_given_step() {
-  const double size = step_.dt / fluid_->statistics().sub_steps;
+void FluidParticipant<D>::see_given_step() {
   if (!fluid_->parameters().time_step || !fluid_->state().implicit) return;
-  const bool changes = fluid_->moving() || fluid_->parameters().turbulence.has_value();
-  const bool due = changes && ++steps_since_look_ >= steps_between_looks;
-  if (size <= longest_looked_at_ && !due) return;
-  longest_looked_at_ = std::max(longest_looked_at_, size);
-  steps_since_look_ = 0;
+  if (fluid_->moving() || fluid_->parameters().turbulence) ++steps_unseen_;
+  const double size = step_.dt / fluid_->statistics().sub_steps;
+  if (size <= longest_seen_ && steps_unseen_ < steps_between_looks) return;
+  longest_seen_ = std::max(longest_seen_, size);
+  doubt_given_step(size);
+}
+
+template <int D>
+void FluidParticipant<D>::doubt_given_step(double size) {
+  steps_unseen_ = 0;
   const StepLimiter by = fluid_->step_limiter();
   if (!by.friction || size <= far_above * by.limit || size / by.limit <= 2 * doubted_times_) return;
   doubted_times_ = size / by.limit;
@@ -261,7 +266,7 @@ StepReport FluidParticipant<D>::accept_step() {
   fluid_->accept();
   if (errors_) errors_->accepted(step_.dt);
   tell_sub_steps();
-  doubt_given_step();
+  see_given_step();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), fluid_->pressure().get(), step_.dt);
   return {.dt = step_.dt, .iterations = effort() - before, .energy = fluid_->state().ledger.energy};
@@ -334,6 +339,7 @@ std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
 
 template <int D>
 std::vector<std::string> FluidParticipant<D>::finish() {
+  if (steps_unseen_ > 0) doubt_given_step(step_.dt / fluid_->statistics().sub_steps);
   std::vector<std::string> sentences;
   if (statistics_ && !(statistics_->duration() > 0))
     sentences.push_back(

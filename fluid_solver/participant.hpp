@@ -71,7 +71,8 @@ class FluidParticipant final : public Participant, public EstimatesError {
   std::vector<Vec3> receive_points();
   Exchange forces() const;
   void tell_sub_steps();
-  void doubt_given_step();
+  void see_given_step();
+  void doubt_given_step(double size);
 
   Mesh mesh_;
   std::unique_ptr<Fluid<D>> fluid_;
@@ -91,9 +92,9 @@ class FluidParticipant final : public Participant, public EstimatesError {
   // Of the interface on a mesh that stands still: largest displacement over the height of the cell there.
   double displacement_ = 0, trial_displacement_ = 0;
   long steps_ = 0, renewed_steps_ = 0;
-  int told_sub_steps_ = 1;        // in the log
-  double longest_looked_at_ = 0;  // of given sub-steps [s]
-  int steps_since_look_ = 0;
+  int told_sub_steps_ = 1;     // in the log
+  double longest_seen_ = 0;    // of given sub-steps [s]
+  int steps_unseen_ = 0;       // whose limit may have changed
   double doubted_times_ = 0;   // the limit that such a one was when it was last doubted
   double largest_unseen_ = 0;  // share of the load, of the accepted steps
 };

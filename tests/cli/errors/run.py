@@ -71,8 +71,16 @@ def alone(folder):
                                      "simulation.time-step=0.005"], folder)
     check(True, "fluid, loosest tolerance")
     whole(folder)
+    worthless(folder)
     off(folder)
     young_front(folder)
+
+
+def worthless(folder):
+    """An estimated error as large as the solution is a doubt, a smaller one is not."""
+    for step, length, doubted in (("10", "200", True), ("0.5", "20", False)):
+        text = run("solid_solver", "vibrating-cantilever", [*beam(2, step), f"simulation.end-time={length}"], folder)
+        check(("as large as the solution itself" in text) == doubted, f"steps of {step} s: {'' if doubted else 'not '}doubted", text[-300:])
 
 
 def ranks(folder):

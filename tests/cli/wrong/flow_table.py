@@ -37,6 +37,12 @@ case.yaml:12:7: participants.fluid.boundaries.right.partner: this required key i
     fluid("component with a wrong unit", """
 case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 2 of the list: '0 Pa': the unit 'Pa' does not convert to m/s; expected m/s or a unit that converts to it.
 """, ("0 m/s]", "0 Pa]")),
+    fluid("parabola of a velocity that is given", """
+case.yaml:11:14: participants.fluid.boundaries.left.type: 'profile: parabolic' is that of 'mean-speed'; give 'mean-speed' in place of the other, or leave 'profile' out.
+""", (", velocity: [1 m/s, 0 m/s]", ", profile: parabolic, velocity: [1 m/s, 0 m/s]")),
+    fluid("moment about an axis in the plane", """
+[fluid 0] error: output.coefficients.a.axis: a plane scene turns about z, [0, 0, 1]; to turn the other way give the negative angle or speed.
+""", ("    boundaries:\n", "    output: {coefficients: {a: {patches: [top], speed: 1, area: 1, axis: [1, 0, 0]}}}\n    boundaries:\n"), **RUN),
     fluid("forces without a direction", """
 case.yaml:10:68: participants.fluid.output.coefficients.a.drag: a direction must not be zero.
 """, ("    boundaries:\n", "    output: {coefficients: {a: {patches: [top], speed: 1, area: 1, drag: [0, 0, 0]}}}\n    boundaries:\n")),
