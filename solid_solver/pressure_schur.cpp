@@ -13,8 +13,10 @@
 namespace couplet {
 namespace {
 
-// Scales of the elastic part by numerical experiment (Cook's membrane 8 to 64 a side, nu 1/3 to 0.4999).
-constexpr double elastic_of_gradients = 1.5, elastic_of_faces = 3;
+// Scales of the elastic part by numerical experiment (in the plane Cook's membrane 8 to 64 a side, in space the elliptic
+// plate; nu 1/3 to 0.4999).
+constexpr double elastic_of_gradients(int dim) { return dim == 2 ? 1.5 : 1; }
+constexpr double elastic_of_faces(int dim) { return dim == 2 ? 3 : 2; }
 // Of p of a cell beside its gradient times the cell's size, squared: constants have none.
 constexpr double of_values = 0.01;
 // Faces that may move give p more to do than those between cells.
@@ -88,7 +90,7 @@ void PressureSchur::by_gradients(const SolidProblem& problem, std::span<const do
   std::vector<std::vector<std::pair<Index, Vec3>>> gradient(n);  // V grad p of a cell
   for (Index c = 0; c < n; ++c) {
     const double value = of_values * volume[c] / size_squared(volume[c], mesh.dim);
-    const double here = elastic_of_gradients * rows.lame(c).mu / unit_ * value +
+    const double here = elastic_of_gradients(mesh.dim) * rows.lame(c).mu / unit_ * value +
                         (problem.inertia.empty() ? 0 : problem.inertia[c] / unit_);
     before.add(c, c, here);
     wide.add(c, c, value + here * unit_ / bulk(c));
@@ -99,7 +101,7 @@ void PressureSchur::by_gradients(const SolidProblem& problem, std::span<const do
     const Vec3& area = mesh.reference.face_area[f];
     const FaceLine line = face_line(mesh, mesh.reference, f);
     const double k = line.area * line.inverse_dn;
-    const double elastic = elastic_of_gradients * face_lame(mesh, rows, f).mu / unit_ * k;
+    const double elastic = elastic_of_gradients(mesh.dim) * face_lame(mesh, rows, f).mu / unit_ * k;
     if (p < n && q < n) {
       const auto [here, there] = pyramids(mesh, f);
       const double a = here / (here + there), softness = 2 * unit_ / (bulk(p) + bulk(q));
@@ -139,7 +141,7 @@ void PressureSchur::by_faces(const SolidProblem& problem, std::span<const double
     const Index p = mesh.owner[f], q = f < mesh.n_interior ? mesh.neighbour[f] : n;
     const auto [here, there] = pyramids(mesh, f);
     const double whole = here + there;
-    double weight = whole / mean * unit_ / (elastic_of_faces * face_lame(mesh, rows, f).mu);
+    double weight = whole / mean * unit_ / (elastic_of_faces(mesh.dim) * face_lame(mesh, rows, f).mu);
     if (f >= mesh.n_interior && rows.condition(f) == ElasticCondition::traction) weight *= free_face;
     const std::array<std::pair<Index, double>, 2> sides{{{p, here / whole}, {q, there / whole}}};
     for (const auto& [i, a] : sides)

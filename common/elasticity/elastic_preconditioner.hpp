@@ -43,6 +43,7 @@ class ElasticPreconditioner {
     Index owner, twin_owner;  // -1: not bonded, or the other cell is on another rank
   };
   void find_face_rows(double boundary_factor, std::span<const double> node_inertia);
+  void add_true_diagonal(std::span<const double> node_inertia);
   void smooth(std::span<const double> r, std::span<double> z);
   void smooth_symmetric(std::span<const double> r, std::span<double> z);
 

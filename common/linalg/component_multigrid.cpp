@@ -13,7 +13,7 @@ using Rows = ComponentMultigrid::Rows;
 constexpr Index largest_coarsest = 60;
 constexpr int most_levels = 12;
 // A neighbour is strong when |a_ij| is at least this part of the largest in its row or in the other's.
-constexpr float strong = 0.25F;
+constexpr float strong = 0.5F;
 // Damping of the prolongation smoother: 4/3 over the largest eigenvalue of D^-1 A, which is below 2.
 constexpr float omega = 0.66F;
 
@@ -73,7 +73,7 @@ void sort_rows(Rows& a) {
 
 }  // namespace
 
-ComponentMultigrid::ComponentMultigrid(Rows rows) {
+ComponentMultigrid::ComponentMultigrid(Rows rows, float coarse_factor) : coarse_factor_(coarse_factor) {
   add_level(std::move(rows));
   while (levels_.back().a.size() > largest_coarsest && n_levels() < most_levels) {
     Level& fine = levels_.back();
@@ -231,13 +231,14 @@ void ComponentMultigrid::smooth_forward(Level& level) {
 }
 
 /// P^T (b - A x) = - P^T U x after smooth_forward().
-void ComponentMultigrid::restrict_residual(const Level& fine, std::vector<Lanes>& coarse) {
+void ComponentMultigrid::restrict_residual(const Level& fine, std::vector<Lanes>& coarse) const {
   const Index *offset = fine.a.offset.data(), *middle = fine.middle.data(), *index = fine.a.index.data();
   const Lanes *value = fine.a.value.data(), *x = fine.x.data();
   std::fill(coarse.begin(), coarse.end(), Lanes{});
   for (Index i = 0, n = fine.a.size(); i < n; ++i) {
     Lanes residual{};
     for (Index e = middle[i]; e < offset[i + 1]; ++e) residual -= value[e] * x[index[e]];
+    residual *= coarse_factor_;
     for (Index k = fine.p_offset[i]; k < fine.p_offset[i + 1]; ++k)
       coarse[fine.p_index[k]] += fine.p_value[k] * residual;
   }

@@ -28,7 +28,8 @@ class ComponentMultigrid {
     Index size() const { return static_cast<Index>(offset.size()) - 1; }
   };
 
-  explicit ComponentMultigrid(Rows rows);
+  /// `coarse_factor`: of the correction by each coarser level; 1 where the rows are those of the operator itself.
+  explicit ComponentMultigrid(Rows rows, float coarse_factor = 1);
 
   /// x = V(b) with `components` values a row.
   void apply(std::span<const double> b, std::span<double> x, int components);
@@ -49,10 +50,11 @@ class ComponentMultigrid {
   void factor_coarsest();
   void solve_coarsest(Level& level) const;
   static void smooth_forward(Level& level);
-  static void restrict_residual(const Level& fine, std::vector<Lanes>& coarse);
+  void restrict_residual(const Level& fine, std::vector<Lanes>& coarse) const;
   static void smooth_backward(Level& level);
   void cycle();
 
+  float coarse_factor_;
   std::vector<Level> levels_;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one a component
 };
