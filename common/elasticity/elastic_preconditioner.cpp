@@ -19,7 +19,7 @@ using Lanes = ComponentMultigrid::Lanes;
 constexpr float of_smooth = 1.3F;
 constexpr double of_cells = 0.8, of_faces = 1;
 
-/// Two-point rows of the owned cells; boundary and partition faces stand on the diagonal only.
+/// Two-point rows of the owned cells; boundary faces, and bonds to other ranks, stand on the diagonal only.
 class CompactRows {
  public:
   CompactRows(const Mesh& mesh, const ElasticOperator& rows, double boundary_factor, VolumeStrain left_out)
@@ -95,8 +95,7 @@ Lanes CompactRows::boundary_diagonal(Index f) const {
 
 template <class Take>
 void CompactRows::visit_couplings(const Take& take) const {
-  for (Index f = 0; f < mesh_.n_interior; ++f)
-    if (owned(mesh_.owner[f]) && owned(mesh_.neighbour[f])) take(mesh_.owner[f], mesh_.neighbour[f], f);
+  for (Index f = 0; f < mesh_.n_interior; ++f) take(mesh_.owner[f], mesh_.neighbour[f], f);
   if (mesh_.twin.empty()) return;
   for (const Index f : rows_.unknown_faces()) {
     if (rows_.condition(f) != ElasticCondition::bonded) continue;
@@ -110,8 +109,8 @@ ComponentMultigrid::Rows CompactRows::make(std::span<const double> inertia) {
   ComponentMultigrid::Rows result;
   result.offset.assign(n + 1, 0);
   visit_couplings([&](Index a, Index b, Index) {
-    ++result.offset[a + 1];
-    ++result.offset[b + 1];
+    if (owned(a)) ++result.offset[a + 1];
+    if (owned(b)) ++result.offset[b + 1];
   });
   for (Index c = 0; c < n; ++c) result.offset[c + 1] += result.offset[c];
   result.index.resize(result.offset.back());
@@ -119,10 +118,11 @@ ComponentMultigrid::Rows CompactRows::make(std::span<const double> inertia) {
   std::vector<Index> next(result.offset.begin(), result.offset.end() - 1);
   visit_couplings([&](Index a, Index b, Index f) {
     const Lanes k = f < mesh_.n_interior ? coefficient(f) : bond(f);
-    result.index[next[a]] = b;
-    result.value[next[a]++] = -k;
-    result.index[next[b]] = a;
-    result.value[next[b]++] = -k;
+    for (const auto& [row, column] : {std::pair{a, b}, {b, a}}) {
+      if (!owned(row)) continue;
+      result.index[next[row]] = column;
+      result.value[next[row]++] = -k;
+    }
   });
   Lanes unused{};
   for (int c = mesh_.dim; c < ComponentMultigrid::lanes; ++c) unused[c] = 1;
@@ -153,7 +153,8 @@ ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOper
       CompactRows(mesh, rows, boundary_factor, left_out_)
           .make(options.node_inertia.empty() ? inertia
                                              : options.node_inertia.first(std::size_t(mesh.cells.n_owned())));
-  multigrid_ = std::make_unique<ComponentMultigrid>(std::move(compact), is_symmetric_ ? of_smooth : 1);
+  multigrid_ = std::make_unique<ComponentMultigrid>(
+      std::move(compact), ComponentMultigrid::Options{is_symmetric_ ? of_smooth : 1, &mesh.cells, mesh.comm});
   find_face_rows(boundary_factor, options.node_inertia);
   if (is_symmetric_) add_true_diagonal(options.node_inertia);
   if (options.n_aggregates > 0 && !is_symmetric_)

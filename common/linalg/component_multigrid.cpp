@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+
+#include "common/parallel/collective.hpp"
 
 namespace couplet {
 namespace {
@@ -12,6 +15,8 @@ using Rows = ComponentMultigrid::Rows;
 
 constexpr Index largest_coarsest = 60;
 constexpr int most_levels = 12;
+// Rows of all ranks that are factored where they could not be made fewer, which are those of many ranks.
+constexpr GlobalIndex largest_dense = 1000;
 // A neighbour is strong when |a_ij| is at least this part of the largest in its row or in the other's.
 constexpr float strong = 0.5F;
 // Damping of the prolongation smoother: 4/3 over the largest eigenvalue of D^-1 A, which is below 2.
@@ -19,7 +24,7 @@ constexpr float omega = 0.66F;
 
 float total(const Lanes& v) { return v[0] + v[1] + v[2] + v[3]; }
 
-/// For each entry whether it is strong.
+/// For each entry whether it is strong; those of other ranks never are.
 std::vector<std::uint8_t> strong_entries(const Rows& a) {
   std::vector<float> largest(a.size(), 0);
   for (Index i = 0; i < a.size(); ++i)
@@ -28,7 +33,8 @@ std::vector<std::uint8_t> strong_entries(const Rows& a) {
   std::vector<std::uint8_t> result(a.index.size());
   for (Index i = 0; i < a.size(); ++i)
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
-      result[e] = -total(a.value[e]) >= strong * std::min(largest[i], largest[a.index[e]]);
+      result[e] =
+          a.index[e] < a.size() && -total(a.value[e]) >= strong * std::min(largest[i], largest[a.index[e]]);
   return result;
 }
 
@@ -52,7 +58,7 @@ std::vector<Index> aggregate(const Rows& a, const std::vector<std::uint8_t>& is_
     if (of[i] >= 0) continue;
     float best = 0;
     for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
-      if (roots[a.index[e]] >= 0 && -total(a.value[e]) > best) {
+      if (a.index[e] < a.size() && roots[a.index[e]] >= 0 && -total(a.value[e]) > best) {
         best = -total(a.value[e]);
         of[i] = roots[a.index[e]];
       }
@@ -73,21 +79,39 @@ void sort_rows(Rows& a) {
 
 }  // namespace
 
-ComponentMultigrid::ComponentMultigrid(Rows rows, float coarse_factor) : coarse_factor_(coarse_factor) {
-  add_level(std::move(rows));
-  while (levels_.back().a.size() > largest_coarsest && n_levels() < most_levels) {
-    Level& fine = levels_.back();
-    const std::vector<std::uint8_t> is_strong = strong_entries(fine.a);
-    Index n_coarse = 0;
-    const std::vector<Index> of = aggregate(fine.a, is_strong, n_coarse);
-    if (n_coarse * 4 > fine.a.size() * 3) break;
-    prolong(fine, of, is_strong);
-    Rows coarse = galerkin(fine, n_coarse);
-    add_level(std::move(coarse));
+ComponentMultigrid::ComponentMultigrid(Rows rows, const Options& options)
+    : coarse_factor_(options.coarse_factor),
+      comm_(options.map && comm_size(options.comm) > 1 ? options.comm : MPI_COMM_SELF) {
+  add_level(std::move(rows), comm_ == MPI_COMM_SELF ? nullptr : options.map, nullptr);
+  while (n_levels() < most_levels && coarsen()) {
   }
   factor_coarsest();
   // What the sweeps use is the inverse.
   for (Level& level : levels_) level.a.diagonal = std::vector<Lanes>();
+}
+
+/// Of P: the rows of the ghosts, whose columns are rows of other ranks on the coarser level, ghosts there.
+struct ComponentMultigrid::GhostRows {
+  std::vector<Index> offset{0}, index;
+  std::vector<Lanes> value;
+  std::unique_ptr<IndexMap> map;  // of the coarser level
+};
+
+/// Adds a level; false where the last is coarse enough, or cannot be made coarser.
+bool ComponentMultigrid::coarsen() {
+  Level& fine = levels_.back();
+  const GlobalIndex rows = sum(comm_, GlobalIndex(fine.a.size()));
+  if (rows <= largest_coarsest) return false;
+  const std::vector<std::uint8_t> is_strong = strong_entries(fine.a);
+  Index n_coarse = 0;
+  const std::vector<Index> of = aggregate(fine.a, is_strong, n_coarse);
+  if (sum(comm_, GlobalIndex(n_coarse)) * 4 > rows * 3) return false;
+  prolong(fine, of, is_strong);
+  GhostRows ghosts = rows_of_ghosts(fine, n_coarse);
+  Rows coarse = galerkin(fine, n_coarse, ghosts);
+  const IndexMap* map = ghosts.map.get();
+  add_level(std::move(coarse), map, std::move(ghosts.map));
+  return true;
 }
 
 // P = (I - omega D^-1 A) P_0, weak neighbours lumped on the diagonal of A so that constants stay constants.
@@ -120,8 +144,61 @@ void ComponentMultigrid::prolong(Level& fine, const std::vector<Index>& of,
   fine.p_value.shrink_to_fit();
 }
 
+ComponentMultigrid::GhostRows ComponentMultigrid::rows_of_ghosts(const Level& fine, Index n_coarse) const {
+  GhostRows ghosts;
+  if (!fine.map) return ghosts;
+  struct Entry {
+    GlobalIndex column;
+    float value[lanes];
+  };
+  const Index n = fine.a.size(), n_local = fine.map->n_local();
+  const GlobalIndex first = exclusive_scan(comm_, n_coarse);
+  Index most = 0;
+  for (Index i = 0; i < n; ++i) most = std::max(most, fine.p_offset[i + 1] - fine.p_offset[i]);
+  most = static_cast<Index>(max(comm_, double(most)));
+  std::vector<std::vector<Entry>> of_ghost(std::size_t(n_local - n));
+  // One entry of all rows at a time, which takes the least room.
+  std::vector<Entry> entries(n_local);
+  for (Index k = 0; k < most; ++k) {
+    for (Index i = 0; i < n; ++i) {
+      entries[i] = {-1, {}};
+      const Index at = fine.p_offset[i] + k;
+      if (at >= fine.p_offset[i + 1]) continue;
+      entries[i].column = first + fine.p_index[at];
+      for (int l = 0; l < lanes; ++l) entries[i].value[l] = fine.p_value[at][l];
+    }
+    fine.map->update_ghosts(std::as_writable_bytes(std::span(entries)), sizeof(Entry));
+    for (Index i = n; i < n_local; ++i)
+      if (entries[i].column >= 0) of_ghost[i - n].push_back(entries[i]);
+  }
+  std::vector<GlobalIndex> columns;
+  for (const auto& row : of_ghost)
+    for (const Entry& e : row) columns.push_back(e.column);
+  std::ranges::sort(columns);
+  columns.erase(std::ranges::unique(columns).begin(), columns.end());
+  for (const auto& row : of_ghost) {
+    for (const Entry& e : row) {
+      const auto place = std::ranges::lower_bound(columns, e.column) - columns.begin();
+      ghosts.index.push_back(n_coarse + static_cast<Index>(place));
+      ghosts.value.push_back(Lanes{e.value[0], e.value[1], e.value[2], e.value[3]});
+    }
+    ghosts.offset.push_back(static_cast<Index>(ghosts.index.size()));
+  }
+  const std::vector<GlobalIndex> firsts = all_gather(comm_, std::vector<GlobalIndex>{first});
+  std::vector<int> owner;
+  std::vector<Index> there;
+  for (const GlobalIndex c : columns) {
+    // The last rank that begins at or before it: those without rows begin where the next does.
+    owner.push_back(static_cast<int>(std::ranges::upper_bound(firsts, c) - firsts.begin()) - 1);
+    there.push_back(static_cast<Index>(c - firsts[owner.back()]));
+  }
+  ghosts.map = std::make_unique<IndexMap>(comm_, n_coarse, owner, there);
+  return ghosts;
+}
+
 // P^T A P, one coarse row after the other.
-ComponentMultigrid::Rows ComponentMultigrid::galerkin(const Level& fine, Index n_coarse) {
+ComponentMultigrid::Rows ComponentMultigrid::galerkin(const Level& fine, Index n_coarse,
+                                                      const GhostRows& ghosts) {
   const Rows& a = fine.a;
   std::vector<Index> offset(n_coarse + 1, 0);
   for (const Index c : fine.p_index) ++offset[c + 1];
@@ -134,19 +211,26 @@ ComponentMultigrid::Rows ComponentMultigrid::galerkin(const Level& fine, Index n
       entry[at] = k;
     }
   Rows coarse;
-  std::vector<Index> place(n_coarse, -1);
+  std::vector<Index> place(ghosts.map ? ghosts.map->n_local() : n_coarse, -1);
   std::vector<std::pair<Index, Lanes>> sums;
   for (Index c = 0; c < n_coarse; ++c) {
     sums.clear();
-    const auto spread = [&](Index j, const Lanes& value) {
-      for (Index k = fine.p_offset[j]; k < fine.p_offset[j + 1]; ++k) {
-        const Index to = fine.p_index[k];
+    const auto spread_along = [&](const std::vector<Index>& p_offset, const std::vector<Index>& p_index,
+                                  const std::vector<Lanes>& p_value, Index j, const Lanes& value) {
+      for (Index k = p_offset[j]; k < p_offset[j + 1]; ++k) {
+        const Index to = p_index[k];
         if (place[to] < 0) {
           place[to] = static_cast<Index>(sums.size());
           sums.push_back({to, Lanes{}});
         }
-        sums[place[to]].second += value * fine.p_value[k];
+        sums[place[to]].second += value * p_value[k];
       }
+    };
+    const auto spread = [&](Index j, const Lanes& value) {
+      if (j < a.size())
+        spread_along(fine.p_offset, fine.p_index, fine.p_value, j, value);
+      else
+        spread_along(ghosts.offset, ghosts.index, ghosts.value, j - a.size(), value);
     };
     for (Index t = offset[c]; t < offset[c + 1]; ++t) {
       const Index i = row[t];
@@ -173,9 +257,11 @@ ComponentMultigrid::Rows ComponentMultigrid::galerkin(const Level& fine, Index n
   return coarse;
 }
 
-void ComponentMultigrid::add_level(Rows rows) {
+void ComponentMultigrid::add_level(Rows rows, const IndexMap* map, std::unique_ptr<IndexMap> own) {
   Level level;
   level.a = std::move(rows);
+  level.map = map;
+  level.own_map = std::move(own);
   const Index n = level.a.size();
   sort_rows(level.a);
   level.inverse_diagonal.resize(n);
@@ -186,20 +272,38 @@ void ComponentMultigrid::add_level(Rows rows) {
                last = level.a.index.begin() + level.a.offset[i + 1];
     level.middle[i] = static_cast<Index>(std::lower_bound(first, last, i) - level.a.index.begin());
   }
-  level.x.assign(n, Lanes{});
-  level.b = level.x;
+  level.b.assign(n, Lanes{});
+  level.x.assign(map ? map->n_local() : n, Lanes{});
   levels_.push_back(std::move(level));
 }
 
+void ComponentMultigrid::Level::update_ghosts() {
+  if (map) map->update_ghosts(std::as_writable_bytes(std::span(x)), sizeof(Lanes));
+}
+
 void ComponentMultigrid::factor_coarsest() {
-  const Rows& a = levels_.back().a;
-  if (a.size() > 4 * largest_coarsest) return;  // could not be made smaller: smoothing must do
+  const Level& level = levels_.back();
+  const Rows& a = level.a;
+  const GlobalIndex n = sum(comm_, GlobalIndex(a.size()));
+  if (n > largest_dense) return;  // could not be made smaller: smoothing must do
+  first_coarsest_ = static_cast<Index>(exclusive_scan(comm_, a.size()));
+  struct Entry {
+    Index row, column;
+    float value[lanes];
+  };
+  std::vector<Entry> entries;
+  const auto add = [&](Index i, GlobalIndex column, const Lanes& v) {
+    entries.push_back({first_coarsest_ + i, static_cast<Index>(column), {v[0], v[1], v[2], v[3]}});
+  };
+  for (Index i = 0; i < a.size(); ++i) {
+    add(i, first_coarsest_ + i, a.diagonal[i] * (1 + 1e-5F));  // a pure Neumann problem is singular
+    for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e)
+      add(i, level.map ? level.map->global(a.index[e]) : a.index[e], a.value[e]);
+  }
+  entries = all_gather(comm_, entries);
   for (int l = 0; l < lanes; ++l) {
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(a.size(), a.size());
-    for (Index i = 0; i < a.size(); ++i) {
-      dense(i, i) = a.diagonal[i][l] * (1 + 1e-5);  // a pure Neumann problem is singular
-      for (Index e = a.offset[i]; e < a.offset[i + 1]; ++e) dense(i, a.index[e]) = a.value[e][l];
-    }
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
+    for (const Entry& e : entries) dense(e.row, e.column) = e.value[l];
     coarsest_.emplace_back(dense);
   }
 }
@@ -207,14 +311,16 @@ void ComponentMultigrid::factor_coarsest() {
 void ComponentMultigrid::solve_coarsest(Level& level) const {
   if (coarsest_.empty()) {
     smooth_forward(level);
+    level.update_ghosts();
     smooth_backward(level);
     return;
   }
-  Eigen::VectorXd b(level.a.size());
+  const std::vector<Lanes> right = comm_ == MPI_COMM_SELF ? level.b : all_gather(comm_, level.b);
+  Eigen::VectorXd b(std::ssize(right));
   for (int l = 0; l < lanes; ++l) {
-    for (Index i = 0; i < level.a.size(); ++i) b[i] = level.b[i][l];
+    for (std::size_t i = 0; i < right.size(); ++i) b[Index(i)] = right[i][l];
     b = coarsest_[l].solve(b).eval();
-    for (Index i = 0; i < level.a.size(); ++i) level.x[i][l] = static_cast<float>(b[i]);
+    for (Index i = 0; i < level.a.size(); ++i) level.x[i][l] = static_cast<float>(b[first_coarsest_ + i]);
   }
 }
 
@@ -260,6 +366,7 @@ void ComponentMultigrid::cycle() {
   const std::size_t last = levels_.size() - 1;
   for (std::size_t l = 0; l < last; ++l) {
     smooth_forward(levels_[l]);
+    levels_[l].update_ghosts();
     restrict_residual(levels_[l], levels_[l + 1].b);
   }
   solve_coarsest(levels_[last]);
@@ -268,6 +375,7 @@ void ComponentMultigrid::cycle() {
     for (Index i = 0; i < fine.a.size(); ++i)
       for (Index k = fine.p_offset[i]; k < fine.p_offset[i + 1]; ++k)
         fine.x[i] += fine.p_value[k] * coarse.x[fine.p_index[k]];
+    fine.update_ghosts();
     smooth_backward(fine);
   }
 }
@@ -277,6 +385,7 @@ void ComponentMultigrid::apply(std::span<const double> b, std::span<double> x, i
   // Single precision holds the shape of b, its size goes around it.
   double largest = 0;
   for (Index i = 0; i < finest.a.size() * components; ++i) largest = std::max(largest, std::abs(b[i]));
+  if (comm_ != MPI_COMM_SELF) largest = max(comm_, largest);
   const double scale = largest > 0 ? 1 / largest : 0;
   for (Index i = 0; i < finest.a.size(); ++i) {
     Lanes value{};

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <mpi.h>
 #include <Eigen/Cholesky>
+
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/base/types.hpp"
+#include "common/parallel/index_map.hpp"
 
 namespace couplet {
 
@@ -14,13 +19,16 @@ namespace couplet {
 /// a vector field), all of them at once: a preconditioner. Single precision, four components in one register:
 /// a cycle moves a fifth of what four separate hierarchies in double precision would.
 ///
-/// Each rank has its own rows (couplings to other ranks are left out: block Jacobi).
+/// With other ranks: aggregates and Gauss-Seidel sweeps are each rank's own, residuals and Galerkin products know the
+/// couplings between them, and the coarsest level is gathered, so that a cycle is hardly weaker on many ranks than on one.
+/// Two messages a level.
 class ComponentMultigrid {
  public:
   static constexpr int lanes = 4;
   using Lanes [[gnu::vector_size(16)]] = float;
 
-  /// Symmetric rows without their diagonals: neighbours `index`, `value` = a_ij <= 0.
+  /// Symmetric rows without their diagonals: neighbours `index`, `value` = a_ij <= 0. Neighbours on other ranks are the
+  /// ghosts of Options::map.
   struct Rows {
     std::vector<Index> offset{0}, index;
     std::vector<Lanes> value;
@@ -28,25 +36,38 @@ class ComponentMultigrid {
     Index size() const { return static_cast<Index>(offset.size()) - 1; }
   };
 
-  /// `coarse_factor`: of the correction by each coarser level; 1 where the rows are those of the operator itself.
-  explicit ComponentMultigrid(Rows rows, float coarse_factor = 1);
+  struct Options {
+    /// Of the correction by each coarser level; 1 where the rows are those of the operator itself.
+    float coarse_factor = 1;
+    const IndexMap* map = nullptr;  ///< of the rows, by reference; none: no rank knows of another
+    MPI_Comm comm = MPI_COMM_SELF;  ///< of the map
+  };
+  /// Collective over the ranks of the map.
+  explicit ComponentMultigrid(Rows rows) : ComponentMultigrid(std::move(rows), Options{}) {}
+  ComponentMultigrid(Rows rows, const Options& options);
 
-  /// x = V(b) with `components` values a row.
+  /// x = V(b) with `components` values a row. Collective.
   void apply(std::span<const double> b, std::span<double> x, int components);
   int n_levels() const { return static_cast<int>(levels_.size()); }
 
  private:
   struct Level {
     Rows a;
-    std::vector<Index> middle;  // of each row: its first neighbour with a larger number
+    const IndexMap* map = nullptr;      // of x; none: no ghosts
+    std::unique_ptr<IndexMap> own_map;  // of the coarser levels
+    std::vector<Index> middle;  // of each row: its first neighbour with a larger number, ghosts among them
     std::vector<Lanes> inverse_diagonal;
     std::vector<Index> p_offset, p_index;  // prolongation to this level from the next
     std::vector<Lanes> p_value;
-    std::vector<Lanes> x, b;
+    std::vector<Lanes> x, b;  // x: of ghosts, too
+    void update_ghosts();
   };
+  struct GhostRows;
   static void prolong(Level& fine, const std::vector<Index>& of, const std::vector<std::uint8_t>& is_strong);
-  static Rows galerkin(const Level& fine, Index n_coarse);
-  void add_level(Rows rows);
+  GhostRows rows_of_ghosts(const Level& fine, Index n_coarse) const;
+  static Rows galerkin(const Level& fine, Index n_coarse, const GhostRows& ghosts);
+  bool coarsen();
+  void add_level(Rows rows, const IndexMap* map, std::unique_ptr<IndexMap> own);
   void factor_coarsest();
   void solve_coarsest(Level& level) const;
   static void smooth_forward(Level& level);
@@ -55,8 +76,10 @@ class ComponentMultigrid {
   void cycle();
 
   float coarse_factor_;
+  MPI_Comm comm_;
   std::vector<Level> levels_;
-  std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one a component
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> coarsest_;  // one a component, of the rows of all ranks
+  Index first_coarsest_ = 0;                           // of this rank among them
 };
 
 }  // namespace couplet

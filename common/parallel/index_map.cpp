@@ -32,8 +32,10 @@ struct IndexMap::Exchange {
     }
     for (std::size_t p = 0; p < from.size(); ++p) {
       out[p].reserve(from[p].entries.size() * components);
-      for (const Index e : from[p].entries)
-        for (int c = 0; c < components; ++c) out[p].push_back(values[std::size_t(e) * components + c]);
+      for (const Index e : from[p].entries) {
+        const auto entry = values.subspan(std::size_t(e) * components, components);
+        out[p].insert(out[p].end(), entry.begin(), entry.end());
+      }
       MPI_Isend(out[p].data(), static_cast<int>(out[p].size()), type, from[p].rank, tag, comm,
                 &requests.emplace_back());
     }
@@ -82,6 +84,13 @@ void IndexMap::update_ghosts(std::span<GlobalIndex> values) const {
   if (!exchange_) return;
   exchange_->run<GlobalIndex>(exchange_->owned_for, exchange_->ghosts_of, values, 1, MPI_INT64_T,
                               [&](std::size_t i, GlobalIndex v) { values[i] = v; });
+}
+
+void IndexMap::update_ghosts(std::span<std::byte> values, std::size_t size) const {
+  assert(values.size() == std::size_t(n_local_) * size);
+  if (!exchange_) return;
+  exchange_->run<std::byte>(exchange_->owned_for, exchange_->ghosts_of, values, static_cast<int>(size),
+                            MPI_BYTE, [&](std::size_t i, std::byte v) { values[i] = v; });
 }
 
 void IndexMap::add_to_owners(std::span<double> values, int components) const {

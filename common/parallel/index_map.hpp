@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
@@ -36,6 +37,8 @@ class IndexMap {
   /// Collective.
   void update_ghosts(std::span<double> values, int components = 1) const;
   void update_ghosts(std::span<GlobalIndex> values) const;
+  /// The same of anything that may be copied byte by byte, `size` bytes an entry.
+  void update_ghosts(std::span<std::byte> values, std::size_t size) const;
   /// Adds the ghosts' values into their owners (and leaves the ghosts as they are). Collective.
   void add_to_owners(std::span<double> values, int components = 1) const;
 
