@@ -19,6 +19,9 @@ constexpr GlobalIndex most_aggregates = 160;
 // New factors cost as much as some dozens of iterations; a tangent that has changed much needs them.
 constexpr int most_with_old_factors = 12, most_before_new_factors = 60;
 
+// Factors in space need some 50 kB a cell.
+constexpr GlobalIndex most_to_factor = 20000;
+
 /// The rotation of F = R U by Higham's iteration; I where F is inside out.
 Tensor3 rotation_of(const Tensor3& f) {
   if (!(f.determinant() > 1e-6)) return Tensor3::Identity();
@@ -157,7 +160,17 @@ SolveStatistics TangentSolver::solve(std::span<const double> r, std::span<double
     // Not positive away from equilibrium, perhaps: what does not need it.
     std::ranges::fill(du, 0.0);
     options.is_symmetric = false;
+  }
+  try {
     return counted(r, du, options);
+  } catch (const SolveFailure&) {
+    // A cycle made for a positive operator may be no help to one with negative eigenvalues: factors of the tangent itself.
+    if (factors_ || mesh_.cells.n_global() > most_to_factor) throw;
+    std::ranges::fill(du, 0.0);
+    make_factors();
+    const SolveStatistics statistics = counted(r, du, options);
+    factors_.reset();
+    return statistics;
   }
 }
 

@@ -17,7 +17,7 @@ using Lanes = ComponentMultigrid::Lanes;
 // parts of the diagonal of K added. To 1e-8: from 88 iterations to 47 on the elliptic plate of 32x48x24 hexahedra, from
 // 350 to 133 on a porous body of 115 500 tetrahedra, from 135 to 69 on Cook's membrane of 64x64.
 constexpr float of_smooth = 1.3F;
-constexpr double of_cells = 0.8, of_faces = 1;
+constexpr double of_cells = 0.8, of_faces = 0.85;
 
 /// Two-point rows of the owned cells; boundary faces, and bonds to other ranks, stand on the diagonal only.
 class CompactRows {
