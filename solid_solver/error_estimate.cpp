@@ -179,7 +179,7 @@ ErrorParts SolidErrorEstimate::parts() const {
     parts.mesh = finite_mesh_error();
     return parts;
   }
-  const StrainAudit audit = judge_.audit_strain(fields_.point_displacement(), true);
+  const StrainAudit audit = judge_.compared();
   parts.mesh = std::max(audit.mismatch(), audit.gradient_difference * audit.gradient_difference);
   parts.mesh = std::max(parts.mesh, audit.inner_variation);
   if (!(audit.strain_energy > 0)) parts.mesh = ErrorParts::unknown;

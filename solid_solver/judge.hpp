@@ -23,6 +23,8 @@ class SolidJudge final {
 
   /// Work against strain energy of the accepted state, and, where asked for, one face gradient against another.
   StrainAudit audit_strain(std::span<const double> points, bool compare_gradients) const;
+  /// The same of the accepted state with two gradients: that of look() where it has just compared them.
+  StrainAudit compared() const;
   /// The last one of the run; none before the first.
   const std::optional<StrainAudit>& last_audit() const { return audit_; }
   const EnergyAudit& energy_audit() const { return energy_audit_; }
@@ -52,7 +54,8 @@ class SolidJudge final {
   const SolidFields& fields_;
   const Mesh& mesh_;
   double largest_gradient_ = 0, inertia_over_load_ = 0;
-  std::optional<StrainAudit> audit_;
+  std::optional<StrainAudit> audit_, latest_;
+  int steps_of_latest_ = -1;
   EnergyAudit energy_audit_;
   std::optional<LargeStrainEstimate> large_strain_;  // of the last step
   bool strain_doubted_ = false, energy_doubted_ = false;
