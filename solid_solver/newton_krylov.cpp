@@ -27,7 +27,7 @@ constexpr GlobalIndex fewest_cells = 4;
 constexpr double slender = 12;
 // The same of the symmetric operator: from here on, or from the first where there are so many cells.
 constexpr double very_slender = 60;
-constexpr GlobalIndex many_cells = 20000;
+constexpr GlobalIndex many_cells = 4000;
 // Inertia over the stiffness of a cell's faces from which no motion is slow.
 constexpr double heavy = 0.03;
 // Residual over right-hand side that double precision still gives.
@@ -144,10 +144,9 @@ void NewtonKrylov::choose_multigrid(const MethodParameters&) {
                         options.between ? " after " : " and ", multigrid_->coarse_space()->n_aggregates());
 }
 
-/// What bends a slender body varies too slowly for components by themselves: a beam 10:1 of 160x16x16 cells took 101
-/// iterations and 1.5 s of processor time with them, 234 and 2.6 s without, and one 100:1 of 400x4x4 cubes took 513, where
-/// without them 2000 were too few. A plate of 37 000 cells gained a quarter of its iterations and lost a fifth of its time,
-/// one of 295 000 had no gain at all.
+/// What bends a slender body varies too slowly for components by themselves: a beam 10:1 of 80x8x8 cells takes 53
+/// iterations with them and 143 without, one of 160x16x16 89 and 169, one 100:1 of 400x4x4 cubes 515 and 1945 (to 1e-10).
+/// A plate of 4600 cells gains six of its 46 iterations and no time; one of 295 000 takes 71 for 49.
 void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia, double length) {
   const Mesh& mesh = problem_.mesh;
   // Half as long as thick, where the cells are fine enough for that.
