@@ -94,6 +94,7 @@ void Sum::add_squares(double volume, const LameConstants& lame) {
 SymmetricDiagonal Sum::finish() {
   mesh_.cells.add_to_owners(cells_, diagonal_size);
   mesh_.boundary.add_to_owners(boundary_, block_size);
+  mesh_.boundary.update_ghosts(boundary_, block_size);  // the other sides of bonded faces
   SymmetricDiagonal result;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
     for (int a = 0; a < mesh_.dim; ++a) result.cells.push_back(cells_[std::size_t(c) * diagonal_size + a]);
