@@ -146,6 +146,7 @@ void SolidJudge::save(CheckpointWriter& file) const {
 }
 
 void SolidJudge::load(CheckpointReader& file) {
+  latest_.reset();
   energy_audit_.scale = file.read_scalar("audit-scale");
   largest_gradient_ = file.read_scalar("largest-gradient");
   inertia_over_load_ = file.read_scalar("inertia-over-load");

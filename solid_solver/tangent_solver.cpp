@@ -166,11 +166,26 @@ SolveStatistics TangentSolver::solve(std::span<const double> r, std::span<double
   } catch (const SolveFailure&) {
     // A cycle made for a positive operator may be no help to one with negative eigenvalues: factors of the tangent itself.
     if (factors_ || mesh_.cells.n_global() > most_to_factor) throw;
-    std::ranges::fill(du, 0.0);
+    return solve_by_own_factors(r, du, options);
+  }
+}
+
+/// Factors of this tangent alone: none is left for another, whatever comes of it.
+SolveStatistics TangentSolver::solve_by_own_factors(std::span<const double> r, std::span<double> du,
+                                                    const KrylovOptions& options) {
+  const auto forget = [this] {
+    factors_.reset();
+    matrix_.reset();
+  };
+  std::ranges::fill(du, 0.0);
+  try {
     make_factors();
     const SolveStatistics statistics = counted(r, du, options);
-    factors_.reset();
+    forget();
     return statistics;
+  } catch (...) {
+    forget();
+    throw;
   }
 }
 

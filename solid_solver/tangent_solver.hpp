@@ -38,6 +38,8 @@ class TangentSolver {
 
  private:
   void precondition(std::span<const double> r, std::span<double> z);
+  SolveStatistics solve_by_own_factors(std::span<const double> r, std::span<double> du,
+                                       const KrylovOptions& options);
   SolveStatistics counted(std::span<const double> r, std::span<double> du, const KrylovOptions& options);
   void make_factors();
   void find_frames(std::span<const Tensor3> gradient);

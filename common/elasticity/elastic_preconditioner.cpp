@@ -15,7 +15,7 @@ using Lanes = ComponentMultigrid::Lanes;
 // Of the symmetric operator. Smooth motions are softer in an elastic body than component by component, the more so the
 // smoother: a factor of the coarse correction, level by level (any positive one leaves the preconditioner positive), and
 // parts of the diagonal of K added. To 1e-8: from 88 iterations to 47 on the elliptic plate of 32x48x24 hexahedra, from
-// 350 to 133 on a porous body of 115 500 tetrahedra, from 135 to 69 on Cook's membrane of 64x64.
+// 350 to 136 on a porous body of 115 500 tetrahedra, from 135 to 69 on Cook's membrane of 64x64.
 constexpr float of_smooth = 1.3F;
 constexpr double of_cells = 0.8, of_faces = 0.85;
 
@@ -137,6 +137,17 @@ ComponentMultigrid::Rows CompactRows::make(std::span<const double> inertia) {
   return result;
 }
 
+/// Of a support's face with the block `own`: springs beside what is free, `whole` where it is known.
+Tensor3 supported(const Tensor3& own, const ElasticSupport& s, double area, double whole) {
+  const Tensor3 open = Tensor3::Identity() - s.known;
+  return open * (own + area * s.spring) * open + whole * s.known;
+}
+
+/// Of a two-point flux along the normal, which stands for the known part of a support [N/m].
+double stiffness_across(const LameConstants& lame, const FaceLine& line) {
+  return (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
+}
+
 }  // namespace
 
 ElasticPreconditioner::ElasticPreconditioner(const Mesh& mesh, const ElasticOperator& rows,
@@ -175,7 +186,7 @@ void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<con
   for (const Index f : rows_->unknown_faces()) {
     const LameConstants lame = rows_->lame(mesh.owner[f]);
     const FaceLine line = face_line(mesh, mesh.reference, f);
-    const double whole = (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
+    const double whole = stiffness_across(lame, line);
     Tensor3 own = stiffness(f), cell = own;
     FaceRow row{Tensor3::Zero(), Tensor3::Zero(), Tensor3::Zero(), mesh.owner[f], -1};
     switch (rows_->condition(f)) {
@@ -189,7 +200,7 @@ void ElasticPreconditioner::find_face_rows(double boundary_factor, std::span<con
         own = open * (own + line.area * s.spring) + whole * s.known;
         if (is_symmetric_) {
           cell = (open * stiffness(f) * open).eval();
-          own = cell + open * line.area * s.spring * open + whole * s.known;
+          own = supported(stiffness(f), s, line.area, whole);
         }
         break;
       }
@@ -231,13 +242,8 @@ void ElasticPreconditioner::add_true_diagonal(std::span<const double> node_inert
     const Index f = rows_->unknown_faces()[i];
     Tensor3 own = diagonal.faces[i] + inertia(n_cells + i) * Tensor3::Identity();
     if (rows_->condition(f) == ElasticCondition::support) {
-      const ElasticSupport& s = rows_->support(f);
-      const LameConstants lame = rows_->lame(mesh.owner[f]);
       const FaceLine line = face_line(mesh, mesh.reference, f);
-      const Tensor3 open = Tensor3::Identity() - s.known;
-      own = (open * (own + line.area * s.spring) * open +
-             (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn * s.known)
-                .eval();
+      own = supported(own, rows_->support(f), line.area, stiffness_across(rows_->lame(mesh.owner[f]), line));
     }
     face_rows_[i].inverse = of_faces * own.inverse();
   }
