@@ -28,11 +28,11 @@ void declare(config::Section& s, ReportParameters& p) {
       .not_negative()
       .doc("so many days after the start the profiles of one day are written, every hour; absent: none");
   s.value("thickness-margin", p.thickness_margin)
-      .unit("K")
+      .unit("K difference")
       .positive()
       .doc("the thermocline lies between the cold temperature plus and the hot temperature minus this");
   s.value("outlet-margin", p.outlet_margin)
-      .unit("K")
+      .unit("K difference")
       .positive()
       .doc("the time is counted in which the tank's outlet is nearer than this to its design temperature");
   s.optional_section<EconomicsParameters>(
@@ -44,8 +44,7 @@ void declare(config::Section& s, ReportParameters& p) {
       [&p]() -> std::string {
         if (p.dead_state >= 200) return "";
         return fmt::format(
-            "{:g} K is {:.0f} degC, colder than any surroundings. A number without a unit is in K; write '{:g} degC' if "
-            "that is meant",
+            "{:g} K is {:.0f} degC, colder than any surroundings; write '{:g} degC' if that is meant",
             p.dead_state, celsius(p.dead_state), p.dead_state);
       },
       "dead-state");

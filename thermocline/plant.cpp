@@ -49,7 +49,7 @@ void declare(config::Section& s, PlantParameters& p) {
       .required()
       .doc("leaves the power block and, by design, the discharged tank");
   s.value("cut-off", p.cut_off)
-      .unit("K")
+      .unit("K difference")
       .positive()
       .doc(
           "charging stops when what enters the solar field (or leaves the tank, see cut-off-at) is this much "
@@ -65,7 +65,7 @@ void declare(config::Section& s, PlantParameters& p) {
           "that of the other; outlet: at what leaves the tank; field: mixed for charging, the outlet for discharging; block: "
           "the other way round");
   s.value("restart", p.restart)
-      .unit("K")
+      .unit("K difference")
       .positive()
       .doc(
           "charging starts only if the bottom of the tank is at most this much too warm, discharging only if "

@@ -91,7 +91,7 @@ void declare(config::Section& s, Melting& m) {
       .positive()
       .required()
       .doc("middle of the range in which it melts");
-  s.value("width", m.width).unit("K").range(1e-3, 200).doc("of that range");
+  s.value("width", m.width).unit("K difference").range(1e-3, 200).doc("of that range");
   s.value("latent-heat", m.latent_heat)
       .unit("J/kg")
       .not_negative()

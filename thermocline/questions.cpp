@@ -11,9 +11,7 @@ std::string forgotten_unit(const std::string& what, double kelvin_given, const F
   const double as_celsius = kelvin(kelvin_given);
   if (kelvin_given >= fluid.lowest || as_celsius < fluid.lowest || as_celsius > fluid.highest) return "";
   return fmt::format(
-      "{} is {:.6g} K, that is {:.1f} degC, and {} is no liquid below {:.0f} degC. A number without a unit "
-      "is in "
-      "K; write '{:.6g} degC' if that is meant",
+      "{} is {:.6g} K, that is {:.1f} degC, and {} is no liquid below {:.0f} degC; write '{:.6g} degC' if that is meant",
       what, kelvin_given, celsius(kelvin_given), fluid.name, celsius(fluid.lowest), kelvin_given);
 }
 

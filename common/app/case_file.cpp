@@ -190,13 +190,16 @@ CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
     check_top_level(*result.document, result);
     list_expected(*result.document, result);
     check_roles(*result.document, result);
-    append(result.errors, config::load(*result.document, "simulation",
-                                       [&](config::Section& s) { declare(s, result.simulation); }));
+    std::vector<std::string> doubts;
+    append(result.errors,
+           config::load(
+               *result.document, "simulation", [&](config::Section& s) { declare(s, result.simulation); }, {},
+               &result.doubts));
     result.participant = find_participant(command_line, kind, result);
     const auto load = [&] {
       return config::load(*result.document,
                           kind.is_coupler ? "coupling" : "participants." + result.participant,
-                          section_of(kind), problem_of_expression);
+                          section_of(kind), problem_of_expression, &doubts);
     };
     std::vector<std::string> problems = load();
     if (result.simulation.choose_effects && kind.choose && result.errors.empty()) {
@@ -204,6 +207,7 @@ CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
       problems = load();
     }
     append(result.errors, problems);
+    append(result.doubts, doubts);
   } catch (const Error& error) {
     result.errors.emplace_back(error.what());
   }

@@ -44,6 +44,7 @@ struct CaseFile {
   std::size_t hash = 0;               ///< of the file with the overrides, as all programs see it
   std::vector<EffectChoice> choices;  ///< of `effects: auto`
   std::vector<std::string> errors;
+  std::vector<std::string> doubts;  ///< what is possible but implausible
 };
 
 /// Reads the file, applies the overrides, finds this program's participant and fills what `kind.declare`

@@ -32,6 +32,7 @@ int check(const CommandLine& command_line, const ProgramKind& kind, bool print) 
     for (const std::string& error : file.errors) fmt::print(stderr, "{}\n", error);
     return 2;
   }
+  for (const std::string& doubt : file.doubts) fmt::print(stderr, "warning: {}\n", doubt);
   if (!print) {
     fmt::print("{}: valid\n", command_line.case_file.string());
     return 0;

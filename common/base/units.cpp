@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "common/base/bare_numbers.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 
@@ -190,9 +191,33 @@ class UnitParser {
   bool powers_ = false;
 };
 
+/// What a number without a unit would be, or why there must be one.
+double bare_number(double number, std::string_view text, std::string_view unit) {
+  if (!needs_unit(unit) || (number == 0 && unit == "rad")) return number;
+  throw Error("'{0}' has no unit, and this number needs one: write {0} {1} or {0} {2}.", text,
+              unit == "rad" ? "deg" : "degC", unit);
+}
+
+/// A temperature is no difference of temperatures, and the other way round.
+void check_temperature(const Unit& given, std::string_view given_text, double number, std::string_view text,
+                       std::string_view unit) {
+  if (unit == kelvin_difference && given.offset != 0)
+    throw Error(
+        "'{}' is a temperature where a difference of temperatures is expected: write {:.10g} K (a difference is the same "
+        "number in K and degC).",
+        text, number);
+  if (unit != "K") return;
+  if (given_text == kelvin_difference)
+    throw Error("'{}' is a difference of temperatures where a temperature is expected.", text);
+  const double kelvin = given.factor * number + given.offset;
+  if (kelvin < 0) throw Error("'{}' is {:.10g} K, below absolute zero.", text, kelvin);
+}
+
 }  // namespace
 
-Unit parse_unit(std::string_view text) { return UnitParser(trim(text)).parse(); }
+Unit parse_unit(std::string_view text) {
+  return UnitParser(trim(text) == kelvin_difference ? "K" : trim(text)).parse();
+}
 
 std::optional<Quantity> split_quantity(std::string_view text) {
   text = trim(text);
@@ -214,7 +239,7 @@ double parse_quantity(std::string_view text, std::string_view unit) {
   if (!quantity)
     throw Error("'{}' is not a number; expected {}.", text,
                 wanted.is_number() ? "a plain number" : fmt::format("a number in {} or with its unit", unit));
-  if (quantity->unit.empty()) return quantity->number;
+  if (quantity->unit.empty()) return bare_number(quantity->number, text, unit);
   if (quantity->unit.front() == ',') throw Error("'{}' has a decimal comma; write a point.", text);
   if (unit.empty() && quantity->unit != "%")
     throw Error("'{}' has more than a number in it ('{}'); expected a plain number.", text, quantity->unit);
@@ -229,6 +254,7 @@ double parse_quantity(std::string_view text, std::string_view unit) {
   if (given.dimension != wanted.dimension)
     throw Error("'{}': the unit '{}' does not convert to {}; expected {} or a unit that converts to it.",
                 text, quantity->unit, unit, unit);
+  check_temperature(given, quantity->unit, quantity->number, text, unit);
   const double si = given.factor * quantity->number + given.offset;
   return (si - wanted.offset) / wanted.factor;
 }

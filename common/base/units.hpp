@@ -28,8 +28,8 @@ struct Quantity {
 /// Empty unless the text starts with a finite number.
 std::optional<Quantity> split_quantity(std::string_view text);
 
-/// "5.6 MPa" in "Pa" is 5.6e6; a bare number is taken to be in `unit` already. An empty `unit` means a plain
-/// number (only % is taken then). Throws Error saying what was expected.
+/// "5.6 MPa" in "Pa" is 5.6e6; a bare number is taken to be in `unit` already, where it may be (bare_numbers.hpp). An
+/// empty `unit` means a plain number (only % is taken then). Throws Error saying what was expected.
 double parse_quantity(std::string_view text, std::string_view unit);
 
 /// "0.1 m", or "0.1" without a unit; shortest text that reads back as the same number.

@@ -17,7 +17,7 @@ class Describer final : public Visitor {
     Item item;
     item.facts = facts;
     item.type = describe_type(slot);
-    item.value = format_value(slot);
+    item.value = format_value(slot, facts.unit);
     item.slot = slot;
     if (const Word* word = std::get_if<Word>(&slot)) item.words = word->words;
     items.push_back(std::move(item));

@@ -42,7 +42,8 @@ Located locate(const Document::Content& content, const std::string& path) {
 }  // namespace
 
 std::vector<std::string> load(const Document& document, const std::string& path,
-                              const Section::Declare& declare, const CheckExpression& check_expression) {
+                              const Section::Declare& declare, const CheckExpression& check_expression,
+                              std::vector<std::string>* doubts) {
   const Document::Content& content = document.content();
   if (content.root.IsNull()) return {fmt::format("{}:1:1: this file is empty.", content.name)};
   if (!content.root.IsMap())
@@ -58,6 +59,7 @@ std::vector<std::string> load(const Document& document, const std::string& path,
   }
   Reader reader(content, check_expression);
   reader.read_mapping(located.entry.node, located.entry.place, path, declare);
+  if (doubts != nullptr) *doubts = format_all(content.name, reader.doubts());
   return format_all(content.name, reader.messages());
 }
 

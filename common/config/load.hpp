@@ -36,10 +36,11 @@ class Document {
 /// `declare` binds. Every message is "file:line:column: key.path: text". Returns all of them, in file order;
 /// empty means valid.
 /// `check_expression` says what is wrong with the text of an expression or a table (nothing: ""); it stands above this
-/// folder.
+/// folder. `doubts` gets, in the same form, what is possible but implausible.
 using CheckExpression = std::function<std::string(const ExpressionText&)>;
 std::vector<std::string> load(const Document& document, const std::string& path,
-                              const Section::Declare& declare, const CheckExpression& check_expression = {});
+                              const Section::Declare& declare, const CheckExpression& check_expression = {},
+                              std::vector<std::string>* doubts = nullptr);
 /// The same; throws one Error with all messages, one a line.
 void load_or_throw(const Document& document, const std::string& path, const Section::Declare& declare);
 

@@ -5,6 +5,7 @@
 #include "common/config/description.hpp"
 #include "common/config/document.hpp"
 #include "common/config/load.hpp"
+#include "common/config/magnitude.hpp"
 #include "common/config/values.hpp"
 
 namespace couplet::config {
@@ -15,6 +16,12 @@ std::string cell(const std::string& text) { return join(split(text, '|'), "\\|")
 
 std::string code(const std::string& text) { return text.empty() ? text : fmt::format("`{}`", text); }
 
+/// "usual: 0.01 to 1e5 kg/m^3"; or why there is no such range.
+std::string usual_text(const Key::Facts& facts) {
+  if (facts.plausible) return "usual: " + describe_plausible(facts);
+  return facts.any_magnitude.empty() ? "" : "any magnitude: " + facts.any_magnitude;
+}
+
 std::string row(const Item& item) {
   const Key::Facts& facts = item.facts;
   std::string type = item.type, fallback, unit = code(facts.unit), range = describe_range(facts),
@@ -23,6 +30,8 @@ std::string row(const Item& item) {
     case Item::Kind::key:
     case Item::Kind::variant:
       if (!item.words.empty()) range = fmt::format("`{}`", join(item.words, "`, `"));
+      if (const std::string usual = usual_text(facts); !usual.empty())
+        range += (range.empty() ? "" : "; ") + usual;
       if (facts.size) type += fmt::format(" ({})", *facts.size);
       fallback = facts.required ? "**required**" : item.value.empty() ? "not set" : code(item.value);
       break;

@@ -8,6 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/config/magnitude.hpp"
 #include "common/config/values.hpp"
 
 namespace couplet::config {
@@ -63,11 +64,15 @@ std::string kind_of(const YAML::Node& node) {
 
 }  // namespace
 
-void Reader::report(const Place& place, const std::string& path, const std::string& text) {
+Message Reader::message(const Place& place, const std::string& path, const std::string& text) const {
   Place where = place;
   for (const auto& [changed, option] : content_.overrides)
     if (is_below(path, changed)) where.override_text = option;
-  messages_.push_back({where, path, text});
+  return {where, path, text};
+}
+
+void Reader::report(const Place& place, const std::string& path, const std::string& text) {
+  messages_.push_back(message(place, path, text));
 }
 
 void Reader::report_key(const Place& place, const std::string& path, const std::string& text) {
@@ -168,6 +173,8 @@ void Reader::key(const Facts& facts, const Slot& slot) {
     if (const auto* number = std::get_if<int*>(&slot); number && facts.name == "dimension")
       frame.dimension = **number;
     if (const std::string problem = problem_of(facts, slot); !problem.empty()) throw Error("{}", problem);
+    if (const std::string doubt = doubt_of_magnitude(facts, slot); !doubt.empty())
+      doubts_.push_back(message(entry.place, path, doubt));
   } catch (const Error& error) {
     report_key(entry.place, path, error.what());
   }
@@ -255,18 +262,26 @@ void Reader::variant(const Facts& facts, const Cases& cases, const std::string& 
   }
 }
 
-void Reader::check(const std::function<std::string()>& rule, std::string_view key) {
+std::optional<Message> Reader::finding(const std::function<std::string()>& rule, std::string_view key) const {
   const Frame& frame = frames_.back();
   // The rule may look at any key of the mappings around this one.
   const bool wrong_key =
       std::any_of(frames_.begin(), frames_.end(), [](const Frame& f) { return f.wrong_key; });
-  if (wrong_key || messages_.size() != frame.messages_before) return;
+  if (wrong_key || messages_.size() != frame.messages_before) return {};
   std::string text = rule();
-  if (text.empty()) return;
+  if (text.empty()) return {};
   if (text.back() != '.') text += '.';
   const Entry entry = find(frame.node, key);
-  report(entry.found ? entry.place : frame.place, key.empty() ? frame.path : join_path(frame.path, key),
-         text);
+  return message(entry.found ? entry.place : frame.place,
+                 key.empty() ? frame.path : join_path(frame.path, key), text);
+}
+
+void Reader::check(const std::function<std::string()>& rule, std::string_view key) {
+  if (auto found = finding(rule, key)) messages_.push_back(std::move(*found));
+}
+
+void Reader::doubt(const std::function<std::string()>& rule, std::string_view key) {
+  if (auto found = finding(rule, key)) doubts_.push_back(std::move(*found));
 }
 
 }  // namespace couplet::config

@@ -22,6 +22,8 @@ class Reader final : public Visitor {
   void read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
                     const Declare& declare);
   const std::vector<Message>& messages() const { return messages_; }
+  /// What is possible but implausible.
+  const std::vector<Message>& doubts() const { return doubts_; }
 
   void key(const Facts& facts, const Slot& slot) override;
   void section(std::string_view name, std::string_view doc, const Declare& declare) override;
@@ -33,6 +35,7 @@ class Reader final : public Visitor {
   void variant(const Facts& facts, const Cases& cases, const std::string& current,
                const std::function<void(const std::string&)>& set) override;
   void check(const std::function<std::string()>& rule, std::string_view key) override;
+  void doubt(const std::function<std::string()>& rule, std::string_view key) override;
 
  private:
   /// The mapping that is being read.
@@ -47,9 +50,12 @@ class Reader final : public Visitor {
     bool wrong_key = false;        ///< one of the keys in this very mapping could not be read
   };
   Entry take(std::string_view name);
+  Message message(const Place& place, const std::string& path, const std::string& text) const;
   void report(const Place& place, const std::string& path, const std::string& text);
   void report_key(const Place& place, const std::string& path, const std::string& text);
   void report_unknown_keys();
+  /// What a rule across keys finds, if nothing that it may look at is wrong.
+  std::optional<Message> finding(const std::function<std::string()>& rule, std::string_view key) const;
   /// A misspelt required key is one mistake, not two.
   void forget_missing(const std::string& path);
 
@@ -60,7 +66,7 @@ class Reader final : public Visitor {
   const Document::Content& content_;
   CheckExpression check_expression_;
   std::vector<Frame> frames_;
-  std::vector<Message> messages_;
+  std::vector<Message> messages_, doubts_;
 };
 
 }  // namespace couplet::config

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "common/base/bare_numbers.hpp"
 #include "common/base/text.hpp"
 #include "common/config/description.hpp"
 #include "common/config/load.hpp"
@@ -55,7 +56,7 @@ std::string number_schema(const Key::Facts& facts, bool integer) {
   const std::string text =
       object({member("type", "\"string\""),
               member("pattern", quote(value + (facts.unit.empty() ? " *%?$" : " *[^0-9 ].*$")))});
-  return object({member("anyOf", array({object(number), text}))});
+  return needs_unit(facts.unit) ? text : object({member("anyOf", array({object(number), text}))});
 }
 
 /// A number, an expression, or a table as a mapping.
@@ -117,6 +118,17 @@ std::string item_schema(const Item& item) {
   }
 }
 
+/// The contract of a quantity, for tools: its unit and the magnitudes that are usual, or why none are.
+std::vector<std::string> contract(const Key::Facts& facts) {
+  std::vector<std::string> notes;
+  if (!facts.unit.empty()) notes.push_back(member("x-unit", quote(facts.unit)));
+  if (facts.plausible)
+    notes.push_back(member("x-usual", array({fmt::format("{}", facts.plausible->first),
+                                             fmt::format("{}", facts.plausible->second)})));
+  if (!facts.any_magnitude.empty()) notes.push_back(member("x-any-magnitude", quote(facts.any_magnitude)));
+  return notes;
+}
+
 /// The schema of one item with what editors show beside it.
 std::string documented(const Item& item) {
   std::string schema = item_schema(item);
@@ -125,6 +137,7 @@ std::string documented(const Item& item) {
   if (const std::string range = describe_range(item.facts); !range.empty())
     doc += fmt::format(" ({})", range);
   std::string front = doc.empty() ? "" : fmt::format("\n  {},", member("description", quote(doc)));
+  for (const std::string& note : contract(item.facts)) front += fmt::format("\n  {},", note);
   return schema.insert(1, front);
 }
 

@@ -60,6 +60,14 @@ Key& Key::size(std::size_t n) {
   facts_.size = n;
   return *this;
 }
+Key& Key::plausible(double lowest, double highest) {
+  facts_.plausible.emplace(lowest, highest);
+  return *this;
+}
+Key& Key::any_magnitude(std::string_view reason) {
+  facts_.any_magnitude = reason;
+  return *this;
+}
 Key& Key::doc(std::string_view text) {
   facts_.doc = text;
   return *this;
@@ -126,6 +134,9 @@ void Section::variant_by_name(std::string_view name,
   facts.doc = doc;
   facts.required = required || current.empty();
   visitor_.variant(facts, cases, current, set);
+}
+void Section::doubt(const std::function<std::string()>& rule, std::string_view key) {
+  visitor_.doubt(rule, key);
 }
 void Section::check(const std::function<std::string()>& rule, std::string_view key) {
   visitor_.check(rule, key);

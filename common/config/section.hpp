@@ -26,12 +26,18 @@ class Visitor;
 /// The declaration takes effect when the Key goes out of scope, i.e. at the end of the statement.
 class Key {
  public:
-  Key& unit(std::string_view si_unit);  ///< accepts "5.6 MPa", "0.1 s", plain numbers in this SI unit
+  /// Accepts "5.6 MPa", "0.1 s" and plain numbers in this SI unit, but none in K or rad (common/base/bare_numbers.hpp).
+  /// "K difference" is that of a difference of temperatures.
+  Key& unit(std::string_view si_unit);
   Key& required();
   Key& range(double lowest, double highest);  ///< inclusive
   Key& positive();                            ///< > 0
   Key& not_negative();                        ///< >= 0
   Key& size(std::size_t n);                   ///< of a list of numbers
+  /// Magnitudes that are usual: a value outside is flagged, not refused; 0 is usual wherever the key takes it.
+  Key& plausible(double lowest, double highest);
+  /// Why a key with a unit has no such range.
+  Key& any_magnitude(std::string_view reason);
   Key& doc(std::string_view text);
 
   struct Facts {
@@ -41,6 +47,8 @@ class Key {
     double highest = std::numeric_limits<double>::infinity();
     bool open_lowest = false;
     std::optional<std::size_t> size;
+    std::optional<std::pair<double, double>> plausible;  ///< of magnitudes
+    std::string any_magnitude;                           ///< the reason
   };
   using Target = std::function<void(Visitor&, const Facts&)>;
   Key(Visitor& visitor, std::string_view name, Target target);
@@ -161,6 +169,8 @@ class Section {
   /// error so far and no key of the sections around it was wrong; an empty text is a pass; `key` is where the
   /// message points.
   void check(const std::function<std::string()>& rule, std::string_view key);
+  /// The same for what is implausible: its sentence is a warning, the file stays valid.
+  void doubt(const std::function<std::string()>& rule, std::string_view key);
 
  private:
   Key choice_by_name(std::string_view name, const std::vector<std::string>& words, const std::string& current,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/bare_numbers.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/base/units.hpp"
@@ -17,6 +18,7 @@ namespace {
 using Facts = Key::Facts;
 
 std::string example(const Facts& facts) {
+  if (needs_unit(facts.unit)) return fmt::format("a number with its unit, such as {}", facts.unit);
   return facts.unit.empty() ? "a number" : fmt::format("a number in {} or with its unit", facts.unit);
 }
 
@@ -218,14 +220,18 @@ std::string describe_type(const Slot& slot) {
                     slot);
 }
 
-std::string format_value(const Slot& slot) {
-  const auto number = [](double v) { return fmt::format("{}", v); };
+std::string format_value(const Slot& slot, std::string_view unit) {
+  const std::string behind = needs_unit(unit) ? fmt::format(" {}", unit) : "";
+  const auto number = [&](double v) { return fmt::format("{}{}", v, behind); };
   const auto list = [](const auto& values, const auto& print) {
     std::vector<std::string> texts;
     for (const auto& v : values) texts.push_back(print(v));
     return fmt::format("[{}]", join(texts));
   };
-  const auto expression = [](const ExpressionText& v) { return quoted(v.text); };
+  const auto expression = [&](const ExpressionText& v) {
+    const auto quantity = split_quantity(v.text);
+    return quoted(quantity && quantity->unit.empty() ? v.text + behind : v.text);
+  };
   return std::visit(
       Overloaded{
           [&](const double* v) { return number(*v); },
@@ -242,7 +248,8 @@ std::string format_value(const Slot& slot) {
           [&](const std::optional<ExpressionText>* v) { return *v ? expression(**v) : std::string(); },
           [&](const std::map<std::string, double>* v) {
             std::vector<std::string> texts;
-            for (const auto& [name, value] : *v) texts.push_back(fmt::format("{}: {}", quoted(name), value));
+            for (const auto& [name, value] : *v)
+              texts.push_back(fmt::format("{}: {}", quoted(name), number(value)));
             return texts.empty() ? std::string() : fmt::format("{{{}}}", join(texts));
           },
           [&](const Word& v) { return v.current; },

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include "common/config/visitor.hpp"
 
@@ -21,7 +22,7 @@ std::string describe_range(const Key::Facts& facts);
 /// "number", "list of texts", "one word": what a value of this slot looks like.
 std::string describe_type(const Slot& slot);
 
-/// The value in the member now, as it would stand in the YAML; empty optional: "".
-std::string format_value(const Slot& slot);
+/// The value in the member now, as it would stand in the YAML, with its unit where it needs one; empty optional: "".
+std::string format_value(const Slot& slot, std::string_view unit);
 
 }  // namespace couplet::config

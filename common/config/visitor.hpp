@@ -44,6 +44,7 @@ class Visitor {
   virtual void variant(const Facts& facts, const Cases& cases, const std::string& current,
                        const std::function<void(const std::string&)>& set) = 0;
   virtual void check(const std::function<std::string()>& rule, std::string_view key) = 0;
+  virtual void doubt(const std::function<std::string()>&, std::string_view) {}
 };
 
 /// std::visit with one lambda a type.

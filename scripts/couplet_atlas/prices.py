@@ -29,7 +29,7 @@ class Scene:
 SCENES = [
     Scene("static bracket", "cantilever", {"solid.mesh-parameters": {"n_length": 40, "n_side": 4}}, {
         "gravity": {"solid.gravity": [0, -9.81, 0]}, "body force": {"solid.body-force": [0, -1, 0]},
-        "thermal strain": {"solid.material.expansion": 1e-5, "solid.temperature": 300, "solid.thermal-expansion": {}},
+        "thermal strain": {"solid.material.expansion": 1e-5, "solid.temperature": "300 K", "solid.thermal-expansion": {}},
         "geometric non-linearity": FINITE, "inertia": {"solid.analysis": "dynamic"}}),
     Scene("vibrating beam", "vibrating-cantilever", {"solid.mesh-parameters": {"n_length": 30, "n_side": 3}, "simulation.end-time": 2}, {
         "structural damping": {"solid.damping": {"stiffness": 0.01}}, "energies": {"solid.output": {"energies": True}},

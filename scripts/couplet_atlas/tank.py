@@ -9,19 +9,19 @@ participants:
   tank:
     program: thermocline
     diameter: 1.1283791671 m
-    fluid: {{type: custom, density: 1800, specific-heat: 1500, temperature: [200, 500], conductivity: [0.5, 0.5], viscosity: [1.0e-3, 1.0e-3]}}
+    fluid: {{type: custom, density: 1800, specific-heat: 1500, temperature: [200 K, 500 K], conductivity: [0.5, 0.5], viscosity: [1.0e-3, 1.0e-3]}}
     filler: {{density: 2500, specific-heat: 900, conductivity: {conductivity}}}
     exchange-step: {step}
     bed:
       cells: {cells}
       advection: {advection}
-      initial-temperature: 300
+      initial-temperature: 300 K
       shells: {shells}
       layers: [{{height: 5 m, porosity: 0.4, diameter: 20 mm}}]
       closures: {{conduction: constant, conductivity: 0, film-coefficient: {film}}}
     flow:
       type: schedule
-      rows: [{{at: 0 s, mass-flow: 1 kg/s, inlet-temperature: 400}}]
+      rows: [{{at: 0 s, mass-flow: 1 kg/s, inlet-temperature: 400 K}}]
 """
 
 

@@ -27,7 +27,7 @@ BASES = {  # program: (words of the participant, programs of the job)
 TIMES = {"fluid_solver": (0.004, 0.001), "solid_solver": (0.04, 0.01), "mesh_mover": (2, 0.5), "plate_modal": (0.004, 0.001),
          "thermocline": (14400, 900)}
 SHELL = ("shell={material: {type: a387-grade-91}, plates: [{height: 5 m, thickness: 20 mm}]}",)
-HEAT = ("material.conductivity=1", "material.specific-heat=1000", "heat={boundaries: {left: {type: temperature, value: 300}}}")
+HEAT = ("material.conductivity=1", "material.specific-heat=1000", "heat={boundaries: {left: {type: temperature, value: 300 K}}}")
 WARM = ("material.expansion=1e-5", "temperature=293.15+10*t", "thermal-expansion={}")
 
 

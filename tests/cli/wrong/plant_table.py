@@ -26,8 +26,15 @@ def cases(Case, run):
 case.yaml:23:7: participants.tank.flow.hot: 'hot' must be above 'cold'.
 """, ("hot: 390 degC", "hot: 280 degC")),
         tank("temperature without its unit", """
-case.yaml:17:5: participants.tank.flow: hot is 390 K, that is 116.9 degC, and solar salt is no liquid below 238 degC. A number without a unit is in K; write '390 degC' if that is meant.
+case.yaml:23:7: participants.tank.flow.hot: '390' has no unit, and this number needs one: write 390 degC or 390 K.
+case.yaml:24:7: participants.tank.flow.cold: '290' has no unit, and this number needs one: write 290 degC or 290 K.
 """, ("hot: 390 degC", "hot: 390"), ("cold: 290 degC", "cold: 290")),
+        tank("temperature in another unit than meant", """
+case.yaml:17:5: participants.tank.flow: hot is 390 K, that is 116.9 degC, and solar salt is no liquid below 238 degC; write '390 degC' if that is meant.
+""", ("hot: 390 degC", "hot: 390 K"), ("cold: 290 degC", "cold: 290 K")),
+        tank("a temperature where a difference is meant", """
+case.yaml:25:7: participants.tank.flow.restart: '10 degC' is a temperature where a difference of temperatures is expected: write 10 K (a difference is the same number in K and degC).
+""", ("cold: 290 degC", "cold: 290 degC\n      restart: 10 degC")),
         tank("cut-off wider than the plant's span", """
 case.yaml:25:7: participants.tank.flow.cut-off: must be smaller than the step from 'cold' to 'hot'.
 """, ("cold: 290 degC", "cold: 290 degC\n      cut-off: 120 K")),

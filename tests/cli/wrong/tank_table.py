@@ -69,7 +69,7 @@ case.yaml:23:28: participants.tank.flow.file: there is no file 'flows.csv'.
 case.yaml:23:28: participants.tank.flow.file: flows.csv:4: 'x' is no number for mass-flow.
 """, from_file, files={"flows.csv": flows + "2,x,390\n"}),
         tank("--check: flows of frozen salt", """
-case.yaml:23:28: participants.tank.flow.file: flows.csv: rows[0].inlet-temperature is 390 K, that is 116.9 degC, and solar salt is no liquid below 238 degC. A number without a unit is in K; write '390 degC' if that is meant: here, in the head of the column.
+case.yaml:23:28: participants.tank.flow.file: flows.csv: rows[0].inlet-temperature is 390 K, that is 116.9 degC, and solar salt is no liquid below 238 degC; write '390 degC' if that is meant: here, in the head of the column.
 """, from_file, files={"flows.csv": flows.replace("[degC]", "[K]")}),
         tank("rows and a file of rows", """
 case.yaml:26:7: participants.tank.flow.rows: are given, and a 'file' of rows, too; leave one of them out.
@@ -126,10 +126,10 @@ case.yaml:7:13: participants.tank.fluid.type: 'solar-slat' is not one of: solar-
 """, ("type: solar-salt", "type: solar-slat")),
         tank("fluid of one's own with lists of different length", """
 case.yaml:7:88: participants.tank.fluid.conductivity: has 1 values, 'temperature' has 2.
-""", ("{type: solar-salt}", "{type: custom, density: 1800, specific-heat: 1500, temperature: [300, 600], conductivity: [0.5], viscosity: [1e-3, 1e-3]}")),
+""", ("{type: solar-salt}", "{type: custom, density: 1800, specific-heat: 1500, temperature: [300 K, 600 K], conductivity: [0.5], viscosity: [1e-3, 1e-3]}")),
         tank("temperatures that do not grow", """
 case.yaml:7:88: participants.tank.fluid.conductivity: 'temperature' must grow from value to value.
-""", ("{type: solar-salt}", "{type: custom, density: 1800, specific-heat: 1500, temperature: [600, 300], conductivity: [0.5, 0.5], viscosity: [1e-3, 1e-3]}")),
+""", ("{type: solar-salt}", "{type: custom, density: 1800, specific-heat: 1500, temperature: [600 K, 300 K], conductivity: [0.5, 0.5], viscosity: [1e-3, 1e-3]}")),
         tank("step too long for the scheme", """
 case.yaml:11:7: participants.tank.bed.courant: is at most 0.5 with advection: tvd, which is bounded only so far.
 """, ("advection: tvd", "advection: tvd\n      courant: 0.8")),
@@ -160,7 +160,7 @@ case.yaml:26:11: participants.tank.flow.rows[0].inlet-temperature: is missing; s
 """, (", inlet-temperature: 390 degC", "")),
         tank("profile with a height too many", """
 case.yaml:12:7: participants.tank.bed.profile-temperature: needs as many values as profile-z.
-""", ("initial-temperature: 290 degC", "profile-z: [0, 1, 2]\n      profile-temperature: [500, 600]")),
+""", ("initial-temperature: 290 degC", "profile-z: [0, 1, 2]\n      profile-temperature: [500 K, 600 K]")),
         tank("wall of another program that does not run", """
 [tank 0] error: participants.tank.external-wall: nobody computes the wall in a run of the tank alone. Start it together with a coupler and a solid_solver, or remove this section.
 """, ("    filler-mechanics: {}", "    filler-mechanics: {}\n    external-wall: {sections: 20}"), **run),

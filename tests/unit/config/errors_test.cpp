@@ -38,7 +38,7 @@ const Case cases[] = {
     {"interval:", "3:1: interval: this key has no value; expected a number in s or with its unit."},
     {"interval: [1]", "3:1: interval: expected a number in s or with its unit, found a list."},
     {"interval: {every: 1}", "3:1: interval: expected a number in s or with its unit, found a mapping."},
-    {"temperature: -300 degC", "3:1: temperature: -26.85 K is out of range; expected a value above 0 K."},
+    {"temperature: -300 degC", "3:1: temperature: '-300 degC' is -26.85 K, below absolute zero."},
     {"relaxation: 1.5", "3:1: relaxation: 1.5 is out of range; expected a value from 0 to 1."},
     {"relaxation: 0.5 m",
      "3:1: relaxation: '0.5 m' has more than a number in it ('m'); expected a plain number."},

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/config/magnitude.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/base/text.hpp"
+#include "common/base/units.hpp"
+
+namespace couplet::config {
+namespace {
+
+/// The values of table(t, clamp, 0, 0, 2, 300000), which stand behind their places; none of a table in a file.
+std::vector<double> values_of_table(const std::string& text) {
+  std::vector<double> values;
+  if (!text.starts_with("table(") || !text.ends_with(")")) return values;
+  const std::vector<std::string> parts = split(text.substr(6, text.size() - 7), ',');
+  for (std::size_t i = 3; i < parts.size(); i += 2) {
+    const auto number = split_quantity(parts[i]);
+    if (!number || !number->unit.empty()) return {};
+    values.push_back(number->number);
+  }
+  return values;
+}
+
+std::vector<double> values_of(const ExpressionText& text) {
+  const auto number = split_quantity(text.text);
+  if (number && number->unit.empty()) return {number->number};
+  return values_of_table(text.text);
+}
+
+std::vector<double> values_of(const Slot& slot) {
+  const auto single = [](double v) { return std::vector<double>{v}; };
+  return std::visit(
+      Overloaded{[&](double* v) { return single(*v); }, [&](int* v) { return single(*v); },
+                 [&](std::optional<double>* v) { return *v ? single(**v) : std::vector<double>{}; },
+                 [&](Vec3* v) { return single(v->cwiseAbs().maxCoeff()); },
+                 [](std::vector<double>* v) { return *v; }, [](ExpressionText* v) { return values_of(*v); },
+                 [](std::optional<ExpressionText>* v) { return *v ? values_of(**v) : std::vector<double>{}; },
+                 [](std::vector<ExpressionText>* v) {
+                   // A vector: what is small beside its largest component is as good as zero.
+                   double largest = 0;
+                   for (const ExpressionText& component : *v)
+                     for (const double value : values_of(component))
+                       largest = std::max(largest, std::abs(value));
+                   return std::vector<double>{largest};
+                 },
+                 [](std::map<std::string, double>* v) {
+                   std::vector<double> values;
+                   for (const auto& [name, value] : *v) values.push_back(value);
+                   return values;
+                 },
+                 [](auto) { return std::vector<double>{}; }},
+      slot);
+}
+
+}  // namespace
+
+std::string describe_plausible(const Key::Facts& facts) {
+  if (!facts.plausible) return "";
+  return fmt::format("{:g} to {}", facts.plausible->first,
+                     format_quantity(facts.plausible->second, facts.unit));
+}
+
+std::string doubt_of_magnitude(const Key::Facts& facts, const Slot& slot) {
+  if (!facts.plausible) return "";
+  for (const double value : values_of(slot)) {
+    const double magnitude = std::abs(value);
+    if (magnitude == 0 || (magnitude >= facts.plausible->first && magnitude <= facts.plausible->second))
+      continue;
+    return fmt::format("{:.6g} {} (usual: {}): implausible; check the number and its unit.", value,
+                       facts.unit, describe_plausible(facts));
+  }
+  return "";
+}
+
+}  // namespace couplet::config
