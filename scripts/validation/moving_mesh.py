@@ -197,7 +197,7 @@ def pulse(job):
             abs(lift / 0.47795 - 1) <= 0.03)
 
 
-FRAME = ("participants.fluid.rotating-frame={speed: 1}", "participants.fluid.boundaries={inner: {type: no-slip}, outer: {type: moving-wall, rotation: {speed: -1}}}")
+FRAME = ("participants.fluid.rotating-frame={speed: 1 rad/s}", "participants.fluid.boundaries={inner: {type: no-slip}, outer: {type: moving-wall, rotation: {speed: -1 rad/s}}}")
 
 
 def torques(job, more=()):

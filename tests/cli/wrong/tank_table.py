@@ -125,10 +125,10 @@ case.yaml:23:5: participants.tank.flow.tariff: is needed for the hours that no r
 case.yaml:7:13: participants.tank.fluid.type: 'solar-slat' is not one of: solar-salt, caloria-ht43, air, custom. Did you mean 'solar-salt'?
 """, ("type: solar-salt", "type: solar-slat")),
         tank("fluid of one's own with lists of different length", """
-case.yaml:7:88: participants.tank.fluid.conductivity: has 1 values, 'temperature' has 2.
+case.yaml:7:92: participants.tank.fluid.conductivity: has 1 values, 'temperature' has 2.
 """, ("{type: solar-salt}", "{type: custom, density: 1800, specific-heat: 1500, temperature: [300 K, 600 K], conductivity: [0.5], viscosity: [1e-3, 1e-3]}")),
         tank("temperatures that do not grow", """
-case.yaml:7:88: participants.tank.fluid.conductivity: 'temperature' must grow from value to value.
+case.yaml:7:92: participants.tank.fluid.conductivity: 'temperature' must grow from value to value.
 """, ("{type: solar-salt}", "{type: custom, density: 1800, specific-heat: 1500, temperature: [600 K, 300 K], conductivity: [0.5, 0.5], viscosity: [1e-3, 1e-3]}")),
         tank("step too long for the scheme", """
 case.yaml:11:7: participants.tank.bed.courant: is at most 0.5 with advection: tvd, which is bounded only so far.
