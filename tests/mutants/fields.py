@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where mutants are made. Left out is what decides how fast an answer is found but not which (preconditioners, coarse spaces),
+what reads and writes files, and what is said to the user."""
+
+
+def _of(folder, names):
+    return [f"{folder}/{name}.cpp" for name in names.split()]
+
+
+FILES = {
+    "face loops": [
+        *_of("fluid_solver", "rates face_flux predictor projection pressure boundary turbulence viscous_solver placement immersed "
+                             "projection_bodies yielding_walls"),
+        *_of("solid_solver", "heat heat_boundaries cell_gradient stress finite_strain updated_lagrangian orthotropic mixed_form"),
+        *_of("common/elasticity", "face_stencil symmetric_faces symmetric_kernel symmetric_space elastic_faces elastic_kernel_corrected "
+                                  "elastic_kernel_thesis shared_edges finite_edges finite_kernel anisotropic joined_vertices "
+                                  "elastic_corrections vertex_constraints"),
+        *_of("common/fv", "conduction face_gradient point_gradient vertex_interpolation vertex_weights prescribed_motion"),
+        *_of("mesh_mover", "laplacian pseudo_solid rotations affine curved_slide mover"),
+        *_of("thermocline", "bed_step bed_rows packed_bed tridiagonal melting_step grain_kernels grains column insulation shell ullage"),
+    ],
+    "maps": [
+        *_of("coupler", "map_local map_projection mapping sparse_map transfer search cavity_wall links"),
+        *_of("common/modes", "facing rigid_motion surface_parts modal_checks"),
+        *_of("plate_modal", "skin midsurface share"),
+    ],
+    "ledgers": [
+        *_of("solid_solver", "ledger"), *_of("coupler", "mechanics balance watch_integrals"), *_of("fluid_solver", "energy_guard"),
+        *_of("plate_modal", "audit"), *_of("thermocline", "tank day_report"),
+    ],
+    "loads": [
+        *_of("fluid_solver", "loads turning_walls cavity rotating_frame"),
+        *_of("common/elasticity", "symmetric_loads follower_pressure finite_pressures"),
+        *_of("plate_modal", "pressure_load contact"),
+        *_of("solid_solver", "thermal_strain solid_forces boundaries body_fields interface_data solid_interface"),
+        *_of("coupler", "volume_level"), *_of("thermocline", "mechanics wall_bending"),
+    ],
+    "scheme constants": [
+        *_of("common/time", "time_scheme step_errors velocity_errors amplification"),
+        *_of("fluid_solver", "step_size"), *_of("solid_solver", "stage stage_end"),
+        *_of("plate_modal", "oscillators kirchhoff plate_model"),
+        *_of("coupler", "relaxation accelerator quasi_newton secants growing_qr lag_estimate"),
+        *_of("thermocline", "closures flow pressure_loss properties"),
+    ],
+}
+
+# How many of the mutants a folder gets, in parts of all.
+SHARES = {"fluid_solver": 42, "solid_solver": 40, "common/elasticity": 34, "common/fv": 18, "common/time": 14, "coupler": 34,
+          "plate_modal": 20, "thermocline": 26, "mesh_mover": 12, "common/modes": 8}

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which quick tests are asked first about which sources: those of a file, then those of its folder by their price."""
+
+FILE = {
+    "fluid_solver/energy_guard": "stability_fluid_energy_guard",
+    "fluid_solver/step_size": "stability_fluid_step_sizes verification_fluid_steps",
+    "fluid_solver/turbulence": "verification_fluid_effects",
+    "fluid_solver/immersed": "verification_fluid_effects verification_fluid_immersed_loads",
+    "fluid_solver/projection_bodies": "verification_fluid_effects",
+    "fluid_solver/turning_walls": "verification_fluid_turning_walls",
+    "fluid_solver/rotating_frame": "verification_fluid_rotating_frame",
+    "fluid_solver/cavity": "contract_fluid coupling_cavity",
+    "fluid_solver/yielding_walls": "stability_fluid_light_wall coupling_robin coupling_string",
+    "fluid_solver/loads": "verification_fluid_exactness stability_fluid_light_wall verification_fluid_wall_output",
+    "fluid_solver/boundary": "verification_fluid_boundaries",
+    "solid_solver/heat": "verification_heat_exactness verification_heat_series verification_heat_errors verification_heat_order",
+    "solid_solver/heat_boundaries": "verification_heat_exactness verification_heat_series",
+    "solid_solver/thermal_strain": "verification_heat_strain verification_heat_stress",
+    "solid_solver/ledger": "verification_solid_energy verification_solid_audit",
+    "solid_solver/finite_strain": "verification_solid_finite_strain verification_solid_finite_motion",
+    "solid_solver/updated_lagrangian": "verification_solid_updated_lagrangian",
+    "solid_solver/orthotropic": "verification_solid_orthotropic",
+    "solid_solver/mixed_form": "verification_solid_mixed_form",
+    "solid_solver/interface_data": "verification_solid_interface_data",
+    "solid_solver/solid_interface": "verification_solid_contract contract_solid",
+    "solid_solver/boundaries": "verification_solid_conditions",
+    "solid_solver/stage": "verification_solid_time_schemes verification_solid_dynamics",
+    "solid_solver/stage_end": "verification_solid_time_schemes verification_solid_energy",
+    "common/elasticity/finite_kernel": "verification_solid_finite_strain unit_finite_law",
+    "common/elasticity/finite_edges": "verification_solid_finite_strain",
+    "common/elasticity/finite_pressures": "verification_solid_finite_strain verification_solid_conditions",
+    "common/elasticity/follower_pressure": "verification_solid_finite_strain verification_solid_conditions",
+    "common/elasticity/anisotropic": "verification_solid_orthotropic",
+    "common/elasticity/shared_edges": "verification_solid_symmetric verification_heat_strain",
+    "common/elasticity/symmetric_loads": "verification_heat_strain verification_solid_symmetric",
+    "common/fv/conduction": "verification_heat_exactness",
+    "common/fv/prescribed_motion": "verification_fluid_prescribed_motion",
+    "common/fv/point_gradient": "unit_fv_point_gradient verification_heat_strain",
+    "common/fv/vertex_interpolation": "unit_fv_interpolation",
+    "common/fv/vertex_weights": "unit_fv_interpolation",
+    "common/fv/face_gradient": "unit_fv_interpolation verification_heat_exactness",
+    "common/time": "unit_time verification_solid_time_schemes verification_solid_spectrum",
+    "common/modes/surface_parts": "verification_plate_modes_file",
+    "common/modes/facing": "verification_plate_modes_file",
+    "coupler/volume_level": "coupling_volume_level coupling_cavity",
+    "coupler/cavity_wall": "coupling_volume_level coupling_cavity",
+    "coupler/lag_estimate": "coupled_toy",
+    "coupler/transfer": "unit_maps unit_interface_map",
+    "coupler/mapping": "unit_coupler unit_maps unit_coupler_maps_2",
+    "coupler/map_local": "unit_maps unit_coupler_maps_2",
+    "coupler/map_projection": "unit_maps unit_coupler_maps_2",
+    "coupler/watch_integrals": "unit_coupler_maps_2 coupling_exchange",
+    "coupler/balance": "coupling_exchange coupling_piston",
+    "coupler/mechanics": "coupling_exchange coupling_piston",
+    "plate_modal/contact": "verification_plate_contact stability_plate_contact",
+    "plate_modal/audit": "verification_plate_guards verification_plate_dynamics",
+    "plate_modal/kirchhoff": "verification_plate_patch verification_plate_statics",
+    "plate_modal/oscillators": "verification_plate_dynamics",
+    "thermocline/mechanics": "stability_thermocline",
+    "thermocline/wall_bending": "verification_thermocline_mechanics stability_thermocline",
+    "thermocline/bed_step": "verification_thermocline_bed",
+    "thermocline/grains": "verification_thermocline_grains",
+    "thermocline/grain_kernels": "verification_thermocline_grains",
+    "thermocline/day_report": "unit_thermocline_plant",
+    "thermocline/closures": "verification_thermocline_grains verification_thermocline_bed",
+    "thermocline/properties": "verification_thermocline_properties",
+}
+
+FOLDER = {
+    "fluid_solver": "verification_fluid_exactness verification_fluid_taylor_green verification_fluid_cavity verification_fluid_steps "
+                    "verification_fluid_boundaries verification_fluid_prescribed_motion verification_fluid_wall_output verification_fluid_samples "
+                    "verification_fluid_turning_walls verification_fluid_rotating_frame verification_fluid_gaps verification_fluid_effects "
+                    "stability_fluid_step_sizes stability_fluid_energy_guard stability_fluid_light_wall stability_fluid_under_resolved contract_fluid "
+                    "verification_fluid_exactness_2 flap_first_maximum_and_residuals",
+    "solid_solver": "verification_solid_patch verification_solid_order verification_solid_cantilever verification_solid_dynamics "
+                    "verification_solid_time_schemes verification_solid_energy verification_solid_step_control verification_solid_spectrum "
+                    "verification_solid_contract unit_solid_parameters verification_solid_output verification_solid_conditions "
+                    "verification_solid_materials verification_solid_methods verification_solid_closed_forms verification_solid_audit "
+                    "verification_solid_modes verification_solid_symmetric verification_solid_beams verification_solid_slender "
+                    "verification_solid_interface_data verification_solid_finite_strain verification_solid_finite_motion "
+                    "verification_solid_updated_lagrangian verification_solid_orthotropic verification_solid_incompressible "
+                    "verification_solid_large_strain_estimate verification_solid_volume_strain verification_solid_mixed_form "
+                    "verification_heat_exactness verification_heat_errors verification_heat_order verification_heat_series verification_heat_strain "
+                    "verification_heat_stress contract_solid stability_solid_hard_cases verification_solid_patch_2",
+    "common/elasticity": "unit_elasticity_kernel unit_finite_law unit_symmetric_diagonal verification_solid_patch verification_solid_symmetric "
+                         "verification_solid_methods verification_solid_order verification_solid_closed_forms verification_solid_conditions "
+                         "verification_solid_materials verification_solid_incompressible verification_solid_mixed_form verification_solid_volume_strain "
+                         "verification_solid_finite_strain verification_solid_updated_lagrangian verification_solid_orthotropic verification_solid_energy "
+                         "verification_solid_audit verification_heat_strain verification_heat_stress verification_solid_contract verification_solid_beams "
+                         "verification_solid_patch_2 verification_mover",
+    "common/fv": "unit_fv_expression unit_fv_table unit_fv_interpolation unit_fv_point_gradient verification_heat_exactness verification_heat_order "
+                 "verification_heat_series verification_heat_strain verification_solid_output verification_fluid_prescribed_motion verification_mover "
+                 "verification_mover_motion verification_solid_patch verification_heat_errors verification_heat_exactness_2",
+    "common/time": "unit_time verification_solid_time_schemes verification_solid_dynamics verification_solid_energy verification_solid_audit "
+                   "verification_solid_spectrum verification_heat_order verification_heat_errors verification_plate_dynamics verification_plate_guards",
+    "coupler": "unit_coupler unit_maps unit_coupler_maps unit_coupler_maps_2 unit_coupler_ranks unit_coupler_ranks_2 coupling_groups coupling_exchange "
+               "coupled_toy coupling_volume_level coupling_added_mass unit_interface_map contract_toys coupling_piston coupling_string coupling_robin "
+               "coupling_cavity coupled_toy_mpmd",
+    "common/modes": "verification_solid_modes verification_plate_modes_file verification_plate_frequencies verification_plate_guards coupling_plate_solid_modes",
+    "plate_modal": "verification_plate_patch verification_plate_frequencies verification_plate_statics verification_plate_dynamics verification_plate_contact "
+                   "verification_plate_resolution verification_plate_guards verification_plate_effects verification_plate_modes_file "
+                   "stability_plate_contact contract_plate coupling_plate_restart_alone",
+    "thermocline": "unit_thermocline_plant stability_thermocline stability_thermocline_hard_cases contract_thermocline {verification_thermocline_}",
+    "mesh_mover": "verification_mover verification_mover_motion verification_mover_ranks verification_mover_curved_slide verification_mover_periodic "
+                  "verification_mover_periodic_2 flap_first_maximum_and_residuals",
+}
+
+
+def _named(words, registered):
+    for word in words.split():
+        if word.startswith("{"):
+            yield from sorted(t for t in registered if t.startswith(word[1:-1]) and not t.endswith("_long"))
+        else:
+            yield word
+
+
+def tests_of(file, registered, price):
+    """Names in the order in which they are asked. Those that are not registered or have no price are left out."""
+    stem, folder = file.removesuffix(".cpp"), file.rsplit("/", 1)[0]
+    near = [t for key, words in FILE.items() if stem == key or folder == key for t in words.split()]
+    rest = sorted(_named(FOLDER[folder], registered), key=lambda t: price.get(t, 1e9))
+    return [t for t in dict.fromkeys([*near, *rest]) if t in registered]
+
+
+def all_tests(registered):
+    names = [t for words in (*FILE.values(), *FOLDER.values()) for t in _named(words, registered)]
+    return [t for t in dict.fromkeys(names) if t in registered]
