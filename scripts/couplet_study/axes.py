@@ -10,36 +10,19 @@ axes:
   step: {key: simulation.time-step, values: [0.1 s, 0.05 s]}
   scheme: {values: {explicit: {coupling.scheme: explicit}, implicit: {coupling.scheme: implicit}}}   # sets of keys by name
   ranks: {ranks: fluid, values: [1, 2]}"""
-import ast
 import dataclasses
 import itertools
 import math
-import operator
 import re
 
 from couplet_run import expect
-
-ARITHMETIC = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv,
-              ast.Pow: operator.pow}
-
+from couplet_study.expressions import evaluate
 
 def arithmetic(text, n):
     """The value of an expression in n made of numbers, + - * / ** and brackets."""
-    def value(node):
-        if isinstance(node, ast.Expression):
-            return value(node.body)
-        if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)):
-            return node.value
-        if isinstance(node, ast.Name) and node.id == "n":
-            return n
-        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-            return -value(node.operand)
-        if isinstance(node, ast.BinOp) and type(node.op) in ARITHMETIC:
-            return ARITHMETIC[type(node.op)](value(node.left), value(node.right))
-        raise ValueError
     try:
-        return value(ast.parse(text.strip().replace("^", "**"), mode="eval"))
-    except (ValueError, SyntaxError, ZeroDivisionError) as error:
+        return evaluate(text, {"n": n})
+    except ValueError as error:
         expect(False, f"study: '<{text}>' is not arithmetic in n. {error}")
 
 

@@ -21,8 +21,9 @@ import sys
 import numpy as np
 
 from couplet_run import expect
+from couplet_study.expressions import evaluate
 
-NAMES = {name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs", "sinh", "cosh", "where", "pi")}
+FUNCTIONS = {name: getattr(np, name) for name in ("sin", "cos", "tan", "exp", "log", "sqrt", "tanh", "abs", "sinh", "cosh", "where")}
 KEYS = {"probe", "file", "column", "summary", "python", "item", "field", "exact", "over", "against", "at", "from", "reference", "absolute",
         "is", "participant", "unit", "orders", "good-to"}
 
@@ -125,12 +126,20 @@ class Quantity:
         field, at_points = series.field(i, self.given["field"]), series.is_at_points(i, self.given["field"])
         centres, weight = (series.reference(), series.shares_of_points()) if at_points else (series.centres(), series.volumes())
         field = field.reshape(len(field), -1)
-        names = {**NAMES, "x": centres[:, 0], "y": centres[:, 1], "z": centres[:, 2] if centres.shape[1] > 2 else 0 * centres[:, 0],
+        names = {"pi": np.pi, "x": centres[:, 0], "y": centres[:, 1], "z": centres[:, 2] if centres.shape[1] > 2 else 0 * centres[:, 0],
                  "t": series.times[i]}
         exact = self.given["exact"] if isinstance(self.given["exact"], list) else [self.given["exact"]]
-        wanted = np.stack([np.broadcast_to(eval(str(e).replace("^", "**"), {"__builtins__": {}}, names), len(centres)) for e in exact], axis=1)
+        wanted = np.stack([np.broadcast_to(evaluate(e, names, FUNCTIONS), len(centres)) for e in exact], axis=1)
         weight = weight[:, None]
         return float(np.sqrt((weight * (field[:, :wanted.shape[1]] - wanted) ** 2).sum() / (weight * wanted**2).sum()))
+
+
+def check_exact(formula, where):
+    """Before any run: whether the exact field can be computed."""
+    try:
+        evaluate(formula, {"pi": np.pi, **{n: np.full(1, 0.5) for n in "xyzt"}}, FUNCTIONS)
+    except ValueError as error:
+        expect(False, f"{where}: exact: '{formula}' is no expression of x, y, z and t. {error}.")
 
 
 def quantities_of(case, section, participant):
@@ -146,6 +155,11 @@ def quantities_of(case, section, participant):
         expect(len(ways) == 1, f"{where}: expected one of probe, file, summary, python, field.")
         expect("file" not in content or "column" in content, f"{where}: 'file' needs a 'column'.")
         expect("field" not in content or "exact" in content, f"{where}: 'field' needs 'exact'.")
+        for formula in content["exact"] if isinstance(content.get("exact"), list) else [content[k] for k in ("exact",) if k in content]:
+            check_exact(formula, where)
+        if "python" in content:
+            file = (case.file.parent / str(content["python"]).split(":")[0].strip()).resolve()
+            expect(file.is_relative_to(case.file.parent.resolve()), f"{where}: python: '{file}' is not in the folder of the case.")
         expect("against" not in content or "over" in content, f"{where}: 'against' needs 'over', the column of the places.")
         orders = content.get("orders", {})
         expect(isinstance(orders, dict) and all(isinstance(p, (int, float)) and p > 0 for p in orders.values()),

@@ -10,7 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts"))
 from couplet_run import Wrong  # noqa: E402
-from couplet_study import axes, convergence, dominance, predict, quantities  # noqa: E402
+from couplet_study import axes, convergence, dominance, expressions, predict, quantities  # noqa: E402
 
 # -- limits, orders, fronts
 sizes = [8, 12, 20]
@@ -27,12 +27,33 @@ assert abs(a - 0.1) < 0.02 and abs((a + b * 64**q) / (0.1 + 1e-4 * 64**3) - 1) <
 
 # -- sizes in settings: arithmetic and nothing else
 assert axes.filled("{a: <n>, b: <3*n/2>, dt: <=1.6/n>}", 5) == "{a: 5, b: 8, dt: 0.32}"
-for text in ("<m>", "<__import__('os')>", "<n.real>", "<n/0>"):
+for text in ("<m>", "<__import__('os')>", "<n.real>", "<n/0>", "<9^9^9^9>", "<" + "(" * 900 + "n" + ")" * 900 + ">"):
     try:
         axes.filled(text, 5)
     except Wrong:
         continue
     raise AssertionError(f"{text} was taken for arithmetic")
+
+# -- an exact field: an expression of the place and the time, and no way from there to the rest of Python
+places = {"x": np.linspace(0, 1, 5), "t": 2.0, "pi": np.pi}
+assert np.allclose(expressions.evaluate("-sin(pi*x)*exp(-t)^2 + where(x > 0.5, 1, 0)", places, quantities.FUNCTIONS),
+                   -np.sin(np.pi * places["x"]) * np.exp(-4.0) + (places["x"] > 0.5))
+for text in ("().__class__.__base__.__subclasses__()", "sin.__globals__", "[c for c in ().__class__.__mro__]", "__import__('os').system('x')",
+             "(lambda: 1)()", "x[0]", "'a'*9", "sin(x, out=x)", "sin(*[x])", "f'{x}'", "x if x else t", "(y := 1)", "9^9^9^9^9", "True", "1j", "x;t",
+             "exec('1')", "x.tofile('pwned')", "open", "where(x > 0, 1, 0).tofile", "1 < x < 2", "x" * 3000, "-" * 1500 + "1", "", "{}"):
+    try:
+        expressions.evaluate(text, places, quantities.FUNCTIONS)
+    except ValueError:
+        continue
+    raise AssertionError(f"{text} was taken for an expression")
+for given, part in (({"field": "u", "exact": ["sin(x)", "x.tofile('pwned')"]}, "exact: 'x.tofile"), ({"python": "../other.py: f"}, "not in the folder"),
+                    ({"python": "/tmp/other.py: f"}, "not in the folder")):
+    try:
+        quantities.quantities_of(types.SimpleNamespace(file=pathlib.Path("case.yaml")), {"quantities": {"q": given}}, "solid")
+    except Wrong as error:
+        assert part in str(error), error
+        continue
+    raise AssertionError(f"{given} was accepted")
 axis = axes.axis_of("mesh", {"sizes": [8, 4], "multiple": 4, "set": {"k": "<n>"}}, "file")
 assert list(axis.sizes.values()) == [4, 8] and axis.round(9, up=True) == 12 and axis.round(8 + 1e-12, up=True) == 8
 
