@@ -59,12 +59,7 @@ class FileCheck {
       if (std::find(script.constants.begin(), script.constants.end(), name) == script.constants.end())
         report("mesh-parameters." + name, fmt::format("the .geo defines no such name by DefineConstant. {}",
                                                       did_you_mean(name, script.constants, "names")));
-    if (!script.danger.empty())
-      report("mesh",
-             fmt::format(
-                 "the geometry has {}: gmsh would run commands or write files with your rights. If you trust "
-                 "the case, start with --allow-commands.",
-                 script.danger));
+    if (!script.danger.empty()) report("mesh", script.refusal());
     const auto dimension = config::text_of(document_, section_ + ".dimension");
     if (dimension != "2" && dimension != "3") return;
     if (const auto& patches = script.groups[*dimension == "2" ? 1 : 2]) check_patches(*patches);

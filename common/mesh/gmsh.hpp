@@ -7,10 +7,21 @@
 
 namespace couplet {
 
-/// Runs the gmsh program on `source` with these options; its .msh 4.1 gets the name `result` once it is whole. Several
+/// What gmsh is to read.
+struct GmshInput {
+  struct File {
+    std::filesystem::path original;
+    std::string name, text;  ///< as gmsh gets it
+  };
+  std::filesystem::path source;  ///< as the user knows it
+  /// Copies for gmsh's own folder, the first is the one to read. None: the source itself, which the user trusts.
+  std::vector<File> files;
+};
+
+/// Runs the gmsh program on `input` with these options; its .msh 4.1 gets the name `result` once it is whole. Several
 /// programs of a job may do so at the same time. `verb`: for messages, "mesh" or "read". Throws Error with gmsh's own
 /// complaints.
-void run_gmsh(const std::vector<std::string>& options, const std::filesystem::path& source,
+void run_gmsh(const std::vector<std::string>& options, const GmshInput& input,
               const std::filesystem::path& result, const std::string& verb);
 
 /// A mesh of another program (.unv; .med and .cgns where the gmsh at hand was built with them) as .msh, kept beside it as

@@ -11,6 +11,7 @@
 #include "common/mesh/geo_script.hpp"
 #include "common/mesh/gmsh.hpp"
 #include "common/mesh/load.hpp"
+#include "common/mesh/mesh_cache.hpp"
 
 namespace couplet {
 namespace {
@@ -77,11 +78,8 @@ void refuse_empty(const std::filesystem::path& geo, const std::filesystem::path&
 
 std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const MeshParameters& parameters) {
   const GeoScript script = read_geo(geo);
-  if (!script.danger.empty() && std::getenv("COUPLET_ALLOW_COMMANDS") == nullptr)
-    throw Error(
-        "The geometry has {}: gmsh would run commands or write files with your rights. If you trust the case, start with "
-        "--allow-commands.",
-        script.danger);
+  const bool trusted = std::getenv("COUPLET_ALLOW_COMMANDS") != nullptr;
+  if (!script.danger.empty() && !trusted) throw Error("{}", script.refusal());
   if (!script.lost.empty())
     throw Error(
         "The {} does not end with a newline: gmsh reads one statement of such a last line and leaves out the others. End it "
@@ -96,12 +94,16 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
       fmt::format("{:016x}", stable_hash(fmt::format("{}\n{}\n{}", dim, join(numbers, " "), script.text)));
   const std::string stem = geo.stem().string() + "." + hash;
   const std::filesystem::path result = geo.parent_path() / (stem + ".cache.msh");
-  if (std::filesystem::is_regular_file(result)) return result;
+  if (is_sound_cache(result)) return result;
 
   std::vector<std::string> options{fmt::format("-{}", dim)};
   options.insert(options.end(), numbers.begin(), numbers.end());
   log::info("meshing {} with gmsh", geo.string());
-  run_gmsh(options, geo, result, "mesh");
+  GmshInput input{geo, {}};
+  if (script.danger.empty())
+    for (const GeoScript::File& file : script.files)
+      if (file.exists) input.files.push_back({file.original, file.name, file.text});
+  run_gmsh(options, input, result, "mesh");
   refuse_empty(geo, result, dim);
   return result;
 }

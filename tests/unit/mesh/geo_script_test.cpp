@@ -31,14 +31,72 @@ class Geo : public testing::Test {
 };
 
 TEST_F(Geo, commands_and_written_files_are_found) {
-  for (const char* text :
-       {"x = 1;\nSystemCall \"touch pwned\";", "NonBlockingSystemCall \"x\";", "systemcall 'x';",
-        "Printf(\"a;b)\", x) > \"file\";", "Printf('x') >> 'file';", "Save \"x.msh\";", "Print \"x.png\";",
-        "CreateDir \"x\";", "OnelabRun(\"a\", \"rm x\");", "Include StrCat(\"b\", \".geo\");",
-        "Merge Str(\"b.geo\");", "Merge \"b.py\";", "s = \"//\"; SystemCall \"x\";"})
+  for (const char* text : {"x = 1;\nSystemCall \"touch pwned\";",
+                           "NonBlockingSystemCall \"x\";",
+                           "systemcall 'x';",
+                           "Printf(\"a;b)\", x) > \"file\";",
+                           "Printf('x') >> 'file';",
+                           "Save \"x.msh\";",
+                           "Print \"x.png\";",
+                           "CreateDir \"x\";",
+                           "OnelabRun(\"a\", \"rm x\");",
+                           "Include StrCat(\"b\", \".geo\");",
+                           "Merge Str(\"b.geo\");",
+                           "s = \"//\"; SystemCall \"x\";",
+                           "Field[1] = ExternalProcess;",
+                           "General.TmpFileName = \"/../x\";",
+                           "Plugin(HomologyComputation).Run;",
+                           "Unheard \"x\";",
+                           "Unheard 3;",
+                           "/* open SystemCall",
+                           "x = \"open;",
+                           "$x = 1;"})
     EXPECT_NE(script(text).danger, "") << text;
   EXPECT_EQ(script("x = 1;\nSystemCall \"x\";").danger,
             "'SystemCall' in line 2 of " + (folder / "a.geo").string());
+  EXPECT_THAT(script("x = 1;\nPlugin(A).Run;").refusal(),
+              testing::AllOf(HasSubstr("'Plugin' in line 2 of "),
+                             HasSubstr("Allowed are the statements that draw and mesh"),
+                             HasSubstr("--allow-commands")));
+}
+
+// Each of the files of the project's own cases is let through, and the cleaned text is its own cleaned text.
+TEST_F(Geo, every_geometry_of_the_project_is_let_through) {
+  std::size_t n = 0;
+  for (const char* top : {"configs", "tests"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(TEST_DATA) /
+                                                                           "../../../.." / top)) {
+      if (entry.path().extension() != ".geo") continue;
+      ++n;
+      const GeoScript found = read_geo(entry.path());
+      EXPECT_EQ(found.danger, "");
+      ASSERT_FALSE(found.files.empty());
+      EXPECT_EQ(script(found.files.front().text, "again.geo").files.front().text, found.files.front().text)
+          << entry.path();
+    }
+  EXPECT_GE(n, 60u);
+}
+
+TEST_F(Geo, files_elsewhere_are_not_read) {
+  std::filesystem::create_directories(folder / "case/sub");
+  std::ofstream(folder / "b.geo") << "x = 1;\n";
+  std::filesystem::create_symlink(folder / "b.geo", folder / "case/link.geo");
+  std::filesystem::create_directory_symlink(folder, folder / "case/up");
+  for (const char* name : {"../b.geo", "sub/../../b.geo", "link.geo", "up/b.geo", "/etc/passwd"})
+    EXPECT_THAT(script(std::string("Include \"") + name + "\";\n", "case/a.geo").danger, HasSubstr(name))
+        << name;
+  std::ofstream(folder / "case/sub/c.geo") << "x = 1;\n";
+  const GeoScript inside = script("Include \"sub/c.geo\";\nInclude \"sub/../sub/c.geo\";\n", "case/a.geo");
+  EXPECT_EQ(inside.danger, "");
+  ASSERT_EQ(inside.files.size(), 2u) << "the same file once";
+  EXPECT_EQ(inside.files[0].text, "Include \"1.geo\" ; \nInclude \"1.geo\" ; \n");
+}
+
+TEST_F(Geo, gmsh_gets_no_comments_and_goes_on_at_the_beginning_of_a_line) {
+  EXPECT_EQ(script("x=1.5e-3; // one\n/* two\n*/ y+=x;\n").files[0].text, "x = 1.5e-3 ; \n\ny += x ; \n");
+  EXPECT_EQ(script("For i In {1:3} x = i; EndFor\n").files[0].text,
+            "For i In { 1 : 3 } \nx = i ; EndFor \n\n");
+  EXPECT_EQ(script("s = 'a\tb';\n").danger.substr(0, 6), "a text");
 }
 
 TEST_F(Geo, a_last_line_that_gmsh_would_not_read_is_found) {
@@ -92,8 +150,10 @@ TEST_F(Geo, hundreds_of_kilobytes_of_blanks_comments_names_and_brackets_end_noth
       {"x = ", '(', ";\n"},
       {"\"", 'q', "\";\n"},
       {"DefineConstant [ n = ", '{', "];\n"}};
-  for (const auto& [head, filling, tail] : texts)
-    EXPECT_EQ(script(head + std::string(much, filling) + tail).danger, "") << head;
+  for (const auto& [head, filling, tail] : texts) {
+    const bool is_closed = filling != '(' && filling != '{' && filling != 'q';
+    EXPECT_EQ(script(head + std::string(much, filling) + tail).danger.empty(), is_closed) << head;
+  }
   EXPECT_NE(script("SystemCall" + std::string(much, ' ') + "\"x\";\n").danger, "");
 }
 

@@ -86,6 +86,37 @@ TEST_F(LoadMesh, a_truncated_cache_is_made_anew) {
   }
 }
 
+/// A number changed in the middle, another mesh under this name, one that no Couplet wrote: each would be read without complaint.
+TEST_F(LoadMesh, a_cache_with_another_digest_is_made_anew) {
+  const auto geo = write("square.geo", "h = 0.3;\n" + square),
+             other = write("other.geo", "h = 0.6;\n" + square);
+  const GlobalIndex cells = load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global();
+  load_mesh(MPI_COMM_WORLD, other, 2);
+  const auto cache = mesh_geo(geo, 2);
+  const auto content = [](const std::filesystem::path& file) {
+    std::ifstream in(file);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const std::string whole = content(cache), foreign = content(mesh_geo(other, 2));
+  std::string moved = whole;
+  moved.replace(moved.find("\n0 1 0\n"), 7, "\n0 9 0\n");
+  const std::string unsealed = whole.substr(0, whole.find("$Comments"));
+  for (const std::string& text : {moved, foreign, unsealed}) {
+    MPI_Barrier(MPI_COMM_WORLD);
+    if (comm_rank(MPI_COMM_WORLD) == 0) {
+      std::ofstream(cache) << text;
+      ::testing::internal::CaptureStdout();
+    }
+    MPI_Barrier(MPI_COMM_WORLD);
+    EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global(), cells);
+    if (comm_rank(MPI_COMM_WORLD) == 0) {
+      const std::string log = ::testing::internal::GetCapturedStdout();
+      EXPECT_THAT(log, HasSubstr("is damaged, or none that Couplet made"));
+    }
+    EXPECT_EQ(content(cache), whole);
+  }
+}
+
 TEST_F(LoadMesh, meshes_again_when_the_geo_or_a_file_it_includes_changed) {
   write("size.geo", "h = 0.5;\n");
   const auto geo = write("square.geo", "Include \"size.geo\";\n" + square);
@@ -184,9 +215,11 @@ TEST_F(LoadMesh, a_format_that_this_gmsh_was_built_without_is_refused_before_gms
 }
 
 TEST_F(LoadMesh, tells_what_gmsh_did_not_understand) {
-  const std::string text = error(write("wrong.geo", "Point(1) = {0,0,0,1};\nnonsense;\n"), 2);
+  const std::string text = error(write("wrong.geo", "Point(1) = {0,0,0,1};\nx = 1 2;\n"), 2);
   EXPECT_THAT(text,
               HasSubstr("gmsh could not mesh '" + (folder / "wrong.geo").string() + "' (exit code 1)."));
+  EXPECT_THAT(text, HasSubstr((folder / "wrong.geo").string() + "', line 2"))
+      << "the user's name of it, not that of the copy";
   EXPECT_THAT(text, HasSubstr("line 2"));
   MPI_Barrier(MPI_COMM_WORLD);
   EXPECT_EQ(files().size(), 1u) << "nothing temporary is left";
