@@ -14,7 +14,7 @@ def crafted(job, count=500):
     result = job.run(["env", f"COUPLET_FUZZ_COUNT={count}", program, f"--gtest_output=json:{file}"], 3600, cwd=job.scratch)
     if not file.exists():
         raise RuntimeError(f"fuzz_geo ended with code {result.returncode}: {result.stdout[-200:]}")
-    found = json.loads(file.read_text())["testsuites"][0]["testsuite"]
+    found = json.loads(file.read_text())["testsuites"][0]["testsuite"]  # also: the copy that gmsh gets is meshed as the file itself
     test = next(t for t in found if t["name"].startswith("files_are_refused"))
     good = not any(t.get("failures") for t in found) and result.returncode == 0 and int(test["tried"]) >= count
     return (f"{test['tried']} tried: {test['refused']} refused before gmsh, {test['let_through']} let through without harm, slowest "
