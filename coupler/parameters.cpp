@@ -147,6 +147,7 @@ void declare(config::Section& section, ConvergenceParameters& p) {
           "displacement by one pass");
   section.value("absolute", p.absolute)
       .unit("m")
+      .plausible(1e-18, 0.1)
       .not_negative()
       .doc("or when the root mean square of r over the interface vertices is below this; 0: not used");
   section.value("max-iterations", p.max_iterations)
@@ -173,6 +174,7 @@ void declare(config::Section& section, MappingParameters& p) {
           "shared out so that their sum and their moment are kept");
   section.value("tolerance", p.tolerance)
       .unit("m")
+      .plausible(1e-15, 1)
       .positive()
       .doc("twins are no further apart than this; by default a millionth of the interface's extent");
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "common/io/mesh_scale.hpp"
 #include "fluid_solver/output.hpp"
 
 namespace couplet::fluid {
@@ -22,7 +23,12 @@ void add_columns(std::vector<std::string>& columns, const std::string& before, c
 template <int D>
 void FluidOutput<D>::set_up_points() {
   const FluidParameters& p = fluid_.parameters();
-  for (const auto& [name, probe] : p.probes) probes_.emplace_back(mesh_, name, probe.point);
+  std::vector<Vec3> places;
+  for (const auto& [name, probe] : p.probes) {
+    probes_.emplace_back(mesh_, name, probe.point);
+    places.push_back(probe.point);
+  }
+  doubt_mesh_scale(mesh_, places);
   for (const auto& [name, sample] : p.output.samples) samples_.emplace_back(mesh_, name, sample);
   if (!probes_.empty() || !samples_.empty()) point_values_.emplace(fluid_);
   sample_series_.resize(samples_.size());

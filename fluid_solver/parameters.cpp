@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/parameters.hpp"
 
+#include "common/config/pairs.hpp"
 #include "common/mesh/periodic_points.hpp"
 
 namespace couplet::fluid {
@@ -9,15 +10,18 @@ namespace {
 void declare_ramp(config::Section& s, BoundaryParameters& b) {
   s.value("ramp", b.ramp)
       .unit("s")
+      .plausible(1e-12, 1e10)
       .positive()
       .doc("the velocity grows from 0 as (1 - cos(pi t/ramp))/2 until t = ramp; absent: no ramp");
 }
 
 void declare_rotation(config::Section& r, RotationParameters& rotation) {
   r.value("speed", rotation.speed)
+      .unit("rad/s")
+      .plausible(1e-6, 1e6)
       .required()
-      .doc("[rad/s], expression of t [s]; where there is a ramp, it holds for it, too");
-  r.value("centre", rotation.centre).unit("m").doc("a point of the axis");
+      .doc("expression of t [s] in rad/s; where there is a ramp, it holds for it, too");
+  r.value("centre", rotation.centre).unit("m").plausible(1e-9, 1e4).doc("a point of the axis");
   r.value("axis", rotation.axis).size(3).doc("3-D; a plane scene turns about z");
   r.check([&rotation] { return rotation.axis.norm() > 0 ? std::string() : "'axis' must not be zero"; },
           "axis");
@@ -44,9 +48,13 @@ void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
 }
 
 void declare_inlet(config::Section& s, BoundaryParameters& b) {
-  s.value("velocity", b.velocity).unit("m/s").doc("one expression of x, y, z [m] and t [s] a component");
+  s.value("velocity", b.velocity)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("one expression of x, y, z [m] and t [s] a component");
   s.value("mean-speed", b.mean_speed)
       .unit("m/s")
+      .plausible(1e-9, 1e4)
       .doc("instead of a velocity: mean speed straight into the domain, an expression of t [s]");
   s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
       .doc("of mean-speed; parabolic: zero at the rim of the patch, a straight line in 2-D, a disc in 3-D");
@@ -65,7 +73,10 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
 }
 
 void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
-  s.value("velocity", b.velocity).unit("m/s").doc("one expression of x, y, z [m] and t [s] a component");
+  s.value("velocity", b.velocity)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("one expression of x, y, z [m] and t [s] a component");
   declare_ramp(s, b);
   declare_table_and_rotation(s, b);
   s.check(
@@ -79,7 +90,7 @@ void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
 }
 
 void declare_outlet(config::Section& s, BoundaryParameters& b) {
-  s.value("pressure", b.pressure).unit("Pa").doc("expression of x, y, z [m] and t [s]");
+  s.value("pressure", b.pressure).unit("Pa").plausible(1e-9, 1e11).doc("expression of x, y, z [m] and t [s]");
   s.value("backflow-stabilisation", b.backflow_stabilisation)
       .doc("fluid that comes in here brings no kinetic energy along; without it strong backflow may grow");
 }
@@ -104,6 +115,7 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
         [&b](Section& v) {
           v.value("surface-density", b.surface_density)
               .unit("kg/m^2")
+              .plausible(1e-6, 1e6)
               .positive()
               .doc(
                   "mass per area of the structure behind it: its answer is then foreseen in the pressure equation "
@@ -146,6 +158,7 @@ void declare_gap(config::Section& s, GapParameters& gap) {
   s.value("between", gap.between).required().doc("the two walls (patches), a valve and its seat");
   s.value("opening", gap.opening)
       .unit("m")
+      .plausible(1e-8, 10)
       .positive()
       .required()
       .doc("cells where the walls are nearer to each other than this are blocked");
@@ -168,12 +181,19 @@ void declare(config::Section& s, FluidParameters& p) {
   s.value("mesh-parameters", p.mesh_parameters)
       .doc("numbers for names that the .geo defines by DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D scene is 1 m deep");
-  s.value("density", p.density).unit("kg/m^3").positive().required().doc("density");
-  s.value("viscosity", p.viscosity).unit("Pa s").not_negative().required().doc("dynamic viscosity");
+  s.value("density", p.density).unit("kg/m^3").plausible(0.01, 25000).positive().required().doc("density");
+  s.value("viscosity", p.viscosity)
+      .unit("Pa s")
+      .plausible(1e-6, 1e6)
+      .not_negative()
+      .required()
+      .doc("dynamic viscosity");
+  s.doubt([&p] { return config::doubt_of_kinematic_viscosity(p.viscosity, p.density); }, "viscosity");
   s.map<BoundaryParameters>("boundaries", p.boundaries, declare_boundary, "patch",
                             "what happens at each patch of the mesh; every patch needs an entry");
   s.value("time-step", p.time_step)
       .unit("s")
+      .plausible(1e-12, 1e10)
       .positive()
       .doc(
           "largest step of the fluid itself; a coupling step is cut into equal parts not larger than it. "
@@ -211,12 +231,15 @@ void declare(config::Section& s, FluidParameters& p) {
           "1e-4 of the coupling tolerance");
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s")
+      .plausible(1e-9, 1e4)
       .doc("one expression of x, y, z [m] a component; made divergence-free at the start. Absent: at rest");
   s.value("initial-pressure", p.initial_pressure)
       .unit("Pa")
+      .plausible(1e-9, 1e11)
       .doc("expression of x, y, z [m]; a first guess only");
   s.value("body-force", p.body_force)
       .unit("m/s^2")
+      .plausible(1e-4, 1e6)
       .doc("force per mass, one expression of x, y, z [m] and t [s] a component; absent: none");
   s.choice(
        "scheme", p.scheme,
@@ -250,12 +273,14 @@ void declare(config::Section& s, FluidParameters& p) {
       [](config::Section& b, BodyParameters& body) {
         b.value("level", body.level)
             .unit("m")
+            .plausible(1e-9, 1e4)
             .required()
             .doc(
                 "expression of x, y, z [m] and t [s]: below zero inside, near the surface about the distance "
                 "to it");
         b.value("velocity", body.velocity)
             .unit("m/s")
+            .plausible(1e-9, 1e4)
             .doc(
                 "one expression of x, y, z [m] and t [s] a component, that of the motion which level "
                 "describes; "
@@ -289,7 +314,11 @@ void declare(config::Section& s, FluidParameters& p) {
   s.optional_section<StatisticsParameters>(
       "statistics", p.statistics,
       [](config::Section& t, StatisticsParameters& statistics) {
-        t.value("start", statistics.start).unit("s").not_negative().doc("time from which on means are taken");
+        t.value("start", statistics.start)
+            .unit("s")
+            .plausible(1e-12, 1e10)
+            .not_negative()
+            .doc("time from which on means are taken");
       },
       "time means of velocity and pressure, their fluctuations and Reynolds stresses in the field output");
   s.section(
@@ -298,7 +327,11 @@ void declare(config::Section& s, FluidParameters& p) {
   s.map<ProbeParameters>(
       "probes", p.probes,
       [](config::Section& q, ProbeParameters& probe) {
-        q.value("point", probe.point).unit("m").required().doc("place in the reference configuration");
+        q.value("point", probe.point)
+            .unit("m")
+            .plausible(1e-9, 1e4)
+            .required()
+            .doc("place in the reference configuration");
       },
       "probe", "points whose velocity and pressure are written after each step");
 }

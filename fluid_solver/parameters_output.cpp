@@ -11,18 +11,23 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
   s.value("patches", c.patches).required().doc("walls whose forces are added");
   s.value("speed", c.speed)
       .unit("m/s")
+      .plausible(1e-9, 1e4)
       .positive()
       .required()
       .doc("U of the dynamic pressure q = rho U^2 / 2");
   s.value("area", c.area)
       .unit("m^2")
+      .plausible(1e-14, 1e7)
       .positive()
       .required()
       .doc("A: force over q A; in 2-D a length times 1 m");
-  s.value("length", c.length).unit("m").positive().doc("L: moment over q A L");
+  s.value("length", c.length).unit("m").plausible(1e-9, 1e4).positive().doc("L: moment over q A L");
   s.value("drag", c.drag).doc("direction of the first coefficient; need not be of length 1");
   s.value("lift", c.lift).doc("direction of the second coefficient");
-  s.value("centre", c.centre).unit("m").doc("point about which the moment is taken; it rests");
+  s.value("centre", c.centre)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc("point about which the moment is taken; it rests");
   s.value("axis", c.axis).size(3).doc("of the moment; a plane scene turns about z");
   const auto needs_direction = [&s](const char* key, const auto& value) {
     s.check([&value] { return value.norm() > 0 ? "" : "a direction must not be zero"; }, key);
@@ -35,14 +40,22 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
 void declare_sample(config::Section& s, SampleParameters& p) {
   using Type = SampleParameters::Type;
   const auto line = [&p](config::Section& v) {
-    v.value("from", p.from).unit("m").required().doc("first end, in the reference configuration");
-    v.value("to", p.to).unit("m").required().doc("other end");
+    v.value("from", p.from)
+        .unit("m")
+        .plausible(1e-9, 1e4)
+        .required()
+        .doc("first end, in the reference configuration");
+    v.value("to", p.to).unit("m").plausible(1e-9, 1e4).required().doc("other end");
     v.value("points", p.points).range(2, 100000).doc("how many, ends included");
     v.check([&p] { return p.from == p.to ? "'from' and 'to' are one point" : ""; }, "to");
   };
   const auto plane = [&p, line](config::Section& v) {
     line(v);
-    v.value("up", p.up).unit("m").required().doc("third corner: the plane is from-to by from-up");
+    v.value("up", p.up)
+        .unit("m")
+        .plausible(1e-9, 1e4)
+        .required()
+        .doc("third corner: the plane is from-to by from-up");
     v.value("rows", p.rows).range(2, 10000).doc("how many along from-up");
     v.check(
         [&p] { return (p.to - p.from).cross(p.up - p.from).norm() > 0 ? "" : "the corners lie on one line"; },

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "common/config/pairs.hpp"
 #include "common/fv/expression.hpp"
 
 namespace couplet::plate {
@@ -22,18 +23,44 @@ void declare_body(config::Section& s, Parameters& p) {
   s.section(
       "material",
       [&](config::Section& m) {
-        m.value("density", p.material.density).unit("kg/m^3").not_negative().doc("density");
-        m.value("youngs-modulus", p.material.youngs_modulus).unit("Pa").not_negative().doc("Young's modulus");
+        m.value("density", p.material.density)
+            .unit("kg/m^3")
+            .plausible(1, 25000)
+            .not_negative()
+            .doc("density");
+        m.value("youngs-modulus", p.material.youngs_modulus)
+            .unit("Pa")
+            .plausible(1000, 2e12)
+            .not_negative()
+            .doc("Young's modulus");
         m.value("poissons-ratio", p.material.poissons_ratio).range(-0.99, 0.499).doc("Poisson's ratio");
+        m.doubt([&] { return config::doubt_of_wave_speed(p.material.youngs_modulus, p.material.density); },
+                "density");
       },
       "isotropic material of the plate; needed with 'mesh'");
-  s.value("thickness", p.thickness).unit("m").not_negative().doc("of the plate; needed with 'mesh'");
+  s.value("thickness", p.thickness)
+      .unit("m")
+      .plausible(1e-7, 10)
+      .not_negative()
+      .doc("of the plate; needed with 'mesh'");
   s.map<Zone>(
       "zones", p.zones,
       [](config::Section& z, Zone& v) {
-        z.value("thickness", v.thickness).unit("m").positive().doc("in place of the plate's");
-        z.value("density", v.density).unit("kg/m^3").positive().doc("in place of the plate's");
-        z.value("youngs-modulus", v.youngs_modulus).unit("Pa").positive().doc("in place of the plate's");
+        z.value("thickness", v.thickness)
+            .unit("m")
+            .plausible(1e-7, 10)
+            .positive()
+            .doc("in place of the plate's");
+        z.value("density", v.density)
+            .unit("kg/m^3")
+            .plausible(1, 25000)
+            .positive()
+            .doc("in place of the plate's");
+        z.value("youngs-modulus", v.youngs_modulus)
+            .unit("Pa")
+            .plausible(1000, 2e12)
+            .positive()
+            .doc("in place of the plate's");
       },
       "zone", "parts of the mesh (physical surfaces) that differ from the rest");
   s.map<Edge>(
@@ -54,7 +81,10 @@ void declare_place(config::Section& s, Parameters& p) {
   s.section(
       "placement",
       [&](config::Section& q) {
-        q.value("origin", p.placement.origin).doc("where the origin of the mesh lies in space [m]");
+        q.value("origin", p.placement.origin)
+            .unit("m")
+            .plausible(1e-9, 1e4)
+            .doc("where the origin of the mesh lies in space");
         q.value("x-axis", p.placement.x).doc("direction of the mesh's x in space, of any length");
         q.value("y-axis", p.placement.y)
             .doc("direction of the mesh's y, of any length; the plate's normal is x cross y");
@@ -110,9 +140,14 @@ void declare_modes(config::Section& s, Parameters& p) {
       "damping", p.damping,
       [](config::Section& d, Damping& v) {
         d.value("ratio", v.ratio).range(0, 1).doc("of critical damping, the same in every mode");
-        d.value("mass", v.mass).unit("1/s").not_negative().doc("Rayleigh coefficient of the mass");
+        d.value("mass", v.mass)
+            .unit("1/s")
+            .plausible(1e-9, 1e9)
+            .not_negative()
+            .doc("Rayleigh coefficient of the mass");
         d.value("stiffness", v.stiffness)
             .unit("s")
+            .plausible(1e-15, 1e4)
             .not_negative()
             .doc("Rayleigh coefficient of the stiffness");
       },
@@ -120,15 +155,21 @@ void declare_modes(config::Section& s, Parameters& p) {
 }
 
 void declare_loads(config::Section& s, Parameters& p) {
-  s.value("gravity", p.gravity).unit("m/s^2").size(3).doc("acceleration of gravity in space, three numbers");
+  s.value("gravity", p.gravity)
+      .unit("m/s^2")
+      .plausible(1e-3, 2000)
+      .size(3)
+      .doc("acceleration of gravity in space, three numbers");
   s.optional_section<Load>(
       "load", p.load,
       [](config::Section& l, Load& v) {
         l.value("upper-pressure", v.upper)
             .unit("Pa")
+            .plausible(1e-9, 1e11)
             .doc("on the side the normal points to (with 'modes.file': +z), of x, y, z, t");
         l.value("lower-pressure", v.lower)
             .unit("Pa")
+            .plausible(1e-9, 1e11)
             .doc("on the other side (with 'modes.file': -z), of x, y, z, t");
         l.check([&] { return v.upper ? problem_of(*v.upper) : ""; }, "upper-pressure");
         l.check([&] { return v.lower ? problem_of(*v.lower) : ""; }, "lower-pressure");
@@ -232,6 +273,7 @@ void check_together(config::Section& s, Parameters& p) {
 void declare(config::Section& s, ContactParameters& c) {
   s.value("height", c.height)
       .unit("m")
+      .plausible(1e-9, 1e4)
       .doc("of the seat along 'direction', of x, y, z of the structure at rest");
   s.value("where", c.where).doc("there is a seat where this expression of x, y, z is above 0");
   s.value("direction", c.direction)
@@ -240,6 +282,7 @@ void declare(config::Section& s, ContactParameters& c) {
   s.value("scale", c.scale).positive().doc("f_SI of thesis (4.33): kappa = f_SI K S / h");
   s.value("stiffness", c.stiffness)
       .unit("N/m^3")
+      .plausible(1, 1e16)
       .positive()
       .doc("force per area and penetration, in place of (4.33)");
   s.value("starts-inside", c.starts_inside)
@@ -277,9 +320,13 @@ void declare(config::Section& s, Parameters& p) {
   declare_place(s, p);
   declare_modes(s, p);
   declare_loads(s, p);
-  s.value("initial-velocity", p.initial_velocity).unit("m/s").doc("of the whole structure at the start");
+  s.value("initial-velocity", p.initial_velocity)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("of the whole structure at the start");
   s.value("initial-amplitudes", p.initial_amplitudes)
       .unit("m")
+      .plausible(1e-9, 1e4)
       .doc("of the modes at the start: the displacement where each is largest");
   s.map<Watched>(
       "probes", p.probes,
@@ -287,6 +334,7 @@ void declare(config::Section& s, Parameters& p) {
         q.value("point", v.point)
             .required()
             .unit("m")
+            .plausible(1e-9, 1e4)
             .doc(
                 "place on the undeformed surface, or no farther from it than the thickness or a hundredth of the structure's "
                 "size: the nearest place of the surface is taken");

@@ -11,7 +11,9 @@ using Type = SolidCondition::Type;
 /// Nothing, or one expression a component.
 void declare_vector(config::Section& s, const char* key, std::vector<config::ExpressionText>& texts,
                     const int& dimension, const char* unit, const char* doc) {
-  s.value(key, texts).unit(unit).doc(doc);
+  constexpr std::pair usual_length{1e-9, 1e4}, usual_pressure{1e-9, 1e11};
+  const auto [lowest, highest] = std::string_view(unit) == "m" ? usual_length : usual_pressure;
+  s.value(key, texts).unit(unit).plausible(lowest, highest).doc(doc);
   s.check([&] { return texts.empty() ? std::string() : problem_of(texts, dimension); }, key);
 }
 
@@ -29,13 +31,19 @@ std::string problem_of_components(const SolidCondition& c, int dimension) {
 }
 
 void declare_displacement(config::Section& s, SolidCondition& c, const int& dimension) {
-  s.value("value", c.value).unit("m").doc("displacement, one expression of x, y, z, t a component");
+  s.value("value", c.value)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc("displacement, one expression of x, y, z, t a component");
   s.section(
       "components",
       [&c](config::Section& v) {
         constexpr std::array<const char*, 3> axis{"x", "y", "z"};
         for (int i = 0; i < 3; ++i)
-          v.value(axis[i], c.components[i]).unit("m").doc("displacement along this axis, of x, y, z, t");
+          v.value(axis[i], c.components[i])
+              .unit("m")
+              .plausible(1e-9, 1e4)
+              .doc("displacement along this axis, of x, y, z, t");
       },
       "in place of value: these components are known, the others are free; a part of a patch then holds its "
       "faces, but not the vertices at its edge");
@@ -53,6 +61,7 @@ void declare_plate(config::Section& s, SolidCondition& c, const int& dimension) 
 void declare_spring(config::Section& s, SolidCondition& c, const int& dimension) {
   s.value("stiffness", c.stiffness)
       .unit("N/m^3")
+      .plausible(1, 1e16)
       .required()
       .doc("force per area and displacement, of x, y, z (Winkler's bedding)");
   s.check([&c] { return problem_of(c.stiffness); }, "stiffness");
@@ -68,6 +77,7 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
   const auto traction = [&](config::Section& v) {
     v.value("value", c.value)
         .unit("Pa")
+        .plausible(1e-9, 1e11)
         .required()
         .doc("force per area, one expression of x, y, z, t a component");
     v.check([&] { return problem_of(c.value, dimension); }, "value");
@@ -75,6 +85,7 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
   const auto pressure = [&](config::Section& v) {
     v.value("value", c.pressure)
         .unit("Pa")
+        .plausible(1e-9, 1e11)
         .required()
         .doc("pressure that pushes into the solid, of x, y, z, t");
     v.check([&] { return problem_of(c.pressure); }, "value");

@@ -9,33 +9,39 @@ namespace {
 
 using Text = std::optional<config::ExpressionText>;
 
-void declare_property(config::Section& s, const char* name, Text& text, const char* unit, double above,
-                      const char* doc) {
-  s.value(name, text).unit(unit).doc(doc);
-  s.check([&text, above] { return text ? problem_of_property(*text, above) : std::string(); }, name);
+struct Quantity {
+  const char *name, *unit;
+  double lowest, highest;  // usual magnitudes
+};
+
+void declare_property(config::Section& s, const Quantity& q, Text& text, double above, const char* doc) {
+  s.value(q.name, text).unit(q.unit).plausible(q.lowest, q.highest).doc(doc);
+  s.check([&text, above] { return text ? problem_of_property(*text, above) : std::string(); }, q.name);
 }
 
 void declare_boundary(config::Section& s, HeatBoundary& b) {
   using Type = HeatBoundary::Type;
-  const auto expression = [](config::Section& v, const char* name, config::ExpressionText& text,
-                             const char* unit, const char* doc) {
-    v.value(name, text).unit(unit).required().doc(doc);
-    v.check([&text] { return problem_of(text); }, name);
+  const auto expression = [](config::Section& v, const Quantity& q, config::ExpressionText& text,
+                             const char* doc) {
+    v.value(q.name, text).unit(q.unit).plausible(q.lowest, q.highest).required().doc(doc);
+    v.check([&text] { return problem_of(text); }, q.name);
   };
   s.variant<Type>(
       "type", b.type,
       {{"temperature", Type::temperature,
         [&b, expression](config::Section& v) {
-          expression(v, "value", b.value, "K", "temperature, of x, y, z, t");
+          expression(v, {"value", "K", 70, 5000}, b.value, "temperature, of x, y, z, t");
         }},
        {"flux", Type::flux,
         [&b, expression](config::Section& v) {
-          expression(v, "value", b.value, "W/m^2", "heat that flows into the solid, of x, y, z, t");
+          expression(v, {"value", "W/m^2", 1e-6, 1e11}, b.value,
+                     "heat that flows into the solid, of x, y, z, t");
         }},
        {"convection", Type::convection,
         [&b, expression](config::Section& v) {
-          expression(v, "coefficient", b.coefficient, "W/(m^2 K)", "heat transfer, of x, y, z, t");
-          expression(v, "ambient", b.ambient, "K", "temperature of the fluid, of x, y, z, t");
+          expression(v, {"coefficient", "W/(m^2 K)", 1e-3, 1e7}, b.coefficient,
+                     "heat transfer, of x, y, z, t");
+          expression(v, {"ambient", "K", 70, 5000}, b.ambient, "temperature of the fluid, of x, y, z, t");
         }},
        {"adiabatic", Type::adiabatic, [](config::Section&) {}},
        {"symmetry", Type::symmetry, [](config::Section&) {}}},
@@ -45,14 +51,14 @@ void declare_boundary(config::Section& s, HeatBoundary& b) {
 }  // namespace
 
 void declare(config::Section& s, HeatMaterial& m) {
-  declare_property(s, "conductivity", m.conductivity, "W/(m K)", 0,
+  declare_property(s, {"conductivity", "W/(m K)", 1e-3, 1e4}, m.conductivity, 0,
                    "heat conductivity: a number or a table of T");
-  declare_property(s, "specific-heat", m.specific_heat, "J/(kg K)", 0,
+  declare_property(s, {"specific-heat", "J/(kg K)", 10, 1e5}, m.specific_heat, 0,
                    "specific heat: a number or a table of T");
-  declare_property(s, "expansion", m.expansion, "1/K", -1,
+  declare_property(s, {"expansion", "1/K", 1e-8, 1e-2}, m.expansion, -1,
                    "instantaneous coefficient of thermal expansion: a number or a table of T, which is "
                    "integrated from the reference temperature on");
-  declare_property(s, "youngs-modulus-table", m.youngs_modulus, "Pa", 0,
+  declare_property(s, {"youngs-modulus-table", "Pa", 1e3, 2e12}, m.youngs_modulus, 0,
                    "table of T that holds in place of youngs-modulus where the temperature is known");
   s.value("poissons-ratio-table", m.poissons_ratio)
       .doc("table of T that holds in place of poissons-ratio where the temperature is known");
@@ -69,9 +75,15 @@ void declare(config::Section& s, HeatParameters& h) {
        "time-scheme", h.scheme,
        {{"euler", Scheme::euler}, {"three-point", Scheme::three_point}, {"trapezoidal", Scheme::trapezoidal}})
       .doc("euler: first order; three-point (backward, variable steps), trapezoidal: second order");
-  s.value("initial-temperature", h.initial_temperature).unit("K").doc("at the start, of x, y, z");
+  s.value("initial-temperature", h.initial_temperature)
+      .unit("K")
+      .plausible(70, 5000)
+      .doc("at the start, of x, y, z");
   s.check([&h] { return problem_of(h.initial_temperature); }, "initial-temperature");
-  s.value("source", h.source).unit("W/m^3").doc("heat set free in the solid, of x, y, z, t");
+  s.value("source", h.source)
+      .unit("W/m^3")
+      .plausible(1e-6, 1e14)
+      .doc("heat set free in the solid, of x, y, z, t");
   s.check([&h] { return problem_of(h.source); }, "source");
   s.map<HeatBoundary>(
       "boundaries", h.boundaries, [](config::Section& b, HeatBoundary& v) { declare_boundary(b, v); },
@@ -91,7 +103,10 @@ void declare(config::Section& s, HeatParameters& h) {
 }
 
 void declare(config::Section& s, ThermalExpansion& e) {
-  s.value("reference-temperature", e.reference_temperature).unit("K").doc("where the thermal strain is zero");
+  s.value("reference-temperature", e.reference_temperature)
+      .unit("K")
+      .plausible(70, 5000)
+      .doc("where the thermal strain is zero");
 }
 
 }  // namespace couplet

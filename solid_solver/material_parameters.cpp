@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/base/text.hpp"
+#include "common/config/pairs.hpp"
 #include "solid_solver/laws/laws.hpp"
 
 namespace couplet {
@@ -41,7 +42,7 @@ void declare_law(config::Section& s, SolidMaterial& m) {
 }  // namespace
 
 void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
-  s.value("density", m.density).unit("kg/m^3").positive().required().doc("density");
+  s.value("density", m.density).unit("kg/m^3").plausible(1, 25000).positive().required().doc("density");
   if (is_elastic)
     s.optional_section<Orthotropic>(
         "orthotropic", m.orthotropic, [](config::Section& o, Orthotropic& v) { declare(o, v); },
@@ -52,6 +53,7 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   };
   needed(s.value("youngs-modulus", m.youngs_modulus)
              .unit("Pa")
+             .plausible(1000, 2e12)
              .positive()
              .doc("Young's modulus; needed without 'orthotropic'"));
   needed(
@@ -67,8 +69,10 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
                    : "";
       },
       "orthotropic");
+  s.doubt([&m] { return config::doubt_of_wave_speed(m.youngs_modulus, m.density); }, "density");
   s.value("yield-strength", m.yield_strength)
       .unit("Pa")
+      .plausible(1000, 1e11)
       .positive()
       .doc("the run says where the equivalent stress reaches it; changes nothing else");
   if (is_elastic) declare_law(s, m);

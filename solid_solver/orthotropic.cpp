@@ -34,14 +34,14 @@ std::string problem_of_axis(const std::vector<config::ExpressionText>& axis) {
 }  // namespace
 
 void declare(config::Section& s, Orthotropic& m) {
-  s.value("youngs-moduli", m.youngs_moduli).unit("Pa").required().doc("E1, E2, E3");
+  s.value("youngs-moduli", m.youngs_moduli).unit("Pa").plausible(100, 2e12).required().doc("E1, E2, E3");
   s.check([&m] { return problem_of_numbers(m.youngs_moduli, true, "three (E1, E2, E3)"); }, "youngs-moduli");
   s.value("poissons-ratios", m.poissons_ratios)
       .required()
       .doc("nu12, nu23, nu13; nu12: contraction along 2 for a pull along 1, nu21 = nu12 E2 / E1");
   s.check([&m] { return problem_of_numbers(m.poissons_ratios, false, "three (nu12, nu23, nu13)"); },
           "poissons-ratios");
-  s.value("shear-moduli", m.shear_moduli).unit("Pa").required().doc("G12, G23, G13");
+  s.value("shear-moduli", m.shear_moduli).unit("Pa").plausible(100, 2e12).required().doc("G12, G23, G13");
   s.check([&m] { return problem_of_numbers(m.shear_moduli, true, "three (G12, G23, G13)"); }, "shear-moduli");
   s.check([&m] { return problem_of_constants(m); }, "poissons-ratios");
   s.value("first-axis", m.first_axis)

@@ -24,7 +24,7 @@ std::string unknown_field(const std::vector<std::string>& chosen) {
 }  // namespace
 
 void declare(config::Section& s, SolidProbe& p) {
-  s.value("point", p.point).unit("m").required().doc("place in the undeformed solid");
+  s.value("point", p.point).unit("m").plausible(1e-9, 1e4).required().doc("place in the undeformed solid");
   s.value("fields", p.fields)
       .doc(
           "what is watched there: displacement, velocity, acceleration, stress, equivalent-stress, "

@@ -15,7 +15,10 @@ void declare_heat(config::Section& s, SolidParameters& p) {
   s.optional_section<HeatParameters>(
       "heat", p.heat, [](config::Section& h, HeatParameters& v) { declare(h, v); },
       "conduction of heat; the temperature of a step is solved for before its displacement");
-  s.value("temperature", p.temperature).unit("K").doc("prescribed temperature, of x, y, z, t");
+  s.value("temperature", p.temperature)
+      .unit("K")
+      .plausible(70, 5000)
+      .doc("prescribed temperature, of x, y, z, t");
   s.optional_section<ThermalExpansion>(
       "thermal-expansion", p.expansion, [](config::Section& e, ThermalExpansion& v) { declare(e, v); },
       "thermal strain; needs 'heat' or 'temperature', and 'expansion' of the material");
@@ -129,10 +132,15 @@ void declare(config::Section& s, SolidParameters& p) {
       "patch", "one entry for each patch of the mesh");
   s.value("body-force", p.body_force)
       .unit("N/m^3")
+      .plausible(1e-6, 1e11)
       .doc("force per volume, one expression of x, y, z, t a component");
-  s.value("gravity", p.gravity).unit("m/s^2").doc("acceleration of gravity, one number a component");
+  s.value("gravity", p.gravity)
+      .unit("m/s^2")
+      .plausible(1e-3, 2000)
+      .doc("acceleration of gravity, one number a component");
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s")
+      .plausible(1e-9, 1e4)
       .doc("velocity at the start, one expression of x, y, z a component");
   s.section(
       "time-scheme", [&](config::Section& t) { declare(t, p.time_scheme); },

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/base/error.hpp"
+#include "common/io/mesh_scale.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/stress.hpp"
 
@@ -24,10 +25,13 @@ OutputField effect_field(const SolidBody& body, const std::string& name) {
 }  // namespace
 
 SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : body_(body), derived_(derived) {
+  std::vector<Vec3> places;
   for (const auto& [name, chosen] : body.parameters().probes) {
+    places.push_back(chosen.point);
     probes_.push_back({Probe(body.mesh(), name, chosen.point), chosen.fields});
     for (const std::string& field : chosen.fields) add_columns(name, field);
   }
+  doubt_mesh_scale(body.mesh(), places);
 }
 
 void SolidProbes::add_columns(const std::string& probe, const std::string& field) {

@@ -21,25 +21,33 @@ double share(double part, double whole) { return whole > 0 ? 100 * part / whole 
 void declare(config::Section& s, ReportParameters& p) {
   s.value("run-in", p.run_in)
       .unit("day")
+      .plausible(1, 1e4)
       .not_negative()
       .doc("the means leave out these days at the start, in which the cycle becomes periodic");
   s.value("profile-day", p.profile_day)
       .unit("day")
+      .plausible(1, 1e4)
       .not_negative()
       .doc("so many days after the start the profiles of one day are written, every hour; absent: none");
   s.value("thickness-margin", p.thickness_margin)
       .unit("K difference")
+      .plausible(0.1, 500)
       .positive()
       .doc("the thermocline lies between the cold temperature plus and the hot temperature minus this");
   s.value("outlet-margin", p.outlet_margin)
       .unit("K difference")
+      .plausible(0.1, 500)
       .positive()
       .doc("the time is counted in which the tank's outlet is nearer than this to its design temperature");
   s.optional_section<EconomicsParameters>(
       "economics", p.economics, [](config::Section& q, EconomicsParameters& e) { declare(q, e); },
       "prices, in a currency of one's own: the summary then has capital and levelised cost of the "
       "electricity");
-  s.value("dead-state", p.dead_state).unit("K").positive().doc("reference temperature of the exergy");
+  s.value("dead-state", p.dead_state)
+      .unit("K")
+      .plausible(200, 400)
+      .positive()
+      .doc("reference temperature of the exergy");
   s.check(
       [&p]() -> std::string {
         if (p.dead_state >= 200) return "";

@@ -206,7 +206,7 @@ class ElementParticipant final : public Participant {
 };
 
 void declare_surroundings(config::Section& s, double& initial, WeatherParameters& ambient, const char* what) {
-  s.value("initial-temperature", initial).unit("K").positive().required().doc(what);
+  s.value("initial-temperature", initial).unit("K").plausible(70, 5000).positive().required().doc(what);
   s.section(
       "ambient", [&ambient](config::Section& q) { declare(q, ambient); }, "weather");
 }
@@ -214,7 +214,12 @@ void declare_surroundings(config::Section& s, double& initial, WeatherParameters
 }  // namespace
 
 void declare(config::Section& s, GroundElementParameters& p) {
-  s.value("diameter", p.diameter).unit("m").positive().required().doc("inner diameter of the tank");
+  s.value("diameter", p.diameter)
+      .unit("m")
+      .plausible(0.01, 300)
+      .positive()
+      .required()
+      .doc("inner diameter of the tank");
   s.section(
       "ground", [&p](config::Section& q) { declare(q, p.ground); }, "foundation and soil under the tank");
   declare_surroundings(s, p.initial_temperature, p.ambient, "of the tank's bottom; the ground starts steady");
@@ -222,8 +227,13 @@ void declare(config::Section& s, GroundElementParameters& p) {
 }
 
 void declare(config::Section& s, BlanketElementParameters& p) {
-  s.value("diameter", p.diameter).unit("m").positive().required().doc("outer diameter of the wall");
-  s.value("height", p.height).unit("m").positive().required().doc("of the wall");
+  s.value("diameter", p.diameter)
+      .unit("m")
+      .plausible(0.01, 300)
+      .positive()
+      .required()
+      .doc("outer diameter of the wall");
+  s.value("height", p.height).unit("m").plausible(0.01, 300).positive().required().doc("of the wall");
   s.value("sections", p.sections).range(1, 100000).doc("along the wall");
   s.section(
       "insulation", [&p](config::Section& q) { declare(q, p.insulation); }, "blanket around the wall");

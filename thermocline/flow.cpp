@@ -15,14 +15,25 @@ namespace couplet::thermocline {
 void declare(config::Section& section, FlowParameters& p) {
   using Type = FlowParameters::Type;
   const auto row = [](config::Section& s, ScheduleRow& r) {
-    s.value("at", r.at).unit("s").not_negative().required().doc("from this time on");
+    s.value("at", r.at).unit("s").plausible(1e-3, 1e11).not_negative().required().doc("from this time on");
     s.value("mass-flow", r.mass_flow)
         .unit("kg/s")
+        .plausible(1e-6, 1e5)
         .required()
         .doc("upward (discharge) above 0, downward (charge) below 0");
-    s.value("inlet-temperature", r.inlet_temperature).unit("K").positive().doc("of what enters");
-    s.value("stop-above", r.stop_above).unit("K").doc("the flow stops when the outlet is hotter");
-    s.value("stop-below", r.stop_below).unit("K").doc("the flow stops when the outlet is colder");
+    s.value("inlet-temperature", r.inlet_temperature)
+        .unit("K")
+        .plausible(70, 5000)
+        .positive()
+        .doc("of what enters");
+    s.value("stop-above", r.stop_above)
+        .unit("K")
+        .plausible(70, 5000)
+        .doc("the flow stops when the outlet is hotter");
+    s.value("stop-below", r.stop_below)
+        .unit("K")
+        .plausible(70, 5000)
+        .doc("the flow stops when the outlet is colder");
     s.check(
         [&r] {
           return r.mass_flow == 0 || r.inlet_temperature > 0
@@ -40,8 +51,18 @@ void declare(config::Section& section, FlowParameters& p) {
     s.optional_section<ScheduleRepeat>(
         "repeat", p.repeat,
         [](config::Section& q, ScheduleRepeat& r) {
-          q.value("from", r.from).unit("s").not_negative().required().doc("rows at or after this time ...");
-          q.value("every", r.every).unit("s").positive().required().doc("... come again with this period");
+          q.value("from", r.from)
+              .unit("s")
+              .plausible(1e-3, 1e11)
+              .not_negative()
+              .required()
+              .doc("rows at or after this time ...");
+          q.value("every", r.every)
+              .unit("s")
+              .plausible(1, 1e9)
+              .positive()
+              .required()
+              .doc("... come again with this period");
         },
         "the schedule goes on for ever");
     s.check(

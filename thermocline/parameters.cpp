@@ -22,16 +22,22 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
       .doc(
           "axial: 0.7 eps k + 0.5 Re Pr k; eps k; the stagnant bed of Zehner and Schluender with dispersion; "
           "or given");
-  s.value("conductivity", p.conductivity).unit("W/(m K)").not_negative().doc("with conduction: constant");
+  s.value("conductivity", p.conductivity)
+      .unit("W/(m K)")
+      .plausible(1e-3, 1e4)
+      .not_negative()
+      .doc("with conduction: constant");
   s.choice("wall-film", p.wall_film,
            {{"beek", WallFilm::beek}, {"yagi-wakao", WallFilm::yagi_wakao}, {"constant", WallFilm::constant}})
       .doc("heat transfer between fluid and wall; the correlations count from 2 k0/d of the stagnant bed on");
   s.value("wall-coefficient", p.wall_coefficient)
       .unit("W/(m^2 K)")
+      .plausible(1e-3, 1e7)
       .not_negative()
       .doc("with wall-film: constant");
   s.value("film-coefficient", p.film_coefficient)
       .unit("W/(m^2 K)")
+      .plausible(1e-3, 1e7)
       .not_negative()
       .doc("between fluid and grains; 0: Nu = 2 + 1.1 Pr^(1/3) Re^0.6");
 }
@@ -104,10 +110,11 @@ void declare(config::Section& section, BedParameters& p) {
   section.list<BedLayer>(
       "layers", p.layers,
       [](config::Section& s, BedLayer& l) {
-        s.value("height", l.height).unit("m").positive().required().doc("height");
+        s.value("height", l.height).unit("m").plausible(0.01, 100).positive().required().doc("height");
         s.value("porosity", l.porosity).range(0.01, 1).required().doc("volume of the fluid; 1: no filler");
         s.value("diameter", l.diameter)
             .unit("m")
+            .plausible(1e-4, 1)
             .positive()
             .required()
             .doc("effective diameter of the grains");
@@ -146,11 +153,19 @@ void declare(config::Section& section, BedParameters& p) {
       .doc("fluid that is colder than the fluid below it is mixed with it");
   section.section(
       "closures", [&p](config::Section& s) { declare_closures(s, p.closures); }, "transfer coefficients");
-  section.value("initial-temperature", p.initial_temperature).unit("K").positive().doc("of fluid and filler");
+  section.value("initial-temperature", p.initial_temperature)
+      .unit("K")
+      .plausible(70, 5000)
+      .positive()
+      .doc("of fluid and filler");
   section.value("profile-z", p.profile_z)
       .unit("m")
+      .plausible(1e-4, 300)
       .doc("heights of an initial profile, in place of one temperature");
-  section.value("profile-temperature", p.profile_temperature).unit("K").doc("the profile, piecewise linear");
+  section.value("profile-temperature", p.profile_temperature)
+      .unit("K")
+      .plausible(70, 5000)
+      .doc("the profile, piecewise linear");
   section.check([&p] { return p.layers.empty() ? "needs one layer at least" : ""; }, "layers");
   section.check(
       [&p] {
@@ -177,12 +192,18 @@ void declare(config::Section& section, ShellParameters& p) {
   section.list<Plate>(
       "plates", p.plates,
       [](config::Section& s, Plate& l) {
-        s.value("height", l.height).unit("m").positive().required().doc("height");
-        s.value("thickness", l.thickness).unit("m").positive().required().doc("thickness");
+        s.value("height", l.height).unit("m").plausible(0.01, 100).positive().required().doc("height");
+        s.value("thickness", l.thickness)
+            .unit("m")
+            .plausible(1e-4, 30)
+            .positive()
+            .required()
+            .doc("thickness");
       },
       "from the bottom up; the last one goes on to the top");
   section.value("roof-pressure", p.roof_pressure)
       .unit("Pa")
+      .plausible(1, 1e6)
       .not_negative()
       .doc("weight of the roof per area of the roof");
   section.check([&p] { return p.plates.empty() ? "needs one plate at least" : ""; }, "plates");
@@ -193,11 +214,12 @@ void declare(config::Section& section, InsulationParameters& p) {
       "material", [&p](config::Section& s) { declare(s, p.material); }, "of the blanket");
   section.value("thickness", p.thickness)
       .unit("m")
+      .plausible(1e-4, 30)
       .positive()
       .required()
       .doc("on the side, and on the roof above an ullage");
   section.value("cells", p.cells).range(1, 200).doc("through the thickness");
-  section.value("step", p.step).unit("s").positive().doc("its own step");
+  section.value("step", p.step).unit("s").plausible(0.1, 1e5).positive().doc("its own step");
   section.value("cover-emissivity", p.outside.emissivity).range(0, 1).doc("of the metal cover");
   section.value("solar-absorptance", p.outside.solar_absorptance)
       .range(0, 1)
@@ -209,7 +231,12 @@ void declare(config::Section& section, GroundParameters& p) {
       "layers", p.layers,
       [](config::Section& s, GroundLayer& l) {
         s.value("material", l.material).required().doc(join(foundation_materials()));
-        s.value("thickness", l.thickness).unit("m").positive().required().doc("thickness");
+        s.value("thickness", l.thickness)
+            .unit("m")
+            .plausible(1e-4, 30)
+            .positive()
+            .required()
+            .doc("thickness");
         s.check(
             [&l] {
               const auto known = foundation_materials();
@@ -220,8 +247,12 @@ void declare(config::Section& section, GroundParameters& p) {
             "material");
       },
       "from the tank downwards");
-  section.value("cell", p.cell).unit("m").positive().doc("largest height of a cell next to the tank");
-  section.value("step", p.step).unit("s").positive().doc("its own step");
+  section.value("cell", p.cell)
+      .unit("m")
+      .plausible(1e-3, 10)
+      .positive()
+      .doc("largest height of a cell next to the tank");
+  section.value("step", p.step).unit("s").plausible(0.1, 1e5).positive().doc("its own step");
   section.value("deep-temperature", p.deep_temperature)
       .unit("K")
       .range(200, 600)
@@ -230,16 +261,25 @@ void declare(config::Section& section, GroundParameters& p) {
 }
 
 void declare(config::Section& section, UllageParameters& p) {
-  section.value("gauge-pressure", p.gauge_pressure).unit("Pa").doc("of the gas above that of the air");
+  section.value("gauge-pressure", p.gauge_pressure)
+      .unit("Pa")
+      .plausible(1, 1e6)
+      .doc("of the gas above that of the air");
   section.value("emissivity-liquid", p.emissivity_liquid).range(0.01, 1).doc("of the liquid's surface");
   section.value("emissivity-roof", p.emissivity_roof).range(0.01, 1).doc("of the roof's inner surface");
   section.value("emissivity-wall", p.emissivity_wall).range(0.01, 1).doc("of the wall above the liquid");
 }
 
 void declare(config::Section& section, TankParameters& p) {
-  section.value("diameter", p.diameter).unit("m").positive().required().doc("inner diameter of the tank");
+  section.value("diameter", p.diameter)
+      .unit("m")
+      .plausible(0.01, 300)
+      .positive()
+      .required()
+      .doc("inner diameter of the tank");
   section.value("exchange-step", p.exchange_step)
       .unit("s")
+      .plausible(0.1, 1e5)
       .not_negative()
       .doc("the elements exchange heat at least so often; 0: once a step of the simulation");
   section.section(
@@ -264,7 +304,12 @@ void declare(config::Section& section, TankParameters& p) {
   section.optional_section<UllageSpace>(
       "ullage", p.ullage,
       [](config::Section& s, UllageSpace& v) {
-        s.value("height", v.height).unit("m").positive().required().doc("between bed and roof");
+        s.value("height", v.height)
+            .unit("m")
+            .plausible(0.01, 100)
+            .positive()
+            .required()
+            .doc("between bed and roof");
         declare(s, v.gas);
       },
       "gas and radiation between the bed and the roof");
@@ -294,6 +339,7 @@ void declare(config::Section& section, TankParameters& p) {
       [&p](config::Section& s) {
         s.value("monitor-interval", p.output.monitor_interval)
             .unit("s")
+            .plausible(0.1, 1e7)
             .not_negative()
             .doc("between rows of tank.csv; 0: each step");
       },

@@ -27,6 +27,7 @@ std::string problem_of_weekday(const PlantParameters& p) {
 void declare(config::Section& s, PlantParameters& p) {
   s.value("electric-power", p.electric_power)
       .unit("W")
+      .plausible(1000, 1e10)
       .positive()
       .required()
       .doc("firm output of the power block");
@@ -36,6 +37,7 @@ void declare(config::Section& s, PlantParameters& p) {
       .doc("electric power per heat taken");
   s.value("field-area", p.field_area)
       .unit("m^2")
+      .plausible(1, 1e8)
       .positive()
       .required()
       .doc("collecting area of the solar field");
@@ -43,13 +45,19 @@ void declare(config::Section& s, PlantParameters& p) {
       .range(0.01, 1)
       .required()
       .doc("heat collected per direct radiation");
-  s.value("hot", p.hot).unit("K").required().doc("leaves the solar field and, by design, the charged tank");
+  s.value("hot", p.hot)
+      .unit("K")
+      .plausible(70, 5000)
+      .required()
+      .doc("leaves the solar field and, by design, the charged tank");
   s.value("cold", p.cold)
       .unit("K")
+      .plausible(70, 5000)
       .required()
       .doc("leaves the power block and, by design, the discharged tank");
   s.value("cut-off", p.cut_off)
       .unit("K difference")
+      .plausible(0.1, 500)
       .positive()
       .doc(
           "charging stops when what enters the solar field (or leaves the tank, see cut-off-at) is this much "
@@ -66,6 +74,7 @@ void declare(config::Section& s, PlantParameters& p) {
           "the other way round");
   s.value("restart", p.restart)
       .unit("K difference")
+      .plausible(0.1, 500)
       .positive()
       .doc(
           "charging starts only if the bottom of the tank is at most this much too warm, discharging only if "

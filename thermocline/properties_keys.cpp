@@ -22,9 +22,18 @@ std::string problem_of(const std::vector<double>& temperature, const std::vector
   return "";
 }
 
+/// Usual magnitudes of the properties that are tables.
+std::pair<double, double> usual_of(std::string_view unit) {
+  if (unit == "W/(m K)") return {1e-3, 1e7};
+  if (unit == "J/(kg K)") return {10, 1e5};
+  if (unit == "1/K") return {1e-8, 1e-3};
+  if (unit == "Pa s") return {1e-6, 1e3};
+  return {1e6, 2e12};  // strength and modulus of metals [Pa]
+}
+
 void declare_table(config::Section& s, const char* name, const char* unit, std::vector<double>& values,
                    const std::vector<double>& temperature, const char* doc) {
-  s.value(name, values).unit(unit).required().doc(doc);
+  s.value(name, values).unit(unit).plausible(usual_of(unit).first, usual_of(unit).second).required().doc(doc);
   s.check([&] { return problem_of(temperature, values, true); }, name);
 }
 
@@ -33,13 +42,30 @@ void declare_table(config::Section& s, const char* name, const char* unit, std::
 void declare(config::Section& section, FluidParameters& p) {
   using Type = FluidParameters::Type;
   const auto custom = [&p](config::Section& s) {
-    s.value("density", p.density).unit("kg/m^3").positive().required().doc("density, a constant");
-    s.value("specific-heat", p.specific_heat).unit("J/(kg K)").positive().required().doc("a constant");
-    s.value("temperature", p.temperature).unit("K").required().doc("temperatures of the lists that follow");
+    s.value("density", p.density)
+        .unit("kg/m^3")
+        .plausible(0.05, 25000)
+        .positive()
+        .required()
+        .doc("density, a constant");
+    s.value("specific-heat", p.specific_heat)
+        .unit("J/(kg K)")
+        .plausible(10, 1e5)
+        .positive()
+        .required()
+        .doc("a constant");
+    s.value("temperature", p.temperature)
+        .unit("K")
+        .plausible(70, 5000)
+        .required()
+        .doc("temperatures of the lists that follow");
     declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
     declare_table(s, "viscosity", "Pa s", p.viscosity, p.temperature, "piecewise linear");
-    s.value("lowest", p.lowest).unit("K").doc("below it the fluid freezes: a warning");
-    s.value("highest", p.highest).unit("K").doc("above it the fluid boils or decomposes: a warning");
+    s.value("lowest", p.lowest).unit("K").plausible(70, 5000).doc("below it the fluid freezes: a warning");
+    s.value("highest", p.highest)
+        .unit("K")
+        .plausible(70, 1e4)
+        .doc("above it the fluid boils or decomposes: a warning");
   };
   const auto known = [&p](config::Section& s) {
     s.value("real-density", p.real_density)
@@ -48,7 +74,11 @@ void declare(config::Section& section, FluidParameters& p) {
             "wall; otherwise it is the constant of thesis table 5.1");
   };
   const auto gas = [&p](config::Section& s) {
-    s.value("pressure", p.pressure).unit("Pa").positive().doc("where the gas leaves the bed");
+    s.value("pressure", p.pressure)
+        .unit("Pa")
+        .plausible(1e4, 1e8)
+        .positive()
+        .doc("where the gas leaves the bed");
     s.value("reference-temperature", p.reference_temperature)
         .unit("K")
         .range(150, 1500)
@@ -74,26 +104,41 @@ void declare(config::Section& section, FluidParameters& p) {
 void declare(config::Section& s, Filler& f) {
   s.value("density", f.density)
       .unit("kg/m^3")
+      .plausible(0.05, 25000)
       .positive()
       .doc("of the grains; the defaults are those of quartzite");
-  s.value("specific-heat", f.specific_heat).unit("J/(kg K)").positive().doc("of the grains");
-  s.value("conductivity", f.conductivity).unit("W/(m K)").positive().doc("of the grains");
+  s.value("specific-heat", f.specific_heat)
+      .unit("J/(kg K)")
+      .plausible(10, 1e5)
+      .positive()
+      .doc("of the grains");
+  s.value("conductivity", f.conductivity)
+      .unit("W/(m K)")
+      .plausible(1e-3, 1e7)
+      .positive()
+      .doc("of the grains");
   s.value("friction-angle", f.friction_angle)
       .unit("rad")
       .range(0.01, 1.5)
       .doc("internal friction of the bulk, phi in (5.17)");
-  s.value("expansion", f.expansion).unit("1/K").not_negative().doc("linear thermal expansion of the bulk");
+  s.value("expansion", f.expansion)
+      .unit("1/K")
+      .plausible(1e-8, 1e-3)
+      .not_negative()
+      .doc("linear thermal expansion of the bulk");
 }
 
 void declare(config::Section& s, Melting& m) {
   s.value("temperature", m.temperature)
       .unit("K")
+      .plausible(70, 5000)
       .positive()
       .required()
       .doc("middle of the range in which it melts");
   s.value("width", m.width).unit("K difference").range(1e-3, 200).doc("of that range");
   s.value("latent-heat", m.latent_heat)
       .unit("J/kg")
+      .plausible(1000, 1e7)
       .not_negative()
       .required()
       .doc("taken in over the range, evenly");
@@ -102,10 +147,17 @@ void declare(config::Section& s, Melting& m) {
 void declare(config::Section& section, SteelParameters& p) {
   using Type = SteelParameters::Type;
   const auto custom = [&p](config::Section& s) {
-    s.value("density", p.density).unit("kg/m^3").positive().doc("density");
+    s.value("density", p.density).unit("kg/m^3").plausible(0.05, 25000).positive().doc("density");
     s.value("poissons-ratio", p.poissons_ratio).range(0, 0.499).doc("Poisson's ratio");
-    s.value("highest", p.highest).unit("K").doc("above it the metal may not be used: a warning");
-    s.value("temperature", p.temperature).unit("K").required().doc("temperatures of the lists that follow");
+    s.value("highest", p.highest)
+        .unit("K")
+        .plausible(70, 1e4)
+        .doc("above it the metal may not be used: a warning");
+    s.value("temperature", p.temperature)
+        .unit("K")
+        .plausible(70, 5000)
+        .required()
+        .doc("temperatures of the lists that follow");
     declare_table(s, "specific-heat", "J/(kg K)", p.specific_heat, p.temperature, "piecewise linear");
     declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
     declare_table(s, "youngs-modulus", "Pa", p.youngs_modulus, p.temperature, "piecewise linear");
@@ -122,13 +174,19 @@ void declare(config::Section& section, SteelParameters& p) {
 }
 
 void declare(config::Section& s, InsulatorParameters& p) {
-  s.value("density", p.density).unit("kg/m^3").positive().doc("density");
-  s.value("specific-heat", p.specific_heat).unit("J/(kg K)").positive().doc("specific heat");
+  s.value("density", p.density).unit("kg/m^3").plausible(0.05, 25000).positive().doc("density");
+  s.value("specific-heat", p.specific_heat)
+      .unit("J/(kg K)")
+      .plausible(10, 1e5)
+      .positive()
+      .doc("specific heat");
   s.value("temperature", p.temperature)
       .unit("K")
+      .plausible(70, 5000)
       .doc("temperatures of 'conductivity'; absent for a constant");
   s.value("conductivity", p.conductivity)
       .unit("W/(m K)")
+      .plausible(1e-3, 1e7)
       .doc("piecewise linear; absent: a wired mineral-wool mat, 0.040 at 50 degC to 0.163 at 500 degC");
   s.check(
       [&]() -> std::string {

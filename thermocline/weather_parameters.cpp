@@ -77,6 +77,7 @@ void declare_smooth_days(config::Section& s, WeatherParameters& p) {
       .doc("of the site, north positive; the length of the days follows from it");
   s.value("daily-sums", d.daily_sums)
       .unit("J/m^2")
+      .plausible(1e5, 5e7)
       .required()
       .doc("mean daily direct normal irradiation of the 12 months, for example 7.2 kWh/m^2");
   s.value("form-n", d.n).doc("n of (1 - |2 t/T|^n)^p, one value or 12: 1 a peak, 2 round, large: a box");

@@ -9,9 +9,15 @@ namespace couplet {
 
 void declare(config::Section& section, SimulationParameters& p) {
   section.value("name", p.name).doc("name of the case, shown at the start of a run");
-  section.value("end-time", p.end_time).unit("s").positive().required().doc("the run ends at this time");
+  section.value("end-time", p.end_time)
+      .unit("s")
+      .plausible(1e-10, 1e11)
+      .positive()
+      .required()
+      .doc("the run ends at this time");
   section.value("time-step", p.time_step)
       .unit("s")
+      .plausible(1e-13, 1e8)
       .positive()
       .required()
       .doc("step of the run; in a coupled run the coupling step, which a participant may divide for itself");
@@ -28,6 +34,7 @@ void declare(config::Section& section, SimulationParameters& p) {
           "off, nothing is collected for it");
   section.value("hang-timeout", p.hang_timeout)
       .unit("s")
+      .plausible(1, 1e6)
       .not_negative()
       .doc(
           "the job ends and names the culprit when one of its processes has shown no sign of life for so long: "
@@ -39,6 +46,7 @@ void declare(config::Section& section, SimulationParameters& p) {
             .doc("where each participant makes its folder; relative to the folder of the YAML file");
         s.value("interval", p.output_interval)
             .unit("s")
+            .plausible(1e-12, 1e10)
             .not_negative()
             .doc("time between outputs of fields; 0: only the start and the end");
         s.value("steps", p.output_steps)
@@ -50,6 +58,7 @@ void declare(config::Section& section, SimulationParameters& p) {
       [&](config::Section& s) {
         s.value("interval", p.checkpoint_interval)
             .unit("s")
+            .plausible(1e-12, 1e10)
             .not_negative()
             .doc("time between checkpoints; 0: only at the end of the run");
         s.value("keep", p.checkpoints_kept)

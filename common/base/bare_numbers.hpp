@@ -9,8 +9,8 @@ namespace couplet {
 inline constexpr std::string_view kelvin_difference = "K difference";
 
 /// Whether a number of this unit must not stand bare: two units in common use give it two plausible meanings. So it is
-/// for temperatures (20 K or 20 degC) and for angles in radians (0.5 rad or 0.5 deg); differences of temperatures are
-/// the same in K and degC, everything else is in SI.
-constexpr bool needs_unit(std::string_view unit) { return unit == "K" || unit == "rad"; }
+/// for temperatures (20 K or 20 degC), angles and speeds of rotation (0.5 rad or 0.5 deg); differences of temperatures
+/// are the same in K and degC, everything else is in SI.
+constexpr bool needs_unit(std::string_view unit) { return unit == "K" || unit == "rad" || unit == "rad/s"; }
 
 }  // namespace couplet

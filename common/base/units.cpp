@@ -193,19 +193,24 @@ class UnitParser {
 
 /// What a number without a unit would be, or why there must be one.
 double bare_number(double number, std::string_view text, std::string_view unit) {
-  if (!needs_unit(unit) || (number == 0 && unit == "rad")) return number;
+  if (!needs_unit(unit) || (number == 0 && unit != "K")) return number;
   throw Error("'{0}' has no unit, and this number needs one: write {0} {1} or {0} {2}.", text,
-              unit == "rad" ? "deg" : "degC", unit);
+              unit == "K"     ? "degC"
+              : unit == "rad" ? "deg"
+                              : "deg/s",
+              unit);
 }
 
-/// A temperature is no difference of temperatures, and the other way round.
-void check_temperature(const Unit& given, std::string_view given_text, double number, std::string_view text,
-                       std::string_view unit) {
+/// A temperature is no difference of temperatures and the other way round, a frequency no speed of rotation.
+void check_kind(const Unit& given, std::string_view given_text, double number, std::string_view text,
+                std::string_view unit) {
   if (unit == kelvin_difference && given.offset != 0)
     throw Error(
         "'{}' is a temperature where a difference of temperatures is expected: write {:.10g} K (a difference is the same "
         "number in K and degC).",
         text, number);
+  if (unit == "rad/s" && given_text.find("Hz") != std::string_view::npos)
+    throw Error("'{}' is a frequency where a speed of rotation is expected: 1 Hz is 6.2832 rad/s.", text);
   if (unit != "K") return;
   if (given_text == kelvin_difference)
     throw Error("'{}' is a difference of temperatures where a temperature is expected.", text);
@@ -254,7 +259,7 @@ double parse_quantity(std::string_view text, std::string_view unit) {
   if (given.dimension != wanted.dimension)
     throw Error("'{}': the unit '{}' does not convert to {}; expected {} or a unit that converts to it.",
                 text, quantity->unit, unit, unit);
-  check_temperature(given, quantity->unit, quantity->number, text, unit);
+  check_kind(given, quantity->unit, quantity->number, text, unit);
   const double si = given.factor * quantity->number + given.offset;
   return (si - wanted.offset) / wanted.factor;
 }

@@ -22,24 +22,34 @@ std::vector<Expression> expressions(const std::vector<config::ExpressionText>& t
 }  // namespace
 
 void declare(config::Section& s, MotionParameters& m, bool with_radii) {
-  s.value("translation", m.translation).unit("m").doc("one expression of t [s] a component; absent: none");
-  s.value("angle", m.angle).doc("of the rotation about 'centre' [rad], expression of t [s]");
+  s.value("translation", m.translation)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc("one expression of t [s] a component; absent: none");
+  s.value("angle", m.angle)
+      .unit("rad")
+      .plausible(1e-9, 1e4)
+      .doc("of the rotation about 'centre', expression of t [s] in rad");
   s.value("centre", m.centre)
       .unit("m")
+      .plausible(1e-9, 1e4)
       .doc("of the rotation and of the radii, in the reference configuration");
   s.value("axis", m.axis).size(3).doc("of the rotation, 3-D; a plane scene turns about z");
   s.value("displacement", m.displacement)
       .unit("m")
+      .plausible(1e-9, 1e4)
       .doc(
           "any field besides: one expression of x, y, z [m] in the reference configuration and t [s] a "
           "component");
   if (with_radii) {
     s.value("inner-radius", m.inner_radius)
         .unit("m")
+        .plausible(1e-9, 1e4)
         .not_negative()
         .doc("with outer-radius: what lies within this distance of the centre moves like one body");
     s.value("outer-radius", m.outer_radius)
         .unit("m")
+        .plausible(1e-9, 1e4)
         .positive()
         .doc("beyond it the mesh rests, between the radii it follows smoothly; absent: the whole mesh moves");
   }
