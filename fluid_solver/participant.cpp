@@ -43,6 +43,8 @@ FluidParticipant<D>::FluidParticipant(Mesh mesh, const FluidParameters& paramete
       output_(*fluid_, std::move(context)) {
   if (link) motion_ = link(mesh_);
   set_up_motion();
+  openings_.emplace(mesh_, parameters,
+                    !motion_ && !prescribed_ && fluid_->boundary().interface_patches().empty());
   if (parameters.statistics) statistics_.emplace(mesh_.cells.n_local(), mesh_.boundary.n_owned());
   if (fluid_->boundary().interface_patches().empty()) {
     if (!fluid_->moving()) mesh_.reference = {};  // only the set-up needed it
@@ -264,6 +266,7 @@ StepReport FluidParticipant<D>::accept_step() {
   const long before = effort();
   displacement_ = trial_displacement_;
   fluid_->accept();
+  openings_->add(fluid_->state().phi, step_.dt);
   if (errors_) errors_->accepted(step_.dt);
   tell_sub_steps();
   see_given_step();
@@ -340,6 +343,7 @@ std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
 template <int D>
 std::vector<std::string> FluidParticipant<D>::finish() {
   if (steps_unseen_ > 0) doubt_given_step(step_.dt / fluid_->statistics().sub_steps);
+  for (const std::string& doubt : openings_->doubts()) log::doubt(comm_rank(mesh_.comm), doubt);
   std::vector<std::string> sentences;
   if (statistics_ && !(statistics_->duration() > 0))
     sentences.push_back(

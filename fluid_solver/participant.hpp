@@ -12,6 +12,7 @@
 #include "common/coupling/participant.hpp"
 #include "fluid_solver/error_estimate.hpp"
 #include "fluid_solver/fluid.hpp"
+#include "fluid_solver/openings.hpp"
 #include "fluid_solver/output.hpp"
 #include "fluid_solver/renewal.hpp"
 
@@ -83,6 +84,7 @@ class FluidParticipant final : public Participant, public EstimatesError {
   std::optional<RunningStatistics<D>> statistics_;
   std::optional<FluidErrorEstimate<D>> errors_;  // none: not wanted
   FluidOutput<D> output_;
+  std::optional<Openings> openings_;
   Step step_;
   std::vector<Vec3> points_;  // of the first guess; semi-implicit only
   bool predicted_ = false;    // in the step under way

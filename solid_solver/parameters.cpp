@@ -98,6 +98,13 @@ void declare(config::Section& s, SolidParameters& p) {
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
   s.choice("plane", p.plane, {{"strain", Plane::strain}, {"stress", Plane::stress}})
       .doc("what a 2-D scene is a cut of");
+  s.check(
+      [&p] {
+        return p.dimension == 3 && p.plane == Plane::stress
+                   ? "a 3-dimensional scene is no cut; remove this key"
+                   : "";
+      },
+      "plane");
   s.choice("analysis", p.analysis,
            {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}, {"thermal", Analysis::thermal}})
       .doc("static leaves out inertia; thermal conducts heat only");

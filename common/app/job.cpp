@@ -66,6 +66,11 @@ void find_restart(Job& job, const CommandLine& command_line, bool is_driver) {
   job.restart_time = read_run_state(job.restart_folder).time;
   if (is_driver && job.rank == 0)
     judge_changes(job.restart_folder, job.simulation.keys, command_line.restart_with_changes);
+  const double end = job.simulation.end_time;
+  if (job.restart_time > end * (1 + 1e-9))
+    throw Error(
+        "--restart {}: its time, {:g} s, lies beyond the end of the run ('simulation.end-time': {:g} s); give a later end-time.",
+        command_line.restart_folder.string(), job.restart_time, end);
 }
 
 /// Folders, log and the checkpoint to continue from. Collective over job.comm.

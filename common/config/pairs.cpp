@@ -19,7 +19,7 @@ std::string doubt_of_wave_speed(double modulus, double density) {
 }
 
 std::string doubt_of_kinematic_viscosity(double viscosity, double density) {
-  constexpr double least = 1e-8;  // [m^2/s]
+  constexpr double least = 5e-8;  // [m^2/s]
   if (!(viscosity > 0) || !(density > 0) || viscosity / density >= least) return "";
   return fmt::format(
       "viscosity/density is {:.3g} m^2/s (usual: at least {:g} m^2/s): implausible; 'viscosity' is the dynamic one, in Pa s: the "

@@ -9,7 +9,7 @@ namespace couplet::config {
 
 /// sqrt(modulus/density): 1 m/s (gels) to 20 km/s (diamond).
 std::string doubt_of_wave_speed(double modulus, double density);
-/// viscosity/density: no fluid at rest has less than 1e-8 m^2/s (mercury: 1e-7, water: 1e-6).
+/// viscosity/density: hardly any fluid has less than 5e-8 m^2/s (mercury: 1e-7, water: 1e-6).
 std::string doubt_of_kinematic_viscosity(double viscosity, double density);
 
 }  // namespace couplet::config

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Patches, meshes, programs and files."""
+import pathlib
+
+SQUARE = (pathlib.Path(__file__).parent / "square.msh").read_text(encoding="utf-8")
+SHARED = SQUARE.replace("\n12\n1 1 2 3 1 1 2\n", "\n13\n1 1 2 3 1 1 2\n13 1 2 2 1 1 2\n")
+OPEN = """Point(1) = {0, 0, 0}; Point(2) = {1, 0, 0}; Point(3) = {1, 1, 0}; Point(4) = {0, 1, 0};
+Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4};
+Curve Loop(1) = {1, 2, 3}; Plane Surface(1) = {1};
+Physical Curve("bottom") = {1}; Physical Curve("right") = {2}; Physical Curve("top") = {3}; Physical Curve("left") = {3};
+Physical Surface("inside") = {1};
+"""
+HOLD = "{type: fixed-displacement, value: [0, 0]}"
+SPATIAL = [("dimension: 2", "dimension: 3"), ("value: [0, 0]", "value: [0, 0, 0]"), ("[1 MPa, 0]", "[1 MPa, 0, 0]"), ("[1, 1]", "[1, 1, 0]")]
+MISTAKES = [
+    ("no mistake: solid", "solid", [], "right", {"message": "the case that the others differ from", "run": True}),
+    ("no mistake: coupled", "coupled", [], "right", {"message": "the case that the others differ from", "run": True}),
+    ("wrong sign of a pressure", "solid", [("{type: traction, value: [1 MPa, 0]}", "{type: pressure, value: -1 MPa}")], "right",
+     {"message": "a pressure below that of the surroundings pulls; the docs of the key say what is positive", "run": True}),
+    ("patch with a misspelt name", "solid", [("      right:", "      rigth:")], "refused",
+     {"message": "boundaries.rigth: the mesh has no patch of this name. Did you mean 'right'?"}),
+    ("patch without an entry", "solid", [("      top: {type: free}\n", "")], "refused", {"message": "the patch 'top' of the mesh has no entry here."}),
+    ("nothing holds the solid", "solid", [(HOLD, "{type: free}")], "refused", {"message": "nothing holds the solid of this static analysis"}),
+    ("plane mesh in three dimensions", "solid", SPATIAL + [("    plane: stress\n", "")], "refused", {"message": "dimension", "run": True}),
+    ("plane stress in three dimensions", "solid", SPATIAL, "refused", {"message": "plane: a 3-dimensional scene is no cut; remove this key."}),
+    ("plane strain for plane stress", "solid", [("plane: stress", "plane: strain")], "right",
+     {"message": "both are scenes; --explain names the one in force"}),
+    ("plane as a word of another program", "solid", [("plane: stress", "plane: plane-stress")], "refused", {"message": "'plane-stress' is not one of: strain, stress."}),
+    ("restart into the output folder of the first run", "solid", [], "right",
+     {"message": "a run continues its own results", "run": True, "twice": ["--restart", "out/checkpoints", "--set", "simulation.end-time=2 s"]}),
+    ("restart of another material", "solid", [], "refused",
+     {"message": "youngs-modulus", "run": True, "twice": ["--restart", "out/checkpoints", "--set", "simulation.end-time=2 s", "--set",
+                                                         "participants.solid.material.youngs-modulus=70 GPa"]}),
+    ("restart beyond the end", "fluid", [], "refused",
+     {"message": "its time, 1 s, lies beyond the end of the run ('simulation.end-time': 0.5 s); give a later end-time.", "run": True,
+      "twice": ["--restart", "out/checkpoints", "--set", "simulation.end-time=0.5 s"]}),
+    ("two patches on one face", "solid", [("square.msh", "shared.msh")], "refused",
+     {"message": "The boundary face at (0.25, 0) is in two patches, 'bottom' and 'right'. Every boundary face must be in exactly one.", "run": True,
+      "files": {"shared.msh": SHARED}}),
+    ("geometry that is not closed", "solid", [("square.msh", "open.geo")], "refused",
+     {"message": "gmsh could not mesh 'open.geo'", "run": True, "files": {"open.geo": OPEN}}),
+    ("interface on the wrong side", "coupled", [("bottom: {type: fixed-displacement, value: [0, 0]}", "bottom: {type: interface}"),
+                                                ("      top: {type: interface}", "      top: {type: fixed-displacement, value: [0, 0]}")],
+     "refused", {"message": "no twin", "run": True}),
+    ("interface forgotten on one side", "coupled", [("      top: {type: interface}", "      top: {type: free}")], "refused",
+     {"message": "There are 0 vertices of 'solid' and 3 vertices of 'mover': an interface needs some on both sides.", "run": True}),
+    ("one of two meshes in millimetres", "coupled", [("mesh: below.msh", "mesh: below.msh\n    mesh-scale: 1e-3")], "refused",
+     {"message": "no twin", "run": True}),
+    ("one participant in two roles", "coupled", [("structure: {participant: solid}", "structure: {participant: fluid}")], "refused",
+     {"message": "fluid and structure must be two different participants."}),
+    ("swapped roles", "coupled", [("  fluid: {participant: fluid}", "  fluid: {participant: mover}"), ("  mesh: {participant: mover}", "  mesh: {participant: fluid}")],
+     "refused", {"message": "role"}),
+    ("no role for a participant", "coupled", [("  mesh: {participant: mover}\n", "")], "refused", {"message": "this participant has no role in `coupling`"}),
+]
