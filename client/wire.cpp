@@ -21,6 +21,7 @@ class Reader {
   explicit Reader(const std::vector<char>& bytes) : bytes_(bytes) {}
   std::int64_t integer() { return plain<std::int64_t>(); }
   double real() { return plain<double>(); }
+  std::size_t left() const { return bytes_.size() - at_; }
   std::string text() {
     const std::int64_t n = integer();
     if (n < 0 || std::size_t(n) > bytes_.size() - at_) throw std::runtime_error("a command is cut short.");
@@ -171,6 +172,9 @@ Command unpack(const std::vector<char>& head) {
                              " of the protocol, this client version " + std::to_string(version) + ".");
   Command c;
   c.op = in.integer();
+  if (c.op < 1 || c.op > 8)
+    throw std::runtime_error("the coupler sent command " + std::to_string(c.op) +
+                             ", which this client does not know.");
   c.time = in.real();
   c.dt = in.real();
   c.scheme = in.integer();
@@ -180,7 +184,10 @@ Command unpack(const std::vector<char>& head) {
   c.accepted = in.real();
   c.output = in.integer();
   c.folder = in.text();
-  for (std::int64_t n = in.integer(); n > 0; --n) c.data.push_back(in.text());
+  const std::int64_t n = in.integer();
+  if (n < 0 || std::size_t(n) > in.left() / 8) throw std::runtime_error("a command is cut short.");
+  for (std::int64_t i = 0; i < n; ++i) c.data.push_back(in.text());
+  if (in.left() != 0) throw std::runtime_error("a command is longer than its content.");
   return c;
 }
 
@@ -197,8 +204,14 @@ Place join(const std::string& participant, const std::string& program) {
   MPI_Iallgather(hello, 4, MPI_INT64_T, all.data(), 4, MPI_INT64_T, MPI_COMM_WORLD, &request);
   wait(request);
   for (std::size_t r = 0; r < std::size_t(size); ++r)
-    if (all[4 * r] != hello_mark || all[4 * r + 1] != version)
+    if (all[4 * r] != hello_mark)
       throw std::runtime_error("process " + std::to_string(r) + " of the job speaks another protocol.");
+  for (std::size_t r = 0; r < std::size_t(size); ++r)
+    if (all[4 * r + 1] != version)
+      throw std::runtime_error("process " + std::to_string(r) + " of the job speaks version " +
+                               std::to_string(all[4 * r + 1]) + " of the protocol, this client version " +
+                               std::to_string(version) +
+                               ": use the client library and the programs of one version of Couplet.");
   // 2. Guests have no part in the programs' own communicator.
   MPI_Comm nobody;
   MPI_Comm_split(MPI_COMM_WORLD, MPI_UNDEFINED, rank, &nobody);

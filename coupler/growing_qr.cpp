@@ -154,8 +154,8 @@ void GrowingQr::save(CheckpointWriter& file, const std::string& name) const {
 }
 
 void GrowingQr::load(CheckpointReader& file, const std::string& name, std::size_t rows) {
-  const int m = static_cast<int>(file.read_scalar(name + ".columns"));
-  std::vector<double> q(m * rows), r(std::size_t(m) * m);
+  const int m = static_cast<int>(file.read_count(name + ".columns", most_columns));
+  std::vector<double> q(std::size_t(m) * rows), r(std::size_t(m) * std::size_t(m));
   file.read(name + ".q", q);
   file.read(name + ".r", r);
   q_.clear();

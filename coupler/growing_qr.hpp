@@ -13,6 +13,9 @@ namespace couplet {
 class CheckpointReader;
 class CheckpointWriter;
 
+/// A checkpoint holds no more of them.
+inline constexpr std::size_t most_columns = 10000;
+
 /// A = Q R of a tall matrix whose rows are distributed and whose columns come and go: new ones join at the
 /// front, any may leave. Gram-Schmidt twice for a new column, Givens rotations for the rest [Golub, Van Loan
 /// 2013, 6.5]: 10 m flops a row for each change of m columns, and two sums over the ranks.

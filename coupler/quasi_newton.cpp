@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "coupler/quasi_newton.hpp"
+#include "common/base/error.hpp"
 
 #include "common/io/checkpoint.hpp"
 
@@ -81,7 +82,9 @@ void LeastSquaresNewton::save(CheckpointWriter& file) const {
 
 void LeastSquaresNewton::load(CheckpointReader& file) {
   pairs_.load(file, "iqn");
-  const std::vector<double> steps = file.read("iqn.step-of");
+  const std::vector<double> steps = file.read_or_none("iqn.step-of", std::size_t(pairs_.columns()));
+  if (steps.size() != std::size_t(pairs_.columns()))
+    throw Error("The checkpoint's steps of differences ('iqn.step-of') are damaged. Use an earlier one.");
   step_of_.assign(steps.begin(), steps.end());
   step_ = file.read_scalar("iqn.step");
 }
@@ -154,7 +157,7 @@ void MultiVectorNewton::save(CheckpointWriter& file) const {
 
 void MultiVectorNewton::load(CheckpointReader& file) {
   steps_.clear();
-  const auto n = static_cast<std::size_t>(file.read_scalar("iqn.steps"));
+  const std::size_t n = file.read_count("iqn.steps", most_columns);
   for (std::size_t s = 0; s < n; ++s) steps_.emplace_back(comm_).load(file, "iqn." + std::to_string(s));
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "coupler/quasi_newton.hpp"
 
@@ -62,8 +63,10 @@ void SecantPairs::save(CheckpointWriter& file, const std::string& name) const {
 
 void SecantPairs::load(CheckpointReader& file, const std::string& name) {
   const std::vector<double> unknown = file.read(name + ".images"), rider = file.read(name + ".riders");
-  const auto m = static_cast<std::size_t>(file.read_scalar(name + ".columns"));
+  const std::size_t m = file.read_count(name + ".columns", most_columns);
   const std::size_t n = m > 0 ? unknown.size() / m : 0, n_rider = m > 0 ? rider.size() / m : 0;
+  if (m * n != unknown.size() || m * n_rider != rider.size())
+    throw Error("The checkpoint's differences of passes '{}' are damaged. Use an earlier one.", name);
   qr_.load(file, name, n);
   images_.clear();
   for (std::size_t j = 0; j < m; ++j) {

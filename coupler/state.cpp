@@ -12,8 +12,10 @@ void write(CheckpointWriter& file, const std::string& name, const Iterate& x) {
   file.write(name + "-rider", x.rider);
 }
 
-Iterate read(CheckpointReader& file, const std::string& name) {
-  return {file.read(name), file.read(name + "-rider")};
+/// As much as the coupling has unknowns and values that ride along, or nothing.
+Iterate read(CheckpointReader& file, const std::string& name, const Unknown& unknown) {
+  return {file.read_or_none(name, unknown.n_unknown()),
+          file.read_or_none(name + "-rider", unknown.n_rider())};
 }
 
 }  // namespace
@@ -44,9 +46,9 @@ void Coupler::save(const std::filesystem::path& folder) {
 void Coupler::load() {
   enter_(Phase::load, {});
   CheckpointReader file(comm_, folders_.restart / "coupler.h5");
-  history_.now = read(file, "now");
-  history_.old = read(file, "old");
-  history_.older = read(file, "older");
+  history_.now = read(file, "now", *unknown_);
+  history_.old = read(file, "old", *unknown_);
+  history_.older = read(file, "older", *unknown_);
   history_.old_dt = file.read_scalar("old-dt");
   history_.older_dt = file.read_scalar("older-dt");
   unknown_->restore_weights(file.read("weights"));
@@ -62,7 +64,8 @@ void Coupler::load() {
   const std::vector<double> lag = file.read("lag");
   if (lag_) lag_->restore(lag);
   if (lag_ && !lag.empty())
-    for (std::size_t k = 0; auto* field : lag_->fields()) *field = file.read("lag-" + std::to_string(k++));
+    for (std::size_t k = 0; auto* field : lag_->fields())
+      *field = file.read_or_none("lag-" + std::to_string(k++), unknown_->n_rider());
   const RunState state = read_run_state(folders_.restart);
   loop_.restart(state);
   ask_all(everyone(), {Op::load, {}, {}, state.time, -1, folders_.restart.string()});

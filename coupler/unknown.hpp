@@ -37,6 +37,9 @@ class Unknown {
           const std::vector<std::size_t>& group, bool side_by_side);
 
   const std::vector<Part>& parts() const { return parts_; }
+  /// Values of this rank.
+  std::size_t n_unknown() const { return n_unknown_; }
+  std::size_t n_rider() const { return n_rider_; }
   /// Whether all of it has been given.
   bool complete(const std::vector<Exchange>& given) const;
   /// From what all have given, scaled; to it. Data of the unknown alone.

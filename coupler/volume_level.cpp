@@ -88,6 +88,9 @@ void VolumeLevel::loaded(std::size_t i, const Exchange& taken, Exchange& given) 
   if (found == cavities_.end()) return;
   found->load = values_of(given, load_name);
   found->areas = found->wall.areas(values_of(taken, "displacement"));
+  if (!found->place.empty() && found->place.size() != values_of(taken, "displacement").size())
+    throw Error("The checkpoint's place of the closed fluid '{}' is damaged. Use an earlier one.",
+                found->name);
   const std::vector<Vec3> begin = found->wall.areas(found->place);
   for (std::size_t f = 0; f < begin.size(); ++f) found->areas[f] = (found->areas[f] + begin[f]) / 2;
   put(*found, given);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fluid_solver/error_estimate.hpp"
+#include "common/base/saved_numbers.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -151,13 +152,14 @@ void FluidErrorEstimate<D>::restore(std::span<const double> state) {
   seen_ = 0, judged_ = false, steps_ = {};
   u_.clear(), rate_.clear(), rate_change_.clear();
   if (state.empty()) return;
-  seen_ = int(state[0]), judged_ = state[1] != 0, dt_old_ = state[2];
-  const auto n = std::size_t(state[3]);
-  state = state.subspan(4);
-  for (Vectors<D>* vectors : {&rate_, &rate_change_})
-    for (std::size_t c = 0; c < n; ++c, state = state.subspan(D)) vectors->emplace_back(state.data());
-  steps_.restore(state);
+  SavedNumbers saved(state, "errors of steps");
+  seen_ = int(saved.count(1e9)), judged_ = saved.real() != 0, dt_old_ = saved.real();
+  const std::size_t n = saved.count_of(2 * D);
   const Vectors<D>& u = fluid_.state().u;
+  if (n != 0 && n != std::size_t(fluid_.mesh().cells.n_owned())) saved.damaged();
+  for (Vectors<D>* vectors : {&rate_, &rate_change_})
+    for (std::size_t c = 0; c < n; ++c) vectors->emplace_back(saved.next(D).data());
+  steps_.restore(saved.rest());
   u_.assign(u.begin(), u.begin() + fluid_.mesh().cells.n_owned());
 }
 

@@ -125,8 +125,11 @@ void PressureEquation<D>::load(CheckpointReader& file) {
   PreconditionerMemory memory;
   memory.is_due = file.read_scalar("pressure-preconditioner-due") != 0;
   memory.is_single = file.read_scalar("pressure-preconditioner-single") != 0;
-  memory.most_iterations = static_cast<int>(file.read_scalar("pressure-preconditioner-iterations"));
-  std::vector<double> saved = file.read("pressure-preconditioner");
+  memory.most_iterations = static_cast<int>(file.read_count("pressure-preconditioner-iterations", 1000000));
+  const std::size_t coefficients = std::size_t(mesh_.cells.n_owned()) + std::size_t(mesh_.n_interior);
+  std::vector<double> saved = file.read_or_none("pressure-preconditioner", coefficients);
+  if (!memory.is_due && saved.size() != coefficients)
+    throw Error("The checkpoint's preconditioner of the pressure is damaged. Use an earlier one.");
   const bool is_here = solver_->memory() == memory && *now_.made_from == saved;
   if (any(mesh_.comm, !is_here)) {
     if (!memory.is_due) fill(saved);

@@ -67,11 +67,11 @@ State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<co
   s.time = file.read_scalar("time");
   s.dt_old = file.read_scalar("dt-old");
   s.implicit = file.read_scalar("implicit") != 0;
-  s.start = static_cast<Start>(static_cast<int>(file.read_scalar("start")));
+  s.start = static_cast<Start>(file.read_count("start", 2));
   s.ledger = {file.read_scalar("energy"), file.read_scalar("energy-largest"),
               file.read_scalar("energy-excess"), file.read_scalar("energy-reference"),
               file.read_scalar("energy-level")};
-  const int levels = static_cast<int>(file.read_scalar("pressure-levels"));
+  const auto levels = static_cast<int>(file.read_count("pressure-levels", s.pressure.size()));
   const bool has_mesh_flux = file.read_scalar("has-mesh-flux") != 0;
   const bool has_memory = file.read_scalar("has-flux-memory") != 0;
   s.turns = file.read_scalar("has-turn") != 0;

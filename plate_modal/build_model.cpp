@@ -282,6 +282,16 @@ Built build_model(const Parameters& p, const PlateContext& context, const RawMes
   return built;
 }
 
+std::string problem_of_modes_file(const Parameters& p, const std::filesystem::path& case_folder) {
+  if (!p.modes_file) return "";
+  try {
+    modes_of_file(p, case_folder / *p.modes_file);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 double seat_stiffness(const Parameters& p) {
   return p.material.youngs_modulus / (3 * (1 - 2 * p.material.poissons_ratio)) / p.thickness;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 #include "common/linalg/petsc_environment.hpp"
+#include "plate_modal/build_model.hpp"
 #include "plate_modal/effect_cards.hpp"
 #include "plate_modal/structure.hpp"
 
@@ -22,6 +23,14 @@ int main(int argc, char** argv) {
             return couplet::effects_of(
                 couplet::plate::plate_effect_cards(),
                 couplet::plate::PlateScene{parameters, scene.coupled, scene.time_step});
+          },
+      .problems_of_files =
+          [&](const std::filesystem::path& folder) {
+            std::vector<couplet::ProblemOfKey> problems;
+            if (std::string problem = couplet::plate::problem_of_modes_file(parameters, folder);
+                !problem.empty())
+              problems.push_back({"modes.file", std::move(problem)});
+            return problems;
           }};
   return couplet::run_program(argc, argv, program);
 }

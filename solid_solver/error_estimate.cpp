@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "common/base/error.hpp"
+#include "common/base/saved_numbers.hpp"
 #include "common/elasticity/symmetric_faces.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/inner_variation.hpp"
@@ -198,13 +199,16 @@ std::vector<double> SolidErrorEstimate::state() const {
 }
 
 void SolidErrorEstimate::restore(std::span<const double> state) {
-  const auto n = state.empty() ? 0 : std::size_t(state[0]);
-  constexpr std::size_t n_drift = PhaseDrift::n_values;
-  if (!state.empty() && n + n_drift > state.size() - 1)
-    throw Error("The checkpoint's errors of steps are damaged.");
-  linear_.restore(state.empty() ? state : state.subspan(1, n));
-  steps_.restore(state.empty() ? state : state.subspan(1 + n + n_drift));
-  if (!state.empty()) drift_.restore(state.subspan(1 + n, n_drift));
+  if (state.empty()) {
+    linear_.restore(state);
+    steps_.restore(state);
+    return;
+  }
+  SavedNumbers saved(state, "errors of steps");
+  linear_.restore(saved.next(saved.count_of(1)));
+  const std::span<const double> drift = saved.next(PhaseDrift::n_values);
+  steps_.restore(saved.rest());
+  drift_.restore(drift);
 }
 
 }  // namespace couplet

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/base/saved_numbers.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -68,6 +69,8 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
   std::vector<double> rate(n);
   for (std::size_t c = 0; c < n; ++c) rate[c] = (now.cells[c] - before.cells[c]) / now.dt;
   // Rates are those of the middles of steps, as far apart as half of both.
+  if (dt_ > 0 && rate_.size() != n)
+    throw Error("The checkpoint's errors of steps are those of another mesh. Use an earlier one.");
   if (dt_ > 0)  // the same on all ranks, also on one without cells
     steps_.add(rate_, rate, 0.5 * (now.dt + dt_), dt_, size(now.cells, level_),
                [this](std::span<const double> cells) { return root_mean_square(cells); });
@@ -120,11 +123,11 @@ std::vector<double> HeatErrors::state() const {
 
 void HeatErrors::restore(std::span<const double> state) {
   if (state.empty()) return;
-  const auto n = state.size() < 4 ? state.size() : std::size_t(state[3]);
-  if (state.size() < 4 + n) throw Error("The checkpoint's errors of steps are damaged.");
-  begun_ = state[0] != 0, level_ = state[1], dt_ = state[2];
-  rate_.assign(state.begin() + 4, state.begin() + 4 + std::ptrdiff_t(n));
-  steps_.restore(state.subspan(4 + n));
+  SavedNumbers saved(state, "errors of steps");
+  begun_ = saved.real() != 0, level_ = saved.real(), dt_ = saved.real();
+  const std::span<const double> rate = saved.next(saved.count_of(1));
+  rate_.assign(rate.begin(), rate.end());
+  steps_.restore(saved.rest());
 }
 
 }  // namespace couplet

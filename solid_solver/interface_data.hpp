@@ -79,6 +79,8 @@ class InterfaceTemperature final {
   /// `here`: a value a face of this rank. Returns these and those of other ranks that the places need; empty if no rank
   /// was given any. Throws Error on all ranks where the number is wrong. Collective.
   std::vector<double> with_others(const std::vector<double>& here) const;
+  /// Values that with_others() returns.
+  std::size_t n_faces() const { return std::size_t(faces_.n_local()); }
   /// For the places of a group, from what with_others() returned.
   const FaceInterpolation& at(std::size_t group) const { return at_[group]; }
 

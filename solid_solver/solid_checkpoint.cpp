@@ -2,6 +2,7 @@
 // The state of a solid and what its next first guesses learn from, on file.
 #include <fmt/format.h>
 
+#include <array>
 #include <type_traits>
 
 #include "common/io/checkpoint.hpp"
@@ -76,13 +77,15 @@ void SolidStepper::load_state(CheckpointReader& file) {
     value = static_cast<std::remove_reference_t<decltype(value)>>(file.read_scalar(name));
   });
   if (parameters_.output.energies) {
-    const std::vector<double> e = file.read("energies");
-    state_.energies = {e.at(0), e.at(1), 0, e.at(2), e.at(3), e.at(4)};
+    std::array<double, 5> e{};
+    file.read("energies", e);
+    state_.energies = {e[0], e[1], 0, e[2], e[3], e[4]};
   }
   if (body_.is_dynamic()) {
-    const std::vector<double> work = file.read("load-work");
-    state_.load_work = work.at(0);
-    state_.energies.initial_kinetic = work.at(1);
+    std::array<double, 2> work{};
+    file.read("load-work", work);
+    state_.load_work = work[0];
+    state_.energies.initial_kinetic = work[1];
   }
   if (body_.finite())
     body_.finite()->load(file, body_.unknowns_of(state_.cell_u, state_.face_u), state_.known);
@@ -103,10 +106,14 @@ void SolidStepper::save_guesses(CheckpointWriter& file) const {
 
 void SolidStepper::load_guesses(CheckpointReader& file) {
   apply_stiffness();
-  for (int i = static_cast<int>(file.read_scalar("projections")); i-- > 0;) {
+  for (std::size_t i = file.read_count("projections", 1000); i-- > 0;) {
     SolidSystem& system = system_for(file.read_scalar(fmt::format("projection-{}-mass-factor", i)));
     const SolidProblem problem = problem_of(system);
-    const auto apply = [&](std::span<const double> x, std::span<double> y) { problem.apply(x, y); };
+    const auto apply = [&](std::span<const double> x, std::span<double> y) {
+      if (x.size() != body_.unknowns_of(state_.cell_u, state_.face_u).size())
+        throw Error("The checkpoint's corrections of solves are those of another mesh. Use an earlier one.");
+      problem.apply(x, y);
+    };
     if (ResidualProjection* projection = system.projection())
       projection->set_values(file.read(fmt::format("projection-{}", i)), apply);
   }

@@ -373,7 +373,9 @@ void ThermalStrain::load(CheckpointReader& file) {
     const std::vector<double> errors = file.read("temperature-errors");
     if (errors_) errors_->restore(errors);
   }
-  if (given_) given_trial_ = given_accepted_ = file.read("interface-temperature");
+  if (given_)
+    given_trial_ = given_accepted_ =
+        file.read_or_none("interface-temperature", interface_ ? interface_->n_faces() : 0);
   if (coupled_) {
     file.read("dilation", dilation_);
     file.read("dilation-rate", dilation_rate_);

@@ -220,6 +220,10 @@ void DayReport::restore(std::span<const double> state) {
   if (state.size() < sums + 1 ||
       double(state.size()) != double(sums) + StressHistory::state_size(state[sums]))
     throw Error("report: the checkpoint is of another version of this program: its sums are not ours.");
+  constexpr double most_days = 1e6;
+  for (const double days : {state[0], state[1]})
+    if (!(days >= 0 && days <= most_days))
+      throw Error("report: the checkpoint's numbers of days are damaged.");
   days_seen_ = static_cast<int>(state[0]);
   days_counted_ = static_cast<int>(state[1]);
   int counted = 0;

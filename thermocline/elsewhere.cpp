@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
+#include "common/base/saved_numbers.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/log/doubt.hpp"
 #include "common/parallel/collective.hpp"
@@ -80,8 +81,10 @@ class GroundModel {
     return all;
   }
   void restore(const std::vector<double>& state) {
-    taken_ = state.at(0), passed_ = state.at(1), start_ = state.at(2);
-    column_.temperature().assign(state.begin() + 3, state.end());
+    SavedNumbers saved(state, "temperatures of the ground");
+    taken_ = saved.real(), passed_ = saved.real(), start_ = saved.real();
+    saved.fill(column_.temperature());
+    if (saved.left() > 0) saved.damaged();
   }
   std::string books() const { return books_of("ground", taken_, passed_, column_.energy(deep_) - start_); }
 
@@ -142,10 +145,11 @@ class BlanketModel {
     return all;
   }
   void restore(const std::vector<double>& state) {
-    taken_ = state.at(0), passed_ = state.at(1), start_ = state.at(2), air_ = state.at(3);
-    const auto begin = state.begin() + 4;
-    std::copy_n(begin, wall_.size(), wall_.begin());
-    blanket_.temperature().assign(begin + std::ptrdiff_t(wall_.size()), state.end());
+    SavedNumbers saved(state, "temperatures of the insulation");
+    taken_ = saved.real(), passed_ = saved.real(), start_ = saved.real(), air_ = saved.real();
+    saved.fill(wall_);
+    saved.fill(blanket_.temperature());
+    if (saved.left() > 0) saved.damaged();
   }
   std::string books() const {
     return books_of("insulation", taken_, passed_, blanket_.energy(air_) - start_);

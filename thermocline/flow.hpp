@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/saved_numbers.hpp"
 #include "common/config/section.hpp"
 #include "thermocline/interfaces.hpp"
 #include "thermocline/plant.hpp"
@@ -47,7 +48,10 @@ class Schedule final : public FlowControl {
         flowed_(rows_.size(), false) {}
   Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
   std::vector<double> state() const override { return {current_, double(stopped_)}; }
-  void restore(std::span<const double> state) override { current_ = state[0], stopped_ = state[1] != 0; }
+  void restore(std::span<const double> state) override {
+    SavedNumbers saved(state, "rows of the flow");
+    current_ = saved.real(), stopped_ = saved.real() != 0;
+  }
   /// Rows that were stopped each time before they began.
   std::vector<std::string> doubts() const override;
 

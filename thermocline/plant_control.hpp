@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/base/saved_numbers.hpp"
 #include "thermocline/interfaces.hpp"
 #include "thermocline/plant.hpp"
 
@@ -13,7 +14,9 @@ class PlantControl final : public FlowControl {
 
   Flow decide(double t, double t_top, double t_bottom, const Ambient& ambient) override;
   std::vector<double> state() const override { return {double(mode_)}; }
-  void restore(std::span<const double> state) override { mode_ = PlantMode(int(state[0])); }
+  void restore(std::span<const double> state) override {
+    mode_ = PlantMode(SavedNumbers(state, "mode of the plant").count(2));
+  }
 
   const Plant& plant() const { return plant_; }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/stress_history.hpp"
+#include "common/base/saved_numbers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -76,15 +77,16 @@ std::vector<double> StressHistory::state() const {
 }
 
 void StressHistory::restore(std::span<const double>& state) {
-  const auto n = static_cast<std::size_t>(state[0]);
-  days_ = static_cast<int>(state[1]);
-  day_begun_ = state[2] != 0;
-  state = state.subspan(3);
+  SavedNumbers saved(state, "sums of stresses");
+  const std::size_t n = saved.count(double(state.size()));
+  days_ = static_cast<int>(saved.count(1e9));
+  day_begun_ = saved.real() != 0;
   for (auto* part : {&z_, &day_lowest_, &day_highest_, &day_highest_at_, &sum_lowest_, &sum_highest_,
                      &highest_, &highest_at_}) {
-    part->assign(state.begin(), state.begin() + std::ptrdiff_t(n));
-    state = state.subspan(n);
+    const std::span<const double> values = saved.next(n);
+    part->assign(values.begin(), values.end());
   }
+  state = saved.rest();
 }
 
 }  // namespace couplet::thermocline

@@ -97,7 +97,9 @@ class Client:
         hello, everyone = numpy.array([HELLO, VERSION, 1, 0], "i8"), numpy.zeros(4 * world.size, "i8")
         _wait(world.Iallgather(hello, everyone))
         if (everyone[0::4] != HELLO).any() or (everyone[1::4] != VERSION).any():
-            self._end("a process of the job speaks another protocol")
+            others = sorted(set(everyone[1::4].tolist()) - {VERSION})
+            self._end("a process of the job speaks another protocol" +
+                      (f": version {others[0]}, this client version {VERSION}" if others else ""))
         world.Split(MPI.UNDEFINED, world.rank)
         number = world.Get_attr(MPI.APPNUM) or 0
         fields = [program, participant, "(guest)", "0", "", "1", str(number), str(world.rank)]

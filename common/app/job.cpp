@@ -103,17 +103,32 @@ void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
   if (!command_line.restart_folder.empty()) find_restart(job, command_line, is_driver);
 }
 
-/// Reports what was thrown, once a participant, and ends all programs of the job.
-[[noreturn]] void end_the_job(Watch& watch, const char* what, bool configuring) {
-  if (watch.claim_report()) log::error("{}", what);
-  watch.ending();
+/// Ends all programs of the job.
+[[noreturn]] void leave(int code) {
   std::fflush(nullptr);
-  const int code = configuring ? exit_configuration : exit_failed;
   // MPI_Abort would add a page of its own to the sentence. Open MPI's launcher ends a job as well when one of its
   // processes leaves with such a code, and a process alone has nobody to end.
   if (has_open_mpi_launcher() || comm_size(MPI_COMM_WORLD) == 1) ::_exit(code);
   MPI_Abort(MPI_COMM_WORLD, code);
   std::abort();
+}
+
+/// Reports what was thrown, once a participant, and ends all programs of the job.
+[[noreturn]] void end_the_job(Watch& watch, const char* what, bool configuring) {
+  if (watch.claim_report()) log::error("{}", what);
+  watch.ending();
+  leave(configuring ? exit_configuration : exit_failed);
+}
+
+/// The handshake; what is wrong with it is said once and ends the job. Nobody watches yet.
+MPI_Comm join_the_job() {
+  try {
+    return shake_hands(MPI_COMM_WORLD);
+  } catch (const HandshakeFailure& failure) {
+    if (failure.speaker == comm_rank(MPI_COMM_WORLD))
+      fmt::print(stderr, "couplet: The job cannot start: {}\n", failure.what());
+    leave(exit_configuration);
+  }
 }
 
 /// The first process that has read the case (a guest may not have) speaks for all.
@@ -225,7 +240,7 @@ int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<
   MPI_Init(&argc, &argv);
   // Short sleeps while waiting for other programs shall be short (Linux adds 50 us to each by default).
   prctl(PR_SET_TIMERSLACK, 2000UL);
-  const MPI_Comm programs = shake_hands(MPI_COMM_WORLD);
+  const MPI_Comm programs = join_the_job();
   const int code = attend(command_line, kind, file, label, programs, start_guard, run);
   start_guard.reset();
   std::fflush(nullptr);

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "common/app/check_files.hpp"
+#include "common/app/check_restart.hpp"
 #include "common/base/error.hpp"
 
 namespace couplet {
@@ -28,6 +29,8 @@ int check(const CommandLine& command_line, const ProgramKind& kind, bool print) 
   CaseFile file = read_case(command_line, kind);
   if (!print && file.errors.empty() && !kind.is_coupler)
     file.errors = problems(file, kind, command_line.case_file.parent_path());
+  if (!print && file.errors.empty() && !command_line.restart_folder.empty())
+    file.errors = problems_of_restart(command_line.restart_folder, file.participant);
   if (!file.errors.empty()) {
     for (const std::string& error : file.errors) fmt::print(stderr, "{}\n", error);
     return 2;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -19,6 +20,8 @@ namespace {
 
 // One text a process: fields parted by unit separators, which no name, path or message holds.
 constexpr char field_end = '\x1f', text_end = '\x1e';
+constexpr std::size_t longest_name = 256;
+constexpr std::int64_t hello_mark = 0x434f55504c4554;  // "COUPLET"
 
 std::string encode(const Attendant& a) {
   std::string text;
@@ -30,21 +33,15 @@ std::string encode(const Attendant& a) {
   return text + text_end;
 }
 
-Attendant decode(const std::string& text) {
-  std::vector<std::string> fields;
-  std::istringstream in(text);
-  for (std::string field; std::getline(in, field, field_end);) fields.push_back(field);
-  Attendant a;
-  a.program = fields.at(0);
-  a.participant = fields.at(1);
-  a.case_file = fields.at(2);
-  a.case_hash = std::stoull(fields.at(3));
-  a.restart = fields.at(4);
-  a.named = fields.at(5) == "1";
-  a.application = std::stoi(fields.at(6));
-  a.world_rank = std::stoi(fields.at(7));
-  a.errors.assign(fields.begin() + 8, fields.end());
-  return a;
+template <class T>
+bool parse(const std::string& text, T& value) {
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return failed == std::errc() && end == text.data() + text.size();
+}
+
+bool is_name(const std::string& text) {
+  return text.size() <= longest_name &&
+         std::ranges::none_of(text, [](unsigned char c) { return c < 32 || c == 127; });
 }
 
 std::string label(const Attendant& a) { return a.participant.empty() ? a.program : a.participant; }
@@ -141,25 +138,68 @@ std::string attendance(const std::vector<Attendant>& attendants, const std::vect
 
 }  // namespace
 
+Attendant introduced(const std::string& text, int process) {
+  std::vector<std::string> fields;
+  std::istringstream in(text);
+  for (std::string field; std::getline(in, field, field_end);) fields.push_back(field);
+  const auto malformed = [&](const std::string& why) {
+    return Error(
+        "Process {} of the job introduces itself in a way that cannot be understood: {}. docs/protocol.md says how, in step 3.",
+        process, why);
+  };
+  if (fields.size() < 8) throw malformed(fmt::format("it gives {} fields, 8 are expected", fields.size()));
+  Attendant a;
+  a.program = fields[0];
+  a.participant = fields[1];
+  a.case_file = fields[2];
+  a.restart = fields[4];
+  a.named = fields[5] == "1";
+  if (!is_name(a.program) || !is_name(a.participant))
+    throw malformed(
+        fmt::format("the names of its program and participant have control characters or more than {} bytes",
+                    longest_name));
+  if (!parse(fields[3], a.case_hash) || !parse(fields[6], a.application) || !parse(fields[7], a.world_rank))
+    throw malformed("the hash of its case, the number of its program or its rank is no whole number");
+  if (a.world_rank != process) throw malformed(fmt::format("it says that it is process {}", a.world_rank));
+  a.errors.assign(fields.begin() + 8, fields.end());
+  return a;
+}
+
+void check_hands(std::span<const std::int64_t> all) {
+  const std::size_t n = all.size() / 4;
+  const auto is_ours = [&](std::size_t r) {
+    return all[4 * r] == hello_mark && all[4 * r + 1] == protocol_version && all[4 * r + 2] == 0;
+  };
+  std::size_t speaker = 0;
+  while (speaker < n && !is_ours(speaker)) ++speaker;
+  const auto fail = [&](const std::string& text) { throw HandshakeFailure(text, int(speaker)); };
+  for (std::size_t r = 0; r < n; ++r) {
+    const std::int64_t mark = all[4 * r], version = all[4 * r + 1], kind = all[4 * r + 2];
+    if (mark != hello_mark)
+      fail(fmt::format(
+          "process {} of the job is no program of Couplet: its handshake begins with {}. A program of your own joins as "
+          "docs/protocol.md says.",
+          r, mark));
+    if (version != protocol_version)
+      fail(fmt::format(
+          "process {} of the job ({}) speaks version {} of the protocol, the programs of Couplet here speak version {}. Use "
+          "programs, and for a guest the client library, of one version of Couplet.",
+          r, kind == 0 ? "a program of Couplet" : "a guest", version, protocol_version));
+    if (kind != 0 && kind != 1)
+      fail(fmt::format(
+          "process {} of the job says that it is of kind {}; 0 (a program of Couplet) or 1 (a guest) is expected.",
+          r, kind));
+  }
+}
+
 MPI_Comm shake_hands(MPI_Comm world) {
-  constexpr std::int64_t mark = 0x434f55504c4554;  // "COUPLET"
-  const std::array<std::int64_t, 4> mine{mark, protocol_version, 0, 0};
+  const std::array<std::int64_t, 4> mine{hello_mark, protocol_version, 0, 0};
   std::vector<std::int64_t> all(4 * std::size_t(comm_size(world)));
   MPI_Request request;
   MPI_Iallgather(mine.data(), 4, MPI_INT64_T, all.data(), 4, MPI_INT64_T, world, &request);
   wait_politely(request,
                 "every process of the job to say that it is part of it (docs/protocol.md, handshake)");
-  for (std::size_t r = 0; 4 * r < all.size(); ++r) {
-    if (all[4 * r] != mark)
-      throw Error(
-          "Process {} of the job is no program of Couplet: its handshake begins with {}. A program of your "
-          "own joins "
-          "as docs/protocol.md says.",
-          r, all[4 * r]);
-    if (all[4 * r + 1] != protocol_version)
-      throw Error("Process {} of the job speaks version {} of the protocol, this program version {}.", r,
-                  all[4 * r + 1], protocol_version);
-  }
+  check_hands(all);
   MPI_Comm natives;
   MPI_Comm_split(world, 0, comm_rank(world), &natives);
   return natives;
@@ -176,7 +216,12 @@ std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self) {
   const std::vector<char> all = all_gather(world, std::vector<char>(text.begin(), text.end()));
   std::vector<Attendant> attendants;
   std::istringstream in(std::string(all.begin(), all.end()));
-  for (std::string one; std::getline(in, one, text_end);) attendants.push_back(decode(one));
+  for (std::string one; std::getline(in, one, text_end);)
+    attendants.push_back(introduced(one, int(attendants.size())));
+  if (attendants.size() != std::size_t(comm_size(world)))
+    throw Error(
+        "{} processes introduce themselves, but the job has {}: a guest's introduction must hold one end of text (0x1e).",
+        attendants.size(), comm_size(world));
   return attendants;
 }
 

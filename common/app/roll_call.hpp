@@ -4,8 +4,12 @@
 #include <mpi.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "common/base/error.hpp"
 
 namespace couplet {
 
@@ -40,12 +44,25 @@ struct Verdict {
 
 inline constexpr const char* coupler_name = "coupler";
 
+/// A handshake that failed. `speaker`: the first process of this project and version, which says so for all.
+class HandshakeFailure final : public Error {
+ public:
+  HandshakeFailure(const std::string& text, int speaker) : Error(text), speaker(speaker) {}
+  int speaker;
+};
+
 /// The very first words of a job: every process says in four 64-bit integers that it is part of it (mark,
 /// version of the protocol, 0 for a program of this project or 1 for a guest, 0; docs/protocol.md). Returns
 /// the communicator of this project's processes, who watch over each other; guests are not in it. Waits
-/// without burning a core and says for what. Throws Error if a process says something else. Collective over
+/// without burning a core and says for what. Throws HandshakeFailure if a process says something else. Collective over
 /// `world`.
 MPI_Comm shake_hands(MPI_Comm world);
+
+/// What all processes said at the handshake, four integers each: throws HandshakeFailure.
+void check_hands(std::span<const std::int64_t> all);
+
+/// What a process has said of itself, without the end of text; throws Error if it is not what docs/protocol.md asks for.
+Attendant introduced(const std::string& text, int process);
 
 /// Every process's answer, by world rank, on every process. Collective.
 std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <random>
 #include <tuple>
 #include <vector>
@@ -20,8 +21,6 @@ namespace couplet {
 namespace {
 
 namespace fs = std::filesystem;
-
-const char* const run_file = "run.h5";
 
 /// Different for each run that ever writes into a folder; later runs have larger ones.
 std::string make_run_id() {
@@ -62,7 +61,7 @@ RunState read_run_state(const fs::path& folder) {
   CheckpointReader file(MPI_COMM_SELF, folder / run_file);
   RunState state;
   state.time = file.read_scalar("time");
-  state.outputs = int(file.read_scalar("outputs"));
+  state.outputs = int(file.read_count("outputs", std::numeric_limits<int>::max()));
   file.read("plan", state.plan);
   return state;
 }

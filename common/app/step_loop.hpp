@@ -23,6 +23,7 @@ struct RunState {
   int outputs = 0;  ///< written so far
   std::array<double, 6> plan{};
 };
+inline constexpr const char* run_file = "run.h5";  ///< of a checkpoint
 /// Written by rank 0, collective; read by each rank for itself.
 void write_run_state(MPI_Comm comm, const std::filesystem::path& folder, const RunState& state);
 RunState read_run_state(const std::filesystem::path& folder);

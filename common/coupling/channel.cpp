@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/coupling/channel.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "common/base/error.hpp"
@@ -36,15 +37,70 @@ void MpiChannel::send(const Command& command) {
   sending.wait(what);
 }
 
+namespace {
+
+/// The cut of a surface must be that of the participant's ranks.
+void check_cut(const Cut& cut, int ranks) {
+  for (const Starts* starts : {&cut.vertices, &cut.faces})
+    if (starts->size() != std::size_t(ranks) + 1)
+      throw Error("it cuts its interface over {} ranks, but runs on {}", starts->size() - 1, ranks);
+}
+
+/// What stands only once in a list of names.
+void check_names(const std::vector<Interface::Datum>& list) {
+  for (std::size_t i = 0; i < list.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (list[i].name == list[j].name) throw Error("it announces '{}' twice", list[i].name);
+}
+
+/// Places that came, against those that were announced.
+void check_places(const Interface& interface, const Cut& mine, int rank, const std::string& whose) {
+  const auto here = [&](const Starts& starts) {
+    return std::size_t(starts[std::size_t(rank) + 1] - starts[std::size_t(rank)]);
+  };
+  if (interface.vertices.size() != here(mine.vertices) || interface.face_centres.size() != here(mine.faces))
+    throw Error("'{}' announced {} vertices and {} faces of its interface and described {} and {}.", whose,
+                here(mine.vertices), here(mine.faces), interface.vertices.size(),
+                interface.face_centres.size());
+  for (const Index v : interface.face_vertices)
+    if (v >= mine.vertices.back())
+      throw Error("A face of the interface of '{}' has vertex {} of {} (counted from 0).", whose, v,
+                  mine.vertices.back());
+  const std::size_t parts = std::max<std::size_t>(1, interface.parts.size());
+  for (const int part : interface.face_part)
+    if (std::size_t(part) >= parts)
+      throw Error("A face of the interface of '{}' is of part {} of {} (counted from 0).", whose, part,
+                  parts);
+}
+
+}  // namespace
+
+// What a guest says is looked at before anything is made of it.
+Reply MpiChannel::unpacked(const std::vector<char>& head, Cut& cut) const {
+  try {
+    Reply reply = unpack_reply(head, cut);
+    if (pending_ != Op::initialise || reply.status != Reply::Status::ok) return reply;
+    int ranks = 0;
+    MPI_Comm_remote_size(peers_, &ranks);
+    check_cut(cut, ranks);
+    check_names(reply.interface.takes);
+    check_names(reply.interface.gives);
+    return reply;
+  } catch (const Error& error) {
+    throw Error("The reply of '{}' to {} cannot be used: {} (docs/protocol.md says what it must be)", name_,
+                couplet::name(pending_), error.what());
+  }
+}
+
 Reply MpiChannel::receive() {
   const std::string what = fmt::format("'{}' to answer {}", name_, couplet::name(pending_));
   std::vector<char> head;
   const double begun = processor_seconds();
-  if (comm_rank(comm_) == 0) head = receive_bytes(peers_, 0, reply_tag, what);
+  if (comm_rank(comm_) == 0) head = receive_bytes(peers_, 0, reply_tag, what, longest_head);
   broadcast_bytes(comm_, head, "");
   waiting_seconds_ += processor_seconds() - begun;
   Cut cut;
-  Reply reply = unpack_reply(head, cut);
+  Reply reply = unpacked(head, cut);
   if (reply.status != Reply::Status::ok) return reply;
   if (pending_ == Op::initialise) {
     theirs_ = std::move(cut);
@@ -61,6 +117,7 @@ Reply MpiChannel::receive() {
 void MpiChannel::receive_places(Interface& interface) {
   for (const auto& [other, slice] : exchanged(mine_, comm_rank(comm_), theirs_))
     put_back(receive_bytes(peers_, other, places_tag, "the places of '" + name_ + "'"), interface);
+  check_places(interface, mine_, comm_rank(comm_), name_);
   if (interface.face_vertices.empty()) interface.face_offset.clear();  // not known
 }
 

@@ -41,6 +41,7 @@ class MpiChannel final : public Channel {
   double waiting_seconds() const override { return waiting_seconds_; }
 
  private:
+  Reply unpacked(const std::vector<char>& head, Cut& cut) const;
   void receive_places(Interface& interface);
   void receive_values(Exchange& data);
 

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "common/base/error.hpp"
+#include "common/coupling/unpacker.hpp"
 
 namespace couplet {
 namespace {
@@ -54,83 +55,6 @@ class Packer {
   std::vector<char> bytes_;
 };
 
-class Unpacker {
- public:
-  Unpacker(std::span<const char> bytes, const char* what) : bytes_(bytes), what_(what) {}
-  Unpacker(std::span<const char> bytes, std::int64_t mark, const char* what) : Unpacker(bytes, what) {
-    if (integer() != mark) throw Error("A message between programs is not the {} that was expected.", what_);
-    const std::int64_t version = integer();
-    if (version != protocol_version)
-      throw Error(
-          "A {} has protocol version {}, this program speaks version {}: use programs of one version.", what_,
-          version, protocol_version);
-  }
-  std::int64_t integer() { return plain<std::int64_t>(); }
-  double real() { return plain<double>(); }
-  std::string text() {
-    std::string value(length(1), '\0');
-    raw(value.data(), value.size());
-    return value;
-  }
-  Vec3 point() {
-    Vec3 p;
-    raw(p.data(), 3 * sizeof(double));
-    return p;
-  }
-  std::vector<GlobalIndex> integers() {
-    std::vector<GlobalIndex> values(length(sizeof(GlobalIndex)));
-    raw(values.data(), values.size() * sizeof(GlobalIndex));
-    return values;
-  }
-  std::vector<std::string> texts() {
-    std::vector<std::string> list;
-    for (std::int64_t n = integer(); n > 0; --n) list.push_back(text());
-    return list;
-  }
-  Exchange exchange() {
-    Exchange data;
-    for (std::int64_t n = integer(); n > 0; --n) data[text()];
-    return data;
-  }
-  std::vector<Interface::Datum> data() {
-    std::vector<Interface::Datum> list;
-    for (std::int64_t n = integer(); n > 0; --n) {
-      Interface::Datum datum{text(), "", Interface::Place::vertices};
-      datum.unit = text();
-      datum.place = integer() == 0 ? Interface::Place::vertices : Interface::Place::faces;
-      datum.components = static_cast<int>(integer());
-      list.push_back(datum);
-    }
-    return list;
-  }
-  void finish() const {
-    if (position_ != bytes_.size()) throw Error("A {} between programs is longer than its content.", what_);
-  }
-
- private:
-  template <class T>
-  T plain() {
-    T value;
-    raw(&value, sizeof value);
-    return value;
-  }
-  std::size_t length(std::size_t size_of_entry) {
-    const std::int64_t n = integer();
-    if (n < 0 || std::size_t(n) > (bytes_.size() - position_) / size_of_entry) truncated();
-    return std::size_t(n);
-  }
-  void raw(void* to, std::size_t size) {
-    if (size > bytes_.size() - position_) truncated();
-    if (size > 0) std::memcpy(to, bytes_.data() + position_, size);
-    position_ += size;
-  }
-  [[noreturn]] void truncated() const { throw Error("A {} between programs is cut short.", what_); }
-
-  std::span<const char> bytes_;
-  const char* what_;
-  std::size_t position_ = 0;
-};
-
 }  // namespace
 
 const char* name(Op op) {
@@ -176,15 +100,15 @@ std::vector<char> pack(const Command& c) {
 Command unpack_command(std::span<const char> bytes) {
   Unpacker in(bytes, command_mark, "command");
   Command c;
-  c.op = Op(in.integer());
+  c.op = Op(in.integer(1, 8, "the operation"));
   c.step.time = in.real();
   c.step.dt = in.real();
-  c.step.scheme = Scheme(in.integer());
-  c.step.number = in.integer();
-  c.step.sub_steps = int(in.integer());
-  c.step.waveform = in.integer() != 0;
+  c.step.scheme = Scheme(in.integer(0, 3, "the scheme"));
+  c.step.number = in.integer(0, largest_integer, "the number of the step");
+  c.step.sub_steps = int(in.integer(1, most_sub_steps, "the number of sub-steps"));
+  c.step.waveform = in.integer(0, 1, "the waveform") != 0;
   c.time = in.real();
-  c.output = int(in.integer());
+  c.output = int(in.integer(-1, std::numeric_limits<int>::max(), "the number of the output"));
   c.folder = in.text();
   c.data = in.exchange();
   in.finish();
@@ -217,22 +141,22 @@ std::vector<char> pack(const Reply& r, const Cut& cut) {
 Reply unpack_reply(std::span<const char> bytes, Cut& cut) {
   Unpacker in(bytes, reply_mark, "reply");
   Reply r;
-  r.status = Reply::Status(in.integer());
+  r.status = Reply::Status(in.integer(0, 2, "the status"));
   r.text = in.text();
   r.seconds = in.real();
   r.suggested_dt = in.real();
   r.report.dt = in.real();
-  r.report.iterations = long(in.integer());
+  r.report.iterations = long(in.integer(0, largest_integer, "the number of iterations"));
   r.report.error = in.real();
   r.report.energy = in.real();
   r.data = in.exchange();
-  r.interface.dim = int(in.integer());
-  r.anew = in.integer() != 0;
-  r.interface.parts = in.texts();
+  r.interface.dim = int(in.integer(2, 3, "the dimension"));
+  r.anew = in.integer(0, 1, "the word on an answer made anew") != 0;
+  r.interface.parts = in.names();
   r.interface.takes = in.data();
   r.interface.gives = in.data();
-  cut.vertices = in.integers();
-  cut.faces = in.integers();
+  cut.vertices = in.cut("vertices");
+  cut.faces = in.cut("faces");
   in.finish();
   return r;
 }
@@ -309,17 +233,19 @@ std::vector<char> cut_out(const Interface& i, const Slice& s) {
 
 void put_back(std::span<const char> bytes, Interface& i) {
   Unpacker in(bytes, "description of an interface");
-  for (std::int64_t n = in.integer(); n > 0; --n) {
+  for (std::size_t n = in.count(4); n > 0; --n) {
     i.vertex_ids.push_back(in.integer());
-    i.vertices.push_back(in.point());
+    i.vertices.push_back(in.point("a vertex"));
   }
   if (i.face_offset.empty()) i.face_offset.push_back(0);
-  for (std::int64_t n = in.integer(); n > 0; --n) {
+  constexpr std::int64_t most = std::numeric_limits<Index>::max();
+  for (std::size_t n = in.count(9); n > 0; --n) {
     i.face_ids.push_back(in.integer());
-    i.face_centres.push_back(in.point());
-    i.face_areas.push_back(in.point());
-    i.face_part.push_back(int(in.integer()));
-    for (std::int64_t k = in.integer(); k > 0; --k) i.face_vertices.push_back(Index(in.integer()));
+    i.face_centres.push_back(in.point("a face"));
+    i.face_areas.push_back(in.point("the area of a face"));
+    i.face_part.push_back(int(in.integer(0, most, "the part of a face")));
+    for (std::size_t k = in.count(1); k > 0; --k)
+      i.face_vertices.push_back(Index(in.integer(0, most, "a vertex of a face")));
     i.face_offset.push_back(Index(i.face_vertices.size()));
   }
   in.finish();

@@ -55,12 +55,17 @@ MPI_Message await_message(MPI_Comm peers, int from, int tag, const std::string& 
 
 }  // namespace
 
-std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::string& what) {
+std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::string& what,
+                                std::size_t most) {
   MPI_Status status;
   MPI_Message message = await_message(peers, from, tag, what, status);
   int count = 0;
   MPI_Get_count(&status, MPI_BYTE, &count);
-  std::vector<char> bytes(count);
+  // MPI counts up to 2^31 - 1; beyond it the count is not defined.
+  if (count < 0 || std::size_t(count) > most)
+    throw Error("While waiting for {}: a message of {} bytes came, at most {} are expected.", what, count,
+                most);
+  std::vector<char> bytes(static_cast<std::size_t>(count));
   MPI_Request request;
   MPI_Imrecv(bytes.data(), count, MPI_BYTE, &message, &request);
   wait_politely(request, what);

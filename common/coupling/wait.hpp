@@ -37,7 +37,10 @@ inline double processor_seconds() { return double(std::clock()) / CLOCKS_PER_SEC
 
 /// One message of any length. `peers` may be an intercommunicator.
 void send_bytes(MPI_Comm peers, int to, int tag, std::span<const char> bytes, const std::string& what);
-std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::string& what);
+/// Throws Error if more than `most` bytes come.
+inline constexpr std::size_t longest_head = std::size_t(64) << 20;
+std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::string& what,
+                                std::size_t most = std::size_t(2) << 30);
 
 /// Some stretches of arrays that travel as one message, one after the other, without being copied together.
 /// Throws Error if a message of another length comes.

@@ -4,12 +4,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <exception>
 
 #include "common/base/own_file.hpp"
 #include "common/io/checkpoint_set.hpp"
-#include "common/io/hdf5.hpp"
+#include "common/io/hdf5_reader.hpp"
+#include "common/io/rehearse.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -118,12 +120,12 @@ void CheckpointWriter::write_scalar(const std::string& name, double value) {
 void CheckpointWriter::close() {
   if (memory_ || state_->id < 0) return;
   std::string trouble;
-  {
-    const hdf5::Quiet quiet;
-    if (H5Fclose(state_->id.release()) < 0)
-      trouble = fmt::format(
-          "The checkpoint '{}' could not be written ({}). The last good one is kept; is the disk full?",
-          state_->file.string(), hdf5::reason());
+  try {
+    hdf5::close_file(state_->id);
+  } catch (const Error& error) {
+    trouble = fmt::format(
+        "The checkpoint '{}' could not be written ({}). The last good one is kept; is the disk full?",
+        state_->file.string(), error.what());
   }
   hdf5::throw_together(state_->comm, trouble);
   if (comm_rank(state_->comm) == 0) {
@@ -139,122 +141,152 @@ void CheckpointWriter::close() {
   hdf5::throw_together(state_->comm, trouble);
 }
 
+namespace {
+
+constexpr const char* what = "checkpoint";
+constexpr const char* advice = "Use an earlier one.";
+
+hdf5::Reader open(const std::filesystem::path& file) { return {file, what, advice}; }
+
+/// Values that each rank wrote and their checksums, from rank 0 on.
+std::vector<std::int64_t> layout_of(const hdf5::Reader& in, const std::string& name, int ranks) {
+  const auto n = std::uint64_t(ranks);
+  if (const std::uint64_t rows = in.rows(layout_path(name), 2); rows != n)
+    in.refuse(fmt::format("the layout of '{}' is that of {} ranks; {} are expected", name, rows, n));
+  std::vector<std::int64_t> layout(2 * n);
+  in.read(layout_path(name), {0, n, n, 2}, layout.data());
+  const std::uint64_t total = in.rows(array_path(name), 1);
+  std::uint64_t left = total;
+  for (std::size_t r = 0; r < n; ++r) {
+    if (layout[2 * r] < 0 || std::uint64_t(layout[2 * r]) > left)
+      in.refuse(fmt::format("the array '{}' has {} values; its layout gives rank {} {} of {} that are left",
+                            name, total, r, layout[2 * r], left));
+    left -= std::uint64_t(layout[2 * r]);
+  }
+  if (left != 0)
+    in.refuse(fmt::format("the array '{}' has {} values; its layout leaves {} of them to no rank", name,
+                          total, left));
+  return layout;
+}
+
+double scalar_of(const hdf5::Reader& in, const std::string& name) {
+  double value = 0;
+  in.read(scalar_path(name), {0, 1, 1, 1}, &value);
+  return value;
+}
+
+/// Whether the stamp in the file is that of the set it lies in.
+void examine_stamp(const hdf5::Reader& in) {
+  const auto set = read_checkpoint_set(folder_of(in.file()));
+  if (!set || in.text("/", "set", 1024) == set->stamp.text()) return;
+  throw Error(
+      "'{}' was written at another step or by another run than the checkpoint it lies in (step {}, t = {:g} s of "
+      "run {}).",
+      in.file().string(), set->stamp.step, set->stamp.time, set->stamp.run);
+}
+
+/// All of the file but the arrays' values, which HDF5 copies as they are. `ranks`: of this run; 0: any.
+void examine_content(const hdf5::Reader& in, int ranks) {
+  if (!in.has_attribute("/", "format") || in.text("/", "format") != format_name)
+    throw Error("'{}' is an HDF5 file, but not a checkpoint.", in.file().string());
+  if (const double version = in.number("/", "version"); version != format_version)
+    throw Error("The checkpoint '{}' has format version {}; this program reads version {}.",
+                in.file().string(), version, format_version);
+  const double written = in.number("/", "ranks");
+  if (!(written >= 1 && written < 1e8)) in.refuse(fmt::format("it was written on {} ranks", written));
+  if (ranks > 0 && written != ranks)
+    throw Error(
+        "The checkpoint '{}' was written on {} {}, this run has {}. Restart on the same number of ranks.",
+        in.file().string(), written, written == 1 ? "rank" : "ranks", ranks);
+  examine_stamp(in);
+  for (const std::string& name : in.leaves("arrays")) layout_of(in, name, int(written));
+  for (const std::string& name : in.leaves("scalars")) scalar_of(in, name);
+}
+
+/// The file as a whole, in a process of its own. Its digest is compared before HDF5 sees it.
+void examine(const std::filesystem::path& file, int ranks) {
+  if (!std::filesystem::exists(file)) throw Error("There is no checkpoint '{}'.", file.string());
+  if (const std::string problem = problem_in_set(file); !problem.empty()) throw Error(problem);
+  rehearse(file, what, [&] { examine_content(open(file), ranks); });
+}
+
+}  // namespace
+
+std::string problem_of_checkpoint(const std::filesystem::path& file) {
+  try {
+    examine(file, 0);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 struct CheckpointReader::State {
   MPI_Comm comm;
-  std::filesystem::path file;
-  hdf5::Handle id;
+  hdf5::Reader in;
+
+  /// What `read` throws on some rank is thrown on all.
+  template <class Read>
+  auto together(Read read) const {
+    std::string trouble;
+    decltype(read()) result{};
+    try {
+      result = read();
+    } catch (const Error& error) {
+      trouble = error.what();
+    }
+    hdf5::throw_together(comm, trouble);
+    return result;
+  }
 
   // This rank's rows of an array and its checksum; the reading is local, the verdict is common.
   std::pair<hdf5::Rows, std::int64_t> rows_of(const std::string& name) const {
-    std::string trouble;
-    hdf5::Rows rows;
-    std::int64_t wanted = 0;
-    try {
-      if (!hdf5::exists(id, array_path(name)) || !hdf5::exists(id, layout_path(name)))
+    return together([&] {
+      if (!in.has(array_path(name)) || !in.has(layout_path(name)))
         throw Error(
             "The checkpoint '{}' has no array '{}'. It was written by another program or another case.",
-            file.string(), name);
+            in.file().string(), name);
       const int size = comm_size(comm), rank = comm_rank(comm);
-      std::vector<std::int64_t> layout(2 * std::size_t(size));
-      if (hdf5::table_length(id, layout_path(name)) != std::uint64_t(size))
-        throw Error("The checkpoint '{}' is corrupted: the layout of '{}' is not that of {} ranks.",
-                    file.string(), name, size);
-      hdf5::read_table(id, layout_path(name), {0, std::uint64_t(size), std::uint64_t(size), 2},
-                       layout.data());
+      const std::vector<std::int64_t> layout = layout_of(in, name, size);
+      hdf5::Rows rows;
       for (int r = 0; r < size; ++r) {
         if (r < rank) rows.first += std::uint64_t(layout[2 * r]);
         rows.total += std::uint64_t(layout[2 * r]);
       }
       rows.count = std::uint64_t(layout[2 * rank]);
-      wanted = layout[2 * rank + 1];
-      if (hdf5::table_length(id, array_path(name)) != rows.total)
-        throw Error("The checkpoint '{}' is corrupted: the array '{}' has {} values, its layout says {}.",
-                    file.string(), name, hdf5::table_length(id, array_path(name)), rows.total);
-    } catch (const Error& error) {
-      trouble = error.what();
-    }
-    hdf5::throw_together(comm, trouble);
-    return {rows, wanted};
+      return std::pair(rows, layout[2 * rank + 1]);
+    });
   }
 
   void fill(const std::string& name, const hdf5::Rows& rows, std::int64_t wanted,
             std::span<double> values) const {
-    std::string trouble;
-    try {
-      hdf5::read_table(id, array_path(name), rows, values.data());
+    together([&] {
+      in.read(array_path(name), rows, values.data());
       if (checksum(values) != wanted)
         throw Error(
             "The checkpoint '{}' is corrupted: the checksum of the array '{}' is wrong on rank {}. Use an "
             "earlier "
             "checkpoint.",
-            file.string(), name, comm_rank(comm));
+            in.file().string(), name, comm_rank(comm));
+      return 0;
+    });
+  }
+};
+
+CheckpointReader::CheckpointReader(MPI_Comm comm, const std::filesystem::path& file) {
+  std::string trouble;
+  const auto attempt = [&](auto&& act) {
+    try {
+      act();
     } catch (const Error& error) {
       trouble = error.what();
     }
     hdf5::throw_together(comm, trouble);
-  }
-};
-
-namespace {
-
-// Whether the stamp in the file is that of the set it lies in.
-std::string examine_stamp(const std::filesystem::path& file, const hdf5::Handle& id) {
-  const auto set = read_checkpoint_set(folder_of(file));
-  if (!set || hdf5::read_text_attribute(id, "set") == set->stamp.text()) return {};
-  return fmt::format(
-      "'{}' was written at another step or by another run than the checkpoint it lies in (step {}, t = {:g} s of "
-      "run {}).",
-      file.string(), set->stamp.step, set->stamp.time, set->stamp.run);
-}
-
-// What is wrong with the file as a whole; empty if nothing. Its digest is compared before HDF5 sees it.
-std::string examine(const std::filesystem::path& file, int ranks) {
-  if (!std::filesystem::exists(file)) return fmt::format("There is no checkpoint '{}'.", file.string());
-  try {
-    if (std::string problem = problem_in_set(file); !problem.empty()) return problem;
-  } catch (const Error& error) {
-    return error.what();
-  }
-  const hdf5::Quiet quiet;
-  if (H5Fis_hdf5(file.c_str()) <= 0)
-    return fmt::format("'{}' is not a checkpoint: it is not an HDF5 file, or its beginning is damaged.",
-                       file.string());
-  try {
-    const hdf5::Handle id = hdf5::open_file_to_read(file);
-    if (H5Aexists(id, "format") <= 0 || hdf5::read_text_attribute(id, "format") != format_name)
-      return fmt::format("'{}' is an HDF5 file, but not a checkpoint.", file.string());
-    const int version = static_cast<int>(hdf5::read_attribute(id, "version"));
-    if (version != format_version)
-      return fmt::format("The checkpoint '{}' has format version {}; this program reads version {}.",
-                         file.string(), version, format_version);
-    const int written = static_cast<int>(hdf5::read_attribute(id, "ranks"));
-    if (written != ranks)
-      return fmt::format(
-          "The checkpoint '{}' was written on {} {}, this run has {}. Restart on the same number of ranks.",
-          file.string(), written, written == 1 ? "rank" : "ranks", ranks);
-    return examine_stamp(file, id);
-  } catch (const Error& error) {
-    return fmt::format("The checkpoint '{}' is truncated or corrupted. Use an earlier one. {}", file.string(),
-                       error.what());
-  }
-  return {};
-}
-
-}  // namespace
-
-CheckpointReader::CheckpointReader(MPI_Comm comm, const std::filesystem::path& file)
-    : state_(std::make_unique<State>()) {
-  std::string trouble;
-  if (comm_rank(comm) == 0) trouble = examine(file, comm_size(comm));
-  hdf5::throw_together(comm, trouble);
-  state_->comm = comm;
-  state_->file = file;
-  try {
-    state_->id = hdf5::open_file_to_read(file);
-  } catch (const Error& error) {
-    trouble = error.what();
-  }
-  hdf5::throw_together(comm, trouble);
+  };
+  attempt([&] {
+    if (comm_rank(comm) == 0) examine(file, comm_size(comm));
+  });
+  attempt([&] { state_ = std::make_unique<State>(State{comm, open(file)}); });
 }
 
 // The file was opened by this rank alone, so closing it is local.
@@ -283,7 +315,7 @@ void CheckpointReader::read(const std::string& name, std::span<double> values) {
     trouble = fmt::format(
         "The checkpoint '{}' holds {} values of '{}' on rank {}, but {} are expected. Is it from the same "
         "mesh?",
-        state_->file.string(), rows.count, name, comm_rank(state_->comm), values.size());
+        state_->in.file().string(), rows.count, name, comm_rank(state_->comm), values.size());
   hdf5::throw_together(state_->comm, trouble);
   state_->fill(name, rows, wanted, values);
 }
@@ -296,20 +328,37 @@ std::vector<double> CheckpointReader::read(const std::string& name) {
   return values;
 }
 
+std::vector<double> CheckpointReader::read_or_none(const std::string& name, std::size_t n) {
+  std::vector<double> values = read(name);
+  std::string trouble;
+  if (!values.empty() && values.size() != n)
+    trouble = fmt::format(
+        "The {} holds {} values of '{}', but {} or none are expected. Is it of the same case?",
+        memory_ ? std::string("state in memory") : fmt::format("checkpoint '{}'", state_->in.file().string()),
+        values.size(), name, n);
+  if (memory_ && !trouble.empty()) throw Error(trouble);
+  if (!memory_) hdf5::throw_together(state_->comm, trouble);
+  return values;
+}
+
+std::size_t CheckpointReader::read_count(const std::string& name, std::size_t most) {
+  const double value = read_scalar(name);
+  if (!(value >= 0 && value <= double(most)) || value != std::floor(value))
+    throw Error(
+        "The {} gives {} as '{}'; a whole number from 0 to {} is expected.",
+        memory_ ? std::string("state in memory") : fmt::format("checkpoint '{}'", state_->in.file().string()),
+        value, name, most);
+  return static_cast<std::size_t>(value);
+}
+
 double CheckpointReader::read_scalar(const std::string& name) {
   if (memory_) return in_memory(scalar_path(name)).front();
-  std::string trouble;
-  double value = 0;
-  try {
-    if (!hdf5::exists(state_->id, scalar_path(name)))
+  return state_->together([&] {
+    if (!state_->in.has(scalar_path(name)))
       throw Error("The checkpoint '{}' has no value '{}'. It was written by another program or another case.",
-                  state_->file.string(), name);
-    hdf5::read_table(state_->id, scalar_path(name), {0, 1, 1, 1}, &value);
-  } catch (const Error& error) {
-    trouble = error.what();
-  }
-  hdf5::throw_together(state_->comm, trouble);
-  return value;
+                  state_->in.file().string(), name);
+    return scalar_of(state_->in, name);
+  });
 }
 
 }  // namespace couplet

@@ -45,6 +45,9 @@ class CheckpointWriter {
   StateInMemory* memory_ = nullptr;
 };
 
+/// What --check can say of a checkpoint: what CheckpointReader refuses on any number of ranks. Empty: nothing.
+std::string problem_of_checkpoint(const std::filesystem::path& file);
+
 /// Throws Error naming the file and what is wrong: missing, truncated, not a checkpoint, other number of
 /// ranks, missing array or another size than expected.
 class CheckpointReader {
@@ -57,7 +60,11 @@ class CheckpointReader {
   void read(const std::string& name, std::span<double> values);
   /// As many values as this rank wrote.
   std::vector<double> read(const std::string& name);
+  /// The same, of which there must be `n` or none on this rank.
+  std::vector<double> read_or_none(const std::string& name, std::size_t n);
   double read_scalar(const std::string& name);
+  /// A whole number from 0 to `most`.
+  std::size_t read_count(const std::string& name, std::size_t most);
 
  private:
   struct State;

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/io/hdf5.hpp"
+#include "common/io/hdf5_reader.hpp"
+#include "common/io/rehearse.hpp"
 #include "common/io/xdmf.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -12,6 +13,7 @@ namespace couplet {
 namespace {
 
 constexpr const char* format_name = "couplet fields";
+constexpr std::size_t most_fields = 1000;  // of one kind in one output
 
 std::string step_name(int number) { return fmt::format("steps/{:06d}", number); }
 
@@ -91,7 +93,9 @@ struct FieldWriter::State {
 
   void start();
   bool continue_from(double restart_time);
-  void read_entries(hid_t id, double restart_time);
+  /// What the file of an earlier run holds up to `restart_time`, and the names of the outputs behind it.
+  std::vector<std::string> read_index(double restart_time);
+  void read_entries(const hdf5::Reader& file, const std::vector<std::string>& steps, double restart_time);
 };
 
 void FieldWriter::State::start() {
@@ -115,21 +119,42 @@ void FieldWriter::State::start() {
            {}};
 }
 
-void FieldWriter::State::read_entries(hid_t id, double restart_time) {
+void FieldWriter::State::read_entries(const hdf5::Reader& file, const std::vector<std::string>& steps,
+                                      double restart_time) {
   const double last = restart_time + 1e-9 * std::abs(restart_time);
-  for (const std::string& entry : hdf5::members(id, "steps")) {
-    const hdf5::Handle group(H5Gopen2(id, ("steps/" + entry).c_str(), H5P_DEFAULT), H5Gclose);
-    const double time = hdf5::read_attribute(group, "time");
+  for (const std::string& step : steps) {
+    const std::string group = "steps/" + step;
+    const double time = file.number(group, "time");
     if (time > last) break;
-    xdmf::Entry one{"steps/" + entry, time, {}};
+    xdmf::Entry one{group, time, {}};
     for (const std::string place : {"cells", "points"})
-      for (const std::string& field : hdf5::members(group, place)) {
-        const hdf5::Handle table(H5Dopen2(group, (place + "/" + field).c_str(), H5P_DEFAULT), H5Dclose);
-        one.fields.push_back({field, hdf5::read_text_attribute(table, "unit"), place == "cells",
-                              static_cast<int>(hdf5::read_attribute(table, "components"))});
+      for (const std::string& field : file.members(group + "/" + place, most_fields)) {
+        const std::string table = group + "/" + place + "/" + field;
+        const double components = file.number(table, "components");
+        if (!(components >= 1 && components <= 9))
+          file.refuse("'" + table + "' has no sound number of components");
+        one.fields.push_back({field, file.text(table, "unit"), place == "cells", int(components)});
       }
     index.entries.push_back(std::move(one));
   }
+}
+
+std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
+  const hdf5::Reader in(file(), "output", "Move it away or restart without it.");
+  if (in.text("/", "format") != format_name) in.refuse("it is not an output of fields");
+  const double kind = in.number("/", "kind");
+  const auto known = {0, 4, 5, 6, 7, 8, 9};
+  if (std::ranges::find(known, kind) == known.end())
+    in.refuse(fmt::format("its cells are of kind {}, which is not known", kind));
+  index = {file().filename().string(), std::int64_t(kind), 0, cell_rows.total, point_rows.total, moving, {}};
+  const std::uint64_t width = index.kind == 0 ? 1 : std::uint64_t(xdmf::points_of(index.kind));
+  if (in.number("/", "ranks") != comm_size(mesh.comm) || in.rows("mesh/cell-id", 1) != cell_rows.total ||
+      in.rows("mesh/point-id", 1) != point_rows.total)
+    in.refuse("it was written on another mesh or another number of ranks");
+  index.topology_size = in.rows("mesh/cells", width) * width;
+  const std::vector<std::string> all = in.members("steps");
+  read_entries(in, all, restart_time);
+  return {all.begin() + std::ptrdiff_t(index.entries.size()), all.end()};
 }
 
 bool FieldWriter::State::continue_from(double restart_time) {
@@ -139,32 +164,21 @@ bool FieldWriter::State::continue_from(double restart_time) {
   std::string trouble;
   std::vector<std::string> dropped;
   try {
-    const hdf5::Handle id = hdf5::open_file_to_read(file());
-    if (hdf5::read_attribute(id, "ranks") != comm_size(mesh.comm) ||
-        hdf5::table_length(id, "mesh/cell-id") != cell_rows.total ||
-        hdf5::table_length(id, "mesh/point-id") != point_rows.total)
-      throw Error("it was written on another mesh or another number of ranks");
-    index = {file().filename().string(),
-             std::int64_t(hdf5::read_attribute(id, "kind")),
-             0,
-             cell_rows.total,
-             point_rows.total,
-             moving,
-             {}};
-    index.topology_size = hdf5::table_length(id, "mesh/cells");
-    if (index.kind != 0) index.topology_size *= xdmf::points_of(index.kind);
-    read_entries(id, restart_time);
-    const std::vector<std::string> all = hdf5::members(id, "steps");
-    dropped.assign(all.begin() + std::ptrdiff_t(index.entries.size()), all.end());
+    if (comm_rank(mesh.comm) == 0) rehearse(file(), "output", [&] { read_index(restart_time); });
   } catch (const Error& error) {
-    trouble = fmt::format("The output '{}' cannot be continued: {} Move it away or restart without it.",
-                          file().string(), error.what());
+    trouble = error.what();
+  }
+  hdf5::throw_together(mesh.comm, trouble);
+  try {
+    dropped = read_index(restart_time);
+  } catch (const Error& error) {
+    trouble = error.what();
   }
   hdf5::throw_together(mesh.comm, trouble);
   number = static_cast<int>(index.entries.size());
   if (dropped.empty()) return true;
   const hdf5::Handle id = hdf5::open_file_to_write(mesh.comm, file());
-  for (const std::string& entry : dropped) H5Ldelete(id, ("steps/" + entry).c_str(), H5P_DEFAULT);
+  for (const std::string& entry : dropped) hdf5::remove(id, "steps/" + entry);
   return true;
 }
 
@@ -203,7 +217,7 @@ void FieldWriter::write(double time, std::span<const Vec3> points, const std::ve
       const std::string path =
           fmt::format("{}/{}/{}", entry.group, on_cells ? "cells" : "points", field.name);
       s.write_field(id, path, field);
-      const hdf5::Handle table(H5Dopen2(id, path.c_str(), H5P_DEFAULT), H5Dclose);
+      const hdf5::Handle table = hdf5::open_written(id, path);
       const int components = field.components == 2 ? 3 : field.components;
       hdf5::write_attribute(table, "unit", field.unit);
       hdf5::write_attribute(table, "components", double(components));

@@ -37,12 +37,6 @@ Handle file_access(MPI_Comm comm) {
   return access;
 }
 
-Handle serial_access() {
-  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_file_locking(access, false, true);
-  return access;
-}
-
 Handle file_space(const Rows& rows) {
   const hsize_t size[2] = {rows.total, rows.width};
   return {H5Screate_simple(rows.width == 1 ? 1 : 2, size, nullptr), H5Sclose};
@@ -85,16 +79,6 @@ void write_any(hid_t place, const std::string& path, const Rows& rows, hid_t typ
   check(H5Dwrite(table, type, memory, space, transfer, values), "write the table", path);
 }
 
-void read_any(hid_t place, const std::string& path, const Rows& rows, hid_t type, void* values) {
-  const Quiet quiet;
-  const Handle table = checked(H5Dopen2(place, path.c_str(), H5P_DEFAULT), H5Dclose, "open the table", path);
-  if (rows.count == 0) return;
-  const Handle space(H5Dget_space(table), H5Sclose);
-  select(space, rows);
-  const Handle memory = memory_space(rows);
-  check(H5Dread(table, type, memory, space, H5P_DEFAULT, values), "read the table", path);
-}
-
 }  // namespace
 
 Quiet::Quiet() {
@@ -122,9 +106,19 @@ Handle open_file_to_write(MPI_Comm comm, const std::filesystem::path& file) {
   return checked(H5Fopen(file.c_str(), H5F_ACC_RDWR, file_access(comm)), H5Fclose, "open", file.string());
 }
 
-Handle open_file_to_read(const std::filesystem::path& file) {
+void close_file(Handle& file) {
   const Quiet quiet;
-  return checked(H5Fopen(file.c_str(), H5F_ACC_RDONLY, serial_access()), H5Fclose, "open", file.string());
+  if (H5Fclose(file.release()) < 0) throw Error(reason());
+}
+
+Handle open_written(hid_t place, const std::string& table) {
+  const Quiet quiet;
+  return checked(H5Dopen2(place, table.c_str(), H5P_DEFAULT), H5Dclose, "open the table", table);
+}
+
+void remove(hid_t place, const std::string& path) {
+  const Quiet quiet;
+  check(H5Ldelete(place, path.c_str(), H5P_DEFAULT), "remove", path);
 }
 
 bool exists(hid_t place, const std::string& path) {
@@ -157,25 +151,6 @@ void write_table(hid_t place, const std::string& path, const Rows& rows, const s
   write_any(place, path, rows, H5T_NATIVE_INT64, values);
 }
 
-void read_table(hid_t place, const std::string& path, const Rows& rows, double* values) {
-  read_any(place, path, rows, H5T_NATIVE_DOUBLE, values);
-}
-
-void read_table(hid_t place, const std::string& path, const Rows& rows, std::int64_t* values) {
-  read_any(place, path, rows, H5T_NATIVE_INT64, values);
-}
-
-std::uint64_t table_length(hid_t place, const std::string& path) {
-  const Quiet quiet;
-  const Handle table = checked(H5Dopen2(place, path.c_str(), H5P_DEFAULT), H5Dclose, "open the table", path);
-  const Handle space(H5Dget_space(table), H5Sclose);
-  hsize_t size[2] = {0, 0};
-  if (H5Sget_simple_extent_ndims(space) > 2)
-    throw Error("The table '{}' has more than two dimensions.", path);
-  H5Sget_simple_extent_dims(space, size, nullptr);
-  return size[0];
-}
-
 void write_attribute(hid_t object, const std::string& name, double value) {
   const Quiet quiet;
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
@@ -193,39 +168,6 @@ void write_attribute(hid_t object, const std::string& name, const std::string& t
   const Handle attribute = checked(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT),
                                    H5Aclose, "make the attribute", name);
   check(H5Awrite(attribute, type, text.c_str()), "write the attribute", name);
-}
-
-double read_attribute(hid_t object, const std::string& name) {
-  const Quiet quiet;
-  const Handle attribute =
-      checked(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, "open the attribute", name);
-  double value = 0;
-  check(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value), "read the attribute", name);
-  return value;
-}
-
-std::string read_text_attribute(hid_t object, const std::string& name) {
-  const Quiet quiet;
-  const Handle attribute =
-      checked(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose, "open the attribute", name);
-  const Handle type(H5Aget_type(attribute), H5Tclose);
-  std::string text(H5Tget_size(type), '\0');
-  check(H5Aread(attribute, type, text.data()), "read the attribute", name);
-  return text;
-}
-
-std::vector<std::string> members(hid_t place, const std::string& group) {
-  std::vector<std::string> names;
-  if (!exists(place, group)) return names;
-  const Quiet quiet;
-  const auto collect = [](hid_t, const char* name, const H5L_info_t*, void* list) -> herr_t {
-    static_cast<std::vector<std::string>*>(list)->emplace_back(name);
-    return 0;
-  };
-  check(H5Literate_by_name(place, group.c_str(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &names,
-                           H5P_DEFAULT),
-        "list the group", group);
-  return names;
 }
 
 void throw_together(MPI_Comm comm, const std::string& text) {

@@ -13,8 +13,8 @@
 
 #include "common/base/error.hpp"
 
-/// A thin cover over the HDF5 C interface: handles that close themselves, failures that become Error. Only
-/// this folder sees hdf5.h.
+/// A thin cover over the HDF5 C interface: handles that close themselves, failures that become Error; what is written.
+/// Reading is hdf5_reader.hpp's. Only files of this name call HDF5.
 namespace couplet::hdf5 {
 
 /// Keeps HDF5 from printing its error stack while alive: the first reason goes into our own message instead.
@@ -61,12 +61,16 @@ class Handle final {
 /// Collective over comm. Throws Error naming the file.
 Handle create_file(MPI_Comm comm, const std::filesystem::path& file);
 Handle open_file_to_write(MPI_Comm comm, const std::filesystem::path& file);
-/// On this rank alone; any number of ranks may do so at once.
-Handle open_file_to_read(const std::filesystem::path& file);
+/// Closes a file that was written, with all that is still on its way. Throws Error with HDF5's reason. Collective.
+void close_file(Handle& file);
 
+/// Whether a file that this program is writing has it.
 bool exists(hid_t place, const std::string& path);
 /// Collective when the file was opened by several ranks; groups on the way are made.
 Handle make_group(hid_t place, const std::string& path);
+/// A table that this program has written, for its attributes.
+Handle open_written(hid_t place, const std::string& table);
+void remove(hid_t place, const std::string& path);
 
 /// Rows of a distributed table that this rank holds: [first, first + count) of total, `width` values each.
 struct Rows {
@@ -79,22 +83,9 @@ Rows distribute_rows(MPI_Comm comm, std::size_t count, std::size_t width);
 /// table.
 void write_table(hid_t place, const std::string& path, const Rows& rows, const double* values);
 void write_table(hid_t place, const std::string& path, const Rows& rows, const std::int64_t* values);
-/// This rank alone reads its rows.
-void read_table(hid_t place, const std::string& path, const Rows& rows, double* values);
-void read_table(hid_t place, const std::string& path, const Rows& rows, std::int64_t* values);
-/// Number of rows of a table.
-std::uint64_t table_length(hid_t place, const std::string& path);
-
 /// The same value on all ranks (collective).
 void write_attribute(hid_t object, const std::string& name, double value);
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
-/// Throws Error if there is no such attribute.
-double read_attribute(hid_t object, const std::string& name);
-std::string read_text_attribute(hid_t object, const std::string& name);
-
-/// Names of the members of a group, in alphabetical order.
-std::vector<std::string> members(hid_t place, const std::string& group);
-
 /// Throws the text of the lowest rank that has one, on every rank; does nothing when all are empty.
 /// Collective.
 void throw_together(MPI_Comm comm, const std::string& text);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/linalg/residual_projection.hpp"
+#include "common/base/error.hpp"
+#include "common/base/saved_numbers.hpp"
 
 #include <algorithm>
 #include <array>
@@ -88,19 +90,19 @@ std::vector<double> ResidualProjection::values() const {
 }
 
 void ResidualProjection::set_values(std::span<const double> values, const LinearMap& apply) {
-  const std::size_t head = 2 + most * most;
-  kept_.assign(static_cast<std::size_t>(values[0]), {});
-  oldest_ = static_cast<std::size_t>(values[1]);
-  std::copy_n(values.data() + 2, most * most, gram_.data());
+  SavedNumbers saved(values, "corrections of solves");
+  kept_.assign(saved.count(most), {});
+  oldest_ = saved.count(most);
+  saved.fill({gram_.data(), std::size_t(gram_.size())});
   is_pending_ = false;
-  const double* from = values.data() + head;
-  const std::size_t n = kept_.empty() ? 0 : (values.size() - head) / (2 * kept_.size());
+  const std::size_t n = kept_.empty() ? 0 : saved.left() / (2 * kept_.size());
   for (Correction& c : kept_)
     for (std::vector<double>* v : {&c.x, &c.image}) {
-      v->assign(from, from + n);
-      from += n;
+      v->resize(n);
+      saved.fill(*v);
     }
-  bool fits = kept_.size() <= std::size_t(depth_);
+  if (saved.left() > 0) saved.damaged();
+  bool fits = kept_.size() <= std::size_t(depth_) && oldest_ < std::size_t(std::max(depth_, 1));
   std::vector<double> image(n);
   for (const Correction& c : kept_) {
     apply(c.x, image);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/base/error.hpp"
+#include "common/base/saved_numbers.hpp"
 
 namespace couplet {
 namespace {
@@ -61,13 +62,25 @@ std::vector<double> StepErrors::state() const {
 void StepErrors::restore(std::span<const double> state) {
   *this = {};
   if (state.empty()) return;  // of a run that did not collect them
-  const std::size_t n = state.size() < scalars ? 0 : std::size_t(state[scalars - 1]), begin = scalars + 2 * n;
-  if (state.size() < begin || (state.size() - begin) % 3 != 0)
-    throw Error("The checkpoint's errors of steps are damaged.");
-  rate_ = state[0], size_ = state[1], below_ = state[2], highest_ = state[3], time_ = state[4];
-  for (std::size_t i = scalars; i < begin; i += 2) amplitude_[int(state[i])] = state[i + 1];
-  for (std::size_t i = begin; i < state.size(); i += 3)
-    errors_[{int(state[i]), int(state[i + 1])}] = state[i + 2];
+  SavedNumbers saved(state, "errors of steps");
+  const std::span<const double> head = saved.next(scalars - 1);
+  rate_ = head[0], size_ = head[1], below_ = head[2], highest_ = head[3], time_ = head[4];
+  const auto key = [&] {  // may be negative
+    const double value = saved.real();
+    if (!(value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max()))
+      saved.damaged();
+    return int(value);
+  };
+  for (std::size_t n = saved.count_of(2); n > 0; --n) {
+    const int at = key();
+    amplitude_[at] = saved.real();
+  }
+  if (saved.left() % 3 != 0) saved.damaged();
+  while (saved.left() > 0) {
+    const int first = key(), second = key();
+    if (!amplitude_.contains(first)) saved.damaged();
+    errors_[{first, second}] = saved.real();
+  }
 }
 
 }  // namespace couplet

@@ -4,12 +4,15 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "common/base/saved_numbers.hpp"
 
 namespace couplet {
 
 StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<const double> now, double dt,
                                      double dt_old, double size, const Norm& norm, double forgotten) {
   const bool first_order = local_.order == 1, knows_third = !first_order && has_before_;
+  if (knows_third && v_before_.size() != now.size())
+    throw Error("The checkpoint's errors of steps are those of another mesh. Use an earlier one.");
   std::vector<double> second(now.size()), third(knows_third ? now.size() : 0);
   for (std::size_t i = 0; i < second.size(); ++i) second[i] = (now[i] - before[i]) / dt;
   for (std::size_t i = 0; i < third.size(); ++i)
@@ -41,12 +44,13 @@ void VelocityErrors::restore(std::span<const double> state) {
   errors_ = {};
   judged_ = has_before_ = false;
   if (state.empty()) return;
-  const auto n = state.size() < 2 ? state.size() : std::size_t(state[1]);
-  if (state.size() < 2 + n) throw Error("The checkpoint's errors of steps are damaged.");
-  judged_ = state[0] == 1 || state[0] == 3;
-  has_before_ = state[0] >= 2;
-  v_before_.assign(state.begin() + 2, state.begin() + 2 + std::ptrdiff_t(n));
-  errors_.restore(state.subspan(2 + n));
+  SavedNumbers saved(state, "errors of steps");
+  const double kind = saved.real();
+  judged_ = kind == 1 || kind == 3;
+  has_before_ = kind >= 2;
+  const std::span<const double> v = saved.next(saved.count_of(1));
+  v_before_.assign(v.begin(), v.end());
+  errors_.restore(saved.rest());
 }
 
 }  // namespace couplet

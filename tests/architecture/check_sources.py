@@ -41,6 +41,18 @@ THIRD_PARTY = {
     r"spdlog/": ["common/log"],
     r"zlib": ["thermocline"],
 }
+# One reader of each foreign format: what only its own files may write, and which these are.
+DOORS = {
+    "HDF5 is read and written by common/io/hdf5*, everything else asks hdf5::Reader":
+        (r"\bH5[A-Z]{1,2}[a-z]\w*\s*\(|\b(?:hid|herr|hsize)_t\b",
+         r"common/io/hdf5\w*\.[ch]pp"),
+    "messages between programs are unpacked by common/coupling/messages.cpp (and by the clients, which share nothing)":
+        (r"\bUnpacker\b|0x434f'?4d4d|0x5245'?504c", r"common/coupling/(?:messages\.cpp|unpacker\.hpp)|client/(?:wire\.[ch]pp|python/couplet\.py)"),
+    "messages are received by common/coupling/wait.cpp (ghosts by common/parallel, a client's by its wire)":
+        (r"\bMPI_(?:I|M|Im)?[Rr]ecv\b", r"common/coupling/wait\.cpp|common/parallel/\w+\.cpp|client/wire\.[ch]pp"),
+    "handshake and roll call are read by common/app/roll_call.cpp (and by the clients)":
+        (r"0x434f'?5550'?4c45'?54", r"common/app/roll_call\.cpp|client/(?:wire\.[ch]pp|python/couplet\.py)"),
+}
 SOURCES = ("*.cpp", "*.hpp")
 SCRIPTS = ("*.py", "*.geo", "CMakeLists.txt", "case.yaml")
 
@@ -75,6 +87,20 @@ def wrong_include(path, included):
         if re.match(pattern, included) and here not in allowed:
             return f"only {', '.join(allowed)} may include it"
     return None
+
+
+def second_readers(path, text):
+    """Places where a program reads a foreign format that has its reader elsewhere. Tests and scripts may look at anything."""
+    if path.parts[0] in ("tests", "benchmarks", "scripts", "configs"):
+        return []
+    found = []
+    for rule, (pattern, own) in DOORS.items():
+        if re.fullmatch(own, str(path)):
+            continue
+        for number, line in enumerate(text.splitlines(), 1):
+            if re.search(pattern, re.sub(r"//.*", "", line), re.I if "0x" in pattern else 0):
+                found.append(f"{path}:{number}: a second reader of a foreign format: {rule}")
+    return found
 
 
 def without_nested(text):
@@ -121,6 +147,8 @@ def check_text(path, text):
     lines = text.splitlines()
     if not any("SPDX-License-Identifier: Apache-2.0" in line for line in lines[:3]):
         trouble.append(f"{path}: no SPDX line at the top")
+    if path.suffix in (".cpp", ".hpp", ".py"):
+        trouble += second_readers(path, text)
     if len(lines) > LONGEST:
         trouble.append(f"{path}: {len(lines)} lines, at most {LONGEST} are allowed")
     if path.suffix in (".cpp", ".hpp"):

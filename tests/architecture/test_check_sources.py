@@ -31,10 +31,18 @@ WRONG = {
     ("coupler/a.cpp", HEAD + '#include "tests/support/a.hpp"\n'): "production code includes test code",
     ("coupler/b.cpp", HEAD + "#include <nanoflann.hpp>\n"): "only common/base may include it",
     ("common/base/a.cpp", "int a;\n"): "no SPDX line",
+    ("common/io/checkpoint.cpp", HEAD + "const auto id = H5Fopen(name, 0, 0);\n"): "a second reader",
+    ("common/modes/a.cpp", HEAD + "void f(hid_t id);\n"): "a second reader",
+    ("coupler/d.cpp", HEAD + "Unpacker in(bytes, 0);\n"): "a second reader",
+    ("coupler/e.cpp", HEAD + "constexpr long mark = 0x434F4D4D;\n"): "a second reader",
+    ("fluid_solver/e.cpp", HEAD + "MPI_Recv(at, n, MPI_BYTE, 0, 0, comm, MPI_STATUS_IGNORE);\n"): "a second reader",
     ("common/base/a.cpp", HEAD + "\n" * 600): "601 lines",
     ("common/base/a.hpp", HEAD + class_of(41)): "A has 41 member functions",
 }
 RIGHT = [
+    ("common/io/hdf5_reader.cpp", HEAD + "const Handle id(H5Fopen(name, 0, 0), H5Fclose);  // hid_t\n"),
+    ("coupler/a.cpp", HEAD + "// as H5Fopen( does\nint a;\n"),
+    ("tests/unit/io/a.cpp", HEAD + "const auto id = H5Fopen(name, 0, 0);\n"),
     ("common/io/a.cpp", HEAD + '#include <hdf5.h>\n#include "common/mesh/mesh.hpp"\n'),
     ("fluid_solver/a.cpp", HEAD + '#include "fluid_solver/fluid.hpp"\n#include "common/fv/expression.hpp"\n'),
     ("common/base/a.cpp", HEAD + "#include <nanoflann.hpp>\n"),

@@ -108,7 +108,8 @@ TEST(Checkpoint, a_truncated_file_is_refused_on_every_rank) {
     damage(file,
            [&](const auto& f) { std::filesystem::resize_file(f, std::uintmax_t(part * double(size))); });
     EXPECT_THAT(error_of([&] { CheckpointReader(world, file); }),
-                ::testing::AllOf(HasSubstr("is truncated or corrupted."), HasSubstr("(truncated file:")))
+                ::testing::AllOf(HasSubstr("cannot be used: it is not an HDF5 file, or its beginning is damaged"),
+                                 HasSubstr("(truncated file:")))
         << part;
   }
   damage(file, [](const auto& f) { std::filesystem::resize_file(f, 0); });
@@ -140,7 +141,7 @@ TEST(Checkpoint, other_files_are_not_taken_for_checkpoints) {
   const Scratch scratch;
   const auto file = scratch / "a.h5";
   damage(file, [](const auto& f) { std::ofstream(f) << "hello"; });
-  EXPECT_THAT(error_of([&] { CheckpointReader(world, file); }), HasSubstr("is not a checkpoint"));
+  EXPECT_THAT(error_of([&] { CheckpointReader(world, file); }), HasSubstr("it is not an HDF5 file"));
 }
 
 TEST(Checkpoint, another_number_of_ranks_is_refused_with_both_numbers) {

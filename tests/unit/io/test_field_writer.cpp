@@ -6,7 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/field_writer.hpp"
-#include "common/io/hdf5.hpp"
+#include "common/io/hdf5_reader.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/unit/io/scratch.hpp"
 
@@ -57,17 +57,16 @@ TEST(FieldWriter, every_cell_and_point_is_written_once_with_its_own_values) {
     const Mesh mesh = make_mesh(cells);
     FieldWriter writer(mesh, scratch / "", "fluid", true, nan_time);
     write(writer, mesh, 0.5);
-    const hdf5::Handle file = hdf5::open_file_to_read(scratch / "fluid.h5");
-    const std::uint64_t n = hdf5::table_length(file, "mesh/cell-id"),
-                        np = hdf5::table_length(file, "mesh/point-id");
+    const hdf5::Reader file(scratch / "fluid.h5", "output");
+    const std::uint64_t n = file.rows("mesh/cell-id", 1), np = file.rows("mesh/point-id", 1);
     EXPECT_EQ(n, std::uint64_t(mesh.cells.n_global()));
     EXPECT_EQ(np, std::uint64_t(mesh.points.n_global()));
     std::vector<std::int64_t> cell_id(n), point_id(np);
     std::vector<double> pressure(n), velocity(3 * n);
-    hdf5::read_table(file, "mesh/cell-id", {0, n, n, 1}, cell_id.data());
-    hdf5::read_table(file, "mesh/point-id", {0, np, np, 1}, point_id.data());
-    hdf5::read_table(file, "steps/000000/cells/pressure", {0, n, n, 1}, pressure.data());
-    hdf5::read_table(file, "steps/000000/cells/velocity", {0, n, n, 3}, velocity.data());
+    file.read("mesh/cell-id", {0, n, n, 1}, cell_id.data());
+    file.read("mesh/point-id", {0, np, np, 1}, point_id.data());
+    file.read("steps/000000/cells/pressure", {0, n, n, 1}, pressure.data());
+    file.read("steps/000000/cells/velocity", {0, n, n, 3}, velocity.data());
     for (std::uint64_t c = 0; c < n; ++c) {
       EXPECT_EQ(pressure[c], double(cell_id[c]) + 0.5);
       EXPECT_EQ(velocity[3 * c + 1], double(10 * cell_id[c] + 1));
@@ -100,8 +99,8 @@ TEST(FieldWriter, a_fixed_mesh_writes_its_points_once) {
   const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
   FieldWriter writer(mesh, scratch / "", "fluid", false, nan_time);
   write(writer, mesh, 0);
-  const hdf5::Handle file = hdf5::open_file_to_read(scratch / "fluid.h5");
-  EXPECT_FALSE(hdf5::exists(file, "steps/000000/coordinates"));
+  const hdf5::Reader file(scratch / "fluid.h5", "output");
+  EXPECT_FALSE(file.has("steps/000000/coordinates"));
   EXPECT_EQ(count(index_of(scratch), "fluid.h5:/mesh/coordinates"), 1);
 }
 
@@ -119,10 +118,9 @@ TEST(FieldWriter, a_restart_drops_the_later_times_and_goes_on) {
   write(writer, mesh, 0.6);
   MPI_Barrier(world);
   EXPECT_EQ(count(index_of(scratch), "<Time "), 4);
-  const hdf5::Handle file = hdf5::open_file_to_read(scratch / "fluid.h5");
-  EXPECT_EQ(hdf5::members(file, "steps").size(), 4u);
-  const hdf5::Handle last(H5Gopen2(file, "steps/000003", H5P_DEFAULT), H5Gclose);
-  EXPECT_EQ(hdf5::read_attribute(last, "time"), 0.6);
+  const hdf5::Reader file(scratch / "fluid.h5", "output");
+  EXPECT_EQ(file.members("steps").size(), 4u);
+  EXPECT_EQ(file.number("steps/000003", "time"), 0.6);
 }
 
 TEST(FieldWriter, a_restart_on_another_mesh_is_refused_on_every_rank) {
