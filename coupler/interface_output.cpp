@@ -5,6 +5,8 @@
 #include <fstream>
 
 #include "common/base/error.hpp"
+#include "common/csv/cells.hpp"
+#include "common/csv/line_reader.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -34,14 +36,18 @@ void integers(std::ofstream& out, const char* name, const std::vector<GlobalInde
 std::vector<std::pair<double, std::string>> kept(const fs::path& list, double restart_time) {
   std::vector<std::pair<double, std::string>> files;
   if (std::isnan(restart_time)) return files;
-  std::ifstream in(list);
-  for (std::string line; std::getline(in, line);) {
+  std::error_code ignored;
+  if (!fs::exists(list, ignored)) return files;
+  csv::LineReader in(list, "list of interface files", {.bytes = 1 << 30, .lines = 10000000});
+  for (std::string_view line; in.next(line);) {
     const auto time = line.find("timestep=\""), part = line.find("part=\"0\""), file = line.find("file=\"");
     if (time == std::string::npos || part == std::string::npos || file == std::string::npos) continue;
-    const double t = std::stod(line.substr(time + 10));
-    const std::string name = line.substr(file + 6, line.find('"', file + 6) - file - 6);
-    if (t <= restart_time * (1 + 1e-12))
-      files.emplace_back(t, name.substr(0, name.rfind('.', name.size() - 5)));
+    const auto quoted = [&](std::size_t from) { return line.substr(from, line.find('"', from) - from); };
+    const auto t = csv::number_of(quoted(time + 10));
+    const std::string_view name = quoted(file + 6);  // "side-000001.0.vtp"
+    if (!t || !name.ends_with(".0.vtp"))
+      throw Error("{}: this line is damaged. Move the list away; the files it names stay.", in.place());
+    if (*t <= restart_time * (1 + 1e-12)) files.emplace_back(*t, name.substr(0, name.size() - 6));
   }
   return files;
 }

@@ -10,6 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/files.hpp"
 
 namespace couplet::fluid {
 namespace {
@@ -113,9 +114,7 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
     case BoundaryType::moving_wall:
       if (b.rotation) given.turning = turning_of(b, where);
       if (b.table) {
-        std::vector<std::string> columns{"u", "v", "w"};
-        columns.resize(D);
-        given.table = GridTable::read(b.table->file, columns, b.table->outside);
+        given.table = velocity_table(b.table->file, b.table->outside, D);
       } else if (b.mean_speed) {
         given.mean_speed = Expression(*b.mean_speed, where + ".mean-speed");
         given.shape = inlet_shape<D>(mesh, patch, b.profile);

@@ -4,6 +4,7 @@
 #include "common/mesh/load.hpp"
 #include "fluid_solver/auto_effects.hpp"
 #include "fluid_solver/effect_cards.hpp"
+#include "fluid_solver/files.hpp"
 #include "fluid_solver/participant.hpp"
 
 int main(int argc, char** argv) {
@@ -50,6 +51,10 @@ int main(int argc, char** argv) {
             return couplet::fluid::expected_cost(
                 parameters, couplet::facts_of_file(scene.folder / parameters.mesh, parameters.mesh_parameters,
                                                    parameters.mesh_scale));
+          },
+      .problems_of_files =
+          [&](const std::filesystem::path& folder) {
+            return couplet::fluid::problems_of_files(parameters, folder);
           }};
   return couplet::run_program(argc, argv, program);
 }

@@ -233,19 +233,6 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
     write_modes(file, built.model, built.note.empty() ? key_with_content(key, built.model) : "");
 }
 
-/// Modes of another program, whose surface says by its faces alone where its outside is.
-ModalModel modes_of_file(const Parameters& p, const std::filesystem::path& file) {
-  ModalModel model = read_modes(file);
-  const std::string problem = facing_problem_of(model, p.cavity ? Facing::inward : Facing::outward);
-  if (problem.empty()) return model;
-  throw Error(
-      "modes.file: the file of modes '{}' cannot be used: {}. {}docs/formats.md says what it must hold.",
-      file.string(), problem,
-      p.cavity
-          ? ""
-          : "If it is the wall of a cavity, whose outside is the space within, say 'modes.cavity: true'. ");
-}
-
 }  // namespace
 
 PlateModel plate_of(Midsurface surface, const Parameters& p, const std::string& name) {
@@ -261,6 +248,18 @@ PlateModel plate_of(Midsurface surface, const Parameters& p, const std::string& 
   for (const int zone : surface.zone) cells.push_back(of_zone[zone]);
   const std::vector<Support> support = supports(surface, p);
   return PlateModel(std::move(surface), std::move(cells), support);
+}
+
+ModalModel modes_of_file(const Parameters& p, const std::filesystem::path& file) {
+  ModalModel model = read_modes(file);
+  const std::string problem = facing_problem_of(model, p.cavity ? Facing::inward : Facing::outward);
+  if (problem.empty()) return model;
+  throw Error(
+      "modes.file: the file of modes '{}' cannot be used: {}. {}docs/formats.md says what it must hold.",
+      file.string(), problem,
+      p.cavity
+          ? ""
+          : "If it is the wall of a cavity, whose outside is the space within, say 'modes.cavity: true'. ");
 }
 
 Built build_model(const Parameters& p, const PlateContext& context, const RawMesh* raw) {
@@ -280,16 +279,6 @@ Built build_model(const Parameters& p, const PlateContext& context, const RawMes
     if (p.analysis != Parameters::Analysis::modal) built.plate = std::move(plate);
   });
   return built;
-}
-
-std::string problem_of_modes_file(const Parameters& p, const std::filesystem::path& case_folder) {
-  if (!p.modes_file) return "";
-  try {
-    modes_of_file(p, case_folder / *p.modes_file);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 double seat_stiffness(const Parameters& p) {

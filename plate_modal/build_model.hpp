@@ -40,8 +40,8 @@ PlateModel plate_of(Midsurface surface, const Parameters& parameters, const std:
 /// Collective.
 Built build_model(const Parameters& parameters, const PlateContext& context, const RawMesh* raw = nullptr);
 
-/// What is wrong with the file of modes that the parameters name, for --check; empty: nothing, or there is none.
-std::string problem_of_modes_file(const Parameters& parameters, const std::filesystem::path& case_folder);
+/// Modes of another program, whose surface says by its faces alone where its outside is. Throws Error.
+ModalModel modes_of_file(const Parameters& parameters, const std::filesystem::path& file);
 
 /// kappa / S of thesis (4.33) for f_SI = 1: bulk modulus over thickness [N/m^3].
 double seat_stiffness(const Parameters& parameters);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
 #include "common/linalg/petsc_environment.hpp"
-#include "plate_modal/build_model.hpp"
 #include "plate_modal/effect_cards.hpp"
+#include "plate_modal/files.hpp"
 #include "plate_modal/structure.hpp"
 
 int main(int argc, char** argv) {
@@ -26,11 +26,7 @@ int main(int argc, char** argv) {
           },
       .problems_of_files =
           [&](const std::filesystem::path& folder) {
-            std::vector<couplet::ProblemOfKey> problems;
-            if (std::string problem = couplet::plate::problem_of_modes_file(parameters, folder);
-                !problem.empty())
-              problems.push_back({"modes.file", std::move(problem)});
-            return problems;
+            return couplet::plate::problems_of_files(parameters, folder);
           }};
   return couplet::run_program(argc, argv, program);
 }

@@ -9,8 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/base/units.hpp"
-#include "common/fv/csv_line.hpp"
-#include "thermocline/weather_text.hpp"
+#include "common/csv/csv_reader.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -28,11 +27,11 @@ constexpr std::array<FlowColumn, 5> known{{{"time", "s", "h", true},
 /// The columns of one file and what turns their numbers into SI.
 class FlowColumns {
  public:
-  FlowColumns(const std::vector<std::string>& head, const std::string& place) : width_(head.size()) {
+  FlowColumns(const std::vector<std::string>& head, const std::string& place) {
     std::vector<std::string> names;
     for (const FlowColumn& c : known) names.emplace_back(c.name);
     for (std::size_t i = 0; i < head.size(); ++i) {
-      const Heading heading = heading_of(head[i]);
+      const csv::Heading heading = csv::heading_of(head[i]);
       const auto found = std::find(names.begin(), names.end(), heading.name);
       if (found == names.end())
         throw Error("{}: unknown column '{}'. {}", place, head[i].substr(0, 80),
@@ -49,16 +48,9 @@ class FlowColumns {
   }
 
   /// Value [SI] of a column in a row; nothing where it is empty.
-  std::optional<double> value(const std::vector<std::string>& cells, std::size_t c,
-                              const std::string& place) const {
-    if (cells.size() != width_)
-      throw Error("{}: {} values, but the file has {} columns.", place, cells.size(), width_);
-    if (!at_[c]) return {};
-    const std::string text(trim(cells[*at_[c]]));
-    if (text.empty()) return {};
-    const auto number = number_of(text);
-    if (!number) throw Error("{}: '{}' is no number for {}.", place, text.substr(0, 80), known[c].name);
-    return *number * unit_[c].factor + unit_[c].offset;
+  std::optional<double> value(const csv::CsvReader& row, std::size_t c) const {
+    if (!at_[c] || row.cells()[*at_[c]].empty()) return {};
+    return row.number(*at_[c], known[c].name) * unit_[c].factor + unit_[c].offset;
   }
 
  private:
@@ -77,15 +69,14 @@ class FlowColumns {
     throw Error("{}: the unit '{}' of the column '{}' is none of {}.", place, text, column.name, column.unit);
   }
 
-  std::size_t width_;
   std::array<std::optional<std::size_t>, known.size()> at_;
   std::array<Unit, known.size()> unit_;
 };
 
-ScheduleRow row_of(const FlowColumns& columns, const std::vector<std::string>& cells,
-                   const std::string& place) {
+ScheduleRow row_of(const FlowColumns& columns, const csv::CsvReader& row) {
+  const std::string place = row.place();
   std::array<std::optional<double>, known.size()> v;
-  for (std::size_t c = 0; c < known.size(); ++c) v[c] = columns.value(cells, c, place);
+  for (std::size_t c = 0; c < known.size(); ++c) v[c] = columns.value(row, c);
   for (const std::size_t c : {0, 1})
     if (!v[c]) throw Error("{}: {} is empty.", place, known[c].name);
   if (*v[0] < 0) throw Error("{}: time {:g} s is before the start.", place, *v[0]);
@@ -100,23 +91,17 @@ ScheduleRow row_of(const FlowColumns& columns, const std::vector<std::string>& c
 }  // namespace
 
 std::vector<ScheduleRow> read_flow_file(const std::filesystem::path& file) {
-  const std::vector<std::string> lines = read_lines(file, "file of flows");
-  std::optional<FlowColumns> columns;
+  csv::CsvReader reader(file, "file of flows");
+  if (reader.names().empty())
+    throw Error(
+        "{}: the first line of a file of flows names its columns with their units, such as 'time [h]'.",
+        file.string());
+  const FlowColumns columns(reader.names(), reader.place_of_names());
   std::vector<ScheduleRow> rows;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::string place = fmt::format("{}:{}", file.string(), i + 1);
-    const std::string text(trim(std::string_view(lines[i]).substr(0, lines[i].find('#'))));
-    if (text.empty()) continue;
-    const char separator = text.find(';') != std::string::npos ? ';' : ',';
-    std::vector<std::string> cells;
-    for (const std::string& cell : split(text, separator)) cells.emplace_back(trim(cell));
-    if (!columns) {
-      columns.emplace(cells, place);
-      continue;
-    }
-    rows.push_back(row_of(*columns, cells, place));
+  while (reader.next()) {
+    rows.push_back(row_of(columns, reader));
     if (rows.size() > 1 && rows.back().at <= rows[rows.size() - 2].at)
-      throw Error("{}: time {:g} s does not come after that of the row before, {:g} s.", place,
+      throw Error("{}: time {:g} s does not come after that of the row before, {:g} s.", reader.place(),
                   rows.back().at, rows[rows.size() - 2].at);
   }
   if (rows.empty()) throw Error("{}: there is no row in this file of flows.", file.string());

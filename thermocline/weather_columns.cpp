@@ -30,20 +30,6 @@ double humidity_of(double t, double dew) {
 
 }  // namespace
 
-std::vector<std::string> csv_fields(std::string_view line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"')
-      quoted = !quoted;
-    else if (c == ',' && !quoted)
-      fields.emplace_back();
-    else
-      fields.back() += c;
-  }
-  return fields;
-}
-
 std::optional<std::size_t> column_of(const std::vector<std::string>& head, std::string_view name) {
   for (std::size_t i = 0; i < head.size(); ++i)
     if (lower(head[i]) == lower(name)) return i;
@@ -80,6 +66,7 @@ std::array<double, 5> WeatherColumns::values(const std::vector<std::string>& fie
                                              const std::string& place) const {
   if (fields.size() < n_)
     throw Error("{}: {} values, but the file has {} columns.", place, fields.size(), n_);
+  check_width(fields, n_, place);
   const auto at = [&](std::size_t column, std::string_view name) {
     const double value = number_in(fields[column], name, place);
     return value < names_.missing_below ? missing : value;

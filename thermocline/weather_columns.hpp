@@ -11,9 +11,6 @@
 
 namespace couplet::thermocline {
 
-/// The fields of a line of a CSV; commas within double quotes do not separate.
-std::vector<std::string> csv_fields(std::string_view line);
-
 /// Which columns of a foreign file hold the quantities, by the names they are known under (without regard to
 /// case). Humidity may be missing where there is a dew point.
 class WeatherColumns {

@@ -4,6 +4,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/csv/cells.hpp"
 #include "thermocline/weather_text.hpp"
 
 namespace couplet::thermocline {
@@ -22,7 +23,7 @@ std::vector<std::size_t> read_head(const std::string& head, const std::string& p
       throw Error(
           "{}: the columns are separated by '{}'; a weather file's are by commas, with points in the numbers.",
           place, other == ';' ? ";" : "a tab");
-  for (const std::string& field : split(head, ',')) {
+  for (const std::string& field : csv::fields(head)) {
     const std::string name(trim(field));
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end())
@@ -55,7 +56,8 @@ WeatherHours read_weather_csv(const std::filesystem::path& file) {
       columns = read_head(lines[i], place);
       continue;
     }
-    const std::vector<std::string> fields = split(lines[i], ',');
+    const std::vector<std::string> fields = csv::fields(lines[i]);
+    check_width(fields, columns.size(), place);
     if (fields.size() != columns.size())
       throw Error("{}: {} values, but the file has {} columns.", place, fields.size(), columns.size());
     std::array<double, 6> values;

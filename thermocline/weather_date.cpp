@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "common/base/error.hpp"
+#include "common/csv/cells.hpp"
 
 namespace couplet::thermocline {
 namespace {
@@ -27,7 +28,7 @@ int day_of_year(const std::string& date) {
   const auto digit = [&](std::size_t i) { return std::isdigit(static_cast<unsigned char>(date[i])) != 0; };
   if (date.size() != 5 || date[2] != '-' || !digit(0) || !digit(1) || !digit(3) || !digit(4))
     throw Error("'{}' is not a date: expected month and day as MM-DD, for example 06-01.", date);
-  const int month = std::stoi(date.substr(0, 2)), day = std::stoi(date.substr(3));
+  const int month = *csv::integer_of(date.substr(0, 2)), day = *csv::integer_of(date.substr(3));
   if (month < 1 || month > 12) throw Error("'{}' is not a date: there is no month {}.", date, month);
   const int last = days_a_month[static_cast<std::size_t>(month - 1)];
   if (day < 1 || day > last)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/error.hpp"
-#include "common/base/text.hpp"
+#include "common/csv/cells.hpp"
 #include "thermocline/weather_columns.hpp"
 #include "thermocline/weather_date.hpp"
 #include "thermocline/weather_text.hpp"
@@ -9,7 +9,8 @@ namespace couplet::thermocline {
 namespace {
 
 // The format of EnergyPlus [epw], columns counted from 0.
-constexpr std::size_t header_lines = 8, month = 1, day = 2, hour = 3, minute = 4, fewest_columns = 22;
+constexpr std::size_t header_lines = 8, month = 1, day = 2, hour = 3, minute = 4, fewest_columns = 22,
+                      most_columns = 35;
 constexpr double end_of_hour = 3600;  // [s]
 struct Column {
   std::size_t number;
@@ -20,7 +21,7 @@ constexpr std::array<Column, 5> columns{{{14, 9999}, {6, 99.9}, {21, 999}, {8, 9
 
 /// LOCATION,city,region,country,source,number,latitude,longitude,time zone,altitude
 WeatherHours::Site read_site(const std::string& line, const std::string& place) {
-  const std::vector<std::string> fields = split(line, ',');
+  const std::vector<std::string> fields = csv::fields(line);
   if (fields.size() < 9)
     throw Error("{}: the line LOCATION must hold latitude, longitude and time zone.", place);
   const double latitude = number_in(fields[6], "the latitude", place);
@@ -42,9 +43,10 @@ WeatherHours read_weather_epw(const std::filesystem::path& file) {
   for (std::size_t i = header_lines; i < lines.size(); ++i) {
     const int line = static_cast<int>(i) + 1;
     const std::string place = hours.place(line);
-    const std::vector<std::string> fields = split(lines[i], ',');
+    const std::vector<std::string> fields = csv::fields(lines[i]);
     if (fields.size() < fewest_columns)
-      throw Error("{}: {} columns; an EPW record has 35.", place, fields.size());
+      throw Error("{}: {} columns; an EPW record has {}.", place, fields.size(), most_columns);
+    check_width(fields, most_columns, place);
     const int m = whole_number(fields, month, "the month", place),
               d = whole_number(fields, day, "the day", place);
     if (m == 2 && d == 29) continue;  // a reference year has 365 days

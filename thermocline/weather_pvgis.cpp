@@ -7,6 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/csv/cells.hpp"
 #include "thermocline/weather_columns.hpp"
 #include "thermocline/weather_text.hpp"
 
@@ -63,7 +64,7 @@ WeatherHours read_weather_pvgis(const std::filesystem::path& file) {
   const std::vector<std::string> lines = read_lines(file);
   HourCollector hours(file.string());
   std::size_t head_line = 0;
-  while (head_line < lines.size() && !column_of(csv_fields(lines[head_line]), "time(UTC)")) ++head_line;
+  while (head_line < lines.size() && !column_of(csv::fields(lines[head_line]), "time(UTC)")) ++head_line;
   if (head_line == lines.size())
     throw Error(
         "{}: there is no line 'time(UTC),T2m,RH,...': only the typical year (TMY) of PVGIS as CSV is read, "
@@ -77,15 +78,16 @@ WeatherHours read_weather_pvgis(const std::filesystem::path& file) {
     throw Error("{}: the irradiance time offset is {:g} h; expected -1 to 1.", hours.place(1), offset);
   const WeatherHours::Site site = site_of(latitude, longitude, 0, hours.place(1));
   std::optional<int> minutes;
-  const std::vector<std::string> head = csv_fields(lines[head_line]);
+  const std::vector<std::string> head = csv::fields(lines[head_line]);
   const auto time = column_of(head, "time(UTC)");
   const WeatherColumns columns(head, names, hours.place(int(head_line) + 1));
   const std::size_t end = end_of_records(lines, head_line + 1, hours);
   for (std::size_t i = head_line + 1; i < end; ++i) {
     const int line = int(i) + 1;
     const std::string place = hours.place(line);
-    const std::vector<std::string> fields = csv_fields(lines[i]);
-    const std::string& stamp = fields.at(*time);
+    const std::vector<std::string> fields = csv::fields(lines[i]);
+    if (*time >= fields.size()) throw Error("{}: the line ends before its time.", place);
+    const std::string& stamp = fields[*time];
     if (stamp.size() != 13 || stamp[8] != ':')
       throw Error("{}: '{}' is no time YYYYMMDD:HHMM.", place, stamp);
     const std::vector<std::string> parts{stamp.substr(4, 2), stamp.substr(6, 2), stamp.substr(9, 2),
@@ -115,8 +117,8 @@ WeatherHours read_weather(const std::filesystem::path& file) {
   if (plain.extension() == ".json")
     throw Error("{}:1: JSON is not read; ask for the same year as CSV or EPW.", file.string());
   const std::vector<std::string> lines = read_lines(file);
-  const std::vector<std::string> first = csv_fields(lines.empty() ? "" : lines[0]),
-                                 second = csv_fields(lines.size() > 1 ? lines[1] : "");
+  const std::vector<std::string> first = csv::fields(lines.empty() ? "" : lines[0]),
+                                 second = csv::fields(lines.size() > 1 ? lines[1] : "");
   if (!lines.empty() && lines[0].starts_with("LOCATION,")) return read_weather_epw(file);
   if (!lines.empty() && trim(lines[0]).starts_with("Latitude (")) return read_weather_pvgis(file);
   if (column_of(second, "Date (MM/DD/YYYY)")) return read_weather_tmy3(file);

@@ -5,6 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/csv/cells.hpp"
 #include "thermocline/weather_columns.hpp"
 #include "thermocline/weather_text.hpp"
 
@@ -58,16 +59,16 @@ WeatherHours read_weather_sam(const std::filesystem::path& file) {
   const std::vector<std::string> lines = read_lines(file);
   HourCollector hours(file.string());
   std::size_t head_line = 0;
-  while (head_line < lines.size() && !column_of(csv_fields(lines[head_line]), "Month")) ++head_line;
+  while (head_line < lines.size() && !column_of(csv::fields(lines[head_line]), "Month")) ++head_line;
   if (head_line >= std::min<std::size_t>(lines.size(), 10))
     throw Error(
         "{}: a SAM or NSRDB file must have a line with the columns Year,Month,Day,Hour among its first "
         "lines.",
         hours.place(1));
-  const std::vector<std::string> head = csv_fields(lines[head_line]);
+  const std::vector<std::string> head = csv::fields(lines[head_line]);
   std::optional<WeatherHours::Site> site;
   if (head_line >= 2) {
-    const auto about = csv_fields(lines[head_line - 2]), values = csv_fields(lines[head_line - 1]);
+    const auto about = csv::fields(lines[head_line - 2]), values = csv::fields(lines[head_line - 1]);
     site = read_site(about, values, hours.place(int(head_line)));
     check_units(about, values, hours.place(int(head_line)));
   }
@@ -81,7 +82,7 @@ WeatherHours read_weather_sam(const std::filesystem::path& file) {
   for (std::size_t i = head_line + 1; i < lines.size(); ++i) {
     const int line = int(i) + 1;
     const std::string place = hours.place(line);
-    const std::vector<std::string> fields = csv_fields(lines[i]);
+    const std::vector<std::string> fields = csv::fields(lines[i]);
     const auto number = hour_of_year(whole_number(fields, *month, "the month", place),
                                      whole_number(fields, *day, "the day", place),
                                      whole_number(fields, *hour, "the hour", place), place);

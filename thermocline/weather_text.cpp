@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "thermocline/weather_text.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <memory>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/csv/cells.hpp"
+#include "common/csv/line_reader.hpp"
 #include "thermocline/weather_date.hpp"
 
 namespace couplet::thermocline {
@@ -23,44 +21,23 @@ const std::array<WeatherQuantity, 5> weather_quantities{{
     {"pressure [Pa]", "p_Pa", 40000, 110000, &WeatherHours::pressure, 1},
 }};
 
-std::vector<std::string> read_lines(const std::filesystem::path& file, std::string_view kind) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    throw Error("{}: there is no such {}. Relative paths start at the folder of the YAML file.",
-                file.string(), kind);
-  // gzread gives the content of uncompressed files as it is.
-  const std::unique_ptr<gzFile_s, int (*)(gzFile)> stream(gzopen(file.c_str(), "rb"), gzclose);
-  if (!stream) throw Error("{}: this {} cannot be read.", file.string(), kind);
-  std::string text;
-  std::array<char, 1 << 16> buffer;
-  int got = 0;
-  while ((got = gzread(stream.get(), buffer.data(), buffer.size())) > 0)
-    text.append(buffer.data(), static_cast<std::size_t>(got));
-  int status = Z_OK;
-  gzerror(stream.get(), &status);
-  if (got < 0 || status != Z_OK)
-    throw Error("{}: this {} is damaged or was cut short: it cannot be decompressed to its end.",
-                file.string(), kind);
-  if (text.find('\0') != std::string::npos)
-    throw Error(
-        "{}: this {} is no plain text: it holds zero bytes, as UTF-16 and binary files do. Save it as UTF-8.",
-        file.string(), kind);
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // the mark that some editors put first
-  std::vector<std::string> lines = split(text, '\n');
-  for (std::string& line : lines)
-    if (line.ends_with('\r')) line.pop_back();
-  while (!lines.empty() && trim(lines.back()).empty()) lines.pop_back();
-  return lines;
+std::vector<std::string> read_lines(const std::filesystem::path& file) {
+  return csv::read_lines(file, "weather file");
 }
 
 double number_in(const std::string& field, std::string_view name, const std::string& place) {
   const std::string_view text = trim(field);
   if (text.empty() || text == "nan" || text == "NaN" || text == "NA") return missing;
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value))
-    throw Error("{}: '{}' is not a number; {} was expected here.", place, text, name);
-  return value;
+  if (const auto value = csv::number_of(text)) return *value;
+  throw Error("{}: {}; {} was expected here.", place, csv::why_no_number(text), name);
+}
+
+void check_width(std::span<const std::string> fields, std::size_t most, const std::string& place) {
+  for (std::size_t i = most; i < fields.size(); ++i)
+    if (!trim(fields[i]).empty())
+      throw Error(
+          "{}: {} values, but the file has {} columns. If commas are decimal commas, write decimal points.",
+          place, fields.size(), most);
 }
 
 std::string HourCollector::place(int line) const { return fmt::format("{}:{}", file_, line); }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,11 @@ namespace couplet::thermocline {
 
 inline constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-/// All lines of a text file, which may be compressed by gzip; without the line ends. Throws Error, in which the file is
-/// called `kind`.
-std::vector<std::string> read_lines(const std::filesystem::path& file,
-                                    std::string_view kind = "weather file");
+/// All lines of a weather file, which may be compressed by gzip. Throws Error.
+std::vector<std::string> read_lines(const std::filesystem::path& file);
+
+/// Throws Error for a record with values beyond its last column, as decimal commas make them; empty fields may follow.
+void check_width(std::span<const std::string> fields, std::size_t most, const std::string& place);
 
 /// The number in a field of `file`:`line`; NaN if it is empty or "nan". Throws Error if it is anything else.
 double number_in(const std::string& field, std::string_view name, const std::string& place);

@@ -3,6 +3,7 @@
 // the hour that ends then, states at that moment [wilcox2008].
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "common/csv/cells.hpp"
 #include "thermocline/weather_columns.hpp"
 #include "thermocline/weather_text.hpp"
 
@@ -17,7 +18,7 @@ const WeatherColumns::Names names{
 
 /// number,name,state,time zone,latitude,longitude,elevation
 WeatherHours::Site read_site(const std::string& line, const std::string& place) {
-  const std::vector<std::string> fields = csv_fields(line);
+  const std::vector<std::string> fields = csv::fields(line);
   if (fields.size() < 7)
     throw Error(
         "{}: the first line of a TMY3 file holds number, name, state, time zone, latitude, longitude and "
@@ -32,7 +33,7 @@ WeatherHours::Site read_site(const std::string& line, const std::string& place) 
 WeatherHours read_weather_tmy3(const std::filesystem::path& file) {
   const std::vector<std::string> lines = read_lines(file);
   HourCollector hours(file.string());
-  const std::vector<std::string> head = csv_fields(lines.at(1));
+  const std::vector<std::string> head = csv::fields(lines.at(1));
   const WeatherColumns columns(head, names, hours.place(2));
   const auto date = column_of(head, "Date (MM/DD/YYYY)"), time = column_of(head, "Time (HH:MM)");
   if (!date || !time)
@@ -41,7 +42,7 @@ WeatherHours read_weather_tmy3(const std::filesystem::path& file) {
   for (std::size_t i = 2; i < lines.size(); ++i) {
     const int line = int(i) + 1;
     const std::string place = hours.place(line);
-    const std::vector<std::string> fields = csv_fields(lines[i]);
+    const std::vector<std::string> fields = csv::fields(lines[i]);
     if (fields.size() < head.size())
       throw Error("{}: {} values, but the file has {} columns.", place, fields.size(), head.size());
     const std::vector<std::string> day = split(fields[*date], '/'), clock = split(fields[*time], ':');

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <vector>
+
+#include "common/app/case_file.hpp"
 
 namespace couplet {
 
-/// What --check can tell about the checkpoint that --restart names, for one participant: a set that is not complete, a
-/// file of this participant or of the steps that is missing, damaged or of another kind.
-std::vector<std::string> problems_of_restart(const std::filesystem::path& folder,
-                                             const std::string& participant);
+/// For --check with --restart: why a run could not go on from that folder. No complete set, a set without the file of this
+/// program, files whose digests do not fit, a case that is another one. Empty: nothing, or there is no --restart.
+std::string problem_of_restart(const CommandLine& command_line, const CaseFile& file, bool is_coupler);
 
 }  // namespace couplet

@@ -29,8 +29,9 @@ int check(const CommandLine& command_line, const ProgramKind& kind, bool print) 
   CaseFile file = read_case(command_line, kind);
   if (!print && file.errors.empty() && !kind.is_coupler)
     file.errors = problems(file, kind, command_line.case_file.parent_path());
-  if (!print && file.errors.empty() && !command_line.restart_folder.empty())
-    file.errors = problems_of_restart(command_line.restart_folder, file.participant);
+  if (!print && file.errors.empty())
+    if (std::string problem = problem_of_restart(command_line, file, kind.is_coupler); !problem.empty())
+      file.errors.push_back(std::move(problem));
   if (!file.errors.empty()) {
     for (const std::string& error : file.errors) fmt::print(stderr, "{}\n", error);
     return 2;

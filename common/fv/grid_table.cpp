@@ -6,73 +6,70 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/fv/csv_line.hpp"
+#include "common/csv/csv_reader.hpp"
 
 namespace couplet {
 namespace {
 
 constexpr std::array<const char*, 4> axis_names{"x", "y", "z", "t"};
 constexpr std::array<const char*, 4> axis_units{"m", "m", "m", "s"};
-constexpr double most_places = 1e8;
+constexpr double most_places = 1e7;
+constexpr std::size_t most_numbers = 10000000;
 
 struct Columns {
   std::array<int, 4> axis{-1, -1, -1, -1};
   std::vector<int> value;
 };
 
-Columns columns_of(const std::filesystem::path& file, const std::vector<std::string>& head,
-                   const std::vector<std::string>& values) {
+Columns columns_of(const csv::CsvReader& reader, const std::vector<std::string>& values) {
+  const std::vector<std::string>& head = reader.names();
+  const std::string place = reader.place_of_names();
   Columns columns;
   columns.value.assign(values.size(), -1);
   std::vector<std::string> known(axis_names.begin(), axis_names.end());
   known.insert(known.end(), values.begin(), values.end());
   for (std::size_t i = 0; i < head.size(); ++i) {
-    const auto [name, unit] = heading_of(head[i]);
+    const auto [name, unit] = csv::heading_of(head[i]);
     const auto found = std::ranges::find(known, name);
     if (found == known.end())
-      throw Error("{}:1: a column '{}' has no meaning here. {}", file.string(), name,
+      throw Error("{}: a column '{}' has no meaning here. {}", place, name,
                   did_you_mean(name, known, "columns"));
     const auto at = static_cast<std::size_t>(found - known.begin());
     // A header in other units would be taken for what it is not.
     const std::string wanted = at < axis_names.size() ? axis_units[at] : "m/s";
     if (head[i].find('[') != std::string::npos && unit != wanted)
-      throw Error("{}:1: the column '{}' is in '{}'; only {} is read here.", file.string(), name, unit,
-                  wanted);
+      throw Error("{}: the column '{}' is in '{}'; only {} is read here.", place, name, unit, wanted);
     int& column = at < axis_names.size() ? columns.axis[at] : columns.value[at - axis_names.size()];
-    if (column >= 0) throw Error("{}:1: there are two columns '{}'.", file.string(), name);
+    if (column >= 0) throw Error("{}: there are two columns '{}'.", place, name);
     column = static_cast<int>(i);
   }
   for (std::size_t i = 0; i < values.size(); ++i)
     if (columns.value[i] < 0)
-      throw Error("{}:1: the column '{}' is missing; the first line names the columns, such as 'y,t,{}'.",
-                  file.string(), values[i], join(values, ","));
+      throw Error("{}: the column '{}' is missing; the first line names the columns, such as 'y,t,{}'.",
+                  place, values[i], join(values, ","));
   if (std::ranges::all_of(columns.axis, [](int c) { return c < 0; }))
-    throw Error("{}:1: no column is an axis; name one of them x, y, z or t.", file.string());
+    throw Error("{}: no column is an axis; name one of them x, y, z or t.", place);
   return columns;
 }
 
-std::vector<std::vector<double>> rows_of(const std::filesystem::path& file, std::vector<std::string>& head) {
-  std::ifstream stream = open_table(file);
-  std::vector<std::vector<double>> rows;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    const std::vector<std::string> cells = cells_of(line, false);
-    if (cells.empty()) continue;
-    if (head.empty()) {
-      head = cells;
-      continue;
-    }
-    if (cells.size() != head.size())
-      throw Error("{}:{}: {} columns are named, {} stand here.", file.string(), number, head.size(),
-                  cells.size());
-    rows.emplace_back();
-    for (const std::string& cell : cells) {
-      const auto value = number_of(cell);
-      if (!value) throw Error("{}:{}: '{}' is not a number.", file.string(), number, cell);
-      rows.back().push_back(*value);
-    }
+/// Numbers row by row, one for each column of the file.
+struct Rows {
+  std::size_t width = 0;
+  std::vector<double> values;
+  std::vector<int> line;
+  std::size_t size() const { return line.size(); }
+  double operator()(std::size_t row, int column) const { return values[row * width + std::size_t(column)]; }
+};
+
+Rows rows_of(csv::CsvReader& reader) {
+  Rows rows{reader.names().size(), {}, {}};
+  while (reader.next()) {
+    for (std::size_t i = 0; i < rows.width; ++i) rows.values.push_back(reader.number(i, reader.names()[i]));
+    rows.line.push_back(reader.line());
+    if (rows.values.size() > most_numbers)
+      throw Error("{}: a table of a grid has at most {:g} numbers. Give fewer places.", reader.place(),
+                  double(most_numbers));
   }
-  if (rows.empty()) throw Error("{}: the table has no values.", file.string());
   return rows;
 }
 
@@ -84,9 +81,12 @@ std::size_t place_on(const std::vector<double>& axis, double at) {
 
 GridTable GridTable::read(const std::filesystem::path& file, const std::vector<std::string>& values,
                           Outside outside) {
-  std::vector<std::string> head;
-  const auto rows = rows_of(file, head);
-  const Columns columns = columns_of(file, head, values);
+  csv::CsvReader reader(file, "table");
+  if (reader.names().empty())
+    throw Error("{}: the first line names the columns, such as 'y,t,{}'.", file.string(), join(values, ","));
+  const Columns columns = columns_of(reader, values);
+  const Rows rows = rows_of(reader);
+  if (rows.size() == 0) throw Error("{}: the table has no values.", file.string());
   GridTable table;
   table.file_ = file.string();
   table.outside_ = outside;
@@ -95,7 +95,7 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
   for (int a = 0; a < n_axes; ++a) {
     if (columns.axis[a] < 0) continue;
     std::vector<double>& axis = table.axes_[a];
-    for (const auto& row : rows) axis.push_back(row[columns.axis[a]]);
+    for (std::size_t r = 0; r < rows.size(); ++r) axis.push_back(rows(r, columns.axis[a]));
     std::ranges::sort(axis);
     axis.erase(std::unique(axis.begin(), axis.end()), axis.end());
     places *= double(axis.size());
@@ -105,15 +105,16 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
                 file.string(), places);
   table.data_.assign(static_cast<std::size_t>(places) * values.size(), 0.0);
   std::vector<char> there(static_cast<std::size_t>(places), 0);
-  for (const auto& row : rows) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
     std::size_t at = 0;
     for (int a = 0; a < n_axes; ++a)
       if (columns.axis[a] >= 0)
-        at = at * table.axes_[a].size() + place_on(table.axes_[a], row[columns.axis[a]]);
-    if (there[at]) throw Error("{}: a place of the grid is given twice.", file.string());
+        at = at * table.axes_[a].size() + place_on(table.axes_[a], rows(r, columns.axis[a]));
+    if (there[at])
+      throw Error("{}:{}: this place of the grid stands in a line before, too.", file.string(), rows.line[r]);
     there[at] = 1;
     for (std::size_t v = 0; v < values.size(); ++v)
-      table.data_[at * values.size() + v] = row[columns.value[v]];
+      table.data_[at * values.size() + v] = rows(r, columns.value[v]);
   }
   const auto missing = std::ranges::find(there, 0);
   if (missing == there.end()) return table;

@@ -9,24 +9,27 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/fv/csv_line.hpp"
+#include "common/csv/csv_reader.hpp"
 
 namespace couplet {
 namespace {
 
-/// Number (from 0) of the column that is wanted.
+constexpr std::size_t most_rows = 1000000;  // each costs 24 bytes in every key that names the file
+
+/// Number (from 0) of the column that is wanted, of `n`.
 std::size_t find_column(const std::filesystem::path& file, const std::vector<std::string>& names,
-                        const std::string& column) {
-  constexpr double most = 10000;
-  if (const auto number = number_of(column); number && *number == std::floor(*number)) {
-    if (*number < 2 || *number > most)
-      throw Error("{}: a table's values stand in a column from 2 to {}, not in '{}'.", file.string(), most,
+                        const std::string& column, std::size_t n) {
+  if (const auto number = csv::number_of(column); number && *number == std::floor(*number)) {
+    if (n < 2) throw Error("{}: a table needs two columns, places and values; there is one.", file.string());
+    if (*number < 2 || *number > double(n))
+      throw Error("{}: the table's values stand in a column from 2 to {}, not in '{}'.", file.string(), n,
                   column);
     return static_cast<std::size_t>(*number) - 1;
   }
   auto found = std::ranges::find(names, column);
   if (found == names.end())
-    found = std::ranges::find_if(names, [&](const std::string& n) { return heading_of(n).name == column; });
+    found =
+        std::ranges::find_if(names, [&](const std::string& n) { return csv::heading_of(n).name == column; });
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
   throw Error("{}: there is no column '{}' for a table. {}", file.string(), column,
               names.empty() ? "Its first line holds no names; give the number of a column, from 2."
@@ -88,37 +91,33 @@ double Table::integral(double from, double to) const {
 }
 
 Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside) {
-  std::ifstream stream = open_table(file);
+  csv::CsvReader rows(file, "table");
+  const std::vector<std::string>& names = rows.names();
   std::vector<double> at, values;
-  std::vector<std::string> names;
   std::optional<std::size_t> wanted;
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    const std::vector<std::string> cells = cells_of(line, true);
-    if (cells.empty()) continue;
-    if (at.empty() && names.empty() && !number_of(cells[0])) {
-      names = cells;
-      continue;
-    }
-    if (!wanted) wanted = find_column(file, names, column);
-    const auto x = number_of(cells[0]);
-    const auto y = *wanted < cells.size() ? number_of(cells[*wanted]) : std::nullopt;
-    if (!x || !y)
-      throw Error("{}:{}: a number is needed in columns 1 and {}.", file.string(), number, *wanted + 1);
-    at.push_back(*x);
-    values.push_back(*y);
+  while (rows.next()) {
+    if (!wanted) wanted = find_column(file, names, column, rows.cells().size());
+    at.push_back(rows.number(0, names.empty() ? "the place in column 1" : names[0]));
+    values.push_back(rows.number(
+        *wanted, names.empty() ? fmt::format("the value in column {}", *wanted + 1) : names[*wanted]));
+    if (at.size() > 1 && !(at.back() > at[at.size() - 2]))
+      throw Error("{}: the first column of a table must grow, but {:g} stands before {:g}.", rows.place(),
+                  at[at.size() - 2], at.back());
+    if (at.size() > most_rows)
+      throw Error("{}: a table has at most {} rows. Keep fewer of them.", rows.place(), most_rows);
   }
+  if (at.empty()) throw Error("{}: this table holds no rows of numbers.", file.string());
   Table table(std::move(at), std::move(values), outside, file.string());
   const auto unit_of = [&](std::size_t column) {
-    return column < names.size() ? heading_of(names[column]).unit : std::string();
+    return column < names.size() ? csv::heading_of(names[column]).unit : std::string();
   };
-  table.units_ = {unit_of(0), wanted ? unit_of(*wanted) : std::string()};
+  table.units_ = {unit_of(0), unit_of(*wanted)};
   return table;
 }
 
 Property::Property(const config::ExpressionText& text, const std::string& where) {
   const std::string place = where.empty() ? "" : where + ": ";
-  if (const auto number = number_of(text.text)) {
+  if (const auto number = csv::number_of(text.text)) {
     constant_ = *number;
     return;
   }

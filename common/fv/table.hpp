@@ -46,10 +46,10 @@ class Table final {
   Units units_;
 };
 
-/// A table from a CSV file: numbers separated by commas, semicolons or blanks; '#' begins a comment, the
-/// first line may hold names. The first column is the axis; `column`: name (with or without "[unit]") or number
+/// A table from a CSV file (common/csv), plain or gzip; the first line may hold names. The first column is the
+/// axis, which grows; `column`: name (with or without "[unit]") or number
 /// (from 1) of the values.
-/// Throws Error.
+/// Throws Error with file:line.
 Table read_table(const std::filesystem::path& file, const std::string& column, Table::Outside outside);
 
 /// What is wrong at a place of an expression.

@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
-#include <stdexcept>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/base/units.hpp"
+#include "common/csv/cells.hpp"
 #include "common/fv/table.hpp"
 
 namespace couplet {
@@ -63,12 +62,7 @@ std::vector<Argument> arguments_of(const std::string& text, std::size_t open, st
 }
 
 double number(const Argument& argument) {
-  std::size_t used = 0;
-  try {
-    const double value = std::stod(argument.text, &used);
-    if (used == argument.text.size() && std::isfinite(value)) return value;
-  } catch (const std::exception&) {
-  }
+  if (const auto value = csv::number_of(argument.text)) return *value;
   throw TextProblem{argument.at, fmt::format("a table holds numbers, not '{}'", argument.text), false};
 }
 

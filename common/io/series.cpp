@@ -3,45 +3,54 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <optional>
 
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
+#include "common/csv/cells.hpp"
+#include "common/csv/line_reader.hpp"
 
 namespace couplet {
 namespace {
 
+// A series grows with the run: its length is no sign of a foreign file. A crash may leave zeros in its last row.
+constexpr csv::Limits of_series{.bytes = std::numeric_limits<std::uint64_t>::max(),
+                                .line = std::size_t(1) << 20,
+                                .lines = std::numeric_limits<std::size_t>::max(),
+                                .text_only = false};
+
 // The time of a complete row: a number, and as many columns as the head has. A row cut by a crash has none.
-std::optional<double> time_of(const std::string& line, std::size_t n_columns) {
-  if (std::size_t(std::count(line.begin(), line.end(), ',')) + 1 != n_columns) return std::nullopt;
-  double time = 0;
-  const auto [end, code] = std::from_chars(line.data(), line.data() + line.size(), time);
-  if (code != std::errc() || (end != line.data() + line.size() && *end != ',')) return std::nullopt;
-  return time;
+std::optional<double> time_of(std::string_view line, std::size_t n_columns,
+                              std::vector<std::string_view>& cells) {
+  csv::split_cells(line, ',', cells);
+  return cells.size() == n_columns ? csv::number_of(cells[0]) : std::nullopt;
 }
 
-// The old text up to restart_time.
-std::string kept_rows(const std::filesystem::path& file, const std::string& head, std::size_t n_columns,
-                      double restart_time) {
-  std::ifstream old(file);
-  std::string line, kept;
-  if (!old || !std::getline(old, line)) return head + "\n";
+// The rows of the old file, behind its head; nothing where there are none.
+std::unique_ptr<csv::LineReader> rows_of(const std::filesystem::path& file, const std::string& head) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored)) return nullptr;
+  auto old = std::make_unique<csv::LineReader>(file, "series", of_series);
+  std::string_view line;
+  if (!old->next(line)) return nullptr;
   if (line != head)
     throw Error(
         "The series '{}' cannot be continued: its columns are '{}', those of this run '{}'. Move it away.",
         file.string(), line, head);
-  kept = line + "\n";
+  return old;
+}
+
+void copy_rows(csv::LineReader& old, std::size_t n_columns, double restart_time, std::ostream& out) {
   // Accepted times are sums of steps: equal to round-off only.
   const double last = restart_time + 1e-9 * std::abs(restart_time);
-  while (std::getline(old, line)) {
-    const auto time = time_of(line, n_columns);
-    const bool complete = !old.eof();
-    if (time && complete && *time <= last) kept += line + "\n";
+  std::vector<std::string_view> cells;
+  for (std::string_view line; old.next(line);) {
+    const auto time = time_of(line, n_columns, cells);
+    if (time && old.has_end() && *time <= last) out << line << '\n';
   }
-  return kept;
 }
 
 }  // namespace
@@ -52,11 +61,14 @@ Series::Series(const std::filesystem::path& file, const std::vector<std::string>
   const std::string head = fmt::format("{}", fmt::join(columns, ","));
   std::error_code code;
   if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), code);
-  const std::string text =
-      std::isnan(restart_time) ? head + "\n" : kept_rows(file, head, n_columns_, restart_time);
   const std::filesystem::path part = file.string() + ".part";
   own_file(file);
-  std::ofstream(own_file(part)) << text;
+  {
+    const auto old = std::isnan(restart_time) ? nullptr : rows_of(file, head);
+    std::ofstream out(own_file(part));
+    out << head << '\n';
+    if (old) copy_rows(*old, n_columns_, restart_time, out);
+  }
   std::filesystem::rename(part, file, code);
   if (!code) file_.open(file, std::ios::app);
   if (code || !file_)

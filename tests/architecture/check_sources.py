@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Holds the table of docs/architecture.md: who may include whom, which folder sees which third-party headers, an SPDX
-line in every source file, file lengths, member functions of a class, the papers cited, links, and clang-format where it is installed.
+line in every source file, file lengths, one reader for each format (readers.py), member functions of a class, the papers cited, links, and clang-format where it is installed.
 Usage: check_sources.py PROJECT_ROOT"""
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
+
+from readers import check_readers
 
 LONGEST = 500
 MOST_MEMBERS = 40  # functions of one class: beyond it, the class does more than one thing
@@ -17,17 +19,18 @@ ALLOWED = {
     "base": [],
     "log": ["base"],
     "config": ["base"],
+    "csv": ["base"],
     "parallel": ["base"],
     "linalg": ["parallel", "log", "base"],
     "mesh": ["linalg", "parallel", "config", "log", "base"],
-    "fv": ["mesh", "linalg", "parallel", "config", "log", "base"],
-    "elasticity": ["fv", "mesh", "linalg", "parallel", "config", "log", "base"],
+    "fv": ["mesh", "linalg", "parallel", "config", "csv", "log", "base"],
+    "elasticity": ["fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "time": ["config", "base"],
     "effects": ["base"],
-    "io": ["fv", "mesh", "linalg", "parallel", "config", "log", "base"],
+    "io": ["fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "modes": ["io", "mesh", "linalg", "parallel", "log", "base"],
     "coupling": ["io", "mesh", "parallel", "effects", "config", "log", "base"],
-    "app": ["coupling", "effects", "io", "fv", "mesh", "linalg", "parallel", "config", "log", "base"],
+    "app": ["coupling", "effects", "io", "fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
 }
 NOT_FOR = {"coupler": ["mesh", "fv"]}
 # Third-party headers by pattern, and the folders that may include them.
@@ -39,7 +42,7 @@ THIRD_PARTY = {
     r"muParser": ["common/fv"],
     r"nanoflann": ["common/base"],
     r"spdlog/": ["common/log"],
-    r"zlib": ["thermocline"],
+    r"zlib": ["common/csv"],
 }
 # One reader of each foreign format: what only its own files may write, and which these are.
 DOORS = {
@@ -230,6 +233,8 @@ def main(root):
     notes = [(f, (root / f).read_text()) for f in paths if not any(p.startswith((".", "build")) for p in f.parts)]
     sources = [(f.relative_to(root), f.read_text()) for f in files]
     trouble += check_references((root / "docs/references.bib").read_text(), sources + notes)
+    for found in check_readers(sources):
+        trouble += found
     trouble += check_monitors(sources, (root / "docs/formats.md").read_text())
     trouble += check_links(notes, lambda link: (root / link).exists())
     print("\n".join(trouble) or f"{len(files)} files: in order")

@@ -5,6 +5,7 @@ import pathlib
 import sys
 
 from check_sources import check_links, check_monitors, check_references, check_text
+from readers import READERS, check_readers
 
 HEAD = "// SPDX-License-Identifier: Apache-2.0\n"
 
@@ -88,5 +89,18 @@ for formats, missing in MONITORS.items():
     if len(found) != missing:
         print(f"monitors: {formats}: {missing} missing, found {found}")
         failed += 1
-print(f"{len(WRONG) + len(RIGHT) + len(REFERENCES) + len(LINKS) + len(MONITORS)} samples, {failed} judged wrongly")
+SECOND_READERS = {"std::ifstream in(file);": 1, "double v = std::stod(text);": 1, "while (std::getline(in, line))": 1, "gzopen(name, mode)": 1,
+                  "const auto r = std::from_chars(a, b, v);": 1, "FILE* f = fopen(name, \"r\");": 1, "sscanf(text, format, &v);": 1,
+                  "// std::ifstream in a comment": 0, "csv::LineReader in(file, kind);": 0, "std::ofstream out(file);": 0, "int stop = reopen(1);": 0}
+for text, wrong in SECOND_READERS.items():
+    for path, counts in (("fluid_solver/a.cpp", 1), ("tests/unit/a.cpp", 0), ("common/csv/cells.cpp", 0)):
+        found, _ = check_readers([(pathlib.PurePosixPath(path), HEAD + text + "\n")])
+        if len(found) != wrong * counts:
+            print(f"readers: {path}: {text}: {wrong * counts} wrong, found {found}")
+            failed += 1
+idle = check_readers([])[1]
+if len(idle) != len(READERS) or not all(len(reason) > 8 for reason in READERS.values()):
+    print(f"readers: each entry needs a reason and a reader, found {idle}")
+    failed += 1
+print(f"{len(SECOND_READERS) + len(WRONG) + len(RIGHT) + len(REFERENCES) + len(LINKS) + len(MONITORS)} samples, {failed} judged wrongly")
 sys.exit(1 if failed else 0)

@@ -51,8 +51,8 @@ case.yaml:17:7: participants.solid.boundaries.top: the mesh has no patch of this
         solid("--check: nothing holds the solid", "case.yaml:13:5: participants.solid.boundaries: nothing holds the solid of this static "
               "analysis: at least one patch must be fixed, supported, sprung or on a plane of symmetry.",
               ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: free}")),
-        solid("a table with a column out of range", "case.yaml:15:31: participants.solid.boundaries.right.value: profile.csv: a table's "
-              "values stand in a column from 2 to 10000, not in '1e300'.",
+        solid("a table with a column out of range", "case.yaml:15:31: participants.solid.boundaries.right.value: profile.csv: the "
+              "table's values stand in a column from 2 to 2, not in '1e300'.",
               ("{type: traction, value: [1000, 0]}", "{type: pressure, value: {of: t, file: profile.csv, column: 1e300}}"),
               files={"profile.csv": "0 1\n1 2\n"}),
         solid("a participant with a folder's name", "case.yaml:3:1: participants: '../up': the name becomes a folder: no '/', '\\', '.' or "

@@ -66,7 +66,7 @@ case.yaml:19:36: participants.tank.insulation.solar-absorptance: the sun's heigh
 case.yaml:23:28: participants.tank.flow.file: there is no file 'flows.csv'.
 """, from_file),
         tank("--check: broken file of flows", """
-case.yaml:23:28: participants.tank.flow.file: flows.csv:4: 'x' is no number for mass-flow.
+case.yaml:23:28: participants.tank.flow.file: flows.csv:4: 'x' is not a number; mass-flow was expected here.
 """, from_file, files={"flows.csv": flows + "2,x,390\n"}),
         tank("--check: flows of frozen salt", """
 case.yaml:23:28: participants.tank.flow.file: flows.csv: rows[0].inlet-temperature is 390 K, that is 116.9 degC, and solar salt is no liquid below 238 degC; write '390 degC' if that is meant: here, in the head of the column.

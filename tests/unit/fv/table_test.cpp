@@ -98,7 +98,25 @@ TEST(Table, is_read_from_a_file_by_name_or_number_of_its_column) {
   EXPECT_THAT([&] { read_table(path, "temprature", Outside::clamp); },
               ThrowsMessage<Error>(HasSubstr("Did you mean 'temperature'?")));
   EXPECT_THAT([] { read_table("nowhere.csv", "2", Outside::clamp); },
-              ThrowsMessage<Error>(HasSubstr("nowhere.csv: this file of a table cannot be read")));
+              ThrowsMessage<Error>(HasSubstr("nowhere.csv: there is no such table")));
+}
+
+/// A load of 5 in place of 2000.5 Pa.
+TEST(Table, with_decimal_commas_is_refused_with_its_line) {
+  const CsvFile file("t;p\n0,0;1000,5\n1,5;2000,5\n");
+  EXPECT_THAT([&] { value_of("table(t, \"" + file.path() + "\", \"p\")", Vec3::Zero(), 1); },
+              ThrowsMessage<Error>(
+                  HasSubstr(file.name() + ":2: '0,0' has a decimal comma; write 0.0; t was expected here")));
+}
+
+TEST(Table, places_in_a_file_that_do_not_grow_are_refused_with_their_line) {
+  const CsvFile file("t,p\n0,1\n2,2\n1,3\n");
+  EXPECT_THAT([&] { read_table(file.path(), "2", Outside::clamp); },
+              ThrowsMessage<Error>(HasSubstr(
+                  file.name() + ":4: the first column of a table must grow, but 2 stands before 1")));
+  const CsvFile names("t,p\n");
+  EXPECT_THAT([&] { read_table(names.path(), "2", Outside::clamp); },
+              ThrowsMessage<Error>(HasSubstr("holds no rows of numbers")));
 }
 
 /// Nothing ever writes into it: a reader would wait for ever.

@@ -138,7 +138,8 @@ TEST_F(WeatherFile, a_damaged_compressed_file_is_refused) {
   fs::resize_file(folder_ / "cut.csv.gz", fs::file_size(source) / 2);
   EXPECT_EQ(
       complaint((folder_ / "cut.csv.gz").string()),
-      "cut.csv.gz: this weather file is damaged or was cut short: it cannot be decompressed to its end.");
+      "cut.csv.gz: this weather file is damaged or was cut short: it cannot be decompressed to its end (its end is "
+      "missing). Copy or compress it again.");
 }
 
 /// A day as EPW: the first record is line 9.
@@ -169,6 +170,20 @@ TEST_F(WeatherFile, an_epw_file_is_read) {
   ASSERT_TRUE(record.site.has_value());
   EXPECT_EQ(record.site->latitude, 37.5);
   EXPECT_EQ(record.site->solar_ahead, -5.25 * 240);
+}
+
+/// Rows that decimal commas make longer are not read as others.
+TEST_F(WeatherFile, values_beyond_the_last_column_are_refused) {
+  const auto with_comma = [](int h, std::string line) {
+    return h == 4 ? line.replace(line.find(",40,99000"), 9, ",40,5,99000") : line;
+  };
+  EXPECT_EQ(
+      complaint(write("w.epw", epw(with_comma))),
+      "w.epw:12: 36 values, but the file has 35 columns. If commas are decimal commas, write decimal points.");
+  EXPECT_EQ(
+      complaint(write("w.csv",
+                      csv([](int h, std::string line) { return h == 5 ? "5,0,15,5,3,40,99000\n" : line; }))),
+      "w.csv:8: 7 values, but the file has 6 columns. If commas are decimal commas, write decimal points.");
 }
 
 TEST_F(WeatherFile, missing_codes_of_epw_are_gaps) {

@@ -106,7 +106,8 @@ TEST(VelocityTable, what_is_wrong_is_said_with_file_and_place) {
   EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,1,0\n", 1.5),
               HasSubstr("from y = 0 m to 1 m, but its value at 1.5 m"));
   EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,one,0\n"), HasSubstr("in.csv:3: 'one' is not a number"));
-  EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,1\n"), HasSubstr("in.csv:3: 3 columns are named, 2 stand here"));
+  EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,1\n"),
+              HasSubstr("in.csv:3: 2 values, but the file has 3 columns"));
   EXPECT_THAT(refusal(file, "y,u\n0,0\n"), HasSubstr("in.csv:1: the column 'v' is missing"));
   EXPECT_THAT(refusal(file, "q,u,v\n0,0,0\n"), HasSubstr("in.csv:1: a column 'q' has no meaning here"));
   EXPECT_EQ(refusal(file, "y [m],u [m/s],v\n0,0,0\n1,1,0\n"), "");
@@ -115,8 +116,9 @@ TEST(VelocityTable, what_is_wrong_is_said_with_file_and_place) {
   EXPECT_THAT(refusal(file, "y,u [cm/s],v\n0,0,0\n1,1,0\n"), HasSubstr("'u' is in 'cm/s'; only m/s is read"));
   EXPECT_THAT(refusal(file, "u,v\n0,0\n"), HasSubstr("no column is an axis"));
   EXPECT_THAT(refusal(file, "y,t,u,v\n0,0,1,0\n0,1,1,0\n1,0,1,0\n"), HasSubstr("no value at y = 1, t = 1"));
-  EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n0,0,0\n"), HasSubstr("given twice"));
-  EXPECT_THAT(refusal(file.parent_path() / "none" / "in.csv", ""), HasSubstr("cannot be read"));
+  EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n0,0,0\n"),
+              HasSubstr("in.csv:3: this place of the grid stands in a line before, too"));
+  EXPECT_THAT(refusal(file.parent_path() / "none" / "in.csv", ""), HasSubstr("there is no such table"));
 }
 
 TEST(RotatingInlet, adds_omega_cross_r_and_a_ring_between_turning_walls_carries_it) {

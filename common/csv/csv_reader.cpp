@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/csv/csv_reader.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+
+namespace couplet::csv {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Meant as a number, even where it is none: "0,5", "-", "1.2.3", "nan".
+bool is_like_number(std::string_view cell) {
+  constexpr std::string_view of_numbers = "0123456789.,+-eE";
+  if (number_of(cell)) return true;
+  std::string lower(cell);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  if (lower.starts_with('-') || lower.starts_with('+')) lower.erase(0, 1);
+  if (lower == "nan" || lower == "inf" || lower == "infinity") return true;
+  return std::ranges::any_of(cell, is_digit) && cell.find_first_not_of(of_numbers) == std::string_view::npos;
+}
+
+/// "05": what stands behind a decimal comma, not a number of its own.
+bool has_leading_zero(std::string_view cell) {
+  return cell.size() > 1 && cell[0] == '0' && std::ranges::all_of(cell, is_digit);
+}
+
+const char* word_for(Separator separator) {
+  switch (separator) {
+    case ';':
+      return "semicolons";
+    case ',':
+      return "commas";
+    case '\t':
+      return "tabs";
+    default:
+      return "blanks";
+  }
+}
+
+}  // namespace
+
+CsvReader::CsvReader(const std::filesystem::path& file, const std::string& kind, const Limits& limits)
+    : lines_(file, kind, limits) {
+  if (!next_line()) return;
+  first_line_ = line();
+  take_names();
+  row_waits_ = names_.empty();
+}
+
+std::string CsvReader::place_of_names() const { return fmt::format("{}:{}", lines_.name(), line_of_names_); }
+
+/// The next line that holds cells.
+bool CsvReader::next_line() {
+  for (std::string_view text; lines_.next(text);) {
+    text = without_comment(text);
+    if (trim(text).empty()) continue;
+    if (width_ == 0) separator_ = separator_of(text);
+    if (!split_cells(text, separator_, cells_)) throw Error("{}: a double quote is not closed.", place());
+    if (width_ == 0) width_ = cells_.size();
+    return true;
+  }
+  return false;
+}
+
+/// Names are no numbers, none of them: a first row with a slip must not pass for names.
+void CsvReader::take_names() {
+  const auto number = std::ranges::find_if(cells_, is_like_number);
+  if (number == cells_.end()) {
+    names_.assign(cells_.begin(), cells_.end());
+    line_of_names_ = line();
+    return;
+  }
+  for (const std::string_view cell : cells_)
+    if (!cell.empty() && !is_like_number(cell))
+      throw Error(
+          "{}: the first line holds both numbers ('{}') and words ('{}'): are these names of columns or values? "
+          "{}.",
+          place(), number->substr(0, 60), cell.substr(0, 60),
+          cell.find_first_of("0123456789") == 0
+              ? "Write numbers without units; a unit belongs in the name of the column, as in 'time [s]'"
+              : "Give every column a name that is no number, or leave the names out");
+}
+
+void CsvReader::check_width() const {
+  if (cells_.size() == width_) return;
+  const bool commas = separator_ == ',' && cells_.size() > width_;
+  const bool other = cells_.size() == 1 && separator_of(cells_[0]) != ' ';
+  throw Error("{}: {} values, but the file has {} columns (separated by {}, as its line {} is).{}", place(),
+              cells_.size(), width_, word_for(separator_), first_line_,
+              commas  ? " If commas are decimal commas, write decimal points."
+              : other ? " Use one separator in the whole file."
+                      : "");
+}
+
+/// "0,5,1000": three numbers, or 0.5 and 1000? Without names nothing decides.
+void CsvReader::refuse_ambiguous() const {
+  if (!names_.empty() || separator_ != ',' || width_ < 3 || has_points_) return;
+  throw Error(
+      "{}:{}: the commas may separate {} whole numbers or be decimal commas. Name the columns in the first line, "
+      "or separate them by semicolons and write decimal points.",
+      lines_.name(), first_line_, width_);
+}
+
+bool CsvReader::next() {
+  if (!row_waits_ && !next_line()) {
+    if (first_line_ > 0) refuse_ambiguous();
+    return false;
+  }
+  row_waits_ = false;
+  check_width();
+  if (separator_ == ',' && names_.empty() && !has_points_)
+    has_points_ = std::ranges::any_of(
+        cells_, [](std::string_view cell) { return cell.find_first_of(".eE") != std::string_view::npos; });
+  return true;
+}
+
+double CsvReader::number(std::size_t column, std::string_view what) const {
+  const std::string_view cell = cells_.at(column);
+  const auto value = number_of(cell);
+  if (value && !(separator_ == ',' && has_leading_zero(cell))) return *value;
+  const std::string expected = what.empty() ? "" : fmt::format("; {} was expected here", what);
+  if (value)
+    throw Error(
+        "{}: '{}' begins with a zero: are the commas decimal commas? Write decimal points, and numbers without "
+        "leading zeros{}.",
+        place(), cell.substr(0, 60), expected);
+  throw Error("{}: {}{}.", place(), why_no_number(cell), expected);
+}
+
+}  // namespace couplet::csv
