@@ -11,6 +11,8 @@
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/places.hpp"
+#include "coupler/role_checks.hpp"
+#include "coupler/surfaces.hpp"
 
 namespace couplet {
 namespace {
@@ -91,11 +93,13 @@ void Coupler::initialise() {
   std::vector<Interface> interfaces = initialise_all(everyone());
   for (std::size_t i = 0; i < partners_.size(); ++i)
     sides_.emplace_back(comm_, partners_[i].name(), std::move(interfaces[i]));
+  check_roles(parameters_, sides_);
   links_.emplace(comm_, sides_, parameters_.mapping);
   for (const std::string& note : links_->notes()) log::info("{}", note);
-  check_roles(parameters_, sides_);
   check_foreseen(sides_, *links_, schedule_, group_);
   check_places(comm_, sides_, *links_, parameters_.mapping);
+  compare_surfaces(comm_, sides_, *links_, schedule_);
+  still_guard_.emplace(comm_, sides_);
   unknown_.emplace(comm_, sides_, *links_, group_, schedule_.side_by_side);
   audit_.emplace(comm_, sides_, *links_);
   if (simulation_.error_estimate && schedule_.iterates) errors_.emplace();
@@ -224,6 +228,8 @@ void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
     const auto parted = work_guard_.accepted(given, taken, parameters_.scheme);
     if (!reason) reason = parted;
   }
+  for (const std::string& finding : still_guard_->accepted(given_, taken_))
+    log::doubt(comm_rank(comm_), fmt::format("t = {:g} s: {}", time, finding));
   audit_->loads(given_);
   audit_->tell(parameters_, time);
   if (!reason || !diverged_.empty()) return;

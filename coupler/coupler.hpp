@@ -24,6 +24,7 @@
 #include "coupler/parameters.hpp"
 #include "coupler/partners.hpp"
 #include "coupler/schedule.hpp"
+#include "coupler/still_guard.hpp"
 #include "coupler/unknown.hpp"
 #include "coupler/volume_level.hpp"
 #include "coupler/watch_integrals.hpp"
@@ -113,6 +114,7 @@ class Coupler {
   IterationGuard iteration_guard_;
   OscillationGuard oscillation_guard_;
   WorkGuard work_guard_;
+  std::optional<StillGuard> still_guard_;
   std::optional<CouplingAudit> audit_;
   std::optional<CouplingErrorEstimate> errors_;  // none: not wanted, or nothing is iterated
   std::optional<LagEstimate> lag_;               // none: not wanted, not explicit, or it could not tell

@@ -179,25 +179,6 @@ void require_finite(MPI_Comm comm, const Exchange& data, const Interface& interf
   if (const std::string text = first_text(comm, problem); !text.empty()) throw SolveFailure("{}", text);
 }
 
-void check_roles(const CouplingParameters& parameters, const std::vector<Side>& sides) {
-  if (parameters.exchange) return;
-  const auto side = [&](const std::string& name) -> const Side& {
-    return *std::ranges::find(sides, name, &Side::name);
-  };
-  const Side& structure = side(parameters.structure->participant);
-  for (const Side& other : sides)
-    if (other.interface.dim != structure.interface.dim)
-      throw Error("'{}' has {} dimensions and '{}' has {}: both must have the same.", other.name,
-                  other.interface.dim, structure.name, structure.interface.dim);
-  for (const std::string motion : {"displacement", "velocity"}) {
-    const auto& gives = structure.interface.gives;
-    const auto found = std::ranges::find(gives, motion, &Interface::Datum::name);
-    if (found == gives.end() || found->place != Place::vertices)
-      throw Error("The structure '{}' does not give '{}' at vertices, which is part of the coupling unknown.",
-                  structure.name, motion);
-  }
-}
-
 void check_foreseen(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,
                     const std::vector<std::size_t>& group) {
   const auto place = [&](std::size_t i) { return std::ranges::find(group, i) - group.begin(); };

@@ -25,10 +25,6 @@ struct PlaceReport {
 /// against each other; several vertices that follow one (a staircase) are said. Collective.
 PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to);
 
-/// Of `coupling.fluid` and `coupling.structure`: the motion must be there, dimensions must agree. Throws
-/// Error.
-void check_roles(const CouplingParameters& parameters, const std::vector<Side>& sides);
-
 /// Throws Error where a fluid that foresees its walls' answer (it takes its own data back) is asked before them: `group`
 /// in the order of a pass.
 void check_foreseen(const std::vector<Side>& sides, const Links& links, const Schedule& schedule,

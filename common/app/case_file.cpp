@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 
+#include "common/app/case_roles.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/fv/expression.hpp"
@@ -58,41 +59,6 @@ void list_expected(const config::Document& document, CaseFile& result) {
                       config::where(document, "participants." + name)));
     result.expected.push_back({name, program.value_or("?")});
   }
-}
-
-/// Every role names a participant, and every participant has a role.
-void check_roles(const config::Document& document, CaseFile& result) {
-  if (!result.coupled) return;
-  std::vector<std::string> names, cast;
-  for (const Expected& e : result.expected)
-    if (e.participant != coupler_name) names.push_back(e.participant);
-  for (const std::string role : {"fluid", "structure", "mesh"}) {
-    const auto name = config::text_of(document, "coupling." + role + ".participant");
-    if (!name) continue;
-    cast.push_back(*name);
-    if (std::find(names.begin(), names.end(), *name) == names.end())
-      result.errors.push_back(fmt::format("{}: there is no participant '{}'. {}",
-                                          config::where(document, "coupling." + role + ".participant"), *name,
-                                          did_you_mean(*name, names, "participants")));
-  }
-  const auto exchanging = config::texts_of(document, "coupling.exchange.participants");
-  for (auto here = exchanging.begin(); here != exchanging.end(); ++here) {
-    const std::string& name = *here;
-    cast.push_back(name);
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      result.errors.push_back(fmt::format("{}: there is no participant '{}'. {}",
-                                          config::where(document, "coupling.exchange.participants"), name,
-                                          did_you_mean(name, names, "participants")));
-    if (std::find(exchanging.begin(), here, name) != here)
-      result.errors.push_back(fmt::format("{}: '{}' is there twice.",
-                                          config::where(document, "coupling.exchange.participants"), name));
-  }
-  for (const std::string& name : names)
-    if (std::find(cast.begin(), cast.end(), name) == cast.end())
-      result.errors.push_back(fmt::format(
-          "{}: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give "
-          "it one or take it out.",
-          config::where(document, "participants." + name)));
 }
 
 /// The participant that this program is to run; throws Error.
@@ -189,7 +155,7 @@ CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
     result.hash = result.document->hash();
     check_top_level(*result.document, result);
     list_expected(*result.document, result);
-    check_roles(*result.document, result);
+    if (result.coupled) append(result.errors, problems_of_roles(*result.document, result.expected));
     std::vector<std::string> doubts;
     append(result.errors,
            config::load(

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/fault_injection.hpp"
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <sstream>
+#include <thread>
 #include <vector>
+
+#include "common/coupling/wait.hpp"
+#include "common/log/life.hpp"
 
 namespace couplet {
 
@@ -19,10 +24,21 @@ FaultInjection::FaultInjection(std::string_view participant, int rank) {
   armed_ = true;
   phase_ = parts[1];
   remaining_ = std::atoi(parts[2].c_str());
+  fate_ = parts.size() > 4 ? parts[4] : "kill";
 }
 
 void FaultInjection::at(std::string_view phase) {
-  if (armed_ && phase == phase_ && --remaining_ == 0) std::raise(SIGKILL);
+  if (!armed_ || phase != phase_ || --remaining_ != 0) return;
+  using namespace std::chrono_literals;
+  if (fate_ == "kill") std::raise(SIGKILL);
+  if (fate_ == "stop") std::raise(SIGSTOP);
+  while (fate_ == "hang") std::this_thread::sleep_for(1s);
+  PoliteWait wait("a message that nobody sends");
+  while (fate_ == "wait") wait.pause();
+  for (int i = 0; fate_ == "work" && i < 80; ++i) {
+    std::this_thread::sleep_for(50ms);
+    log::alive();
+  }
 }
 
 }  // namespace couplet

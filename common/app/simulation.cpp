@@ -37,8 +37,9 @@ void declare(config::Section& section, SimulationParameters& p) {
       .plausible(1, 1e6)
       .not_negative()
       .doc(
-          "the job ends and names the culprit when one of its processes has shown no sign of life for so long: "
-          "more than the longest step, output or meshing takes; 0: never");
+          "the job ends and names the culprit when one of its processes has given no sign of life for so long: an "
+          "iteration of a solver, a phase of a step, or, while a mesh is made, a matrix is factorised or files are written, "
+          "processor time; 0: never");
   section.section(
       "output",
       [&](config::Section& s) {

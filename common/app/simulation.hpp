@@ -17,7 +17,7 @@ struct SimulationParameters {
   bool output_steps = true;            // steps.csv
   double checkpoint_interval = 0;      // [s]; 0: only at the end
   int checkpoints_kept = 2;
-  double hang_timeout = 0;      // [s]; 0: never
+  double hang_timeout = 600;    // [s]; 0: never
   bool error_estimate = true;   // at the end of the run
   bool choose_effects = false;  // what the case leaves open is decided by estimates of the scene
   std::string keys;             // no parameter: the case as text, kept with every checkpoint (see case_keys)

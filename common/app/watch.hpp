@@ -27,8 +27,8 @@ const char* name(Phase phase);
 /// writes there who it is and what it does. MPI's launcher ends a job with SIGTERM when one of its processes
 /// dies; the handler then finds which processes are gone, and the first survivor to look writes the one line
 /// that names them and what they did last. If none is gone, SIGTERM is somebody's wish that the job ends: it is
-/// passed on to the loop of steps, which saves the state and ends the run. One Watch a process. It stays in force
-/// until the process ends.
+/// passed on to the loop of steps, which saves the state and ends the run. Where all of them wait for each other the job
+/// ends, too. One Watch a process. It stays in force until the process ends.
 class Watch {
  public:
   /// Collective over `world`, right after MPI_Init.
@@ -46,7 +46,7 @@ class Watch {
   /// error.
   bool claim_report();
   /// From now on a thread looks whether the processes of this machine go on: one that has shown no sign of life
-  /// for so long [s], and does not just wait for others, ends the job and is named. 0: never.
+  /// for so long [s] (see log/life.hpp), and does not just wait for others, ends the job and is named. 0: never.
   void limit_silence(double seconds);
 
   /// A signal asked this job to stop while it was making steps.

@@ -11,6 +11,20 @@
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
+namespace {
+
+WaitObserver& observer() {
+  static WaitObserver one;
+  return one;
+}
+
+}  // namespace
+
+void observe_waits(const WaitObserver& one) { observer() = one; }
+
+PoliteWait::~PoliteWait() {
+  if (reported_) observer().over();
+}
 
 void PoliteWait::pause() {
   using namespace std::chrono_literals;
@@ -20,6 +34,11 @@ void PoliteWait::pause() {
     return;
   }
   std::this_thread::sleep_for(std::min<std::chrono::duration<double>>(waited / 16, 250us));
+  if (waited > report_ && observer().lasts) {
+    report_ = waited + 250ms;
+    reported_ = true;
+    observer().lasts(what_.c_str());
+  }
   if (waited > notice_ && !what_.empty()) {
     log::info("waiting for {} for {:.0f} s", what_, waited.count());
     notice_ *= 2;

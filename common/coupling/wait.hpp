@@ -20,6 +20,9 @@ class PoliteWait {
  public:
   /// `what` completes "waiting for ..."; empty: never says anything.
   explicit PoliteWait(std::string what) : what_(std::move(what)) {}
+  PoliteWait(const PoliteWait&) = delete;
+  PoliteWait& operator=(const PoliteWait&) = delete;
+  ~PoliteWait();
   /// Between two looks at whatever is awaited.
   void pause();
 
@@ -27,8 +30,17 @@ class PoliteWait {
   using Clock = std::chrono::steady_clock;
   std::string what_;
   Clock::time_point start_ = Clock::now();
-  std::chrono::duration<double> notice_{30};
+  std::chrono::duration<double> notice_{30}, report_{1};
+  bool reported_ = false;
 };
+
+/// Who hears of waits that last (the watch over the job), one a process: four times a second from the second second of
+/// a wait on, and when it is over.
+struct WaitObserver {
+  void (*lasts)(const char* what) = nullptr;
+  void (*over)() = nullptr;
+};
+void observe_waits(const WaitObserver& observer);
 
 void wait_politely(MPI_Request& request, const std::string& what);
 

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "common/linalg/dot.hpp"
+#include "common/log/life.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -45,6 +46,7 @@ void Idr::run(const LinearMap& apply, const LinearMap& precondition, std::span<d
   Eigen::Matrix<double, s, s> m = Eigen::Matrix<double, s, s>::Identity();  // shadow^T images, lower triangle
   double omega = 1;
   while (applications < most) {
+    log::alive();
     Eigen::Matrix<double, s, 1> f;
     for (int i = 0; i < s; ++i) f[i] = dot_here(shadow_[i], r);
     over_ranks(f.data(), s);

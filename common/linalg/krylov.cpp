@@ -12,6 +12,7 @@
 #include "common/linalg/dot.hpp"
 #include "common/linalg/idr.hpp"
 #include "common/linalg/residual_projection.hpp"
+#include "common/log/life.hpp"
 #include "common/log/log.hpp"
 
 namespace couplet {
@@ -127,6 +128,7 @@ void KrylovSolver::run_cg(std::span<double> x, double wanted, int max_iterations
   p_ = z_;
   double rz = over_ranks<1>(comm_, {dot_here(r_, z_)})[0];
   while (statistics.iterations < max_iterations) {
+    log::alive();
     ++statistics.iterations;
     apply_(p_, v_);
     const double curvature = over_ranks<1>(comm_, {dot_here(p_, v_)})[0];
@@ -167,6 +169,7 @@ void KrylovSolver::run_bicgstab(std::span<double> x, double wanted, int max_iter
   p_ = r_;
   double rho = over_ranks<1>(comm_, {dot_here(r_, r_)})[0];
   while (statistics.iterations < max_iterations) {
+    log::alive();
     ++statistics.iterations;
     precondition_(p_, z_);
     apply_(z_, v_);

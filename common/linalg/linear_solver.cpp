@@ -10,6 +10,7 @@
 #include "common/linalg/idr.hpp"
 #include "common/linalg/petsc_check.hpp"
 #include "common/linalg/single_factors.hpp"
+#include "common/log/life.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -137,11 +138,17 @@ PetscErrorCode apply_single(PC pc, ::Vec b, ::Vec x) {
   return VecRestoreArrayRead(b, &from);
 }
 
+PetscErrorCode sign_of_life(KSP, PetscInt, PetscReal, void*) {
+  log::alive();
+  return 0;
+}
+
 }  // namespace
 
 LinearSolver::LinearSolver(std::string what, const SparseMatrix& matrix, const LinearOptions& options)
     : what_(std::move(what)), options_(options), matrix_(&matrix) {
   petsc_check(KSPCreate(matrix.comm(), &ksp_));
+  petsc_check(KSPMonitorSet(ksp_, sign_of_life, nullptr, nullptr));
   petsc_check(KSPSetOperators(ksp_, matrix.petsc(), matrix.petsc()));
   PC pc = nullptr;
   petsc_check(KSPGetPC(ksp_, &pc));
@@ -314,6 +321,19 @@ KSPConvergedReason LinearSolver::continue_by_idr(std::span<const double> b, std:
   return applications >= most ? KSP_DIVERGED_ITS : KSP_DIVERGED_BREAKDOWN;
 }
 
+namespace {
+
+/// Setting up, which may factorise for long without a sign of life, and the iterations, each of which is one.
+PetscErrorCode solve_alive(KSP ksp, Vec b, Vec x, bool sets_up) {
+  if (sets_up) {
+    const log::LongWork work;
+    if (const PetscErrorCode code = KSPSetUp(ksp); code != 0) return code;
+  }
+  return KSPSolve(ksp, b, x);
+}
+
+}  // namespace
+
 /// One KSPSolve; a result that is not finite counts as not converged.
 KSPConvergedReason LinearSolver::attempt(std::span<const double> b, std::span<double> x,
                                          SolveStatistics& statistics) {
@@ -323,7 +343,7 @@ KSPConvergedReason LinearSolver::attempt(std::span<const double> b, std::span<do
     petsc_check(KSPSetReusePreconditioner(ksp_, PETSC_TRUE));
   petsc_check(VecPlaceArray(b_, b.data()));
   petsc_check(VecPlaceArray(x_, x.data()));
-  const PetscErrorCode code = KSPSolve(ksp_, b_, x_);
+  const PetscErrorCode code = solve_alive(ksp_, b_, x_, rebuild_);
   PetscReal norm = 0;
   if (code == 0) petsc_check(VecNorm(x_, NORM_2, &norm));
   petsc_check(VecResetArray(b_));

@@ -9,6 +9,7 @@
 #include "coupler/balance.hpp"
 #include "coupler/mechanics.hpp"
 #include "coupler/places.hpp"
+#include "coupler/role_checks.hpp"
 
 namespace couplet {
 namespace {
@@ -145,7 +146,16 @@ TEST(Roles, a_structure_that_does_not_move_and_other_dimensions_are_refused) {
       message([&] {
         check_roles(p, {side("fluid", fluid()), side("solid", s)});
       }),
-      "The structure 'solid' does not give 'velocity' at vertices, which is part of the coupling unknown.");
+      "'solid' cannot be the structure (`coupling.structure`): the role 'structure' takes a load [N or Pa] at faces "
+      "and gives 'displacement' [m] at vertices and 'velocity' [m/s] at vertices; it gives no 'velocity' [m/s] at "
+      "vertices (it takes 'pressure-force' [N] at faces, 'viscous-force' [N] at faces and gives 'displacement' [m] at "
+      "vertices).");
+  p.structure = {"fluid"}, p.fluid = {"solid"};
+  EXPECT_THAT(message([&] {
+                check_roles(p, {side("fluid", fluid()), side("solid", solid())});
+              }),
+              HasSubstr("'solid' cannot be the fluid"));
+  p.structure = {"solid"}, p.fluid = {"fluid"};
   Interface f = fluid();
   f.dim = 3;
   EXPECT_EQ(message([&] {
