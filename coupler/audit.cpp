@@ -7,7 +7,7 @@
 #include <bit>
 #include <cmath>
 
-#include "common/log/doubt.hpp"
+#include "common/app/run_audit.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -53,7 +53,7 @@ void CouplingAudit::loads(const std::vector<Exchange>& given) {
 
 void CouplingAudit::tell(const CouplingParameters& parameters, double time) {
   for (const EffectVerdict& v : trail_.news(audit(coupling_effect_cards(), parameters, evidence_)))
-    log::doubt(comm_rank(comm_), fmt::format("t = {:g} s: {}", time, text(v)));
+    report(comm_rank(comm_), time, v);
 }
 
 void CouplingAudit::tell_at_end(const CouplingParameters& parameters, bool with_sound) const {

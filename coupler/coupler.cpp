@@ -7,7 +7,6 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
-#include "common/log/doubt.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/places.hpp"
@@ -217,45 +216,6 @@ void Coupler::accept(double time, int output) {
   if (watched_) monitor_->watched(time, watched_->columns(), watched_->row(given_, taken_));
   if (output >= 0 && interface_output_) interface_output_->write(time, output, given_, taken_);
   watch(time, balances);
-}
-
-void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
-  double given = 0, taken = 0;
-  for (const SideBalance& side : balances) (side.gives ? given : taken) += side.balance.work;
-  std::optional<std::string> reason =
-      oscillation_guard_.accepted(unknown_->motion(last_.image), last_dt_, parameters_.scheme);
-  if (!balances.empty() && mechanics_->knows_work()) {
-    const auto parted = work_guard_.accepted(given, taken, parameters_.scheme);
-    if (!reason) reason = parted;
-  }
-  for (const std::string& finding : still_guard_->accepted(given_, taken_))
-    log::doubt(comm_rank(comm_), fmt::format("t = {:g} s: {}", time, finding));
-  audit_->loads(given_);
-  audit_->tell(parameters_, time);
-  if (!reason || !diverged_.empty()) return;
-  if (parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
-    diverged_ = *reason;
-  else if (!warned_)
-    log::doubt(comm_rank(comm_), fmt::format("t = {:g} s: {}", time, *reason));
-  warned_ = true;
-}
-
-/// `problem`: why the run stopped before its end; then nothing is said of what its answer errs by.
-void Coupler::finalise(const std::string& problem) {
-  enter_(Phase::finalise, {});
-  log::info("{}", monitor_->summary(loop_.halvings()));
-  if (const WorkGuard::Verdict v = work_guard_.verdict(); !v.text.empty())
-    v.sound ? log::info("{}", v.text) : log::doubt(comm_rank(comm_), v.text);
-  audit_->tell_at_end(parameters_, problem.empty());
-  std::vector<NamedErrors> parts = finalise_all(everyone(), problem);
-  if (simulation_.error_estimate && problem.empty()) tell_errors(std::move(parts));
-}
-
-void Coupler::tell_errors(std::vector<NamedErrors> participants) const {
-  if (errors_) participants.push_back({"coupling", {.coupling = errors_->over_size()}});
-  for (const std::string& sentence : error_sentences(participants)) log::info("{}", sentence);
-  if (total_error(participants) >= as_large_as_the_solution) log::doubt(comm_rank(comm_), worthless_words);
-  if (!schedule_.iterates) log::info("{}", lag_ ? lag_->sentence(participants) : LagEstimate::not_possible());
 }
 
 std::string Coupler::run() {

@@ -59,6 +59,7 @@ class Coupler {
   std::string run();
 
   GlobalIndex steps() const { return loop_.steps(); }
+  double time() const { return loop_.time(); }
   int halvings() const { return loop_.halvings(); }
   long iterations() const { return iterations_; }
   /// What each has given in the last pass, in the order of the schedule's everyone().
@@ -88,6 +89,7 @@ class Coupler {
   void accept(double time, int output);
   void watch(double time, const std::vector<SideBalance>& balances);
   void finalise(const std::string& problem);
+  void tell_work() const;
   void tell_errors(std::vector<NamedErrors> participants) const;
 
   MPI_Comm comm_;

@@ -170,7 +170,9 @@ WorkGuard::Verdict WorkGuard::verdict() const {
   if (steps_ == 0 || exchanged_ == 0) return {true, ""};
   const double apart = std::abs(fluid_ - structure_), part = apart / exchanged_;
   Verdict v;
-  v.sound = part < 0.05;
+  v.sound = part < sound_part;
+  v.part = part;
+  v.useless = part >= useless_part && steps_ >= judged_steps;
   v.text = fmt::format(
       "interface work of {} steps: fluid gave {:.6g} J, structure took {:.6g} J, {:.2g} % of what went to "
       "and fro "

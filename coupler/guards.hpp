@@ -72,6 +72,8 @@ class WorkGuard {
   struct Verdict {
     bool sound = true;
     std::string text;
+    double part = 0;  ///< apart, of all that went over
+    bool useless = false;
   };
   Verdict verdict() const;
 
@@ -79,6 +81,10 @@ class WorkGuard {
   std::array<double, 4> totals() const { return {fluid_, structure_, exchanged_, double(steps_)}; }
   void restore(const std::array<double, 4>& totals);
 
+  /// Of all work exchanged, that apart: sound below the one, the answer useless from the other on (of so many steps at least:
+  /// the start of a motion parts the work of the first ones).
+  static constexpr double sound_part = 0.05, useless_part = 0.5;
+  static constexpr long judged_steps = 20;
   static constexpr int window = 12;  ///< steps; it fires after three of them at the earliest
 
  private:

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+
 #include "common/app/job.hpp"
+#include "common/app/run_report.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "coupler/effect_cards.hpp"
@@ -19,7 +22,11 @@ int run(const couplet::Job& job, const couplet::CouplingParameters& parameters) 
     if (time) job.watch->set_time(*time);
     job.enter(phase);
   });
+  const auto start = std::chrono::steady_clock::now();
+  RunReport report(job, false);
   const std::string problem = coupler.run();
+  report.total(coupler.time(), long(coupler.steps()), coupler.iterations());
+  report.finish(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), problem, {});
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
   return 1;

@@ -42,41 +42,91 @@ V judge_walls(const S&, const E& e) {
                        "there is no wall function: y+ should be about 1, refine at the walls"};
 }
 
-// Density changes go with the Mach number squared over two: 5 % at 0.3. The speed of sound is that of air at
-// 20 degC for what is as light as a gas, else that of water.
-bool is_gas(const S& s) { return s.parameters.density < 50; }
-double speed_of_sound(const S& s) { return is_gas(s) ? 343 : 1480; }
+std::optional<Sound> sound_in(const S& s) {
+  return sound_of(s.parameters.compressibility, s.parameters.density, s.parameters.viscosity);
+}
 
+// Density changes go with the Mach number squared over two: 5 % at 0.3.
 V judge_compressibility(const S& s, const E& e) {
-  if (std::isnan(e.largest_speed)) return {};
-  const bool gas = is_gas(s);
-  const double mach = e.largest_speed / speed_of_sound(s);
-  return EffectVerdict{"", mach, 0.3,
-                       fmt::format("the largest speed, {:.3g} m/s, is {:.2g} of that of sound in {}",
-                                   e.largest_speed, mach, gas ? "air" : "water"),
-                       "density would change by more than 5 %, which this program does not know"};
+  const auto sound = sound_in(s);
+  if (!sound || std::isnan(e.largest_speed)) return {};
+  const double mach = e.largest_speed / sound->speed;
+  return EffectVerdict{
+      .number = mach,
+      .threshold = 0.3,
+      .sentence = fmt::format("the largest speed, {:.3g} m/s, is {:.2g} of that of sound in {} ({:.4g} m/s)",
+                              e.largest_speed, mach, sound->of, sound->speed),
+      .recommendation =
+          "density would change by more than 5 %, which this program does not know; is the speed of sound "
+          "another, give it in 'compressibility'"};
 }
 
 // Where flow is stopped or driven faster than waves cross the domain the pressure rises as rho c du or rho L
 // du/dt, whatever the Mach number; the density follows by dp/(rho c^2).
+EffectVerdict judge_density(const S& s, const E& e, const Sound& sound) {
+  const double change = e.pressure_range / (s.parameters.density * sound.speed * sound.speed);
+  return {.number = change,
+          .threshold = 0.05,
+          .sentence = fmt::format("pressures {:.3g} Pa apart would change the density of {} by {:.2g} of it",
+                                  e.pressure_range, sound.of, change),
+          .recommendation =
+              "flow changes faster here than waves of pressure would let it; this program knows no waves"};
+}
+
+// What the walls displace goes partly into compression, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
+// stroke it is what an incompressible fluid pushes through the openings instead.
+EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
+  const double share =
+      e.pressure_volume / (s.parameters.density * sound.speed * sound.speed) / std::max(e.stroke, 1e-300);
+  return {
+      .number = share,
+      .threshold = 0.1,
+      .sentence =
+          fmt::format("compression of {} takes up {:.2g} of the volume that the walls move", sound.of, share),
+      .recommendation =
+          "the fluid yields like a spring beside the structure, which this program does not know: frequencies and "
+          "stability of the coupled motion may be others"};
+}
+
+// A column of length L answers a motion of rate omega as tan(omega L/c) / (omega L/c): 3 % more than without waves at 0.3.
+EffectVerdict judge_wave_time(const S&, const E& e, const Sound& sound) {
+  const double phase = e.wall_rate * e.size / sound.speed;
+  return {
+      .number = phase,
+      .threshold = 0.3,
+      .sentence = fmt::format(
+          "sound in {} crosses the fluid in {:.2g} s, {:.2g} of the time 1/omega = {:.2g} s in which "
+          "the walls move",
+          sound.of, e.size / sound.speed, phase, 1 / e.wall_rate),
+      .recommendation = "waves of pressure come back while the walls move, which this program does not know"};
+}
+
+/// The worst of the three, by its limit.
 V judge_waves(const S& s, const E& e) {
-  if (std::isnan(e.pressure_range)) return {};
-  const double c = speed_of_sound(s), change = e.pressure_range / (s.parameters.density * c * c);
-  return EffectVerdict{
-      "", change, 0.05,
-      fmt::format("pressures {:.3g} Pa apart would change the density of {} by {:.2g} of it",
-                  e.pressure_range, is_gas(s) ? "air" : "water", change),
-      "flow changes faster here than waves of pressure would let it; this program knows no waves"};
+  const auto sound = sound_in(s);
+  if (!sound) return {};
+  V worst;
+  const auto add = [&worst](EffectVerdict v) {
+    if (!worst || !(v.number / v.threshold <= worst->number / worst->threshold)) worst = std::move(v);
+  };
+  if (!std::isnan(e.pressure_range)) add(judge_density(s, e, *sound));
+  if (!std::isnan(e.stroke)) {
+    add(judge_compliance(s, e, *sound));
+    add(judge_wave_time(s, e, *sound));
+  }
+  return worst;
 }
 
 // The guard ends a run that grows at once; what grows slowly is said.
 V judge_energy(const S&, const E& e) {
   if (std::isnan(e.energy_excess)) return {};
   return EffectVerdict{
-      "", e.energy_excess, 0.1,
-      fmt::format("the flow has {:.2g} of its kinetic energy from no work of boundaries and forces",
-                  e.energy_excess),
-      "the time scheme makes it: leave 'time-step' out or make it smaller"};
+      .number = e.energy_excess,
+      .threshold = 0.1,
+      .sentence = fmt::format(
+          "the flow has {:.2g} of its kinetic energy from no work of boundaries and forces", e.energy_excess),
+      .recommendation = "the time scheme makes it: leave 'time-step' out or make it smaller",
+      .wrong_from = 0.5};
 }
 
 V judge_still_mesh(const S& s, const E& e) {
@@ -129,14 +179,16 @@ const std::array cards{
               "not available here",
               [](const S&) { return std::string(); },
               {},
-              "largest speed over that of sound, 0.3",
+              "largest speed over that of sound (`compressibility`, or by density and viscosity), 0.3",
               judge_compressibility},
-    FluidCard{"waves of pressure",
-              "not available here",
-              [](const S&) { return std::string(); },
-              {},
-              "density change by the range of pressure, 0.05",
-              judge_waves},
+    FluidCard{
+        "waves of pressure",
+        "not available here",
+        [](const S&) { return std::string(); },
+        {},
+        "density change by the range of pressure, 0.05; of moving walls: volume taken up by compression over that of "
+        "their stroke, 0.1, and time of sound across the fluid over 1/omega of their motion, 0.3",
+        judge_waves},
     FluidCard{
         "mesh motion",
         "a mesh mover in `coupling.mesh`, or `motion`",

@@ -23,7 +23,10 @@ struct FluidEvidence {
   double largest_yplus = unknown;   ///< of walls; 0 without walls
   double largest_speed = unknown;   ///< [m/s]
   double pressure_range = unknown;  ///< largest minus smallest pressure [Pa]
-  double energy_excess = unknown;   ///< kinetic energy that no work explains, of that of late (EnergyGuard)
+  /// Of walls that move: fluctuation (root mean square) of the volume that they sweep [m^3] and of pressure times volume [J],
+  /// rate of their motion [1/s], and extent of the fluid [m].
+  double stroke = unknown, pressure_volume = unknown, wall_rate = unknown, size = unknown;
+  double energy_excess = unknown;  ///< kinetic energy that no work explains, of that of late (EnergyGuard)
   /// Of an interface on a mesh that stands still: largest displacement in heights of the cell there.
   double wall_displacement = unknown;
   double through_walls =

@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
           [&](const couplet::EffectScene& scene) {
             return couplet::effects_of(
                 couplet::fluid::fluid_effect_cards(),
-                couplet::fluid::FluidScene{parameters, scene.has_mover, scene.coupled});
+                couplet::fluid::FluidScene{parameters, scene.has_mover || parameters.motion, scene.coupled});
           },
       .choose =
           [&](const couplet::ChoiceScene& scene) {

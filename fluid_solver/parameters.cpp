@@ -321,6 +321,11 @@ void declare(config::Section& s, FluidParameters& p) {
             .doc("time from which on means are taken");
       },
       "time means of velocity and pressure, their fluctuations and Reynolds stresses in the field output");
+  s.optional_section<CompressibilityParameters>(
+      "compressibility", p.compressibility,
+      [](config::Section& c, CompressibilityParameters& known) { declare(c, known); },
+      "what is known of the fluid's compressibility, by which a run judges whether neglecting it was right; absent: the speed of "
+      "sound of a gas at 1 atm or of a liquid, where density and viscosity are of such");
   s.section(
       "output", [&p](config::Section& o) { declare_output(o, p.output); },
       "what is written beyond velocity, pressure, forces and balance");

@@ -10,6 +10,7 @@
 #include "common/config/section.hpp"
 #include "common/fv/grid_table.hpp"
 #include "common/fv/prescribed_motion.hpp"
+#include "fluid_solver/sound.hpp"
 
 namespace couplet::fluid {
 
@@ -152,6 +153,7 @@ struct FluidParameters {
   ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
   Projection projection = Projection::flux_memory;
   VolumeLevelBy volume_level = VolumeLevelBy::nobody;
+  std::optional<CompressibilityParameters> compressibility;  // by what it is judged; absent: by the density
   std::map<std::string, ProbeParameters> probes;
 };
 

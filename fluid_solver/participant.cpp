@@ -12,13 +12,12 @@
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/numbering.hpp"
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/body_start.hpp"
 #include "fluid_solver/cavity.hpp"
 #include "fluid_solver/derived.hpp"
-#include "fluid_solver/effect_cards.hpp"
 #include "fluid_solver/state_io.hpp"
 
 namespace couplet::fluid {
@@ -217,14 +216,16 @@ void FluidParticipant<D>::doubt_given_step(double size) {
   const StepLimiter by = fluid_->step_limiter();
   if (!by.friction || size <= far_above * by.limit || size / by.limit <= 2 * doubted_times_) return;
   doubted_times_ = size / by.limit;
-  log::doubt(
+  log::finding(
       comm_rank(mesh_.comm),
-      fmt::format(
-          "t = {:.6g} s: time-step: sub-steps of {:.3g} s are {:.1f} times what friction in cell {} at ({:.4g}, {:.4g}, "
-          "{:.4g}) m allows an implicit viscous term on its cells: pressures and forces grow out of nothing. "
-          "Leave 'time-step' out, or give at most {:.3g} s.",
-          step_.time + step_.dt, size, size / by.limit, by.cell, by.place.x(), by.place.y(), by.place.z(),
-          by.limit));
+      {.id = "given-step",
+       .number = size / by.limit,
+       .limit = far_above,
+       .sentence = fmt::format(
+           "t = {:.6g} s: time-step: sub-steps of {:.3g} s are {:.1f} times what friction in cell {} at ({:.4g}, {:.4g}, "
+           "{:.4g}) m allows an implicit viscous term on its cells: pressures and forces grow out of nothing",
+           step_.time + step_.dt, size, size / by.limit, by.cell, by.place.x(), by.place.y(), by.place.z()),
+       .advice = fmt::format("leave 'time-step' out, or give at most {:.3g} s", by.limit)});
 }
 
 /// One line where a step took many more parts than when it was last told, or many fewer, with the cell that
@@ -270,6 +271,7 @@ StepReport FluidParticipant<D>::accept_step() {
   if (errors_) errors_->accepted(step_.dt);
   tell_sub_steps();
   see_given_step();
+  see_motion();
   if (statistics_ && fluid_->state().time > fluid_->parameters().statistics->start)
     statistics_->add(fluid_->state(), fluid_->pressure().get(), step_.dt);
   return {.dt = step_.dt, .iterations = effort() - before, .energy = fluid_->state().ledger.energy};
@@ -310,34 +312,6 @@ void FluidParticipant<D>::write_output(double time, int) {
 template <int D>
 void FluidParticipant<D>::write_monitors(double time) {
   output_.write_series(time);
-}
-
-template <int D>
-std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
-  FluidEvidence evidence{.largest_peclet = fluid_->largest_peclet(), .largest_yplus = 0};
-  for (const Patch& patch : mesh_.patches)
-    if (is_wall(fluid_->parameters().boundaries.at(patch.name).type))
-      evidence.largest_yplus = std::max(evidence.largest_yplus, summarise_wall(*fluid_, patch).largest_yplus);
-  double speed = 0;
-  for (const Vec<D>& u : fluid_->state().u) speed = std::max(speed, u.squaredNorm());
-  evidence.largest_speed = std::sqrt(max(mesh_.comm, speed));
-  if (const auto latest = fluid_->pressure()) {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
-      low = std::min(low, latest->p[c]), high = std::max(high, latest->p[c]);
-    evidence.pressure_range = max(mesh_.comm, high) - min(mesh_.comm, low);
-  }
-  if (stands_still()) evidence.wall_displacement = displacement_;
-  if (!fluid_->moving()) evidence.through_walls = through_moving_walls(*fluid_);
-  if (fluid_->gaps()) {
-    double blocked = 0;
-    for (const auto& gap : fluid_->gaps()->facts()) blocked += gap.cells;
-    evidence.blocked_cells = blocked / double(mesh_.cells.n_global());
-  }
-  if (const EnergyLedger& ledger = fluid_->state().ledger; ledger.reference > 0)
-    evidence.energy_excess = ledger.excess / ledger.reference;
-  const FluidScene scene{fluid_->parameters(), fluid_->moving(), step_.scheme != Scheme::standalone};
-  return couplet::audit(fluid_effect_cards(), scene, evidence);
 }
 
 template <int D>

@@ -10,6 +10,7 @@
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
+#include "fluid_solver/compliance.hpp"
 #include "fluid_solver/error_estimate.hpp"
 #include "fluid_solver/fluid.hpp"
 #include "fluid_solver/openings.hpp"
@@ -17,6 +18,8 @@
 #include "fluid_solver/renewal.hpp"
 
 namespace couplet::fluid {
+
+struct FluidEvidence;
 
 /// Makes the link to a mesh mover once the mesh has its final place; empty for a mesh at rest.
 using MotionLink = std::function<std::unique_ptr<MeshMotionSource>(const Mesh&)>;
@@ -73,6 +76,9 @@ class FluidParticipant final : public Participant, public EstimatesError {
   Exchange forces() const;
   void tell_sub_steps();
   void see_given_step();
+  std::vector<Index> moving_faces() const;
+  void see_motion();
+  void add_motion(FluidEvidence& evidence) const;
   void doubt_given_step(double size);
 
   Mesh mesh_;
@@ -93,6 +99,8 @@ class FluidParticipant final : public Participant, public EstimatesError {
   Vectors<D> w_;  // of the last pass
   // Of the interface on a mesh that stands still: largest displacement over the height of the cell there.
   double displacement_ = 0, trial_displacement_ = 0;
+  ComplianceWatch compliance_;
+  std::vector<Vec3> at_start_;  // centres of moving_faces()
   long steps_ = 0, renewed_steps_ = 0;
   int told_sub_steps_ = 1;     // in the log
   double longest_seen_ = 0;    // of given sub-steps [s]

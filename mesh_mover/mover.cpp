@@ -8,6 +8,7 @@
 #include "common/io/numbering.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/load.hpp"
+#include "common/mesh/quality.hpp"
 #include "common/parallel/collective.hpp"
 #include "mesh_mover/laplacian.hpp"
 #include "mesh_mover/pseudo_solid.hpp"
@@ -38,6 +39,11 @@ Mesh load_checked(const Parameters& parameters, const ParticipantContext& contex
           "participants.{}.boundaries: patch '{}' has no entry; give it type: interface, moving, fixed, slip, "
           "free or periodic.",
           context.name, p.name);
+  if (const auto fold = find_fold(mesh, mesh.reference))
+    throw Error(
+        "participants.{}.mesh: the mesh is folded at ({:.4g}, {:.4g}, {:.4g}) m: cell {} (counted from 0 in the file) does "
+        "not lie behind its face there. Cells overlap or are bent over; mesh that place anew.",
+        context.name, fold->centre.x(), fold->centre.y(), fold->centre.z(), fold->cell_id);
   return mesh;
 }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -46,13 +46,16 @@ void HeatSwing::accepted(const Mesh& mesh, const std::vector<double>& before,
   turns_ = turns ? turns_ + 1 : 0;
   if (turns_ < patience) return;
   told_ = true;
-  log::doubt(
+  log::finding(
       comm_rank(mesh.comm),
-      fmt::format(
-          "t = {:.6g} s: the temperature swings to and fro from step to step, by {:.3g} K (root mean square) of "
-          "{:.3g} K between the coldest and the hottest: 'heat: {{scheme: trapezoidal}}' does not damp what a "
-          "step does not resolve. 'scheme: three-point' or 'euler' does, or take shorter steps.",
-          time, size, highest_ - lowest_));
+      {.id = "heat-swing",
+       .number = size / (highest_ - lowest_),
+       .limit = noticeable,
+       .sentence = fmt::format(
+           "t = {:.6g} s: the temperature swings to and fro from step to step, by {:.3g} K (root mean square) of "
+           "{:.3g} K between the coldest and the hottest: 'heat: {{scheme: trapezoidal}}' does not damp what a "
+           "step does not resolve. 'scheme: three-point' or 'euler' does, or take shorter steps.",
+           time, size, highest_ - lowest_)});
 }
 
 }  // namespace couplet

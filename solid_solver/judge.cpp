@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -25,15 +25,19 @@ void SolidJudge::look() {
   latest_ = strain;
   steps_of_latest_ = state.steps;
   if (!audit_ || strain.is_doubtful() || !audit_->is_doubtful()) audit_ = strain;
-  if (strain.is_doubtful() && !strain_doubted_) {
-    strain_doubted_ = true;
-    log::doubt(
+  if (strain.is_doubtful() && strain.severity() > strain_told_) {
+    strain_told_ = strain.severity();
+    log::finding(
         comm_rank(mesh_.comm),
-        fmt::format(
-            "t = {:g} s: the displacement is not to be trusted: {}. Mesh finer, most of all across what "
-            "bends; cells long in the direction of bending, few tetrahedra or prisms across and nu near "
-            "0.5 are what does this.",
-            state.time, strain.text()));
+        {.id = "strain-energy",
+         .severity = strain.severity(),
+         .number = strain.mismatch(),
+         .limit = StrainAudit::most_mismatch,
+         .sentence =
+             fmt::format("t = {:g} s: the displacement is not to be trusted: {}", state.time, strain.text()),
+         .advice =
+             "mesh finer, most of all across what bends; cells long in the direction of bending, few tetrahedra or "
+             "prisms across and nu near 0.5 are what does this"});
   }
   if (!body_.is_dynamic() || !body_.effects().empty() || !body_.prescribed().is_zero()) return;
   judge_energy(
@@ -75,10 +79,15 @@ void SolidJudge::judge_energy(double strain, const char* cure) {
     throw Error(
         "t = {:g} s: {}: the motion has grown out of nothing and nothing of the answer is left. Cause: {}.",
         state.time, energy_audit_.text(), cure);
-  if (!energy_audit_.is_doubtful() || energy_doubted_) return;
-  energy_doubted_ = true;
-  log::doubt(comm_rank(mesh_.comm), fmt::format("t = {:g} s: {}: the motion grows out of nothing. Cause: {}.",
-                                                state.time, energy_audit_.text(), cure));
+  if (!energy_audit_.is_doubtful() || energy_audit_.severity() <= energy_told_) return;
+  energy_told_ = energy_audit_.severity();
+  log::finding(comm_rank(mesh_.comm),
+               {.id = "energy-growth",
+                .severity = energy_told_,
+                .number = energy_audit_.created(),
+                .limit = energy_audit_.limit(),
+                .sentence = fmt::format("t = {:g} s: {}: the motion grows out of nothing. Cause: {}",
+                                        state.time, energy_audit_.text(), cure)});
 }
 
 void SolidJudge::see_gradient(std::span<const double> points) {

@@ -58,7 +58,7 @@ class SolidJudge final {
   int steps_of_latest_ = -1;
   EnergyAudit energy_audit_;
   std::optional<LargeStrainEstimate> large_strain_;  // of the last step
-  bool strain_doubted_ = false, energy_doubted_ = false;
+  Severity strain_told_ = Severity::note, energy_told_ = Severity::note;
 };
 
 }  // namespace couplet

@@ -25,32 +25,6 @@ struct Found {
   Vec3 first;  ///< place of the first one
 };
 
-/// Owned cell and centre of a face across which the distance to the other node is not positive; lowest
-/// cell_id first.
-struct Fold {
-  GlobalIndex cell_id;
-  double place[3];
-};
-
-/// Where a cell does not lie behind its face the operator is not elliptic: a folded or inverted cell.
-/// Collective.
-std::optional<Fold> find_fold(const Mesh& mesh) {
-  const Geometry& g = mesh.reference;
-  std::vector<Fold> folds;
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    const Index owner = mesh.owner[f];
-    if (owner >= mesh.cells.n_owned()) continue;
-    const Vec3 across =
-        (f < mesh.n_interior ? g.cell_centre[mesh.neighbour[f]] : g.face_centre[f]) - g.cell_centre[owner];
-    if (across.dot(g.face_area[f]) > 0) continue;
-    const Vec3& x = g.face_centre[f];
-    folds.push_back({mesh.cell_id[owner], {x[0], x[1], x[2]}});
-  }
-  const std::vector<Fold> all = all_gather(mesh.comm, folds);
-  if (all.empty()) return std::nullopt;
-  return *std::ranges::min_element(all, {}, &Fold::cell_id);
-}
-
 /// Of points listed on each rank. Collective.
 std::optional<Found> find_any(const Mesh& mesh, const std::vector<Index>& points) {
   std::vector<double> first;
@@ -72,12 +46,13 @@ void check_mesh(const Mesh& mesh, const VertexInterpolation& vertices) {
         "another; "
         "mesh that place anew, coarser or with another element size.",
         trouble->cell_id, text_of(trouble->centre, mesh.dim), trouble->volume);
-  if (const auto fold = find_fold(mesh))
+  // Where a cell does not lie behind its face the operator is not elliptic.
+  if (const auto fold = find_fold(mesh, mesh.reference))
     throw Error(
         "The mesh is folded at {}: cell {} (counted from 0 in the file) does not lie behind its face there. "
         "A cell is "
         "inverted or bent over; mesh that place anew.",
-        text_of(Vec3(fold->place[0], fold->place[1], fold->place[2]), mesh.dim), fold->cell_id);
+        text_of(fold->centre, mesh.dim), fold->cell_id);
   if (const auto bent = find_any(mesh, vertices.bent_points()))
     throw Error(
         "boundaries: a patch of 'type: symmetry' is not flat at {}. A symmetry plane must be a plane; 'type: "

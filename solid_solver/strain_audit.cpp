@@ -10,7 +10,6 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/vector_at.hpp"
-#include "common/log/doubt.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/inner_variation.hpp"
 #include "solid_solver/judge.hpp"

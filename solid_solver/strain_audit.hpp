@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "common/base/severity.hpp"
+
 namespace couplet {
 
 /// What a displacement that was found says of itself; over all ranks.
@@ -24,7 +26,10 @@ struct StrainAudit {
   double mismatch() const;
   /// Above these the answer is not to be trusted (docs/theory.md, "Does the answer fit itself?").
   static constexpr double most_mismatch = 0.35, most_difference = 1.0, most_variation = 0.2;
+  /// From here on work and strain energy have nothing to do with each other.
+  static constexpr double useless_mismatch = 1.0;
   bool is_doubtful() const;
+  Severity severity() const { return mismatch() < useless_mismatch ? Severity::warning : Severity::wrong; }
   /// One sentence with the numbers.
   std::string text() const;
 };
@@ -41,7 +46,11 @@ struct EnergyAudit {
   /// Above this, nothing of the answer is left: the run ends.
   static constexpr double hopeless = 10;
   // Not a number is more than all of them.
-  bool is_doubtful() const { return !(created() <= (is_driven ? most_created : most_created_undriven)); }
+  double limit() const { return is_driven ? most_created : most_created_undriven; }
+  bool is_doubtful() const { return !(created() <= limit()); }
+  /// More energy out of nothing than was brought in.
+  static constexpr double useless = 1;
+  Severity severity() const { return created() < useless ? Severity::warning : Severity::wrong; }
   bool is_hopeless() const { return !(created() <= hopeless); }
   /// What is held and what was given, with the growth in per cent.
   std::string text() const;

@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/base/saved_numbers.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/files.hpp"
 #include "thermocline/plausible.hpp"
@@ -180,7 +180,8 @@ class ElementParticipant final : public Participant {
           "coupler and a thermocline that has 'elsewhere'.",
           context.name);
     for (const std::string& sentence : weather_->doubts())
-      log::doubt(comm_rank(comm_), fmt::format("{}: {}", context.name, sentence));
+      log::finding(comm_rank(comm_),
+                   {.id = "weather-data", .sentence = fmt::format("{}: {}", context.name, sentence)});
   }
   Interface initialise() override { return comm_rank(comm_) == 0 ? accepted_.describe() : Interface{}; }
   void begin_step(const Step& step) override { step_ = step; }

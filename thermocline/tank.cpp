@@ -9,7 +9,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "thermocline/questions.hpp"
@@ -73,7 +73,8 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
     require_sun(p.insulation->outside.solar_absorptance, *weather_,
                 fmt::format("participants.{}.insulation.solar-absorptance", context.name));
   for (const std::string& sentence : weather_->doubts())
-    log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
+    log::finding(comm_rank(comm_),
+                 {.id = "weather-data", .sentence = fmt::format("{}: {}", name_, sentence)});
   if (files_) {
     for (const std::string& sentence : weather_->warnings()) log::warn("{}", sentence);
     if (std::isnan(context.restart_time))
@@ -81,7 +82,7 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
   }
   const PlantParameters plant = dated(p.flow, *weather_).plant;
   for (const std::string& sentence : Calendar(plant.calendar, plant.start).doubts())
-    log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
+    log::finding(comm_rank(comm_), {.id = "calendar", .sentence = fmt::format("{}: {}", name_, sentence)});
   if (p.report) {
     auto report = std::make_unique<DayReport>(
         *p.report, Plant(plant, make_fluid(p.fluid).specific_heat), *weather_,
@@ -91,7 +92,7 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
     if (p.report->economics)
       for (const std::string& sentence :
            prices_for_nothing(*p.report->economics, inventory, p.pump.has_value()))
-        log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
+        log::finding(comm_rank(comm_), {.id = "prices", .sentence = fmt::format("{}: {}", name_, sentence)});
     add_observer(std::move(report));
   }
 }
@@ -200,7 +201,7 @@ StepReport Tank::accept_step() {
     peak_advance_ = std::max(peak_advance_, std::abs(s.flow.mass_flow) * s.dt);
   }
   for (const std::string& sentence : accepted_.take_warnings())
-    log::doubt(comm_rank(comm_), fmt::format("{}: {}", name_, sentence));
+    log::finding(comm_rank(comm_), {.id = "tank-state", .sentence = fmt::format("{}: {}", name_, sentence)});
   if (!observers_.empty()) {
     accepted_.bed().filler_temperature(filler_);
     const TankRecord r = record();

@@ -9,6 +9,7 @@
 
 #include "common/base/text.hpp"
 #include "common/config/description.hpp"
+#include "common/log/finding.hpp"
 
 namespace couplet {
 namespace {
@@ -45,7 +46,7 @@ std::string footer(const ProgramText& program) {
       "-n 1 mesh_mover case.yaml\n"
       "            Every program gets the same YAML file and the same --set options.\n"
       "Exit codes: 0 done, 1 the run failed, 2 the configuration or the command line is wrong, 3 stopped by SIGTERM with a "
-      "checkpoint to go on from.",
+      "checkpoint to go on from, 4 done, but the answer is proved useless (--accept ID lets it pass).",
       is_participant ? "this program's section under 'participants'" : "the section 'coupling'", program.name,
       list_keys(items), is_participant ? alone : "");
 }
@@ -57,6 +58,13 @@ std::string explain_extra(const CLI::App& app, const std::string& word) {
   const auto meant = word.starts_with('-') ? closest(word, names) : std::nullopt;
   return fmt::format("There is no option or argument '{}'.{}", word,
                      meant ? fmt::format(" Did you mean '{}'?", *meant) : "");
+}
+
+CommandLine::Strict strictness(const std::string& word) {
+  if (word.empty()) return CommandLine::Strict::no;
+  if (word == "answer" || word == "true") return CommandLine::Strict::answer;
+  if (word == "effects") return CommandLine::Strict::effects;
+  throw CLI::ValidationError("--strict=" + word + ": give --strict or --strict=effects.");
 }
 
 }  // namespace
@@ -86,8 +94,16 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
                "go on although keys that change what is solved are not those of the checkpoint");
   app.add_flag("--allow-commands", line.allow_commands,
                "let a .geo run commands and write files: it does so with your rights");
-  app.add_flag("--strict", line.strict,
-               "a run that doubts its own result (see the warnings) ends with exit code 1");
+  std::string strict;
+  app.add_flag(
+      "--strict{answer}", strict,
+      "a run with warnings about its own answer ends with exit code 1; --strict=effects: also one with warnings about "
+      "neglected effects");
+  app.add_option(
+         "--accept", line.accept,
+         "let a finding pass (the word in brackets at the end of its line; docs/findings.md); repeatable")
+      ->type_name("ID")
+      ->allow_extra_args(false);
   app.add_flag("--check", check, "only check the configuration: exit code 0 or 2");
   app.add_flag("--docs", docs, "print the reference of all keys as Markdown");
   app.add_flag("--schema", schema, "print the JSON schema of all keys, for editors");
@@ -109,6 +125,9 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
           CLI::ExitCodes::ExcludesError);
     if (verbose && quiet)
       throw CLI::ExcludesError("Give --verbose or --quiet, not both.", CLI::ExitCodes::ExcludesError);
+    line.strict = strictness(strict);
+    if (const std::string problem = log::unknown_ids(line.accept); !problem.empty())
+      throw CLI::ValidationError("--accept: " + problem);
     if (line.case_file.empty() && !docs && !schema && !effects)
       throw CLI::ValidationError("Give the YAML file of the case, for example: " + program.name +
                                  " case.yaml");

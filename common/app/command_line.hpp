@@ -20,7 +20,10 @@ struct CommandLine {
   std::filesystem::path restart_folder;  ///< empty: fresh start
   bool allow_commands = false;           ///< a .geo may run commands and write files
   bool restart_with_changes = false;     ///< consent to changes of the case since the checkpoint
-  bool strict = false;                   ///< a result in doubt (log::doubt) fails the run
+  enum class Strict { no, answer, effects };
+  /// Warnings about the answer fail the run; with `effects` opinions on neglected effects, too.
+  Strict strict = Strict::no;
+  std::vector<std::string> accept;  ///< ids of findings that are let pass
   log::Verbosity verbosity = log::Verbosity::normal;
 };
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
@@ -19,8 +20,9 @@
 #include "common/app/start_guard.hpp"
 #include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
+#include "common/base/text.hpp"
 #include "common/coupling/wait.hpp"
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/parallel/mpi_start.hpp"
@@ -28,7 +30,7 @@
 namespace couplet {
 namespace {
 
-constexpr int exit_failed = 1, exit_configuration = 2, exit_stopped = 3;
+constexpr int exit_failed = 1, exit_configuration = 2, exit_stopped = 3, exit_wrong = 4;
 
 int application_number() {
   int* number = nullptr;
@@ -138,14 +140,50 @@ int speaker(const std::vector<Attendant>& attendants) {
   return 0;
 }
 
+std::string ids_of(Severity least, bool with_neglected) {
+  std::vector<std::string> ids;
+  for (const log::Finding& f : log::findings())
+    if (f.severity >= least && !log::is_accepted(f.id) && std::ranges::count(ids, f.id) == 0 &&
+        (with_neglected || log::finding_id(f.id).about == log::FindingId::About::answer))
+      ids.push_back(f.id);
+  return join(ids);
+}
+
+/// Of a run that has reached its end.
+int code_of_findings(const Job& job, CommandLine::Strict strict) {
+  using enum CommandLine::Strict;
+  if (const int n = log::count(Severity::wrong, true); n > 0) {
+    if (job.rank == 0)
+      log::error(
+          "The answer is useless ({}, see above): exit code {}. Where you want it all the same: '--accept ID' to all "
+          "programs, or 'simulation.accept: [ID]'.",
+          ids_of(Severity::wrong, true), exit_wrong);
+    return exit_wrong;
+  }
+  const int n = strict == no ? 0 : log::count(Severity::warning, strict == effects);
+  if (n == 0) return 0;
+  if (job.rank == 0)
+    log::error("--strict: the result is in doubt ({} warning{} above: {}); the run counts as failed.", n,
+               n == 1 ? "" : "s", ids_of(Severity::warning, strict == effects));
+  return exit_failed;
+}
+
+/// The exit code of all programs where the findings of one decide: 4 where none of them has failed or was stopped.
+int agreed(const std::array<int, 2>& worst, int code) {
+  const auto [failed, found_wrong] = worst;
+  return code == 0 && !failed && found_wrong ? exit_wrong : code;
+}
+
 /// MPI_Finalize once all programs of the job have come so far. A process that dies while others wait inside
 /// MPI_Finalize can leave Open MPI's launcher (4.1 with PMIx 4.2) in a lock of its own for ever, after all
-/// processes of the job have ended; one that dies while they wait here cannot.
-void leave_together(MPI_Comm programs) {
+/// processes of the job have ended; one that dies while they wait here cannot. Gives the exit code that the findings of all programs ask for.
+int leave_together(MPI_Comm programs, int code) {
+  std::array<int, 2> worst{code != 0 && code != exit_wrong, code == exit_wrong};
   MPI_Request all_here;
-  MPI_Ibarrier(programs, &all_here);
+  MPI_Iallreduce(MPI_IN_PLACE, worst.data(), 2, MPI_INT, MPI_MAX, programs, &all_here);
   wait_politely(all_here, "the other programs to end");
   MPI_Finalize();
+  return agreed(worst, code);
 }
 
 int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseFile& file,
@@ -182,6 +220,8 @@ int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseF
     job.document = &*file.document;
     job.simulation = file.simulation;
     job.choices = file.choices;
+    log::accept(job.simulation.accept);
+    log::accept(command_line.accept);
     prepare(job, command_line, kind.is_coupler);
     job.enter(Phase::initialise);
     watch.limit_silence(job.simulation.hang_timeout);
@@ -190,11 +230,7 @@ int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseF
     const int code = run(job);
     watch.enter(Phase::waiting);  // for the others: no sign of life of this process is due
     if (code == 0 && Watch::has_stopped()) return exit_stopped;
-    if (code != 0 || !command_line.strict || log::doubts() == 0) return code;
-    if (job.rank == 0)
-      log::error("--strict: the result is in doubt ({} warning{} above); the run counts as failed.",
-                 log::doubts(), log::doubts() == 1 ? "" : "s");
-    return exit_failed;
+    return code == 0 ? code_of_findings(job, command_line.strict) : code;
   } catch (const std::exception& error) {
     const bool of_the_user = dynamic_cast<const Error*>(&error) && !dynamic_cast<const SolveFailure*>(&error);
     end_the_job(watch, error.what(), of_the_user && watch.phase() <= Phase::initialise);
@@ -244,9 +280,9 @@ int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<
   const int code = attend(command_line, kind, file, label, programs, start_guard, run);
   start_guard.reset();
   std::fflush(nullptr);
-  leave_together(programs);
+  const int agreed_code = leave_together(programs, code);
   Watch::finished();
-  return code;
+  return agreed_code;
 }
 
 }  // namespace couplet

@@ -47,7 +47,8 @@ struct Job {
 
 /// main() of any program of a job: questions (--check, --docs, ...) are answered at once; otherwise MPI comes
 /// up, the roll is called, and `run` runs. One guard around it all reports what was thrown, once, and ends
-/// the whole job. Returns the exit code: 0; 1 the run failed; 2 the configuration or the launch is wrong.
+/// the whole job. Returns the exit code: 0; 1 the run failed; 2 the configuration or the launch is wrong; 3 stopped by a
+/// signal, saved; 4 done, but a finding of severity `wrong` was not accepted.
 int run_job(int argc, char** argv, const ProgramKind& kind, const std::function<int(const Job&)>& run);
 
 }  // namespace couplet

@@ -6,10 +6,19 @@
 #include <bit>
 #include <chrono>
 
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "common/log/timer.hpp"
 
 namespace couplet {
+
+void report(int rank, double time, const EffectVerdict& v) {
+  log::finding(rank, {.id = v.id(),
+                      .severity = v.severity(),
+                      .number = v.number,
+                      .limit = v.threshold,
+                      .sentence = fmt::format("t = {:g} s: {}", time, without_advice(v)),
+                      .advice = v.recommendation});
+}
 
 void RunAudit::accepted(double time, bool output) {
   ++steps_;
@@ -27,8 +36,7 @@ std::vector<std::string> RunAudit::closing_lines(bool with_sound) {
 
 void RunAudit::look() {
   const auto start = std::chrono::steady_clock::now();
-  for (const EffectVerdict& verdict : trail_.news(participant_.audit()))
-    log::doubt(rank_, fmt::format("t = {:g} s: {}", time_, text(verdict)));
+  for (const EffectVerdict& verdict : trail_.news(participant_.audit())) report(rank_, time_, verdict);
   log::timers().add("audit", std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 

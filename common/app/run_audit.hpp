@@ -8,8 +8,11 @@
 
 namespace couplet {
 
-/// Asks a participant during its run what it left out. What has become unsound is a doubt (common/log/doubt):
-/// told at once, and the end of a run with --strict.
+/// A verdict that is not sound as a finding.
+void report(int rank, double time, const EffectVerdict& verdict);
+
+/// Asks a participant during its run what it left out. What has become unsound is a finding (common/log/finding.hpp), told
+/// at once.
 class RunAudit {
  public:
   RunAudit(int rank, const Participant& participant) : rank_(rank), participant_(participant) {}

@@ -13,7 +13,7 @@
 #include "common/base/error.hpp"
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/serve.hpp"
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
 #include "common/log/timer.hpp"
@@ -93,7 +93,7 @@ class Errors {
   }
   const ErrorParts& parts() const { return parts_; }
   std::vector<std::string> sentences() const { return error_sentences({{name_, parts_}}); }
-  bool leave_no_answer() const { return total_error({{name_, parts_}}) >= as_large_as_the_solution; }
+  double total() const { return total_error({{name_, parts_}}); }
 
  private:
   std::string name_;
@@ -121,7 +121,8 @@ void closing_words(const Job& job, Participant& participant, RunAudit& audit, Er
     sentences.push_back(std::move(line));
     if (!closing.is_alone) break;
   }
-  if (closing.is_alone && errors.leave_no_answer()) log::doubt(job.rank, worthless_words);
+  if (closing.is_alone && errors.total() >= as_large_as_the_solution)
+    log::finding(job.rank, worthless(errors.total()));
   const double mine = RunReport::peak_memory();
   const double most = max(job.comm, mine), all = sum(job.comm, mine);
   if (job.rank != 0) return;

@@ -11,6 +11,7 @@
 #include "common/app/job.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
+#include "common/log/finding.hpp"
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -63,11 +64,11 @@ double RunReport::peak_memory() {
   return 0;
 }
 
-RunReport::RunReport(const Job& job) : job_(job) {
+RunReport::RunReport(const Job& job, bool with_steps) : job_(job) {
   if (job.rank != 0) return;
   std::error_code ignored;
   std::filesystem::remove(job.output_folder / summary_file, ignored);
-  if (job.simulation.output_steps)
+  if (with_steps && job.simulation.output_steps)
     steps_.emplace(
         job.output_folder / "steps.csv",
         std::vector<std::string>{"time [s]", "dt [s]", "iterations", "error", "energy [J]", "seconds [s]"},
@@ -94,9 +95,10 @@ void RunReport::finish(double wall, const std::string& problem, const ErrorParts
       "  \"state\": \"{}\",\n  \"reason\": {},\n  \"time\": {:.17g},\n  \"steps\": {},\n"
       "  \"iterations\": {},\n  \"wall\": {:.6g},\n  \"processor\": {:.6g},\n  \"processor-working\": "
       "{:.6g},\n  \"memory-most\": {:.6g},\n"
-      "  \"memory-all\": {:.6g},\n  \"errors\": {},\n  \"phases\": {}\n}}\n",
+      "  \"memory-all\": {:.6g},\n  \"errors\": {},\n  \"findings\": {},\n  \"phases\": {}\n}}\n",
       quoted(job_.name), quoted(version_text()), comm_size(job_.comm), problem.empty() ? "ended" : "failed",
-      quoted(problem), time_, count_, iterations_, wall, cpu, working, most, all, json(errors), phases());
+      quoted(problem), time_, count_, iterations_, wall, cpu, working, most, all, json(errors),
+      log::findings_as_json(), phases());
 }
 
 }  // namespace couplet

@@ -19,11 +19,12 @@ struct Job;
 ///   steps.csv  a row an accepted step: time and dt [s], iterations of linear solvers, estimated time error
 ///              of the step [1], energy [J], seconds; what was not computed is nan. Off with output.steps.
 ///   run.json   at the end: how it ended, wall and processor seconds, memory, steps, iterations, phases,
-///              estimated parts of the error (null: not known).
+///              estimated parts of the error (null: not known), findings with their ids.
 /// Written by rank 0. The file of an earlier run is removed at the start: a run.json speaks of this run.
 class RunReport {
  public:
-  explicit RunReport(const Job& job);
+  /// `with_steps`: steps.csv, unless the case does not want it.
+  explicit RunReport(const Job& job, bool with_steps = true);
   /// Adds seconds spent on the step under way, failed attempts included.
   /// `processor`: user and system seconds of this process among them.
   void spent(double seconds, double processor) {
@@ -32,6 +33,10 @@ class RunReport {
   }
   /// `time`: the end of the step [s]; report.seconds is replaced by those spent since the last call.
   void accepted(double time, StepReport report);
+  /// In place of accepted(): all steps of the run at once, for who keeps the steps otherwise.
+  void total(double time, long steps, long iterations) {
+    time_ = time, count_ = steps, iterations_ = iterations;
+  }
   /// Collective over job.comm. `wall` [s]; `problem`: why the run ended early, empty if it did not.
   void finish(double wall, const std::string& problem, const ErrorParts& errors);
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "common/coupling/step_plan.hpp"
+#include "common/log/finding.hpp"
 
 namespace couplet {
 
@@ -23,7 +24,14 @@ void declare(config::Section& section, SimulationParameters& p) {
       .doc("step of the run; in a coupled run the coupling step, which a participant may divide for itself");
   section.value("max-step-halvings", p.max_step_halvings)
       .range(0, 20)
-      .doc("a step that could not be solved is halved at most this often before the run stops");
+      .doc(
+          "a step that could not be solved is halved at most this often before the run stops; ten halvings for one cause with "
+          "few good steps in between stop it, too");
+  section.value("accept", p.accept)
+      .doc(
+          "ids of findings (docs/findings.md) that are accepted: they are logged, but neither end the run with exit code 4 nor "
+          "fail it with --strict");
+  section.check([&]() -> std::string { return log::unknown_ids(p.accept); }, "accept");
   section.choice("effects", p.choose_effects, {{"as-given", false}, {"auto", true}})
       .doc(
           "auto: dimension, inertia, turbulence model and viscous treatment that the case does not name are decided by "

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/config/section.hpp"
 
@@ -12,6 +13,7 @@ struct SimulationParameters {
   std::string name = "case";
   double end_time = 0, time_step = 0;  // [s]
   int max_step_halvings = 6;           // of a step that fails
+  std::vector<std::string> accept;     // ids of findings that may not end the run with exit code 4
   std::string output_folder = "out";   // relative to the YAML's folder unless absolute
   double output_interval = 0;          // [s]; 0: only the start and the end
   bool output_steps = true;            // steps.csv

@@ -157,6 +157,16 @@ std::string StepLoop::give_up(const StepActions& actions, const Step& step, cons
       step.time, step.dt, plan_.halvings(), failure.reason, step.time, checkpoints_.string());
 }
 
+/// The failure itself, or, where the same cause has halved steps too often, why the run ends. Collective: ranks may word a
+/// cause otherwise.
+StepFailure StepLoop::seen_again(const StepFailure& failure) {
+  const GlobalIndex mine = comm_rank(comm_) == 0 ? causes_.halved(failure.reason) : 0,
+                    times = sum(comm_, mine);
+  if (times < HalvingCauses::most) return failure;
+  return {fmt::format("{} halvings of steps for one cause did not cure it: {}", times, failure.reason),
+          false};
+}
+
 std::string StepLoop::run(const StepActions& actions) {
   on_first_rank(comm_, [&] {
     for (const fs::path& folder : clear_incomplete_sets(checkpoints_))
@@ -179,10 +189,13 @@ std::string StepLoop::run(const StepActions& actions) {
                 failure->reason);
       if (!failure->halving_helps) return give_up(actions, step, *failure);
       ++halvings_;
+      if (const StepFailure again = seen_again(*failure); !again.halving_helps)
+        return give_up(actions, step, again);
       if (!plan_.halve()) return give_up(actions, step, *failure);
       continue;
     }
     plan_.accepted();
+    causes_.accepted();
     const bool output = plan_.at_nominal_time() && due(simulation_.output_interval);
     actions.accept(plan_.time(), output ? outputs_++ : -1);
     actions.report(step, plan_.time());

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "common/app/halving_causes.hpp"
 #include "common/app/simulation.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/coupling/step_plan.hpp"
@@ -69,11 +70,13 @@ class StepLoop {
   /// state before that step was saved.
   std::string run(const StepActions& actions);
 
+  double time() const { return plan_.time(); }
   GlobalIndex steps() const { return plan_.steps_accepted(); }
   int halvings() const { return halvings_; }
 
  private:
   bool due(double interval) const;
+  StepFailure seen_again(const StepFailure& failure);
   /// Gives the folder.
   std::filesystem::path checkpoint(const StepActions& actions);
   void stop(const StepActions& actions);
@@ -85,6 +88,7 @@ class StepLoop {
   std::filesystem::path checkpoints_;
   std::string run_id_;  // on rank 0
   StepPlan plan_;
+  HalvingCauses causes_;
   int outputs_ = 0, halvings_ = 0;
   bool restarted_ = false;
 };

@@ -98,6 +98,19 @@ double total_error(const std::vector<NamedErrors>& participants) {
   return total;
 }
 
+log::Finding worthless(double total) {
+  return {
+      .id = "error-estimate",
+      .severity = Severity::wrong,
+      .number = total,
+      .limit = as_large_as_the_solution,
+      .sentence = fmt::format(
+          "estimated error: {:.2g} of the solution (limit {:g}): the estimated error is as large as the solution "
+          "itself: it is not to be trusted",
+          total, as_large_as_the_solution),
+      .advice = "refine what dominates it"};
+}
+
 std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants) {
   std::vector<Part> parts = largest_parts(participants);
   if (parts.empty()) return {};

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/log/finding.hpp"
+
 namespace couplet {
 
 /// What a run's error is made of, as the run itself can know it cheaply, each over the size of the solution [1].
@@ -34,10 +36,9 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
 
 /// The number of the first of these sentences; 0 if nothing is known.
 double total_error(const std::vector<NamedErrors>& participants);
-/// An error as large as the solution: what a run then says in place of an answer, and a run with --strict fails by.
+/// An error as large as the solution: the answer is useless.
 constexpr double as_large_as_the_solution = 1;
-inline constexpr const char* worthless_words =
-    "the estimated error is as large as the solution itself: it is not to be trusted.";
+log::Finding worthless(double total_error);
 
 /// A participant that can tell its parts at the end of a run.
 class EstimatesError {

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "common/effects/card.hpp"
 
@@ -21,16 +22,35 @@ std::string cost_text(const EffectCost& cost) {
 
 std::string text(const EffectVerdict& v) {
   const char* good = v.left_out ? "leaving it out was sound" : "sound";
-  return fmt::format("{}{}: {} (sound up to {:.2g}); {}.", v.effect, v.left_out ? " left out" : "",
-                     v.sentence, v.threshold, v.sound() ? good : v.recommendation);
+  return fmt::format("{}; {}.", without_advice(v), v.sound() ? good : v.recommendation);
+}
+
+std::string without_advice(const EffectVerdict& v) {
+  return fmt::format("{}{}: {} (sound up to {:.2g})", v.effect, v.left_out ? " left out" : "", v.sentence,
+                     v.threshold);
+}
+
+std::string EffectVerdict::id() const {
+  std::string id;
+  for (const unsigned char c : effect) {
+    if (std::isalnum(c))
+      id += char(std::tolower(c));
+    else if (!id.empty() && id.back() != '-')
+      id += '-';
+  }
+  return id;
 }
 
 std::vector<EffectVerdict> AuditTrail::news(const std::vector<EffectVerdict>& verdicts) {
   std::vector<EffectVerdict> result;
   for (const EffectVerdict& v : verdicts) {
     keep(v);
-    if (v.sound() || std::ranges::find(told_, v.effect) != told_.end()) continue;
-    told_.push_back(v.effect);
+    if (v.sound()) continue;
+    const bool is_wrong = v.severity() == Severity::wrong;
+    const bool known = std::ranges::count(told_, v.effect) > 0;
+    if (known && (!is_wrong || std::ranges::count(wrong_, v.effect) > 0)) continue;
+    if (!known) told_.push_back(v.effect);
+    if (is_wrong) wrong_.push_back(v.effect);
     result.push_back(v);
   }
   return result;

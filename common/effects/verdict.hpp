@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
+
+#include "common/base/severity.hpp"
 
 namespace couplet {
 
@@ -15,19 +19,29 @@ struct EffectVerdict {
   std::string sentence;  ///< what the number is, with its unit, without verdict: "the largest ... is 0.29"
   std::string recommendation;  ///< what to switch on, or to do, where it was not sound
   bool left_out = true;        ///< false: a verdict on an effect that the scene has
+  /// From here on (or NaN) the answer is useless, not only questionable; infinite: never.
+  double wrong_from = std::numeric_limits<double>::infinity();
   /// NaN is never sound.
   bool sound() const { return number <= threshold; }
+  /// Of a verdict that is not sound.
+  Severity severity() const {
+    return number < wrong_from || std::isinf(wrong_from) ? Severity::warning : Severity::wrong;
+  }
+  /// The name of the effect in lower case with hyphens: "waves-of-pressure".
+  std::string id() const;
 };
 
 /// One line: "<effect> left out: <sentence> (sound up to <threshold>); leaving it out was sound." or the
 /// recommendation.
 std::string text(const EffectVerdict& verdict);
+/// "<effect> left out: <sentence> (sound up to <threshold>)".
+std::string without_advice(const EffectVerdict& verdict);
 
 /// Which effects have become unsound since the last look; each is told once. A run asks now and then, so that a
 /// long one does not hide its bad news until its end, and what was bad in its midst is still known there.
 class AuditTrail {
  public:
-  /// The verdicts that are unsound for the first time.
+  /// The verdicts that are unsound for the first time, or wrong for the first time.
   std::vector<EffectVerdict> news(const std::vector<EffectVerdict>& verdicts);
   /// Of each effect the verdict with the largest number so far, in the order of their first appearance.
   const std::vector<EffectVerdict>& worst() const { return worst_; }
@@ -38,7 +52,7 @@ class AuditTrail {
  private:
   void keep(const EffectVerdict& verdict);
 
-  std::vector<std::string> told_;
+  std::vector<std::string> told_, wrong_;
   std::vector<EffectVerdict> worst_;
 };
 

@@ -161,6 +161,21 @@ std::optional<CellTrouble> find_crossed(const Mesh& mesh, const Geometry& geomet
   return *std::ranges::min_element(all, {}, &CellTrouble::cell_id);
 }
 
+std::optional<CellTrouble> find_fold(const Mesh& mesh, const Geometry& g) {
+  std::vector<CellTrouble> found;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    const Index owner = mesh.owner[f];
+    if (owner >= mesh.cells.n_owned()) continue;
+    const Vec3 there =
+        f < mesh.n_interior ? Vec3(g.cell_centre[mesh.neighbour[f]] + mesh.shift(f)) : g.face_centre[f];
+    if ((there - g.cell_centre[owner]).dot(g.face_area[f]) > 0) continue;
+    found.push_back({mesh.cell_id[owner], g.face_centre[f], g.volume[owner]});
+  }
+  const std::vector<CellTrouble> all = all_gather(mesh.comm, found);
+  if (all.empty()) return std::nullopt;
+  return *std::ranges::min_element(all, {}, &CellTrouble::cell_id);
+}
+
 void check_and_report(const Mesh& mesh) {
   const auto text = [&](const Vec3& x) {
     return mesh.dim == 2 ? fmt::format("({:.4g}, {:.4g})", x.x(), x.y())

@@ -42,6 +42,10 @@ std::optional<CellTrouble> find_inverted(const Mesh& mesh, const Geometry& geome
 std::optional<CellTrouble> find_crossed(const Mesh& mesh, const Geometry& geometry,
                                         std::span<const Vec3> points);
 
+/// A cell that does not lie behind one of its faces, as seen from the cell (or boundary face) across: cells overlap, or one
+/// is bent over. The lowest cell_id; `centre` is that of the face. Collective; the same answer on all ranks.
+std::optional<CellTrouble> find_fold(const Mesh& mesh, const Geometry& geometry);
+
 /// Refuses inverted and crossed cells (Error), then logs one line: cells, smallest volume, largest angle,
 /// skewness and aspect ratio with their places. Collective.
 void check_and_report(const Mesh& mesh);

@@ -224,6 +224,18 @@ def check_monitors(texts, formats):
             for name in dict.fromkeys(re.findall(r'"([a-z-]+\.csv)"', text)) if name not in named]
 
 
+def check_findings(ids, docs, cards):
+    """docs/findings.md lists each finding that common/log/finding_ids.cpp has, alike; each effect that a program judges (the
+    table of docs/effects.md) is one of them."""
+    have = [(i, {"answer": "the answer", "neglected": "a neglected effect"}[about], meaning)
+            for about, i, meaning in re.findall(r'FindingId\{(\w+), "([\w-]+)",\s*"([^"]*)"\}', ids)]
+    told = re.findall(r"^\| `([\w-]+)` \| ([\w ]+) \| (.*) \|$", docs.partition("## Ids")[2], flags=re.M)
+    trouble = [f"docs/findings.md: not as in common/log/finding_ids.cpp: {row}" for row in sorted(set(have) ^ set(told))]
+    judged = [name for text in cards for name in re.findall(r'Card\{\s*"([^"]*)"(?:(?!Card\{).)*?\bjudge_', text, flags=re.S)]
+    slugs = [re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-") for name in judged]
+    return trouble + [f"common/log/finding_ids.cpp lacks {slug}" for slug in slugs if slug not in [h[0] for h in have]]
+
+
 def main(root):
     files = project_files(root)
     trouble = check_format(root, files)
@@ -236,6 +248,8 @@ def main(root):
     for found in check_readers(sources):
         trouble += found
     trouble += check_monitors(sources, (root / "docs/formats.md").read_text())
+    trouble += check_findings((root / "common/log/finding_ids.cpp").read_text(), (root / "docs/findings.md").read_text(),
+                              [text for path, text in sources if path.name == "effect_cards.cpp"])
     trouble += check_links(notes, lambda link: (root / link).exists())
     print("\n".join(trouble) or f"{len(files)} files: in order")
     return 1 if trouble else 0

@@ -4,7 +4,7 @@
 import pathlib
 import sys
 
-from check_sources import check_links, check_monitors, check_references, check_text
+from check_sources import check_findings, check_links, check_monitors, check_references, check_text
 from readers import READERS, check_readers
 
 HEAD = "// SPDX-License-Identifier: Apache-2.0\n"
@@ -102,5 +102,13 @@ idle = check_readers([])[1]
 if len(idle) != len(READERS) or not all(len(reason) > 8 for reason in READERS.values()):
     print(f"readers: each entry needs a reason and a reader, found {idle}")
     failed += 1
-print(f"{len(SECOND_READERS) + len(WRONG) + len(RIGHT) + len(REFERENCES) + len(LINKS) + len(MONITORS)} samples, {failed} judged wrongly")
+IDS, TABLE, CARD = '    FindingId{answer, "heat-swing", "it oscillates"},\n', "## Ids\n| `heat-swing` | the answer | it oscillates |\n", 'SolidCard{"heat swing", x, judge_heat}, SolidCard{"gravity", x}'
+FINDINGS = {(IDS, TABLE, CARD): 0, (IDS, "## Ids\n", CARD): 1, ("", TABLE, ""): 1, (IDS, TABLE.replace("the answer", "a neglected effect"), ""): 2,
+            (IDS, TABLE, CARD.replace("gravity", "heat").replace('"heat", x', '"heat", judge_it')): 1}
+for (ids, table, card), count in FINDINGS.items():
+    found = check_findings(ids, table, [card])
+    if len(found) != count:
+        print(f"findings: {count} wanted, found {found}")
+        failed += 1
+print(f"{len(SECOND_READERS) + len(FINDINGS) + len(WRONG) + len(RIGHT) + len(REFERENCES) + len(LINKS) + len(MONITORS)} samples, {failed} judged wrongly")
 sys.exit(1 if failed else 0)

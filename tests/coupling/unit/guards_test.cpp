@@ -131,6 +131,7 @@ TEST(WorkGuard, work_that_parts_is_named_and_convicted_at_the_end) {
   EXPECT_THAT(text, HasSubstr("the work on the two sides of the interface parts more and more"));
   EXPECT_FALSE(guard.verdict().sound);
   EXPECT_THAT(guard.verdict().text, HasSubstr("NOT CLOSED"));
+  EXPECT_TRUE(guard.verdict().useless);
 }
 
 TEST(WorkGuard, work_of_small_steps_and_turning_points_pass) {
@@ -147,6 +148,16 @@ TEST(WorkGuard, a_guess_that_jitters_parts_the_work_but_is_no_instability) {
   for (int n = 0; n < 200; ++n)
     EXPECT_FALSE(guard.accepted(n % 2 ? -0.8 : 0.4, 0.35 + 0.05 * std::sin(n), Scheme::explicit_)) << n;
   EXPECT_FALSE(guard.verdict().sound) << "it is said at the end";
+}
+
+TEST(WorkGuard, an_answer_is_useless_where_half_of_the_work_is_apart_and_not_before) {
+  for (const auto& [taken, steps, useless] :
+       {std::tuple{0.51, 20, false}, {0.49, 19, false}, {0.49, 20, true}, {-0.5, 100, true}}) {
+    WorkGuard guard;
+    for (int n = 0; n < steps; ++n) guard.accepted(1, taken, Scheme::implicit);
+    EXPECT_EQ(guard.verdict().useless, useless) << taken << ", " << steps;
+    EXPECT_FALSE(guard.verdict().sound);
+  }
 }
 
 TEST(WorkGuard, its_sums_go_through_a_checkpoint) {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "swing.hpp"
 
 namespace couplet::testing {

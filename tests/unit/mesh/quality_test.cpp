@@ -47,6 +47,26 @@ TEST(Quality, skewness_is_the_offset_of_the_face_centre_over_the_distance_of_the
   EXPECT_NEAR(q.max_skewness, (7.0 / 9 - 0.5) / (10.0 / 9), 1e-14);
 }
 
+TEST(Quality, finds_where_a_cell_does_not_lie_behind_its_face) {
+  const Mesh mesh = square_box();
+  EXPECT_FALSE(find_fold(mesh, mesh.reference));
+  std::vector<Vec3> points(mesh.reference_points);
+  for (Vec3& x : points) x[0] += 0.9 * x[1];
+  EXPECT_FALSE(find_fold(mesh, compute_geometry(mesh, points))) << "leaning cells are none";
+  // A column of cells drawn over its neighbour.
+  points = mesh.reference_points;
+  for (Vec3& x : points)
+    if (x[0] > 1.5 && x[0] < 2.5) x[0] = 3.2;
+  const auto fold = find_fold(mesh, compute_geometry(mesh, points));
+  ASSERT_TRUE(fold);
+  EXPECT_GT(fold->centre.x(), 2.9);
+  // Two corners of a boundary face in one place.
+  points = mesh.reference_points;
+  for (Vec3& x : points)
+    if (x[0] < 0.5 && std::abs(x[1] - 1) < 0.1) x[1] = 0;
+  ASSERT_TRUE(find_fold(mesh, compute_geometry(mesh, points)));
+}
+
 TEST(Quality, says_where_the_worst_of_each_kind_is) {
   const Mesh mesh = square_box();
   std::vector<Vec3> points(mesh.reference_points);

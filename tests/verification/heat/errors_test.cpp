@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "tests/verification/heat/support.hpp"
 
 namespace couplet::testing {

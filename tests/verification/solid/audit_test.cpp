@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/halving_causes.hpp"
+
+#include <cctype>
+
+namespace couplet {
+
+void HalvingCauses::accepted() { ++steps_; }
+
+int HalvingCauses::halved(const std::string& reason) {
+  Count& count = counts_[without_numbers(reason)];
+  if (steps_ - count.last > calm_steps) count.halvings = 0;
+  count.last = steps_;
+  return ++count.halvings;
+}
+
+std::string HalvingCauses::without_numbers(const std::string& reason) {
+  const auto digit = [&](std::size_t i) {
+    return i < reason.size() && std::isdigit(static_cast<unsigned char>(reason[i]));
+  };
+  const auto sign = [&](std::size_t i) {
+    return i < reason.size() && (reason[i] == '-' || reason[i] == '+');
+  };
+  std::string text;
+  for (std::size_t i = 0; i < reason.size();) {
+    if (!digit(i)) {
+      text += reason[i++];
+      continue;
+    }
+    if (!text.empty() && text.back() == '-') text.pop_back();
+    while (digit(i) || (i < reason.size() && reason[i] == '.' && digit(i + 1)) ||
+           (i < reason.size() && reason[i] == 'e' && (digit(i + 1) || (sign(i + 1) && digit(i + 2)))) ||
+           (sign(i) && reason[i - 1] == 'e'))
+      ++i;
+    text += '#';
+  }
+  return text;
+}
+
+}  // namespace couplet

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/log/finding.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/text.hpp"
+#include "common/log/log.hpp"
+
+namespace couplet::log {
+namespace {
+
+std::vector<Finding>& kept() {
+  static std::vector<Finding> all;
+  return all;
+}
+
+std::vector<std::string>& accepted_ids() {
+  static std::vector<std::string> ids;
+  return ids;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out + '"';
+}
+
+std::string number_text(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "null"; }
+
+std::string line(const Finding& f) {
+  return fmt::format("{}{}{} [{}{}]", f.severity == Severity::wrong ? "WRONG: " : "", f.sentence,
+                     f.advice.empty() ? "" : "; " + f.advice, f.id, is_accepted(f.id) ? ", accepted" : "");
+}
+
+}  // namespace
+
+void finding(int rank, Finding f) {
+  finding_id(f.id);
+  if (rank == 0) {
+    if (f.severity == Severity::note)
+      info("{}", line(f));
+    else
+      warn("{}", line(f));
+  }
+  kept().push_back(std::move(f));
+}
+
+const std::vector<Finding>& findings() { return kept(); }
+
+void accept(std::span<const std::string> ids) {
+  accepted_ids().insert(accepted_ids().end(), ids.begin(), ids.end());
+}
+
+bool is_accepted(const std::string& id) { return std::ranges::count(accepted_ids(), id) > 0; }
+
+int count(Severity least, bool with_neglected) {
+  return int(std::ranges::count_if(kept(), [&](const Finding& f) {
+    const bool counts = with_neglected || finding_id(f.id).about == FindingId::About::answer;
+    return f.severity >= least && counts && !is_accepted(f.id);
+  }));
+}
+
+int doubts() { return count(Severity::warning, true); }
+
+std::string findings_as_json() {
+  std::string out;
+  for (const Finding& f : kept())
+    out += fmt::format(
+        "{}\n    {{\"id\": {}, \"severity\": \"{}\", \"number\": {}, \"limit\": {}, \"sentence\": {}, \"advice\": {}, "
+        "\"neglected-effect\": {}, \"accepted\": {}}}",
+        out.empty() ? "" : ",", quoted(f.id), name(f.severity), number_text(f.number), number_text(f.limit),
+        quoted(f.sentence), quoted(f.advice), finding_id(f.id).about == FindingId::About::neglected,
+        is_accepted(f.id));
+  return "[" + out + (out.empty() ? "]" : "\n  ]");
+}
+
+const FindingId& finding_id(const std::string& id) {
+  for (const FindingId& known : finding_ids())
+    if (id == known.id) return known;
+  throw std::logic_error("common/log/finding_ids.cpp lacks the finding '" + id + "'");
+}
+
+std::string unknown_ids(std::span<const std::string> ids) {
+  std::vector<std::string> known;
+  for (const FindingId& f : finding_ids()) known.push_back(f.id);
+  std::string text;
+  for (const std::string& id : ids) {
+    if (std::ranges::count(known, id) > 0) continue;
+    const auto meant = closest(id, known);
+    text += fmt::format("{}there is no finding '{}'{}", text.empty() ? "" : "; ", id,
+                        meant ? fmt::format(", did you mean '{}'?", *meant) : "");
+  }
+  return text.empty() ? text : fmt::format("{}. Findings: {}", text, join(known));
+}
+
+}  // namespace couplet::log

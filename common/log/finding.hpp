@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/base/severity.hpp"
+
+namespace couplet::log {
+
+/// What a run found out about its own answer. Printed as "<sentence>; <advice> [<id>]", where the sentence has the form
+/// "effect: number (limit): verdict".
+struct Finding {
+  std::string id;  ///< one of finding_ids()
+  Severity severity = Severity::warning;
+  double number = std::numeric_limits<double>::quiet_NaN(), limit = number;  ///< NaN: none
+  std::string sentence;
+  std::string advice{};  ///< what to do; empty: the sentence says it
+};
+
+/// Logs and keeps it. Called on every rank; rank 0 speaks. An id that finding_ids() lacks is a std::logic_error.
+void finding(int rank, Finding f);
+/// All of this process so far.
+const std::vector<Finding>& findings();
+
+/// Findings that the user lets pass; they are logged, and neither end a run with exit code 4 nor fail it with --strict.
+void accept(std::span<const std::string> ids);
+bool is_accepted(const std::string& id);
+
+/// How many not accepted findings about the answer are at least so severe; `with_neglected`: opinions on neglected effects
+/// among them.
+int count(Severity least, bool with_neglected);
+/// Warnings and worse, opinions on neglected effects included.
+int doubts();
+
+/// As a JSON list of objects with id, severity, number, limit, sentence, advice, neglected-effect and accepted.
+std::string findings_as_json();
+
+/// Ids that exist, with what they mean: the list of docs/findings.md. `about` neglected effects: an opinion, which
+/// --strict=effects counts and plain --strict does not.
+struct FindingId {
+  enum class About { answer, neglected } about;
+  const char* id;
+  const char* meaning;
+};
+std::span<const FindingId> finding_ids();
+/// Throws std::logic_error where there is no such id.
+const FindingId& finding_id(const std::string& id);
+/// Why `ids` cannot be accepted: those that do not exist, with the nearest and all allowed ones; empty if all exist.
+std::string unknown_ids(std::span<const std::string> ids);
+
+}  // namespace couplet::log

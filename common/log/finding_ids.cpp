@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+
+#include "common/log/finding.hpp"
+
+namespace couplet::log {
+namespace {
+
+constexpr auto answer = FindingId::About::answer, neglected = FindingId::About::neglected;
+
+// Of an effect's card: its name in lower case with hyphens. docs/findings.md lists them all (tests/architecture).
+constexpr std::array ids{
+    // all programs
+    FindingId{answer, "error-estimate", "the estimated error is as large as the solution"},
+    // coupler
+    FindingId{answer, "interface-oscillation",
+              "the interface oscillates from step to step, and more each time"},
+    FindingId{answer, "interface-work-grows",
+              "the work on the two sides of the interface parts more and more"},
+    FindingId{answer, "interface-work", "the work given and the work taken over the whole run differ"},
+    FindingId{answer, "iteration-of-pressure-and-structure",
+              "one pass per step is near its limit of added mass"},
+    FindingId{neglected, "viscous-coupling-load", "the fluid gives forces that no structure takes"},
+    // fluid_solver
+    FindingId{answer, "given-step", "a given time-step is far too long for the viscous term on this mesh"},
+    FindingId{answer, "balance-of-the-kinetic-energy", "the flow has kinetic energy that no work explains"},
+    FindingId{answer, "resolved-walls", "a turbulence model on walls that the mesh does not resolve"},
+    FindingId{answer, "walls-that-move-along-themselves",
+              "a moving wall on a mesh at rest lets fluid through"},
+    FindingId{answer, "gaps-that-close", "gaps block most of the cells"},
+    FindingId{neglected, "turbulence-model", "the mesh does not resolve layers of this Reynolds number"},
+    FindingId{neglected, "compressibility", "the Mach number is high"},
+    FindingId{neglected, "waves-of-pressure", "pressure waves or the fluid's compliance matter"},
+    FindingId{neglected, "mesh-motion", "an interface moves, the mesh does not"},
+    // solid_solver
+    FindingId{answer, "strain-energy", "work and strain energy, or two face gradients, disagree"},
+    FindingId{answer, "energy-growth", "the motion has more energy than was given to it"},
+    FindingId{answer, "heat-swing", "the temperature oscillates from step to step"},
+    FindingId{neglected, "inertia", "a static run of a load that inertia would resist"},
+    FindingId{neglected, "geometric-non-linearity", "large displacement gradients in a linear run"},
+    FindingId{neglected, "yielding", "the stress exceeds the yield strength"},
+    FindingId{neglected, "near-incompressibility",
+              "Poisson's ratio near 0.5 without one volume strain per cell"},
+    FindingId{neglected, "thermal-strain", "temperatures that would strain the body"},
+    FindingId{neglected, "thermoelastic-coupling", "heat of deformation would stiffen the body"},
+    // plate_modal
+    FindingId{answer, "balance-of-the-energies", "the energies of the modes do not balance"},
+    FindingId{answer, "step-that-resolves-the-modes", "modes that move have less than ten steps per period"},
+    FindingId{answer, "step-near-a-resonance", "a load near a resonance and a step that shifts it"},
+    FindingId{answer, "step-that-resolves-the-load", "the load changes within a step"},
+    FindingId{answer, "step-that-resolves-the-contact", "an impact is shorter than ten steps"},
+    FindingId{answer, "deflection-beyond-the-modes", "the loads move shapes that were not kept"},
+    FindingId{answer, "load-faster-than-the-modes", "the load oscillates faster than the highest mode kept"},
+    FindingId{answer, "initial-velocity-beyond-the-modes", "the initial velocity is not one of the modes'"},
+    FindingId{answer, "load-between-the-faces-or-steps", "the load falls between faces or steps"},
+    FindingId{answer, "load-that-moves-no-mode", "the load has no part in any mode"},
+    FindingId{answer, "load-within-a-face", "the load varies within a face"},
+    FindingId{answer, "mesh-that-resolves-the-modes", "the mesh does not resolve the modes that move"},
+    FindingId{neglected, "large-rotation", "rotations beyond what linear modes describe"},
+    FindingId{neglected, "motion-in-the-plane", "loads in the plane of the plate"},
+    FindingId{neglected, "stretch-of-the-mid-surface", "deflection that stretches the mid-surface"},
+    FindingId{neglected, "shear-and-rotary-inertia", "modes too short for a thin plate"},
+    // thermocline
+    FindingId{answer, "weather-data", "the weather is questionable"},
+    FindingId{answer, "calendar", "the calendar of the plant is questionable"},
+    FindingId{answer, "prices", "prices of things that the plant does not have"},
+    FindingId{answer, "tank-state", "the tank has left the range of its closures"},
+    FindingId{answer, "day-report", "the report has no basis"},
+    FindingId{answer, "flow-schedule", "rows of the flow's schedule never ran"},
+    FindingId{answer, "never-melted", "a filler that melts never did"},
+    FindingId{answer, "implicit-advection", "the step spreads the thermocline"},
+    FindingId{answer, "work-of-pump-or-fan", "pump or fan take a large share of the heat"},
+    FindingId{neglected, "resolved-grains", "grains with a gradient inside"},
+    FindingId{neglected, "pressure-loss-of-the-bed", "the bed's pressure loss takes a share of the heat"},
+    FindingId{neglected, "yielding-of-the-wall", "the wall would yield"},
+    FindingId{neglected, "bending-of-the-wall", "bending adds to the wall's stress"},
+    FindingId{neglected, "compressible-flow-of-a-gas", "the gas flows at a high Mach number"},
+    FindingId{neglected, "specific-heat-of-a-gas-by-its-temperature", "the specific heat varies"},
+};
+
+}  // namespace
+
+std::span<const FindingId> finding_ids() { return ids; }
+
+}  // namespace couplet::log

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a coupled run finds out about its own answer, in its midst and at its end.
+#include "common/log/finding.hpp"
+#include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+#include "coupler/coupler.hpp"
+
+namespace couplet {
+
+void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
+  double given = 0, taken = 0;
+  for (const SideBalance& side : balances) (side.gives ? given : taken) += side.balance.work;
+  std::optional<std::string> reason =
+      oscillation_guard_.accepted(unknown_->motion(last_.image), last_dt_, parameters_.scheme);
+  const bool swings = reason.has_value();
+  if (!balances.empty() && mechanics_->knows_work()) {
+    const auto parted = work_guard_.accepted(given, taken, parameters_.scheme);
+    if (!reason) reason = parted;
+  }
+  audit_->loads(given_);
+  audit_->tell(parameters_, time);
+  if (!reason || !diverged_.empty()) return;
+  if (parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
+    diverged_ = *reason;
+  else if (!warned_)
+    log::finding(comm_rank(comm_), {.id = swings ? "interface-oscillation" : "interface-work-grows",
+                                    .severity = Severity::wrong,
+                                    .sentence = fmt::format("t = {:g} s: {}", time, *reason)});
+  warned_ = true;
+}
+
+/// `problem`: why the run stopped before its end; then nothing is said of what its answer errs by.
+void Coupler::finalise(const std::string& problem) {
+  enter_(Phase::finalise, {});
+  log::info("{}", monitor_->summary(loop_.halvings()));
+  tell_work();
+  audit_->tell_at_end(parameters_, problem.empty());
+  std::vector<NamedErrors> parts = finalise_all(everyone(), problem);
+  if (simulation_.error_estimate && problem.empty()) tell_errors(std::move(parts));
+}
+
+void Coupler::tell_work() const {
+  const WorkGuard::Verdict v = work_guard_.verdict();
+  if (v.text.empty()) return;
+  if (v.sound) return log::info("{}", v.text);
+  log::finding(comm_rank(comm_), {.id = "interface-work",
+                                  .severity = v.useless ? Severity::wrong : Severity::warning,
+                                  .number = v.part,
+                                  .limit = WorkGuard::sound_part,
+                                  .sentence = v.text});
+}
+
+void Coupler::tell_errors(std::vector<NamedErrors> participants) const {
+  if (errors_) participants.push_back({"coupling", {.coupling = errors_->over_size()}});
+  for (const std::string& sentence : error_sentences(participants)) log::info("{}", sentence);
+  if (const double total = total_error(participants); total >= as_large_as_the_solution)
+    log::finding(comm_rank(comm_), worthless(total));
+  if (!schedule_.iterates) log::info("{}", lag_ ? lag_->sentence(participants) : LagEstimate::not_possible());
+}
+
+}  // namespace couplet

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the participant has seen of the effects that it neglects.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/derived.hpp"
+#include "fluid_solver/effect_cards.hpp"
+#include "fluid_solver/participant.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+/// Largest extent of the points [m]. Collective.
+double size_of(const Mesh& mesh, std::span<const Vec3> centres) {
+  constexpr double far = std::numeric_limits<double>::max();
+  double square = 0;
+  for (int c = 0; c < mesh.dim; ++c) {
+    double low = far, high = -far;
+    for (const Vec3& x : centres) low = std::min(low, x[c]), high = std::max(high, x[c]);
+    square = std::max(square, std::pow(max(mesh.comm, high) - min(mesh.comm, low), 2));
+  }
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+/// Faces of walls that move across themselves.
+template <int D>
+std::vector<Index> FluidParticipant<D>::moving_faces() const {
+  std::vector<Index> faces;
+  for (const Patch& patch : mesh_.patches) {
+    const BoundaryType type = fluid_->parameters().boundaries.at(patch.name).type;
+    if (type != BoundaryType::interface && type != BoundaryType::body) continue;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) faces.push_back(f);
+  }
+  return faces;
+}
+
+/// The walls' motion and the pressure's answer, where that may say something of the fluid's compliance. Collective.
+template <int D>
+void FluidParticipant<D>::see_motion() {
+  const FluidParameters& p = fluid_->parameters();
+  const bool moves = (interface_ && motion_) || !fluid_->boundary().body_patches().empty();
+  const auto latest = moves ? fluid_->pressure() : nullptr;
+  if (!latest || !sound_of(p.compressibility, p.density, p.viscosity)) return;
+  const Placement<D>& now = *fluid_->state().placement;
+  const std::vector<Index> faces = moving_faces();
+  if (at_start_.empty())
+    for (const Index f : faces) at_start_.push_back(mesh_.reference.face_centre[f]);
+  std::vector<double> swept;
+  std::array<double, 4> sums{};  // swept, pressure times volume, pressure times area and area of inlets
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const Vec3 moved = now.boundary_centre[faces[i] - mesh_.n_interior] - at_start_[i];
+    swept.push_back(moved.template head<D>().dot(now.area[faces[i]]));
+    sums[0] += swept.back();
+  }
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) sums[1] += latest->p[c] * now.volume[c];
+  for (const Patch& patch : mesh_.patches)
+    if (p.boundaries.at(patch.name).type == BoundaryType::inlet)
+      for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+        sums[2] += latest->p[mesh_.owner[f]] * now.area[f].norm();
+        sums[3] += now.area[f].norm();
+      }
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), int(sums.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  const double upstream = p.compressibility ? p.compressibility->upstream_volume : 0;
+  if (sums[3] > 0) sums[1] += upstream * sums[2] / sums[3];
+  compliance_.add(step_.dt, swept, {sums[0], sums[1]});
+}
+
+template <int D>
+void FluidParticipant<D>::add_motion(FluidEvidence& evidence) const {
+  const ComplianceWatch::Walls mine = compliance_.walls();
+  std::array<double, 3> walls{mine.square, mine.rate, mine.size};
+  MPI_Allreduce(MPI_IN_PLACE, walls.data(), int(walls.size()), MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  if (!(walls[0] > 0)) return;
+  const ComplianceWatch::Totals totals = compliance_.totals();
+  // A plate in the fluid sweeps as much on one side as it leaves on the other.
+  evidence.stroke = std::max(totals.swept, 0.5 * walls[2]);
+  evidence.pressure_volume = totals.pressure_volume;
+  evidence.wall_rate = std::sqrt(walls[1] / walls[0]);
+  evidence.size = size_of(mesh_, fluid_->state().placement->boundary_centre);
+}
+
+template <int D>
+std::vector<EffectVerdict> FluidParticipant<D>::audit() const {
+  FluidEvidence evidence{.largest_peclet = fluid_->largest_peclet(), .largest_yplus = 0};
+  for (const Patch& patch : mesh_.patches)
+    if (is_wall(fluid_->parameters().boundaries.at(patch.name).type))
+      evidence.largest_yplus = std::max(evidence.largest_yplus, summarise_wall(*fluid_, patch).largest_yplus);
+  double speed = 0;
+  for (const Vec<D>& u : fluid_->state().u) speed = std::max(speed, u.squaredNorm());
+  evidence.largest_speed = std::sqrt(max(mesh_.comm, speed));
+  // The pressure of the first step is the impulse that sets the fluid in motion.
+  if (const auto latest = fluid_->pressure(); latest && step_.number > 0) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+      low = std::min(low, latest->p[c]), high = std::max(high, latest->p[c]);
+    evidence.pressure_range = max(mesh_.comm, high) - min(mesh_.comm, low);
+  }
+  if (stands_still()) evidence.wall_displacement = displacement_;
+  if (!fluid_->moving()) evidence.through_walls = through_moving_walls(*fluid_);
+  if (fluid_->gaps()) {
+    double blocked = 0;
+    for (const auto& gap : fluid_->gaps()->facts()) blocked += gap.cells;
+    evidence.blocked_cells = blocked / double(mesh_.cells.n_global());
+  }
+  add_motion(evidence);
+  if (const EnergyLedger& ledger = fluid_->state().ledger; ledger.reference > 0)
+    evidence.energy_excess = ledger.excess / ledger.reference;
+  const FluidScene scene{fluid_->parameters(), fluid_->moving(), step_.scheme != Scheme::standalone};
+  return couplet::audit(fluid_effect_cards(), scene, evidence);
+}
+
+template std::vector<Index> FluidParticipant<2>::moving_faces() const;
+template void FluidParticipant<2>::see_motion();
+template void FluidParticipant<2>::add_motion(FluidEvidence&) const;
+template std::vector<EffectVerdict> FluidParticipant<2>::audit() const;
+template std::vector<Index> FluidParticipant<3>::moving_faces() const;
+template void FluidParticipant<3>::see_motion();
+template void FluidParticipant<3>::add_motion(FluidEvidence&) const;
+template std::vector<EffectVerdict> FluidParticipant<3>::audit() const;
+
+}  // namespace couplet::fluid

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/section.hpp"
+
+namespace couplet::fluid {
+
+/// What is known of the compressibility of a fluid that is computed as incompressible: by it a run judges whether that was
+/// right.
+struct CompressibilityParameters {
+  std::optional<double> speed_of_sound;  // [m/s]
+  std::string substance;                 // one of substances(); empty: not given
+  std::optional<double> temperature;     // [K], of the substance
+  std::optional<double> pressure;        // [Pa], absolute; with the density: c^2 = gamma p / rho
+  std::optional<double> heat_capacity_ratio;
+  double upstream_volume = 0;  // [m^3], before the inlets, not in the mesh
+};
+void declare(config::Section& section, CompressibilityParameters& parameters);
+
+/// Gases by molar mass and ratio of heat capacities, liquids by their speed of sound.
+std::vector<std::string> substances();
+
+struct Sound {
+  double speed = 0;  ///< [m/s]
+  std::string of;    ///< "sf6 at 20 degC"
+};
+/// By the keys; else by density [kg/m^3] and viscosity [Pa s], where they are those of a gas at 1 atm or of a liquid. None for a
+/// model fluid, such as one of 1 kg/m^3 and 1 Pa s: nothing is known of its sound.
+std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& parameters, double density,
+                              double viscosity);
+
+}  // namespace couplet::fluid
