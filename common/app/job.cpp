@@ -226,7 +226,8 @@ int attend(const CommandLine& command_line, const ProgramKind& kind, const CaseF
     job.enter(Phase::initialise);
     watch.limit_silence(job.simulation.hang_timeout);
     start_guard.reset();
-    for (const std::string& doubt : file.doubts) log::doubt(job.rank, doubt);
+    for (const std::string& doubt : file.doubts)
+      log::finding(job.rank, {.id = "questionable-key", .sentence = doubt});
     const int code = run(job);
     watch.enter(Phase::waiting);  // for the others: no sign of life of this process is due
     if (code == 0 && Watch::has_stopped()) return exit_stopped;

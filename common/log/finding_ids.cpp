@@ -12,6 +12,7 @@ constexpr auto answer = FindingId::About::answer, neglected = FindingId::About::
 constexpr std::array ids{
     // all programs
     FindingId{answer, "error-estimate", "the estimated error is as large as the solution"},
+    FindingId{answer, "questionable-key", "a value of the case is far from all that is usual"},
     // coupler
     FindingId{answer, "interface-oscillation",
               "the interface oscillates from step to step, and more each time"},
