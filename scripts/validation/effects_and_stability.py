@@ -215,7 +215,7 @@ def implicit_range(job):
 
 BARS = [
     Bar("effects: verdicts just inside and just outside of validity", "right for at least 12 effects", pairs),
-    Bar("effects: a verdict that turns bad is told once, in the midst of the run; --strict fails the run", "pass", ctest("^cli_effects$")),
+    Bar("effects: a verdict that turns bad is told once, in the midst of the run; --strict=effects fails the run", "pass", ctest("^cli_effects$")),
     Bar("effects: off, the plate's seat, damping and gravity allocate nothing and take no step of their own", "tests pass",
         tests("verification_plate_effects", "Effects")),
     *effects_off.BARS,

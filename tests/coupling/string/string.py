@@ -16,6 +16,8 @@ for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
     os.environ.setdefault(name, "1")
 MU = 5 / (math.pi * math.tanh(0.1 * math.pi))
 HERE = pathlib.Path(__file__).resolve().parent
+# The growth that is measured here makes the answer useless otherwise.
+ACCEPTED = ("interface-oscillation", "interface-work-grows", "interface-work", "error-estimate")
 failed, numbers, broken = [], {}, False
 
 
@@ -26,7 +28,7 @@ def run(folder, inverse, *sets):
     sets = [f"participants.wall.surface-density={MU * inverse}", *sets]
     words = ["mpirun", "--oversubscribe"]
     for i, program in enumerate(("coupler", "fluid_solver", "toy_wall")):
-        words += [":"] * (i > 0) + ["-n", "1", program, "case.yaml", *(f"--set={s}" for s in sets)]
+        words += [":"] * (i > 0) + ["-n", "1", program, "case.yaml", *(f"--set={s}" for s in sets), *(f"--accept={i}" for i in ACCEPTED)]
     done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=1200)
     if done.returncode != 0:
         print(done.stdout[-3000:])

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Findings act: exit code 4 for a useless answer, what is accepted passes, what is neglected is another channel, ten halvings end a run,
+all programs of a job agree. Each is shown to fire and not to fire.
+Usage: run.py BIN CONFIGS accept|strict|scenes|sound|coupled"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+import scenes  # noqa: E402
+from checks import check, end  # noqa: E402
+
+programs, configs, kind = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
+
+
+def run(program, case, *words, sets=()):
+    """Exit code, all text, and the findings of run.json of each participant by id."""
+    case = case if isinstance(case, pathlib.Path) else configs / case / "case.yaml"
+    with tempfile.TemporaryDirectory() as folder:
+        names = [program] if isinstance(program, str) else program
+        common = [str(case), *(f"--set={s}" for s in sets), f"--set=simulation.output.folder={folder}", *words]
+        line = [] if len(names) == 1 else ["mpirun", "--oversubscribe"]
+        for i, name in enumerate(names):
+            line += [":"] * (i > 0) + (["-n", "1"] if len(names) > 1 else []) + [str(programs / name), *common]
+        done = subprocess.run(line, capture_output=True, text=True, timeout=280)
+        reports = {f.parent.name: json.loads(f.read_text()) for f in pathlib.Path(folder).glob("*/run.json")}
+    found = {name: {f["id"]: f for f in r["findings"]} for name, r in reports.items()}
+    return done.returncode, done.stdout + done.stderr, found
+
+
+def beam(step, length):
+    return ["participants.solid.mesh-parameters={n_length: 20, n_side: 2}", f"simulation.time-step={step}", f"simulation.end-time={length}"]
+
+
+def accept():
+    """An estimated error as large as the solution."""
+    useless = beam(10, 200)
+    code, text, found = run("solid_solver", "vibrating-cantilever", sets=useless)
+    finding = found["solid"].get("error-estimate", {})
+    check("a useless answer ends with exit code 4", code == 4 and "The answer is useless (error-estimate" in text, code)
+    check("run.json lists it", finding.get("severity") == "wrong" and finding["number"] >= finding["limit"] == 1 and not finding["accepted"], finding)
+    code, text, found = run("solid_solver", "vibrating-cantilever", "--accept", "error-estimate", sets=useless)
+    check("--accept lets it pass", code == 0 and found["solid"]["error-estimate"]["accepted"] and "[error-estimate, accepted]" in text, code)
+    code, _, found = run("solid_solver", "vibrating-cantilever", "--strict", sets=[*useless, "simulation.accept=[error-estimate]"])
+    check("simulation.accept lets it pass, with --strict as well", code == 0 and found["solid"]["error-estimate"]["accepted"], (code, found))
+    code, _, found = run("solid_solver", "vibrating-cantilever", "--accept", "heat-swing", sets=useless)
+    check("another id does not", code == 4, code)
+    code, _, found = run("solid_solver", "vibrating-cantilever", sets=beam(0.5, 20))
+    check("a sound answer ends with exit code 0", code == 0 and "error-estimate" not in found["solid"], (code, found))
+    for words, sets in ((["--accept", "error-estimat"], []), ([], ["simulation.accept=[error-estimat]"])):
+        code, text, _ = run("solid_solver", "vibrating-cantilever", *words, sets=[*useless, *sets])
+        check(f"an unknown id is refused {words}", code == 2 and "did you mean 'error-estimate'?" in text and "heat-swing" in text, (code, text[-300:]))
+
+
+def strict():
+    """A large displacement gradient in a linear run is an opinion; a given step beyond its limit is about the answer."""
+    pulled = ["simulation.end-time=1", "participants.solid.mesh-parameters={n_length: 10, n_side: 1}", "participants.solid.boundaries.tip.value=[3e5, 0, 0]"]
+    code, _, found = run("solid_solver", "cantilever", "--strict", sets=pulled)
+    check("--strict lets an opinion pass", code == 0 and found["solid"]["geometric-non-linearity"]["neglected-effect"], (code, found))
+    code, text, _ = run("solid_solver", "cantilever", "--strict=effects", sets=pulled)
+    check("--strict=effects counts it", code == 1 and "geometric-non-linearity" in text.splitlines()[-1], (code, text[-200:]))
+    code, _, _ = run("solid_solver", "cantilever", "--strict=effects", "--accept", "geometric-non-linearity", sets=pulled)
+    check("and lets it pass where it is accepted", code == 0, code)
+    code, text, _ = run("solid_solver", "cantilever", "--strict=all", sets=pulled)
+    check("--strict=all is refused", code == 2 and "--strict=effects" in text, (code, text[-200:]))
+    slow = [*pulled[:2], "participants.solid.boundaries.tip.value=[1e3, 0, 0]"]
+    code, _, found = run("solid_solver", "cantilever", "--strict=effects", sets=slow)
+    check("a small load passes --strict=effects", code == 0 and not found["solid"], (code, found))
+
+
+def in_folder(make, program, *words, sets=()):
+    with tempfile.TemporaryDirectory() as folder:
+        return run(program, make(pathlib.Path(folder)), *words, sets=sets)
+
+
+def scenes_():
+    code, text, _ = in_folder(scenes.folded, "mesh_mover")
+    check("a folded mesh does not run in the mover alone", code != 0 and "folded at (0" in text, (code, text[-300:]))
+    code, text, _ = in_folder(lambda f: scenes.folded(f, fold=False), "mesh_mover")
+    check("the same mesh without the fold does", code == 0, (code, text[-300:]))
+    code, text, found = in_folder(scenes.explicit_step, "fluid_solver")
+    check("an explicit step far beyond its limit ends the run with its cause",
+          code != 0 and ("for one cause" in text or "could not be solved" in text), (code, text[-400:]))
+    code, text, found = in_folder(lambda f: scenes.explicit_step(f, 0.002), "fluid_solver")
+    check("a step below its limit runs", code == 0 and not found["fluid"], (code, found, text[-300:]))
+    for case in ("oscillating-cylinder", "pitching-plate"):
+        text = subprocess.run([str(programs / "fluid_solver"), str(configs / case / "case.yaml"), "--explain"], capture_output=True, text=True,
+                              timeout=60).stdout
+        check(f"--explain: {case} moves its mesh", "on   mesh motion: asked for by motion" in text and "off  mesh motion" not in text, text[-300:])
+
+
+def sound():
+    code, text, found = in_folder(scenes.duct, "fluid_solver", "--strict")
+    mach = found["fluid"].get("compressibility", {})
+    check("SF6 at 48 m/s is flagged by its own speed of sound", 0.33 < mach.get("number", 0) < 0.39 and "air" not in mach["sentence"] and code == 0, (code, mach))
+    code, text, found = in_folder(scenes.duct, "fluid_solver", sets=["participants.fluid.density=1.2", "participants.fluid.viscosity=1.8e-5"])
+    check("air at 48 m/s is not", "compressibility" not in found["fluid"], found)
+    code, _, found = in_folder(scenes.duct, "fluid_solver", sets=["participants.fluid.compressibility={substance: sf6, temperature: 20 degC}"])
+    check("by name", "compressibility" in found["fluid"], found)
+    code, _, found = in_folder(scenes.duct, "fluid_solver", sets=["participants.fluid.compressibility={speed-of-sound: 1000}"])
+    check("by key", "compressibility" not in found["fluid"], found)
+    code, _, found = in_folder(scenes.duct, "fluid_solver", sets=["participants.fluid.compressibility={pressure: 1 MPa}"])
+    check("by pressure", "compressibility" not in found["fluid"], found)
+    code, text, _ = in_folder(scenes.duct, "fluid_solver", sets=["participants.fluid.compressibility={substance: sf7}"])
+    check("an unknown substance is refused", code == 2 and "'sf6'" in text, (code, text[-300:]))
+    code, text, found = run("fluid_solver", "perpendicular-flap", "--participant", "fluid", sets=["simulation.end-time=0.02", "simulation.checkpoint.interval=0"])
+    check("a fluid of 1 kg/m^3 and 1 Pa s is no air", code == 0 and not {"compressibility", "waves-of-pressure"} & set(found["fluid"]) and " air" not in text,
+          (code, found))
+
+
+def coupled():
+    """All programs end with the code of the one that has the finding; mpirun shows the first that is not 0."""
+    programs_ = scenes.WRONG_COUPLED["programs"]
+    code, text, found = in_folder(scenes.wrong_coupled, programs_)
+    ids = {i for f in found.values() for i, v in f.items() if v["severity"] == "wrong"}
+    check("a coupled job with a useless answer ends with exit code 4", code == 4 and ids == {scenes.WRONG_COUPLED["id"]}, (code, ids, text[-500:]))
+    check("the coupler writes run.json, too", "coupler" in found, list(found))
+    code, text, found = in_folder(scenes.wrong_coupled, programs_, "--accept", scenes.WRONG_COUPLED["id"])
+    check("accepted by all it ends with 0", code == 0, (code, text[-300:]))
+
+
+{"accept": accept, "strict": strict, "scenes": scenes_, "sound": sound, "coupled": coupled}[kind]()
+end()
