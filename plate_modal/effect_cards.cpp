@@ -195,11 +195,13 @@ std::string contact_asked_by(const S& s) {
 }
 
 V judge_energy(const S&, const E& e) {
-  return verdict(
+  V v = verdict(
       e.energy_mismatch, 0.01,
       fmt::format("the balance of the energies (4.29-4.31) is off by up to {:.2g} of the largest energy",
                   e.energy_mismatch),
       "take a smaller step, or 'trapezoidal' with 'contact.rule: conserving'");
+  if (v) v->wrong_from = 0.5;
+  return v;
 }
 
 /// What a run judges without having it.
