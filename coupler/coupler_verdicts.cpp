@@ -17,6 +17,9 @@ void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
     const auto parted = work_guard_.accepted(given, taken, parameters_.scheme);
     if (!reason) reason = parted;
   }
+  for (std::string& still : still_guard_->accepted(given_, taken_))
+    log::finding(comm_rank(comm_), {.id = "structure-at-rest",
+                                    .sentence = fmt::format("t = {:g} s: {}", time, std::move(still))});
   audit_->loads(given_);
   audit_->tell(parameters_, time);
   if (!reason || !diverged_.empty()) return;

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "common/base/error.hpp"
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -76,12 +76,15 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
         "in the mesh mover.",
         mover->name, moves.faces, moved.faces, fluid->name, moves.area, moved.area);
   if (apart > limit)
-    log::doubt(
-        comm_rank(comm),
-        fmt::format(
-            "mesh motion: '{}' moves {} faces by the structure where the interface of '{}' has {}: patches "
-            "that are no interface of the fluid follow the nearest vertex; give them another type.",
-            mover->name, moves.faces, fluid->name, moved.faces));
+    log::finding(comm_rank(comm),
+                 {.id = "surfaces-apart",
+                  .number = apart,
+                  .limit = limit,
+                  .sentence = fmt::format(
+                      "mesh motion: '{}' moves {} faces by the structure where the interface of '{}' "
+                      "has {}: patches that are no interface of the fluid follow the nearest vertex",
+                      mover->name, moves.faces, fluid->name, moved.faces),
+                  .advice = "give them another type"});
 }
 
 }  // namespace
@@ -151,12 +154,13 @@ void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links
     if (!has_size(givers) || !has_size(takers)) continue;
     const SurfaceFacts a = surface_facts(comm, givers), b = surface_facts(comm, takers);
     if (const std::string difference = difference_of(a, b, faceting(a, b)); !difference.empty())
-      log::doubt(
+      log::finding(
           comm_rank(comm),
-          fmt::format(
-              "surfaces that move together differ: {}: loads and motion go over to another size; check the "
-              "meshes' units and dimensions, and which patches are of `type: interface`.",
-              difference));
+          {.id = "surfaces-apart",
+           .sentence =
+               fmt::format("surfaces that move together differ: {}: loads and motion go over to another size",
+                           difference),
+           .advice = "check the meshes' units and dimensions, and which patches are of `type: interface`"});
   }
 }
 

@@ -317,7 +317,8 @@ void FluidParticipant<D>::write_monitors(double time) {
 template <int D>
 std::vector<std::string> FluidParticipant<D>::finish() {
   if (steps_unseen_ > 0) doubt_given_step(step_.dt / fluid_->statistics().sub_steps);
-  for (const std::string& doubt : openings_->doubts()) log::doubt(comm_rank(mesh_.comm), doubt);
+  for (std::string& doubt : openings_->doubts())
+    log::finding(comm_rank(mesh_.comm), {.id = "flow-through-openings", .sentence = std::move(doubt)});
   std::vector<std::string> sentences;
   if (statistics_ && !(statistics_->duration() > 0))
     sentences.push_back(

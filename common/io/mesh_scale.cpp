@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "common/io/place_search.hpp"
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -16,21 +16,25 @@ void doubt_mesh_scale(const Mesh& mesh, std::span<const Vec3> places) {
   constexpr double corner = 1.0 / 300;  // between sizes that occur in one scene and millimetres for metres
   const double size = mesh_size(mesh);
   if (size < smallest || size > largest)
-    log::doubt(
-        comm_rank(mesh.comm),
-        fmt::format(
-            "size of the mesh: {:.3g} m (usual: {:g} to {:g} m): implausible; check 'mesh-scale': 0.001 is that of a "
-            "mesh in millimetres",
-            size, smallest, largest));
+    log::finding(comm_rank(mesh.comm),
+                 {.id = "questionable-mesh-scale",
+                  .number = size,
+                  .limit = size < smallest ? smallest : largest,
+                  .sentence = fmt::format("size of the mesh: {:.3g} m (usual: {:g} to {:g} m): implausible",
+                                          size, smallest, largest),
+                  .advice = "check 'mesh-scale': 0.001 is that of a mesh in millimetres"});
   double farthest = 0;
   for (const Vec3& place : places) farthest = std::max(farthest, place.norm());
   if (farthest > 0 && farthest < corner * size)
-    log::doubt(
-        comm_rank(mesh.comm),
-        fmt::format(
-            "places of the probes: all within {:.3g} m of the origin in a mesh of {:.3g} m (usual: over {:.3g} m): "
-            "implausible; is the mesh in millimetres? Then give 'mesh-scale: 0.001'",
-            farthest, size, corner * size));
+    log::finding(comm_rank(mesh.comm),
+                 {.id = "questionable-mesh-scale",
+                  .number = farthest,
+                  .limit = corner * size,
+                  .sentence = fmt::format(
+                      "places of the probes: all within {:.3g} m of the origin in a mesh of {:.3g} m "
+                      "(usual: over {:.3g} m): implausible",
+                      farthest, size, corner * size),
+                  .advice = "is the mesh in millimetres? Then give 'mesh-scale: 0.001'"});
 }
 
 }  // namespace couplet

@@ -13,7 +13,10 @@ constexpr std::array ids{
     // all programs
     FindingId{answer, "error-estimate", "the estimated error is as large as the solution"},
     FindingId{answer, "questionable-key", "a value of the case is far from all that is usual"},
+    FindingId{answer, "questionable-mesh-scale", "the size of the mesh is not that of the scene"},
     // coupler
+    FindingId{answer, "surfaces-apart", "surfaces that move together differ in size or place"},
+    FindingId{answer, "structure-at-rest", "a loaded structure has not moved for ten steps"},
     FindingId{answer, "interface-oscillation",
               "the interface oscillates from step to step, and more each time"},
     FindingId{answer, "interface-work-grows",
@@ -23,6 +26,7 @@ constexpr std::array ids{
               "one pass per step is near its limit of added mass"},
     FindingId{neglected, "viscous-coupling-load", "the fluid gives forces that no structure takes"},
     // fluid_solver
+    FindingId{answer, "flow-through-openings", "fluid leaves through an inlet or enters through an outlet"},
     FindingId{answer, "given-step", "a given time-step is far too long for the viscous term on this mesh"},
     FindingId{answer, "balance-of-the-kinetic-energy", "the flow has kinetic energy that no work explains"},
     FindingId{answer, "resolved-walls", "a turbulence model on walls that the mesh does not resolve"},
