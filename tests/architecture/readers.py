@@ -4,7 +4,7 @@ and all other text data come in by common/csv alone; HDF5 by common/io (its head
 import re
 
 # What opens a file to read, takes lines apart, decompresses, or makes a number of a text.
-READING = (r"\bstd::(?:ifstream|fstream|filebuf|basic_ifstream|from_chars|getline|sto(?:d|f|ld|i|l|ll|ul|ull)|strto\w+|ato\w+|sscanf|fopen)\b"
+READING = (r"\bstd::(?:ifstream|fstream|filebuf|basic_ifstream|from_chars|getline|sto(?:d|f|ld|i|l|ll|ul|ull)|strto\w+|ato(?:f|i|l|ll)|sscanf|fopen)\b"
            r"|\bgetline\(|\bgz(?:open|dopen|read|gets)\w*\(|\binflate\w*\(|\bf(?:open|dopen|scanf|gets)\(|\bv?sscanf\(|\bato(?:f|i|l|ll)\("
            r"|\bstrto(?:d|f|ld|l|ul|ll|ull|imax|umax)\(|\bmmap\(|\bO_RD(?:ONLY|WR)\b|\bfrom_chars\(")
 
@@ -20,6 +20,7 @@ READERS = {
     "common/app/roll_call.cpp": "fields of messages between programs",
     "common/app/run_report.cpp": "/proc/self/status",
     "common/app/watch.cpp": "a file of its own shared between the processes of a job",
+    "common/app/watch_board.cpp": "a page of its own shared between the processes of a job; /proc",
     "common/base/own_file.cpp": "a file just written, to flush it",
     "common/base/units.cpp": "the one reader of quantities, such as '3 bar'",
     "common/config/document.cpp": "the one reader of YAML",
@@ -27,6 +28,9 @@ READERS = {
     "common/csv/byte_source.hpp": "the one reader of text data",
     "common/csv/cells.cpp": "the one reader of text data: numbers",
     "common/io/checkpoint_set.cpp": "set.txt, whose digest is checked; bytes of files for their digest",
+    "common/io/rehearse.cpp": "/proc/self/statm, /dev/null",
+    "common/mesh/child_process.cpp": "/dev/null for gmsh",
+    "common/mesh/mesh_cache.cpp": "bytes of a cached mesh for their digest",
     "common/mesh/geo_script.cpp": "the one reader of .geo",
     "common/mesh/gmsh.cpp": "what gmsh has printed",
     "common/mesh/mesh_geo.cpp": "a .msh that gmsh has just written",
