@@ -22,6 +22,7 @@ class Cast {
   std::vector<std::string> problems() {
     for (const RoleContract& contract : role_contracts()) look_at_role(contract);
     look_at_exchange();
+    look_at_moved_walls();
     for (const Expected& e : players_) {
       if (e.program == "coupler")
         say("participants." + e.participant + ".program",
@@ -98,6 +99,27 @@ class Cast {
                 "'{}' is run by {}, which cannot be part of an exchange: it serves one fluid, and gives the "
                 "coupler nothing; name it as `mesh`, and its fluid as `fluid`",
                 *here, who->program));
+    }
+  }
+
+  /// Of a fluid and its mesh mover, which name the same patches: a wall that the structure moves is moved.
+  void look_at_moved_walls() {
+    const auto fluid = config::text_of(document_, "coupling.fluid.participant"),
+               mover = config::text_of(document_, "coupling.mesh.participant");
+    const Expected *moved = fluid ? find(*fluid) : nullptr, *moves = mover ? find(*mover) : nullptr;
+    if (!moved || !moves || moved->program != "fluid_solver" || moves->program != "mesh_mover") return;
+    const std::string walls = "participants." + *fluid + ".boundaries";
+    for (const std::string& patch : config::keys_of(document_, walls)) {
+      const std::string key = fmt::format("participants.{}.boundaries.{}.type", *mover, patch);
+      const auto type = config::text_of(document_, key);
+      if (config::text_of(document_, walls + "." + patch + ".type") != "interface" || !type ||
+          type == "interface")
+        continue;
+      say(key,
+          fmt::format(
+              "'{}' holds the wall '{}' by `type: {}`, which '{}' has as an interface that the structure moves: "
+              "its mesh would stand still there. Give it `type: interface`",
+              *mover, patch, *type, *fluid));
     }
   }
 

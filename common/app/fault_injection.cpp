@@ -35,7 +35,7 @@ void FaultInjection::at(std::string_view phase) {
   while (fate_ == "hang") std::this_thread::sleep_for(1s);
   PoliteWait wait("a message that nobody sends");
   while (fate_ == "wait") wait.pause();
-  for (int i = 0; fate_ == "work" && i < 80; ++i) {
+  for (int i = 0; fate_ == "work" && i < 140; ++i) {
     std::this_thread::sleep_for(50ms);
     log::alive();
   }

@@ -8,7 +8,7 @@ namespace couplet {
 
 /// A test aid: COUPLET_FAULT="solid:solve:2" kills rank 0 of participant 'solid' with SIGKILL when it enters
 /// its second solve; "solid:solve:2:1" kills rank 1. A fifth part names another fate: hang (for ever, without a sign of
-/// life), work (for 4 s, with signs of life), wait (for a message that nobody sends), stop (SIGSTOP). The phases are those
+/// life), work (for 7 s, with signs of life), wait (for a message that nobody sends), stop (SIGSTOP). The phases are those
 /// of app/watch.hpp. Without the variable nothing happens.
 class FaultInjection {
  public:

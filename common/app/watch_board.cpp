@@ -57,15 +57,18 @@ double own_seconds(const std::string& folder) {
   return total / double(::sysconf(_SC_CLK_TCK));
 }
 
-}  // namespace
-
-double processor_seconds_of(int pid) {
-  const std::string folder = "/proc/" + std::to_string(pid);
+/// With its children and theirs: a program may be started by way of another.
+double seconds_of(const std::string& pid, int depth) {
+  const std::string folder = "/proc/" + pid;
   double total = own_seconds(folder);
-  std::ifstream children(folder + "/task/" + std::to_string(pid) + "/children");
-  for (int child = 0; children >> child;) total += own_seconds("/proc/" + std::to_string(child));
+  std::ifstream children(folder + "/task/" + pid + "/children");
+  for (std::string child; depth > 0 && children >> child;) total += seconds_of(child, depth - 1);
   return total;
 }
+
+}  // namespace
+
+double processor_seconds_of(int pid) { return seconds_of(std::to_string(pid), 4); }
 
 void describe(Line& line, const Slot& slot, std::string_view fate) {
   line << "participant '" << slot.participant << "'";

@@ -16,9 +16,10 @@ const Demand displacement{"'displacement'", "displacement", {"m"}, Place::vertic
 const Demand velocity{"'velocity'", "velocity", {"m/s"}, Place::vertices};
 
 bool meets(const Demand& demand, const Datum& datum) {
-  return (demand.name.empty() || demand.name == datum.name) &&
-         std::ranges::find(demand.units, datum.unit) != demand.units.end() && demand.place == datum.place &&
-         (demand.components < 0 || demand.components == datum.components);
+  // A vector may be announced by the number of its components, too; whether it is the right one the links know.
+  const bool fits = demand.any_size || datum.components != 1;
+  return fits && (demand.name.empty() || demand.name == datum.name) &&
+         std::ranges::find(demand.units, datum.unit) != demand.units.end() && demand.place == datum.place;
 }
 
 std::string text(const Demand& demand) {
@@ -28,7 +29,7 @@ std::string text(const Demand& demand) {
 
 std::string text(const std::vector<Demand>& demands) {
   std::vector<std::string> words;
-  for (const Demand& demand : demands) words.push_back(text(demand));
+  for (const Demand& demand : demands) words.push_back((demand.name.empty() ? "a " : "") + text(demand));
   return join(words, " and ");
 }
 
@@ -51,8 +52,8 @@ const Demand* unmet(const std::vector<Demand>& demands, const std::vector<Datum>
 
 const std::vector<RoleContract>& role_contracts() {
   static const std::vector<RoleContract> contracts{
-      {"fluid", {displacement}, {{"a load", "", {"N"}, Place::faces}}},
-      {"structure", {{"a load", "", {"N", "Pa"}, Place::faces, -1}}, {displacement, velocity}},
+      {"fluid", {displacement}, {{"load", "", {"N"}, Place::faces}}},
+      {"structure", {{"load", "", {"N", "Pa"}, Place::faces, true}}, {displacement, velocity}},
       {"mesh", {displacement}, {}, true}};
   return contracts;
 }

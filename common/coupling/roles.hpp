@@ -10,11 +10,11 @@ namespace couplet {
 
 /// One datum that a role asks for.
 struct Demand {
-  std::string what;  ///< for messages: "'displacement'", "a load"
+  std::string what;  ///< for messages: "'displacement'", "load"
   std::string name;  ///< empty: any datum of one of the units
   std::vector<std::string> units;
   Interface::Place place;
-  int components = 0;  ///< as in Interface::Datum; below 0: any number
+  bool any_size = false;  ///< else a vector, a value for each dimension
 };
 
 /// What a role of a coupling asks of whoever plays it: what it takes from the coupler and what it gives to it.

@@ -324,7 +324,7 @@ KSPConvergedReason LinearSolver::continue_by_idr(std::span<const double> b, std:
 namespace {
 
 /// Setting up, which may factorise for long without a sign of life, and the iterations, each of which is one.
-PetscErrorCode solve_alive(KSP ksp, Vec b, Vec x, bool sets_up) {
+PetscErrorCode solve_alive(KSP ksp, ::Vec b, ::Vec x, bool sets_up) {
   if (sets_up) {
     const log::LongWork work;
     if (const PetscErrorCode code = KSPSetUp(ksp); code != 0) return code;

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Surfaces that should move together, in real cases: of another size, held by the mesh mover, held by the structure; and the
+start of every shipped coupled case, which has none of it. Usage: walls.py BIN CONFIGS flap | shipped | timeout"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import yaml
+
+binaries, configs = (pathlib.Path(p).resolve() for p in sys.argv[1:3])
+root = configs.parent
+PATIENCE = 600  # [s] with one job
+FINDINGS = ("surfaces that move together differ", "mesh motion: '", "0 m at every vertex", "would stand still")
+COARSE = ["participants.fluid.mesh-parameters={n_side: 10, n_tip: 1, growth: 1.5, wall_growth: 1.5, wall_cells: 3}",
+          "participants.mover.mesh-parameters={n_side: 10, n_tip: 1, growth: 1.5, wall_growth: 1.5, wall_cells: 3}",
+          "participants.solid.mesh-parameters={n_side: 20, n_tip: 2}", "simulation.end-time=0.12 s", "simulation.output.interval=1 s"]
+# Programs of somebody else, as the cases' own launchers start them.
+GUESTS = {"heater": [sys.executable, configs / "warm-flap/heater.py", "heater"],
+          "spring_cylinder_py": [sys.executable, root / "client/examples/spring_cylinder.py", "body", "2", "0", "4", "0.01"],
+          "tube_fluid": None}
+failed = []
+
+
+def check(claim, holds, detail=""):
+    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail if not holds else ''}", flush=True)
+    if not holds:
+        failed.append(claim)
+
+
+def run(words, folder):
+    environment = dict(os.environ, PYTHONPATH=str(root / "client/python"))
+    for name in ("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"):
+        environment.setdefault(name, "1")
+    try:
+        done = subprocess.run(list(map(str, words)), cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=PATIENCE, env=environment)
+        return done.returncode, done.stdout
+    except subprocess.TimeoutExpired as late:
+        return None, (late.stdout or b"").decode() + f"\n(still running after {PATIENCE} s)"
+
+
+def couple(folder, file, sets):
+    """Launches a coupled case; None if it needs a program that is not at hand."""
+    participants = yaml.safe_load((folder / file).read_text())["participants"]
+    options = [word for s in sets for word in ("--set", s)]
+    words = ["mpirun", "--oversubscribe", "-n", "1", binaries / "coupler", file, *options]
+    for name, keys in participants.items():
+        program = keys["program"]
+        words += [":", "-n", "1"]
+        if program in GUESTS:
+            if GUESTS[program] is None:
+                return None, ""
+            words += GUESTS[program]
+        else:
+            words += [binaries / program, file, "--participant", name, *options]
+    return run(words, folder)
+
+
+def copy(case, folder):
+    for file in (configs / case).iterdir():
+        if file.is_file() and file.suffix in (".yaml", ".geo", ".msh", ".csv", ".h5", ".py"):
+            shutil.copy(file, folder)
+
+
+def flap(folder):
+    copy("perpendicular-flap", folder)
+    code, output = couple(folder, "case.yaml", COARSE)
+    check("the case as it is: no finding", code == 0 and not any(f in output for f in FINDINGS), output[-2000:])
+    code, output = couple(folder, "case.yaml", [*COARSE, "participants.solid.mesh-scale=1.05"])
+    check("a solid 5 % larger: flagged with the number", "surfaces that move together differ: area 2.205 m^2 ('solid') and 2.1 m^2 "
+          "('fluid'), 4.8 % apart" in output, output[-2000:])
+    held = "participants.mover.boundaries.flap.type=fixed"
+    code, output = run([binaries / "coupler", "case.yaml", "--check", "--set", held], folder)
+    check("the mover's patch fixed: refused by --check", code == 2 and "holds the wall 'flap' by `type: fixed`" in output, output)
+    code, output = couple(folder, "case.yaml", [*COARSE, held])
+    check("... and at the roll call", code == 2 and "holds the wall 'flap' by `type: fixed`" in output and "step 1" not in output, output)
+
+
+def shipped(folder):
+    """One step of each case; a participant of somebody else is started as the case's launcher does it."""
+    cases = sorted(p for p in [*configs.glob("*/*.yaml"), *(root / "tests/coupling").glob("piston/case.yaml")] if "\ncoupling:" in p.read_text())
+    started = 0
+    for file in cases:
+        here = folder / f"{file.parent.name}-{file.stem}"
+        here.mkdir()
+        for other in file.parent.iterdir():
+            if other.is_file() and other.stat().st_size < 5e7:
+                shutil.copy(other, here)
+        dt = yaml.safe_load(file.read_text())["simulation"]["time-step"]
+        code, output = couple(here, file.name, [f"simulation.end-time={dt}", "simulation.checkpoint.interval=0 s"])
+        name = f"{file.parent.name}/{file.name}"
+        if code is None and not output:
+            print(f"skipped  {name}: needs a program that only its own launcher starts")
+            continue
+        found = re.findall("|".join(map(re.escape, FINDINGS)), output)
+        check(f"{name}: starts, no finding", code == 0 and not found, f"code {code}, {found}\n{output[-2500:]}")
+        started += 1
+    check("at least ten cases were started", started >= 10, str(started))
+
+
+def timeout(folder):
+    copy("perpendicular-flap", folder)
+    code, output = run([binaries / "coupler", "case.yaml", "--print-config"], folder)
+    found = re.search(r"hang-timeout: ([\d.]+)", output)
+    check("hang-timeout is 600 s where a case does not give it", code == 0 and found and float(found[1]) == 600, output[:800])
+
+
+with tempfile.TemporaryDirectory(prefix="couplet-walls-") as scratch:
+    {"flap": flap, "shipped": shipped, "timeout": timeout}[sys.argv[3]](pathlib.Path(scratch).resolve())
+print(f"{len(failed)} claims failed" if failed else "all claims hold")
+sys.exit(1 if failed else 0)

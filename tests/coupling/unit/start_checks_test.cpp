@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is judged before the first step, and in the first ten: roles, sizes of surfaces, structures that stand still.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "common/base/error.hpp"
+#include "common/coupling/roles.hpp"
+#include "common/log/doubt.hpp"
+#include "coupler/still_guard.hpp"
+#include "coupler/surfaces.hpp"
+#include "tests/coupling/support/surfaces.hpp"
+
+namespace couplet {
+namespace {
+
+using Place = Interface::Place;
+using Data = std::vector<Interface::Datum>;
+using testing::HasSubstr;
+
+const Data motion{{"displacement", "m", Place::vertices}, {"velocity", "m/s", Place::vertices}};
+const Data loads{{"pressure-force", "N", Place::faces}};
+
+TEST(RoleContracts, each_of_the_projects_programs_plays_its_roles_and_no_other) {
+  const std::map<std::string, std::vector<std::string>> plays{{"fluid_solver", {"fluid"}},
+                                                              {"solid_solver", {"structure"}},
+                                                              {"plate_modal", {"structure"}},
+                                                              {"mesh_mover", {"mesh"}},
+                                                              {"thermocline", {}}};
+  ASSERT_EQ(players().size(), plays.size());
+  for (const Player& player : players()) {
+    std::vector<std::string> can;
+    for (const RoleContract& contract : role_contracts())
+      if (problem_of_role(contract, player, true).empty()) can.push_back(contract.role);
+    EXPECT_EQ(can, plays.at(player.program)) << player.program;
+  }
+}
+
+TEST(RoleContracts, unit_place_and_components_count) {
+  const RoleContract& fluid = contract_of("fluid");
+  EXPECT_EQ(problem_of_role(fluid, motion, loads), "");
+  Data takes = motion, gives = loads;
+  takes[0].unit = "mm";
+  EXPECT_THAT(problem_of_role(fluid, takes, gives), HasSubstr("it takes no 'displacement' [m] at vertices"));
+  takes = motion, takes[0].place = Place::faces;
+  EXPECT_NE(problem_of_role(fluid, takes, gives), "");
+  gives[0].components = 1;  // a vector is asked for
+  EXPECT_THAT(problem_of_role(fluid, motion, gives), HasSubstr("it gives no load [N] at faces"));
+  EXPECT_NE(problem_of_role(contract_of("mesh"), motion, loads), "");
+  EXPECT_EQ(problem_of_role(contract_of("structure"), {{"pressure", "Pa", Place::faces, 1}}, motion), "");
+}
+
+Interface scaled(Interface s, double factor) {
+  for (Vec3& x : s.vertices) x *= factor;
+  for (Vec3& x : s.face_centres) x *= factor;
+  for (Vec3& a : s.face_areas) a *= s.dim == 2 ? factor : factor * factor;
+  return s;
+}
+
+Side side(const std::string& name, Interface i, const Data& takes, const Data& gives) {
+  i.takes = takes, i.gives = gives;
+  return {MPI_COMM_SELF, name, std::move(i)};
+}
+
+/// The finding of compare_surfaces() for two meshes of a surface; empty: none.
+std::string difference(const Interface& a, const Interface& b) {
+  const Side one = side("solid", a, loads, motion), other = side("fluid", b, motion, loads);
+  const SurfaceFacts first = surface_facts(MPI_COMM_SELF, {&one}),
+                     second = surface_facts(MPI_COMM_SELF, {&other});
+  return difference_of(first, second, faceting(first, second));
+}
+
+TEST(Surfaces, meshes_of_one_surface_may_differ) {
+  EXPECT_EQ(difference(tests::flap(40, 4, 1), tests::flap(20, 2, -1)), "");
+  EXPECT_EQ(difference(tests::flap(40, 4, 1, 0.3), tests::flap(13, 1, -1)), "");
+  EXPECT_EQ(difference(tests::plate(8, true, 1), tests::plate(3, false, -1)), "");
+  for (const auto& [n, m] :
+       std::vector<std::pair<int, int>>{{8, 200}, {12, 31}, {16, 24}, {64, 48}, {100, 200}})
+    EXPECT_EQ(difference(tests::ring(n), tests::ring(m)), "") << n << " and " << m << " chords";
+}
+
+TEST(Surfaces, a_surface_five_per_cent_larger_or_elsewhere_is_named_with_the_number) {
+  EXPECT_THAT(difference(scaled(tests::flap(40, 4, 1), 1.05), tests::flap(20, 2, -1)),
+              testing::AllOf(HasSubstr("area 2.205 m^2 ('solid') and 2.1 m^2 ('fluid')"),
+                             HasSubstr("4.8 % apart (limit 1.")));
+  EXPECT_NE(difference(scaled(tests::ring(32), 1.05), tests::ring(40)), "");
+  EXPECT_NE(difference(scaled(tests::plate(8, true, 1), 0.95), tests::plate(8, false, -1)), "");
+  Interface moved = tests::flap(20, 2, -1);
+  for (Vec3& x : moved.vertices) x.x() += 0.05;
+  for (Vec3& x : moved.face_centres) x.x() += 0.05;
+  EXPECT_THAT(difference(tests::flap(40, 4, 1), moved), HasSubstr("centroid"));
+}
+
+TEST(Surfaces, doubts_are_counted_and_a_mover_that_holds_a_wall_is_refused) {
+  Schedule schedule;
+  schedule.mover = "mover", schedule.moved = "fluid";
+  MappingParameters nearest;
+  nearest.type = MappingParameters::Type::nearest;
+  const auto doubts = [&](const Interface& solid, const Interface& mover) {
+    const std::vector<Side> sides{side("mover", mover, {motion[0]}, {}),
+                                  side("fluid", tests::flap(20, 2, -1), motion, loads),
+                                  side("solid", solid, loads, motion)};
+    const int before = log::doubts();
+    compare_surfaces(MPI_COMM_SELF, sides, Links(MPI_COMM_SELF, sides, nearest), schedule);
+    return log::doubts() - before;
+  };
+  const Interface all = tests::flap(20, 2, -1);
+  EXPECT_EQ(doubts(tests::flap(40, 4, 1), all), 0);
+  EXPECT_EQ(doubts(scaled(tests::flap(40, 4, 1), 1.05), all), 1);
+  Interface half = all;  // one side and the tip
+  half.face_centres.resize(22), half.face_areas.resize(22), half.face_offset.resize(23),
+      half.face_vertices.resize(44);
+  half.vertices.resize(23);
+  try {
+    doubts(tests::flap(40, 4, 1), half);
+    ADD_FAILURE() << "a mover with half of the walls is let pass";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("'mover' moves 22 of the 42 faces of the interface of 'fluid' (1.1 of 2.1 m^2)"));
+  }
+}
+
+TEST(StillGuard, ten_steps_of_load_without_motion_are_flagged_once) {
+  const std::vector<Side> sides{side("fluid", tests::flap(2, 1, -1), motion, loads),
+                                side("solid", tests::flap(2, 1, 1), loads, motion)};
+  const std::size_t vertices = sides[1].interface.vertices.size(),
+                    faces = sides[1].interface.face_centres.size();
+  /// Findings over 25 steps; from `from` on it moves by `motion`.
+  const auto findings = [&](double load, double way, int from) {
+    StillGuard guard(MPI_COMM_SELF, sides);
+    std::vector<std::string> all;
+    for (int n = 0; n < 25; ++n) {
+      std::vector<Exchange> given(2), taken(2);
+      given[1]["displacement"].assign(2 * vertices, n >= from ? way : 0.);
+      taken[1]["pressure-force"].assign(2 * faces, load);
+      for (const std::string& one : guard.accepted(given, taken)) all.push_back(one);
+    }
+    return all;
+  };
+  ASSERT_EQ(findings(3, 0, 0).size(), 1u);
+  EXPECT_THAT(findings(3, 0, 0)[0],
+              HasSubstr("'solid': 0 m at every vertex of its interface for 10 steps under a load of up "
+                        "to 3 N per face"));
+  EXPECT_EQ(findings(0, 0, 0).size(), 0u) << "nothing pushes";
+  EXPECT_EQ(findings(3, 1e-15, 9).size(), 0u) << "it moves in the tenth step, by however little";
+  EXPECT_EQ(findings(3, 1e-15, 10).size(), 1u);
+}
+
+}  // namespace
+}  // namespace couplet
