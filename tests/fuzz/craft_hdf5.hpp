@@ -44,10 +44,10 @@ struct CraftedValue {
   std::string path;  ///< "mass" or "surface/vertices"
   bool is_attribute = false;
   Type type = Type::f64;
-  std::vector<std::uint64_t> size;     ///< {}: one value
-  std::vector<double> values;          ///< what is not there is 0
-  std::vector<std::int64_t> integers;  ///< in place of values, of an i64
-  std::string text;
+  std::vector<std::uint64_t> size{};     ///< {}: one value
+  std::vector<double> values{};          ///< what is not there is 0
+  std::vector<std::int64_t> integers{};  ///< in place of values, of an i64
+  std::string text{};
   Store store = Store::plain;
   Link link = Link::hard;
 };

@@ -87,13 +87,13 @@ with tempfile.TemporaryDirectory() as top:
     for how, name, n, words in (("attribute", "mass", 6, "holds 6 values (float64); one number is expected"),
                                 ("attribute", "mass", 2000, "holds 2000 values (float64); one number is expected"),
                                 ("attribute", "format", 3, "one text of a fixed length"),
-                                ("table", "frequency", 3, "rows"),
+                                ("table", "frequency", 3, "the table 'shape/vertices' has 150 rows of 4 values; 150 of 3 are expected"),
                                 ("external", "frequency", 1, "a link to another file"),
                                 ("cut", "participation", 1, "it has no 'participation'")):
         folder = fresh(f"{how}-{name}-{n}")
         spoiled(folder, "modes.h5", how, name, n)
-        expect(f"--check of modes.h5, {how} {name} {n}", run(folder, "--check"), [2], "modes.file", "modes.h5", f"'{name}'", words)
-        expect(f"the run on modes.h5, {how} {name} {n}", run(folder), [2], "modes.h5", f"'{name}'", words)
+        expect(f"--check of modes.h5, {how} {name} {n}", run(folder, "--check"), [2], "modes.file", "modes.h5", words)
+        expect(f"the run on modes.h5, {how} {name} {n}", run(folder), [2], "modes.h5", words)
     for how, name, n, words in (("attribute", "version", 6, "holds 6 values (float64); one number is expected"),
                                 ("attribute", "set", 500, "one text of a fixed length"),
                                 ("table", "arrays/q", 900, "values"),
