@@ -52,6 +52,7 @@ V judge_compressibility(const S& s, const E& e) {
   if (!sound || std::isnan(e.largest_speed)) return {};
   const double mach = e.largest_speed / sound->speed;
   return EffectVerdict{
+      .effect = "",
       .number = mach,
       .threshold = 0.3,
       .sentence = fmt::format("the largest speed, {:.3g} m/s, is {:.2g} of that of sound in {} ({:.4g} m/s)",
@@ -65,7 +66,8 @@ V judge_compressibility(const S& s, const E& e) {
 // du/dt, whatever the Mach number; the density follows by dp/(rho c^2).
 EffectVerdict judge_density(const S& s, const E& e, const Sound& sound) {
   const double change = e.pressure_range / (s.parameters.density * sound.speed * sound.speed);
-  return {.number = change,
+  return {.effect = "",
+          .number = change,
           .threshold = 0.05,
           .sentence = fmt::format("pressures {:.3g} Pa apart would change the density of {} by {:.2g} of it",
                                   e.pressure_range, sound.of, change),
@@ -79,6 +81,7 @@ EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
   const double share =
       e.pressure_volume / (s.parameters.density * sound.speed * sound.speed) / std::max(e.stroke, 1e-300);
   return {
+      .effect = "",
       .number = share,
       .threshold = 0.1,
       .sentence =
@@ -92,6 +95,7 @@ EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
 EffectVerdict judge_wave_time(const S&, const E& e, const Sound& sound) {
   const double phase = e.wall_rate * e.size / sound.speed;
   return {
+      .effect = "",
       .number = phase,
       .threshold = 0.3,
       .sentence = fmt::format(
@@ -121,6 +125,7 @@ V judge_waves(const S& s, const E& e) {
 V judge_energy(const S&, const E& e) {
   if (std::isnan(e.energy_excess)) return {};
   return EffectVerdict{
+      .effect = "",
       .number = e.energy_excess,
       .threshold = 0.1,
       .sentence = fmt::format(

@@ -337,8 +337,12 @@ TEST(EffectCards, a_verdict_says_number_threshold_and_cure) {
 
 TEST(AuditTrail, tells_again_what_turns_wrong) {
   AuditTrail trail;
-  EffectVerdict v{
-      .effect = "balance of the kinetic energy", .number = 0.2, .threshold = 0.1, .wrong_from = 0.5};
+  EffectVerdict v{.effect = "balance of the kinetic energy",
+                  .number = 0.2,
+                  .threshold = 0.1,
+                  .sentence = "",
+                  .recommendation = "",
+                  .wrong_from = 0.5};
   EXPECT_EQ(v.id(), "balance-of-the-kinetic-energy");
   EXPECT_EQ(v.severity(), Severity::warning);
   EXPECT_EQ(trail.news({v}).size(), 1u);

@@ -34,7 +34,7 @@ TEST(Findings, count_by_severity_channel_and_consent) {
   EXPECT_EQ(log::count(Severity::wrong, true), 0);
   EXPECT_EQ(log::findings().size(), 3u) << "an accepted finding is kept";
   EXPECT_THAT(log::findings_as_json(), HasSubstr(R"("neglected-effect": false, "accepted": true)"));
-  EXPECT_THROW(log::finding(1, {.id = "no-such-id"}), std::logic_error);
+  EXPECT_THROW(log::finding(1, {.id = "no-such-id", .sentence = ""}), std::logic_error);
 }
 
 TEST(Findings, ids_are_unique_words_with_a_meaning) {
