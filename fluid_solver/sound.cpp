@@ -34,6 +34,14 @@ struct Liquid {
 constexpr std::array liquids{Liquid{"water", 1482},    Liquid{"sea-water", 1522}, Liquid{"ethanol", 1160},
                              Liquid{"glycerol", 1920}, Liquid{"oil", 1430},       Liquid{"mercury", 1450}};
 
+/// Marczak (1997), 0 to 95 degC.
+double of_water(double t) {
+  constexpr std::array c{1402.385, 5.038813, -5.799136e-2, 3.287156e-4, -1.398845e-6, 2.787860e-9};
+  double speed = 0;
+  for (std::size_t i = c.size(); i-- > 0;) speed = speed * t + c[i];
+  return speed;
+}
+
 Sound of_substance(const CompressibilityParameters& p) {
   const double t = p.temperature.value_or(room), celsius = t - 273.15;
   const std::string name = fmt::format("{} at {:.3g} degC", p.substance, celsius);
@@ -42,9 +50,7 @@ Sound of_substance(const CompressibilityParameters& p) {
       const double gamma = p.heat_capacity_ratio.value_or(gas.heat_capacity_ratio);
       return {std::sqrt(gamma * gas_constant * t / gas.molar_mass), name};
     }
-  // Of water by the leading terms of Del Grosso and Mader (1972), 0 to 95 degC.
-  if (p.substance == "water" && celsius > 0 && celsius < 95)
-    return {1402.4 + celsius * (5.038 - celsius * (0.0581 - celsius * (3.34e-4 - celsius * 1.48e-6))), name};
+  if (p.substance == "water" && celsius > 0 && celsius < 95) return {of_water(celsius), name};
   const auto liquid =
       std::ranges::find(liquids, p.substance, [](const Liquid& l) { return std::string(l.name); });
   return {liquid->speed_of_sound, p.substance};
