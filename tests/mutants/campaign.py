@@ -51,8 +51,8 @@ def priced(shop, records, tests):
     for test in tests:
         if test in records.prices:
             continue
-        outcome = shop.run(test, shop.registered[test]["command"], 2 * BUDGET)
-        if not outcome.failed:
+        outcome = shop.run(test, shop.registered[test]["command"], BUDGET)
+        if not outcome.failed or outcome.stopped:
             records.add({"test": test, "price": round(outcome.seconds, 2)})
         print(f"{outcome.seconds:7.1f} s {test}{' FAILS' if outcome.failed else ''}", flush=True)
 
@@ -105,6 +105,8 @@ class Judge:
             try:
                 made = self.shop.compiled(m.file, m.apply(source), folder)
             except subprocess.CalledProcessError as error:
+                if "error:" not in error.stderr:  # the compiler was ended from outside
+                    return "interrupted", "", [], 0
                 verdict = ("not compiled", re.sub(r"\s+", " ", error.stderr)[:200], [], 0)
             else:
                 same = hash(self.shop.code(made, folder)) == sound
@@ -152,9 +154,9 @@ def main():
     if asked.batch_survivors:
         whole_suite(shop, records, [m for m in chosen if records.mutants.get(m.name, {}).get("verdict") == "survived"])
     else:
-        priced(shop, records, nearest.all_tests(shop.registered))
         known = records.mutants
         todo = [m for m in chosen if m.name not in known or (asked.again and known[m.name]["verdict"] == "survived")]
+        priced(shop, records, dict.fromkeys(t for m in todo for t in nearest.tests_of(m.file, shop.registered, {})))
         judge = Judge(shop, records)
         with concurrent.futures.ThreadPoolExecutor(asked.workers) as pool:
             for m, (verdict, by, _, seconds) in zip(todo, pool.map(judge, todo)):

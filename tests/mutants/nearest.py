@@ -32,9 +32,9 @@ FILE = {
     "common/elasticity/follower_pressure": "verification_solid_finite_strain verification_solid_conditions",
     "common/elasticity/anisotropic": "verification_solid_orthotropic",
     "common/elasticity/shared_edges": "verification_solid_symmetric verification_heat_strain",
-    "common/elasticity/symmetric_loads": "verification_heat_strain verification_solid_symmetric",
-    "common/fv/conduction": "verification_heat_exactness",
-    "common/fv/prescribed_motion": "verification_fluid_prescribed_motion",
+    "common/elasticity/symmetric_loads": "unit_symmetric_loads verification_heat_strain verification_solid_symmetric",
+    "common/fv/conduction": "unit_fv_operators verification_heat_exactness",
+    "common/fv/prescribed_motion": "unit_fv_operators verification_fluid_prescribed_motion",
     "common/fv/point_gradient": "unit_fv_point_gradient verification_heat_strain",
     "common/fv/vertex_interpolation": "unit_fv_interpolation",
     "common/fv/vertex_weights": "unit_fv_interpolation",
@@ -67,7 +67,7 @@ FILE = {
 }
 
 FOLDER = {
-    "fluid_solver": "verification_fluid_exactness verification_fluid_taylor_green verification_fluid_cavity verification_fluid_steps "
+    "fluid_solver": "verification_fluid_face_loops verification_fluid_exactness verification_fluid_taylor_green verification_fluid_cavity verification_fluid_steps "
                     "verification_fluid_boundaries verification_fluid_prescribed_motion verification_fluid_wall_output verification_fluid_samples "
                     "verification_fluid_turning_walls verification_fluid_rotating_frame verification_fluid_gaps verification_fluid_effects "
                     "stability_fluid_step_sizes stability_fluid_energy_guard stability_fluid_light_wall stability_fluid_under_resolved contract_fluid "
@@ -82,13 +82,13 @@ FOLDER = {
                     "verification_solid_large_strain_estimate verification_solid_volume_strain verification_solid_mixed_form "
                     "verification_heat_exactness verification_heat_errors verification_heat_order verification_heat_series verification_heat_strain "
                     "verification_heat_stress contract_solid stability_solid_hard_cases verification_solid_patch_2",
-    "common/elasticity": "unit_elasticity_kernel unit_finite_law unit_symmetric_diagonal verification_solid_patch verification_solid_symmetric "
+    "common/elasticity": "unit_symmetric_loads unit_elasticity_kernel unit_finite_law unit_symmetric_diagonal verification_solid_patch verification_solid_symmetric "
                          "verification_solid_methods verification_solid_order verification_solid_closed_forms verification_solid_conditions "
                          "verification_solid_materials verification_solid_incompressible verification_solid_mixed_form verification_solid_volume_strain "
                          "verification_solid_finite_strain verification_solid_updated_lagrangian verification_solid_orthotropic verification_solid_energy "
                          "verification_solid_audit verification_heat_strain verification_heat_stress verification_solid_contract verification_solid_beams "
                          "verification_solid_patch_2 verification_mover",
-    "common/fv": "unit_fv_expression unit_fv_table unit_fv_interpolation unit_fv_point_gradient verification_heat_exactness verification_heat_order "
+    "common/fv": "unit_fv_operators unit_fv_expression unit_fv_table unit_fv_interpolation unit_fv_point_gradient verification_heat_exactness verification_heat_order "
                  "verification_heat_series verification_heat_strain verification_solid_output verification_fluid_prescribed_motion verification_mover "
                  "verification_mover_motion verification_solid_patch verification_heat_errors verification_heat_exactness_2",
     "common/time": "unit_time verification_solid_time_schemes verification_solid_dynamics verification_solid_energy verification_solid_audit "
@@ -121,7 +121,3 @@ def tests_of(file, registered, price):
     rest = sorted(_named(FOLDER[folder], registered), key=lambda t: price.get(t, 1e9))
     return [t for t in dict.fromkeys([*near, *rest]) if t in registered]
 
-
-def all_tests(registered):
-    names = [t for words in (*FILE.values(), *FOLDER.values()) for t in _named(words, registered)]
-    return [t for t in dict.fromkeys(names) if t in registered]

@@ -181,6 +181,50 @@ TEST(QuasiNewton, keeps_no_more_steps_and_columns_than_it_may) {
   EXPECT_EQ(nothing->columns(), 0);
 }
 
+TEST(QuasiNewton, reuses_the_pairs_of_as_many_steps_as_it_may_and_of_no_more) {
+  for (const Type type : {Type::iqn_ils, Type::iqn_mvj})
+    for (const int reused : {0, 1, 2, 4}) {
+      AccelerationParameters parameters = of_type(type, reused);
+      parameters.filter = 0;
+      parameters.maximum_columns = 1000;
+      const auto accelerator = make_accelerator(parameters, MPI_COMM_SELF);
+      for (int n = 0; n < 7; ++n) {
+        accelerator->start_step();
+        EXPECT_EQ(accelerator->columns(), 2 * std::min(n, reused)) << int(type) << " after " << n << " steps";
+        const auto map =
+            [&](const Iterate& x) {  // another one in each step, so that no pair says what others said
+              return heavy(x, 0.5 + 0.03 * n * n, 0.7 * n);
+            };
+        Iterate x{Vector(40, 0.), Vector(40, 0.)};
+        for (int k = 0; k < 2; ++k) x = accelerator->next(x, map(x));
+        accelerator->accept(x, map(x));  // two pairs a step
+        EXPECT_EQ(accelerator->resets(), 0);
+      }
+    }
+}
+
+/// What has been learnt of a linear map answers at once in the next step.
+TEST(QuasiNewton, a_map_that_is_known_from_the_step_before_is_solved_by_one_update) {
+  const auto map = [](const Iterate& x, double shift) {
+    return Iterate{
+        {-30 * x.unknown[0] + x.unknown[1] + 1, 4 * x.unknown[1] + 2 + shift, 0.5 * x.unknown[2] - shift},
+        {}};
+  };
+  for (const Type type : {Type::iqn_ils, Type::iqn_mvj}) {
+    AccelerationParameters parameters = of_type(type, 1);
+    parameters.filter = 1e-6;
+    const auto accelerator = make_accelerator(parameters, MPI_COMM_SELF);
+    Iterate x{{0, 0, 0}, {}};
+    accelerator->start_step();
+    for (int k = 0; k < 4; ++k) x = accelerator->next(x, map(x, 1));
+    accelerator->accept(x, map(x, 1));
+    accelerator->start_step();
+    x = accelerator->next(x, map(x, 3));
+    const Iterate image = map(x, 3);
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(x.unknown[i], image.unknown[i], 1e-9) << int(type);
+  }
+}
+
 /// After steps with one map comes another: what was learnt is wrong by far.
 TEST(QuasiNewton, pairs_that_mislead_are_given_up) {
   for (const Type type : {Type::iqn_ils, Type::iqn_mvj}) {

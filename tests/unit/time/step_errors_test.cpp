@@ -16,7 +16,8 @@ TEST(StepErrorsTest, errors_of_an_oscillation_add_up) {
   const double dt = 0.1;
   for (int n = 1; n <= 1000; ++n)
     errors.add({1e-5, std::abs(std::cos(n * dt)), std::abs(std::sin(n * dt)), dt});
-  EXPECT_NEAR(errors.over_size(), 1000 * 1e-5, 1e-3);
+  // The size of late has faded by 4 % since its last maximum.
+  EXPECT_NEAR(errors.over_size(), 1.04 * 1000 * 1e-5, 2e-4);
 }
 
 TEST(StepErrorsTest, on_the_way_to_a_steady_state_they_are_forgotten) {

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Loads of the symmetric operator are the transposes of what it measures.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/symmetric_faces.hpp"
+#include "common/mesh/load.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr LameConstants lame{1.1, 1.7};
+
+std::vector<double> noise(std::size_t n, unsigned seed) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> values(n);
+  std::ranges::generate(values, [&] { return normal(engine); });
+  return values;
+}
+
+template <int D>
+void check(BoxCells cells) {
+  RawMesh raw = make_box(cells, {4, 3, 3}, Vec3::Zero(), Vec3(1.1, 1.0, D == 3 ? 1.2 : 0));
+  perturb_interior(raw, 0.2, 7);
+  const Mesh mesh = distribute(MPI_COMM_SELF, raw);
+  std::vector<ElasticCondition> conditions(mesh.patches.size(), ElasticCondition::traction);
+  conditions[0] = ElasticCondition::prescribed;
+  conditions[1] = ElasticCondition::symmetry;
+  const ElasticOperator rows(mesh, conditions, lame);
+  const ElasticKernel kernel(mesh, rows, FaceGradientScheme::symmetric);
+  const std::vector<double> p = noise(std::size_t(mesh.n_faces()), 1), v = noise(rows.n_unknowns(), 2);
+  std::vector<double> rhs(rows.n_unknowns(), 0);
+  kernel.add_pressure(p, rhs);
+  double work = 0, wanted = 0, size = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) work += rhs[i] * v[i];
+  const auto take = [&](Index f, const Tensor3& gradient) {
+    const double part = p[std::size_t(f)] * symmetric_face<D>(mesh, rows, f).volume * gradient.trace();
+    wanted += part, size += std::abs(part);
+  };
+  kernel.face_gradients(v, {}, take, 0, mesh.n_flux_faces());
+  EXPECT_GT(size, 1e-3);
+  EXPECT_NEAR(work, wanted, 1e-11 * size);
+}
+
+class SymmetricLoads : public ::testing::TestWithParam<BoxCells> {};
+
+// A thermal stress - p I works on the volume strain as the operator has it: on that of its faces, and of three-cornered faces on
+// the one that they share with their edges.
+TEST_P(SymmetricLoads, thermal_pressure_works_on_the_strain_that_faces_share_with_their_edges) {
+  const bool plane = GetParam() == BoxCells::quadrilaterals || GetParam() == BoxCells::triangles;
+  plane ? check<2>(GetParam()) : check<3>(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SymmetricLoads,
+                         ::testing::Values(BoxCells::quadrilaterals, BoxCells::triangles, BoxCells::hexahedra,
+                                           BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));
+
+}  // namespace
+}  // namespace couplet

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The constants by which errors of a step are estimated, against the errors that the stages make.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/time/time_scheme.hpp"
+
+namespace couplet {
+namespace {
+
+double of(const Levels& l, double x, double u, double u_old) { return l.x * x + l.u * u + l.u_old * u_old; }
+
+/// u' = u from u = 1 over `steps` steps of dt; the level before the start is exact.
+double grown(const TimeSchemeParameters& scheme, double dt, int steps) {
+  double u = 1, before = std::exp(-dt);
+  for (int n = 0; n < steps; ++n) {
+    const double start = u;
+    double old = before;
+    for (const Stage& s : first_order_stages(scheme, dt, {n + 1, dt})) {
+      if (s.start > 0) old = start;
+      const double x = -of(s.rate, 0, u, old) / (s.rate.x - 1);
+      u = of(s.end_value, x, u, old);
+    }
+    before = start;
+  }
+  return u;
+}
+
+// Errors C dt^(p+1) u^(p+1) of N steps add up to C dt^p T u.
+TEST(ErrorConstants, are_those_of_the_stages_for_a_growing_value) {
+  for (const TimeScheme type :
+       {TimeScheme::euler, TimeScheme::three_point, TimeScheme::trapezoidal, TimeScheme::bathe}) {
+    const TimeSchemeParameters scheme{type, 0.8};
+    const LocalError error = local_error(scheme);
+    const double dt = 1e-3;
+    const int steps = 2000;
+    const double relative = grown(scheme, dt, steps) / std::exp(dt * steps) - 1;
+    const double measured = std::abs(relative) / (std::pow(dt, error.order) * dt * steps);
+    EXPECT_NEAR(measured / std::abs(error.constant), 1, 0.01) << name(type);
+  }
+}
+
+// From u = v = a = 0 with u''' = 1, the acceleration at the end known: beta dt^3 for dt^3 / 6.
+TEST(ErrorConstants, of_generalised_alpha_is_that_of_its_displacement) {
+  for (const double radius : {0.3, 0.8, 1.0}) {
+    const TimeSchemeParameters scheme{TimeScheme::generalised_alpha, radius};
+    const double dt = 0.1;
+    const std::vector<Stage> stages = second_order_stages(scheme, dt, {3, dt});
+    ASSERT_EQ(stages.size(), 1u);
+    const double x = dt / stages[0].end_acceleration.x;
+    const double error = stages[0].end_value.x * x - dt * dt * dt / 6;
+    EXPECT_NEAR(error / (dt * dt * dt), local_error(scheme).constant, 1e-12) << radius;
+  }
+}
+
+// Rates are exact for the powers of time that their order promises, on steps of any ratio.
+TEST(ErrorConstants, rates_and_accelerations_are_exact_for_parabolas) {
+  const double dt = 0.3, dt_old = 0.2, t = 1.1;
+  const auto u = [](double s) { return 2 + 3 * s - 4 * s * s; };
+  const auto v = [](double s) { return 3 - 8 * s; };
+  for (const TimeScheme type :
+       {TimeScheme::three_point, TimeScheme::trapezoidal, TimeScheme::bathe, TimeScheme::generalised_alpha}) {
+    Levels old{0, u(t), v(t), -8, u(t - dt_old), v(t - dt_old)};
+    const double start_u = old.u, start_v = old.v;
+    const auto value = [&](const Levels& l, double x) {
+      return l.x * x + l.u * old.u + l.v * old.v + l.a * old.a + l.u_old * old.u_old + l.v_old * old.v_old;
+    };
+    for (const Stage& s : second_order_stages({type, 0.7}, dt, {3, dt_old})) {
+      if (s.start > 0) old.u_old = start_u, old.v_old = start_v;
+      const double end = t + s.start + s.dt;
+      // The unknown whose end is the parabola's.
+      const double x = (u(end) - value(s.end_value, 0)) / s.end_value.x;
+      EXPECT_NEAR(value(s.end_rate, x), v(end), 1e-12) << name(type);
+      EXPECT_NEAR(value(s.rate, x), v(t + s.start + s.place * s.dt), 1e-12) << name(type);
+      EXPECT_NEAR(value(s.acceleration, x), -8, 1e-11) << name(type);
+      EXPECT_NEAR(value(s.end_acceleration, x), -8, 1e-11) << name(type);
+      old.u = u(end), old.v = v(end), old.a = -8;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace couplet
