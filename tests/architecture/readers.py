@@ -19,6 +19,7 @@ READERS = {
     "common/app/questions.cpp": "indents text of its own",
     "common/app/roll_call.cpp": "fields of messages between programs",
     "common/app/run_report.cpp": "/proc/self/status",
+    "common/app/start_guard.cpp": "/proc: what the launcher has started",
     "common/app/watch.cpp": "a file of its own shared between the processes of a job",
     "common/app/watch_board.cpp": "a page of its own shared between the processes of a job; /proc",
     "common/base/own_file.cpp": "a file just written, to flush it",
