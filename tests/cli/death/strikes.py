@@ -25,7 +25,6 @@ MOMENTS = ("start", "meshing", "steps", "finish")
 COARSE = "n_side: 12, n_tip: 1, growth: 1.4, wall_growth: 1.4, wall_cells: 4"
 # Many seconds of gmsh, another mesh each time.
 FINE = "n_side: 800, n_tip: 80, growth: {growth}, wall_growth: 1.006, wall_cells: 200"
-MARK = "COUPLET_STRIKE"  # in the environment of a job and of whatever it starts
 Suite()  # sets the PATH
 
 
@@ -45,7 +44,7 @@ def launch(folder, words):
         if word == "case.yaml":
             command += words
     return subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=open(folder / "output", "w"),
-                            stderr=subprocess.STDOUT, start_new_session=True, env=dict(os.environ, **{MARK: str(folder)}))
+                            stderr=subprocess.STDOUT, start_new_session=True)
 
 
 def name_of(pid):
@@ -59,19 +58,32 @@ def with_names(session, program):
     return [pid for pid in living_in_session(session) if name_of(pid) == program]
 
 
-def of_job(folder):
-    """Processes that the job has started, whatever their session: a mesh generator may have one of its own."""
-    mark, found = f"{MARK}={folder}".encode(), []
+def stats():
+    """(state, parent, start) of every process by pid."""
+    found = {}
     for entry in os.listdir("/proc"):
-        if not entry.isdigit():
-            continue
-        try:
-            state = pathlib.Path(f"/proc/{entry}/stat").read_text(errors="replace").rpartition(")")[2].split()[0]
-            if state not in "ZX" and mark in pathlib.Path(f"/proc/{entry}/environ").read_bytes().split(b"\0"):
-                found.append(int(entry))
-        except OSError:
-            continue
+        if entry.isdigit():
+            try:
+                fields = pathlib.Path(f"/proc/{entry}/stat").read_text(errors="replace").rpartition(")")[2].split()
+            except OSError:
+                continue
+            found[int(entry)] = (fields[0], int(fields[1]), fields[19])
     return found
+
+
+def family(job):
+    """{pid: start} of what the job has started, whatever its session: a mesh generator may have one of its own."""
+    every, mine = stats(), {job.pid}
+    for _ in range(8):
+        mine |= {pid for pid, (_, parent, _) in every.items() if parent in mine}
+    return {pid: every[pid][2] for pid in mine if pid in every}
+
+
+def alive(job, known):
+    """Of the job's session and of its family as it was seen."""
+    every = stats()
+    left = {pid for pid, start in known.items() if pid in every and every[pid][2] == start and every[pid][0] not in "ZX"}
+    return left | set(living_in_session(job.pid))
 
 
 def wait_until(condition, job):
@@ -93,7 +105,7 @@ def come(moment, job, folder, victim):
         pids = wait_until(lambda: with_names(job.pid, PROGRAMS[victim]), job)
         time.sleep(draw.uniform(0, 0.6))
     elif moment == "meshing":
-        wait_until(lambda: any("gmsh" in name_of(p) for p in of_job(folder)), job)
+        wait_until(lambda: any("gmsh" in name_of(p) for p in family(job)), job)
         time.sleep(draw.uniform(0, 1))
     elif moment == "steps":
         wait_until(lambda: is_there(folder / "out/coupler/residuals.csv", 400), job)
@@ -128,6 +140,7 @@ def strike(number, folder, cached):
     job = launch(folder, words)
     pid = come(moment, job, folder, victim)
     label = f"{number + 1:3d} {victim} {'killed' if what == signal.SIGKILL else 'stopped'} at {moment}"
+    known = family(job)
     struck = time.monotonic()
     try:
         if pid:
@@ -135,11 +148,11 @@ def strike(number, folder, cached):
     except ProcessLookupError:
         pid = None
     allowed = 5 * SLOWER + ((TIMEOUT if moment != "start" else 4) + 1 if what == signal.SIGSTOP else 0)
-    while time.monotonic() - struck < allowed + 20 and (living_in_session(job.pid) or of_job(folder) or job.poll() is None):
+    while time.monotonic() - struck < allowed + 20 and (alive(job, known) or job.poll() is None):
         job.poll()
         time.sleep(0.02)
     took = time.monotonic() - struck
-    left = set(living_in_session(job.pid)) | set(of_job(folder))
+    left = alive(job, known)
     names = sorted({name_of(p) or str(p) for p in left})
     for process in left:
         try:

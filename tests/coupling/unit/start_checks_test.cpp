@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/coupling/roles.hpp"
-#include "common/log/doubt.hpp"
+#include "common/log/finding.hpp"
 #include "coupler/still_guard.hpp"
 #include "coupler/surfaces.hpp"
 #include "tests/coupling/support/surfaces.hpp"
