@@ -33,12 +33,8 @@ def table(separator=",", names=("t", "p"), rows=((0, 1.5), (1, 2.5), (2, 3.5)), 
     return (text.replace(".", ",") if comma else text).encode()
 
 
-def bomb(text):
-    """40 MB of rows in some 40 kB."""
-    return gzip.compress(text + b"".join(b"\n0,0" for _ in range(10 * 1000 * 1000)), 9)
-
-
-BOMB = bomb(b"t,p")
+# 40 MB of blank lines in some 40 kB, behind a right file: members of gzip follow one another.
+BOMB = gzip.compress((b" " * 99 + b"\n") * 400000, 9)
 
 
 def broken_texts(right):
@@ -55,7 +51,7 @@ def broken_texts(right):
         "a line without end": (right + b"1" * 70000, ["more than 65536 bytes"]),
         "gzip that was cut": (gzip.compress(right)[:-9], ["damaged or was cut short"]),
         "gzip with a flipped bit": (bytes([*gzip.compress(right)[:-6], 0, *gzip.compress(right)[-5:]]), ["damaged or was cut short"]),
-        "a gzip bomb": (BOMB, ["expands to more than 100 times"]),
+        "a gzip bomb": (gzip.compress(right) + BOMB, ["expands to more than 100 times"]),
         "nothing": (b"", [""]),
     }
 
@@ -74,11 +70,17 @@ GRID = b"y,t,u,v\n0,0,1.5,0\n0,1,1,0\n1,0,1,0\n1,1,1,0\n"
 BROKEN_GRID = {"decimal commas": (GRID.replace(b",", b";").replace(b".", b","), [":2: '1,5' has a decimal comma"]),
                "a place without a value": (GRID.rsplit(b"\n", 2)[0] + b"\n", ["no value at"]),
                "a place twice": (GRID + b"1,1,1,0\n", [":6: "])}
-WEATHER = ("hour,dni_W_m2,T_degC,wind_m_s,rh_pct,p_Pa\n" + "".join(f"{h},0,20.5,1,50,101325\n" for h in range(24))).encode()
-BROKEN_WEATHER = {"semicolons and decimal commas": (WEATHER.replace(b",", b";").replace(b".", b","), [":1: "]),
-                  "decimal commas": (WEATHER.replace(b"20.5", b"20,5"), [":2: 7 values, but the file has 6 columns"]),
-                  "a row less": (WEATHER.replace(b"5,0,20.5,1,50,101325\n", b"", 1), [""]) if False else
-                  (WEATHER.rsplit(b"\n", 2)[0] + b"\n", ["23 of the 24 hours"])}
+HEAD = "hour,dni_W_m2,T_degC,wind_m_s,rh_pct,p_Pa\n"
+WEATHER = (HEAD + "".join(f"{h},0,20.5,1,50,101325\n" for h in range(24))).encode()
+YEAR = (HEAD + "".join(f"{h},0,20.5,1,50,101325\n" for h in range(8760))).encode()
+
+
+def broken_weather(right):
+    return {"semicolons and decimal commas": (right.replace(b",", b";").replace(b".", b","), [":1: "]),
+            "decimal commas": (right.replace(b"20.5", b"20,5"), [":2: 7 values, but the file has 6 columns. If commas are decimal commas"]),
+            "a row less": (right.rsplit(b"\n", 2)[0] + b"\n", ["23 of the 24 hours"])}
+
+
 FLOWS = b"time [h],mass-flow [kg/s],inlet-temperature [degC]\n0,-20,390.5\n1,20,290\n"
 BROKEN_FLOWS = {"decimal commas": (FLOWS.replace(b",", b";").replace(b".", b","), [":2: '390,5' has a decimal comma"]),
                 "times that do not grow": (FLOWS + b"0.5,20,290\n", [":4: "])}
@@ -135,9 +137,10 @@ def of_table(program, key, base, old, new, word=""):
     return Scene(program, key, base, [(old, new)], "p.csv", LOAD, {**broken_texts(LOAD), **COMMAS}, word)
 
 
-def weather(key, edits):
-    return Scene("thermocline", key, "tank", edits, "w.csv", WEATHER, {**broken_texts(WEATHER), **BROKEN_WEATHER},
-                 key.rsplit(".", 1)[1])
+def weather(key, edits, all_of_it=True):
+    right = YEAR if key.endswith("air") else WEATHER
+    broken = {**(broken_texts(right) if all_of_it else {}), **broken_weather(right)}
+    return Scene("thermocline", key, "tank", edits, "w.csv", right, broken, key.rsplit(".", 1)[1])
 
 
 SCENES = [
@@ -151,8 +154,8 @@ SCENES = [
     of_table("solid_solver", "participants.solid.boundaries.right.value", "solid", "value: [1000, 0]", "value: [0, '2*table(t, \"p.csv\")']"),
     of_table("fluid_solver", "participants.fluid.boundaries.left.velocity", "fluid", "velocity: [1 m/s, 0 m/s]",
              "velocity: [{of: t, file: p.csv}, 0]"),
-    of_table("mesh_mover", "participants.mover.boundaries.top", "coupled", "      bottom: {type: interface}\n      top: {type: fixed}",
-             "      bottom: {type: interface}\n      top: {type: prescribed, displacement: [0, {of: t, file: p.csv}]}"),
+    of_table("mesh_mover", "participants.mover.boundaries.top.motion", "coupled", "      bottom: {type: interface}\n      top: {type: fixed}",
+             "      bottom: {type: interface}\n      top: {type: moving, motion: {translation: [0, {of: t, file: p.csv}]}}"),
     of_table("plate_modal", "participants.plate.load.upper-pressure", "plate", "    modes: {number: 3}\n",
              "    modes: {number: 3}\n    load: {upper-pressure: {of: t, file: p.csv}}\n"),
     Scene("fluid_solver", "participants.fluid.boundaries.left.table.file", "fluid", [(", velocity: [1 m/s, 0 m/s]", ", table: {file: g.csv}")],
@@ -161,10 +164,10 @@ SCENES = [
                                                                     ("    contact: {height: -1 cm}\n", "")], "own.h5", None),
     weather("participants.tank.ambient.file", [("    flow:\n", FILE + "    flow:\n")]),
     weather("participants.tank.ambient.air", [("    flow:\n", AIR + "    flow:\n")]),
-    weather("participants.tank.ambient.file", [(TANK, GROUND + FILE)]),
-    weather("participants.tank.ambient.air", [(TANK, GROUND + AIR)]),
-    weather("participants.tank.ambient.file", [(TANK, BLANKET + FILE)]),
-    weather("participants.tank.ambient.air", [(TANK, BLANKET + AIR)]),
+    weather("participants.tank.ambient.file", [(TANK, GROUND + FILE)], False),
+    weather("participants.tank.ambient.air", [(TANK, GROUND + AIR)], False),
+    weather("participants.tank.ambient.file", [(TANK, BLANKET + FILE)], False),
+    weather("participants.tank.ambient.air", [(TANK, BLANKET + AIR)], False),
     Scene("thermocline", "participants.tank.flow.file", "tank", [(ROWS, "    flow: {type: schedule, file: f.csv}\n")], "f.csv", FLOWS,
           {**broken_texts(FLOWS), **BROKEN_FLOWS}),
 ]
