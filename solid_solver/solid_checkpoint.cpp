@@ -5,6 +5,7 @@
 #include <array>
 #include <type_traits>
 
+#include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/numbering.hpp"
 #include "solid_solver/newton_krylov.hpp"
