@@ -30,7 +30,7 @@ void declare_body(config::Section& s, Parameters& p) {
             .doc("density");
         m.value("youngs-modulus", p.material.youngs_modulus)
             .unit("Pa")
-            .plausible(1000, 2e12)
+            .plausible(1, 2e12)
             .not_negative()
             .doc("Young's modulus");
         m.value("poissons-ratio", p.material.poissons_ratio).range(-0.99, 0.499).doc("Poisson's ratio");
@@ -58,7 +58,7 @@ void declare_body(config::Section& s, Parameters& p) {
             .doc("in place of the plate's");
         z.value("youngs-modulus", v.youngs_modulus)
             .unit("Pa")
-            .plausible(1000, 2e12)
+            .plausible(1, 2e12)
             .positive()
             .doc("in place of the plate's");
       },

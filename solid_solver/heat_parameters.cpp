@@ -58,7 +58,7 @@ void declare(config::Section& s, HeatMaterial& m) {
   declare_property(s, {"expansion", "1/K", 1e-8, 1e-2}, m.expansion, -1,
                    "instantaneous coefficient of thermal expansion: a number or a table of T, which is "
                    "integrated from the reference temperature on");
-  declare_property(s, {"youngs-modulus-table", "Pa", 1e3, 2e12}, m.youngs_modulus, 0,
+  declare_property(s, {"youngs-modulus-table", "Pa", 1, 2e12}, m.youngs_modulus, 0,
                    "table of T that holds in place of youngs-modulus where the temperature is known");
   s.value("poissons-ratio-table", m.poissons_ratio)
       .doc("table of T that holds in place of poissons-ratio where the temperature is known");

@@ -53,7 +53,7 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   };
   needed(s.value("youngs-modulus", m.youngs_modulus)
              .unit("Pa")
-             .plausible(1000, 2e12)
+             .plausible(1, 2e12)
              .positive()
              .doc("Young's modulus; needed without 'orthotropic'"));
   needed(

@@ -62,8 +62,7 @@ std::vector<double> values_of(const Slot& slot) {
 
 std::string describe_plausible(const Key::Facts& facts) {
   if (!facts.plausible) return "";
-  return fmt::format("{:g} to {}", facts.plausible->first,
-                     format_quantity(facts.plausible->second, facts.unit));
+  return fmt::format("{:g} to {:g} {}", facts.plausible->first, facts.plausible->second, facts.unit);
 }
 
 std::string doubt_of_magnitude(const Key::Facts& facts, const Slot& slot) {

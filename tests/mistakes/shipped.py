@@ -16,7 +16,7 @@ def participants(case):
 
 
 def main():
-    binaries, configs = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    binaries, configs = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
     bad, tried, cases = [], 0, 0
     for file in sorted(configs.rglob("*.yaml")):
         case = yaml.safe_load(file.read_text(encoding="utf-8"))
