@@ -5,6 +5,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
+#include "coupler/corner_weights.hpp"
 
 namespace couplet {
 
@@ -13,18 +14,11 @@ Balancing::Balancing(MPI_Comm comm, const Side& side)
   const Interface& i = side.interface;
   knows_work_ = sum(comm, GlobalIndex(i.face_vertices.size())) > 0;
   if (!knows_work_) return;
-  std::vector<Transfer::Entry> entries;
-  const GlobalIndex first = side.faces[std::size_t(comm_rank(comm))];
-  for (std::size_t f = 0; f + 1 < i.face_offset.size(); ++f)
-    for (GlobalIndex k = i.face_offset[f]; k < i.face_offset[f + 1]; ++k) {
-      const GlobalIndex vertex = i.face_vertices[std::size_t(k)];
-      if (vertex < 0 || vertex >= side.vertices.back())
-        throw Error("'{}' has a face with vertex {}, but only {} vertices.", side.name, vertex,
-                    side.vertices.back());
-      entries.push_back(
-          {first + GlobalIndex(f), vertex, 1. / double(i.face_offset[f + 1] - i.face_offset[f])});
-    }
-  to_faces_ = Transfer(comm, side.faces, side.vertices, std::move(entries));
+  for (const GlobalIndex vertex : i.face_vertices)
+    if (vertex < 0 || vertex >= side.vertices.back())
+      throw Error("'{}' has a face with vertex {}, but only {} vertices.", side.name, vertex,
+                  side.vertices.back());
+  to_faces_ = Transfer(comm, side.faces, side.vertices, vertices_to_faces(comm, i));
 }
 
 Balance Balancing::operator()(const Exchange& data, const std::vector<Interface::Datum>& of,

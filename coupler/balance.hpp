@@ -31,7 +31,7 @@ class Balancing {
   int dim_;
   std::vector<Vec3> centres_;
   bool knows_work_ = false;
-  Transfer to_faces_;  // mean over the vertices of each face
+  Transfer to_faces_;  // means over the faces
 };
 
 }  // namespace couplet

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
+#include "coupler/conjugate_map.hpp"
 #include "coupler/map_projection.hpp"
 
 namespace couplet {
@@ -121,6 +124,52 @@ double sum_of(MPI_Comm comm, const std::vector<double>& values, int components, 
   return sum(comm, total);
 }
 
+/// Whether two data may go by one map: both loads, both motion, both other amounts or both neither.
+bool of_one_kind(const Datum& a, const Datum& b) {
+  const auto kind = [](const Datum& d) {
+    return d.unit == "m" || d.unit == "m/s" ? 'm' : d.unit == "N" ? 'N' : is_amount(d) ? 'a' : ' ';
+  };
+  return kind(a) == kind(b) && a.components == b.components;
+}
+
+/// Whether a side moves by what it takes: a force goes in, a displacement comes out.
+bool is_structure(const Interface& i) {
+  return std::ranges::any_of(i.takes,
+                             [&](const Datum& d) { return d.unit == "N" && d.size(i.dim) == i.dim; }) &&
+         std::ranges::any_of(i.gives,
+                             [&](const Datum& d) { return d.unit == "m" && d.size(i.dim) == i.dim; });
+}
+
+/// Maps by which motion and load of one wall go, one for each structure and each surface that it moves.
+class WallMaps {
+ public:
+  WallMaps(MPI_Comm comm, const std::vector<Side>& sides, MappingParameters::Type type)
+      : comm_(comm), sides_(sides), type_(type) {}
+
+  /// The map of a datum, if it is motion or load of a wall and maps are of second order.
+  std::shared_ptr<const Mapping> of(std::size_t giver, std::size_t taker, const Datum& given,
+                                    const PointSet& from, const PointSet& to) {
+    const bool load = given.unit == "N", motion = given.unit == "m" || given.unit == "m/s";
+    const std::size_t structure = load ? taker : giver, surface = load ? giver : taker;
+    const Interface& body = sides_[structure].interface;
+    if (type_ == MappingParameters::Type::matched || type_ == MappingParameters::Type::nearest ||
+        giver == taker || !(load || motion) || given.size(body.dim) != body.dim || !is_structure(body) ||
+        sides_[structure].faces.back() == 0 || sides_[surface].faces.back() == 0)
+      return nullptr;
+    const ConjugateMap& map =
+        maps_.try_emplace({structure, surface}, comm_, sides_[structure], sides_[surface], type_)
+            .first->second;
+    return std::make_shared<const Mapping>(
+        comm_, from, to, load ? map.load(from.place, to.place) : map.motion(from.place, to.place));
+  }
+
+ private:
+  MPI_Comm comm_;
+  const std::vector<Side>& sides_;
+  MappingParameters::Type type_;
+  std::map<std::pair<std::size_t, std::size_t>, ConjugateMap> maps_;
+};
+
 }  // namespace
 
 Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParameters& mapping) : comm_(comm) {
@@ -129,6 +178,7 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
     check_corners(side.interface, side.name, side.vertices.back());
     entries_.push_back({side.entries(Place::vertices), side.entries(Place::faces)});
   }
+  WallMaps walls(comm, sides, mapping.type);
   for (std::size_t t = 0; t < sides.size(); ++t)
     for (const Datum& wanted : sides[t].interface.takes) {
       const std::vector<Source> sources = sources_of(wanted, t, sides);
@@ -154,7 +204,7 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
         const bool whole = sources.size() == 1 && !(is_amount(*given) && takers.size() > 1);
         const auto same = std::ranges::find_if(links_, [&, g = g, given = given](const Link& l) {
           return whole && l.whole && l.giver == g && l.taker == t && l.datum.place == given->place &&
-                 l.to == wanted.place && is_amount(l.datum) == is_amount(*given);
+                 l.to == wanted.place && of_one_kind(l.datum, *given);
         });
         const int components = given->size(sides[g].interface.dim);
         if (same != links_.end()) {
@@ -163,10 +213,12 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
           continue;
         }
         const auto kind = is_amount(*given) ? Mapping::Kind::conservative : Mapping::Kind::consistent;
-        links_.push_back({g, t, *given, components, wanted.place,
-                          std::make_shared<const Mapping>(comm, kind, mine, part_of(to, giver_of, s),
-                                                          is_own(wanted) ? MappingParameters{} : mapping),
-                          whole});
+        const PointSet theirs = part_of(to, giver_of, s);
+        auto map = walls.of(g, t, *given, mine, theirs);
+        if (!map)
+          map = std::make_shared<const Mapping>(comm, kind, mine, theirs,
+                                                is_own(wanted) ? MappingParameters{} : mapping);
+        links_.push_back({g, t, *given, components, wanted.place, std::move(map), whole});
         if (!is_own(wanted)) notes_.push_back(given->name + ": " + links_.back().mapping->summary());
       }
     }

@@ -2,22 +2,16 @@
 #include "coupler/map_projection.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <map>
 
 #include "common/base/error.hpp"
 #include "common/base/nearest.hpp"
 #include "common/base/point_tree.hpp"
+#include "coupler/corner_weights.hpp"
 #include "coupler/map_local.hpp"
 
 namespace couplet {
 namespace {
-
-std::span<const Index> corners(const Interface& surface, Index face) {
-  return {surface.face_vertices.data() + surface.face_offset[face],
-          std::size_t(surface.face_offset[face + 1] - surface.face_offset[face])};
-}
 
 /// The nearest place of a face, as weights of its corners.
 struct OnFace {
@@ -60,47 +54,6 @@ struct FacesAround {
   }
 };
 
-/// Centres of equal parts of a face, about `pieces` along each direction; their mean is the face's centre.
-std::vector<Vec3> parts(const Interface& surface, Index face, int pieces) {
-  const Vec3& centre = surface.face_centres[face];
-  if (pieces <= 1 || surface.face_offset.empty()) return {centre};
-  const auto vertex = corners(surface, face);
-  const auto at = [&](std::size_t i) { return surface.vertices[vertex[i]]; };
-  std::vector<Vec3> result;
-  if (vertex.size() == 2 || vertex.size() == 4) {
-    for (int i = 0; i < pieces; ++i) {
-      const double s = (i + 0.5) / pieces;
-      if (vertex.size() == 2) result.push_back((1 - s) * at(0) + s * at(1));
-      for (int j = 0; vertex.size() == 4 && j < pieces; ++j) {
-        const double t = (j + 0.5) / pieces;
-        result.push_back((1 - s) * ((1 - t) * at(0) + t * at(3)) + s * ((1 - t) * at(1) + t * at(2)));
-      }
-    }
-  } else {  // triangles about the centre, each cut into pieces^2 alike
-    const std::size_t n = vertex.size();
-    for (std::size_t e = 0; e < n; ++e)
-      for (int i = 0; i < pieces; ++i)
-        for (int j = 0; j < 2 * (pieces - i) - 1; ++j) {
-          const double s = (i + (j % 2 == 0 ? 1. : 2.) / 3) / pieces,
-                       t = (j / 2 + (j % 2 == 0 ? 1. : 2.) / 3) / pieces;
-          result.push_back((1 - s - t) * centre + s * at(e) + t * at((e + 1) % n));
-        }
-  }
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& p : result) mean += p / double(result.size());
-  for (Vec3& p : result) p += centre - mean;
-  return result;
-}
-
-/// The first k of `near` that look against `area`.
-void facing(const Vec3& area, const Interface& to, const std::vector<Index>& near, std::size_t k,
-            std::vector<Index>& result) {
-  result.clear();
-  for (const Index s : near)
-    if (result.size() < k && area.dot(to.face_areas[s]) < -0.5 * area.norm() * to.face_areas[s].norm())
-      result.push_back(s);
-}
-
 }  // namespace
 
 void require_corners(bool known) {
@@ -132,30 +85,15 @@ SparseMap nearest_projection(const Interface& surface, const std::vector<Vec3>& 
   return map;
 }
 
-SparseMap shared_out(const Interface& from, const Interface& to, std::size_t k) {
-  const PointTree tree(to.face_centres);
-  const double power = to.dim == 2 ? 1 : 0.5;
-  SparseMap gather;  // to the parts of each face of `from`, from the faces of `to`: transposed at the end
-  gather.n_from = to.face_centres.size();
-  std::vector<Index> sources;
-  for (Index f = 0; f < Index(from.face_centres.size()); ++f) {
-    const Index closest = tree.nearest(from.face_centres[f], 1).front();
-    const double size = std::pow(from.face_areas[f].norm() / to.face_areas[closest].norm(), power);
-    const std::vector<Vec3> pieces = parts(from, f, int(std::clamp(std::ceil(size - 0.1), 1., 32.)));
-    std::map<Index, double> row;
-    for (const Vec3& p : pieces) {
-      facing(from.face_areas[f], to, tree.nearest(p, k), k, sources);
-      if (sources.size() < k) facing(from.face_areas[f], to, tree.nearest(p, 4 * k), k, sources);
-      if (sources.size() < 2) sources = tree.nearest(p, k);
-      const std::vector<double> weights = local_weights(to.face_centres, sources, p);
-      for (std::size_t i = 0; i < sources.size(); ++i) row[sources[i]] += weights[i] / double(pieces.size());
-    }
-    std::vector<Index> columns;
-    std::vector<double> weights;
-    for (const auto& [column, weight] : row) columns.push_back(column), weights.push_back(weight);
-    gather.push_row(columns, weights);
-  }
-  return gather.transposed();
+double distance_to_face(const Interface& surface, Index face, const Vec3& place) {
+  return on_face(surface, face, place).distance;
+}
+
+void add_entries(const SparseMap& map, const std::vector<GlobalIndex>& targets,
+                 const std::vector<GlobalIndex>& sources, std::vector<Transfer::Entry>& entries) {
+  for (std::size_t row = 0; row < map.n_to(); ++row)
+    for (std::size_t k = map.offset[row]; k < map.offset[row + 1]; ++k)
+      entries.push_back({targets[row], sources[std::size_t(map.source[k])], map.weight[k]});
 }
 
 SparseMap local_interpolation(const std::vector<Vec3>& sources, const std::vector<Vec3>& targets,
@@ -186,18 +124,6 @@ void check_corners(const Interface& surface, const std::string& name, GlobalInde
       refuse(fmt::format("face {} has less than two corners", f));
   for (const Index v : surface.face_vertices)
     if (v < 0 || v >= vertices) refuse(fmt::format("vertex {} is none of its {}", v, vertices));
-}
-
-SparseMap vertices_to_faces(const Interface& surface) {
-  if (surface.face_offset.size() != surface.face_centres.size() + 1)
-    return local_interpolation(surface.vertices, surface.face_centres, surface.dim == 2 ? 2 : 4);
-  SparseMap map;
-  map.n_from = surface.vertices.size();
-  for (Index f = 0; f < Index(surface.face_centres.size()); ++f) {
-    const auto vertex = corners(surface, f);
-    map.push_row(vertex, std::vector<double>(vertex.size(), 1 / double(vertex.size())));
-  }
-  return map;
 }
 
 }  // namespace couplet

@@ -6,6 +6,7 @@
 
 #include "common/coupling/participant.hpp"
 #include "coupler/sparse_map.hpp"
+#include "coupler/transfer.hpp"
 
 namespace couplet {
 
@@ -20,12 +21,15 @@ void require_corners(bool known);
 /// The faces that nearest_projection looks at: the nearest face touches one of so many nearest vertices, or is large and
 /// has its centre among so many nearest ones.
 inline constexpr std::size_t projection_vertices = 3, projection_faces = 4;
+/// Where no face covers a place, the nearest of so many faces nearest to it by their centres counts.
+inline constexpr std::size_t nearest_faces = 9;
 
-/// Every force at a face is cut into equal parts over the face, as fine as the faces it goes to, and each
-/// part is shared out among the `k` nearest of these that look the other way (surfaces face each other), with
-/// weights that carry linear fields: the sum of forces and their moment are kept, and no finer face goes
-/// without.
-SparseMap shared_out(const Interface& from, const Interface& to, std::size_t k);
+/// Distance [m] of a place from a face, corners known.
+double distance_to_face(const Interface& surface, Index face, const Vec3& place);
+
+/// Rows of a map by the targets' positions, columns by the sources'.
+void add_entries(const SparseMap& map, const std::vector<GlobalIndex>& targets,
+                 const std::vector<GlobalIndex>& sources, std::vector<Transfer::Entry>& entries);
 
 /// Each target takes the local interpolant through its k nearest sources.
 SparseMap local_interpolation(const std::vector<Vec3>& sources, const std::vector<Vec3>& targets,
@@ -34,9 +38,5 @@ SparseMap local_interpolation(const std::vector<Vec3>& sources, const std::vecto
 /// Throws Error naming the participant if it lists the corners of its faces, but not as they must be. `vertices`:
 /// how many there are on all ranks.
 void check_corners(const Interface& surface, const std::string& name, GlobalIndex vertices);
-
-/// From values at the vertices to those at the centres of the faces: the mean over a face's corners, or,
-/// where the participant does not list them, a local interpolant.
-SparseMap vertices_to_faces(const Interface& surface);
 
 }  // namespace couplet

@@ -8,6 +8,7 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/map_projection.hpp"
+#include "coupler/surface_rows.hpp"
 #include "coupler/surroundings.hpp"
 
 namespace couplet {
@@ -105,14 +106,6 @@ std::vector<Transfer::Entry> shares(MPI_Comm comm, const PointSet& from, const P
   return entries;
 }
 
-/// Rows of a map by the targets' positions, columns by the sources'.
-void add_entries(const SparseMap& map, const std::vector<GlobalIndex>& targets,
-                 const std::vector<GlobalIndex>& sources, std::vector<Transfer::Entry>& entries) {
-  for (std::size_t row = 0; row < map.n_to(); ++row)
-    for (std::size_t k = map.offset[row]; k < map.offset[row + 1]; ++k)
-      entries.push_back({targets[row], sources[std::size_t(map.source[k])], map.weight[k]});
-}
-
 /// Displacements and the like by projection onto the other surface's faces.
 std::vector<Transfer::Entry> projected(MPI_Comm comm, const PointSet& from, const PointSet& to) {
   std::vector<Transfer::Entry> entries;
@@ -135,25 +128,6 @@ std::vector<Transfer::Entry> projected(MPI_Comm comm, const PointSet& from, cons
   return entries;
 }
 
-/// Forces of faces cut over these and shared out among the other surface's.
-std::vector<Transfer::Entry> cut_and_shared(MPI_Comm comm, const PointSet& from, const PointSet& to,
-                                            std::size_t k) {
-  const Surroundings source(comm, *from.surface), target(comm, *to.surface);
-  const SurfacePart mine = source.with(from.positions);
-  // Pieces of a face look for up to 4 k faces, and lie within its corners (moved to keep its centre).
-  std::vector<double> reach(mine.faces.size(), 0.);
-  const Interface& s = mine.surface;
-  for (std::size_t f = 0; f < mine.faces.size() && !s.face_offset.empty(); ++f)
-    for (Index c = s.face_offset[f]; c < s.face_offset[f + 1]; ++c)
-      reach[f] = std::max(reach[f], 2 * (s.vertices[s.face_vertices[c]] - s.face_centres[f]).norm());
-  const SurfacePart near = target.with(
-      comm_size(comm) == 1 ? target.faces().positions
-                           : nearby(comm, s.face_centres, reach, 4 * k, target.faces()).positions);
-  std::vector<Transfer::Entry> entries;
-  if (!mine.faces.empty()) add_entries(shared_out(s, near.surface, k), near.faces, mine.faces, entries);
-  return entries;
-}
-
 /// Projection and radial functions. No rank sees more of the other surface than what lies about its own part.
 std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, const PointSet& from,
                                           const PointSet& to, MappingParameters::Type type) {
@@ -161,7 +135,9 @@ std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, con
   const int dim = from.surface != nullptr ? from.surface->dim : 3;
   const std::size_t k = dim == 2 ? (projection ? 3 : 5) : (projection ? 5 : 10);
   const bool consistent = kind == Mapping::Kind::consistent;
-  if (!consistent && from.surface && to.surface) return cut_and_shared(comm, from, to, k);
+  if (!consistent && from.surface && to.surface && Surroundings(comm, *from.surface).has_corners() &&
+      Surroundings(comm, *to.surface).has_corners())
+    return transposed(faces_to_faces(comm, *to.surface, *from.surface, type));
   if (consistent && projection && from.surface && from.place == Interface::Place::vertices)
     return projected(comm, from, to);
   const PointSet &ask = consistent ? to : from, &among = consistent ? from : to;
@@ -174,17 +150,33 @@ std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, con
   return entries;
 }
 
-}  // namespace
+/// Without the rows and columns of places that are not in the sets.
+std::vector<Transfer::Entry> between(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                                     std::vector<Transfer::Entry> entries) {
+  const auto kept = [](const PointSet& set) {
+    std::vector<Transfer::Entry> same;
+    for (const GlobalIndex p : set.positions) same.push_back({p, p, 1});
+    return same;
+  };
+  if (count(comm, to) < to.starts.back()) entries = product(comm, to.starts, kept(to), std::move(entries));
+  if (count(comm, from) < from.starts.back())
+    entries = product(comm, from.starts, std::move(entries), kept(from));
+  return entries;
+}
 
-Mapping::Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
-                 const MappingParameters& parameters) {
-  const GlobalIndex n_from = count(comm, from), n_to = count(comm, to);
-  n_from_ = std::size_t(n_from), n_to_ = std::size_t(n_to);
+void require_places(const PointSet& from, const PointSet& to, GlobalIndex n_from, GlobalIndex n_to) {
   if (n_from == 0 || n_to == 0)
     throw Error(
         "There are {} {} and {} {}: an interface needs some on both sides. Check which patches are of type "
         "interface.",
         n_from, from.what, n_to, to.what);
+}
+
+}  // namespace
+
+Mapping::Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
+                 const MappingParameters& parameters) {
+  require_places(from, to, count(comm, from), count(comm, to));
   const bool matched = parameters.type == MappingParameters::Type::matched;
   const std::vector<Neighbour> forth = nearest(comm, to.points, from);
   std::vector<Neighbour> back;
@@ -193,21 +185,35 @@ Mapping::Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet&
   if (matched) require_twins(comm, from, to, forth, back, parameters);
   std::vector<Transfer::Entry> entries;
   if (!by_nearest)
-    entries = second_order(comm, kind, from, to, parameters.type);
+    entries = between(comm, from, to, second_order(comm, kind, from, to, parameters.type));
   else if (kind == Kind::conservative)
     entries = shares(comm, from, to, forth, back);
   else
     for (std::size_t i = 0; i < to.points.size(); ++i)
       entries.push_back({to.positions[i], forth[i].position, 1});
+  set(comm, from, to, std::move(entries), forth,
+      kind == Kind::conservative ? back : std::vector<Neighbour>{});
+}
+
+Mapping::Mapping(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                 std::vector<Transfer::Entry> entries) {
+  require_places(from, to, count(comm, from), count(comm, to));
+  set(comm, from, to, between(comm, from, to, std::move(entries)), nearest(comm, to.points, from), {});
+}
+
+void Mapping::set(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                  std::vector<Transfer::Entry> entries, const std::vector<Neighbour>& forth,
+                  const std::vector<Neighbour>& back) {
+  n_from_ = std::size_t(count(comm, from)), n_to_ = std::size_t(count(comm, to));
   double total = 0;
   for (const Neighbour& n : forth) max_distance_ = std::max(max_distance_, n.distance), total += n.distance;
-  if (!back.empty() && kind == Kind::conservative && n_from > n_to)
+  if (n_from_ > n_to_)
     for (const Neighbour& n : back) max_distance_ = std::max(max_distance_, n.distance);
   max_distance_ = max(comm, max_distance_);
-  mean_distance_ = sum(comm, total) / double(n_to);
+  mean_distance_ = sum(comm, total) / double(n_to_);
   transfer_ = Transfer(comm, to.starts, from.starts, std::move(entries));
-  summary_ = fmt::format("{} {} to {} {}, distance at most {:.3g} m, mean {:.3g} m", n_from, from.what, n_to,
-                         to.what, max_distance_, mean_distance_);
+  summary_ = fmt::format("{} {} to {} {}, distance at most {:.3g} m, mean {:.3g} m", n_from_, from.what,
+                         n_to_, to.what, max_distance_, mean_distance_);
 }
 
 }  // namespace couplet

@@ -12,14 +12,14 @@ namespace couplet {
 
 /// How values go from one set of points to another, as a sparse matrix over the coupler's ranks, built once
 /// on the reference configuration. By type of `coupling.mapping`:
-///   matched     twins, weight 1
+///   matched     matching vertices and faces, weight 1
 ///   nearest     as below
 ///   projection  at vertices: the value at the nearest point of the other surface; at faces: local
-///   interpolants
-///               through few neighbours
+///               interpolants through few neighbours
 ///   rbf         local interpolants by compact radial functions through more neighbours
-/// Both of the latter carry linear fields exactly; their forces are cut over each face and shared out with
-/// the transposed weights, so that force and moment are kept. All calls are collective.
+/// Both of the latter carry linear fields exactly; amounts go by the transpose of the map of means from the
+/// targets' faces to the sources', so that their sum and their moment are kept. Motion and load of one wall go by
+/// ConjugateMap. All calls are collective.
 class Mapping {
  public:
   enum class Kind {
@@ -31,6 +31,9 @@ class Mapping {
   /// good.
   Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
           const MappingParameters& parameters);
+
+  /// By entries made elsewhere, of which those between other places are left out.
+  Mapping(MPI_Comm comm, const PointSet& from, const PointSet& to, std::vector<Transfer::Entry> entries);
 
   /// On one rank.
   Mapping(Kind kind, const PointSet& from, const PointSet& to, const MappingParameters& parameters)
@@ -48,6 +51,9 @@ class Mapping {
   std::string summary() const { return summary_; }
 
  private:
+  void set(MPI_Comm comm, const PointSet& from, const PointSet& to, std::vector<Transfer::Entry> entries,
+           const std::vector<Neighbour>& forth, const std::vector<Neighbour>& back);
+
   std::size_t n_from_ = 0, n_to_ = 0;
   Transfer transfer_;
   double max_distance_ = 0, mean_distance_ = 0;

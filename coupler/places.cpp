@@ -113,6 +113,22 @@ int most_followers(MPI_Comm comm, const std::vector<Neighbour>& found, const Sta
   return int(max(comm, double(most)));
 }
 
+/// Whether each of these points has another within a tenth of the faces there.
+bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vector<double>& size) {
+  bool far = false;
+  for (std::size_t i = 0; i < found.size(); ++i) far = far || found[i].distance > 0.1 * size[i];
+  return !any(comm, far);
+}
+
+/// Why the nearest vertex is no map between these two: motion in stairs, loads that do another work.
+std::string not_nested(const std::string& from, const std::string& to) {
+  return fmt::format(
+      "The faces of '{}' and '{}' do not nest: vertices of either side lie between those of the other. With "
+      "`coupling.mapping.type: nearest` the wall would move in stairs and the load would do other work on the two "
+      "sides. Set `coupling.mapping.type: projection`: it keeps work, force and moment on any meshes.",
+      from, to);
+}
+
 }  // namespace
 
 PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
@@ -143,6 +159,8 @@ PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
   }
   report.problem = first_text(comm, report.problem);
   if (!report.problem.empty()) return report;
+  report.nests =
+      all_near(comm, found, there) || all_near(comm, nearest(comm, source.points, target), source_size);
   if (const int most = most_followers(comm, found, source.starts); most >= 3)
     report.notes.push_back(
         fmt::format("note: '{}' is much coarser than '{}': up to {} vertices follow the same one, so the "
@@ -216,7 +234,10 @@ void check_places(MPI_Comm comm, const std::vector<Side>& sides, const Links& li
     if (!judged.insert({link.giver, link.taker}).second) continue;
     const PlaceReport report = judge_places(comm, from, to);
     if (!report.problem.empty()) throw Error("{}", report.problem);
-    if (mapping.type == MappingParameters::Type::nearest)
+    const bool by_nearest = mapping.type == MappingParameters::Type::nearest;
+    if (by_nearest && !report.nests && std::ranges::any_of(from.interface.takes, is_amount))
+      throw Error("{}", not_nested(from.name, to.name));
+    if (by_nearest)
       for (const std::string& note : report.notes) log::warn("{}", note);
   }
 }

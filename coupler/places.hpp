@@ -20,6 +20,7 @@ void require_finite(MPI_Comm comm, const Exchange& data, const Interface& interf
 struct PlaceReport {
   std::string problem;             ///< empty: none
   std::vector<std::string> notes;  ///< what the user should know
+  bool nests = true;               ///< vertices of one side are vertices of the other
 };
 /// `from` gives motion to `to`: distances are judged against the local face size of both sides, the extents
 /// against each other; several vertices that follow one (a staircase) are said. Collective.

@@ -8,7 +8,18 @@
 namespace couplet {
 namespace {
 
-/// Every entry on the rank that has its target, by target and source.
+/// Of entries sorted by target and source, equal ones added up.
+void add_up(std::vector<Transfer::Entry>& entries) {
+  std::size_t kept = 0;
+  for (const auto& e : entries)
+    if (kept > 0 && entries[kept - 1].target == e.target && entries[kept - 1].source == e.source)
+      entries[kept - 1].weight += e.weight;
+    else
+      entries[kept++] = e;
+  entries.resize(kept);
+}
+
+/// Every entry on the rank that has its target, by target and source, each pair once.
 std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const Starts& targets,
                                       std::vector<Transfer::Entry> entries) {
   if (comm_size(comm) > 1) {
@@ -17,9 +28,10 @@ std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const Starts& targets,
     entries.clear();
     for (const auto& part : all_to_all(comm, to)) entries.insert(entries.end(), part.begin(), part.end());
   }
-  std::ranges::sort(entries, [](const auto& a, const auto& b) {
+  std::ranges::stable_sort(entries, [](const auto& a, const auto& b) {
     return a.target != b.target ? a.target < b.target : a.source < b.source;
   });
+  add_up(entries);
   return entries;
 }
 
@@ -105,6 +117,27 @@ std::vector<double> Transfer::apply(std::span<const double> values, int componen
   std::vector<double> result((first_.size() - 1) * n, 0.);
   const auto product = n == 1 ? multiply<1> : n == 2 ? multiply<2> : n == 3 ? multiply<3> : multiply<0>;
   product(first_, column_, weight_, from, n, result.data());
+  return result;
+}
+
+std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries) {
+  for (auto& e : entries) std::swap(e.target, e.source);
+  return entries;
+}
+
+std::vector<Transfer::Entry> product(MPI_Comm comm, const Starts& between,
+                                     std::vector<Transfer::Entry> second,
+                                     std::vector<Transfer::Entry> first) {
+  // On the rank that has the place between, both by that place.
+  const auto after = by_owner(comm, between, transposed(std::move(second))),
+             before = by_owner(comm, between, std::move(first));
+  std::vector<Transfer::Entry> result;
+  auto from = before.begin();
+  for (const auto& e : after) {
+    while (from != before.end() && from->target < e.target) ++from;
+    for (auto b = from; b != before.end() && b->target == e.target; ++b)
+      result.push_back({e.source, b->source, e.weight * b->weight});
+  }
   return result;
 }
 

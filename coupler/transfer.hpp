@@ -38,4 +38,11 @@ class Transfer {
   bool alone_ = true, same_ = false;            // same: each target is the source at its place, on one rank
 };
 
+/// Entries of the map that does `first` and then `second`, where the targets of the one are the sources of the
+/// other, cut over the ranks as `between` says. Entries may be on any rank. Collective.
+std::vector<Transfer::Entry> product(MPI_Comm comm, const Starts& between,
+                                     std::vector<Transfer::Entry> second, std::vector<Transfer::Entry> first);
+/// The same weights from targets to sources.
+std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries);
+
 }  // namespace couplet

@@ -218,6 +218,30 @@ TEST(Places, equal_refined_coarser_and_shifted_surfaces_pass_and_stairs_are_said
   EXPECT_THAT(notes[0], HasSubstr("'solid' is much coarser than 'fluid'"));
 }
 
+/// What is said of a wall of `n` faces that moves one of `m`, mapped by the nearest.
+std::string said_of_nearest(int n, int m) {
+  const std::vector<Interface::Datum> motion{{"displacement", "m", Place::vertices}},
+      load{{"pressure-force", "N", Place::faces}};
+  Interface solid = line(n, 1), fluid = line(m, 1);
+  solid.gives = fluid.takes = motion, solid.takes = fluid.gives = load;
+  const std::vector<Side> sides{{MPI_COMM_SELF, "solid", solid}, {MPI_COMM_SELF, "fluid", fluid}};
+  const MappingParameters nearest{.type = MappingParameters::Type::nearest, .tolerance = {}};
+  try {
+    check_places(MPI_COMM_SELF, sides, {MPI_COMM_SELF, sides, nearest}, nearest);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Places, nearest_is_refused_where_faces_do_not_nest_and_the_map_that_serves_is_named) {
+  for (const auto& [n, m] : {std::pair{30, 20}, std::pair{20, 30}, std::pair{25, 40}, std::pair{7, 3}})
+    EXPECT_THAT(said_of_nearest(n, m), testing::AllOf(HasSubstr("do not nest"), HasSubstr("projection")))
+        << n << m;
+  for (const auto& [n, m] : {std::pair{20, 20}, std::pair{40, 20}, std::pair{20, 40}})
+    EXPECT_EQ(said_of_nearest(n, m), "");
+}
+
 // A strip of long thin faces, as of a wedge that stands for a round tank: their area says less than their corners.
 TEST(Places, long_thin_faces_are_as_large_as_their_corners_say) {
   const auto strip = [](int n, double shift, bool corners) {
