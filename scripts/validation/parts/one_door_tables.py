@@ -5,6 +5,7 @@ import os
 import re
 
 from validation.job import Bar
+from validation.parts import trust_house
 from validation.parts.trust_runs import gtests, wrong
 
 RUN = "tests/cli/check_files/run.py"
@@ -58,6 +59,16 @@ def check_files(what, least):
     return measure
 
 
+def sanitized(job):
+    """The same program of the sanitizers' build."""
+    build, folder = trust_house.sanitizer_build(job), job.scratch / "asan-fuzz_tables"
+    program = next(p for p in (build / "tests").rglob("fuzz_tables") if p.is_file() and os.access(p, os.X_OK))
+    result = trust_house.watched(job, folder, ["COUPLET_FUZZ_COUNT=2000", program], 3 * 3600, cwd=job.scratch)
+    found = trust_house.reports(folder)
+    return (f"2000 files a test, code {result.returncode}, {len(found)} kinds of reports" + (f": {found[0]}" if found else ""),
+            result.returncode == 0 and not found)
+
+
 def one_reader(job):
     result = job.run(["/usr/bin/python3", job.root / "tests/architecture/check_sources.py", job.root])
     lines = [line for line in result.stdout.splitlines() if "second reader" in line or "readers.py" in line]
@@ -79,5 +90,6 @@ BARS = [
     Bar("--check finds every broken file of every key that names one, of every program, and of --restart", "all found", check_files("files", 200)),
     Bar("tables of users with a mistake each have their sentence", "cases pass", wrong("table", "velocity from a file", "--check: broken", least=3)),
     Bar("one reader: no other source opens, parts or parses text data", "none", one_reader),
+    Bar("the same files and bombs under sanitizers (preset asan)", "clean", sanitized, long=True),
     Bar("20 000 crafted CSV", "none fails", fuzz(20000), long=True),
 ]
