@@ -77,15 +77,17 @@ std::vector<std::string> substances() {
 }
 
 void declare(config::Section& s, CompressibilityParameters& p) {
-  s.value("speed-of-sound", p.speed_of_sound).unit("m/s").positive().doc("of the fluid");
+  s.value("speed-of-sound", p.speed_of_sound).unit("m/s").plausible(10, 2e4).positive().doc("of the fluid");
   s.value("substance", p.substance)
       .doc("instead: a gas or liquid whose speed of sound is known: " + join(substances()));
   s.value("temperature", p.temperature)
       .unit("K")
+      .plausible(70, 5000)
       .positive()
       .doc("of the substance, absolute (20 degC or 293.15 K); absent: 20 degC");
   s.value("pressure", p.pressure)
       .unit("Pa")
+      .plausible(1, 1e10)
       .positive()
       .doc(
           "instead: absolute pressure of a gas; the speed of sound is sqrt(heat-capacity-ratio pressure/density)");
@@ -94,6 +96,7 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .doc("of a gas; absent: of the substance, or of the gas with the nearest density");
   s.value("upstream-volume", p.upstream_volume)
       .unit("m^3")
+      .plausible(1e-15, 1e6)
       .not_negative()
       .doc(
           "fluid before the inlets that the mesh does not have (a plenum, a cylinder); it is compressed by the pressure at the "
