@@ -206,6 +206,31 @@ TEST(FaceLoops, load_of_a_linear_pressure_is_exact_on_every_wall) {
   check_linear_pressure<3>(BoxCells::hexahedra);
 }
 
+// Beyond a periodic pair stands the neighbour's copy, not the neighbour.
+TEST(FaceLoops, load_beside_a_periodic_pair_sees_its_neighbours_where_they_are) {
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {6, 5, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+  perturb_interior(raw, 0.2, 3);
+  raw.periodic = {{"xmin", "xmax"}};
+  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  FluidParameters parameters = LinearFlow<2>::walls();
+  for (const char* side : {"xmin", "xmax"}) parameters.boundaries[side] = boundary(BoundaryType::periodic);
+  const Boundary<2> given(mesh, parameters);
+  StepWork<2> work{mesh, given, parameters, 1.3, 0.4 / 1.3};
+  work.step.to = make_placement<2>(mesh, mesh.reference);
+  State<2> from;
+  from.placement = work.step.to;
+  work.w.assign(work.step.to->boundary_centre.size(), Vec<2>::Zero());
+  for (const Vec<2>& x : work.step.to->centre) work.p.push_back(250 - 70 * x.y());
+  work.p_boundary.assign(work.w.size(), -1e9);
+  Loads<2> loads(work);
+  loads.set_forces(from);
+  for (std::size_t b = 0; b < work.w.size(); ++b) {
+    const Vec<2> wanted =
+        (250 - 70 * work.step.to->boundary_centre[b].y()) * work.step.to->area[mesh.n_interior + Index(b)];
+    EXPECT_LT((loads.pressure_force()[b] - wanted).norm(), 1e-9 * wanted.norm());
+  }
+}
+
 // mu g (u_P - u_b) along the wall; what the wall then does beyond the guess counts with the weight of t^{n+1}.
 TEST(FaceLoops, shear_follows_the_velocity_of_the_wall) {
   Loaded<2> c(BoxCells::quadrilaterals);

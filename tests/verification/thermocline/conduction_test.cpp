@@ -147,6 +147,24 @@ TEST(Ullage, what_enters_leaves_and_equal_temperatures_exchange_nothing) {
   EXPECT_LT(heat.roof_surface, 560);
 }
 
+// Nu = 0.069 Ra^(1/3) Pr^0.074 between liquid and roof, in two films; nothing moves below a warmer one.
+TEST(Ullage, convection_below_a_roof_is_that_of_globe_and_dropkin) {
+  UllageParameters dull;
+  dull.emissivity_liquid = dull.emissivity_roof = dull.emissivity_wall = 1e-7;
+  const double area = std::numbers::pi * 100, height = 1.5;
+  for (const double roof : {440., 560.}) {
+    Ullage gas(dull, 20, height);
+    gas.set_gas(500);
+    const Ullage::Heat heat = gas.step(1e9, 520, 490, roof, 1e7, 101325);
+    const Air air(0.5 * (520 + heat.roof_surface), 101325);
+    const double ra = heat.roof_surface < 520 ? air.rayleigh(520 - heat.roof_surface, height) : 0;
+    const double nu = std::max(1.0, 0.069 * std::cbrt(ra) * std::pow(air.prandtl, 0.074));
+    const double film = 2 * area * nu * air.conductivity / height;
+    EXPECT_NEAR(heat.into_roof / (film * (gas.gas_temperature() - heat.roof_surface)), 1, 1e-3) << roof;
+    EXPECT_NEAR(heat.from_liquid / (film * (520 - gas.gas_temperature())), 1, 1e-3) << roof;
+  }
+}
+
 TEST(Environment, correlations_have_the_values_of_their_formulae) {
   const Air air(300, 101325);
   EXPECT_NEAR(air.conductivity, 0.0263, 2e-4);  // Incropera table A.4
