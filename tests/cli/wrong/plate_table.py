@@ -112,7 +112,7 @@ case.yaml:7:5: participants.plate.contact: with 'modes.file' the material is not
 [plate 0] error: The file of modes 'modes.h5' does not exist. The path is relative to the folder of the YAML file.
 """, *file_alone("modes.h5"), ("    contact: {height: -1 cm}\n", ""), **run),
         plate("modes of a file of another kind", """
-[plate 0] error: The file of modes 'square.msh' cannot be used: HDF5 could not open 'square.msh' (file signature not found). docs/formats.md says what it must hold.
+[plate 0] error: The file of modes 'square.msh' cannot be used: it is not an HDF5 file, or its beginning is damaged (file signature not found). docs/formats.md says what it must hold.
 """, *file_alone("square.msh"), ("    contact: {height: -1 cm}\n", ""), **run),
         plate("static analysis of a plate that nothing holds", """
 [plate 0] error: The structure moves as a rigid body (mode 1 has no frequency): a static analysis needs supports that hold it.

@@ -314,6 +314,7 @@ case.yaml:35:1: coupling.structure: 'structure' is missing; a coupling has 'flui
 case.yaml:26:3: participants.mover: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
 """, ("  mesh: {participant: mover}\n", "")),
     coupler("one participant in two roles", """
+case.yaml:38:15: coupling.structure.participant: 'fluid' is run by fluid_solver, which cannot be the structure: the role 'structure' takes a load [N or Pa] at faces and gives 'displacement' [m] at vertices and 'velocity' [m/s] at vertices; it takes no load [N or Pa] at faces (it takes 'displacement' [m] at vertices, 'velocity' [m/s] at vertices and gives 'pressure-force' [N] at faces, 'viscous-force' [N] at faces). Of this case's participants 'solid' (solid_solver) can.
 case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
 case.yaml:38:3: coupling.structure: fluid and structure must be two different participants.
 """, ("structure: {participant: solid}", "structure: {participant: fluid}")),
@@ -322,9 +323,11 @@ case.yaml:40:3: coupling.exchange: an exchange has no structure beside it: it is
 """, ("  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  exchange: {participants: [fluid, solid]}\n")),
     coupler("exchange with a stranger", """
 case.yaml:37:14: coupling.exchange.participants: there is no participant 'slid'. Did you mean 'solid'?
+case.yaml:37:14: coupling.exchange.participants: 'mover' is run by mesh_mover, which cannot be part of an exchange: it serves one fluid, and gives the coupler nothing; name it as `mesh`, and its fluid as `fluid`.
 case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
 """, ("  scheme: implicit\n  fluid: {participant: fluid}\n  structure: {participant: solid}\n  mesh: {participant: mover}\n", "  scheme: explicit\n  exchange: {participants: [fluid, slid, mover]}\n")),
     coupler("exchange with a fluid whose mesh nobody moves", """
+case.yaml:38:14: coupling.exchange.participants: 'mover' is run by mesh_mover, which cannot be part of an exchange: it serves one fluid, and gives the coupler nothing; name it as `mesh`, and its fluid as `fluid`.
 case.yaml:38:3: coupling.exchange: beside an exchange stand either both `fluid` and `mesh` (whose mesh is moved, and by whom) or neither.
 """, ("  structure: {participant: solid}\n  mesh: {participant: mover}\n", "  exchange: {participants: [fluid, solid, mover]}\n")),
     coupler("sub-steps of nobody", "\ncase.yaml:40:3: coupling.sub-steps: there is no participant 'slid' that could take sub-steps.\n", (
