@@ -1,11 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a coupled run finds out about its own answer, in its midst and at its end.
+#include <algorithm>
+
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 #include "coupler/coupler.hpp"
 
 namespace couplet {
+namespace {
+
+/// Of the accepted state, of all that take a force [J]; NaN where one does not tell.
+double energy_of_structures(const std::vector<Side>& sides, const std::vector<Partner>& partners) {
+  double total = 0;
+  for (std::size_t i = 0; i < sides.size(); ++i)
+    if (std::ranges::find(sides[i].interface.takes, "N", &Interface::Datum::unit) !=
+        sides[i].interface.takes.end())
+      total += partners[i].report.energy;
+  return total;
+}
+
+}  // namespace
 
 void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
   double given = 0, taken = 0;
@@ -14,6 +29,7 @@ void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
       oscillation_guard_.accepted(unknown_->motion(last_.image), last_dt_, parameters_.scheme);
   const bool swings = reason.has_value();
   if (!balances.empty() && mechanics_->knows_work()) {
+    work_guard_.energy(energy_of_structures(sides_, partners_));
     const auto parted = work_guard_.accepted(given, taken, parameters_.scheme);
     if (!reason) reason = parted;
   }
@@ -43,7 +59,8 @@ void Coupler::finalise(const std::string& problem) {
 }
 
 void Coupler::tell_work() const {
-  const WorkGuard::Verdict v = work_guard_.verdict();
+  const WorkGuard::Verdict v =
+      work_guard_.verdict(parameters_.mapping.type == MappingParameters::Type::nearest);
   if (v.text.empty()) return;
   if (v.sound) return log::info("{}", v.text);
   log::finding(comm_rank(comm_), {.id = "interface-work",

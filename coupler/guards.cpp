@@ -148,6 +148,7 @@ std::optional<std::string> WorkGuard::accepted(double fluid, double structure, S
   fluid_ += fluid;
   structure_ += structure;
   exchanged_ += larger;
+  stored_ = std::max(stored_, std::abs(structure_));
   ++steps_;
   if (windows_.empty() || windows_.back().steps == window) {
     if (windows_.size() == 3) windows_.erase(windows_.begin());
@@ -166,29 +167,34 @@ std::optional<std::string> WorkGuard::accepted(double fluid, double structure, S
       window, last.given, last.taken, cure_of_oscillation(scheme));
 }
 
-WorkGuard::Verdict WorkGuard::verdict() const {
-  if (steps_ == 0 || exchanged_ == 0) return {true, ""};
-  const double apart = std::abs(fluid_ - structure_), part = apart / exchanged_;
+WorkGuard::Verdict WorkGuard::verdict(bool by_nearest) const {
+  if (steps_ == 0 || exchanged_ == 0) return {};
+  const double apart = std::abs(fluid_ - structure_), net = std::min(std::abs(fluid_), std::abs(structure_)),
+               energy = energy_ > 0 ? energy_ : stored_, against = std::max(net, energy);
   Verdict v;
-  v.sound = part < sound_part;
-  v.part = part;
-  v.useless = part >= useless_part && steps_ >= judged_steps;
+  // Nothing but noise has gone over where all of it is apart by rounding alone.
+  v.part = apart <= 1e-12 * exchanged_ ? 0 : apart / std::max(against, 1e-12 * exchanged_);
+  v.sound = v.part < sound_part;
+  v.useless = apart / exchanged_ >= useless_part && steps_ >= judged_steps;
   v.text = fmt::format(
-      "interface work of {} steps: fluid gave {:.6g} J, structure took {:.6g} J, {:.2g} % of what went to "
-      "and fro "
-      "apart: {}",
-      steps_, fluid_, structure_, 100 * part,
+      "interface work of {} steps: fluid gave {:.6g} J, structure took {:.6g} J, {:.2g} % of the {} apart: {}",
+      steps_, fluid_, structure_, 100 * v.part, net >= energy ? "net work" : "structure's largest energy",
       v.sound ? "closed."
-              : "NOT CLOSED: the wall that the fluid saw moved otherwise than the structure; smaller steps "
-                "or a scheme that iterates close it.");
+      : by_nearest
+          ? "NOT CLOSED: `mapping.type: nearest` carries motion and load by maps that do not belong together; "
+            "`projection` keeps the work on any meshes."
+          : "NOT CLOSED: the wall that the fluid saw moved otherwise than the structure; smaller steps "
+            "or a scheme that iterates close it.");
   return v;
 }
 
-void WorkGuard::restore(const std::array<double, 4>& totals) {
+void WorkGuard::restore(const std::array<double, 6>& totals) {
   fluid_ = totals[0];
   structure_ = totals[1];
   exchanged_ = totals[2];
   steps_ = long(totals[3]);
+  energy_ = totals[4];
+  stored_ = totals[5];
   windows_.clear();
 }
 

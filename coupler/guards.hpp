@@ -72,23 +72,30 @@ class WorkGuard {
   struct Verdict {
     bool sound = true;
     std::string text;
-    double part = 0;  ///< apart, of all that went over
+    double part = 0;  ///< apart, of the net work or the energy
     bool useless = false;
   };
-  Verdict verdict() const;
+  /// What is apart is compared with the smaller of the net works, or with the largest energy of the structure where that is
+  /// more: work that went there and back again hides nothing. `by_nearest`: motion and load went by the nearest.
+  Verdict verdict(bool by_nearest = false) const;
+  /// Energy of the structures after a step [J]; NaN: not known. Until one is, the largest net work taken stands for it.
+  void energy(double value) { energy_ = value > energy_ ? value : energy_; }
 
   /// For checkpoints.
-  std::array<double, 4> totals() const { return {fluid_, structure_, exchanged_, double(steps_)}; }
-  void restore(const std::array<double, 4>& totals);
+  std::array<double, 6> totals() const {
+    return {fluid_, structure_, exchanged_, double(steps_), energy_, stored_};
+  }
+  void restore(const std::array<double, 6>& totals);
 
-  /// Of all work exchanged, that apart: sound below the one, the answer useless from the other on (of so many steps at least:
-  /// the start of a motion parts the work of the first ones).
+  /// Of net work or energy, that apart: sound below the one; of all work exchanged: the answer useless from the other on (of
+  /// so many steps at least: the start of a motion parts the work of the first ones).
   static constexpr double sound_part = 0.05, useless_part = 0.5;
   static constexpr long judged_steps = 20;
   static constexpr int window = 12;  ///< steps; it fires after three of them at the earliest
 
  private:
   double fluid_ = 0, structure_ = 0, exchanged_ = 0;  // sums over the run; exchanged: of the larger |work|
+  double energy_ = 0, stored_ = 0;  // the largest: of the structures, net work that they had taken
   long steps_ = 0;
   struct Window {
     double given = 0, taken = 0, size = 0;

@@ -60,7 +60,7 @@ void require_corners(bool known) {
   if (!known)
     throw Error(
         "A mapping by projection needs the vertices of each face, which a participant does not list: take "
-        "`coupling.mapping.type: rbf` or nearest.");
+        "`coupling.mapping.type: rbf`.");
 }
 
 SparseMap nearest_projection(const Interface& surface, const std::vector<Vec3>& targets) {

@@ -70,7 +70,7 @@ void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
   const double widest = std::max(extent(comm, from.points), extent(comm, to.points));
   const double tolerance = parameters.tolerance.value_or(1e-6 * widest);
   const std::string advice =
-      "\nGive both meshes the same points on the interface, or set `coupling.mapping.type: nearest`.";
+      "\nGive both meshes the same points on the interface, or set `coupling.mapping.type: projection`.";
   if (const std::string text = without_twin(comm, to, forth, from, tolerance); !text.empty())
     throw Error("{}{}", text, advice);
   if (const std::string text = without_twin(comm, from, back, to, tolerance); !text.empty())

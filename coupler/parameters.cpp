@@ -164,14 +164,11 @@ void declare(config::Section& section, MappingParameters& p) {
                {"projection", Type::projection},
                {"rbf", Type::rbf}})
       .doc(
-          "matched: every vertex and face of one side has its twin on the other, all else is an error; "
-          "nearest: "
-          "displacements from the nearest vertex (consistent), forces to the nearest face (conservative); "
-          "projection: displacements from the nearest point of the other surface, linear over its faces; "
-          "rbf: "
-          "from a local interpolant by compact radial functions; with both, forces are cut over each face "
-          "and "
-          "shared out so that their sum and their moment are kept");
+          "matched: every vertex and face of one side has its match on the other, all else is an error; nearest: "
+          "displacements from the nearest vertex, forces to the nearest face with their sum kept, for faces that match or "
+          "nest; projection, rbf: for any faces: loads go by the transpose of the motion's map, so that work, force and "
+          "moment are kept; slopes along the surface from neighbouring faces (projection) or from a local interpolant by "
+          "compact radial functions through more faces (rbf)");
   section.value("tolerance", p.tolerance)
       .unit("m")
       .plausible(1e-15, 1)

@@ -54,7 +54,7 @@ void Coupler::load() {
   unknown_->restore_weights(file.read("weights"));
   for (std::size_t i = 0; i < mechanics_->walls().size(); ++i)
     file.read("wall-" + std::to_string(i), mechanics_->walls()[i]);
-  std::array<double, 4> work{};
+  std::array<double, 6> work{};
   file.read("work", work);
   work_guard_.restore(work);
   if (accelerator_) accelerator_->load(file);

@@ -160,6 +160,21 @@ TEST(WorkGuard, an_answer_is_useless_where_half_of_the_work_is_apart_and_not_bef
   }
 }
 
+TEST(WorkGuard, work_is_judged_by_what_stays_not_by_what_went_to_and_fro) {
+  // A damped oscillation: each step moves 1 J there or back, 5.7 J stay for one side and 6.3 J for the other.
+  WorkGuard damped, there_and_back;
+  for (int n = 0; n < 1000; ++n) {
+    damped.accepted(std::sin(0.1 * n) + 0.0057, std::sin(0.1 * n) + 0.0063, Scheme::semi_implicit);
+    // Nothing stays, but the structure's energy is 20 J at most.
+    there_and_back.accepted(std::sin(0.1 * n), std::sin(0.1 * n) + 1e-4, Scheme::semi_implicit);
+    damped.energy(0.5), there_and_back.energy(20 * std::abs(std::sin(0.05 * n)));
+  }
+  EXPECT_FALSE(damped.verdict().sound) << damped.verdict().text;
+  EXPECT_FALSE(damped.verdict().useless);
+  EXPECT_THAT(damped.verdict(true).text, testing::AllOf(HasSubstr("nearest"), HasSubstr("projection")));
+  EXPECT_TRUE(there_and_back.verdict().sound) << there_and_back.verdict().text;
+}
+
 TEST(WorkGuard, its_sums_go_through_a_checkpoint) {
   WorkGuard guard, other;
   for (int n = 0; n < 5; ++n) guard.accepted(n, 1.5 * n, Scheme::implicit);

@@ -58,7 +58,7 @@ TEST(MatchedMapping, names_points_without_a_twin) {
   EXPECT_EQ(message(line("vertices of 'solid'", 5), to, {}),
             "1 of 5 vertices of 'fluid' have no twin among the 5 vertices of 'solid' within 1e-06 m:\n"
             "  (0.8, 0.02, 0): the nearest is 0.0539 m away\n"
-            "Give both meshes the same points on the interface, or set `coupling.mapping.type: nearest`.");
+            "Give both meshes the same points on the interface, or set `coupling.mapping.type: projection`.");
 }
 
 TEST(MatchedMapping, names_points_that_only_the_other_side_lacks) {
