@@ -20,7 +20,8 @@ FILES = {
         *_of("thermocline", "bed_step bed_rows packed_bed tridiagonal melting_step grain_kernels grains column insulation shell ullage"),
     ],
     "maps": [
-        *_of("coupler", "map_local map_projection mapping sparse_map transfer search cavity_wall links"),
+        *_of("coupler", "map_local map_projection mapping sparse_map transfer search cavity_wall links conjugate_map "
+                        "corner_weights overlay slopes surface_rows"),
         *_of("common/modes", "facing rigid_motion surface_parts modal_checks"),
         *_of("plate_modal", "skin midsurface share"),
     ],

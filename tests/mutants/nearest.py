@@ -49,6 +49,11 @@ FILE = {
     "coupler/mapping": "unit_coupler unit_maps unit_coupler_maps_2",
     "coupler/map_local": "unit_maps unit_coupler_maps_2",
     "coupler/map_projection": "unit_maps unit_coupler_maps_2",
+    "coupler/conjugate_map": "unit_conjugate_maps unit_maps",
+    "coupler/corner_weights": "unit_conjugate_maps unit_maps",
+    "coupler/overlay": "unit_conjugate_maps unit_maps",
+    "coupler/slopes": "unit_conjugate_maps unit_maps",
+    "coupler/surface_rows": "unit_conjugate_maps unit_maps",
     "coupler/watch_integrals": "unit_coupler_maps_2 coupling_exchange",
     "coupler/balance": "coupling_exchange coupling_piston",
     "coupler/mechanics": "coupling_exchange coupling_piston",
@@ -93,7 +98,7 @@ FOLDER = {
                  "verification_mover_motion verification_solid_patch verification_heat_errors verification_heat_exactness_2",
     "common/time": "unit_time verification_solid_time_schemes verification_solid_dynamics verification_solid_energy verification_solid_audit "
                    "verification_solid_spectrum verification_heat_order verification_heat_errors verification_plate_dynamics verification_plate_guards",
-    "coupler": "unit_coupler unit_maps unit_coupler_maps unit_coupler_maps_2 unit_coupler_ranks unit_coupler_ranks_2 coupling_groups coupling_exchange "
+    "coupler": "unit_conjugate_maps unit_coupler unit_maps unit_coupler_maps unit_coupler_maps_2 unit_coupler_ranks unit_coupler_ranks_2 coupling_groups coupling_exchange "
                "coupled_toy coupling_volume_level coupling_added_mass unit_interface_map contract_toys coupling_piston coupling_string coupling_robin "
                "coupling_cavity coupled_toy_mpmd",
     "common/modes": "verification_solid_modes verification_plate_modes_file verification_plate_frequencies verification_plate_guards coupling_plate_solid_modes",
