@@ -54,6 +54,7 @@ void confine(std::uint64_t bytes, pid_t parent) {
   rusage used{};
   ::getrusage(RUSAGE_SELF, &used);
   limit(RLIMIT_CPU, std::uint64_t(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 2 + megabytes / 25);
+  ::alarm(unsigned(60 + megabytes));  // should it wait for something that no thread of a fork will ever give
   limit(RLIMIT_FSIZE, 0);
   limit(RLIMIT_CORE, 0);
 }
@@ -111,7 +112,8 @@ void rehearse(const std::filesystem::path& file, const std::string& what, const 
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
   if (outcome.starts_with(sound)) return;
   if (outcome.starts_with(refused)) throw Error(outcome.substr(1));
-  const bool time = WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL);
+  const bool time = WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL ||
+                                            WTERMSIG(status) == SIGALRM);
   throw Error("The {} '{}' cannot be used: it is damaged, or made to do harm ({}). Make it anew.", what,
               file.string(),
               outcome.starts_with(out_of_memory)

@@ -89,6 +89,21 @@ TEST(StepErrorsTest, a_restart_goes_on_bit_for_bit_and_a_damaged_state_is_refuse
   EXPECT_EQ(whole.over_size(), second.over_size());
   EXPECT_EQ(whole.state(), second.state());
   EXPECT_THROW(second.restore(std::vector<double>{1, 2}), Error);
+  // Numbers that say how many follow, or what they belong to, may be anything.
+  for (std::size_t i = 5; i < whole.state().size(); ++i)
+    for (const double odd : {-1., 0.5, 1e18, double(NAN)}) {
+      std::vector<double> state = whole.state();
+      state[i] = odd;
+      try {
+        second.restore(state);
+        second.over_size();
+      } catch (const Error&) {
+        continue;
+      }
+    }
+  std::vector<double> state = whole.state();
+  state[5] = 1e18;
+  EXPECT_THROW(second.restore(state), Error);
 }
 
 }  // namespace
