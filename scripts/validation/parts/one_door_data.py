@@ -56,7 +56,7 @@ BARS = [
     Bar("5 000 guests' bytes: handshake, introduction, replies, places, commands: no crash, 1 GB, 5 s", "refused or sound",
         fuzz("fuzz_messages", "are_refused_or_sound", 5000)),
     Bar("a guest of another version, and other ways to break the protocol, in a real job: named, code 1 or 2, no process left", "all guests",
-        tests("^client_odd_guests$")),
+        tests("^client_odd_guests_full$")),
     Bar("no second reader of HDF5, messages or roll call (tests/architecture)", "tests pass", tests("^architecture_", 2)),
     Bar("the same crafted files and bytes under sanitizers (preset asan)", "clean",
         sanitized, long=True, but="what the rehearsal's forked process does is judged by its outcome, not by the sanitizers' reports"),
