@@ -142,7 +142,8 @@ class Check {
       const bool pair = ((w == "Background" || w == "BoundaryLayer") && next.is("Field")) ||
                         geo_words::takes_a_number(w) || is_any(next, {"In", "Using"}) || attribute ||
                         is_any(at(-1), {"Macro", "Function"});
-      if (!pair) offend(fmt::format("'{} {}'", w, next.text));
+      if (!pair || (attribute && is_any(tokens_[i_], {"Name", "Label", "Help", "Kind"})))
+        offend(fmt::format("'{} {}'", w, next.text));
     } else if (next.is("{")) {
       if (!attribute && !geo_words::takes_shapes(w)) offend_by_word(" and a brace");
     } else if (is_start() && !is_any(at(-1), {"Macro", "Function"}) && open_.empty() &&

@@ -20,13 +20,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Output and script of gmsh, whole.
 std::string read_text(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw Error("The file '{}' cannot be opened. Check the path and the permissions.", file.string());
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
+}
+
+/// The beginning of gmsh's output, which a script can make as long as it likes.
+std::string read_log(const fs::path& file) {
+  std::string text(1 << 20, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(text.data(), std::streamsize(text.size()));
+  text.resize(std::size_t(in.gcount()));
+  return text;
 }
 
 /// Up to three different lines of gmsh's output that speak of errors, with the user's names of the files.
@@ -51,7 +59,7 @@ std::string complaints(const std::string& output, const GmshInput& input, const 
 bool gmsh_has(const std::string& library) {
   const OwnFolder folder;
   run_in_sandbox({"gmsh", "-info"}, folder.path(), folder.path() / "info.log");
-  std::istringstream words(read_text(folder.path() / "info.log"));
+  std::istringstream words(read_log(folder.path() / "info.log"));
   for (std::string word; words >> word;)
     if (word == library || word.starts_with(library + "[")) return true;
   return false;
@@ -87,7 +95,8 @@ fs::path own_name(const fs::path& result) {
 void put(const fs::path& mesh, const fs::path& result, const fs::path& source) {
   const fs::path own = own_name(result);
   std::error_code error;
-  fs::copy_file(mesh, own, fs::copy_options::overwrite_existing, error);
+  fs::remove(own, error);           // of a run that was killed, or a link that somebody put there:
+  fs::copy_file(mesh, own, error);  // only what is not there is made
   if (error) {
     fs::remove(own, error);
     throw Error(
@@ -118,7 +127,7 @@ void run_gmsh(const std::vector<std::string>& options, const GmshInput& input, c
   const fs::path read = trusted ? fs::absolute(input.source) : folder.path() / input.files.front().name;
   command.insert(command.end(), {"-o", mesh.string(), read.string()});
   const ProgramEnd end = trusted ? run_trusted(command, log) : run_in_sandbox(command, folder.path(), log);
-  const std::string errors = complaints(read_text(log), input, folder.path());
+  const std::string errors = complaints(read_log(log), input, folder.path());
   if (end.code != 0 || !errors.empty() || !fs::is_regular_file(fs::symlink_status(mesh)))
     throw Error("gmsh could not {} '{}' ({}).{}", verb, input.source.string(), reason(end), errors);
   seal_cache(mesh, result.filename().string());

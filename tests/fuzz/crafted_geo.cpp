@@ -135,6 +135,8 @@ std::vector<std::string> payloads(const std::filesystem::path& outside) {
           "DefineConstant [ a = {1, GmshOption \"General.SaveOptions\"} ];",
           "DefineConstant [ a = {1, Name \"Gmsh/Action\"} ];",
           "DefineConstant [ a = {1, Name \"x\", Macro " + touch + "} ];",
+          "s = \"Gmsh/Action\"; DefineConstant [ a = {1, Name s} ];",
+          "DefineConstant [ a = {1, Name StrCat(\"Gm\", \"sh/Action\")} ];",
           "DefineString(\"x\", Name \"Gmsh/Action\");",
           "x = GetEnv(\"HOME\");",
           "x() = ListFromFile(\"/etc/passwd\");",

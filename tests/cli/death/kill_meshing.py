@@ -25,16 +25,18 @@ def check(name, good, detail=""):
 
 
 def running(marker):
-    """{process id: command line} of what has the marker in it and is no solver."""
+    """{process id: command line} of gmsh, what it starts, and what starts it in its sandbox: they have its folder in their command
+    line or their environment."""
     found = {}
     for entry in pathlib.Path("/proc").iterdir():
         if entry.name.isdigit():
             try:
                 line = (entry / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
+                variables = (entry / "environ").read_bytes().decode(errors="replace")
                 state = (entry / "stat").read_text().rpartition(")")[2].split()[0]
             except OSError:
                 continue
-            if marker in line and "mesh.msh" in line and state not in "ZX":
+            if (f"{marker}/couplet-gmsh-" in line or f"TMPDIR={marker}/couplet-gmsh-" in variables) and state not in "ZX":
                 found[int(entry.name)] = line
     return found
 
@@ -42,7 +44,7 @@ def running(marker):
 def innermost(marker):
     """gmsh itself, once it is at work: bubblewrap has been replaced by it."""
     for process, line in running(marker).items():
-        if line.split()[0].endswith("gmsh"):
+        if line and line.split()[0].endswith("gmsh") and "mesh.msh" in line:
             return process
     return None
 
@@ -124,6 +126,32 @@ def scene(name, bubblewrap, command):
         job.wait()
 
 
+def children(name):
+    """What gmsh might have started goes with it, too: here it is a script with two children, one of them in a session of its own."""
+    with tempfile.TemporaryDirectory() as top:
+        folder = pathlib.Path(top).resolve()
+        (folder / "case.yaml").write_text((source / "solid.yaml").read_text().replace("square.msh", "slow.geo"))
+        (folder / "slow.geo").write_text("x = 1;\n")
+        env = environment(folder, True)
+        (folder / "bin").mkdir()
+        (folder / "bin/gmsh").write_text("#!/bin/sh\nsleep 1000 &\nsetsid sleep 1000 &\nwait\n")
+        (folder / "bin/gmsh").chmod(0o755)
+        env["PATH"] = f"{folder / 'bin'}:{env['PATH']}"
+        job = subprocess.Popen([programs / "solid_solver", "case.yaml"], cwd=folder, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        marker, end = str(folder / "tmp"), time.monotonic() + PATIENCE
+        while sum("sleep" in line for line in running(marker).values()) < 2 and job.poll() is None and time.monotonic() < end:
+            time.sleep(0.05)
+        check(f"{name}: they run", sum("sleep" in line for line in running(marker).values()) >= 2, running(marker))
+        job.kill()
+        job.wait()
+        start = time.monotonic()
+        while running(marker) and time.monotonic() - start < 5:
+            time.sleep(0.05)
+        check(f"{name}: nothing is left 5 s after the death of the solver", not running(marker), running(marker))
+        for process in running(marker):
+            os.kill(process, signal.SIGKILL)
+
+
 def solver_of(folder):
     """The solver that works in this folder."""
     for entry in pathlib.Path("/proc").iterdir():
@@ -146,6 +174,7 @@ scene("limits only", False, [])
 if starts("bwrap"):
     scene("bubblewrap", True, [])
     scene("bubblewrap, under mpirun", True, mpirun)
+    children("bubblewrap, children of gmsh")
 else:
     print("bubblewrap does not start here: that part is not tested")
 print(f"{len(failed)} of the checks failed" if failed else "all checks passed")

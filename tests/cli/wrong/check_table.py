@@ -48,6 +48,10 @@ case.yaml:17:7: participants.solid.boundaries.top: the mesh has no patch of this
         solid("a .geo that runs a command", """
 [solid 0] error: The geometry has 'SystemCall' in line 1 of square.geo, which is not passed to gmsh: a .geo can run commands and write files with your rights. Allowed are the statements that draw and mesh: numbers, points, curves, surfaces, volumes, loops, OpenCASCADE shapes and booleans, Extrude and other motions, Physical, Transfinite, Recombine, Periodic, sizes and Fields, For, If, Macro, DefineConstant, Include and Merge of files in the folder of the case, Printf to the terminal (docs/formats.md). If you trust the case, start with --allow-commands.
 """, ("square.msh", "square.geo"), files={"square.geo": 'SystemCall "touch pwned";\n' + GEO}, arguments=["case.yaml"]),
+        solid("--check: a .geo that runs a command by a Field", """
+case.yaml:6:5: participants.solid.mesh: The geometry has 'ExternalProcess' in line 1 of square.geo, which is not passed to gmsh: a .geo can run commands and write files with your rights. Allowed are the statements that draw and mesh: numbers, points, curves, surfaces, volumes, loops, OpenCASCADE shapes and booleans, Extrude and other motions, Physical, Transfinite, Recombine, Periodic, sizes and Fields, For, If, Macro, DefineConstant, Include and Merge of files in the folder of the case, Printf to the terminal (docs/formats.md). If you trust the case, start with --allow-commands.
+""", ("square.msh", "square.geo"), ("      bottom: {type: free}\n", ""), ("      top: {type: free}\n", ""),
+              files={"square.geo": "Field[1] = ExternalProcess;\n" + GEO}),
         solid("--check: nothing holds the solid", "case.yaml:13:5: participants.solid.boundaries: nothing holds the solid of this static "
               "analysis: at least one patch must be fixed, supported, sprung or on a plane of symmetry.",
               ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: free}")),
