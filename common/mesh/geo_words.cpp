@@ -57,7 +57,8 @@ bool takes_a_number(std::string_view word) {
 }
 
 bool takes_shapes(std::string_view word) {
-  static const Words words("Boundary CombinedBoundary OrientedBoundary PointsOf Duplicata Embedded HealShapes");
+  static const Words words(
+      "Boundary CombinedBoundary OrientedBoundary PointsOf Duplicata Embedded HealShapes");
   return words.has(word);
 }
 
