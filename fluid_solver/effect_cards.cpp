@@ -25,10 +25,13 @@ bool has_interface(const S& s) {
   return has_boundary(s, [](const auto& b) { return b.type == BoundaryType::interface; });
 }
 
+// Layers are as thin as where they begin: where the mesh resolves those at the walls (y+ up to 1) it resolves what they shed,
+// and the cell Reynolds number of the flow outside them says little.
 V judge_turbulence(const S&, const E& e) {
   if (std::isnan(e.largest_peclet)) return {};
+  const bool resolved_walls = e.largest_yplus > 0 && e.largest_yplus <= 1;
   return EffectVerdict{
-      "", e.largest_peclet, 50,
+      "", e.largest_peclet, resolved_walls ? 250. : 50.,
       fmt::format("the largest cell Reynolds number is {:.3g}, the largest y+ {:.3g}", e.largest_peclet,
                   e.largest_yplus),
       "steep layers may be finer than the mesh: refine it, or give 'turbulence' if the flow is turbulent"};
@@ -164,7 +167,7 @@ const std::array cards{
               "`turbulence`",
               [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },
               {"an eddy viscosity a cell, a velocity gradient a step", 62, 0.78},
-              "largest cell Reynolds number, 50",
+              "largest cell Reynolds number, 50, or 250 where walls are resolved (y+ up to 1)",
               judge_turbulence},
     FluidCard{"resolved walls",
               "`turbulence`",

@@ -100,6 +100,10 @@ TEST(EffectCards, fluid_verdicts_turn_at_their_thresholds) {
   };
   EXPECT_TRUE(sound("turbulence model", {.largest_peclet = 49}, air));
   EXPECT_FALSE(sound("turbulence model", {.largest_peclet = 51}, air));
+  EXPECT_TRUE(sound("turbulence model", {.largest_peclet = 249, .largest_yplus = 0.99}, air));
+  EXPECT_FALSE(sound("turbulence model", {.largest_peclet = 251, .largest_yplus = 0.99}, air));
+  EXPECT_FALSE(sound("turbulence model", {.largest_peclet = 51, .largest_yplus = 1.01}, air));
+  EXPECT_FALSE(sound("turbulence model", {.largest_peclet = 51, .largest_yplus = 0}, air)) << "no walls";
   EXPECT_TRUE(sound("resolved walls", {.largest_yplus = 1.9}, model));
   EXPECT_FALSE(sound("resolved walls", {.largest_yplus = 2.1}, model));
   EXPECT_TRUE(sound("compressibility", {.largest_speed = 102}, air));
