@@ -5,12 +5,16 @@
 
 namespace couplet {
 
-void HalvingCauses::accepted() { ++steps_; }
+void HalvingCauses::accepted(double dt) {
+  for (auto& [cause, count] : counts_) count.good_steps += dt >= (1 - 1e-9) * count.dt;
+}
 
-int HalvingCauses::halved(const std::string& reason) {
-  Count& count = counts_[without_numbers(reason)];
-  if (steps_ - count.last > calm_steps) count.halvings = 0;
-  count.last = steps_;
+int HalvingCauses::halved(const std::string& reason, double dt) {
+  const std::string cause = without_numbers(reason);
+  Count& count = counts_[cause.substr(0, cause.find(". "))];
+  if (count.good_steps > calm_steps) count.halvings = 0;
+  count.good_steps = 0;
+  count.dt = dt;
   return ++count.halvings;
 }
 

@@ -10,23 +10,23 @@ namespace couplet {
 /// whose answer is lost.
 class HalvingCauses {
  public:
-  /// So many halvings for one cause end a run. A cause that was away for more than `calm_steps` accepted steps (as where a
-  /// load changes suddenly, or where a halved step tries now and then to grow back) begins anew.
-  static constexpr int most = 10, calm_steps = 32;
+  /// So many halvings for one cause end a run. A cause begins anew where more than `calm_steps` steps were accepted since
+  /// that are as long as the one that failed: it is over, as where a load has changed suddenly.
+  static constexpr int most = 10, calm_steps = 16;
 
-  void accepted();
-  /// How often this cause has halved a step, now included. Causes are the same where only numbers differ.
-  int halved(const std::string& reason);
+  /// dt [s] of the step.
+  void accepted(double dt);
+  /// How often this cause has halved a step, now included. Causes are the same where the first sentences differ by numbers only.
+  int halved(const std::string& reason, double dt);
   /// "the pressure did not converge in # iterations".
   static std::string without_numbers(const std::string& reason);
 
  private:
   struct Count {
-    int halvings = 0;
-    long last = 0;
+    int halvings = 0, good_steps = 0;
+    double dt = 0;  // that failed [s]
   };
   std::map<std::string, Count> counts_;
-  long steps_ = 0;
 };
 
 }  // namespace couplet

@@ -25,8 +25,8 @@ void declare(config::Section& section, SimulationParameters& p) {
   section.value("max-step-halvings", p.max_step_halvings)
       .range(0, 20)
       .doc(
-          "a step that could not be solved is halved at most this often before the run stops; ten halvings for one cause with "
-          "few good steps in between stop it, too");
+          "a step that could not be solved is halved at most this often before the run stops; ten halvings for one cause "
+          "without a time of full steps in between stop it, too");
   section.value("accept", p.accept)
       .doc(
           "ids of findings (docs/findings.md) that are accepted: they are logged, but neither end the run with exit code 4 nor "

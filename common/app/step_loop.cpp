@@ -159,8 +159,8 @@ std::string StepLoop::give_up(const StepActions& actions, const Step& step, cons
 
 /// The failure itself, or, where the same cause has halved steps too often, why the run ends. Collective: ranks may word a
 /// cause otherwise.
-StepFailure StepLoop::seen_again(const StepFailure& failure) {
-  const GlobalIndex mine = comm_rank(comm_) == 0 ? causes_.halved(failure.reason) : 0,
+StepFailure StepLoop::seen_again(const StepFailure& failure, double dt) {
+  const GlobalIndex mine = comm_rank(comm_) == 0 ? causes_.halved(failure.reason, dt) : 0,
                     times = sum(comm_, mine);
   if (times < HalvingCauses::most) return failure;
   return {fmt::format("{} halvings of steps for one cause did not cure it: {}", times, failure.reason),
@@ -189,13 +189,13 @@ std::string StepLoop::run(const StepActions& actions) {
                 failure->reason);
       if (!failure->halving_helps) return give_up(actions, step, *failure);
       ++halvings_;
-      if (const StepFailure again = seen_again(*failure); !again.halving_helps)
+      if (const StepFailure again = seen_again(*failure, step.dt); !again.halving_helps)
         return give_up(actions, step, again);
       if (!plan_.halve()) return give_up(actions, step, *failure);
       continue;
     }
     plan_.accepted();
-    causes_.accepted();
+    causes_.accepted(step.dt);
     const bool output = plan_.at_nominal_time() && due(simulation_.output_interval);
     actions.accept(plan_.time(), output ? outputs_++ : -1);
     actions.report(step, plan_.time());

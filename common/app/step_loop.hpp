@@ -76,7 +76,7 @@ class StepLoop {
 
  private:
   bool due(double interval) const;
-  StepFailure seen_again(const StepFailure& failure);
+  StepFailure seen_again(const StepFailure& failure, double dt);
   /// Gives the folder.
   std::filesystem::path checkpoint(const StepActions& actions);
   void stop(const StepActions& actions);

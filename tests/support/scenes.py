@@ -33,7 +33,7 @@ participants:
 
 def explicit_step(folder, step=0.2):
     """A duct at 1 m/s with a given explicit step; its limit is about 0.01 s."""
-    return write(folder, f"""simulation: {{name: duct, end-time: 2 s, time-step: 0.2 s, output: {{folder: out}}}}
+    return write(folder, f"""simulation: {{name: duct, end-time: 20 s, time-step: 0.2 s, output: {{folder: out}}}}
 participants:
   fluid:
     program: fluid_solver
