@@ -26,7 +26,7 @@ BARS = [
     Bar("start of every shipped coupled case: surfaces and mover", "0 findings",
         script(WALLS, "{bin}", "{root}/configs", "shipped"), long=True),
     Bar("a wait in a circle, hang-timeout by default, 0 and 1 h; a process without a sign of life and a stopped one; seven seconds "
-        "of work with signs of life beyond a hang-timeout of 1 s",
+        "of work with signs of life beyond a hang-timeout of 3 s",
         "named within 10 s; named; no finding", script("tests/cli/death/silence.py", "{bin}", "{bin}/tests"), long=True),
     Bar("hang-timeout that a case does not give", "600 s", script(WALLS, "{bin}", "{root}/configs", "timeout")),
 ]

@@ -18,7 +18,7 @@ from jobs import PATIENCE, Suite, living_in_session, mpmd
 source, count = pathlib.Path(sys.argv[3]), int(sys.argv[4])
 draw = random.Random(int(sys.argv[5]) if len(sys.argv) > 5 else 1)
 SLOWER = int(os.environ.get("COUPLET_SLOWER", "1"))
-TIMEOUT = 1.0  # [s] hang-timeout of jobs that are stopped; the start has 4 s
+TIMEOUT = 3.0  # [s] hang-timeout: a busy disk holds a save for more than 1 s; the start has 4 s at least
 PROGRAMS = {"coupler": "coupler", "fluid": "fluid_solver", "solid": "solid_solver", "mover": "mesh_mover"}
 RANKS = {"coupler": 1, "fluid": 2, "solid": 1, "mover": 1}
 MOMENTS = ("start", "meshing", "steps", "finish")
@@ -147,7 +147,7 @@ def strike(number, folder, cached):
             os.kill(pid, what)
     except ProcessLookupError:
         pid = None
-    allowed = 5 * SLOWER + ((TIMEOUT if moment != "start" else 4) + 1 if what == signal.SIGSTOP else 0)
+    allowed = 5 * SLOWER + (max(TIMEOUT, 4) if what == signal.SIGSTOP else 0)
     while time.monotonic() - struck < allowed + 20 and (alive(job, known) or job.poll() is None):
         job.poll()
         time.sleep(0.02)
