@@ -5,6 +5,13 @@
 #include <cmath>
 
 namespace couplet::fluid {
+namespace {
+
+// What fewer steps show is the start of a motion; what is less of the mean square is rounding.
+constexpr int judged_steps = 10;
+constexpr double rounding = 1e-9;
+
+}  // namespace
 
 // The step in which the flow starts has the impulse of the start in its pressure, which says nothing about what follows.
 void ComplianceWatch::add(double dt, const std::vector<double>& swept, const Totals& now) {
@@ -28,9 +35,10 @@ void ComplianceWatch::add(double dt, const std::vector<double>& swept, const Tot
 
 ComplianceWatch::Walls ComplianceWatch::walls() const {
   Walls w;
-  if (!(time_ > 0)) return w;
+  if (steps_ < judged_steps) return w;
   for (std::size_t i = 0; i < sum_.size(); ++i) {
-    const double mean = sum_[i] / time_, variance = std::max(0.0, square_[i] / time_ - mean * mean);
+    const double mean = sum_[i] / time_, square = square_[i] / time_, variance = square - mean * mean;
+    if (variance <= rounding * square) continue;
     w.square += variance;
     w.size += std::sqrt(variance);
   }

@@ -38,6 +38,8 @@ def launch_line(programs, case, folder):
     names = [(p.get("program"), name) for name, p in text["participants"].items() if isinstance(p, dict) and "program" in p]
     if any(not (programs / program).exists() for program, _ in names):
         return None, 0
+    if any(".cache." in str(p.get("mesh", "")) and not (case.parent / p["mesh"]).exists() for p in text["participants"].values() if isinstance(p, dict)):
+        return None, 0
     words = [str(case), "--strict=effects", f"--set=simulation.output.folder={folder}"]
     if "coupling" not in text:  # participants of a case without coupling run one by one; the first speaks for it
         return [str(programs / names[0][0]), *words, "--participant", names[0][1]], text["simulation"]["end-time"]
@@ -78,7 +80,7 @@ def main():
             folder = pathlib.Path(name)
             line, end = launch_line(options.bin, case, folder / "out")
             if line is None:
-                print(f"{label}: a program of somebody else", flush=True)
+                print(f"{label}: a program of somebody else, or a mesh that a script makes first", flush=True)
                 continue
             start = time.monotonic()
             code, stopped, text = run(line, folder, options.seconds)
