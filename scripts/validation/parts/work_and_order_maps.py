@@ -21,7 +21,7 @@ BARS = [
     Bar("linear motion, the same pairs", "1e-12", recorded("linear_motion", "linear_off", 1e-12)),
     Bar("quadratic motion, least order of four ladders", "at least 1.8", recorded("quadratic_motion", "least_order", 1.8, above=True)),
     Bar("uniform pressure on a finer structure, largest traction over mean", "1.05", recorded("uniform_pressure", "largest_over_mean", 1.05),
-        but="flaps without one and a half fluid faces beside their sharp corners, where one vertex moves with both sides"),
+        but="flaps without two fluid faces beside their sharp corners, where one vertex moves with both sides"),
     Bar("the same claims on 1, 2 and 3 ranks, both sides cut evenly or the structure on one rank", "all hold", tests("^unit_conjugate_maps", 3)),
     Bar("`nearest` where faces do not nest: 3:2, 2:3, 5:8, 7:3", "refused, projection named", gtests("unit_coupler", "nearest_is_refused")),
     Bar("work judged by net work and energy: damped oscillation, there and back", "fires, keeps still", gtests("unit_coupler", "judged_by_what_stays")),
