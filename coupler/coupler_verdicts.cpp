@@ -73,8 +73,7 @@ void Coupler::tell_work() const {
 void Coupler::tell_errors(std::vector<NamedErrors> participants) const {
   if (errors_) participants.push_back({"coupling", {.coupling = errors_->over_size()}});
   for (const std::string& sentence : error_sentences(participants)) log::info("{}", sentence);
-  if (const double total = total_error(participants); total >= as_large_as_the_solution)
-    log::finding(comm_rank(comm_), worthless(total));
+  if (const auto finding = worthless(participants)) log::finding(comm_rank(comm_), *finding);
   if (!schedule_.iterates) log::info("{}", lag_ ? lag_->sentence(participants) : LagEstimate::not_possible());
 }
 

@@ -93,7 +93,7 @@ class Errors {
   }
   const ErrorParts& parts() const { return parts_; }
   std::vector<std::string> sentences() const { return error_sentences({{name_, parts_}}); }
-  double total() const { return total_error({{name_, parts_}}); }
+  std::optional<log::Finding> worthless() const { return couplet::worthless({{name_, parts_}}); }
 
  private:
   std::string name_;
@@ -121,8 +121,8 @@ void closing_words(const Job& job, Participant& participant, RunAudit& audit, Er
     sentences.push_back(std::move(line));
     if (!closing.is_alone) break;
   }
-  if (closing.is_alone && errors.total() >= as_large_as_the_solution)
-    log::finding(job.rank, worthless(errors.total()));
+  if (closing.is_alone)
+    if (const auto finding = errors.worthless()) log::finding(job.rank, *finding);
   const double mine = RunReport::peak_memory();
   const double most = max(job.comm, mine), all = sum(job.comm, mine);
   if (job.rank != 0) return;

@@ -98,10 +98,14 @@ double total_error(const std::vector<NamedErrors>& participants) {
   return total;
 }
 
-log::Finding worthless(double total) {
-  return {
+std::optional<log::Finding> worthless(const std::vector<NamedErrors>& participants) {
+  const double total = total_error(participants);
+  if (!(total >= as_large_as_the_solution)) return {};
+  double largest = 0;
+  for (const Part& p : largest_parts(participants)) largest = std::max(largest, p.value);
+  return log::Finding{
       .id = "error-estimate",
-      .severity = Severity::wrong,
+      .severity = largest >= as_large_as_the_solution ? Severity::wrong : Severity::warning,
       .number = total,
       .limit = as_large_as_the_solution,
       .sentence = fmt::format(

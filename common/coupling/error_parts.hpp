@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,9 +37,10 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
 
 /// The number of the first of these sentences; 0 if nothing is known.
 double total_error(const std::vector<NamedErrors>& participants);
-/// An error as large as the solution: the answer is useless.
+/// From an error as large as the solution on the answer is useless. `wrong` where one part alone is so large: parts are good to
+/// a factor of a few, and a sum of several that just reaches it proves nothing; it is a warning. Nothing below.
 constexpr double as_large_as_the_solution = 1;
-log::Finding worthless(double total_error);
+std::optional<log::Finding> worthless(const std::vector<NamedErrors>& participants);
 
 /// A participant that can tell its parts at the end of a run.
 class EstimatesError {

@@ -22,6 +22,15 @@ TEST(ErrorPartsTest, its_text_is_read_again) {
   EXPECT_THROW(ErrorParts::of("mesh much"), Error);
 }
 
+TEST(ErrorPartsTest, one_part_as_large_as_the_solution_proves_an_answer_useless_a_sum_of_parts_warns) {
+  EXPECT_FALSE(worthless({{"solid", {.mesh = 0.6, .step = 0.3}}}).has_value());
+  const auto sum = worthless({{"solid", {.mesh = 0.6, .step = 0.5}}});
+  ASSERT_TRUE(sum.has_value());
+  EXPECT_EQ(sum->severity, Severity::warning);
+  EXPECT_EQ(worthless({{"fluid", {.mesh = 0.1}}, {"solid", {.mesh = 1.1, .step = 0.1}}})->severity,
+            Severity::wrong);
+}
+
 TEST(ErrorPartsTest, the_largest_part_dominates_and_what_is_a_tenth_of_it_buys_nothing) {
   const auto said = [](ErrorParts parts) {
     const auto sentences = error_sentences({{"solid", parts}});
