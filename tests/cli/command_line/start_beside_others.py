@@ -19,7 +19,8 @@ with tempfile.TemporaryDirectory(prefix="couplet-start-") as name:
     environment = {key: value for key, value in os.environ.items() if not key.startswith("OMPI_MCA_")}
     environment["OMPI_MCA_orte_tmpdir_base"] = str(folder / "no-folder")
     # With a checkpoint: files are written by MPI-IO, which could want the folder, too.
-    result = subprocess.run([program, "solid.yaml", "--set", "simulation.checkpoint.interval=1"], cwd=folder, env=environment,
+    result = subprocess.run([program, "solid.yaml", "--set", "simulation.checkpoint.interval=1",
+                             "--accept", "error-estimate"], cwd=folder, env=environment,
                             capture_output=True, text=True, timeout=100, check=False)
     if result.returncode != 0:
         sys.exit(f"exit code {result.returncode}\n{result.stderr}")

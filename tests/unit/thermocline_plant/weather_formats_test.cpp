@@ -220,7 +220,7 @@ TEST_F(ForeignWeather, wrong_nsrdb_files_are_said_with_their_line) {
   twice.replace(twice.find(",GHI,Surface"), 4, ",DNI");
   EXPECT_THAT(complaint(twice), HasSubstr("weather.csv:3: the column 'DNI' stands there twice"));
   EXPECT_THAT(complaint(nsrdb() + std::string(1, '\0')),
-              HasSubstr("weather.csv: this weather file is no plain text"));
+              HasSubstr("weather.csv:52: this weather file is no plain text"));
   EXPECT_THAT(complaint(nsrdb(same, "Pa")),
               HasSubstr("weather.csv:2: 'Pressure Units' is 'Pa'; only mbar is read"));
   EXPECT_THAT(complaint(nsrdb([](int h, std::string line) {
