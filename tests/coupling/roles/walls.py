@@ -71,6 +71,8 @@ def flap(folder):
     code, output = couple(folder, "case.yaml", COARSE)
     check("the case as it is: no finding", code == 0 and not any(f in output for f in FINDINGS), output[-2000:])
     code, output = couple(folder, "case.yaml", [*COARSE, "participants.solid.mesh-scale=1.05"])
+    check("a solid 5 % larger: its faces do not nest, which the case's map refuses", code == 2 and "do not nest" in output, output[-2000:])
+    code, output = couple(folder, "case.yaml", [*COARSE, "participants.solid.mesh-scale=1.05", "coupling.mapping.type=projection"])
     check("a solid 5 % larger: flagged with the number", "surfaces that move together differ: area 2.205 m^2 ('solid') and 2.1 m^2 "
           "('fluid'), 4.8 % apart" in output, output[-2000:])
     held = "participants.mover.boundaries.flap.type=fixed"
