@@ -19,8 +19,8 @@ COARSE = ["participants.fluid.mesh-parameters={n_side: 10, n_tip: 1, growth: 1.5
           "participants.mover.mesh-parameters={n_side: 10, n_tip: 1, growth: 1.5, wall_growth: 1.5, wall_cells: 3}",
           "participants.solid.mesh-parameters={n_side: 20, n_tip: 2}", "simulation.end-time=0.12 s", "simulation.output.interval=1 s"]
 # Programs of somebody else, as the cases' own launchers start them.
-GUESTS = {"heater": [sys.executable, configs / "warm-flap/heater.py", "heater"],
-          "spring_cylinder_py": [sys.executable, root / "client/examples/spring_cylinder.py", "body", "2", "0", "4", "0.01"],
+GUESTS = {"heater": ["/usr/bin/python3", configs / "warm-flap/heater.py", "heater"],
+          "spring_cylinder_py": ["/usr/bin/python3", root / "client/examples/spring_cylinder.py", "body", "2", "0", "4", "0.01"],
           "tube_fluid": None}
 failed = []
 
@@ -87,11 +87,13 @@ def shipped(folder):
     cases = sorted(p for p in [*configs.glob("*/*.yaml"), *(root / "tests/coupling").glob("piston/case.yaml")] if "\ncoupling:" in p.read_text())
     started = 0
     for file in cases:
-        here = folder / f"{file.parent.name}-{file.stem}"
-        here.mkdir()
-        for other in file.parent.iterdir():
-            if other.is_file() and other.stat().st_size < 5e7:
-                shutil.copy(other, here)
+        here = folder / f"{file.parent.name}-{file.stem}" / file.parent.name
+        # Its own files, and those of the cases beside it whose meshes it takes.
+        for source in [file.parent, *(file.parents[1] / name for name in set(re.findall(r"\.\./([\w-]+)/", file.read_text())))]:
+            (here.parent / source.name).mkdir(parents=True, exist_ok=True)
+            for other in source.iterdir():
+                if other.is_file() and other.stat().st_size < 5e7:
+                    shutil.copy(other, here.parent / source.name)
         dt = yaml.safe_load(file.read_text())["simulation"]["time-step"]
         code, output = couple(here, file.name, [f"simulation.end-time={dt}", "simulation.checkpoint.interval=0 s"])
         name = f"{file.parent.name}/{file.name}"
