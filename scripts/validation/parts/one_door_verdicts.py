@@ -17,5 +17,5 @@ BARS = [
     Bar("compressibility: Mach number, compliance over the stroke and time of waves each fire beyond and are silent below their limits", "pass",
         gtests("unit_effects", "judged_by_what_it_does", "is_that_of_a_key", "fluctuations_of_a_harmonic_motion", "walls_at_rest")),
     Bar("work of the two sides half apart, energy out of nothing as large as what was given: useless, and not before", "pass",
-        gtests("coupling_unit", "half_of_the_work_is_apart")),
+        gtests("unit_coupler", "half_of_the_work_is_apart")),
 ]

@@ -52,7 +52,7 @@ def couple(folder, file, sets):
         program = keys["program"]
         words += [":", "-n", "1"]
         if program in GUESTS:
-            if GUESTS[program] is None:
+            if GUESTS[program] is None or subprocess.run(["/usr/bin/python3", "-c", "import mpi4py"], capture_output=True).returncode != 0:
                 return None, ""
             words += GUESTS[program]
         else:
@@ -98,7 +98,7 @@ def shipped(folder):
         code, output = couple(here, file.name, [f"simulation.end-time={dt}", "simulation.checkpoint.interval=0 s"])
         name = f"{file.parent.name}/{file.name}"
         if code is None and not output:
-            print(f"skipped  {name}: needs a program that only its own launcher starts")
+            print(f"skipped  {name}: needs a program that only its own launcher starts, or mpi4py")
             continue
         found = re.findall("|".join(map(re.escape, FINDINGS)), output)
         check(f"{name}: starts, no finding", code == 0 and not found, f"code {code}, {found}\n{output[-2500:]}")
