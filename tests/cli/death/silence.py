@@ -32,7 +32,7 @@ for timeout in (None, "0 s", "1 h"):
     scenario(f"a wait in a circle, hang-timeout {timeout or 'by default'}", "fluid:solve:4:0:wait", timeout, 1, circle, seconds=15,
              within=10.0, not_lines=["was killed"])
 scenario("a wait in a circle before the first step", "fluid:initialise:2:0:wait", None, 1, [circle[0]], seconds=15, within=10.0)
-scenario("no sign of life: named", "solid:solve:4:0:hang", "3 s", 1, ["participant 'solid' (rank 0, ", "hangs; last heard of in solve"],
+scenario("no sign of life: named", "solid:solve:4:0:hang", "3 s", 1, ["participant 'solid' (rank ", "hangs; last heard of in solve"],
          not_lines=["participant 'fluid'", "participant 'coupler'"])
 scenario("stopped: named", "solid:solve:4:1:stop", "1 s", 1, ["participant 'solid' (rank 1, ", "is stopped (as by SIGSTOP)"])
 scenario("seven seconds of work with signs of life: no hang, no circle", "fluid:solve:4:0:work", "3 s", 0, ["t=1/1 s  step 10"],
