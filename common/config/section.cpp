@@ -73,36 +73,7 @@ Key& Key::doc(std::string_view text) {
   return *this;
 }
 
-Key Section::value(std::string_view name, double& target) { return slot_key(visitor_, name, &target); }
-Key Section::value(std::string_view name, int& target) { return slot_key(visitor_, name, &target); }
-Key Section::value(std::string_view name, bool& target) { return slot_key(visitor_, name, &target); }
-Key Section::value(std::string_view name, std::string& target) { return slot_key(visitor_, name, &target); }
-Key Section::value(std::string_view name, ExpressionText& target) {
-  return slot_key(visitor_, name, &target);
-}
-Key Section::value(std::string_view name, Vec3& target) { return slot_key(visitor_, name, &target); }
-Key Section::value(std::string_view name, std::vector<double>& target) {
-  return slot_key(visitor_, name, &target);
-}
-Key Section::value(std::string_view name, std::vector<std::string>& target) {
-  return slot_key(visitor_, name, &target);
-}
-Key Section::value(std::string_view name, std::vector<ExpressionText>& target) {
-  return slot_key(visitor_, name, &target);
-}
-Key Section::value(std::string_view name, std::optional<double>& target) {
-  return slot_key(visitor_, name, &target);
-}
-Key Section::value(std::string_view name, std::optional<std::string>& target) {
-  return slot_key(visitor_, name, &target);
-}
-Key Section::value(std::string_view name, std::optional<ExpressionText>& target) {
-  return slot_key(visitor_, name, &target);
-}
-
-Key Section::value(std::string_view name, std::map<std::string, double>& target) {
-  return slot_key(visitor_, name, &target);
-}
+Key Section::value_of(std::string_view name, const Slot& slot) { return slot_key(visitor_, name, slot); }
 
 Key Section::choice_by_name(std::string_view name, const std::vector<std::string>& words,
                             const std::string& current, std::function<void(const std::string&)> set) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <concepts>
 #include <functional>
 #include <limits>
 #include <map>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "common/base/types.hpp"
@@ -67,6 +69,18 @@ struct ExpressionText {
   std::string text = "0";
 };
 
+/// A word out of a fixed list, as a visitor sees the member that holds it.
+struct Word {
+  std::vector<std::string> words;
+  std::string current;  ///< empty if the member holds none of them
+  std::function<void(const std::string&)> set;
+};
+/// The member a key fills, seen by the visitors.
+using Slot = std::variant<double*, int*, bool*, std::string*, ExpressionText*, Vec3*, std::vector<double>*,
+                          std::vector<std::string>*, std::vector<ExpressionText>*, std::optional<double>*,
+                          std::optional<std::string>*, std::optional<ExpressionText>*,
+                          std::map<std::string, double>*, Word>;
+
 /// One mapping of the YAML file. Parameters are declared once, bound to the members they fill:
 ///
 ///   void declare(config::Section& s, SolidParameters& p) {
@@ -84,22 +98,14 @@ class Section {
   explicit Section(Visitor& visitor) : visitor_(visitor) {}
   Section(const Section&) = delete;
 
-  Key value(std::string_view name, double& target);
-  Key value(std::string_view name, int& target);
-  Key value(std::string_view name, bool& target);
-  Key value(std::string_view name, std::string& target);
-  Key value(std::string_view name, ExpressionText& target);
-  Key value(std::string_view name, Vec3& target);  ///< list of 2 or 3 numbers
-  Key value(std::string_view name, std::vector<double>& target);
-  Key value(std::string_view name, std::vector<std::string>& target);
-  Key value(std::string_view name, std::vector<ExpressionText>& target);
-  /// optional<T>: stays empty when the key is absent.
-  Key value(std::string_view name, std::optional<double>& target);
-  Key value(std::string_view name, std::optional<std::string>& target);
-  Key value(std::string_view name, std::optional<ExpressionText>& target);
-
-  /// Numbers under names of the user's choice: {nr: 16, nz: 8}.
-  Key value(std::string_view name, std::map<std::string, double>& target);
+  /// A key that fills `target`, a member of one of Slot's types: a number, a word, an expression, Vec3 (a list of 2 or 3
+  /// numbers), a list; std::optional stays empty when the key is absent; std::map holds numbers under names of the user's
+  /// choice, e.g. {nr: 16, nz: 8}.
+  template <class T>
+    requires std::constructible_from<Slot, T*>
+  Key value(std::string_view name, T& target) {
+    return value_of(name, &target);
+  }
 
   /// A word out of a fixed list.
   template <class E>
@@ -173,6 +179,7 @@ class Section {
   void doubt(const std::function<std::string()>& rule, std::string_view key);
 
  private:
+  Key value_of(std::string_view name, const Slot& slot);
   Key choice_by_name(std::string_view name, const std::vector<std::string>& words, const std::string& current,
                      std::function<void(const std::string&)> set);
   void optional_by_name(std::string_view name, bool present, std::string_view doc, const Declare& declare);

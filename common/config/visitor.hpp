@@ -5,23 +5,11 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "common/config/section.hpp"
 
 namespace couplet::config {
-
-/// The member a key fills, seen by the visitors.
-struct Word {
-  std::vector<std::string> words;
-  std::string current;  ///< empty if the member holds none of them
-  std::function<void(const std::string&)> set;
-};
-using Slot = std::variant<double*, int*, bool*, std::string*, ExpressionText*, Vec3*, std::vector<double>*,
-                          std::vector<std::string>*, std::vector<ExpressionText>*, std::optional<double>*,
-                          std::optional<std::string>*, std::optional<ExpressionText>*,
-                          std::map<std::string, double>*, Word>;
 
 /// What is done with declarations; Section forwards everything it is told.
 class Visitor {
