@@ -29,8 +29,14 @@ void find_box(MPI_Comm comm, const std::vector<const Side*>& sides, SurfaceFacts
 
 std::string text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
 
-/// Participants that exchange a motion, directly or through others, as positions in `sides`: those that give it and those
-/// that take it. The mesh mover is none of them.
+/// Whoever takes a motion and gives no load (a heater on one side of a flap) covers as much of the surface as it likes.
+bool gives_load(const Side& side) {
+  return std::ranges::any_of(side.interface.gives,
+                             [](const Interface::Datum& d) { return d.unit == "N" || d.unit == "Pa"; });
+}
+
+/// Participants that exchange load and motion, directly or through others, as positions in `sides`: those that give the
+/// motion and those that take it. The mesh mover is none of them.
 struct Group {
   std::set<std::size_t> givers, takers;
 };
@@ -38,6 +44,7 @@ std::vector<Group> groups_of(const std::vector<Side>& sides, const Links& links,
   std::vector<Group> groups;
   for (const auto& link : links.all()) {
     if (link.datum.name != "displacement" || sides[link.taker].name == schedule.mover) continue;
+    if (!gives_load(sides[link.taker])) continue;
     Group joined{{link.giver}, {link.taker}};
     std::erase_if(groups, [&](const Group& g) {
       const bool shares = g.givers.contains(link.giver) || g.takers.contains(link.taker);

@@ -121,6 +121,25 @@ TEST(Surfaces, doubts_are_counted_and_a_mover_that_holds_a_wall_is_refused) {
   }
 }
 
+TEST(Surfaces, who_follows_the_motion_and_gives_no_load_may_cover_a_part) {
+  MappingParameters nearest;
+  nearest.type = MappingParameters::Type::nearest;
+  Interface one_side = tests::flap(20, 2, -1);
+  one_side.face_centres.resize(20), one_side.face_areas.resize(20), one_side.face_offset.resize(21),
+      one_side.face_vertices.resize(40);
+  one_side.vertices.resize(21);
+  const auto doubts = [&](const Data& gives) {
+    const std::vector<Side> sides{side("fluid", tests::flap(20, 2, -1), motion, loads),
+                                  side("solid", tests::flap(40, 4, 1), loads, motion),
+                                  side("heater", one_side, {motion[0]}, gives)};
+    const int before = log::doubts();
+    compare_surfaces(MPI_COMM_SELF, sides, Links(MPI_COMM_SELF, sides, nearest), Schedule());
+    return log::doubts() - before;
+  };
+  EXPECT_EQ(doubts({{"temperature", "K", Place::faces, 1}}), 0);
+  EXPECT_EQ(doubts(loads), 1);
+}
+
 TEST(StillGuard, ten_steps_of_load_without_motion_are_flagged_once) {
   const std::vector<Side> sides{side("fluid", tests::flap(2, 1, -1), motion, loads),
                                 side("solid", tests::flap(2, 1, 1), loads, motion)};
