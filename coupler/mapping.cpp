@@ -50,7 +50,7 @@ std::string without_twin(MPI_Comm comm, const PointSet& set, const std::vector<N
                         lone[i].point.y(), lone[i].point.z(), lone[i].distance);
   if (all > 5) list += fmt::format("\n  and {} more", all - 5);
   const GlobalIndex n = count(comm, set), m = count(comm, other);
-  return fmt::format("{} of {} {} have no twin among the {} {} within {:.3g} m:{}", all, n, set.what, m,
+  return fmt::format("{} of {} {} match none of the {} {} within {:.3g} m:{}", all, n, set.what, m,
                      other.what, tolerance, list);
 }
 

@@ -15,7 +15,7 @@ std::string cost_text(const EffectCost& cost) {
     text += fmt::format("{}{:g} B a cell", text.empty() ? "" : "; ", cost.bytes_a_cell);
   if (cost.share_of_step > 0)
     text += fmt::format("{}{:+.0f} % of a step", text.empty() ? "" : "; ", 100 * cost.share_of_step);
-  return text.empty() ? "nothing to speak of" : text;
+  return text.empty() ? "negligible" : text;
 }
 
 }  // namespace

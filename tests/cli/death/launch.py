@@ -54,7 +54,7 @@ suite.scenario("role of nobody", mpmd(coupler, piston, spring),
                ["coupling.structure.participant: there is no participant 'soild'. Did you mean 'solid'?"])
 suite.scenario("points that do not match", mpmd(coupler, piston, spring),
                {"case.yaml": case_text(fluid=", shift: 0.01 m")}, 2,
-               ["2 of 2 vertices of 'fluid' have no twin among the 2 vertices of 'solid'",
+               ["2 of 2 vertices of 'fluid' match none of the 2 vertices of 'solid'",
                 "(1, 0.01, 0): the nearest is 0.01 m away"])
 suite.scenario("folder of a running job",
                ["sh", "-c", "toy_spring long.yaml --participant solid > /dev/null & sleep 1; "

@@ -56,14 +56,14 @@ TEST(MatchedMapping, names_points_without_a_twin) {
   PointSet to = line("vertices of 'fluid'", 5);
   to.points[3] += Vec3(0.05, 0.02, 0);
   EXPECT_EQ(message(line("vertices of 'solid'", 5), to, {}),
-            "1 of 5 vertices of 'fluid' have no twin among the 5 vertices of 'solid' within 1e-06 m:\n"
+            "1 of 5 vertices of 'fluid' match none of the 5 vertices of 'solid' within 1e-06 m:\n"
             "  (0.8, 0.02, 0): the nearest is 0.0539 m away\n"
             "Give both meshes the same points on the interface, or set `coupling.mapping.type: projection`.");
 }
 
 TEST(MatchedMapping, names_points_that_only_the_other_side_lacks) {
   EXPECT_THAT(message(line("vertices of 'solid'", 9), line("vertices of 'fluid'", 5), {}),
-              testing::StartsWith("4 of 9 vertices of 'solid' have no twin among the 5 vertices of 'fluid'"));
+              testing::StartsWith("4 of 9 vertices of 'solid' match none of the 5 vertices of 'fluid'"));
 }
 
 TEST(MatchedMapping, names_five_points_at_most) {
