@@ -173,7 +173,8 @@ void declare(config::Section& section, MappingParameters& p) {
       .unit("m")
       .plausible(1e-15, 1)
       .positive()
-      .doc("matching vertices are no further apart than this; by default a millionth of the interface's extent");
+      .doc(
+          "matching vertices are no further apart than this; by default a millionth of the interface's extent");
 }
 
 }  // namespace

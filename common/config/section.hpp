@@ -102,8 +102,7 @@ class Section {
   /// numbers), a list; std::optional stays empty when the key is absent; std::map holds numbers under names of the user's
   /// choice, e.g. {nr: 16, nz: 8}.
   template <class T>
-    requires std::constructible_from<Slot, T*>
-  Key value(std::string_view name, T& target) {
+  requires std::constructible_from<Slot, T*> Key value(std::string_view name, T& target) {
     return value_of(name, &target);
   }
 

@@ -137,7 +137,7 @@ TEST(Surfaces, who_follows_the_motion_and_gives_no_load_may_cover_a_part) {
     return log::doubts() - before;
   };
   EXPECT_EQ(doubts({{"temperature", "K", Place::faces, 1}}), 0);
-  EXPECT_EQ(doubts(loads), 1);
+  EXPECT_EQ(doubts({{"magnetic-force", "N", Place::faces}}), 1);
 }
 
 TEST(StillGuard, ten_steps_of_load_without_motion_are_flagged_once) {
