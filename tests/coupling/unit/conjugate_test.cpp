@@ -265,6 +265,39 @@ TEST(ConjugateMaps, a_uniform_pressure_stays_uniform_on_a_finer_structure) {
   RecordProperty("largest_over_mean", fmt::format("{:.4f}", worst));
 }
 
+Interface stretched(Interface s, const Vec3& by) {
+  for (Vec3& v : s.vertices) v = v.cwiseProduct(by);
+  for (Vec3& c : s.face_centres) c = c.cwiseProduct(by);
+  for (Vec3& area : s.face_areas) area = by.prod() * area.cwiseQuotient(by);
+  return s;
+}
+
+TEST(ConjugateMaps, faces_that_nothing_covers_move_with_what_is_nearest_and_no_load_is_lost) {
+  const Pair uncovered[] = {
+      {"flap, a fluid beyond its foot", flap(20, 4, 1), stretched(flap(24, 3, -1), {1, 1.4, 1})},
+      {"flap, a fluid that is cut by its end", flap(20, 4, 1), stretched(flap(7, 3, -1), {1, 0.93, 1})},
+      {"plate, a fluid beyond its edges", plate(5, false, 1), stretched(plate(7, false, -1), {1.4, 1.3, 1})},
+      {"plate, triangles beyond its edges", plate(6, true, 1), stretched(plate(4, true, -1), {1.4, 1.9, 1})},
+      {"plate, a structure on one side of it", plate(6, false, 1), sheet(4, false, -1)}};
+  for (const Pair& p : uncovered)
+    for (const Type type : second_order) {
+      const Coupled c(p, type);
+      const Interface &fluid = c.sides[0].interface, &solid = c.sides[1].interface;
+      const int dim = p.fluid.dim;
+      const auto moved = c.moved(at(solid.vertices, dim, [](const Vec3&) { return Vec3(1, -2, 3); })),
+                 wanted = at(fluid.vertices, dim, [](const Vec3&) { return Vec3(1, -2, 3); });
+      for (std::size_t i = 0; i < moved.size(); ++i)
+        ASSERT_NEAR(moved[i], wanted[i], 1e-11) << p.name << " " << int(type);
+      const auto f = random_values(fluid.face_centres.size() * std::size_t(dim), 6),
+                 u = random_values(solid.vertices.size() * std::size_t(dim), 7), by_u = c.moved(u);
+      for (const double v : by_u) ASSERT_LT(std::abs(v), 20) << p.name << " " << int(type);
+      const Balance given = Balancing(world, c.sides[0])({{"pressure-force", f}}, load, by_u),
+                    taken = Balancing(world, c.sides[1])({{"pressure-force", c.loaded(f)}}, load, u);
+      EXPECT_NEAR(given.work, taken.work, 1e-11 * std::abs(given.work)) << p.name << " " << int(type);
+      EXPECT_LT((given.force - taken.force).norm(), 1e-11 * size(f)) << p.name << " " << int(type);
+    }
+}
+
 TEST(ConjugateMaps, a_motion_given_at_faces_and_a_load_taken_at_vertices_are_conjugate_too) {
   for (const Type type : second_order)
     for (const auto& [moves, takes] :

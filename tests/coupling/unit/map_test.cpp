@@ -112,6 +112,17 @@ TEST(Maps, keep_force_and_moment) {
   RecordProperty("moment", fmt::format("{:.1e}", worst_moment));
 }
 
+TEST(Maps, keep_force_and_moment_where_a_side_lists_no_corners) {
+  for (Pair& p : pairs()) {
+    p.structure.face_offset.clear(), p.structure.face_vertices.clear();
+    const Mapping map(Kind::conservative, faces_of(p.fluid), faces_of(p.structure), of_type(Type::rbf));
+    const auto given = force_and_moment(p.fluid, forces(p.fluid));
+    const auto taken = force_and_moment(p.structure, map.apply(forces(p.fluid), 3));
+    EXPECT_LT((taken - given).head<3>().norm() / given.head<3>().norm(), 1e-12) << p.name;
+    EXPECT_LT((taken - given).tail<3>().norm() / given.tail<3>().norm(), 1e-10) << p.name;
+  }
+}
+
 TEST(Maps, the_nearest_face_does_not_keep_the_moment) {
   const Interface structure = flap(17, 3, 1), fluid = flap(20, 4, -1);
   const Mapping map(Kind::conservative, faces_of(fluid), faces_of(structure), of_type(Type::nearest));
