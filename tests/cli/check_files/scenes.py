@@ -2,9 +2,12 @@
 """Which keys of which program name files, a scene with each, a right file and broken ones."""
 import gzip
 import pathlib
+import sys
 from dataclasses import dataclass, field
 
 WRONG = pathlib.Path(__file__).resolve().parents[1] / "wrong"
+sys.path.insert(0, str(WRONG))
+from plate_table import OF_MESH  # noqa: E402
 
 
 @dataclass
@@ -122,15 +125,6 @@ BLANKET = """    element: insulation
 FILE = "    ambient: {type: file, file: w.csv}\n"
 AIR = ("    ambient: {type: smooth-days, latitude: 37, daily-sums: [1e7, 1e7, 1e7, 1e7, 1e7, 1e7, 1e7, 1e7, 1e7, 1e7, 1e7, 1e7], "
        "air: w.csv}\n")
-OF_MESH = """    mesh: square.msh
-    material: {density: 1000, youngs-modulus: 1 GPa, poissons-ratio: 0.3}
-    thickness: 1 cm
-    boundaries:
-      bottom: {type: clamped}
-      top: {type: free}
-      left: {type: free}
-      right: {type: free}
-"""
 
 
 def of_table(program, key, base, old, new, word=""):

@@ -1,13 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wrong plates; joined by table.py."""
 
-
-def cases(Case, run):
-    """The right ones and the wrong ones."""
-    def plate(name, message, *edits, **more):
-        return Case(name, "plate_modal", message, "plate", list(edits), **more)
-
-    of_mesh = """    mesh: square.msh
+# Of plate.yaml: what modes of a file take the place of.
+OF_MESH = """    mesh: square.msh
     material: {density: 1000, youngs-modulus: 1 GPa, poissons-ratio: 0.3}
     thickness: 1 cm
     boundaries:
@@ -17,9 +12,15 @@ def cases(Case, run):
       right: {type: free}
 """
 
+
+def cases(Case, run):
+    """The right ones and the wrong ones."""
+    def plate(name, message, *edits, **more):
+        return Case(name, "plate_modal", message, "plate", list(edits), **more)
+
     def file_alone(name, more=""):
         """Edits: the modes of a file in place of a mesh and what goes with it."""
-        return [(of_mesh, more), ("modes: {number: 3}", f"modes: {{file: {name}}}")]
+        return [(OF_MESH, more), ("modes: {number: 3}", f"modes: {{file: {name}}}")]
 
     def of_no_use(key, line, reason, column=5):
         return plate(f"'{key}' beside modes of a file", f"""
