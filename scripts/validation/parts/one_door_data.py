@@ -33,10 +33,9 @@ def fuzz(name, test, count):
 
 def sanitized(job):
     """The same programs of the sanitizers' build, at full count."""
-    build, lines, good = trust_house.sanitizer_build(job), [], True
+    lines, good = [], True
     for name, count in (("fuzz_hdf5", 2000), ("fuzz_messages", 5000)):
-        program = next(p for p in (build / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK))
-        folder = job.scratch / f"asan-{name}"
+        program, folder = trust_house.sanitizer_test(job, name), job.scratch / f"asan-{name}"
         result = trust_house.watched(job, folder, [f"COUPLET_FUZZ_COUNT={count}", program], 3 * 3600, cwd=job.scratch)
         found = trust_house.reports(folder)
         lines.append(f"{name}: {count} a test, code {result.returncode}, {len(found)} kinds of reports" + (f": {found[0]}" if found else ""))

@@ -61,8 +61,7 @@ def check_files(what, least):
 
 def sanitized(job):
     """The same program of the sanitizers' build."""
-    build, folder = trust_house.sanitizer_build(job), job.scratch / "asan-fuzz_tables"
-    program = next(p for p in (build / "tests").rglob("fuzz_tables") if p.is_file() and os.access(p, os.X_OK))
+    program, folder = trust_house.sanitizer_test(job, "fuzz_tables"), job.scratch / "asan-fuzz_tables"
     result = trust_house.watched(job, folder, ["COUPLET_FUZZ_COUNT=2000", program], 3 * 3600, cwd=job.scratch)
     found = trust_house.reports(folder)
     return (f"2000 files a test, code {result.returncode}, {len(found)} kinds of reports" + (f": {found[0]}" if found else ""),

@@ -74,11 +74,23 @@ def documented(job):
     return "docs/quickstart.md, 'A case is code'", "## A case is code" in text and "--allow-commands" in text
 
 
+def sanitizer_folder(job):
+    return pathlib.Path(os.environ.get("COUPLET_ASAN_BUILD", job.root / "build-asan"))
+
+
 def sanitizer_build(job):
-    folder = pathlib.Path(os.environ.get("COUPLET_ASAN_BUILD", job.root / "build-asan"))
+    folder = sanitizer_folder(job)
     if not (folder / "bin/fluid_solver").exists():
         raise FileNotFoundError(f"there is no {SANITIZER}")
     return folder
+
+
+def sanitizer_test(job, name):
+    """A test program of the sanitizers' build, of which no more than that needs to be built."""
+    program = next((p for p in (sanitizer_folder(job) / "tests").rglob(name) if p.is_file() and os.access(p, os.X_OK)), None)
+    if program is None:
+        raise FileNotFoundError(f"there is no {name} in {SANITIZER}")
+    return program
 
 
 def reports(folder):
