@@ -5,6 +5,6 @@ from validation.parts.trust_runs import script
 
 BARS = [
     Bar("shipped cases with --strict=effects: every finding is defended in docs/findings.md, none is `wrong`", "0 not defended, 0 wrong",
-        script("tests/cli/alarms/run.py", "{bin}", "{root}"), long=True,
+        script("tests/cli/alarms/run.py", "{bin}", "{root}", "--json", "{bin}/../alarms.json"), long=True,
         but="cases that take longer than 40 s are stopped by a signal there, and their findings until then count"),
 ]
