@@ -29,13 +29,11 @@ void declare(config::Section& s, MethodParameters& m) {
             {"corrected", FaceGradient::corrected},
             {"symmetric", FaceGradient::symmetric}})
       .doc(
-          "displacement gradient at the faces; thesis: locks in bending with few or long cells; corrected: "
-          "does not, at two to three times the work, but undamped motion grows sooner with short steps; "
-          "symmetric: "
-          "from an energy, so that nothing grows on any mesh, by conjugate gradients; "
-          "auto: "
-          "corrected in static analyses, thesis in dynamic ones, and symmetric with 'volume-strain: cells' or 'shared' and from "
-          "nu = 0.4 up");
+          "displacement gradient at the faces; symmetric: from an energy, so that it neither locks in bending nor lets motion "
+          "grow on any mesh, by conjugate gradients; thesis: the source's, which locks in bending with few or long cells; "
+          "corrected: the thesis's with second-order corrections, which does not, but undamped motion grows sooner with short "
+          "steps; auto: symmetric in static analyses, with 'volume-strain: cells' or 'shared' and from nu = 0.4 up, thesis in other "
+          "dynamic ones and with 'zero-normal-gradient', 'type: segregated' or 'block-coupled'");
   using VolumeStrain = MethodParameters::VolumeStrain;
   s.choice("volume-strain", m.volume_strain,
            {{"auto", VolumeStrain::automatic},

@@ -13,6 +13,10 @@ namespace {
 
 constexpr std::array<const char*, 3> axis{"x", "y", "z"};
 
+bool is_stress(std::string_view field) {
+  return field == "stress" || field == "equivalent-stress" || field == "principal-stress";
+}
+
 /// A field that an effect keeps at points; its name and unit are the effect's.
 OutputField effect_field(const SolidBody& body, const std::string& name) {
   std::vector<OutputField> fields;
@@ -32,6 +36,18 @@ SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : bo
     for (const std::string& field : chosen.fields) add_columns(name, field);
   }
   doubt_mesh_scale(body.mesh(), places);
+  stressed_ = points_with_stress();
+}
+
+std::vector<std::uint8_t> SolidProbes::points_with_stress() const {
+  const IndexMap& points = body_.mesh().points;
+  std::vector<double> flags(std::size_t(points.n_local()), 0);
+  for (const Watched& watched : probes_)
+    if (std::ranges::any_of(watched.fields, is_stress))
+      for (const Index v : watched.probe.points()) flags[std::size_t(v)] = 1;
+  points.add_to_owners(flags);
+  points.update_ghosts(flags);
+  return {flags.begin(), flags.end()};
 }
 
 void SolidProbes::add_columns(const std::string& probe, const std::string& field) {
@@ -71,7 +87,7 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
   if (any_watches({"velocity"})) velocity = derived_.point_velocity();
   if (any_watches({"acceleration"})) acceleration = derived_.point_acceleration();
   if (any_watches({"stress", "equivalent-stress", "principal-stress"}))
-    stress = derived_.point_stress(points);
+    stress = derived_.point_stress(points, stressed_);
   if (any_watches({"strain"})) strain = derived_.point_strain(points);
   for (const Watched& watched : probes_) {
     for (const std::string& field : watched.fields) {
@@ -84,7 +100,7 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
         values = watched.probe.sample(acceleration, dim);
       } else if (field == "strain") {
         values = watched.probe.sample(strain, tensor_size);
-      } else if (field == "stress" || field == "equivalent-stress" || field == "principal-stress") {
+      } else if (is_stress(field)) {
         values = watched.probe.sample(stress, tensor_size);
         // Of the interpolated tensor; other ranks hold nothing.
         if (field == "equivalent-stress" && !values.empty()) values = {equivalent_stress(unpack(values))};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,10 +32,14 @@ class SolidProbes {
   void add_columns(const std::string& probe, const std::string& field);
   bool any_watches(std::initializer_list<const char*> fields) const;
 
+  /// Flags of the local points from which stresses are watched, on all ranks that share them. Collective.
+  std::vector<std::uint8_t> points_with_stress() const;
+
   const SolidBody& body_;
   const SolidFields& derived_;
   std::vector<Watched> probes_;
   std::vector<std::string> columns_;
+  std::vector<std::uint8_t> stressed_;
 };
 
 }  // namespace couplet

@@ -29,6 +29,19 @@ bool has_loose_vertex(const Mesh& mesh, const ElasticOperator& elastic) {
   return false;
 }
 
+/// Left to the program, the symmetric gradient steps aside where it would lose a part of the reaction.
+FaceGradientScheme scheme_for(const Mesh& mesh, const SolidParameters& parameters,
+                              const ElasticOperator& elastic) {
+  const FaceGradientScheme scheme = face_gradient_scheme(parameters);
+  const bool free_to_choose = parameters.method.face_gradient == MethodParameters::FaceGradient::automatic &&
+                              !has_finite_strain(parameters) && !has_orthotropic(parameters) &&
+                              !elastic.volume_by_cells();
+  if (free_to_choose && scheme == FaceGradientScheme::symmetric &&
+      any(mesh.comm, has_loose_vertex(mesh, elastic)))
+    return FaceGradientScheme::thesis;
+  return scheme;
+}
+
 }  // namespace
 
 SolidBody::SolidBody(Mesh mesh, SolidParameters parameters)
@@ -37,7 +50,7 @@ SolidBody::SolidBody(Mesh mesh, SolidParameters parameters)
       materials_(materials_of(parameters_)),
       boundaries_(mesh_, parameters_),
       elastic_(mesh_, boundaries_.elastic(), elastic_body(parameters_, mesh_)),
-      kernel_(mesh_, elastic_, face_gradient_scheme(parameters_)),
+      kernel_(mesh_, elastic_, scheme_for(mesh_, parameters_, elastic_)),
       prescribed_(mesh_, boundaries_, elastic_) {
   check_supports();
   if (has_finite_strain(parameters_)) make_finite();
@@ -74,12 +87,12 @@ void SolidBody::find_mass() {
     throw Error(
         "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no "
         "energy, so that "
-        "this gradient cannot have it; use 'symmetry' or 'frictionless', or 'face-gradient: corrected'.");
+        "this gradient cannot have it; use 'symmetry' or 'frictionless', or 'face-gradient: thesis'.");
   if (kernel_.is_symmetric() && any(mesh_.comm, has_loose_vertex(mesh_, elastic_)))
     throw Error(
         "solution-method.face-gradient: symmetric: a part of a patch holds components of the displacement and ends "
         "at vertices that it does not hold; there this gradient would lose a part of the reaction. Give the part a "
-        "patch of its own, hold all components, or take 'face-gradient: corrected'.");
+        "patch of its own, hold all components, or take 'face-gradient: thesis'.");
   if (!kernel_.is_symmetric() && largest_poissons_ratio(parameters_) > most_poissons_ratio)
     throw Error(
         "material.poissons-ratio: {:g} is beyond {:g}, up to which 'face-gradient: thesis' and 'corrected' "

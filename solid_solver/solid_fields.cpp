@@ -90,11 +90,67 @@ const PointTensors& SolidFields::point_tensors() const {
   return *point_tensors_;
 }
 
-std::vector<double> SolidFields::point_stress(std::span<const double> points) const {
-  std::vector<Tensor3> faces = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
+/// Of the boundary faces of owned cells, small strain: tractions as the loads have them, no shear at planes of symmetry.
+std::vector<SurfaceTraction> SolidFields::known_tractions() const {
+  const std::vector<double> forces = loads_now().faces;
+  std::vector<SurfaceTraction> result(std::size_t(mesh_.boundary.n_owned()));
+  for (std::size_t b = 0; b < result.size(); ++b) {
+    const Index f = mesh_.n_interior + Index(b);
+    const double area = mesh_.reference.face_area[f].norm();
+    SurfaceTraction& known = result[b];
+    switch (elastic_.condition(f)) {
+      case ElasticCondition::traction:
+        known.projector = Tensor3::Identity();
+        break;
+      case ElasticCondition::symmetry: {
+        const Vec3 n = mesh_.reference.face_area[f] / area;
+        known.projector -= n * n.transpose() - Tensor3::Identity();
+        known.symmetry = true;
+        continue;
+      }
+      case ElasticCondition::support:
+        if (elastic_.support(f).spring.isZero(0))
+          known.projector = Tensor3::Identity() - elastic_.support(f).known;
+        break;
+      default:
+        continue;
+    }
+    Vec3 force = Vec3::Zero();
+    for (int a = 0; a < mesh_.dim; ++a) force[a] = forces[b * std::size_t(mesh_.dim) + std::size_t(a)];
+    known.traction = known.projector * force / area;
+  }
+  return result;
+}
+
+DiscreteStress SolidFields::discrete_stress(std::span<const double> points) const {
+  DiscreteStress found{cell_stress(points),
+                       face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points),
+                       {},
+                       {},
+                       state_.cell_u,
+                       state_.face_u,
+                       known_tractions()};
+  if (body_.effects().empty()) return found;
+  found.other_in_cells.assign(found.cells.size(), Tensor3::Zero());
+  found.other_on_faces.assign(found.faces.size(), Tensor3::Zero());
+  for (const auto& effect : body_.effects()) {
+    effect->add_cell_stress(found.other_in_cells);
+    effect->add_face_stress(mesh_.n_interior, found.other_on_faces);
+  }
+  return found;
+}
+
+std::vector<double> SolidFields::point_stress(std::span<const double> points,
+                                              std::span<const std::uint8_t> wanted) const {
+  if (body_.finite()) {
+    const std::vector<Tensor3> faces = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
+    return point_tensors().interpolate(cell_stress(points), faces);
+  }
+  if (!recovery_) recovery_ = std::make_unique<StressRecovery>(mesh_, elastic_);
+  std::vector<double> stress = recovery_->at_points(discrete_stress(points), wanted);
   if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
-    for (Tensor3& s : faces) s(2, 2) = 0;
-  return point_tensors().interpolate(cell_stress(points), faces);
+    for (std::size_t i = 2; i < stress.size(); i += tensor_size) stress[i] = 0;
+  return stress;
 }
 
 std::vector<double> SolidFields::point_strain(std::span<const double> points) const {

@@ -10,6 +10,7 @@
 #include "solid_solver/solid_body.hpp"
 #include "solid_solver/solid_state.hpp"
 #include "solid_solver/stress.hpp"
+#include "solid_solver/stress_recovery.hpp"
 
 namespace couplet {
 
@@ -30,9 +31,11 @@ class SolidFields final {
   std::vector<double> point_velocity() const;
   /// Needs wants_acceleration().
   std::vector<double> point_acceleration() const;
-  /// Packed symmetric tensors (see stress.hpp) of all local points, interpolated from those in the cells and on
-  /// the boundary faces.
-  std::vector<double> point_stress(std::span<const double> points) const;
+  /// Packed symmetric tensors (see stress.hpp) of all local points: at small strain recovered from patches of cells
+  /// (StressRecovery), else interpolated from those in the cells and on the boundary faces. `wanted`: flags of local
+  /// points, empty: all; others may hold anything.
+  std::vector<double> point_stress(std::span<const double> points,
+                                   std::span<const std::uint8_t> wanted = {}) const;
   std::vector<double> point_strain(std::span<const double> points) const;
   /// Stress of the local faces first, first + 1, ... (`count` of them) [Pa].
   std::vector<Tensor3> face_stress(Index first, Index count, std::span<const double> points) const;
@@ -57,6 +60,8 @@ class SolidFields final {
   std::vector<double> known_acceleration() const;
   std::vector<Tensor3> cell_gradient(std::span<const double> points) const;
   const PointTensors& point_tensors() const;
+  std::vector<SurfaceTraction> known_tractions() const;
+  DiscreteStress discrete_stress(std::span<const double> points) const;
   std::vector<PatchForce> reactions_by_trial_functions() const;
   ElasticLoads loads_now() const;
   // Of large strain, finite_fields.cpp.
@@ -71,6 +76,7 @@ class SolidFields final {
   const SolidParameters& parameters_;
   const ElasticOperator& elastic_;
   mutable std::unique_ptr<PointTensors> point_tensors_;  // made when first asked for
+  mutable std::unique_ptr<StressRecovery> recovery_;     // likewise
 };
 
 }  // namespace couplet

@@ -21,6 +21,12 @@ using Preconditioner = MethodParameters::Preconditioner;
 
 // Cells up to which factors kept for all steps win: in the plane they stay thin, in space they fill quickly.
 constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 1500;
+// The symmetric gradient's matrix is several times as wide. A beam of 10:1, processor seconds of one solve and of 100
+// steps, factors for multigrid: 2-D 160 cells .05 for .06 and .10 for .20, 2560 .17 for .06 and .93 for 1.09, 16000 1.5
+// for .2 and 8.0 for 7.9; in space 80 hexahedra .11 for .04 and .36 for .25, 640 1.6 for .07 and 4.7 for 1.0, 480
+// tetrahedra 1.2 for .09 and 16 for 1.5: there factors never pay, in the plane for a motion alone. Bodies of few cells
+// have no coarser mesh.
+constexpr GlobalIndex wide_factors_in_motion = 20000, wide_factors_2d = 200, wide_factors_3d = 64;
 // In the plane, from so many cells up, steps in which a wave crosses less than a cell (heaviness 1) need so few iterations
 // that the factors cost more than they save: 9216 cells, 100 steps: 2.6 s of factors against 0.6, 1.0, 1.4 s at Courant
 // numbers of 0.1, 0.3, 1, in pairs; with 4096 cells factors still win. From about 3 up they win again, with any mesh.
@@ -56,6 +62,15 @@ bool is_easy(const SolidProblem& problem) {
          heaviness(problem) >= 1 && !wants_mixed_form(problem);
 }
 
+/// Of the symmetric gradient's matrix.
+bool factors_pay(const SolidProblem& problem, bool easy, bool small) {
+  if (any(problem.mesh.comm, !problem.mesh.cell_material.empty()))
+    return small;  // stiffnesses may be far apart
+  const GlobalIndex cells = problem.mesh.cells.n_global();
+  if (problem.mesh.dim == 3) return cells <= wide_factors_3d;
+  return cells <= (problem.is_static() || easy ? wide_factors_2d : wide_factors_in_motion);
+}
+
 /// Fills in what is left to the program; gives the reason.
 std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
   const GlobalIndex cells = problem.mesh.cells.n_global();
@@ -71,10 +86,13 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
           "solution-method: 'face-gradient: symmetric' is solved by conjugate gradients ('type: "
           "newton-krylov' or "
           "'auto'); 'segregated' and 'block-coupled' are those of 'face-gradient: thesis' and 'corrected'.");
-    if (parameters.preconditioner == Preconditioner::automatic)
-      parameters.preconditioner = small                       ? Preconditioner::factors
-                                  : wants_mixed_form(problem) ? Preconditioner::mixed
-                                                              : Preconditioner::multigrid;
+    if (parameters.preconditioner == Preconditioner::automatic) {
+      const bool mixed = wants_mixed_form(problem);
+      const bool direct = mixed ? small : factors_pay(problem, easy, small);
+      parameters.preconditioner = direct  ? Preconditioner::factors
+                                  : mixed ? Preconditioner::mixed
+                                          : Preconditioner::multigrid;
+    }
     parameters.type = Type::newton_krylov;
     return why;
   }
@@ -136,9 +154,9 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
                                             : ", thesis's face gradient";
   if (asked.face_gradient == MethodParameters::FaceGradient::automatic)
     method->name_ += problem.elastic.is_anisotropic() ? " (auto: orthotropic)"
-                     : problem.is_symmetric()         ? " (auto: nu from 0.4 up, or as 'volume-strain' asks)"
-                     : problem.is_static()            ? " (auto: static, where it errs less)"
-                                           : " (auto: dynamic, where the corrected one's growth is faster)";
+                     : problem.is_symmetric() ? " (auto: static, nu from 0.4 up, or as 'volume-strain' asks)"
+                     : problem.is_static()    ? " (auto: boundaries or solver have no energy)"
+                                              : " (auto: dynamic)";
   return method;
 }
 
@@ -159,11 +177,9 @@ FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters) {
   using VolumeStrain = MethodParameters::VolumeStrain;
   const bool asks_for_cells = parameters.method.volume_strain == VolumeStrain::cells ||
                               parameters.method.volume_strain == VolumeStrain::shared;
-  if ((asks_for_cells || largest_poissons_ratio(parameters) >= nearly_incompressible) &&
-      symmetric_suits(parameters))
-    return FaceGradientScheme::symmetric;
-  return parameters.analysis == SolidParameters::Analysis::static_ ? FaceGradientScheme::corrected
-                                                                   : FaceGradientScheme::thesis;
+  const bool wanted = parameters.analysis == SolidParameters::Analysis::static_ || asks_for_cells ||
+                      largest_poissons_ratio(parameters) >= nearly_incompressible;
+  return wanted && symmetric_suits(parameters) ? FaceGradientScheme::symmetric : FaceGradientScheme::thesis;
 }
 
 double norm(MPI_Comm comm, std::span<const double> values) {

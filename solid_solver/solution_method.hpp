@@ -55,10 +55,9 @@ class SolutionMethod {
 std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
                                                      const MethodParameters& parameters);
 
-/// The face gradient that the parameters ask for; `automatic`: the symmetric one from nu = 0.4 up
-/// (near_incompressible), where the others lock and pass through a pole; below that the corrected one, which
-/// errs less on every kind of cells, in static runs; the thesis's in dynamic ones, where the corrected one's
-/// complex eigenvalues grow 1.5 to 16 times as fast.
+/// The face gradient that the parameters ask for; `automatic`: the symmetric one, which does not lock, in static runs and,
+/// in dynamic ones, from nu = 0.4 up (nearly_incompressible), where the others pass through a pole; else the thesis's,
+/// as where the symmetric one cannot be (symmetric_suits()).
 FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters);
 
 /// Euclidean norm over all ranks.

@@ -49,7 +49,7 @@ const std::vector<Pair> pairs{
      .across = "0",
      .body = "120*t",
      .clamped_ends = true,
-     .least = 0.1},
+     .least = 0.08},
     {.name = "compressed_column",
      .size = {1, 0.1},
      .cells = {40, 4},
