@@ -57,6 +57,13 @@ std::span<const Index> corners(const Interface& surface, Index face) {
           std::size_t(surface.face_offset[face + 1] - surface.face_offset[face])};
 }
 
+double reach(const Interface& surface, Index face) {
+  double most = 0;
+  for (const Index v : corners(surface, face))
+    most = std::max(most, (surface.vertices[v] - surface.face_centres[face]).norm());
+  return most;
+}
+
 std::vector<double> corner_weights(const Interface& surface, Index face) {
   std::vector<Vec3> at;
   for (const Index v : corners(surface, face)) at.push_back(surface.vertices[v]);

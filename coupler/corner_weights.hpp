@@ -12,6 +12,9 @@ namespace couplet {
 /// Corners of a face, as positions in the surface's own list of vertices.
 std::span<const Index> corners(const Interface& surface, Index face);
 
+/// Distance of a face's farthest corner from its centre [m].
+double reach(const Interface& surface, Index face);
+
 /// Weights of a face's corners for the mean of a field over the face. They sum to 1 and carry linear fields to
 /// the centre that the participant gives: edges and triangles 1/n, faces of more corners by the areas of the
 /// triangles about the mean of their corners, with the least change that meets the centre.

@@ -12,15 +12,15 @@ namespace couplet {
 namespace {
 
 using P = CouplingParameters;
-using Acceleration = AccelerationParameters::Type;
-using Mapping = MappingParameters::Type;
+using AccelerationType = AccelerationParameters::Type;
+using MappingType = MappingParameters::Type;
 
 std::string when(bool on, const char* reason) { return on ? reason : ""; }
 bool iterates(const P& p) { return p.scheme != Scheme::explicit_; }
 /// Whether participants see the motion of the guess before the structure has given its own.
 bool predicts(const P& p) { return predictor_order_of(p) > 0; }
 bool is_quasi_newton(const P& p) {
-  return p.acceleration.type == Acceleration::iqn_ils || p.acceleration.type == Acceleration::iqn_mvj;
+  return p.acceleration.type == AccelerationType::iqn_ils || p.acceleration.type == AccelerationType::iqn_mvj;
 }
 
 // One pass a step holds while the guess that the load is of is not thrown over: a guess with velocity v^n returns
@@ -85,7 +85,7 @@ const std::array cards{
     CouplingCard{"relaxation by Aitken",
                  "`acceleration.type: aitken`",
                  [](const P& p) {
-                   return when(iterates(p) && p.acceleration.type == Acceleration::aitken,
+                   return when(iterates(p) && p.acceleration.type == AccelerationType::aitken,
                                "acceleration.type: aitken");
                  },
                  {"two vectors of the interface", 0, 0}},
@@ -99,7 +99,7 @@ const std::array cards{
                  {"the motion of two earlier steps", 0, 0}},
     CouplingCard{"mapping between surfaces that do not match",
                  "`mapping.type` other than `matched`",
-                 [](const P& p) { return when(p.mapping.type != Mapping::matched, "mapping.type"); },
+                 [](const P& p) { return when(p.mapping.type != MappingType::matched, "mapping.type"); },
                  {"a sparse matrix over the interface, made once", 0, 0}},
     CouplingCard{"mesh motion",
                  "`mesh`",

@@ -135,12 +135,6 @@ Eigen::MatrixXd common_part(const Flat& f, const Interface& other, Index face,
   return products;
 }
 
-double reach(const Interface& s, Index face) {
-  double most = 0;
-  for (const Index v : corners(s, face)) most = std::max(most, (s.vertices[v] - s.face_centres[face]).norm());
-  return most;
-}
-
 /// Distance [m] of two faces that see each other: of one's centre from the other's plane.
 double between(const Interface& a, Index f, const Interface& b, Index s) {
   const Vec3 way = b.face_centres[s] - a.face_centres[f];

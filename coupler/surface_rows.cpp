@@ -32,12 +32,6 @@ struct Share {
   Vec3 place;
 };
 
-double reach(const Interface& s, Index face) {
-  double most = 0;
-  for (const Index v : corners(s, face)) most = std::max(most, (s.vertices[v] - s.face_centres[face]).norm());
-  return most;
-}
-
 std::vector<GlobalIndex> sorted(std::vector<GlobalIndex> list) {
   std::ranges::sort(list);
   list.erase(std::unique(list.begin(), list.end()), list.end());

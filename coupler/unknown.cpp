@@ -159,10 +159,10 @@ void History::accepted(Iterate x, double dt, int order) {
 namespace {
 
 /// Lagrange weights of the values at 0, -a and -a-b for the value at dt.
-struct Weights {
+struct LagrangeWeights {
   double now = 1, old = 0, older = 0;
 };
-Weights extrapolation(const History& h, double dt, int order) {
+LagrangeWeights extrapolation(const History& h, double dt, int order) {
   if (order == 0 || h.old.unknown.size() + h.old.rider.size() == 0) return {};
   const double a = h.old_dt;
   if (order == 1 || h.older.unknown.size() + h.older.rider.size() == 0) return {1 + dt / a, -dt / a, 0};
@@ -175,7 +175,7 @@ Weights extrapolation(const History& h, double dt, int order) {
 Iterate predict(const Unknown& unknown, const History& history, double dt, int order) {
   Iterate guess = history.now;
   if (order == 0) return guess;
-  const Weights w = extrapolation(history, dt, order);
+  const LagrangeWeights w = extrapolation(history, dt, order);
   const bool two_levels = order == 2 && !history.old.rider.empty();
   const double r = two_levels ? dt / history.old_dt : 0;
   const auto& v_now = history.now.rider;

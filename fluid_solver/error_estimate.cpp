@@ -12,7 +12,7 @@
 namespace couplet::fluid {
 namespace {
 
-constexpr double adams_bashforth = 5. / 12;
+constexpr double adams_bashforth_error = 5. / 12;
 
 /// Sums of a linear fit through the neighbours of a cell, weighted by 1 / d^2.
 template <int D>
@@ -72,7 +72,7 @@ void FluidErrorEstimate<D>::accepted(double dt) {
     MPI_Allreduce(MPI_IN_PLACE, squares.data(), 5, MPI_DOUBLE, MPI_SUM, fluid_.mesh().comm);
     const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
     const double cut = std::max(1, fluid_.statistics().sub_steps), highest = mean(3) / apart;
-    steps_.add({.error = adams_bashforth * dt * dt * dt / (cut * cut) * highest,
+    steps_.add({.error = adams_bashforth_error * dt * dt * dt / (cut * cut) * highest,
                 .rate = mean(1),
                 .size = mean(0),
                 .dt = dt,

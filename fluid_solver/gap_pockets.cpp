@@ -12,7 +12,7 @@ namespace couplet::fluid {
 namespace {
 
 // Of what passes a pocket's inlets: what their profiles may leave over.
-constexpr double largest_leftover = 1e-6;
+constexpr double inlet_leftover = 1e-6;
 
 }  // namespace
 
@@ -88,7 +88,7 @@ void GapPockets<D>::check(const Placement<D>& at, const Vectors<D>& w, double ti
   MPI_Allreduce(MPI_IN_PLACE, sizes.data(), count, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   for (std::size_t i = 0; i < n; ++i) {
     const bool in_blocked_cells = shut_[i] == 0;
-    if ((in_blocked_cells ? sizes[i] : std::abs(sums[i])) <= largest_leftover * sizes[i]) continue;
+    if ((in_blocked_cells ? sizes[i] : std::abs(sums[i])) <= inlet_leftover * sizes[i]) continue;
     std::vector<std::string> names;
     for (std::size_t g = 0; g < given_.size(); ++g)
       if (sizes[n * (1 + g) + i] > 0) names.push_back(given_[g]->name);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/base/nearest.hpp"
 #include "common/base/text.hpp"
@@ -12,8 +13,6 @@
 
 namespace couplet::fluid {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Of x from segments (2-D) or triangles, whose corners stand one after the other.
 template <int D>

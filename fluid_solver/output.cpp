@@ -7,17 +7,14 @@
 #include <array>
 #include <cmath>
 
+#include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/derived.hpp"
 
 namespace couplet::fluid {
-namespace {
-
-constexpr std::array<const char*, 3> axis{"x", "y", "z"};
-
-}  // namespace
+namespace {}  // namespace
 
 template <int D>
 FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, FluidContext context)
@@ -148,7 +145,8 @@ void FluidOutput<D>::write_bodies(double time) {
     std::vector<std::string> columns{"time [s]"};
     for (const std::string& name : fluid_.bodies()->names())
       for (const char* part : {"pressure", "viscous"})
-        for (int c = 0; c < D; ++c) columns.push_back(fmt::format("{} {} {} [N]", name, part, axis[c]));
+        for (int c = 0; c < D; ++c)
+          columns.push_back(fmt::format("{} {} {} [N]", name, part, axis_letters[c]));
     columns.push_back("leak [m^3/s]");
     bodies_.emplace(open("bodies.csv", columns));
   }
@@ -206,7 +204,7 @@ void FluidOutput<D>::write_forces(double time) {
     for (const Patch* patch : walls_)
       for (const char* part : {"pressure", "viscous"})
         for (int c = 0; c < D; ++c)
-          columns.push_back(fmt::format("{} {} {} [N]", patch->name, part, axis[c]));
+          columns.push_back(fmt::format("{} {} {} [N]", patch->name, part, axis_letters[c]));
     forces_.emplace(open("forces.csv", columns));
   }
   forces_->row(row);

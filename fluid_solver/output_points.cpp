@@ -4,17 +4,17 @@
 
 #include <array>
 
+#include "common/base/constants.hpp"
 #include "common/io/mesh_scale.hpp"
 #include "fluid_solver/output.hpp"
 
 namespace couplet::fluid {
 namespace {
 
-constexpr std::array<const char*, 3> axis{"x", "y", "z"};
-
 template <int D>
 void add_columns(std::vector<std::string>& columns, const std::string& before, const std::string& after) {
-  for (int c = 0; c < D; ++c) columns.push_back(fmt::format("{}velocity{} {} [m/s]", before, after, axis[c]));
+  for (int c = 0; c < D; ++c)
+    columns.push_back(fmt::format("{}velocity{} {} [m/s]", before, after, axis_letters[c]));
   columns.push_back(fmt::format("{}pressure{} [Pa]", before, after));
 }
 

@@ -11,12 +11,11 @@
 #include <numbers>
 #include <span>
 
+#include "common/base/constants.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::fluid {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // AB2 is not quite stable on the imaginary axis: growth per step that the scheme's own damping elsewhere
 // makes up for.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
@@ -200,7 +201,6 @@ void look_at_corners(Built& built, const Midsurface& surface, const std::vector<
     order = std::min(order, order_at_corner(kink));
   }
   const Vec2& x = surface.points[corners.front()];
-  const double degree = std::numbers::pi / 180;
   built.outline = fmt::format(
       "the simply supported outline has {} corner{} between straight edges that turn{} by {:.3g} to {:.3g} degrees, one at "
       "({:.4g}, {:.4g}): moments are singular there, and the error falls as h^{:.2g} in place of h^2, h the cells' size. "

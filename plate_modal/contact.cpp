@@ -13,7 +13,7 @@ namespace couplet::plate {
 namespace {
 
 /// A face looks at the seat when its normal is within 60 degrees of the way to it.
-constexpr double least_cosine = 0.5;
+constexpr double least_cosine_to_seat = 0.5;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Contact::Contact(const Share& share, const ContactParameters& p, const Vec3& nor
   for (std::size_t f = 0; f < share.n_faces(); ++f) {
     const Vec3 &x = share.centres()[f], &area = share.areas()[f];
     const double towards = -area.dot(direction);
-    if (towards < least_cosine * area.norm() || !(where(x, 0) > 0)) continue;
+    if (towards < least_cosine_to_seat * area.norm() || !(where(x, 0) > 0)) continue;
     faces.push_back(f);
     centre_.push_back(x);
     gap_.push_back(x.dot(direction) - height(x, 0));
@@ -58,11 +58,12 @@ void Contact::refuse_sliding(const Vec3& direction, std::span<const std::size_t>
   }
   share_.sum(moves);
   const double cosine = std::sqrt(moves[0] / moves[1]);
-  if (cosine >= least_cosine) return;
+  if (cosine >= least_cosine_to_seat) return;
   throw Error(
       "contact.direction: the modes move the faces that look at the seat along ({:g}, {:g}, {:g}) by {:.0f} % of their "
       "motion only; at least {:.0f} % is needed for the seat to hold them. A seat lies across the motion.",
-      direction.x(), direction.y(), direction.z(), moves[1] > 0 ? 100 * cosine : 0, 100 * least_cosine);
+      direction.x(), direction.y(), direction.z(), moves[1] > 0 ? 100 * cosine : 0,
+      100 * least_cosine_to_seat);
 }
 
 Contact::Place Contact::deepest(std::span<const double> q) const {

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/constants.hpp"
+
 namespace couplet::plate {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
 constexpr double sharp = 55 * degree, least = 0.5 * degree, least_share = 0.6;
 // Below it a corner is told: right angles have 2.
 constexpr double least_order = 1.9;

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/linalg/linear_solver.hpp"
 #include "common/linalg/petsc_check.hpp"
@@ -18,7 +19,7 @@ namespace {
 /// meet in a blunt corner, or of two kinds, whose tangents a coarse mesh knows less well. At a blunt corner of simply supported
 /// edges both slopes are 0 in the limit, too, but the deflection there is as smooth as r^1.1 only: with both held the middle of a
 /// plate of 20 sides with 7 edges each is 47 % too stiff, where it is 15 % too soft with one.
-constexpr double degree = std::numbers::pi / 180, blunt = 25 * degree, unlike = 10 * degree, rounding = 1e-6;
+constexpr double blunt = 25 * degree, unlike = 10 * degree, rounding = 1e-6;
 
 /// The direction in which a support holds the slope at an edge with this tangent: w = 0 along an edge leaves no slope along it,
 /// symmetry leaves none across it.

@@ -17,7 +17,7 @@ namespace couplet::plate {
 namespace {
 
 /// A seat in which the structure stands at the start has wound springs: energy that nobody asked for.
-void refuse_inside(const Contact& contact, const Share& share, std::span<const double> q) {
+void refuse_wound_springs(const Contact& contact, const Share& share, std::span<const double> q) {
   double size = 0;
   for (const Vec3& x : share.centres()) size = std::max(size, (x - share.centres().front()).norm());
   const Contact::Place place = contact.deepest(q);
@@ -114,7 +114,7 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
   oscillators_ =
       std::make_unique<Oscillators>(share_->omega(), damping(), gravity_, p.time_scheme, contact_.get());
   state_ = trial_ = initial_state();
-  if (contact_ && !p.contact->starts_inside) refuse_inside(*contact_, *share_, state_.q);
+  if (contact_ && !p.contact->starts_inside) refuse_wound_springs(*contact_, *share_, state_.q);
   results_ = std::make_unique<PlateResults>(*this);
   find_rotations();
   on_root(context_.comm, [&] {

@@ -33,13 +33,13 @@ LinearMethod linear_method(const SolidProblem& problem, const MethodParameters& 
 }
 
 // Of an iterative linear solve within the deferred correction: more is lost on the next correction.
-constexpr double inner_tolerance = 1e-2;
+constexpr double deferred_tolerance = 1e-2;
 constexpr int deferred_history = 8;
 
 LinearOptions options_of(LinearMethod method, const MethodParameters& parameters, bool deferred) {
   LinearOptions options;
   options.method = method;
-  options.relative_tolerance = deferred ? inner_tolerance : parameters.relative_tolerance;
+  options.relative_tolerance = deferred ? deferred_tolerance : parameters.relative_tolerance;
   options.max_iterations = parameters.max_iterations;
   return options;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid_solver/boundary_parameters.hpp"
 
+#include "common/base/constants.hpp"
 #include "common/fv/expression.hpp"
 
 namespace couplet {
@@ -38,9 +39,8 @@ void declare_displacement(config::Section& s, SolidCondition& c, const int& dime
   s.section(
       "components",
       [&c](config::Section& v) {
-        constexpr std::array<const char*, 3> axis{"x", "y", "z"};
         for (int i = 0; i < 3; ++i)
-          v.value(axis[i], c.components[i])
+          v.value(axis_letters[i], c.components[i])
               .unit("m")
               .plausible(1e-9, 1e4)
               .doc("displacement along this axis, of x, y, z, t");

@@ -34,7 +34,7 @@ constexpr std::size_t solvers_kept = 2;
 // From this Poisson's ratio on pressures are carried along, and the compact operator says too little of the tangent (in
 // motion inertia helps it further); bodies of so many cells can have factors.
 constexpr double factors_from_ratio = 0.48, factors_from_dynamic = 0.499;
-constexpr GlobalIndex factors_up_to_2d = 60000, factors_up_to_3d = 4000;
+constexpr GlobalIndex tangent_factors_up_to_2d = 60000, tangent_factors_up_to_3d = 4000;
 // Slenderness from which static bodies of so many cells have them, too: 120 quadrilaterals of a bar 100:1 under a pressure that
 // follows were not solved without, a beam 1:20 in four times the time.
 constexpr double slender_2d = 12, slender_3d = 60;
@@ -67,7 +67,7 @@ FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const 
   kernel_ = make_finite_kernel(mesh, rows, all);
   using Preconditioner = MethodParameters::Preconditioner;
   const GlobalIndex cells = mesh.cells.n_global();
-  const bool is_small = cells <= (mesh.dim == 2 ? factors_up_to_2d : factors_up_to_3d);
+  const bool is_small = cells <= (mesh.dim == 2 ? tangent_factors_up_to_2d : tangent_factors_up_to_3d);
   const double ratio = largest_poissons_ratio(parameters);
   const bool is_dynamic = parameters.analysis == SolidParameters::Analysis::dynamic;
   const bool is_slender = !is_dynamic && (mesh.dim == 2 || cells <= slender_up_to_3d) &&

@@ -13,7 +13,7 @@ namespace couplet {
 namespace {
 
 // Up to here LU wins in time and has the memory.
-constexpr GlobalIndex direct_up_to = 60000;
+constexpr GlobalIndex direct_heat_up_to = 60000;
 
 // The three-point scheme is stable up to steps that grow by 1 + sqrt 2; beyond, Euler's begins anew.
 constexpr double largest_growth = 2.4;
@@ -22,7 +22,7 @@ LinearOptions options_of(const HeatParameters& p, GlobalIndex n_unknowns) {
   LinearOptions options;
   options.relative_tolerance = p.linear_tolerance;
   options.max_iterations = 2000;
-  options.method = n_unknowns <= direct_up_to                       ? LinearMethod::direct
+  options.method = n_unknowns <= direct_heat_up_to                  ? LinearMethod::direct
                    : p.analysis == HeatParameters::Analysis::steady ? LinearMethod::gmres_multigrid
                                                                     : LinearMethod::bicgstab_ilu;
   return options;

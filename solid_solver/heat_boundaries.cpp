@@ -9,11 +9,11 @@
 namespace couplet {
 namespace {
 
-using Type = HeatBoundary::Type;
+using Kind = HeatBoundary::Type;
 
-HeatCondition condition_of(Type type) {
-  if (type == Type::temperature) return HeatCondition::temperature;
-  return type == Type::symmetry ? HeatCondition::symmetry : HeatCondition::flux;
+HeatCondition condition_of(Kind type) {
+  if (type == Kind::temperature) return HeatCondition::temperature;
+  return type == Kind::symmetry ? HeatCondition::symmetry : HeatCondition::flux;
 }
 
 }  // namespace
@@ -35,14 +35,14 @@ HeatBoundaries::HeatBoundaries(const Mesh& mesh, const HeatParameters& parameter
       const HeatBoundary& b = found->second;
       const std::string where = "heat.boundaries." + name;
       here.type = b.type;
-      if (b.type == Type::temperature || b.type == Type::flux)
+      if (b.type == Kind::temperature || b.type == Kind::flux)
         here.value = Expression(b.value, where + ".value");
-      if (b.type == Type::convection) {
+      if (b.type == Kind::convection) {
         here.coefficient = Expression(b.coefficient, where + ".coefficient");
         here.ambient = Expression(b.ambient, where + ".ambient");
       }
     } else if (std::ranges::count(symmetry_patches, name) > 0) {
-      here.type = Type::symmetry;
+      here.type = Kind::symmetry;
     }
     conditions_.push_back(condition_of(here.type));
     on_patch_.push_back(std::move(here));
@@ -58,7 +58,7 @@ bool HeatBoundaries::fix_the_level() const {
 }
 
 bool HeatBoundaries::any_transfer() const {
-  return std::ranges::any_of(on_patch_, [](const OnPatch& p) { return p.type == Type::convection; });
+  return std::ranges::any_of(on_patch_, [](const OnPatch& p) { return p.type == Kind::convection; });
 }
 
 bool HeatBoundaries::transfer_uses_time() const {
@@ -104,8 +104,8 @@ void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> 
       const double area = mesh_->reference.face_area[f].norm();
       heat[next] = 0;
       if (!transfer.empty()) transfer[next] = 0;
-      if (here.type == Type::flux) heat[next] = area * here.value(x, t);
-      if (here.type == Type::convection) {
+      if (here.type == Kind::flux) heat[next] = area * here.value(x, t);
+      if (here.type == Kind::convection) {
         transfer[next] = here.coefficient(x, t);
         heat[next] = area * transfer[next] * here.ambient(x, t);
       }

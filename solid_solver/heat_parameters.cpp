@@ -9,19 +9,19 @@ namespace {
 
 using Text = std::optional<config::ExpressionText>;
 
-struct Quantity {
+struct HeatProperty {
   const char *name, *unit;
   double lowest, highest;  // usual magnitudes
 };
 
-void declare_property(config::Section& s, const Quantity& q, Text& text, double above, const char* doc) {
+void declare_property(config::Section& s, const HeatProperty& q, Text& text, double above, const char* doc) {
   s.value(q.name, text).unit(q.unit).plausible(q.lowest, q.highest).doc(doc);
   s.check([&text, above] { return text ? problem_of_property(*text, above) : std::string(); }, q.name);
 }
 
 void declare_boundary(config::Section& s, HeatBoundary& b) {
   using Type = HeatBoundary::Type;
-  const auto expression = [](config::Section& v, const Quantity& q, config::ExpressionText& text,
+  const auto expression = [](config::Section& v, const HeatProperty& q, config::ExpressionText& text,
                              const char* doc) {
     v.value(q.name, text).unit(q.unit).plausible(q.lowest, q.highest).required().doc(doc);
     v.check([&text] { return problem_of(text); }, q.name);

@@ -12,9 +12,9 @@
 namespace couplet {
 namespace {
 
-constexpr int patience = 4;          // turns in a row
-constexpr double turned = -0.5;      // cosine between the changes of two steps
-constexpr double noticeable = 1e-3;  // root mean square of a step's change over all temperatures seen
+constexpr int patience = 4;              // turns in a row
+constexpr double turning_cosine = -0.5;  // cosine between the changes of two steps
+constexpr double noticeable = 1e-3;      // root mean square of a step's change over all temperatures seen
 
 }  // namespace
 
@@ -42,7 +42,7 @@ void HeatSwing::accepted(const Mesh& mesh, const std::vector<double>& before,
   lowest_ = first ? -range[1] : std::min(lowest_, -range[1]);
   const double size = std::sqrt(sums[0] / sums[3]);
   const bool turns =
-      sums[2] < turned * std::sqrt(sums[0] * sums[1]) && size > noticeable * (highest_ - lowest_);
+      sums[2] < turning_cosine * std::sqrt(sums[0] * sums[1]) && size > noticeable * (highest_ - lowest_);
   turns_ = turns ? turns_ + 1 : 0;
   if (turns_ < patience) return;
   told_ = true;

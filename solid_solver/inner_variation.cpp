@@ -10,7 +10,7 @@ namespace couplet {
 namespace {
 
 double twice_energy(const ElasticOperator& rows, Index cell, const Tensor3& strain) {
-  return rows.stress(cell, strain).cwiseProduct(strain).sum();
+  return contraction(rows.stress(cell, strain), strain);
 }
 
 }  // namespace

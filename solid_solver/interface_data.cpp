@@ -15,12 +15,12 @@ namespace couplet {
 namespace {
 
 /// A face, the faces around it, and what turns the differences of their values into a gradient (3 x k).
-struct Patch {
+struct FaceSurroundings {
   std::vector<Index> around;
   Eigen::Matrix3Xd gradient;
 };
 
-Patch patch_of(Index face, const std::vector<Vec3>& centres, const PointTree& tree) {
+FaceSurroundings surroundings_of(Index face, const std::vector<Vec3>& centres, const PointTree& tree) {
   constexpr std::size_t most = 8;
   std::vector<Index> others = tree.nearest(centres[face], most + 1);
   std::erase(others, face);
@@ -32,12 +32,12 @@ Patch patch_of(Index face, const std::vector<Vec3>& centres, const PointTree& tr
   // Weighted by the inverse squared distance, so that near faces decide.
   Eigen::VectorXd weight = offsets.rowwise().squaredNorm().cwiseInverse();
   const Eigen::MatrixX3d weighted = weight.asDiagonal() * offsets;
-  Patch patch{std::move(others), Eigen::Matrix3Xd::Zero(3, Eigen::Index(n))};
-  if (n == 0) return patch;  // a single face: its value everywhere
+  FaceSurroundings found{std::move(others), Eigen::Matrix3Xd::Zero(3, Eigen::Index(n))};
+  if (n == 0) return found;  // a single face: its value everywhere
   Eigen::JacobiSVD<Eigen::MatrixXd> svd(weighted, Eigen::ComputeThinU | Eigen::ComputeThinV);
   svd.setThreshold(0.05);
-  patch.gradient = svd.solve(Eigen::MatrixXd(weight.asDiagonal()));
-  return patch;
+  found.gradient = svd.solve(Eigen::MatrixXd(weight.asDiagonal()));
+  return found;
 }
 
 }  // namespace
@@ -45,16 +45,16 @@ Patch patch_of(Index face, const std::vector<Vec3>& centres, const PointTree& tr
 FaceInterpolation::FaceInterpolation(const std::vector<Vec3>& centres, std::span<const Vec3> points) {
   if (centres.empty()) return;
   const PointTree tree(centres);
-  std::vector<Patch> patches(centres.size());
+  std::vector<FaceSurroundings> surroundings(centres.size());
   std::vector<bool> made(centres.size(), false);
   first_.push_back(0);
   for (const Vec3& x : points) {
     const Index a = tree.nearest(x, 1).front();
-    if (!made[a]) patches[a] = patch_of(a, centres, tree), made[a] = true;
+    if (!made[a]) surroundings[a] = surroundings_of(a, centres, tree), made[a] = true;
     nearest_.push_back(a);
-    const Eigen::RowVectorXd weights = (x - centres[a]).transpose() * patches[a].gradient;
-    for (std::size_t k = 0; k < patches[a].around.size(); ++k)
-      face_.push_back(patches[a].around[k]), weight_.push_back(weights[Eigen::Index(k)]);
+    const Eigen::RowVectorXd weights = (x - centres[a]).transpose() * surroundings[a].gradient;
+    for (std::size_t k = 0; k < surroundings[a].around.size(); ++k)
+      face_.push_back(surroundings[a].around[k]), weight_.push_back(weights[Eigen::Index(k)]);
     first_.push_back(static_cast<Index>(face_.size()));
   }
 }

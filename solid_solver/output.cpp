@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "common/modes/modes_file.hpp"
@@ -22,8 +23,6 @@
 
 namespace couplet {
 namespace {
-
-constexpr std::array<const char*, 3> axis{"x", "y", "z"};
 
 using Place = OutputField::Place;
 
@@ -235,8 +234,8 @@ void SolidOutput::write_reactions(double time, std::span<const double> points) {
   if (!reaction_series_) {
     std::vector<std::string> columns{"time [s]"};
     for (const PatchForce& r : reactions)
-      for (int a = 0; a < dim; ++a) columns.push_back(r.patch + " " + axis[a] + " [N]");
-    for (int a = 0; a < dim; ++a) columns.push_back(std::string("load ") + axis[a] + " [N]");
+      for (int a = 0; a < dim; ++a) columns.push_back(r.patch + " " + axis_letters[a] + " [N]");
+    for (int a = 0; a < dim; ++a) columns.push_back(std::string("load ") + axis_letters[a] + " [N]");
     reaction_series_.emplace(context_.output_folder / "reactions.csv", columns, context_.restart_time);
   }
   reaction_series_->row(row);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/io/mesh_scale.hpp"
 #include "common/parallel/collective.hpp"
@@ -10,8 +11,6 @@
 
 namespace couplet {
 namespace {
-
-constexpr std::array<const char*, 3> axis{"x", "y", "z"};
 
 bool is_stress(std::string_view field) {
   return field == "stress" || field == "equivalent-stress" || field == "principal-stress";
@@ -53,7 +52,7 @@ std::vector<std::uint8_t> SolidProbes::points_with_stress() const {
 void SolidProbes::add_columns(const std::string& probe, const std::string& field) {
   const auto vector = [&](const std::string& what, const char* unit) {
     for (int a = 0; a < body_.mesh().dim; ++a)
-      columns_.push_back(probe + " " + what + axis[a] + " [" + unit + "]");
+      columns_.push_back(probe + " " + what + axis_letters[a] + " [" + unit + "]");
   };
   const auto tensor = [&](const char* unit) {
     for (const char* component : tensor_component)

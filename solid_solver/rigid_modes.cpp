@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/constants.hpp"
 #include "common/base/disjoint_sets.hpp"
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
@@ -157,10 +158,9 @@ std::vector<Motion> reduce(std::vector<Motion> rows, const std::array<int, 6>& c
 }
 
 std::string direction(Vec3 d) {
-  constexpr std::array<const char*, 3> axis{"x", "y", "z"};
   d.normalize();
   for (int a = 0; a < 3; ++a)
-    if (std::abs(d[a]) > 1 - 1e-6) return axis[a];
+    if (std::abs(d[a]) > 1 - 1e-6) return axis_letters[a];
   const auto tidy = [](double value) { return std::abs(value) < 1e-6 ? 0.0 : value; };
   return fmt::format("({:.3g}, {:.3g}, {:.3g})", tidy(d[0]), tidy(d[1]), tidy(d[2]));
 }

@@ -16,7 +16,7 @@
 namespace couplet {
 namespace {
 
-using Type = MethodParameters::Type;
+using MethodType = MethodParameters::Type;
 using Preconditioner = MethodParameters::Preconditioner;
 
 // Cells up to which factors kept for all steps win: in the plane they stay thin, in space they fill quickly.
@@ -76,12 +76,12 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
   const GlobalIndex cells = problem.mesh.cells.n_global();
   const bool easy = is_easy(problem);
   const bool small = cells <= (problem.mesh.dim == 2 ? factors_up_to_2d : factors_up_to_3d) && !easy;
-  const bool asked_automatic = parameters.type == Type::automatic;
+  const bool asked_automatic = parameters.type == MethodType::automatic;
   std::string why = asked_automatic ? fmt::format("{} cells in {}-D{}", cells, problem.mesh.dim,
                                                   easy ? ", short steps" : "")
                                     : "";
   if (problem.is_symmetric()) {
-    if (parameters.type != Type::automatic && parameters.type != Type::newton_krylov)
+    if (parameters.type != MethodType::automatic && parameters.type != MethodType::newton_krylov)
       throw Error(
           "solution-method: 'face-gradient: symmetric' is solved by conjugate gradients ('type: "
           "newton-krylov' or "
@@ -93,7 +93,7 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
                                   : mixed ? Preconditioner::mixed
                                           : Preconditioner::multigrid;
     }
-    parameters.type = Type::newton_krylov;
+    parameters.type = MethodType::newton_krylov;
     return why;
   }
   // As in NewtonKrylov for the symmetric pair: the tolerance is meant of the elastic part, or energies drift (2e-6 in 1000
@@ -101,9 +101,9 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
   if (easy)
     parameters.relative_tolerance = std::min(
         parameters.relative_tolerance, std::max(1e-13, parameters.relative_tolerance / heaviness(problem)));
-  if (parameters.type == Type::automatic) {
+  if (parameters.type == MethodType::automatic) {
     const bool direct = small && !problem.is_corrected();
-    parameters.type = direct ? Type::block_coupled : Type::newton_krylov;
+    parameters.type = direct ? MethodType::block_coupled : MethodType::newton_krylov;
     if (direct) parameters.linear_solver = MethodParameters::LinearSolver::direct;
   }
   if (parameters.preconditioner == Preconditioner::automatic)
@@ -136,10 +136,10 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
   const std::string why = decide(problem, parameters);
   std::unique_ptr<SolutionMethod> method;
   switch (parameters.type) {
-    case Type::segregated:
+    case MethodType::segregated:
       method = std::make_unique<Segregated>(problem, parameters);
       break;
-    case Type::newton_krylov:
+    case MethodType::newton_krylov:
       if (parameters.preconditioner == Preconditioner::mixed)
         method = std::make_unique<MixedForm>(problem, parameters);
       else

@@ -25,8 +25,6 @@ Vec3 line_of(const Mesh& mesh, Index f) {
   return across - g.cell_centre[mesh.owner[f]];
 }
 
-double product(const Tensor3& a, const Tensor3& b) { return a.cwiseProduct(b).sum(); }
-
 FaceGradientScheme other_scheme(FaceGradientScheme scheme) {
   return scheme == FaceGradientScheme::corrected ? FaceGradientScheme::thesis : FaceGradientScheme::corrected;
 }
@@ -90,7 +88,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
     if (!is_mine(f)) return;  // another rank's
     const Index owner = mesh_.owner[f];
     const Tensor3 stress = rows.stress(owner, gradient);
-    energy += 0.5 * volume(f) * product(stress, gradient);
+    energy += 0.5 * volume(f) * contraction(stress, gradient);
     Vec3 force = stress * mesh_.reference.face_area[f];
     const Vec3 here = vector_at(state.cell_u, owner, dim);
     if (f < mesh_.n_interior)

@@ -14,8 +14,8 @@ namespace couplet {
 namespace {
 
 // Cells below which the rigid motions of aggregates gain nothing, cells an aggregate, and most aggregates.
-constexpr GlobalIndex small_body = 64, cells_of_aggregate = 32;
-constexpr GlobalIndex most_aggregates = 160;
+constexpr GlobalIndex small_body = 64, cells_of_tangent_aggregate = 32;
+constexpr GlobalIndex most_tangent_aggregates = 160;
 // New factors cost as much as some dozens of iterations; a tangent that has changed much needs them.
 constexpr int most_with_old_factors = 12, most_before_new_factors = 60;
 
@@ -53,7 +53,8 @@ TangentSolver::TangentSolver(const Mesh& mesh, const ElasticOperator& rows, Fini
     compact_ = std::make_unique<ElasticPreconditioner>(mesh, rows, std::span<const double>{}, options);
     const GlobalIndex cells = mesh.cells.n_global();
     if (cells >= small_body) {
-      const GlobalIndex aggregates = std::clamp<GlobalIndex>(cells / cells_of_aggregate, 8, most_aggregates);
+      const GlobalIndex aggregates =
+          std::clamp<GlobalIndex>(cells / cells_of_tangent_aggregate, 8, most_tangent_aggregates);
       modes_ =
           std::make_unique<CurrentRigidModes>(mesh, rows, static_cast<int>(aggregates),
                                               std::vector<double>(node_inertia.begin(), node_inertia.end()));

@@ -35,8 +35,6 @@ Tensor3 unpacked(const std::array<float, 6>& e) {
   return unpack(t);
 }
 
-double product(const Tensor3& a, const Tensor3& b) { return a.cwiseProduct(b).sum(); }
-
 Strains strains(const ElasticKernel& kernel, const Mesh& mesh, std::span<const double> unknowns,
                 std::span<const double> known) {
   Strains all(std::size_t(mesh.n_flux_faces()));
@@ -84,11 +82,11 @@ double variation_in_cells(const SolidBody& body, const Strains& of_u, const Stra
   visit_sides(body.mesh(), [&](Index c, Index f, double v) {
     const Tensor3 s = body.elastic().stress(c, unpacked(of_u[f])) - pressure[f] * Tensor3::Identity();
     const Tensor3 e = unpacked(of_z[f]);
-    stress[c] += v * s, strain[c] += v * e, volume[c] += v, varies[c] += v * product(s, e);
+    stress[c] += v * s, strain[c] += v * e, volume[c] += v, varies[c] += v * contraction(s, e);
   });
   double all = 0;
   for (std::size_t c = 0; c < n; ++c)
-    if (volume[c] > 0) all += std::abs(varies[c] - product(stress[c], strain[c]) / volume[c]);
+    if (volume[c] > 0) all += std::abs(varies[c] - contraction(stress[c], strain[c]) / volume[c]);
   return all;
 }
 
@@ -98,7 +96,7 @@ double gap_of_gradients(const SolidBody& body, const std::array<const Strains*, 
   double all = 0;
   visit_sides(body.mesh(), [&](Index c, Index f, double v) {
     const auto gap = [&](const auto& of) { return Tensor3(unpacked((*of[1])[f]) - unpacked((*of[0])[f])); };
-    all += v * 2 * body.elastic().lame(c).mu * std::abs(product(gap(of_u), gap(of_z)));
+    all += v * 2 * body.elastic().lame(c).mu * std::abs(contraction(gap(of_u), gap(of_z)));
   });
   return all;
 }

@@ -10,18 +10,18 @@
 
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
+#include "thermocline/clock.hpp"
 #include "thermocline/weather_date.hpp"
 
 namespace couplet::thermocline {
 namespace {
 
-constexpr double hour = 3600, tiny = 1e-9;  // [s], [h]
 constexpr unsigned all_days = 0x7f, working_days = 0x1f, weekend = 0x60;
-const std::array<std::string, 7> names{"monday", "tuesday",  "wednesday", "thursday",
-                                       "friday", "saturday", "sunday"};
+const std::array<std::string, 7> weekday_names{"monday", "tuesday",  "wednesday", "thursday",
+                                               "friday", "saturday", "sunday"};
 
 int number_of_weekday(const std::string& name) {
-  return int(std::find(names.begin(), names.end(), name) - names.begin());
+  return int(std::find(weekday_names.begin(), weekday_names.end(), name) - weekday_names.begin());
 }
 
 /// Of `weekdays`, `weekend` or one day; 0 for what is none of them.
@@ -32,7 +32,7 @@ unsigned bits_of(const std::string& name) {
 }
 
 std::string problem_of_days(const std::vector<std::string>& days) {
-  std::vector<std::string> known(names.begin(), names.end());
+  std::vector<std::string> known(weekday_names.begin(), weekday_names.end());
   known.insert(known.end(), {"weekdays", "weekend"});
   for (const std::string& day : days)
     if (bits_of(day) == 0) return fmt::format("'{}' is none of: {}", day, join(known));
@@ -50,17 +50,17 @@ std::string problem_of_season(const CalendarRule& rule) {
   return "";
 }
 
-long day_of(double t) { return long(std::floor((t / hour + tiny) / hours_a_day)); }
+long day_of(double t) { return long(std::floor((t / seconds_an_hour + clock_rounding) / hours_a_day)); }
 
 long positive_rest(long value, long of) { return (value % of + of) % of; }
 
 }  // namespace
 
-bool is_weekday(const std::string& name) { return number_of_weekday(name) < int(names.size()); }
+bool is_weekday(const std::string& name) { return number_of_weekday(name) < int(weekday_names.size()); }
 
 double at_hour(const std::vector<double>& values, double t) {
   if (values.size() == 1) return values.front();
-  const double clock = std::floor(t / hour + tiny);
+  const double clock = std::floor(t / seconds_an_hour + clock_rounding);
   return values[std::size_t(clock - hours_a_day * std::floor(clock / hours_a_day))];
 }
 

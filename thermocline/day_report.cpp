@@ -6,12 +6,12 @@
 
 #include "common/base/error.hpp"
 #include "thermocline/celsius.hpp"
+#include "thermocline/clock.hpp"
 #include "thermocline/thickness.hpp"
 
 namespace couplet::thermocline {
 namespace {
 
-constexpr double hour = 3600;  // [s]
 using Sums = ReportSums;
 
 double share(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
@@ -165,7 +165,7 @@ void DayReport::end_day(double time) {
 
 std::vector<ReportLine> DayReport::lines_of(const ReportSums& s, double days) const {
   const auto energy = [&](Sums::Item item) { return days > 0 ? s[item] / days / megawatt_hour : 0; };
-  const auto time = [&](Sums::Item item) { return days > 0 ? s[item] / days / hour : 0; };
+  const auto time = [&](Sums::Item item) { return days > 0 ? s[item] / days / seconds_an_hour : 0; };
   const double thickness = s[Sums::thickness_time] > 0 ? s[Sums::thickness] / s[Sums::thickness_time] : 0;
   return {{"Q_SF", "MWh/day", energy(Sums::field)},
           {"Q_excess/Q_SF", "%", share(s[Sums::excess], s[Sums::field])},

@@ -10,6 +10,7 @@
 
 #include "common/config/section.hpp"
 #include "common/io/series.hpp"
+#include "thermocline/clock.hpp"
 #include "thermocline/economics.hpp"
 #include "thermocline/interfaces.hpp"
 #include "thermocline/plant.hpp"
@@ -18,7 +19,6 @@
 
 namespace couplet::thermocline {
 
-inline constexpr double seconds_a_day = 86400;  // [s]
 inline constexpr double megawatt_hour = 3.6e9;  // [J]
 
 struct ReportParameters {

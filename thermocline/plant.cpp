@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
+#include "thermocline/clock.hpp"
+
 namespace couplet::thermocline {
 namespace {
-
-constexpr double hour = 3600, tiny = 1e-9;  // [s], [h]
 
 std::string problem_of_weekday(const PlantParameters& p) {
   if (!p.start.weekday.empty() && !is_weekday(p.start.weekday))
@@ -127,7 +127,7 @@ double Plant::tariff(double t) const {
 double Plant::load_until(double t) const {
   if (p_.load.size() < 2 && p_.tariff.size() < 2 && p_.calendar.empty())
     return std::numeric_limits<double>::infinity();
-  return (std::floor(t / hour + tiny) + 1) * hour;
+  return (std::floor(t / seconds_an_hour + clock_rounding) + 1) * seconds_an_hour;
 }
 
 /// The store rests: the field feeds the block with what it has, at most what the block asks for.

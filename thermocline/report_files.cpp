@@ -6,13 +6,13 @@
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
 #include "thermocline/celsius.hpp"
+#include "thermocline/clock.hpp"
 #include "thermocline/day_report.hpp"
 
 namespace couplet::thermocline {
 
 namespace {
 
-constexpr double hour = 3600;  // [s]
 using Sums = ReportSums;
 
 }  // namespace
@@ -41,8 +41,8 @@ DayReport::DayReport(const ReportParameters& parameters, const Plant& plant, con
 
 void DayReport::write_profiles(const TankRecord& record) {
   const double begin = *p_.profile_day * seconds_a_day;
-  const double before = std::floor((record.time - record.dt - begin) / hour + 1e-9);
-  const double now = std::floor((record.time - begin) / hour + 1e-9);
+  const double before = std::floor((record.time - record.dt - begin) / seconds_an_hour + clock_rounding);
+  const double now = std::floor((record.time - begin) / seconds_an_hour + clock_rounding);
   if (now == before || now < 0 || now > 24) return;
   for (std::size_t i = 0; i < record.z.size(); ++i) {
     const bool wall = i < record.wall_z.size();

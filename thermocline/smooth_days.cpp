@@ -7,13 +7,13 @@
 
 #include "common/base/error.hpp"
 #include "thermocline/clear_sky.hpp"
+#include "thermocline/clock.hpp"
 #include "thermocline/weather_date.hpp"
 
 namespace couplet::thermocline {
 namespace {
 
 constexpr std::size_t months = 12;
-constexpr double hour = 3600;  // [s]
 
 double of_month(const std::vector<double>& values, std::size_t month) {
   return values.size() == 1 ? values.front() : values[month];
@@ -46,7 +46,7 @@ std::string problem_of(const SmoothDays& d, std::string& key) {
         "meant",
         highest, highest);
   for (const double sum : d.daily_sums)
-    if (sum < 0 || sum > 24 * 1412 * hour)
+    if (sum < 0 || sum > 24 * 1412 * seconds_an_hour)
       return fmt::format(
           "{:g} J/m^2 is no sum of a day; expected 0 to 33 kWh/m^2 (give the unit: 7.2 kWh/m^2)", sum);
   for (const auto& [name, values] :
@@ -83,7 +83,7 @@ WeatherHours with_smooth_days(WeatherHours record, const SmoothDays& d) {
           of_month(d.length, month), length, date_of_day(day), sunny, d.latitude);
     const std::vector<double> mean = form(length, of_month(d.n, month), of_month(d.p, month));
     double total = 0;
-    for (const double m : mean) total += m * hour;
+    for (const double m : mean) total += m * seconds_an_hour;
     if (sum > 0 && total <= 0)
       throw Error(
           "smooth days: on {} the sun does not rise at latitude {:g} deg, but daily-sums gives that month "

@@ -8,12 +8,11 @@
 #include "common/base/error.hpp"
 #include "thermocline/celsius.hpp"
 #include "thermocline/clear_sky.hpp"
+#include "thermocline/clock.hpp"
 #include "thermocline/weather_date.hpp"
 
 namespace couplet::thermocline {
 namespace {
-
-constexpr double hour = 3600;  // [s]
 
 /// Monotonised central difference: zero at an extremum, never beyond twice a one-sided difference.
 double limited_slope(double before, double here, double after) {
@@ -79,7 +78,7 @@ Weather::Weather(const WeatherHours& record, const WeatherPeriod& period, int sh
   cumulated_.assign(n + 1, 0);
   for (std::size_t h = 0; h < n; ++h) {
     slope_.push_back(limited_slope(dni[(h + n - 1) % n], dni[h], dni[(h + 1) % n]));
-    cumulated_[h + 1] = cumulated_[h] + dni[h] * hour;
+    cumulated_[h + 1] = cumulated_[h] + dni[h] * seconds_an_hour;
   }
 }
 
@@ -91,14 +90,14 @@ double Weather::wrapped(double t) const {
 
 double Weather::state(const std::vector<double>& values, double t) const {
   const std::size_t n = values.size();
-  const double position = wrapped(t - hours_.state_offset) / hour;
+  const double position = wrapped(t - hours_.state_offset) / seconds_an_hour;
   const auto h = std::min(static_cast<std::size_t>(position), n - 1);
   const double share = position - double(h);
   return (1 - share) * values[h] + share * values[(h + 1) % n];
 }
 
 Ambient Weather::at(double t) const {
-  const double position = wrapped(t) / hour;
+  const double position = wrapped(t) / seconds_an_hour;
   const auto h = std::min(static_cast<std::size_t>(position), hours_.dni.size() - 1);
   Ambient ambient;
   ambient.dni = hours_.dni[h] + slope_[h] * (position - double(h) - 0.5);
@@ -112,18 +111,19 @@ Ambient Weather::at(double t) const {
 
 double Weather::sun_height(double t) const {
   if (!hours_.site) return 0;
-  const double solar = t - shift_hours_ * hour + hours_.site->solar_ahead, day = hours_a_day * hour;
+  const double solar = t - shift_hours_ * seconds_an_hour + hours_.site->solar_ahead,
+               day = hours_a_day * seconds_an_hour;
   const double whole_days = std::floor(solar / day);
   return std::max(0., sine_of_sun_height(hours_.site->latitude, first_day_ + static_cast<int>(whole_days),
-                                         (solar - whole_days * day) / hour));
+                                         (solar - whole_days * day) / seconds_an_hour));
 }
 
 /// Within the first period: integral of the line mean + slope (x - 1/2), x the share of the hour gone.
 double Weather::irradiation_since_start(double t) const {
-  const double position = t / hour;
+  const double position = t / seconds_an_hour;
   const auto h = std::min(static_cast<std::size_t>(position), hours_.dni.size() - 1);
   const double x = position - double(h);
-  return cumulated_[h] + hour * x * (hours_.dni[h] + slope_[h] * (x - 1) / 2);
+  return cumulated_[h] + seconds_an_hour * x * (hours_.dni[h] + slope_[h] * (x - 1) / 2);
 }
 
 double Weather::irradiation(double from, double to) const {
@@ -134,7 +134,7 @@ double Weather::irradiation(double from, double to) const {
 }
 
 std::string Weather::date(double t) const {
-  return date_of_day(first_day_ + static_cast<int>(std::floor(wrapped(t) / (hours_a_day * hour))));
+  return date_of_day(first_day_ + static_cast<int>(std::floor(wrapped(t) / (hours_a_day * seconds_an_hour))));
 }
 
 }  // namespace couplet::thermocline

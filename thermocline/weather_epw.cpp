@@ -12,15 +12,15 @@ namespace {
 constexpr std::size_t header_lines = 8, month = 1, day = 2, hour = 3, minute = 4, fewest_columns = 22,
                       most_columns = 35;
 constexpr double end_of_hour = 3600;  // [s]
-struct Column {
+struct EpwColumn {
   std::size_t number;
   double missing_from;  ///< this value and above stand for "missing"
 };
 /// In the order of weather_quantities: irradiance, temperature, wind, humidity, pressure.
-constexpr std::array<Column, 5> columns{{{14, 9999}, {6, 99.9}, {21, 999}, {8, 999}, {9, 999999}}};
+constexpr std::array<EpwColumn, 5> columns{{{14, 9999}, {6, 99.9}, {21, 999}, {8, 999}, {9, 999999}}};
 
 /// LOCATION,city,region,country,source,number,latitude,longitude,time zone,altitude
-WeatherHours::Site read_site(const std::string& line, const std::string& place) {
+WeatherHours::Site read_epw_site(const std::string& line, const std::string& place) {
   const std::vector<std::string> fields = csv::fields(line);
   if (fields.size() < 9)
     throw Error("{}: the line LOCATION must hold latitude, longitude and time zone.", place);
@@ -70,7 +70,7 @@ WeatherHours read_weather_epw(const std::filesystem::path& file) {
   }
   mean.flush();
   WeatherHours result = hours.finish(mean.several() ? 60 * mean.mean_minute() : end_of_hour);
-  result.site = read_site(lines[0], hours.place(1));
+  result.site = read_epw_site(lines[0], hours.place(1));
   return result;
 }
 

@@ -14,7 +14,7 @@
 namespace couplet::thermocline {
 namespace {
 
-const WeatherColumns::Names names{{{{"Gb(n)"}, {"T2m"}, {"WS10m"}, {"RH"}, {"SP"}}}, {}, 1, -90};
+const WeatherColumns::Names pvgis_names{{{{"Gb(n)"}, {"T2m"}, {"WS10m"}, {"RH"}, {"SP"}}}, {}, 1, -90};
 
 /// Means over each hour of a year's moments, `offset` hours after the begin of each: the integral of the straight
 /// lines between them. The sum over the record stays.
@@ -80,7 +80,7 @@ WeatherHours read_weather_pvgis(const std::filesystem::path& file) {
   std::optional<int> minutes;
   const std::vector<std::string> head = csv::fields(lines[head_line]);
   const auto time = column_of(head, "time(UTC)");
-  const WeatherColumns columns(head, names, hours.place(int(head_line) + 1));
+  const WeatherColumns columns(head, pvgis_names, hours.place(int(head_line) + 1));
   const std::size_t end = end_of_records(lines, head_line + 1, hours);
   for (std::size_t i = head_line + 1; i < end; ++i) {
     const int line = int(i) + 1;

@@ -12,14 +12,14 @@
 namespace couplet::thermocline {
 namespace {
 
-const WeatherColumns::Names names{{{{"DNI", "Beam", "DNI (W/m2)", "Beam normal irradiance"},
-                                    {"Temperature", "Tdry", "Dry-bulb", "Air Temperature", "Temp"},
-                                    {"Wind Speed", "Wspd", "Windspeed"},
-                                    {"Relative Humidity", "RH", "RHum"},
-                                    {"Pressure", "Pres", "Surface Pressure"}}},
-                                  {"Dew Point", "Tdew", "Dewpoint", "Dew Point Temperature"},
-                                  100,  // mbar
-                                  -90};
+const WeatherColumns::Names sam_names{{{{"DNI", "Beam", "DNI (W/m2)", "Beam normal irradiance"},
+                                        {"Temperature", "Tdry", "Dry-bulb", "Air Temperature", "Temp"},
+                                        {"Wind Speed", "Wspd", "Windspeed"},
+                                        {"Relative Humidity", "RH", "RHum"},
+                                        {"Pressure", "Pres", "Surface Pressure"}}},
+                                      {"Dew Point", "Tdew", "Dewpoint", "Dew Point Temperature"},
+                                      100,  // mbar
+                                      -90};
 
 /// The units that the file gives for itself, where it does, must be those that are read.
 void check_units(const std::vector<std::string>& head, const std::vector<std::string>& values,
@@ -40,9 +40,9 @@ void check_units(const std::vector<std::string>& head, const std::vector<std::st
   }
 }
 
-std::optional<WeatherHours::Site> read_site(const std::vector<std::string>& head,
-                                            const std::vector<std::string>& values,
-                                            const std::string& place) {
+std::optional<WeatherHours::Site> read_sam_site(const std::vector<std::string>& head,
+                                                const std::vector<std::string>& values,
+                                                const std::string& place) {
   std::array<double, 3> found{};
   const char* wanted[] = {"Latitude", "Longitude", "Time Zone"};
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -69,11 +69,11 @@ WeatherHours read_weather_sam(const std::filesystem::path& file) {
   std::optional<WeatherHours::Site> site;
   if (head_line >= 2) {
     const auto about = csv::fields(lines[head_line - 2]), values = csv::fields(lines[head_line - 1]);
-    site = read_site(about, values, hours.place(int(head_line)));
+    site = read_sam_site(about, values, hours.place(int(head_line)));
     check_units(about, values, hours.place(int(head_line)));
   }
   const std::string head_place = hours.place(int(head_line) + 1);
-  const WeatherColumns columns(head, names, head_place);
+  const WeatherColumns columns(head, sam_names, head_place);
   const auto month = column_of(head, "Month"), day = column_of(head, "Day"), hour = column_of(head, "Hour"),
              minute = column_of(head, "Minute");
   if (!day || !hour) throw Error("{}: the columns Month, Day and Hour are needed.", head_place);

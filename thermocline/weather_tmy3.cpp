@@ -10,14 +10,14 @@
 namespace couplet::thermocline {
 namespace {
 
-const WeatherColumns::Names names{
+const WeatherColumns::Names tmy3_names{
     {{{"DNI (W/m^2)"}, {"Dry-bulb (C)"}, {"Wspd (m/s)"}, {"RHum (%)"}, {"Pressure (mbar)"}}},
     {"Dew-point (C)"},
     100,  // mbar
     -90};
 
 /// number,name,state,time zone,latitude,longitude,elevation
-WeatherHours::Site read_site(const std::string& line, const std::string& place) {
+WeatherHours::Site read_tmy3_site(const std::string& line, const std::string& place) {
   const std::vector<std::string> fields = csv::fields(line);
   if (fields.size() < 7)
     throw Error(
@@ -34,11 +34,11 @@ WeatherHours read_weather_tmy3(const std::filesystem::path& file) {
   const std::vector<std::string> lines = read_lines(file);
   HourCollector hours(file.string());
   const std::vector<std::string> head = csv::fields(lines.at(1));
-  const WeatherColumns columns(head, names, hours.place(2));
+  const WeatherColumns columns(head, tmy3_names, hours.place(2));
   const auto date = column_of(head, "Date (MM/DD/YYYY)"), time = column_of(head, "Time (HH:MM)");
   if (!date || !time)
     throw Error("{}: the columns Date (MM/DD/YYYY) and Time (HH:MM) are needed.", hours.place(2));
-  const WeatherHours::Site site = read_site(lines[0], hours.place(1));
+  const WeatherHours::Site site = read_tmy3_site(lines[0], hours.place(1));
   for (std::size_t i = 2; i < lines.size(); ++i) {
     const int line = int(i) + 1;
     const std::string place = hours.place(line);

@@ -14,7 +14,7 @@
 namespace couplet {
 namespace {
 
-constexpr std::size_t most_errors = 30, most_participants = 100, longest_name = 50;
+constexpr std::size_t most_errors = 30, most_participants = 100, longest_participant_name = 50;
 
 /// Why a participant cannot have this name: it becomes a folder and a file beside those of the run itself.
 std::string problem_of_name(const std::string& name) {
@@ -22,8 +22,9 @@ std::string problem_of_name(const std::string& name) {
   if (name == coupler_name) return "the coupler is not a participant; its keys are in `coupling`";
   if (name == "checkpoints" || name == "run")
     return "the run itself has a folder or file of this name; take another";
-  if (name.size() > longest_name)
-    return fmt::format("the name has {} characters; at most {} are possible", name.size(), longest_name);
+  if (name.size() > longest_participant_name)
+    return fmt::format("the name has {} characters; at most {} are possible", name.size(),
+                       longest_participant_name);
   const auto is_bad = [](char c) {
     return c == '/' || c == '\\' || c == ' ' || c == '.' || c == '\n' || c == '\t';
   };

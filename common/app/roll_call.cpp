@@ -20,7 +20,7 @@ namespace {
 
 // One text a process: fields parted by unit separators, which no name, path or message holds.
 constexpr char field_end = '\x1f', text_end = '\x1e';
-constexpr std::size_t longest_name = 256;
+constexpr std::size_t longest_text = 256;
 constexpr std::int64_t hello_mark = 0x434f55504c4554;  // "COUPLET"
 
 std::string encode(const Attendant& a) {
@@ -40,7 +40,7 @@ bool parse(const std::string& text, T& value) {
 }
 
 bool is_name(const std::string& text) {
-  return text.size() <= longest_name &&
+  return text.size() <= longest_text &&
          std::ranges::none_of(text, [](unsigned char c) { return c < 32 || c == 127; });
 }
 
@@ -157,7 +157,7 @@ Attendant introduced(const std::string& text, int process) {
   if (!is_name(a.program) || !is_name(a.participant))
     throw malformed(
         fmt::format("the names of its program and participant have control characters or more than {} bytes",
-                    longest_name));
+                    longest_text));
   if (!parse(fields[3], a.case_hash) || !parse(fields[6], a.application) || !parse(fields[7], a.world_rank))
     throw malformed("the hash of its case, the number of its program or its rank is no whole number");
   if (a.world_rank != process) throw malformed(fmt::format("it says that it is process {}", a.world_rank));

@@ -38,7 +38,7 @@ std::string member(std::string_view name, std::string_view json) {
   return fmt::format("{}: {}", quote(name), json);
 }
 
-std::vector<std::string> quoted(const std::vector<std::string>& words) {
+std::vector<std::string> quoted_all(const std::vector<std::string>& words) {
   std::vector<std::string> result;
   for (const std::string& word : words) result.push_back(quote(word));
   return result;
@@ -97,7 +97,7 @@ std::string value_schema(const Item& item) {
           [&](std::map<std::string, double>*) {
             return object({member("type", "\"object\""), member("additionalProperties", number)});
           },
-          [&](const Word& word) { return object({member("enum", array(quoted(word.words)))}); },
+          [&](const Word& word) { return object({member("enum", array(quoted_all(word.words)))}); },
       },
       item.slot);
 }
@@ -188,7 +188,7 @@ std::string mapping_schema(const std::vector<Item>& items) {
   for (const Alternative& a : alternatives(items)) {
     std::vector<std::string> members{member("type", "\"object\""), member("properties", object(a.properties)),
                                      member("additionalProperties", "false")};
-    if (!a.required.empty()) members.push_back(member("required", array(quoted(a.required))));
+    if (!a.required.empty()) members.push_back(member("required", array(quoted_all(a.required))));
     schemas.push_back(object(members));
   }
   return schemas.size() == 1 ? schemas.front() : object({member("oneOf", array(schemas))});

@@ -10,7 +10,7 @@
 namespace couplet::csv {
 namespace {
 
-constexpr std::size_t chunk = 1 << 16;
+constexpr std::size_t compressed_chunk = 1 << 16;
 constexpr std::uint64_t always_allowed = 1 << 20;
 constexpr int gzip_format = 16;  // added to the bits of zlib's window
 
@@ -29,7 +29,7 @@ ByteSource::ByteSource(const std::filesystem::path& file, std::string kind, cons
     : name_(file.string()),
       kind_(std::move(kind)),
       limits_(limits),
-      input_(chunk),
+      input_(compressed_chunk),
       gzip_(nullptr, end_and_delete) {
   std::error_code code;
   const auto status = std::filesystem::status(file, code);

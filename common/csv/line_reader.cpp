@@ -10,7 +10,7 @@
 namespace couplet::csv {
 namespace {
 
-constexpr std::size_t chunk = 1 << 16;
+constexpr std::size_t read_ahead = 1 << 16;
 constexpr std::string_view mark_of_utf8 = "\xEF\xBB\xBF";
 
 bool is_control(char c) { return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f; }
@@ -22,7 +22,7 @@ LineReader::LineReader(const std::filesystem::path& file, const std::string& kin
       kind_(kind),
       limits_(limits),
       source_(file, kind, limits),
-      buffer_(limits.line + chunk) {}
+      buffer_(limits.line + read_ahead) {}
 
 std::string LineReader::place() const { return fmt::format("{}:{}", name_, number_); }
 

@@ -16,8 +16,6 @@ namespace {
 
 using Block = Eigen::Matrix<double, 6, 6>;
 
-// A mode that moves no cell has an empty row; this part of the largest diagonal keeps it solvable.
-constexpr double floor_of_diagonal = 1e-10;
 // Volume strains between aggregates that are all but forbidden would lock the coarse space.
 constexpr double most_lambda_over_mu = 3;
 

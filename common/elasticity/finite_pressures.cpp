@@ -99,7 +99,20 @@ void FiniteKernelOf<D>::conserving_pressures() {
   mesh_.cells.update_ghosts(cells);
 }
 
-template class FiniteKernelOf<2>;
-template class FiniteKernelOf<3>;
+template void FiniteKernelOf<2>::find_pressures();
+template void FiniteKernelOf<2>::sum_volume_changes();
+template void FiniteKernelOf<2>::set_own_pressures(bool);
+template void FiniteKernelOf<2>::predict_pressures(std::span<const double>, std::span<const double>);
+template void FiniteKernelOf<2>::accept_pressures();
+template void FiniteKernelOf<2>::add_pressure_defect(std::span<double>);
+template void FiniteKernelOf<2>::conserving_pressures();
+
+template void FiniteKernelOf<3>::find_pressures();
+template void FiniteKernelOf<3>::sum_volume_changes();
+template void FiniteKernelOf<3>::set_own_pressures(bool);
+template void FiniteKernelOf<3>::predict_pressures(std::span<const double>, std::span<const double>);
+template void FiniteKernelOf<3>::accept_pressures();
+template void FiniteKernelOf<3>::add_pressure_defect(std::span<double>);
+template void FiniteKernelOf<3>::conserving_pressures();
 
 }  // namespace couplet

@@ -41,7 +41,8 @@ void FiniteKernelOf<D>::visit_tangents(const std::function<void(const FaceTangen
   }
 }
 
-template class FiniteKernelOf<2>;
-template class FiniteKernelOf<3>;
+template void FiniteKernelOf<2>::visit_tangents(const std::function<void(const FaceTangent&)>&);
+
+template void FiniteKernelOf<3>::visit_tangents(const std::function<void(const FaceTangent&)>&);
 
 }  // namespace couplet

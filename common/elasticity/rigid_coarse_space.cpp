@@ -16,10 +16,6 @@ namespace {
 using Modes = Eigen::Matrix<double, 3, 6>;
 using Block = Eigen::Matrix<double, 6, 6>;
 
-// A mode that moves no cell (the spin of a single row of cells) has an empty row; this part of the largest
-// diagonal keeps it solvable, its amplitude is nothing.
-constexpr double floor_of_diagonal = 1e-10;
-
 Tensor3 cross_matrix(const Vec3& v) {
   Tensor3 m;
   m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;

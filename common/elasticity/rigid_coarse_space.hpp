@@ -11,6 +11,10 @@
 
 namespace couplet {
 
+/// A mode that moves no cell (the spin of a single row of cells) has an empty row; this part of the largest diagonal
+/// keeps it solvable, its amplitude is nothing.
+inline constexpr double floor_of_diagonal = 1e-10;
+
 /// Rigid motions of aggregates of cells as a coarse space for elasticity: what bends a slender body is a slow
 /// variation of rotations, which no component-wise operator sees cheaply. With Z the rigid modes (3 in 2-D, 6
 /// in 3-D) of each aggregate, the correction is Z (Z^T A Z)^-1 Z^T r; Z^T looks at cell rows only, boundary

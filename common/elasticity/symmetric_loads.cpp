@@ -113,7 +113,26 @@ std::vector<Vec3> SymmetricKernel<D>::holding_forces(std::span<const double> unk
   return space_.held(known);
 }
 
-template class SymmetricKernel<2>;
-template class SymmetricKernel<3>;
+template void SymmetricKernel<2>::spread_pressure(std::span<const double>);
+template Vec3 SymmetricKernel<2>::add_face_forces(std::span<const double>, std::span<double>);
+template void SymmetricKernel<2>::add_cell_forces(std::span<const double>, std::span<double>);
+template void SymmetricKernel<2>::add_pressure(std::span<const double>, std::span<double>);
+template bool SymmetricKernel<2>::set_density(std::span<const double>);
+template void SymmetricKernel<2>::apply_with_mass(std::span<const double>, std::span<const double>, double,
+                                                  bool, std::span<double>);
+template double SymmetricKernel<2>::product(ElasticPart, const ElasticField&, const ElasticField&);
+template std::vector<Vec3> SymmetricKernel<2>::holding_forces(std::span<const double>,
+                                                              std::span<const double>, const ElasticLoads&);
+
+template void SymmetricKernel<3>::spread_pressure(std::span<const double>);
+template Vec3 SymmetricKernel<3>::add_face_forces(std::span<const double>, std::span<double>);
+template void SymmetricKernel<3>::add_cell_forces(std::span<const double>, std::span<double>);
+template void SymmetricKernel<3>::add_pressure(std::span<const double>, std::span<double>);
+template bool SymmetricKernel<3>::set_density(std::span<const double>);
+template void SymmetricKernel<3>::apply_with_mass(std::span<const double>, std::span<const double>, double,
+                                                  bool, std::span<double>);
+template double SymmetricKernel<3>::product(ElasticPart, const ElasticField&, const ElasticField&);
+template std::vector<Vec3> SymmetricKernel<3>::holding_forces(std::span<const double>,
+                                                              std::span<const double>, const ElasticLoads&);
 
 }  // namespace couplet

@@ -24,7 +24,10 @@ void SymmetricKernel<D>::apply_mixed(std::span<const double> unknowns, std::span
   space_.take_rows(unknowns, {}, result);
 }
 
-template class SymmetricKernel<2>;
-template class SymmetricKernel<3>;
+template void SymmetricKernel<2>::apply_mixed(std::span<const double>, std::span<const double>, double,
+                                              std::span<double>, std::span<double>);
+
+template void SymmetricKernel<3>::apply_mixed(std::span<const double>, std::span<const double>, double,
+                                              std::span<double>, std::span<double>);
 
 }  // namespace couplet

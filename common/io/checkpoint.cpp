@@ -17,7 +17,7 @@
 namespace couplet {
 namespace {
 
-constexpr const char* format_name = "couplet checkpoint";
+constexpr const char* checkpoint_format = "couplet checkpoint";
 // 3: errors of steps, net heat of a tank's report, what the pressure preconditioner was made from. 4: order of the errors.
 constexpr int format_version = 4;
 
@@ -73,7 +73,7 @@ CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& f
   if (stamp.empty()) stamp = "alone";
   broadcast(comm, stamp);
   state_->id = hdf5::create_file(comm, state_->part);
-  hdf5::write_attribute(state_->id, "format", std::string(format_name));
+  hdf5::write_attribute(state_->id, "format", std::string(checkpoint_format));
   hdf5::write_attribute(state_->id, "version", double(format_version));
   hdf5::write_attribute(state_->id, "ranks", double(comm_size(comm)));
   hdf5::write_attribute(state_->id, "set", stamp);
@@ -187,7 +187,7 @@ void examine_stamp(const hdf5::Reader& in) {
 
 /// All of the file but the arrays' values, which HDF5 copies as they are. `ranks`: of this run; 0: any.
 void examine_content(const hdf5::Reader& in, int ranks) {
-  if (!in.has_attribute("/", "format") || in.text("/", "format") != format_name)
+  if (!in.has_attribute("/", "format") || in.text("/", "format") != checkpoint_format)
     throw Error("'{}' is an HDF5 file, but not a checkpoint.", in.file().string());
   if (const double version = in.number("/", "version"); version != format_version)
     throw Error("The checkpoint '{}' has format version {}; this program reads version {}.",

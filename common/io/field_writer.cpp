@@ -12,7 +12,7 @@
 namespace couplet {
 namespace {
 
-constexpr const char* format_name = "couplet fields";
+constexpr const char* fields_format = "couplet fields";
 constexpr std::size_t most_fields = 1000;  // of one kind in one output
 
 std::string step_name(int number) { return fmt::format("steps/{:06d}", number); }
@@ -100,7 +100,7 @@ struct FieldWriter::State {
 
 void FieldWriter::State::start() {
   const hdf5::Handle id = hdf5::create_file(mesh.comm, file());
-  hdf5::write_attribute(id, "format", std::string(format_name));
+  hdf5::write_attribute(id, "format", std::string(fields_format));
   hdf5::write_attribute(id, "ranks", double(comm_size(mesh.comm)));
   const Topology topology = make_topology(mesh);
   const hdf5::Rows rows =
@@ -141,7 +141,7 @@ void FieldWriter::State::read_entries(const hdf5::Reader& file, const std::vecto
 
 std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
   const hdf5::Reader in(file(), "output", "Move it away or restart without it.");
-  if (in.text("/", "format") != format_name) in.refuse("it is not an output of fields");
+  if (in.text("/", "format") != fields_format) in.refuse("it is not an output of fields");
   const double kind = in.number("/", "kind");
   const auto known = {0, 4, 5, 6, 7, 8, 9};
   if (std::ranges::find(known, kind) == known.end())

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view head = "$Comments\ncouplet ";
 
-std::string read_text(const std::filesystem::path& file) {
+std::string text_if_any(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();
@@ -29,7 +29,7 @@ std::string seal_of(std::string_view text, const std::string& name) {
 }  // namespace
 
 void seal_cache(const std::filesystem::path& file, const std::string& name) {
-  const std::string seal = seal_of(read_text(file), name);
+  const std::string seal = seal_of(text_if_any(file), name);
   std::ofstream out(file, std::ios::binary | std::ios::app);
   out << seal;
   out.close();
@@ -38,7 +38,7 @@ void seal_cache(const std::filesystem::path& file, const std::string& name) {
 
 bool is_sound_cache(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file)) return false;
-  const std::string text = read_text(file);
+  const std::string text = text_if_any(file);
   const std::size_t at = text.rfind(head);
   if (at != std::string::npos && std::string_view(text).substr(at) ==
                                      seal_of(std::string_view(text).substr(0, at), file.filename().string()))

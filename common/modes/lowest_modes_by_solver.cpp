@@ -14,7 +14,8 @@
 namespace couplet {
 namespace {
 
-constexpr double tolerance = 1e-9;  // of the eigenvalues of the inverse: above what the inner solver leaves
+constexpr double solver_tolerance =
+    1e-9;  // of the eigenvalues of the inverse: above what the inner solver leaves
 // A mode that the first search hid lies below the last found by more than rounding.
 constexpr double hidden_below = 1e-6;
 
@@ -102,7 +103,7 @@ class Search {
   /// collective.
   EigenModes run(int n, std::span<const std::vector<double>> beside) {
     petsc_check(EPSSetDimensions(eps_, n, PETSC_DEFAULT, PETSC_DEFAULT));
-    petsc_check(EPSSetTolerances(eps_, tolerance, 300));
+    petsc_check(EPSSetTolerances(eps_, solver_tolerance, 300));
     std::vector<::Vec> space(beside.size());
     for (std::size_t i = 0; i < beside.size(); ++i) {
       petsc_check(MatCreateVecs(k_, &space[i], nullptr));

@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where mutants are made. Left out is what decides how fast an answer is found but not which (preconditioners, coarse spaces),
 what reads and writes files, and what is said to the user."""
+import pathlib
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def _of(folder, names):
-    return [f"{folder}/{name}.cpp" for name in names.split()]
+    """The files of these names, wherever below the folder they lie."""
+    there = {f.stem: f.relative_to(ROOT).as_posix() for f in sorted((ROOT / folder).rglob("*.cpp"))}
+    return [there[name] for name in names.split()]
 
 
 FILES = {
@@ -48,3 +53,8 @@ FILES = {
 # How many of the mutants a folder gets, in parts of all.
 SHARES = {"fluid_solver": 42, "solid_solver": 40, "common/elasticity": 34, "common/fv": 18, "common/time": 14, "coupler": 34,
           "plate_modal": 20, "thermocline": 26, "mesh_mover": 12, "common/modes": 8}
+
+
+def folder_of(file):
+    """The program or the folder of common that a file belongs to, whatever its sub-folder."""
+    return next(folder for folder in SHARES if file.startswith(folder + "/"))

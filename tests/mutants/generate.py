@@ -12,7 +12,7 @@ import re
 
 import cpp_text
 import rules
-from fields import FILES, SHARES
+from fields import FILES, SHARES, folder_of
 
 SEED, SAMPLE = 34, 240
 OF_ONE_FUNCTION = 2
@@ -43,10 +43,11 @@ def _number(*words):
 def of_file(root, file, kind):
     source = (root / file).read_text()
     found, seen = [], {}
+    known_as = f"{folder_of(file)}/{pathlib.PurePath(file).name}"  # names outlive a move to another sub-folder
     for s in cpp_text.statements(source):
         for rule, begin, end, new in rules.broken(s):
             text = re.sub(r"\s+", " ", s.text).strip()
-            key = (file, text, begin - s.begin, end - begin, new)
+            key = (known_as, text, begin - s.begin, end - begin, new)
             seen[key] = seen.get(key, 0) + 1
             name = hashlib.sha256("|".join(map(str, (*key, seen[key]))).encode()).hexdigest()[:10]
             after = source[:begin] + new + source[end:]
@@ -59,10 +60,6 @@ def of_file(root, file, kind):
 
 def everything(root):
     return [m for kind, files in FILES.items() for file in files for m in of_file(root, file, kind)]
-
-
-def folder_of(file):
-    return file.rsplit("/", 1)[0]
 
 
 def weight(m):

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Which quick tests are asked first about which sources: those of a file, then those of its folder by their price."""
 
+from fields import folder_of
+
 FILE = {
     "fluid_solver/energy_guard": "stability_fluid_energy_guard",
     "fluid_solver/step_size": "stability_fluid_step_sizes verification_fluid_steps",
@@ -121,7 +123,7 @@ def _named(words, registered):
 
 def tests_of(file, registered, price):
     """Names in the order in which they are asked. Those that are not registered or have no price are left out."""
-    stem, folder = file.removesuffix(".cpp"), file.rsplit("/", 1)[0]
+    stem, folder = file.removesuffix(".cpp"), folder_of(file)
     near = [t for key, words in FILE.items() if stem == key or folder == key for t in words.split()]
     rest = sorted(_named(FOLDER[folder], registered), key=lambda t: price.get(t, 1e9))
     return [t for t in dict.fromkeys([*near, *rest]) if t in registered]

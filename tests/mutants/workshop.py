@@ -35,6 +35,14 @@ class Workshop:
         lines = text_of("ninja", "-C", self.build, "-t", "commands").splitlines()
         return {line.rsplit(" -c ", 1)[1]: line for line in lines if " -c " in line}
 
+    def _command(self, file):
+        """How the build compiles a file, which it must do by itself: in a batch the broken object would stand beside the sound one."""
+        command = self._compiling.get(str(self.root / file))
+        if command is None:
+            raise SystemExit(f"{self.build} compiles {file} in a batch with others; mutants need a build of single objects: "
+                             "cmake --preset single && cmake --build --preset single, then name build-single")
+        return shlex.split(command)
+
     @functools.cached_property
     def registered(self):
         return {t["name"]: t for t in json.loads(text_of("ctest", "--test-dir", self.build, "--show-only=json-v1"))["tests"]
@@ -60,7 +68,7 @@ class Workshop:
         source = self.root / file
         broken, made = folder / source.name, folder / (source.name + ".o")
         broken.write_text(text)
-        words = [w for w in shlex.split(self._compiling[str(source)]) if not w.endswith("ccache")]
+        words = [w for w in self._command(file) if not w.endswith("ccache")]
         words[words.index("-o") + 1], words[words.index("-c") + 1] = str(made), str(broken)
         for option in ("-MT", "-MF"):  # the build's own record of what depends on what stays as it is
             place = words.index(option)
@@ -71,7 +79,7 @@ class Workshop:
 
     def object_of(self, file):
         """The sound object, as the build has it."""
-        words = shlex.split(self._compiling[str(self.root / file)])
+        words = self._command(file)
         return self.build / words[words.index("-o") + 1]
 
     def linked(self, target, made, folder):
@@ -92,7 +100,7 @@ class Workshop:
 
     def holds(self, target, file):
         """Whether a test or program has the object of a file, by the library that it is in."""
-        words = shlex.split(self._compiling[str(self.root / file)])
+        words = self._command(file)
         library = pathlib.PurePath(words[words.index("-o") + 1]).parts
         name = library[library.index("CMakeFiles") + 1].removesuffix(".dir")
         return any(pathlib.PurePath(w).name == f"lib{name}.a" for w in self._linking(target))

@@ -135,6 +135,8 @@ def symbols_of(job):
     """{file of the source: names that its object alone defines}."""
     def make():
         by_file, owners = {}, {}
+        if any((job.build / "CMakeFiles").glob("*/Unity")):
+            raise RuntimeError("the build compiles sources in batches; name one of single objects (preset single, --build build-single)")
         for file in sorted((job.build / "CMakeFiles").rglob("*.cpp.o")):
             source = re.sub(r".*\.dir/", "", str(file))[:-2]
             if not (job.root / source).exists():

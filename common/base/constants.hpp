@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <limits>
+#include <numbers>
+
+namespace couplet {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double degree = std::numbers::pi / 180;  // [rad]
+/// In the columns of tables.
+inline constexpr std::array<const char*, 3> axis_letters{"x", "y", "z"};
+
+}  // namespace couplet
