@@ -9,9 +9,9 @@
 #include "common/base/text.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/places.hpp"
-#include "coupler/role_checks.hpp"
-#include "coupler/surfaces.hpp"
+#include "coupler/exchange/role_checks.hpp"
+#include "coupler/judge/places.hpp"
+#include "coupler/judge/surfaces.hpp"
 
 namespace couplet {
 namespace {

@@ -5,7 +5,7 @@
 #include "common/app/run_report.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
-#include "coupler/effect_cards.hpp"
+#include "coupler/parameters/effect_cards.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 // One pass through the group.
 #include "common/base/error.hpp"
 #include "coupler/coupler.hpp"
-#include "coupler/places.hpp"
+#include "coupler/judge/places.hpp"
 
 namespace couplet {
 

@@ -15,10 +15,10 @@
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/body_start.hpp"
-#include "fluid_solver/cavity.hpp"
-#include "fluid_solver/derived.hpp"
-#include "fluid_solver/state_io.hpp"
+#include "fluid_solver/judge/cavity.hpp"
+#include "fluid_solver/motion/body_start.hpp"
+#include "fluid_solver/output/derived.hpp"
+#include "fluid_solver/state/state_io.hpp"
 
 namespace couplet::fluid {
 namespace {

@@ -10,12 +10,12 @@
 #include "common/coupling/interface_map.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"
-#include "fluid_solver/compliance.hpp"
-#include "fluid_solver/error_estimate.hpp"
-#include "fluid_solver/fluid.hpp"
-#include "fluid_solver/openings.hpp"
-#include "fluid_solver/output.hpp"
-#include "fluid_solver/renewal.hpp"
+#include "fluid_solver/boundary/openings.hpp"
+#include "fluid_solver/judge/compliance.hpp"
+#include "fluid_solver/judge/error_estimate.hpp"
+#include "fluid_solver/output/output.hpp"
+#include "fluid_solver/step/fluid.hpp"
+#include "fluid_solver/step/renewal.hpp"
 
 namespace couplet::fluid {
 

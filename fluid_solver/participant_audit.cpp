@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/derived.hpp"
-#include "fluid_solver/effect_cards.hpp"
+#include "fluid_solver/output/derived.hpp"
+#include "fluid_solver/parameters/effect_cards.hpp"
 #include "fluid_solver/participant.hpp"
 
 namespace couplet::fluid {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/parallel/collective.hpp"
+#include "fluid_solver/motion/turning_walls.hpp"
 #include "fluid_solver/participant.hpp"
-#include "fluid_solver/turning_walls.hpp"
 
 namespace couplet::fluid {
 

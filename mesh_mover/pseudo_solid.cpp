@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/symmetric_matrix.hpp"
+#include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet::mesh_mover {

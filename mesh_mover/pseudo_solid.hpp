@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/elasticity/elastic_kernel.hpp"
-#include "common/elasticity/elastic_preconditioner.hpp"
+#include "common/elasticity/solve/elastic_preconditioner.hpp"
 #include "common/linalg/krylov.hpp"
 #include "common/mesh/mesh.hpp"
 #include "mesh_mover/motion_method.hpp"

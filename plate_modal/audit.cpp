@@ -8,7 +8,7 @@
 #include "common/mesh/on_root.hpp"
 #include "common/modes/rigid_motion.hpp"
 #include "plate_modal/effect_cards.hpp"
-#include "plate_modal/outline.hpp"
+#include "plate_modal/model/outline.hpp"
 #include "plate_modal/structure.hpp"
 
 namespace couplet::plate {

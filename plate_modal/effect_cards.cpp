@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "plate_modal/build_model.hpp"
+#include "plate_modal/model/build_model.hpp"
 
 namespace couplet::plate {
 namespace {

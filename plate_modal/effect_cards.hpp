@@ -5,8 +5,8 @@
 #include <span>
 
 #include "common/effects/card.hpp"
-#include "plate_modal/parameters.hpp"
-#include "plate_modal/resolution.hpp"
+#include "plate_modal/model/parameters.hpp"
+#include "plate_modal/motion/resolution.hpp"
 
 namespace couplet::plate {
 

@@ -2,7 +2,7 @@
 #include "common/app/program.hpp"
 #include "common/linalg/petsc_environment.hpp"
 #include "plate_modal/effect_cards.hpp"
-#include "plate_modal/files.hpp"
+#include "plate_modal/model/files.hpp"
 #include "plate_modal/structure.hpp"
 
 int main(int argc, char** argv) {

@@ -8,12 +8,12 @@
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/time/velocity_errors.hpp"
-#include "plate_modal/build_model.hpp"
-#include "plate_modal/contact.hpp"
-#include "plate_modal/oscillators.hpp"
-#include "plate_modal/pressure_load.hpp"
-#include "plate_modal/resolution.hpp"
-#include "plate_modal/share.hpp"
+#include "plate_modal/model/build_model.hpp"
+#include "plate_modal/motion/contact.hpp"
+#include "plate_modal/motion/oscillators.hpp"
+#include "plate_modal/motion/pressure_load.hpp"
+#include "plate_modal/motion/resolution.hpp"
+#include "plate_modal/motion/share.hpp"
 #include "plate_modal/truncation.hpp"
 
 namespace couplet::plate {

@@ -8,8 +8,8 @@
 
 #include "common/linalg/linear_solver.hpp"
 #include "common/modes/modal_model.hpp"
-#include "plate_modal/plate_model.hpp"
-#include "plate_modal/pressure_load.hpp"
+#include "plate_modal/model/plate_model.hpp"
+#include "plate_modal/motion/pressure_load.hpp"
 
 namespace couplet::plate {
 

@@ -2,8 +2,8 @@
 #include "common/app/program.hpp"
 #include "common/linalg/petsc_environment.hpp"
 #include "common/mesh/load.hpp"
-#include "solid_solver/auto_effects.hpp"
-#include "solid_solver/effect_cards.hpp"
+#include "solid_solver/effects/auto_effects.hpp"
+#include "solid_solver/effects/effect_cards.hpp"
 #include "solid_solver/solid.hpp"
 #include "solid_solver/thermal_solid.hpp"
 

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "common/io/checkpoint.hpp"
-#include "solid_solver/effect_cards.hpp"
-#include "solid_solver/output.hpp"
+#include "solid_solver/effects/effect_cards.hpp"
+#include "solid_solver/output/output.hpp"
 
 namespace couplet {
 

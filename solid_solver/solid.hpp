@@ -8,13 +8,13 @@
 
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
-#include "solid_solver/error_estimate.hpp"
-#include "solid_solver/judge.hpp"
-#include "solid_solver/solid_body.hpp"
-#include "solid_solver/solid_context.hpp"
-#include "solid_solver/solid_fields.hpp"
-#include "solid_solver/solid_interface.hpp"
-#include "solid_solver/solid_stepper.hpp"
+#include "solid_solver/body/solid_body.hpp"
+#include "solid_solver/body/solid_context.hpp"
+#include "solid_solver/body/solid_fields.hpp"
+#include "solid_solver/body/solid_interface.hpp"
+#include "solid_solver/judge/error_estimate.hpp"
+#include "solid_solver/judge/judge.hpp"
+#include "solid_solver/motion/solid_stepper.hpp"
 
 namespace couplet {
 

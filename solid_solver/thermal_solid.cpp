@@ -4,7 +4,7 @@
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/thermal_strain.hpp"
+#include "solid_solver/thermal/thermal_strain.hpp"
 
 namespace couplet {
 

@@ -9,13 +9,13 @@
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/participant.hpp"
 #include "common/io/field_writer.hpp"
-#include "common/io/probe.hpp"
+#include "common/io/probes/probe.hpp"
 #include "common/io/series.hpp"
 #include "common/mesh/mesh.hpp"
-#include "solid_solver/heat.hpp"
-#include "solid_solver/heat_errors.hpp"
-#include "solid_solver/parameters.hpp"
-#include "solid_solver/solid_context.hpp"
+#include "solid_solver/body/solid_context.hpp"
+#include "solid_solver/parameters/parameters.hpp"
+#include "solid_solver/thermal/heat.hpp"
+#include "solid_solver/thermal/heat_errors.hpp"
 
 namespace couplet {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/app/program.hpp"
-#include "thermocline/effect_cards.hpp"
-#include "thermocline/elsewhere.hpp"
-#include "thermocline/files.hpp"
+#include "thermocline/judge/effect_cards.hpp"
+#include "thermocline/judge/elsewhere.hpp"
+#include "thermocline/judge/files.hpp"
 
 int main(int argc, char** argv) {
   couplet::thermocline::ElementParameters parameters;

@@ -14,11 +14,11 @@
 #include <cstdlib>
 #include <limits>
 
-#include "common/app/case_keys.hpp"
-#include "common/app/command_line.hpp"
-#include "common/app/questions.hpp"
-#include "common/app/start_guard.hpp"
-#include "common/app/step_loop.hpp"
+#include "common/app/case/case_keys.hpp"
+#include "common/app/case/command_line.hpp"
+#include "common/app/case/questions.hpp"
+#include "common/app/loop/step_loop.hpp"
+#include "common/app/watch/start_guard.hpp"
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/coupling/wait.hpp"

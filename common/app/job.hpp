@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "common/app/case_file.hpp"
-#include "common/app/fault_injection.hpp"
-#include "common/app/roll_call.hpp"
-#include "common/app/simulation.hpp"
-#include "common/app/watch.hpp"
+#include "common/app/case/case_file.hpp"
+#include "common/app/case/roll_call.hpp"
+#include "common/app/loop/simulation.hpp"
+#include "common/app/watch/fault_injection.hpp"
+#include "common/app/watch/watch.hpp"
 
 namespace couplet {
 

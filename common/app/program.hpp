@@ -9,8 +9,8 @@
 #include <memory>
 #include <string>
 
-#include "common/app/problem_of_key.hpp"
-#include "common/app/simulation.hpp"
+#include "common/app/case/problem_of_key.hpp"
+#include "common/app/loop/simulation.hpp"
 #include "common/config/section.hpp"
 #include "common/coupling/mesh_motion.hpp"
 #include "common/coupling/participant.hpp"

@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
+#include "common/app/loop/step_loop.hpp"
 #include "common/app/run_audit.hpp"
 #include "common/app/run_report.hpp"
-#include "common/app/step_loop.hpp"
 #include "common/base/error.hpp"
 #include "common/coupling/error_parts.hpp"
 #include "common/coupling/serve.hpp"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <utility>
 
-#include "common/app/command_line.hpp"
+#include "common/app/case/command_line.hpp"
 #include "common/app/job.hpp"
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"

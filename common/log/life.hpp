@@ -5,7 +5,7 @@
 
 namespace couplet::log {
 
-/// Where the watch over a job (common/app/watch) hears that this process is alive.
+/// Where the watch over a job (common/app/watch/watch) hears that this process is alive.
 struct LifeSigns {
   std::atomic<double>* last = nullptr;    ///< time of the last sign [s], machine's steady clock
   std::atomic<int>* long_work = nullptr;  ///< above 0: within LongWork

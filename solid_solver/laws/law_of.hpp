@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "common/elasticity/finite_law.hpp"
+#include "common/elasticity/finite/finite_law.hpp"
 
 namespace couplet::laws {
 

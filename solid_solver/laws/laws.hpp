@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/elasticity/finite_law.hpp"
+#include "common/elasticity/finite/finite_law.hpp"
 
 namespace couplet::laws {
 

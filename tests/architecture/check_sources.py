@@ -53,8 +53,8 @@ DOORS = {
         (r"\bUnpacker\b|0x434f'?4d4d|0x5245'?504c", r"common/coupling/(?:messages\.cpp|unpacker\.hpp)|client/(?:wire\.[ch]pp|python/couplet\.py)"),
     "messages are received by common/coupling/wait.cpp (ghosts by common/parallel, a client's by its wire)":
         (r"\bMPI_(?:I|M|Im)?[Rr]ecv\b", r"common/coupling/wait\.cpp|common/parallel/\w+\.cpp|client/wire\.[ch]pp"),
-    "handshake and roll call are read by common/app/roll_call.cpp (and by the clients)":
-        (r"0x434f'?5550'?4c45'?54", r"common/app/roll_call\.cpp|client/(?:wire\.[ch]pp|python/couplet\.py)"),
+    "handshake and roll call are read by common/app/case/roll_call.cpp (and by the clients)":
+        (r"0x434f'?5550'?4c45'?54", r"common/app/case/roll_call\.cpp|client/(?:wire\.[ch]pp|python/couplet\.py)"),
 }
 SOURCES = ("*.cpp", "*.hpp")
 SCRIPTS = ("*.py", "*.geo", "CMakeLists.txt", "case.yaml")

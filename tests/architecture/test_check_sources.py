@@ -25,7 +25,7 @@ WRONG = {
     ("common/mesh/a.cpp", HEAD + '#include "common/io/series.hpp"\n'): "common/mesh stands below common/io",
     ("common/log/a.cpp", HEAD + '#include "common/config/section.hpp"\n'): "common/log stands below common/config",
     ("coupler/a.cpp", HEAD + '#include "common/mesh/mesh.hpp"\n'): "coupler may not know common/mesh",
-    ("solid_solver/a.cpp", HEAD + '#include "fluid_solver/fluid.hpp"\n'): "solid_solver may not include fluid_solver",
+    ("solid_solver/a.cpp", HEAD + '#include "fluid_solver/step/fluid.hpp"\n'): "solid_solver may not include fluid_solver",
     ("fluid_solver/a.cpp", HEAD + "#include <petscksp.h>\n"): "only common/linalg",
     ("common/mesh/a.cpp", HEAD + "#include <hdf5.h>\n"): "only common/io",
     ("common/app/a.cpp", HEAD + "#include <yaml-cpp/yaml.h>\n"): "only common/config",
@@ -45,7 +45,7 @@ RIGHT = [
     ("coupler/a.cpp", HEAD + "// as H5Fopen( does\nint a;\n"),
     ("tests/unit/io/a.cpp", HEAD + "const auto id = H5Fopen(name, 0, 0);\n"),
     ("common/io/a.cpp", HEAD + '#include <hdf5.h>\n#include "common/mesh/mesh.hpp"\n'),
-    ("fluid_solver/a.cpp", HEAD + '#include "fluid_solver/fluid.hpp"\n#include "common/fv/expression.hpp"\n'),
+    ("fluid_solver/a.cpp", HEAD + '#include "fluid_solver/step/fluid.hpp"\n#include "common/fv/expression.hpp"\n'),
     ("common/base/a.cpp", HEAD + "#include <nanoflann.hpp>\n"),
     ("common/base/a.hpp", HEAD + class_of(40)),
     ("common/base/a.hpp", HEAD + class_of(40).replace("class A", "struct B {};\nstruct A")),
@@ -85,7 +85,7 @@ for text, broken in LINKS.items():
         failed += 1
 MONITORS = {"| `fluid/forces.csv` | forces |": 0, "| `fluid/gaps.csv`, `fluid/forces.csv` |": 0, "forces.csv |": 1}
 for formats, missing in MONITORS.items():
-    found = check_monitors([(pathlib.PurePosixPath("fluid_solver/output.cpp"), 'open("forces.csv")')], formats)
+    found = check_monitors([(pathlib.PurePosixPath("fluid_solver/output/output.cpp"), 'open("forces.csv")')], formats)
     if len(found) != missing:
         print(f"monitors: {formats}: {missing} missing, found {found}")
         failed += 1

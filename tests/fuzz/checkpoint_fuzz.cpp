@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "common/app/step_loop.hpp"
+#include "common/app/loop/step_loop.hpp"
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"

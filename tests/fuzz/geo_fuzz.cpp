@@ -9,8 +9,8 @@
 #include <cstdlib>
 
 #include "common/base/error.hpp"
-#include "common/mesh/geo_script.hpp"
-#include "common/mesh/gmsh.hpp"
+#include "common/mesh/gmsh/geo_script.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/fuzz/crafted_geo.hpp"
 

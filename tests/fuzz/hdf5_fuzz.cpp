@@ -15,8 +15,8 @@
 #include "common/io/checkpoint.hpp"
 #include "common/io/checkpoint_set.hpp"
 #include "common/modes/modes_file.hpp"
-#include "coupler/parameters.hpp"
-#include "coupler/quasi_newton.hpp"
+#include "coupler/acceleration/quasi_newton.hpp"
+#include "coupler/parameters/parameters.hpp"
 #include "tests/fuzz/craft_hdf5.hpp"
 
 namespace couplet::fuzz {

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "common/base/error.hpp"
-#include "common/mesh/geo_script.hpp"
+#include "common/mesh/gmsh/geo_script.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/fuzz/mutate.hpp"
 

@@ -10,7 +10,7 @@
 #include <new>
 
 #include "client/wire.hpp"
-#include "common/app/roll_call.hpp"
+#include "common/app/case/roll_call.hpp"
 #include "common/base/error.hpp"
 #include "common/coupling/messages.hpp"
 #include "tests/fuzz/mutate.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "common/app/case_file.hpp"
+#include "common/app/case/case_file.hpp"
 
 namespace couplet::fuzz {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plate_modal/parameters.hpp"
+#include "plate_modal/model/parameters.hpp"
 #include "tests/fuzz/program.hpp"
 
 namespace couplet::fuzz {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/fuzz/program.hpp"
-#include "thermocline/elsewhere.hpp"
+#include "thermocline/judge/elsewhere.hpp"
 
 namespace couplet::fuzz {
 

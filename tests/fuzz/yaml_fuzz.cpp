@@ -5,8 +5,8 @@
 #include <chrono>
 #include <regex>
 
-#include "common/app/check_files.hpp"
-#include "common/app/questions.hpp"
+#include "common/app/case/check_files.hpp"
+#include "common/app/case/questions.hpp"
 #include "common/base/error.hpp"
 #include "tests/fuzz/mutate.hpp"
 #include "tests/fuzz/program.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/command_line.hpp"
+#include "common/app/case/command_line.hpp"
 
 #include <gmock/gmock.h>
 

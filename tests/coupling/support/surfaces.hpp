@@ -7,7 +7,7 @@
 
 #include "common/coupling/participant.hpp"
 #include "common/parallel/collective.hpp"
-#include "coupler/mapping.hpp"
+#include "coupler/mapping/mapping.hpp"
 
 namespace couplet::tests {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "common/parallel/collective.hpp"
-#include "coupler/accelerator.hpp"
+#include "coupler/acceleration/accelerator.hpp"
 
 namespace couplet {
 namespace {

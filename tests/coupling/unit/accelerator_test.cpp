@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/accelerator.hpp"
+#include "coupler/acceleration/accelerator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
-#include "coupler/fixed_point.hpp"
-#include "coupler/growing_qr.hpp"
-#include "coupler/relaxation.hpp"
+#include "coupler/acceleration/fixed_point.hpp"
+#include "coupler/acceleration/growing_qr.hpp"
+#include "coupler/acceleration/relaxation.hpp"
 
 namespace couplet {
 namespace {

@@ -7,8 +7,8 @@
 #include <numeric>
 #include <random>
 
-#include "coupler/balance.hpp"
-#include "coupler/links.hpp"
+#include "coupler/judge/balance.hpp"
+#include "coupler/mapping/links.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet {

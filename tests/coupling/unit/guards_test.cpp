@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each guard fires on what it is for and keeps still beside it.
-#include "coupler/guards.hpp"
+#include "coupler/judge/guards.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "common/base/error.hpp"
-#include "coupler/places.hpp"
+#include "coupler/judge/places.hpp"
 
 namespace couplet {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/links.hpp"
+#include "coupler/mapping/links.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/base/error.hpp"
-#include "coupler/audit.hpp"
-#include "coupler/balance.hpp"
-#include "coupler/mechanics.hpp"
-#include "coupler/places.hpp"
-#include "coupler/role_checks.hpp"
+#include "coupler/exchange/role_checks.hpp"
+#include "coupler/judge/audit.hpp"
+#include "coupler/judge/balance.hpp"
+#include "coupler/judge/mechanics.hpp"
+#include "coupler/judge/places.hpp"
 
 namespace couplet {
 namespace {

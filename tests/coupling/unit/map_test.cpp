@@ -7,8 +7,8 @@
 #include <random>
 
 #include "common/base/error.hpp"
-#include "coupler/map_local.hpp"
-#include "coupler/map_projection.hpp"
+#include "coupler/mapping/map_local.hpp"
+#include "coupler/mapping/map_projection.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet {

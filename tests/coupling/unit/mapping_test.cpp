@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/mapping.hpp"
+#include "coupler/mapping/mapping.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "common/parallel/collective.hpp"
-#include "coupler/mapping.hpp"
-#include "coupler/side.hpp"
-#include "coupler/surroundings.hpp"
+#include "coupler/exchange/side.hpp"
+#include "coupler/mapping/mapping.hpp"
+#include "coupler/mapping/surroundings.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet {

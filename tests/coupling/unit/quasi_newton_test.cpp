@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/quasi_newton.hpp"
+#include "coupler/acceleration/quasi_newton.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <random>
 
 #include "common/io/checkpoint.hpp"
-#include "coupler/fixed_point.hpp"
+#include "coupler/acceleration/fixed_point.hpp"
 
 namespace couplet {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/roll_call.hpp"
+#include "common/app/case/roll_call.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,8 +6,8 @@
 #include <ctime>
 
 #include "common/base/error.hpp"
-#include "coupler/mechanics.hpp"
-#include "coupler/places.hpp"
+#include "coupler/judge/mechanics.hpp"
+#include "coupler/judge/places.hpp"
 
 namespace couplet {
 namespace {

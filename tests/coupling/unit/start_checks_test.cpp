@@ -8,8 +8,8 @@
 #include "common/base/error.hpp"
 #include "common/coupling/roles.hpp"
 #include "common/log/finding.hpp"
-#include "coupler/still_guard.hpp"
-#include "coupler/surfaces.hpp"
+#include "coupler/judge/still_guard.hpp"
+#include "coupler/judge/surfaces.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet {

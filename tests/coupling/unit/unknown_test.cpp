@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupler/unknown.hpp"
+#include "coupler/acceleration/unknown.hpp"
 
 #include <gtest/gtest.h>
 

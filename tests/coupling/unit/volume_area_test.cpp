@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "coupler/volume_level.hpp"
+#include "coupler/acceleration/volume_level.hpp"
 
 namespace couplet {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "common/base/error.hpp"
-#include "coupler/watch_integrals.hpp"
+#include "coupler/output/watch_integrals.hpp"
 #include "tests/coupling/support/surfaces.hpp"
 
 namespace couplet {

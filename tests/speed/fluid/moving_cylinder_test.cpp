@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "common/mesh/load.hpp"
-#include "fluid_solver/fluid.hpp"
+#include "fluid_solver/step/fluid.hpp"
 #include "mesh_mover/laplacian.hpp"
 
 namespace couplet::fluid {

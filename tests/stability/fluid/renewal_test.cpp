@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Predictions made anew: a wall whose every pass is solved exactly but for a mass that acts on the guess.
-#include "fluid_solver/renewal.hpp"
+#include "fluid_solver/step/renewal.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "thermocline/mechanics.hpp"
+#include "thermocline/wall/mechanics.hpp"
 
 namespace couplet::thermocline {
 namespace {

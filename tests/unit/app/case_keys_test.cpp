@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/case_keys.hpp"
+#include "common/app/case/case_keys.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/halving_causes.hpp"
+#include "common/app/loop/halving_causes.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-#include "common/app/step_loop.hpp"
+#include "common/app/loop/step_loop.hpp"
 
 namespace couplet {
 namespace {

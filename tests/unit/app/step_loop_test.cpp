@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/app/step_loop.hpp"
+#include "common/app/loop/step_loop.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

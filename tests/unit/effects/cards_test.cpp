@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "common/effects/card.hpp"
-#include "coupler/effect_cards.hpp"
-#include "coupler/schedule.hpp"
-#include "fluid_solver/compliance.hpp"
-#include "fluid_solver/effect_cards.hpp"
+#include "coupler/parameters/effect_cards.hpp"
+#include "coupler/parameters/schedule.hpp"
+#include "fluid_solver/judge/compliance.hpp"
+#include "fluid_solver/parameters/effect_cards.hpp"
 #include "plate_modal/effect_cards.hpp"
-#include "solid_solver/effect_cards.hpp"
-#include "thermocline/effect_cards.hpp"
+#include "solid_solver/effects/effect_cards.hpp"
+#include "thermocline/judge/effect_cards.hpp"
 
 namespace couplet::testing {
 namespace {

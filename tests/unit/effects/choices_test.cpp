@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "fluid_solver/auto_effects.hpp"
-#include "solid_solver/auto_effects.hpp"
+#include "fluid_solver/parameters/auto_effects.hpp"
+#include "solid_solver/effects/auto_effects.hpp"
 
 namespace couplet::testing {
 namespace {

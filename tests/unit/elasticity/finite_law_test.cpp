@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/elasticity/finite_strain.hpp"
+#include "common/elasticity/finite/finite_strain.hpp"
 #include "solid_solver/laws/laws.hpp"
 
 namespace couplet::testing {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/elasticity/symmetric_diagonal.hpp"
+#include "common/elasticity/symmetric/symmetric_diagonal.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "common/elasticity/symmetric_matrix.hpp"
+#include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "common/mesh/load.hpp"
 
 namespace couplet {

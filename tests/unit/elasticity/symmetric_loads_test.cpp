@@ -7,7 +7,7 @@
 #include <random>
 
 #include "common/elasticity/elastic_kernel.hpp"
-#include "common/elasticity/symmetric_faces.hpp"
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/mesh/load.hpp"
 
 namespace couplet {

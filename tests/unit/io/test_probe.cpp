@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/base/error.hpp"
-#include "common/io/probe.hpp"
+#include "common/io/probes/probe.hpp"
 #include "common/mesh/load.hpp"
 #include "tests/unit/io/scratch.hpp"
 

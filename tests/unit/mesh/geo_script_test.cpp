@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/geo_script.hpp"
+#include "common/mesh/gmsh/geo_script.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "common/mesh/mesh_facts.hpp"
+#include "common/mesh/gmsh/mesh_facts.hpp"
 
 namespace couplet {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/mesh/sandbox.hpp"
+#include "common/mesh/gmsh/sandbox.hpp"
 
 #include <gtest/gtest.h>
 

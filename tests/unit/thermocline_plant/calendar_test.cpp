@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Load and tariff by weekday and season.
-#include "thermocline/calendar.hpp"
+#include "thermocline/plant/calendar.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "thermocline/plant.hpp"
-#include "thermocline/weather_date.hpp"
+#include "thermocline/plant/plant.hpp"
+#include "thermocline/weather/weather_date.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/clear_sky.hpp"
+#include "thermocline/weather/clear_sky.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "thermocline/weather_date.hpp"
+#include "thermocline/weather/weather_date.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Schedules: from a file, and found as fast as they are long.
-#include "thermocline/flow_file.hpp"
+#include "thermocline/plant/flow_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 #include "common/base/error.hpp"
 #include "tests/support/own_folder.hpp"
-#include "thermocline/celsius.hpp"
+#include "thermocline/base/celsius.hpp"
 
 namespace couplet::thermocline {
 namespace {

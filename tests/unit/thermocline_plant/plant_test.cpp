@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/plant.hpp"
+#include "thermocline/plant/plant.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "thermocline/plant_control.hpp"
+#include "thermocline/plant/plant_control.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is asked about before a run: each sentence where it belongs, and none where all is well.
-#include "thermocline/questions.hpp"
+#include "thermocline/model/questions.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "common/base/error.hpp"
-#include "thermocline/plausible.hpp"
+#include "thermocline/model/plausible.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "common/base/error.hpp"
 #include "common/io/series.hpp"
-#include "thermocline/day_report.hpp"
-#include "thermocline/thickness.hpp"
-#include "thermocline/weather_parameters.hpp"
+#include "thermocline/bed/thickness.hpp"
+#include "thermocline/economics/day_report.hpp"
+#include "thermocline/weather/weather_parameters.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "common/config/load.hpp"
-#include "thermocline/model.hpp"
-#include "thermocline/weather_parameters.hpp"
+#include "thermocline/model/model.hpp"
+#include "thermocline/weather/weather_parameters.hpp"
 
 namespace couplet::thermocline {
 namespace {

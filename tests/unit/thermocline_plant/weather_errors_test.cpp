@@ -9,7 +9,7 @@
 #include <functional>
 
 #include "common/base/error.hpp"
-#include "thermocline/weather_hours.hpp"
+#include "thermocline/weather/weather_hours.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -11,7 +11,7 @@
 #include <functional>
 
 #include "common/base/error.hpp"
-#include "thermocline/weather_parameters.hpp"
+#include "thermocline/weather/weather_parameters.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "thermocline/weather.hpp"
+#include "thermocline/weather/weather.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "thermocline/clear_sky.hpp"
-#include "thermocline/weather_date.hpp"
-#include "thermocline/weather_parameters.hpp"
+#include "thermocline/weather/clear_sky.hpp"
+#include "thermocline/weather/weather_date.hpp"
+#include "thermocline/weather/weather_parameters.hpp"
 
 namespace couplet::thermocline {
 namespace {

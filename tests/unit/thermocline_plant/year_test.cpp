@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "thermocline/day_report.hpp"
-#include "thermocline/weather_parameters.hpp"
+#include "thermocline/economics/day_report.hpp"
+#include "thermocline/weather/weather_parameters.hpp"
 
 namespace couplet::thermocline {
 namespace {

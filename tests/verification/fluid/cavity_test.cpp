@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "common/fv/vertex_interpolation.hpp"
-#include "common/io/probe.hpp"
+#include "common/io/probes/probe.hpp"
 #include "fluid_case.hpp"
 
 namespace couplet::fluid::test {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fluid_case.hpp"
-#include "fluid_solver/derived.hpp"
+#include "fluid_solver/output/derived.hpp"
 
 namespace couplet::fluid::test {
 namespace {

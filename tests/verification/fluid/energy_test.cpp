@@ -7,7 +7,7 @@
 #include <random>
 
 #include "fluid_case.hpp"
-#include "fluid_solver/rates.hpp"
+#include "fluid_solver/step/rates.hpp"
 
 namespace couplet::fluid::test {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
-#include "fluid_solver/fluid.hpp"
+#include "fluid_solver/step/fluid.hpp"
 
 namespace couplet::fluid::test {
 

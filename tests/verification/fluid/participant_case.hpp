@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fluid_solver/derived.hpp"
+#include "fluid_solver/output/derived.hpp"
 #include "fluid_solver/participant.hpp"
 
 namespace couplet::fluid::test {

@@ -5,10 +5,10 @@
 #include <numbers>
 
 #include "fluid_case.hpp"
-#include "fluid_solver/derived.hpp"
-#include "fluid_solver/rates.hpp"
-#include "fluid_solver/statistics.hpp"
-#include "fluid_solver/turbulence.hpp"
+#include "fluid_solver/output/derived.hpp"
+#include "fluid_solver/step/rates.hpp"
+#include "fluid_solver/turbulence/statistics.hpp"
+#include "fluid_solver/turbulence/turbulence.hpp"
 
 namespace couplet::fluid::test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a run of conduction says of its own error, against a mode of a slab.
-#include "solid_solver/heat_errors.hpp"
+#include "solid_solver/thermal/heat_errors.hpp"
 
 #include <gtest/gtest.h>
 

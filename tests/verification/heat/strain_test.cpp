@@ -8,7 +8,7 @@
 
 #include "common/io/checkpoint.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/thermal_strain.hpp"
+#include "solid_solver/thermal/thermal_strain.hpp"
 #include "tests/verification/heat/thermoelastic.hpp"
 
 namespace couplet::testing {

@@ -10,7 +10,7 @@
 
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/heat.hpp"
+#include "solid_solver/thermal/heat.hpp"
 
 namespace couplet::testing {
 

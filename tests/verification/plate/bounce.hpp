@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "plate_modal/oscillators.hpp"
+#include "plate_modal/motion/oscillators.hpp"
 
 namespace couplet::plate::test {
 

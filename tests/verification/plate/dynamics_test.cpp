@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "common/linalg/linear_solver.hpp"
-#include "plate_modal/oscillators.hpp"
+#include "plate_modal/motion/oscillators.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"
 

@@ -9,7 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/config/load.hpp"
 #include "common/modes/modes_file.hpp"
-#include "plate_modal/build_model.hpp"
+#include "plate_modal/model/build_model.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"
 

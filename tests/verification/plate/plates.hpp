@@ -10,7 +10,7 @@
 #include <string>
 
 #include "common/mesh/load.hpp"
-#include "plate_modal/plate_model.hpp"
+#include "plate_modal/model/plate_model.hpp"
 
 namespace couplet::plate::test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the time step resolves what moves: verdicts that fire where the answer is wrong, and are silent where it is
 // right. The right answers are closed forms.
-#include "plate_modal/resolution.hpp"
+#include "plate_modal/motion/resolution.hpp"
 
 #include <gtest/gtest.h>
 

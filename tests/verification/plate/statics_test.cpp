@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
-#include "plate_modal/outline.hpp"
-#include "plate_modal/skin.hpp"
+#include "plate_modal/model/outline.hpp"
+#include "plate_modal/model/skin.hpp"
 #include "plate_modal/structure.hpp"
 #include "tests/verification/plate/plates.hpp"
 

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "common/io/probe.hpp"
+#include "common/io/probes/probe.hpp"
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
-#include "common/elasticity/finite_kernel.hpp"
+#include "common/elasticity/finite/finite_kernel.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/laws/laws.hpp"
 #include "tests/support/saved_state.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/elasticity/finite_kernel.hpp"
+#include "common/elasticity/finite/finite_kernel.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/laws/laws.hpp"
 #include "tests/verification/solid/support.hpp"

@@ -8,7 +8,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/thermal_strain.hpp"
+#include "solid_solver/thermal/thermal_strain.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet {

@@ -7,7 +7,7 @@
 
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/solution_method.hpp"
+#include "solid_solver/method/solution_method.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {

@@ -9,8 +9,8 @@
 
 #include "common/modes/modal_checks.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/modal_analysis.hpp"
-#include "solid_solver/spectrum.hpp"
+#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/parameters.hpp"
+#include "solid_solver/parameters/parameters.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

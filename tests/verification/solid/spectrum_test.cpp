@@ -12,7 +12,7 @@
 
 #include "common/mesh/topology.hpp"
 #include "common/time/amplification.hpp"
-#include "solid_solver/spectrum.hpp"
+#include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {

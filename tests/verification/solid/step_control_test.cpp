@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "common/app/step_loop.hpp"
+#include "common/app/loop/step_loop.hpp"
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "tests/verification/solid/support.hpp"

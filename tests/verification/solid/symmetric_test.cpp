@@ -7,7 +7,7 @@
 
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/spectrum.hpp"
+#include "solid_solver/output/spectrum.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/elasticity/symmetric_matrix.hpp"
+#include "common/elasticity/symmetric/symmetric_matrix.hpp"
 #include "tests/verification/solid/linear_field.hpp"
 
 namespace couplet::testing {

@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 
-#include "thermocline/column.hpp"
-#include "thermocline/insulation.hpp"
-#include "thermocline/ullage.hpp"
+#include "thermocline/wall/column.hpp"
+#include "thermocline/wall/insulation.hpp"
+#include "thermocline/wall/ullage.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "thermocline/mechanics.hpp"
-#include "thermocline/wall_bending.hpp"
+#include "thermocline/wall/mechanics.hpp"
+#include "thermocline/wall/wall_bending.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/base/error.hpp"
-#include "thermocline/packed_bed.hpp"
+#include "thermocline/bed/packed_bed.hpp"
 
 namespace couplet::thermocline {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/config/load.hpp"
-#include "thermocline/tank.hpp"
+#include "thermocline/model/tank.hpp"
 
 namespace couplet::thermocline {
 

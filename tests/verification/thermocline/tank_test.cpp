@@ -13,7 +13,7 @@
 #include "common/io/checkpoint.hpp"
 #include "tests/support/own_folder.hpp"
 #include "tests/verification/thermocline/tank_case.hpp"
-#include "thermocline/output.hpp"
+#include "thermocline/model/output.hpp"
 
 namespace couplet::thermocline {
 namespace {

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/case/case_file.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+
+#include "common/app/case/case_roles.hpp"
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/fv/expression.hpp"
+#include "common/fv/table.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr std::size_t most_errors = 30, most_participants = 100, longest_participant_name = 50;
+
+/// Why a participant cannot have this name: it becomes a folder and a file beside those of the run itself.
+std::string problem_of_name(const std::string& name) {
+  if (name.empty()) return "a participant needs a name";
+  if (name == coupler_name) return "the coupler is not a participant; its keys are in `coupling`";
+  if (name == "checkpoints" || name == "run")
+    return "the run itself has a folder or file of this name; take another";
+  if (name.size() > longest_participant_name)
+    return fmt::format("the name has {} characters; at most {} are possible", name.size(),
+                       longest_participant_name);
+  const auto is_bad = [](char c) {
+    return c == '/' || c == '\\' || c == ' ' || c == '.' || c == '\n' || c == '\t';
+  };
+  if (name.front() == '-' || std::any_of(name.begin(), name.end(), is_bad))
+    return "the name becomes a folder: no '/', '\\', '.' or blank in it, no '-' in front";
+  return "";
+}
+
+void check_top_level(const config::Document& document, CaseFile& result) {
+  static const std::vector<std::string> known{"simulation", "participants", "coupling", "study"};
+  for (const std::string& key : config::keys_of(document, ""))
+    if (std::find(known.begin(), known.end(), key) == known.end() && result.errors.size() < most_errors)
+      result.errors.push_back(fmt::format("{}: unknown section. {}", config::where(document, key),
+                                          did_you_mean(key, known, "sections")));
+}
+
+void list_expected(const config::Document& document, CaseFile& result) {
+  result.coupled = !config::keys_of(document, "coupling").empty();
+  if (result.coupled) result.expected.push_back({coupler_name, "coupler"});
+  const std::vector<std::string> names = config::keys_of(document, "participants");
+  if (names.size() > most_participants)
+    throw Error("{}: {} participants; at most {} are possible.", config::where(document, "participants"),
+                names.size(), most_participants);
+  for (const std::string& name : names) {
+    // The first one is told alone: its path cannot be looked up.
+    if (const std::string problem = problem_of_name(name); !problem.empty())
+      throw Error("{}: '{}': {}.", config::where(document, "participants"), name, problem);
+    const auto program = config::text_of(document, "participants." + name + ".program");
+    if (!program)
+      result.errors.push_back(
+          fmt::format("{}: the key 'program' is missing: the name of the program that runs this "
+                      "participant, for instance solid_solver.",
+                      config::where(document, "participants." + name)));
+    result.expected.push_back({name, program.value_or("?")});
+  }
+}
+
+/// The participant that this program is to run; throws Error.
+std::string find_participant(const CommandLine& command_line, const ProgramKind& kind, const CaseFile& file) {
+  const std::string& source = file.document->name();
+  if (kind.is_coupler) {
+    if (!command_line.participant.empty() && command_line.participant != coupler_name)
+      throw Error("The coupler takes no --participant: it couples those that {} names.", source);
+    if (!file.coupled)
+      throw Error("{}:1:1: there is no `coupling` section, so there is nothing for the coupler to do.",
+                  source);
+    return coupler_name;
+  }
+  std::vector<std::string> names, mine;
+  for (const Expected& e : file.expected) {
+    if (e.participant == coupler_name) continue;
+    names.push_back(e.participant);
+    if (e.program == kind.name) mine.push_back(e.participant);
+  }
+  if (names.empty())
+    throw Error("{}:1:1: there is no `participants` section, which says what {} is to run.", source,
+                kind.name);
+  const std::string& wanted = command_line.participant;
+  if (!wanted.empty()) {
+    if (std::find(names.begin(), names.end(), wanted) == names.end())
+      throw Error("--participant {}: {} has no participant of this name. {}", wanted, source,
+                  did_you_mean(wanted, names, "participants"));
+    if (std::find(mine.begin(), mine.end(), wanted) == mine.end())
+      throw Error("--participant {}: it is run by the program '{}', but '{}' was started for it.", wanted,
+                  config::text_of(*file.document, "participants." + wanted + ".program").value_or("?"),
+                  kind.name);
+    return wanted;
+  }
+  if (mine.empty()) {
+    std::vector<std::string> pairs;
+    for (const Expected& e : file.expected)
+      if (e.participant != coupler_name) pairs.push_back(fmt::format("'{}' ({})", e.participant, e.program));
+    throw Error("{}: none of them is run by the program '{}': {}.",
+                config::where(*file.document, "participants"), kind.name, join(pairs));
+  }
+  if (mine.size() > 1)
+    throw Error("{}: {} of them are run by the program '{}' ({}): say which one with --participant.",
+                config::where(*file.document, "participants"), mine.size(), kind.name, join(mine));
+  return mine.front();
+}
+
+/// Of an expression in x, y, z, t or of a property, which is a number or a table of the temperature T.
+std::string problem_of_expression(const config::ExpressionText& text) {
+  std::string problem = problem_of(text);
+  if (problem.find("unknown name 'T'") != std::string::npos)
+    return problem_of_property(text, -std::numeric_limits<double>::infinity());
+  return problem;
+}
+
+/// `effects: auto`: what the case leaves open is set in the document as if it stood there; what stands there wins.
+void choose(const CommandLine& command_line, const ProgramKind& kind, CaseFile& result) {
+  ChoiceScene scene;
+  scene.folder = command_line.case_file.parent_path();
+  scene.end_time = result.simulation.end_time;
+  scene.time_step = result.simulation.time_step;
+  scene.coupled = result.coupled;
+  scene.has_mover =
+      result.coupled && config::text_of(*result.document, "coupling.mesh.participant").has_value();
+  result.choices = kind.choose(scene);
+  const std::string section = "participants." + result.participant;
+  const std::vector<std::string> there = config::keys_of(*result.document, section);
+  for (EffectChoice& choice : result.choices) {
+    choice.given = !choice.key.empty() && std::ranges::find(there, choice.key) != there.end();
+    if (!choice.given && !choice.value.empty())
+      result.document->set(fmt::format("{}.{}={}", section, choice.key, choice.value));
+  }
+}
+
+void append(std::vector<std::string>& to, const std::vector<std::string>& more) {
+  to.insert(to.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+config::Section::Declare section_of(const ProgramKind& kind) {
+  if (kind.is_coupler) return kind.declare;
+  const auto program = std::make_shared<std::string>(kind.name);
+  return [kind, program](config::Section& section) {
+    section.value("program", *program).required().doc("the program that runs this participant");
+    kind.declare(section);
+  };
+}
+
+CaseFile read_case(const CommandLine& command_line, const ProgramKind& kind) {
+  CaseFile result;
+  try {
+    result.document.emplace(config::Document::read(command_line.case_file));
+    for (const std::string& assignment : command_line.overrides) result.document->set(assignment);
+    result.hash = result.document->hash();
+    check_top_level(*result.document, result);
+    list_expected(*result.document, result);
+    if (result.coupled) append(result.errors, problems_of_roles(*result.document, result.expected));
+    std::vector<std::string> doubts;
+    append(result.errors,
+           config::load(
+               *result.document, "simulation", [&](config::Section& s) { declare(s, result.simulation); }, {},
+               &result.doubts));
+    result.participant = find_participant(command_line, kind, result);
+    const auto load = [&] {
+      return config::load(*result.document,
+                          kind.is_coupler ? "coupling" : "participants." + result.participant,
+                          section_of(kind), problem_of_expression, &doubts);
+    };
+    std::vector<std::string> problems = load();
+    if (result.simulation.choose_effects && kind.choose && result.errors.empty()) {
+      choose(command_line, kind, result);  // a first look may miss keys that are chosen now
+      problems = load();
+    }
+    append(result.errors, problems);
+    append(result.doubts, doubts);
+  } catch (const Error& error) {
+    result.errors.emplace_back(error.what());
+  }
+  return result;
+}
+
+}  // namespace couplet

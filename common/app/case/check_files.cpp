@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/case/check_files.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/config/leaves.hpp"
+#include "common/mesh/gmsh/geo_script.hpp"
+#include "common/mesh/load.hpp"
+
+namespace couplet {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+class FileCheck {
+ public:
+  FileCheck(const config::Document& document, std::string section, fs::path folder)
+      : document_(document), section_(std::move(section)), folder_(std::move(folder)) {}
+
+  Names run() {
+    if (const auto name = config::text_of(document_, section_ + ".mesh")) check_mesh(*name);
+    check_other_files();
+    return std::move(problems_);
+  }
+
+ private:
+  void report(const std::string& key, const std::string& text) {
+    problems_.push_back(fmt::format("{}: {}", config::where(document_, section_ + "." + key), text));
+  }
+
+  void check_mesh(const std::string& name) {
+    const fs::path file = folder_ / name;
+    std::error_code ignored;
+    // Caches are made when they are needed, some by a script of the case.
+    if (name.ends_with(".cache.msh") && !fs::exists(file, ignored)) return;
+    if (!fs::is_regular_file(file, ignored)) {
+      report("mesh", fmt::format("there is no file '{}'.", file.string()));
+      return;
+    }
+    try {
+      if (file.extension() == ".msh") {
+        check_patches(read_msh(file).patches);
+      } else if (file.extension() == ".geo") {
+        check_geo(read_geo(file));
+      } else if (const auto kind = file.extension(); kind != ".unv" && kind != ".med" && kind != ".cgns") {
+        report("mesh", fmt::format("'{}' is neither .msh nor .geo, .unv, .med or .cgns.", name));
+      }
+    } catch (const Error& error) {
+      report("mesh", error.what());
+    }
+  }
+
+  void check_geo(const GeoScript& script) {
+    for (const std::string& name : config::keys_of(document_, section_ + ".mesh-parameters"))
+      if (std::find(script.constants.begin(), script.constants.end(), name) == script.constants.end())
+        report("mesh-parameters." + name, fmt::format("the .geo defines no such name by DefineConstant. {}",
+                                                      did_you_mean(name, script.constants, "names")));
+    if (!script.danger.empty()) report("mesh", script.refusal());
+    const auto dimension = config::text_of(document_, section_ + ".dimension");
+    if (dimension != "2" && dimension != "3") return;
+    if (const auto& patches = script.groups[*dimension == "2" ? 1 : 2]) check_patches(*patches);
+  }
+
+  void check_patches(const Names& patches) {
+    if (patches.empty()) return;
+    const Names entries = config::keys_of(document_, section_ + ".boundaries");
+    const auto has = [](const Names& names, const std::string& name) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    for (const std::string& entry : entries)
+      if (!has(patches, entry))
+        report("boundaries." + entry, fmt::format("the mesh has no patch of this name. {}",
+                                                  did_you_mean(entry, patches, "patches")));
+    for (const std::string& patch : patches)
+      if (!has(entries, patch))
+        report("boundaries", fmt::format("the patch '{}' of the mesh has no entry here.", patch));
+  }
+
+  void check_other_files() {
+    for (const auto& [path, value] : config::leaves(document_)) {
+      if (!path.starts_with(section_ + ".") || !path.ends_with(".file")) continue;
+      std::error_code ignored;
+      if (!fs::is_regular_file(folder_ / value, ignored))
+        report(path.substr(section_.size() + 1),
+               fmt::format("there is no file '{}'.", (folder_ / value).string()));
+    }
+  }
+
+  const config::Document& document_;
+  std::string section_;
+  fs::path folder_;
+  Names problems_;
+};
+
+}  // namespace
+
+std::vector<std::string> problems_of_files(const config::Document& document, const std::string& participant,
+                                           const fs::path& case_folder) {
+  return FileCheck(document, "participants." + participant, case_folder).run();
+}
+
+}  // namespace couplet

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/case/command_line.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <sstream>
+
+#include "common/base/text.hpp"
+#include "common/config/description.hpp"
+#include "common/log/finding.hpp"
+
+namespace couplet {
+namespace {
+
+// Equal to the project's version in CMakeLists.txt; a test compares them.
+constexpr const char* version = "0.1.0";
+
+using Items = std::vector<config::Item>;
+
+/// The first level of the program's parameters, a line each.
+std::string list_keys(const Items& items) {
+  std::size_t width = 0;
+  for (const config::Item& item : items) width = std::max(width, item.facts.name.size());
+  std::string out;
+  for (const config::Item& item : items) {
+    const config::Key::Facts& facts = item.facts;
+    out += fmt::format("  {:<{}}  {}{}{}\n", facts.name, width, facts.doc,
+                       facts.unit.empty() ? "" : fmt::format(" [{}]", facts.unit),
+                       facts.required ? " (required)" : "");
+  }
+  return out;
+}
+
+std::string footer(const ProgramText& program) {
+  const Items items = config::describe(program.declare, config::Describe::everything);
+  const bool is_participant = std::any_of(
+      items.begin(), items.end(), [](const config::Item& item) { return item.facts.name == "program"; });
+  const std::string alone =
+      fmt::format("Alone:      mpirun -n 4 {} case.yaml --participant NAME\n", program.name);
+  return fmt::format(
+      "Keys of {} in the YAML file ({} --docs tells everything):\n{}\n{}"
+      "Coupled:    mpirun -n 1 coupler case.yaml : -n 2 fluid_solver case.yaml : -n 1 solid_solver case.yaml "
+      ": "
+      "-n 1 mesh_mover case.yaml\n"
+      "            Every program gets the same YAML file and the same --set options.\n"
+      "Exit codes: 0 done, 1 the run failed, 2 the configuration or the command line is wrong, 3 stopped by SIGTERM with a "
+      "checkpoint to go on from, 4 done, but the answer is proved useless (--accept ID lets it pass).",
+      is_participant ? "this program's section under 'participants'" : "the section 'coupling'", program.name,
+      list_keys(items), is_participant ? alone : "");
+}
+
+std::string explain_extra(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  const auto meant = word.starts_with('-') ? closest(word, names) : std::nullopt;
+  return fmt::format("There is no option or argument '{}'.{}", word,
+                     meant ? fmt::format(" Did you mean '{}'?", *meant) : "");
+}
+
+CommandLine::Strict strictness(const std::string& word) {
+  if (word.empty()) return CommandLine::Strict::no;
+  if (word == "answer" || word == "true") return CommandLine::Strict::answer;
+  if (word == "effects") return CommandLine::Strict::effects;
+  throw CLI::ValidationError("--strict=" + word + ": give --strict or --strict=effects.");
+}
+
+}  // namespace
+
+std::string version_text() { return fmt::format("couplet {}", version); }
+
+ParsedCommandLine parse_command_line(int argc, const char* const* argv, const ProgramText& program) {
+  ParsedCommandLine result;
+  CommandLine& line = result.command_line;
+  bool check = false, docs = false, schema = false, print_config = false, explain = false, effects = false,
+       verbose = false, quiet = false;
+
+  CLI::App app(program.description, program.name);
+  app.footer([&] { return footer(program); });
+  app.set_version_flag("--version", version_text());
+  app.add_option("case", line.case_file, "YAML file of the case")->type_name("case.yaml");
+  app.add_option("--participant", line.participant,
+                 "name under 'participants' in the YAML file; needed if several have this program")
+      ->type_name("NAME");
+  app.add_option("--set", line.overrides,
+                 "set one value, for example --set simulation.end-time='2 s'; repeatable")
+      ->type_name("a.b=v")
+      ->allow_extra_args(false);
+  app.add_option("--restart", line.restart_folder, "go on from the checkpoints in this folder")
+      ->type_name("FOLDER");
+  app.add_flag("--restart-with-changes", line.restart_with_changes,
+               "go on although keys that change what is solved are not those of the checkpoint");
+  app.add_flag("--allow-commands", line.allow_commands,
+               "let a .geo run commands and write files: it does so with your rights");
+  std::string strict;
+  app.add_flag(
+      "--strict{answer}", strict,
+      "a run with warnings about its own answer ends with exit code 1; --strict=effects: also one with warnings about "
+      "neglected effects");
+  app.add_option(
+         "--accept", line.accept,
+         "let a finding pass (the word in brackets at the end of its line; docs/findings.md); repeatable")
+      ->type_name("ID")
+      ->allow_extra_args(false);
+  app.add_flag("--check", check, "only check the configuration: exit code 0 or 2");
+  app.add_flag("--docs", docs, "print the reference of all keys as Markdown");
+  app.add_flag("--schema", schema, "print the JSON schema of all keys, for editors");
+  app.add_flag("--print-config", print_config, "print all values in force as YAML");
+  app.add_flag("--explain", explain,
+               "print which effects the scene has, what they add, and the launch line; runs nothing");
+  app.add_flag("--effects", effects, "print the list of all effects as Markdown");
+  app.add_flag("-v,--verbose", verbose, "every rank tells more");
+  app.add_flag("-q,--quiet", quiet, "warnings and errors only");
+  // What is left over is told in our words, with the option that was meant.
+  app.allow_extras();
+  try {
+    app.parse(argc, argv);
+    if (const std::vector<std::string> rest = app.remaining(); !rest.empty())
+      throw CLI::ExtrasError(explain_extra(app, rest.front()), CLI::ExitCodes::ExtrasError);
+    if (check + docs + schema + print_config + explain + effects > 1)
+      throw CLI::ExcludesError(
+          "Give one of --check, --docs, --schema, --print-config, --explain and --effects, not several.",
+          CLI::ExitCodes::ExcludesError);
+    if (verbose && quiet)
+      throw CLI::ExcludesError("Give --verbose or --quiet, not both.", CLI::ExitCodes::ExcludesError);
+    line.strict = strictness(strict);
+    if (const std::string problem = log::unknown_ids(line.accept); !problem.empty())
+      throw CLI::ValidationError("--accept: " + problem);
+    if (line.case_file.empty() && !docs && !schema && !effects)
+      throw CLI::ValidationError("Give the YAML file of the case, for example: " + program.name +
+                                 " case.yaml");
+  } catch (const CLI::ParseError& error) {
+    std::ostringstream out, err;
+    result.exit_code = app.exit(error, out, err) == 0 ? 0 : 2;
+    result.output = out.str() + err.str();
+    return result;
+  }
+  using Task = CommandLine::Task;
+  if (check) line.task = Task::check;
+  if (docs) line.task = Task::docs;
+  if (schema) line.task = Task::schema;
+  if (print_config) line.task = Task::print_config;
+  if (explain) line.task = Task::explain;
+  if (effects) line.task = Task::effects;
+  line.verbosity = verbose ? log::Verbosity::verbose : quiet ? log::Verbosity::quiet : log::Verbosity::normal;
+  return result;
+}
+
+}  // namespace couplet

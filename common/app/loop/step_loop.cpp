@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/loop/step_loop.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <tuple>
+#include <vector>
+
+#include "common/app/watch/watch.hpp"
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/io/checkpoint_set.hpp"
+#include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Different for each run that ever writes into a folder; later runs have larger ones.
+std::string make_run_id() {
+  std::random_device device;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(now).count();
+  return fmt::format("{:012x}-{:08x}", milliseconds, device());
+}
+
+/// What rank 0 does alone: its Error is thrown on every rank. Collective.
+void on_first_rank(MPI_Comm comm, const std::function<void()>& action) {
+  std::string problem;
+  if (comm_rank(comm) == 0) {
+    try {
+      action();
+    } catch (const std::exception& error) {
+      problem = error.what();
+    }
+  }
+  broadcast(comm, problem);
+  if (!problem.empty()) throw Error("{}", problem);
+}
+
+}  // namespace
+
+void write_run_state(MPI_Comm comm, const fs::path& folder, const RunState& state) {
+  if (comm_rank(comm) == 0) {
+    CheckpointWriter file(MPI_COMM_SELF, folder / run_file);
+    file.write_scalar("time", state.time);
+    file.write_scalar("outputs", state.outputs);
+    file.write("plan", state.plan);
+    file.close();
+  }
+  MPI_Barrier(comm);
+}
+
+RunState read_run_state(const fs::path& folder) {
+  CheckpointReader file(MPI_COMM_SELF, folder / run_file);
+  RunState state;
+  state.time = file.read_scalar("time");
+  state.outputs = int(file.read_count("outputs", std::numeric_limits<int>::max()));
+  file.read("plan", state.plan);
+  return state;
+}
+
+fs::path find_checkpoint(const fs::path& folder, bool tell) {
+  if (read_checkpoint_set(folder)) return folder;
+  const std::vector<FoundSet> found = checkpoint_sets(folder);
+  if (found.empty())
+    throw Error(
+        "--restart {}: there is no complete checkpoint. Give a folder made by an earlier run, such as "
+        "out/checkpoints/step-00000100, or the folder above it for the latest one.",
+        folder.string());
+  const FoundSet& furthest = found.back();
+  const auto youngest =
+      std::max_element(found.begin(), found.end(), [](const FoundSet& a, const FoundSet& b) {
+        return std::tie(a.stamp.run, a.stamp.time) < std::tie(b.stamp.run, b.stamp.time);
+      });
+  if (tell && youngest->stamp.run > furthest.stamp.run)
+    log::warn(
+        "--restart {}: {} of an earlier run has gone further (t = {:g} s) than the last of the latest run, {} (t = {:g} s). "
+        "The former is taken; give the folder itself for the latter.",
+        folder.string(), furthest.folder.filename().string(), furthest.stamp.time,
+        youngest->folder.filename().string(), youngest->stamp.time);
+  return furthest.folder;
+}
+
+StepLoop::StepLoop(MPI_Comm comm, const SimulationParameters& simulation, Scheme scheme, fs::path checkpoints)
+    : comm_(comm),
+      simulation_(simulation),
+      scheme_(scheme),
+      checkpoints_(std::move(checkpoints)),
+      run_id_(comm_rank(comm) == 0 ? make_run_id() : ""),
+      plan_(simulation.end_time, simulation.time_step, simulation.max_step_halvings) {}
+
+void StepLoop::restart(const RunState& state) {
+  plan_.restore(state.plan, state.time);
+  outputs_ = state.outputs;
+  restarted_ = true;
+}
+
+bool StepLoop::due(double interval) const {
+  if (plan_.finished()) return true;
+  if (interval <= 0) return false;
+  // Due when a multiple of the interval lies in the nominal step that has just ended.
+  const auto multiples = [&](double t) {
+    const double rounding = std::max(1e-9 * simulation_.time_step, 4e-16 * plan_.time());
+    return std::floor((t + rounding) / interval);
+  };
+  return multiples(plan_.time()) > multiples(plan_.time() - simulation_.time_step);
+}
+
+fs::path StepLoop::checkpoint(const StepActions& actions) {
+  const CheckpointStamp stamp{run_id_, plan_.steps_accepted(), plan_.time()};
+  std::string name;
+  on_first_rank(comm_, [&] { name = begin_checkpoint_set(checkpoints_, stamp).string(); });
+  broadcast(comm_, name);
+  const fs::path folder = name;
+  actions.save(folder);
+  write_run_state(comm_, folder, {plan_.time(), outputs_, plan_.state()});
+  on_first_rank(comm_, [&] {
+    std::ofstream keys(folder / "keys.txt", std::ios::binary);
+    keys << simulation_.keys;
+    keys.close();
+    if (!keys) throw Error("The checkpoint in {} could not be written. Is the disk full?", folder.string());
+    finish_checkpoint_set(folder, stamp);
+    log::debug("checkpoint {} at t = {:g} s", folder.string(), plan_.time());
+    // Only what this run wrote goes: sets of other runs are theirs.
+    std::vector<FoundSet> own = checkpoint_sets(checkpoints_);
+    std::erase_if(own, [&](const FoundSet& set) { return set.stamp.run != run_id_; });
+    for (std::size_t i = 0; i + simulation_.checkpoints_kept < own.size(); ++i)
+      remove_checkpoint_set(own[i].folder);
+  });
+  return folder;
+}
+
+void StepLoop::stop(const StepActions& actions) {
+  const fs::path folder = checkpoint(actions);
+  Watch::stopped();
+  if (comm_rank(comm_) == 0)
+    log::info("stopped at t = {:g} s, as asked by a signal; the state is saved: go on with --restart {}",
+              plan_.time(), folder.string());
+}
+
+std::string StepLoop::give_up(const StepActions& actions, const Step& step, const StepFailure& failure) {
+  checkpoint(actions);
+  if (!failure.halving_helps)
+    return fmt::format("The run ends at t = {:g} s: {} The state at t = {:g} s was saved in {}.", step.time,
+                       failure.reason, step.time, checkpoints_.string());
+  return fmt::format(
+      "The step from t = {:g} s could not be solved, also not with dt = {:g} s after {} halvings: {} The "
+      "state at t = "
+      "{:g} s was saved in {}.",
+      step.time, step.dt, plan_.halvings(), failure.reason, step.time, checkpoints_.string());
+}
+
+/// The failure itself, or, where the same cause has halved steps too often, why the run ends. Collective: ranks may word a
+/// cause otherwise.
+StepFailure StepLoop::seen_again(const StepFailure& failure, double dt) {
+  const GlobalIndex mine = comm_rank(comm_) == 0 ? causes_.halved(failure.reason, dt) : 0,
+                    times = sum(comm_, mine);
+  if (times < HalvingCauses::most) return failure;
+  return {fmt::format("{} halvings of steps for one cause did not cure it: {}", times, failure.reason),
+          false};
+}
+
+std::string StepLoop::run(const StepActions& actions) {
+  on_first_rank(comm_, [&] {
+    for (const fs::path& folder : clear_incomplete_sets(checkpoints_))
+      log::info("the incomplete checkpoint {} of an earlier run was taken away", folder.string());
+  });
+  if (!restarted_) actions.write_start(outputs_++);
+  while (!plan_.finished()) {
+    if (any(comm_, Watch::stop_requested())) {
+      stop(actions);
+      return "";
+    }
+    plan_.limit(actions.advised_dt());
+    const Step step{.time = plan_.time(),
+                    .dt = plan_.dt(),
+                    .scheme = scheme_,
+                    .number = plan_.steps_accepted(),
+                    .is_last = plan_.is_last()};
+    if (const auto failure = actions.attempt(step)) {
+      log::warn("t = {:g} s: step {} with dt = {:g} s failed: {}", step.time, step.number + 1, step.dt,
+                failure->reason);
+      if (!failure->halving_helps) return give_up(actions, step, *failure);
+      ++halvings_;
+      if (const StepFailure again = seen_again(*failure, step.dt); !again.halving_helps)
+        return give_up(actions, step, again);
+      if (!plan_.halve()) return give_up(actions, step, *failure);
+      continue;
+    }
+    plan_.accepted();
+    causes_.accepted(step.dt);
+    const bool output = plan_.at_nominal_time() && due(simulation_.output_interval);
+    actions.accept(plan_.time(), output ? outputs_++ : -1);
+    actions.report(step, plan_.time());
+    if (plan_.at_nominal_time() && due(simulation_.checkpoint_interval)) checkpoint(actions);
+  }
+  return "";
+}
+
+}  // namespace couplet

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "common/app/loop/halving_causes.hpp"
+#include "common/app/loop/simulation.hpp"
+#include "common/coupling/participant.hpp"
+#include "common/coupling/step_plan.hpp"
+
+namespace couplet {
+
+/// Where a run stands at an accepted time; kept beside the participants' files in a checkpoint folder as
+/// run.h5.
+struct RunState {
+  double time = 0;
+  int outputs = 0;  ///< written so far
+  std::array<double, 6> plan{};
+};
+inline constexpr const char* run_file = "run.h5";  ///< of a checkpoint
+/// Written by rank 0, collective; read by each rank for itself.
+void write_run_state(MPI_Comm comm, const std::filesystem::path& folder, const RunState& state);
+RunState read_run_state(const std::filesystem::path& folder);
+
+/// `folder` itself if it is a complete checkpoint, else the one in it that has gone furthest, whichever file is
+/// the newest; throws Error if there is none. `tell`: a warning where the latest run has not gone as far as an
+/// earlier one.
+std::filesystem::path find_checkpoint(const std::filesystem::path& folder, bool tell = false);
+
+/// Why a step was not solved, and whether a smaller one may be.
+struct StepFailure {
+  std::string reason;
+  bool halving_helps = true;
+  StepFailure(std::string why, bool helps = true)  // NOLINT: a plain reason is a failure
+      : reason(std::move(why)), halving_helps(helps) {}
+  StepFailure(const char* why) : reason(why) {}  // NOLINT
+};
+
+/// What a run does with a step: all calls collective over its communicator.
+struct StepActions {
+  /// Begins and solves the step; the reason if that failed, nothing if it was solved. State n stays as it is.
+  std::function<std::optional<StepFailure>(const Step&)> attempt;
+  /// The step becomes state n. `time`: its end; `output`: number of the output that is due, -1 for none.
+  std::function<void(double time, int output)> accept;
+  std::function<void(int output)> write_start;
+  std::function<void(const std::filesystem::path& folder)> save;
+  /// After each accepted step: for the console.
+  std::function<void(const Step&, double time)> report;
+  /// Largest step that is advised now [s].
+  std::function<double()> advised_dt = [] { return std::numeric_limits<double>::infinity(); };
+};
+
+/// Steps from the start (or the checkpoint's time) to the end: halving after failures, outputs and
+/// checkpoints at nominal times. The same loop drives a participant alone and the coupled job.
+class StepLoop {
+ public:
+  StepLoop(MPI_Comm comm, const SimulationParameters& simulation, Scheme scheme,
+           std::filesystem::path checkpoints);
+  /// Continues from this state instead of from the start.
+  void restart(const RunState& state);
+  /// Runs to the end, or to the next accepted step after the job was asked to stop (Watch::stop_requested), which is
+  /// saved. The text is empty if all went well, else it says at what time and why no step could be found; the
+  /// state before that step was saved.
+  std::string run(const StepActions& actions);
+
+  double time() const { return plan_.time(); }
+  GlobalIndex steps() const { return plan_.steps_accepted(); }
+  int halvings() const { return halvings_; }
+
+ private:
+  bool due(double interval) const;
+  StepFailure seen_again(const StepFailure& failure, double dt);
+  /// Gives the folder.
+  std::filesystem::path checkpoint(const StepActions& actions);
+  void stop(const StepActions& actions);
+  std::string give_up(const StepActions& actions, const Step& step, const StepFailure& failure);
+
+  MPI_Comm comm_;
+  SimulationParameters simulation_;
+  Scheme scheme_;
+  std::filesystem::path checkpoints_;
+  std::string run_id_;  // on rank 0
+  StepPlan plan_;
+  HalvingCauses causes_;
+  int outputs_ = 0, halvings_ = 0;
+  bool restarted_ = false;
+};
+
+}  // namespace couplet

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/watch/start_guard.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <mutex>
+#include <sstream>
+
+#include "common/app/watch/watch_board.hpp"
+
+namespace couplet {
+namespace {
+
+/// "fluid_solver (pid 7)", of the launcher's other children that are stopped, if any.
+std::string stopped_ones() {
+  const std::string launcher = std::to_string(::getppid());
+  std::ifstream children("/proc/" + launcher + "/task/" + launcher + "/children");
+  std::string names;
+  for (int pid = 0; children >> pid;) {
+    if (pid == ::getpid() || watching::state_of(pid) != 'T') continue;
+    std::error_code unknown;
+    const auto program = std::filesystem::read_symlink("/proc/" + std::to_string(pid) + "/exe", unknown);
+    names += (names.empty() ? "" : ", ") + program.filename().string() + " (pid " + std::to_string(pid) + ")";
+  }
+  return names;
+}
+
+}  // namespace
+
+StartGuard::StartGuard(double seconds, std::string label) {
+  if (!(seconds > 0)) return;
+  guard_ = std::jthread([seconds, label = std::move(label)](const std::stop_token& stop) {
+    sigset_t all;  // signals are for the main thread
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, nullptr);
+    std::mutex mutex;
+    std::condition_variable_any bell;
+    std::unique_lock lock(mutex);
+    bell.wait_for(lock, stop, std::chrono::duration<double>(seconds), [] { return false; });
+    if (stop.stop_requested()) return;
+    const std::string stopped = stopped_ones();
+    std::ostringstream text;
+    text << "[" << label << "] error: the programs of this job have not all answered within " << seconds
+         << " s of its start (simulation.hang-timeout): "
+         << (stopped.empty() ? "one of them hangs or was not started" : "stopped (as by SIGSTOP): " + stopped)
+         << ". The job ends.\n";
+    std::cerr << text.str() << std::flush;
+    ::_exit(1);  // the launcher ends the others, stopped ones too
+  });
+}
+
+}  // namespace couplet

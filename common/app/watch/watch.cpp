@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/app/watch/watch.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <condition_variable>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <mutex>
+
+#include "common/app/watch/watch_board.hpp"
+#include "common/app/watch/watch_listener.hpp"
+#include "common/app/watch/watch_waits.hpp"
+#include "common/base/error.hpp"
+#include "common/log/life.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+
+using namespace watching;
+
+namespace {
+
+/// Whether somebody wants the job to end although all of it is well and making steps: nobody is gone, nobody ends.
+bool is_a_wish() {
+  if (board.slots[board.mine].phase <= int(Phase::initialise)) return false;
+  for (int i = 0; i < board.count; ++i) {
+    const Slot& slot = board.slots[i];
+    if (slot.ending || slot.terminating || (!slot.finished && gone(slot.pid))) return false;
+  }
+  return true;
+}
+
+void report_the_dead() {
+  // The launcher may end the survivors one by one: those that have come here are no culprits, even if they
+  // are gone.
+  board.slots[board.mine].terminating = 1;
+  const char* separator = "couplet: ";
+  Line line;
+  bool any = false;
+  for (int i = 0; i < board.count; ++i) {
+    const Slot& slot = board.slots[i];
+    if (slot.ending) return;
+    if (i == board.mine || slot.finished || slot.terminating || !gone(slot.pid)) continue;
+    any = true;
+    line << separator;
+    describe(line, slot, "was killed or has ended unexpectedly");
+    separator = "; ";
+  }
+  if (!any && !board.whole_job) return;
+  if (!any) line << "couplet: the job was stopped from outside (signal SIGTERM)";
+  line << ". All programs of the job end.\n";
+  // One line for all: that of the first survivor to come here.
+  if (board.slots[0].spoke_for_all.exchange(1) == 0) line.write_to(STDERR_FILENO);
+}
+
+extern "C" void on_terminate(int) {
+  const int error = errno;
+  if (is_a_wish()) {
+    board.slots[0].stop_requested = 1;
+    errno = error;
+    return;
+  }
+  report_the_dead();
+  // Standard error is a pipe to the launcher: the line shall be through before the process is gone.
+  timespec pause{0, 100'000'000};
+  ::nanosleep(&pause, nullptr);
+  ::_exit(128 + SIGTERM);
+}
+
+Slot* share_page(MPI_Comm machine, int rank, int size) {
+  const std::size_t bytes = sizeof(Slot) * std::size_t(size);
+  std::string path = fmt::format("/couplet-{}", ::getpid());
+  broadcast(machine, path);
+  int file = -1;
+  if (rank == 0) {
+    file = ::shm_open(path.c_str(), O_CREAT | O_EXCL | O_RDWR, 0600);
+    if (file >= 0 && ::ftruncate(file, off_t(bytes)) != 0) file = -1;
+  }
+  MPI_Barrier(machine);
+  if (rank != 0) file = ::shm_open(path.c_str(), O_RDWR, 0600);
+  void* page = file < 0 ? MAP_FAILED : ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+  if (file >= 0) ::close(file);
+  MPI_Barrier(machine);
+  if (rank == 0) ::shm_unlink(path.c_str());
+  // Without shared memory the job runs all the same; only the line about the dead is lost.
+  if (any(machine, page == MAP_FAILED)) return nullptr;
+  return static_cast<Slot*>(page);
+}
+
+}  // namespace
+
+const char* name(Phase phase) {
+  switch (phase) {
+    case Phase::roll_call:
+      return "roll-call";
+    case Phase::initialise:
+      return "initialise";
+    case Phase::waiting:
+      return "waiting";
+    case Phase::begin_step:
+      return "begin_step";
+    case Phase::solve:
+      return "solve";
+    case Phase::accept:
+      return "accept";
+    case Phase::output:
+      return "output";
+    case Phase::save:
+      return "save";
+    case Phase::load:
+      return "load";
+    case Phase::finalise:
+      return "finalise";
+  }
+  return "an unknown phase";
+}
+
+Watch::Watch(MPI_Comm world, const std::string& participant) {
+  MPI_Comm machine;
+  MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, comm_rank(world), MPI_INFO_NULL, &machine);
+  board.count = comm_size(machine);
+  board.mine = comm_rank(machine);
+  board.whole_job = board.count == comm_size(world);
+  board.has_guests = comm_size(world) < comm_size(MPI_COMM_WORLD);
+  Slot* slots = share_page(machine, board.mine, board.count);
+  if (slots != nullptr) {
+    Slot& slot = slots[board.mine];
+    std::strncpy(slot.participant, participant.c_str(), sizeof slot.participant - 1);
+    slot.rank = -1;
+    slot.time = -1;
+    slot.phase = int(Phase::roll_call);
+    slot.alive = now();
+    slot.pid = ::getpid();
+  }
+  MPI_Barrier(machine);
+  MPI_Comm_free(&machine);
+  board.slots = slots;
+  if (slots) log::listen_for_life({&slots[board.mine].alive, &slots[board.mine].long_work});
+  watch_waits();
+  install();
+}
+
+void Watch::install() {
+  if (board.slots == nullptr) return;
+  struct sigaction action {};
+  action.sa_handler = on_terminate;
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+void Watch::set_rank(int rank) {
+  if (board.slots) board.slots[board.mine].rank = rank;
+}
+
+void Watch::enter(Phase phase) {
+  phase_ = phase;
+  if (!board.slots) return;
+  board.slots[board.mine].phase = int(phase);
+  board.slots[board.mine].alive = now();
+}
+
+void Watch::set_time(double time) {
+  if (board.slots) board.slots[board.mine].time = time;
+}
+
+void Watch::limit_silence(double seconds) {
+  if (!board.slots || seconds <= 0 || board.count < 2) return;
+  guard_ = std::jthread([seconds](const std::stop_token& stop) {
+    // Signals are for the main thread.
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, nullptr);
+    Listener listener(seconds);
+    std::mutex mutex;
+    std::condition_variable_any bell;
+    std::unique_lock lock(mutex);
+    const std::chrono::duration<double> period(listener.period());
+    while (!bell.wait_for(lock, stop, period, [&] { return stop.stop_requested(); })) listener.look();
+  });
+}
+
+bool Watch::stop_requested() { return board.slots && board.slots[0].stop_requested; }
+
+void Watch::stopped() {
+  if (board.slots) board.slots[0].stopped = 1;
+}
+
+bool Watch::has_stopped() { return board.slots && board.slots[0].stopped; }
+
+bool Watch::claim_report() {
+  if (!board.slots) return true;
+  for (int i = 0; i < board.count; ++i)
+    if (std::strcmp(board.slots[i].participant, board.slots[board.mine].participant) == 0)
+      return board.slots[i].reported.exchange(1) == 0;
+  return true;
+}
+
+void Watch::ending() {
+  if (board.slots) board.slots[board.mine].ending = 1;
+}
+
+void Watch::finished() {
+  if (board.slots) board.slots[board.mine].finished = 1;
+  // A launcher that clears up after another process's exit code must not spoil this one's.
+  std::signal(SIGTERM, SIG_IGN);
+}
+
+}  // namespace couplet

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <unistd.h>
+
+#include <atomic>
+#include <string_view>
+
+#include "common/app/watch/watch.hpp"
+
+/// The page of shared memory by which the processes of a job on one machine watch over each other (see watch.hpp).
+namespace couplet::watching {
+
+struct Slot {
+  char participant[64];
+  std::atomic<int> pid, rank, phase, ending, finished, terminating, reported, spoke_for_all;
+  std::atomic<int> stop_requested, stopped;  // of the job: in the first slot
+  std::atomic<double> time;
+  std::atomic<double> alive;        // last sign of life [s] on the machine's steady clock
+  std::atomic<int> long_work;       // above 0: processor time is the sign (log::LongWork)
+  std::atomic<double> waits_since;  // of a wait that lasts; 0: none
+  std::atomic<double> looked;       // when the wait has last looked for its message
+  char waits_for[128];              // written before waits_since
+};
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<double>::is_always_lock_free);
+
+// A signal handler can only reach what has static storage. Written once, before the handler is installed.
+struct Board {
+  Slot* slots = nullptr;  // one a process of this machine, by world rank
+  int count = 0;
+  int mine = 0;
+  bool whole_job = false;  // all of the project's processes of the job are on this machine
+  bool has_guests = false;
+};
+extern Board board;
+
+/// Text built without allocation, for the signal handler.
+class Line {
+ public:
+  Line& operator<<(std::string_view text) {
+    for (const char c : text)
+      if (size_ < sizeof text_) text_[size_++] = c;
+    return *this;
+  }
+  Line& operator<<(long value) {
+    char digits[24];
+    int n = 0;
+    if (value < 0) *this << "-";
+    for (unsigned long v = value < 0 ? -value : value; n == 0 || v > 0; v /= 10)
+      digits[n++] = char('0' + v % 10);
+    while (n > 0) *this << std::string_view(&digits[--n], 1);
+    return *this;
+  }
+  /// Six decimals, none for whole numbers.
+  Line& operator<<(double value) {
+    if (value == double(long(value))) return *this << long(value);
+    const auto micro = static_cast<long>(value * 1e6 + 0.5);
+    *this << micro / 1000000 << ".";
+    for (long digit = 100000; digit > 0; digit /= 10) *this << micro / digit % 10;
+    return *this;
+  }
+  const char* text() const { return text_; }
+  bool empty() const { return size_ == 0; }
+  void write_to(int file) const {
+    for (std::size_t done = 0; done < size_;) {
+      const ssize_t n = ::write(file, text_ + done, size_ - done);
+      if (n <= 0) return;
+      done += std::size_t(n);
+    }
+  }
+
+ private:
+  char text_[1000];
+  std::size_t size_ = 0;
+};
+
+/// Of the machine's steady clock [s].
+double now();
+/// The letter of the process in /proc: R running, S sleeping, T stopped, Z waiting to be buried; X: there is none.
+char state_of(int pid);
+/// No such process, or one that only waits to be buried.
+bool gone(int pid);
+/// Processor time of the process and of its children [s]; 0: unknown. Not for signal handlers.
+double processor_seconds_of(int pid);
+/// "participant 'solid' (rank 0, pid 7) <fate>; last heard of in solve at t = 0.1 s"
+void describe(Line& line, const Slot& slot, std::string_view fate);
+/// The first to come writes the line for all and ends its process, and by that the job.
+[[noreturn]] void end_job_with(const Line& line);
+
+}  // namespace couplet::watching

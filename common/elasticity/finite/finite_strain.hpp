@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/elasticity/finite/finite_law.hpp"
+
+/// First Piola-Kirchhoff stress P = dW/dF and its directional derivative for an energy by invariants
+/// [holzapfel2000], four places at a time:
+///   P  = 2 W1 F + 2 W2 B + WJ H,   B = I1 F - F C,   H = dJ/dF (the cofactors of F)
+///   dP = 2 W1 dF + 2 dW1 F + 2 W2 dB + 2 dW2 B + WJ dH + dWJ H
+/// with dW1 = W11 dI1 + W12 dI2 + W1J dJ and so on, dI1 = 2 F:dF, dI2 = 2 B:dF, dJ = H:dF.
+namespace couplet::finite {
+
+using Tensor4 = Four[3][3];
+
+/// What the derivative needs of a state.
+struct alignas(32) State {
+  Four f[3][3];
+  Four w1, w2, wj, w11, w12, w1j, w22, w2j, wjj;
+};
+
+[[gnu::always_inline]] inline void cofactors(const Tensor4& f, Tensor4& h) {
+  for (int i = 0; i < 3; ++i) {
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    for (int j = 0; j < 3; ++j) {
+      const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      h[i][j] = f[i1][j1] * f[i2][j2] - f[i1][j2] * f[i2][j1];
+    }
+  }
+}
+
+[[gnu::always_inline]] inline Four product(const Tensor4& a, const Tensor4& b) {
+  Four sum = a[0][0] * b[0][0];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (i + j > 0) sum += a[i][j] * b[i][j];
+  return sum;
+}
+
+/// C = F^T F.
+[[gnu::always_inline]] inline void right_cauchy_green(const Tensor4& f, Tensor4& c) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) {
+      c[i][j] = f[0][i] * f[0][j] + f[1][i] * f[1][j] + f[2][i] * f[2][j];
+      c[j][i] = c[i][j];
+    }
+}
+
+[[gnu::always_inline]] inline Invariants invariants(const Tensor4& f) {
+  Invariants at;
+  Tensor4 h;
+  cofactors(f, h);
+  at.j = f[0][0] * h[0][0] + f[0][1] * h[0][1] + f[0][2] * h[0][2];
+  at.i1 = product(f, f);
+  at.i2 = product(h, h);  // tr cof C
+  return at;
+}
+
+/// B = I1 F - F C.
+[[gnu::always_inline]] inline void second(const Tensor4& f, const Four& i1, Tensor4& b) {
+  Tensor4 c;
+  right_cauchy_green(f, c);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      b[i][j] = i1 * f[i][j] - (f[i][0] * c[0][j] + f[i][1] * c[1][j] + f[i][2] * c[2][j]);
+}
+
+template <bool HasSecond>
+[[gnu::always_inline]] inline void stress(const State& s, Tensor4& p) {
+  Tensor4 h, b;
+  cofactors(s.f, h);
+  if constexpr (HasSecond) second(s.f, product(s.f, s.f), b);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      p[i][j] = 2.0 * s.w1 * s.f[i][j] + s.wj * h[i][j];
+      if constexpr (HasSecond) p[i][j] += 2.0 * s.w2 * b[i][j];
+    }
+}
+
+/// dB = dI1 F + I1 dF - dF C - F (dF^T F + F^T dF).
+[[gnu::always_inline]] inline void second_change(const State& s, const Tensor4& df, const Four& i1,
+                                                 const Four& di1, Tensor4& db) {
+  Tensor4 c, dc;
+  right_cauchy_green(s.f, c);
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) {
+      dc[i][j] = df[0][i] * s.f[0][j] + s.f[0][i] * df[0][j];
+      for (int k = 1; k < 3; ++k) dc[i][j] += df[k][i] * s.f[k][j] + s.f[k][i] * df[k][j];
+      dc[j][i] = dc[i][j];
+    }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      db[i][j] = di1 * s.f[i][j] + i1 * df[i][j];
+      for (int k = 0; k < 3; ++k) db[i][j] -= df[i][k] * c[k][j] + s.f[i][k] * dc[k][j];
+    }
+}
+
+/// `dpressure`: change of a pressure that is known apart, whose value stands in s.wj.
+template <bool HasSecond>
+[[gnu::always_inline]] inline void tangent(const State& s, const Tensor4& df, const Four& dpressure,
+                                           Tensor4& dp) {
+  Tensor4 h, b, db;
+  cofactors(s.f, h);
+  const Four di1 = 2.0 * product(s.f, df), dj = product(h, df);
+  Four a1 = s.w11 * di1 + s.w1j * dj, aj = s.w1j * di1 + s.wjj * dj + dpressure;
+  Four a2{};
+  if constexpr (HasSecond) {
+    const Four i1 = product(s.f, s.f);
+    second(s.f, i1, b);
+    const Four di2 = 2.0 * product(b, df);
+    a1 += s.w12 * di2;
+    aj += s.w2j * di2;
+    a2 = s.w12 * di1 + s.w22 * di2 + s.w2j * dj;
+    second_change(s, df, i1, di1, db);
+  }
+  for (int i = 0; i < 3; ++i) {
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    for (int j = 0; j < 3; ++j) {
+      const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      const Four dh = df[i1][j1] * s.f[i2][j2] + s.f[i1][j1] * df[i2][j2] - df[i1][j2] * s.f[i2][j1] -
+                      s.f[i1][j2] * df[i2][j1];
+      dp[i][j] = 2.0 * (s.w1 * df[i][j] + a1 * s.f[i][j]) + s.wj * dh + aj * h[i][j];
+      if constexpr (HasSecond) dp[i][j] += 2.0 * (s.w2 * db[i][j] + a2 * b[i][j]);
+    }
+  }
+}
+
+[[gnu::always_inline]] inline void keep(const Energy& e, State& s) {
+  s.w1 = e.w1, s.w2 = e.w2, s.wj = e.wj;
+  s.w11 = e.w11, s.w12 = e.w12, s.w1j = e.w1j, s.w22 = e.w22, s.w2j = e.w2j, s.wjj = e.wjj;
+}
+
+}  // namespace couplet::finite

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/elasticity/symmetric/shared_edges.hpp"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "common/elasticity/elastic_nodes.hpp"
+#include "common/mesh/periodic_points.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+
+/// What an edge is told by on every rank, and who has it.
+struct SharedEdges::Key {
+  GlobalIndex material, a, b;
+  int rank = 0;
+  Index local = -1;
+  auto same() const { return std::tuple(material, a, b); }
+};
+
+namespace {
+
+/// What a point is told by in the edges' names: on periodic patches by the point that all copies are.
+std::vector<GlobalIndex> names_of_points(const Mesh& mesh) {
+  std::vector<GlobalIndex> names = mesh.point_id;
+  const PeriodicPoints periodic(mesh);
+  for (std::size_t i = 0; i < periodic.points().size(); ++i)
+    names[periodic.points()[i]] = -1 - GlobalIndex(periodic.group(i));
+  return names;
+}
+
+}  // namespace
+
+SharedEdges::SharedEdges(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
+                         std::span<const double> volume)
+    : edges_of_(faces.size()), parallel_(comm_size(mesh.comm) > 1), names_(names_of_points(mesh)) {
+  number(mesh, faces);
+  const std::size_t n = end_points_.size();
+  value_.assign(n * stride, 0);
+  std::vector<double> sums(n * 3, 0);  // V_E, and mu and lambda by volume
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const LameConstants whole = face_lame(mesh, rows, faces[i]);
+    const LameConstants lame = part_of_faces(whole, rows.volume_strain());
+    const double part = share * volume[i] / 3;
+    for (const Index e : edges_of_[i]) {
+      sums[std::size_t(e) * 3] += part;
+      sums[std::size_t(e) * 3 + 1] += part * lame.mu;
+      sums[std::size_t(e) * 3 + 2] += part * lame.lambda;
+    }
+  }
+  if (parallel_) {
+    map_.add_to_owners(sums, 3);
+    map_.update_ghosts(sums, 3);
+  }
+  for (std::size_t e = 0; e < n; ++e) {
+    inverse_volume_.push_back(1 / sums[3 * e]);
+    if (!rows.is_uniform())
+      lame_.push_back({sums[3 * e + 1] * inverse_volume_[e], sums[3 * e + 2] * inverse_volume_[e]});
+  }
+  if (rows.is_uniform()) lame_.push_back(part_of_faces(rows.lame(0), rows.volume_strain()));
+  if (rows.is_anisotropic()) find_matrices(mesh, rows, faces, volume);
+  find_mirrors(mesh, rows);
+  end_points_ = {};
+  names_ = {};
+}
+
+/// Means of the faces' by volume.
+void SharedEdges::find_matrices(const Mesh& mesh, const ElasticOperator& rows, std::span<const Index> faces,
+                                std::span<const double> volume) {
+  constexpr int entries = 36;
+  std::vector<double> sums(inverse_volume_.size() * entries, 0);
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (volume[i] == 0) continue;  // another rank's
+    const ElasticMatrix part = share * volume[i] / 3 * face_matrix(mesh, rows, faces[i]);
+    for (const Index e : edges_of_[i])
+      for (int k = 0; k < entries; ++k) sums[std::size_t(e) * entries + k] += part.data()[k];
+  }
+  if (parallel_) {
+    map_.add_to_owners(sums, entries);
+    map_.update_ghosts(sums, entries);
+  }
+  for (std::size_t e = 0; e < inverse_volume_.size(); ++e)
+    matrix_.push_back(inverse_volume_[e] * Eigen::Map<const ElasticMatrix>(sums.data() + e * entries));
+}
+
+/// Local numbers, the owned edges first; the owner is the smallest rank that has an edge.
+void SharedEdges::number(const Mesh& mesh, std::span<const Index> faces) {
+  std::vector<std::uint8_t> is_near(mesh.points.n_local(), 0);  // may be known elsewhere
+  for (Index c = mesh.cells.n_owned(); c < mesh.cells.n_local(); ++c)
+    for (const Index v : mesh.cell_points[c]) is_near[v] = 1;
+  for (std::size_t v = 0; v < names_.size(); ++v)
+    if (names_[v] < 0) is_near[v] = 1;
+  std::map<std::tuple<GlobalIndex, GlobalIndex, GlobalIndex>, Index> found;
+  const int rank = comm_rank(mesh.comm);
+  const auto key_of = [&](Index f, std::size_t i) {
+    const auto p = mesh.face_points[f];
+    const GlobalIndex a = names_[p[i]], b = names_[p[(i + 1) % 3]];
+    return Key{mesh.material_of(mesh.owner[f]), std::min(a, b), std::max(a, b), rank, -1};
+  };
+  std::vector<Key> mine;
+  for (const Index f : faces)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Key key = key_of(f, i);
+      if (!found.emplace(key.same(), -1).second || !parallel_) continue;
+      const auto p = mesh.face_points[f];
+      if (is_near[p[i]] && is_near[p[(i + 1) % 3]]) mine.push_back(key);
+    }
+  std::map<std::tuple<GlobalIndex, GlobalIndex, GlobalIndex>, int> owner;
+  if (parallel_) {
+    for (const Key& k : all_gather(mesh.comm, mine)) {
+      const auto [at, is_new] = owner.emplace(k.same(), k.rank);
+      if (!is_new) at->second = std::min(at->second, k.rank);
+    }
+  }
+  const auto owner_of = [&](const auto& key) {
+    const auto at = owner.find(key);
+    return at == owner.end() ? rank : at->second;
+  };
+  Index next = 0;
+  for (auto& [key, local] : found)
+    if (owner_of(key) == rank) local = next++;
+  const Index n_owned = next;
+  for (auto& [key, local] : found)
+    if (local < 0) local = next++;
+  end_points_.resize(next);
+  for (const auto& [key, local] : found) end_points_[local] = {std::get<1>(key), std::get<2>(key)};
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) edges_of_[i][k] = found.at(key_of(faces[i], k).same());
+  if (!parallel_) return;
+  // Where the owners keep them.
+  std::erase_if(mine, [&](const Key& k) { return owner_of(k.same()) != rank; });
+  for (Key& k : mine) k.local = found.at(k.same());
+  std::map<std::tuple<GlobalIndex, GlobalIndex, GlobalIndex>, Index> remote;
+  for (const Key& k : all_gather(mesh.comm, mine)) remote[k.same()] = k.local;
+  std::vector<int> ghost_owner(next - n_owned);
+  std::vector<Index> ghost_remote(next - n_owned);
+  for (const auto& [key, local] : found) {
+    if (local < n_owned) continue;
+    ghost_owner[local - n_owned] = owner.at(key);
+    ghost_remote[local - n_owned] = remote.at(key);
+  }
+  map_ = IndexMap(mesh.comm, n_owned, ghost_owner, ghost_remote);
+}
+
+void SharedEdges::find_mirrors(const Mesh& mesh, const ElasticOperator& rows) {
+  // Symmetry faces of ghosts count: an edge of the plane may have its faces here elsewhere.
+  std::map<std::array<GlobalIndex, 2>, std::vector<Index>> by_ends;
+  for (std::size_t e = 0; e < end_points_.size(); ++e)
+    by_ends[end_points_[e]].push_back(static_cast<Index>(e));
+  std::map<Index, std::vector<Vec3>> normals;
+  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) {
+    if (rows.condition(f) != ElasticCondition::symmetry) continue;
+    const Vec3 n = mesh.reference.face_area[f].normalized();
+    const auto p = mesh.face_points[f];
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const GlobalIndex a = names_[p[i]], b = names_[p[(i + 1) % p.size()]];
+      const auto at = by_ends.find({std::min(a, b), std::max(a, b)});
+      if (at == by_ends.end()) continue;
+      for (const Index e : at->second) {
+        auto& known = normals[e];
+        const auto same = [&](const Vec3& other) { return std::abs(other.dot(n)) > 0.9994; };
+        if (std::ranges::none_of(known, same)) known.push_back(n);
+      }
+    }
+  }
+  for (const auto& [e, list] : normals)
+    for (const Vec3& n : list) mirrors_.emplace_back(e, n);
+}
+
+void SharedEdges::finish_means() {
+  if (parallel_) {
+    map_.add_to_owners(value_, stride);
+    map_.update_ghosts(value_, stride);
+  }
+  for (std::size_t e = 0; e < inverse_volume_.size(); ++e)
+    for (int i = 0; i < size; ++i) value_[e * stride + i] *= inverse_volume_[e];
+  for (const auto& [e, n] : mirrors_) {
+    double* v = at(e);
+    Tensor3 strain;
+    strain << v[0], v[3], v[5], v[3], v[1], v[4], v[5], v[4], v[2];
+    const Tensor3 turn = Tensor3::Identity() - 2 * n * n.transpose();
+    strain = (0.5 * (strain + turn * strain * turn)).eval();
+    v[0] = strain(0, 0), v[1] = strain(1, 1), v[2] = strain(2, 2);
+    v[3] = strain(0, 1), v[4] = strain(1, 2), v[5] = strain(0, 2);
+  }
+}
+
+void SharedEdges::finish_gradients(std::span<double> values) const {
+  if (parallel_) {
+    map_.add_to_owners(values, gradient_stride);
+    map_.update_ghosts(values, gradient_stride);
+  }
+  for (std::size_t e = 0; e < inverse_volume_.size(); ++e)
+    for (int i = 0; i < 9; ++i) values[e * gradient_stride + i] *= inverse_volume_[e];
+  for (const auto& [e, n] : mirrors_) {
+    Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> g(values.data() +
+                                                               std::size_t(e) * gradient_stride);
+    const Tensor3 turn = Tensor3::Identity() - 2 * n * n.transpose(), here = g;
+    g = 0.5 * (here + turn * here * turn);
+  }
+}
+
+void SharedEdges::to_stress() {
+  for (std::size_t e = 0; e < matrix_.size(); ++e) {
+    Eigen::Map<StrainVector> v(value_.data() + e * stride);
+    v.tail<3>() *= 2;
+    v = (matrix_[e] * v).eval();
+  }
+  if (!matrix_.empty()) return;
+  const std::size_t step = lame_.size() == 1 ? 0 : 1;
+  for (std::size_t e = 0; e < inverse_volume_.size(); ++e) {
+    const auto [mu, lambda] = lame_[e * step];
+    double* v = value_.data() + e * stride;
+    const double bulk = lambda * (v[0] + v[1] + v[2]);
+    for (int i = 0; i < size; ++i) v[i] *= 2 * mu;
+    for (int i = 0; i < 3; ++i) v[i] += bulk;
+  }
+}
+
+}  // namespace couplet

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/elasticity/symmetric/symmetric_kernel.hpp"
+
+#include <algorithm>
+
+#include "common/elasticity/processor_clones.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+
+template <int D>
+SymmetricKernel<D>::SymmetricKernel(const Mesh& mesh, const ElasticOperator& rows)
+    : mesh_(mesh), rows_(rows), space_(mesh, rows) {
+  make_faces();
+  if (!rows.volume_by_cells()) return;
+  volumes_ = make_volumes(mine_);
+  shared_volumes_ = make_volumes(shared_mine_);
+  pressure_.assign(space_.n_nodes(), 0);
+  const std::vector<double> volume = pyramid_volumes(mesh);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    bulk_.push_back(bulk_of_cells(rows.lame(c), rows.volume_strain()) / volume[c]);
+}
+
+template <int D>
+std::vector<typename SymmetricKernel<D>::VolumeBlock> SymmetricKernel<D>::make_volumes(
+    std::span<const Index> faces) const {
+  std::vector<VolumeBlock> result((faces.size() + 3) / 4);
+  for (std::size_t i = 0; i < result.size() * 4; ++i) {
+    VolumeBlock& block = result[i / 4];
+    block.from[i % 4] = block.to[i % 4] = 0;
+    if (i >= faces.size()) continue;
+    const auto [here, there] = pyramids(mesh_, faces[i]);
+    const double inverse = symmetric_face<D>(mesh_, rows_, faces[i]).inverse;
+    block.from[i % 4] = here * inverse;
+    block.to[i % 4] = there * inverse;
+  }
+  return result;
+}
+
+template <int D>
+void SymmetricKernel<D>::make_faces() {
+  std::vector<Index> shared_elsewhere;
+  shared_index_.assign(D == 3 ? mesh_.n_flux_faces() : 0, -1);
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const bool is_mine = mesh_.owner[f] < mesh_.cells.n_owned();
+    if (D == 3 && mesh_.face_points[f].size() == 3)
+      (is_mine ? shared_mine_ : shared_elsewhere).push_back(f);
+    else if (is_mine)
+      mine_.push_back(f);
+  }
+  if (!mine_.empty()) blocks_ = make_blocks<D>(mesh_, rows_, mine_);
+  elastic_ = make_elastic_blocks<D>(mesh_, rows_, mine_);
+  shared_elastic_ = make_elastic_blocks<D>(mesh_, rows_, shared_mine_);
+  const bool shares = D == 3 && any(mesh_.comm, !shared_mine_.empty());
+  if (!shares) return;
+  if (!shared_mine_.empty()) shared_blocks_ = make_blocks<D>(mesh_, rows_, shared_mine_);
+  std::vector<Index> all = shared_mine_;
+  all.insert(all.end(), shared_elsewhere.begin(), shared_elsewhere.end());
+  std::vector<double> volume(all.size(), 0);
+  shared_.resize(shared_blocks_.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    shared_index_[all[i]] = static_cast<Index>(i);
+    if (i >= shared_mine_.size()) continue;
+    const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, all[i]);
+    volume[i] = face.volume;
+    SharedBlock& block = shared_[i / 4];
+    block.inverse[i % 4] = face.inverse;
+    block.part[i % 4] = SharedEdges::share * face.volume / 3;
+    block.weight[i % 4] = SharedEdges::share * face.volume * face.inverse / 3;
+  }
+  edges_ = std::make_unique<SharedEdges>(mesh_, rows_, all, volume);
+  for (std::size_t i = 0; i < shared_.size() * 4; ++i) {
+    const bool is_filling = i >= shared_mine_.size();
+    if (is_filling)
+      shared_[i / 4].inverse[i % 4] = shared_[i / 4].part[i % 4] = shared_[i / 4].weight[i % 4] = 0;
+    shared_[i / 4].edges[i % 4] = edges_->edges_of(is_filling ? 0 : i);
+  }
+}
+
+// V / (S . d) sigma of four faces, and what it does to their nodes and points.
+template <int D>
+inline void SymmetricKernel<D>::faces_loop() {
+  const double *nodes = space_.nodes(), *points = space_.points();
+  double *force = space_.forces(), *point_force = space_.point_forces();
+  for (const FaceBlock<D>& block : blocks_) {
+    V h[D][D], stress[D][D];
+    blocks::stretch<D>(block, nodes, points, h);
+    if (elastic_.empty())
+      blocks::hooke<D>(block, h, stress);
+    else
+      blocks::elastic<D>(elastic_[std::size_t(&block - blocks_.data())], h, stress);
+    if (!volumes_.empty()) {
+      const V pressure = pressure_on(block, volumes_[std::size_t(&block - blocks_.data())]);
+      for (int a = 0; a < D; ++a) stress[a][a] += pressure;
+    }
+    blocks::push<D>(block, stress, force, point_force);
+  }
+}
+
+/// (V_fP p_P + V_fQ p_Q) / (S . d), p being the mean stress of the cells.
+template <int D>
+inline typename SymmetricKernel<D>::V SymmetricKernel<D>::pressure_on(const FaceBlock<D>& block,
+                                                                      const VolumeBlock& volume) const {
+  double here[4], there[4];
+  for (int k = 0; k < 4; ++k) {
+    here[k] = pressure_[std::size_t(block.from[k])];
+    there[k] = pressure_[std::size_t(block.to[k])];
+  }
+  return blocks::wide(volume.from) * blocks::wide(here) + blocks::wide(volume.to) * blocks::wide(there);
+}
+
+/// V_fP tr e_f to the cells.
+template <int D>
+inline void SymmetricKernel<D>::add_volumes(const std::vector<FaceBlock<D>>& blocks,
+                                            const std::vector<VolumeBlock>& volumes) {
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    V h[D][D];
+    blocks::stretch<D>(blocks[i], space_.nodes(), space_.points(), h);
+    V trace = h[0][0];
+    for (int a = 1; a < D; ++a) trace += h[a][a];
+    for (int k = 0; k < 4; ++k) {
+      pressure_[std::size_t(blocks[i].from[k])] += volumes[i].from[k] * trace[k];
+      pressure_[std::size_t(blocks[i].to[k])] += volumes[i].to[k] * trace[k];
+    }
+  }
+}
+
+template <int D>
+inline void SymmetricKernel<D>::volumes_loop() {
+  add_volumes(blocks_, volumes_);
+  add_volumes(shared_blocks_, shared_volumes_);
+}
+
+// The faces' own part, kept, and t V / 3 e to the edges.
+template <int D>
+inline void SymmetricKernel<D>::shared_first_loop() {
+  if constexpr (D == 3) {
+    const double *nodes = space_.nodes(), *points = space_.points();
+    constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
+    const double own = 1 - SharedEdges::share;
+    for (std::size_t i = 0; i < shared_blocks_.size(); ++i) {
+      SharedBlock& shared = shared_[i];
+      V h[D][D], stress[D][D];
+      blocks::stretch<D>(shared_blocks_[i], nodes, points, h);
+      if (shared_elastic_.empty())
+        blocks::hooke<D>(shared_blocks_[i], h, stress);
+      else
+        blocks::elastic<D>(shared_elastic_[i], h, stress);
+      const V scale = blocks::wide(shared.inverse) * blocks::wide(shared.part) * 0.5;
+      V strain[6];
+      for (int k = 0; k < 6; ++k) {
+        lanes::store<3>(shared.stress[k], own * stress[first[k]][second[k]]);
+        strain[k] = scale * (h[first[k]][second[k]] + h[second[k]][first[k]]);
+      }
+      const V xyz[3] = {strain[0], strain[1], strain[2]}, rest[3] = {strain[3], strain[4], strain[5]};
+      V low[4], high[4];
+      blocks::transpose(xyz, low);
+      blocks::transpose(rest, high);
+      for (int k = 0; k < 4; ++k)
+        for (const Index e : shared.edges[k]) {
+          double* at = edges_->at(e);
+          for (int c = 0; c < 3; ++c) at[c] += low[k][c], at[3 + c] += high[k][c];
+        }
+    }
+  }
+}
+
+// With the stress of the edges.
+template <int D>
+inline void SymmetricKernel<D>::shared_second_loop() {
+  if constexpr (D == 3) {
+    double *force = space_.forces(), *point_force = space_.point_forces();
+    constexpr int first[6] = {0, 1, 2, 0, 1, 0}, second[6] = {0, 1, 2, 1, 2, 2};
+    for (std::size_t i = 0; i < shared_blocks_.size(); ++i) {
+      const SharedBlock& shared = shared_[i];
+      V stress[D][D];
+      const V weight = blocks::wide(shared.weight);
+      for (int k = 0; k < 6; ++k) {
+        V of_edges{};
+        for (int j = 0; j < 4; ++j)
+          of_edges[j] = edges_->at(shared.edges[j][0])[k] + edges_->at(shared.edges[j][1])[k] +
+                        edges_->at(shared.edges[j][2])[k];
+        stress[first[k]][second[k]] = blocks::wide(shared.stress[k]) + weight * of_edges;
+        stress[second[k]][first[k]] = stress[first[k]][second[k]];
+      }
+      if (!shared_volumes_.empty()) {
+        const V pressure = pressure_on(shared_blocks_[i], shared_volumes_[i]);
+        for (int a = 0; a < D; ++a) stress[a][a] += pressure;
+      }
+      blocks::push<D>(shared_blocks_[i], stress, force, point_force);
+    }
+  }
+}
+
+namespace {
+
+// The loops for several generations of processors; the right one is picked when the program starts.
+COUPLET_PROCESSOR_CLONES void faces_pass(SymmetricKernel<3>& kernel) { kernel.faces_loop(); }
+COUPLET_PROCESSOR_CLONES void faces_pass(SymmetricKernel<2>& kernel) { kernel.faces_loop(); }
+COUPLET_PROCESSOR_CLONES void shared_first_pass(SymmetricKernel<3>& kernel) { kernel.shared_first_loop(); }
+COUPLET_PROCESSOR_CLONES void shared_second_pass(SymmetricKernel<3>& kernel) { kernel.shared_second_loop(); }
+COUPLET_PROCESSOR_CLONES void volumes_pass(SymmetricKernel<3>& kernel) { kernel.volumes_loop(); }
+COUPLET_PROCESSOR_CLONES void volumes_pass(SymmetricKernel<2>& kernel) { kernel.volumes_loop(); }
+void shared_first_pass(SymmetricKernel<2>&) {}
+void shared_second_pass(SymmetricKernel<2>&) {}
+
+}  // namespace
+
+/// V theta of the owned cells, in the places of their pressures.
+template <int D>
+std::span<double> SymmetricKernel<D>::sum_volumes() {
+  std::ranges::fill(pressure_, 0.0);
+  volumes_pass(*this);
+  const std::span<double> cells = std::span(pressure_).first(std::size_t(mesh_.cells.n_local()));
+  mesh_.cells.add_to_owners(cells);
+  return cells;
+}
+
+template <int D>
+void SymmetricKernel<D>::find_pressures() {
+  const std::span<double> cells = sum_volumes();
+  for (std::size_t c = 0; c < bulk_.size(); ++c) cells[c] *= bulk_[c];
+  mesh_.cells.update_ghosts(cells);
+}
+
+template <int D>
+void SymmetricKernel<D>::internal_forces() {
+  if (!pressure_.empty()) find_pressures();
+  forces_of_stress();
+}
+
+template <int D>
+void SymmetricKernel<D>::forces_of_stress() {
+  faces_pass(*this);
+  if (!edges_) return;
+  edges_->clear();
+  shared_first_pass(*this);
+  edges_->finish_means();
+  edges_->to_stress();
+  shared_second_pass(*this);
+}
+
+template <int D>
+void SymmetricKernel<D>::apply(std::span<const double> unknowns, std::span<const double> known,
+                               std::span<double> result) {
+  space_.fill(unknowns, known);
+  space_.clear_forces();
+  internal_forces();
+  space_.add_springs(known);
+  space_.collect();
+  space_.take_rows(unknowns, known, result);
+}
+
+template <int D>
+void SymmetricKernel<D>::face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                                        const ElasticKernel::TakeGradient& take, Index first, Index end) {
+  space_.fill(unknowns, known);
+  const auto node = [&](Index n) { return space_.nodes() + std::size_t(n) * stride; };
+  if (edges_) {
+    edges_->clear();
+    shared_first_pass(*this);
+    edges_->finish_means();
+  }
+  if (!pressure_.empty()) find_pressures();
+  for (Index f = first; f < end; ++f) {
+    const SymmetricFace<D> face = symmetric_face<D>(mesh_, rows_, f);
+    const double *across = node(space_.node_across(f)), *here = node(mesh_.owner[f]);
+    Tensor3 gradient = Tensor3::Zero();
+    for (int j = 0; j < D; ++j)
+      for (int k = 0; k < D; ++k) {
+        double h = (across[k] - here[k]) * face.area[j];
+        for (int i = 0; i < D - 1; ++i)
+          h += (space_.points()[std::size_t(face.plus[i]) * stride + k] -
+                space_.points()[std::size_t(face.minus[i]) * stride + k]) *
+               face.across[i][j];
+        gradient(j, k) = h * face.inverse;
+      }
+    if (edges_ && shared_index_[f] >= 0) {
+      const Tensor3 own = 0.5 * (gradient + gradient.transpose());
+      Tensor3 of_edges = Tensor3::Zero();
+      for (const Index e : edges_->edges_of(shared_index_[f])) {
+        const double* v = edges_->at(e);
+        Tensor3 mean;
+        mean << v[0], v[3], v[5], v[3], v[1], v[4], v[5], v[4], v[2];
+        of_edges += mean / 3;
+      }
+      gradient += SharedEdges::share * (of_edges - own);
+    }
+    if (!pressure_.empty()) {
+      // What Hooke's law then makes of it is 2 mu dev(e) + p I.
+      const auto [here, there] = pyramids(mesh_, f);
+      const LameConstants lame = face_lame(mesh_, rows_, f);
+      double mean = here * pressure_[std::size_t(mesh_.owner[f])];
+      if (f < mesh_.n_interior) mean += there * pressure_[std::size_t(mesh_.neighbour[f])];
+      mean /= here + there;
+      const double gap = mean - bulk_of_cells(lame, rows_.volume_strain()) * gradient.trace();
+      for (int a = 0; a < D; ++a) gradient(a, a) += gap / (2 * lame.mu + D * lame.lambda);
+    }
+    take(f, gradient);
+  }
+}
+
+template <int D>
+void SymmetricKernel<D>::point_values(std::span<const double> unknowns, std::span<const double> known,
+                                      std::span<double> points) {
+  space_.fill(unknowns, known);
+  space_.visit_points([&](Index v) {
+    std::copy_n(space_.points() + std::size_t(v) * stride, D, points.data() + std::size_t(v) * D);
+  });
+}
+
+template class SymmetricKernel<2>;
+template class SymmetricKernel<3>;
+
+std::unique_ptr<ElasticKernel::Implementation> make_symmetric_kernel(const Mesh& mesh,
+                                                                     const ElasticOperator& rows) {
+  if (mesh.dim == 2) return std::make_unique<SymmetricKernel<2>>(mesh, rows);
+  return std::make_unique<SymmetricKernel<3>>(mesh, rows);
+}
+
+}  // namespace couplet

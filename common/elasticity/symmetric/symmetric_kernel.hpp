@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/elastic_nodes.hpp"
+#include "common/elasticity/symmetric/shared_edges.hpp"
+#include "common/elasticity/symmetric/symmetric_blocks.hpp"
+#include "common/elasticity/symmetric/symmetric_space.hpp"
+
+namespace couplet {
+
+/// K = B^T C V B: the thesis's face gradient kept, its forces taken as its transpose, so that the operator is
+/// the second derivative of the energy E = sum_f V_f W(G_f), W = mu |sym G|^2 + lambda/2 (tr G)^2: symmetric,
+/// positive, exact for linear fields, without resultant on any mesh whose cells lie behind their faces. With
+/// sigma_f = C : sym G_f and r = 1/dim
+///   f_P -= r sigma_f S,   f_Q += r sigma_f S,   f_plus_i += r sigma_f c_i,   f_minus_i -= r sigma_f c_i,
+/// then the vertices' forces go to their nodes by the transposed weights (SymmetricSpace). Three-cornered
+/// faces in space share their strain with their edges (SharedEdges). Loads and mass use the same trial
+/// functions.
+///
+/// One pass over the vertices, one over the faces in blocks of four, one back over the vertices; a message
+/// more than the other kernels: the forces on ghosts go to their owners.
+template <int D>
+class SymmetricKernel final : public ElasticKernel::Implementation {
+ public:
+  SymmetricKernel(const Mesh& mesh, const ElasticOperator& rows);
+
+  void apply(std::span<const double> unknowns, std::span<const double> known,
+             std::span<double> result) override;
+  void apply_with_mass(std::span<const double> unknowns, std::span<const double> known, double mass_factor,
+                       bool with_stiffness, std::span<double> result) override;
+  double product(ElasticPart part, const ElasticField& u, const ElasticField& v) override;
+  void face_gradients(std::span<const double> unknowns, std::span<const double> known,
+                      const ElasticKernel::TakeGradient& take, Index first, Index end) override;
+  void point_values(std::span<const double> unknowns, std::span<const double> known,
+                    std::span<double> points) override;
+  bool set_density(std::span<const double> of_cells) override;
+  Vec3 add_face_forces(std::span<const double> forces, std::span<double> rhs) override;
+  void add_cell_forces(std::span<const double> forces, std::span<double> rhs) override;
+  void add_pressure(std::span<const double> pressure, std::span<double> rhs) override;
+  std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                   const ElasticLoads& loads) override;
+  void apply_mixed(std::span<const double> unknowns, std::span<const double> pressure, double mass_factor,
+                   std::span<double> result, std::span<double> defect) override;
+
+  // The loops; public for the clones by processor.
+  [[gnu::always_inline]] inline void faces_loop();
+  [[gnu::always_inline]] inline void shared_first_loop();
+  [[gnu::always_inline]] inline void shared_second_loop();
+  [[gnu::always_inline]] inline void volumes_loop();
+
+ private:
+  static constexpr int stride = lanes::width<D>;
+  using V = lanes::Lane<3>;
+  /// Of a block of three-cornered faces.
+  struct SharedBlock {
+    double inverse[4], part[4], weight[4];  // 1 / (S . d); t V / 3; V / (S . d) t / 3
+    double stress[6][4];                    // own part of V / (S . d) sigma
+    std::array<Index, 3> edges[4];
+  };
+  /// Of a block, where the volume strain is one a cell: V_fP / (S . d) of both sides.
+  struct VolumeBlock {
+    double from[4], to[4];
+  };
+  std::vector<VolumeBlock> make_volumes(std::span<const Index> faces) const;
+  [[gnu::always_inline]] inline void add_volumes(const std::vector<FaceBlock<D>>& blocks,
+                                                 const std::vector<VolumeBlock>& volumes);
+  [[gnu::always_inline]] inline V pressure_on(const FaceBlock<D>& block, const VolumeBlock& volume) const;
+  void make_faces();
+  void internal_forces();
+  void forces_of_stress();
+  std::span<double> sum_volumes();
+  void find_pressures();
+  void spread_pressure(std::span<const double> pressure);
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  SymmetricSpace<D> space_;
+  std::vector<Index> mine_;          // faces that this rank computes, in the order of the blocks
+  std::vector<Index> shared_mine_;   // those that share with their edges
+  std::vector<Index> shared_index_;  // of each flux face in edges_, -1: it shares nothing
+  std::vector<FaceBlock<D>> blocks_, shared_blocks_;
+  std::vector<SharedBlock> shared_;
+  std::unique_ptr<SharedEdges> edges_;
+  std::vector<ElasticBlock<D>> elastic_, shared_elastic_;  // empty: Hooke's isotropic law
+  std::vector<VolumeBlock> volumes_, shared_volumes_;      // empty: the volume strain is the faces'
+  std::vector<double> pressure_, bulk_;                    // of nodes; K / V of owned cells [Pa/m^3]
+};
+
+}  // namespace couplet

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/probes/place_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <span>
+
+#include "common/base/point_tree.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+
+struct Balls::Group {
+  double radius = 0;  // largest
+  std::vector<Vec3> centres{};
+  std::vector<Index> number{};
+  std::unique_ptr<PointTree> tree{};
+};
+
+Balls::Balls(std::vector<Vec3> centres, std::vector<double> radii) {
+  std::map<int, std::unique_ptr<Group>> by_size;
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    auto& group = by_size[radii[i] > 0 ? std::ilogb(radii[i]) : -10000];
+    if (!group) group = std::make_unique<Group>();
+    group->radius = std::max(group->radius, radii[i]);
+    group->centres.push_back(centres[i]);
+    group->number.push_back(static_cast<Index>(i));
+  }
+  for (auto& [size, group] : by_size) {
+    group->tree = std::make_unique<PointTree>(group->centres);
+    groups_.push_back(std::move(group));
+  }
+}
+Balls::~Balls() = default;
+Balls::Balls(Balls&&) noexcept = default;
+
+std::vector<Index> Balls::near(const Vec3& x, double slack) const {
+  std::vector<Index> all;
+  for (const auto& group : groups_)
+    for (const Index i : group->tree->within(x, group->radius * (1 + 1e-6) + slack))
+      all.push_back(group->number[i]);
+  std::ranges::sort(all);
+  return all;
+}
+
+namespace {
+
+/// About the mean of some points.
+void add_ball(const Mesh& mesh, std::span<const Index> points, std::vector<Vec3>& centres,
+              std::vector<double>& radii) {
+  Vec3 centre = Vec3::Zero();
+  for (const Index p : points) centre += mesh.reference_points[p] / double(points.size());
+  double radius = 0;
+  for (const Index p : points) radius = std::max(radius, (mesh.reference_points[p] - centre).norm());
+  centres.push_back(centre);
+  radii.push_back(radius);
+}
+
+Balls point_balls(const Mesh& mesh) {
+  const auto n = mesh.points.n_owned();
+  return {{mesh.reference_points.begin(), mesh.reference_points.begin() + n}, std::vector<double>(n, 0.0)};
+}
+
+Balls cell_balls(const Mesh& mesh) {
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) add_ball(mesh, mesh.cell_points[c], centres, radii);
+  return {std::move(centres), std::move(radii)};
+}
+
+Balls face_balls(const Mesh& mesh) {
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+    add_ball(mesh, mesh.face_points[f], centres, radii);
+  return {std::move(centres), std::move(radii)};
+}
+
+}  // namespace
+
+double mesh_size(const Mesh& mesh) {
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()),
+       high = Vec3::Constant(-std::numeric_limits<double>::infinity());
+  for (const Vec3& p : mesh.reference_points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
+  return (high - low).norm();
+}
+
+PlaceSearch::PlaceSearch(const Mesh& mesh)
+    : mesh_(mesh),
+      size_(mesh_size(mesh)),
+      points_(point_balls(mesh)),
+      cells_(cell_balls(mesh)),
+      faces_(face_balls(mesh)) {}
+
+std::vector<Index> PlaceSearch::faces(const Vec3& x, double slack) const {
+  std::vector<Index> faces = faces_.near(x, slack);
+  for (Index& f : faces) f += mesh_.n_interior;
+  return faces;
+}
+
+}  // namespace couplet

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/probes/probe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ranges>
+#include <tuple>
+
+#include "common/base/error.hpp"
+#include "common/base/nearest.hpp"
+#include "common/io/probes/shape_functions.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::infinity();
+// Of the mesh's size: nearer to a point is that point, nearer to the boundary is on it.
+constexpr double on_point = 1e-10, on_boundary = 1e-6;
+
+// One rank's best way to hold the probe; the ranks agree on the smallest key.
+struct Candidate {
+  double key = none;
+  Vec3 place = Vec3::Zero();
+  std::vector<Index> points;
+  std::vector<double> weights;
+};
+
+// Of those that are looked at, here as below: all, or those that a search found.
+Candidate nearest_point(const Mesh& mesh, const auto& candidates, const Vec3& place) {
+  Candidate best;
+  for (const Index p : candidates) {
+    const double distance = (mesh.reference_points[p] - place).norm();
+    if (distance < best.key) best = {distance, mesh.reference_points[p], {p}, {1.0}};
+  }
+  return best;
+}
+
+Candidate containing_cell(const Mesh& mesh, const auto& candidates, const Vec3& place) {
+  constexpr double slack = 1e-9;
+  Candidate best;
+  std::vector<Vec3> corners;
+  for (const Index c : candidates) {
+    // The first cell of the file that contains it, so that a place on a face has the same cell on any
+    // partition.
+    if (double(mesh.cell_id[c]) > best.key) continue;
+    const auto points = mesh.cell_points[c];
+    corners.clear();
+    for (const Index p : points) corners.push_back(mesh.reference_points[p]);
+    const auto weights = weights_in_cell(mesh.cell_type[c], corners, place, slack);
+    if (!weights) continue;
+    best = {double(mesh.cell_id[c]),
+            place,
+            {points.begin(), points.end()},
+            {weights->begin(), weights->begin() + std::ptrdiff_t(points.size())}};
+  }
+  return best;
+}
+
+Candidate nearest_on_face(const Mesh& mesh, std::span<const Index> points, const Vec3& place) {
+  Candidate best;
+  const auto consider = [&](std::initializer_list<int> corners, std::span<const double> weights) {
+    Candidate one;
+    int i = 0;
+    for (const int corner : corners) {
+      one.points.push_back(points[corner]);
+      one.weights.push_back(weights[i]);
+      one.place += weights[i++] * mesh.reference_points[points[corner]];
+    }
+    one.key = (one.place - place).norm();
+    if (one.key < best.key) best = std::move(one);
+  };
+  const auto x = [&](int i) -> const Vec3& { return mesh.reference_points[points[i]]; };
+  if (points.size() == 2) {
+    consider({0, 1}, nearest_on_segment(x(0), x(1), place).weights);
+  } else {
+    consider({0, 1, 2}, nearest_on_triangle(x(0), x(1), x(2), place).weights);
+    if (points.size() == 4) consider({0, 2, 3}, nearest_on_triangle(x(0), x(2), x(3), place).weights);
+  }
+  return best;
+}
+
+Candidate nearest_on_boundary(const Mesh& mesh, const auto& candidates, const Vec3& place) {
+  Candidate best;
+  for (const Index f : candidates) {
+    Candidate one = nearest_on_face(mesh, mesh.face_points[f], place);
+    if (one.key < best.key) best = std::move(one);
+  }
+  return best;
+}
+
+// The rank with the smallest key, and that key. Collective.
+std::pair<double, int> agree(MPI_Comm comm, double key) {
+  struct {
+    double key;
+    int rank;
+  } value{key, comm_rank(comm)};
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE_INT, MPI_MINLOC, comm);
+  return {value.key, value.rank};
+}
+
+// At a mesh point, in a cell, else at the place of the boundary that is nearest: what this rank has, and the rank that
+// has the best with its key. `look` gives what to look at: points, cells, faces within a distance. Collective.
+struct Chosen {
+  Candidate candidate;
+  double key = none;  // [m] from the boundary if it is outside
+  int rank = 0;
+  bool outside = false;
+};
+Chosen choose(const Mesh& mesh, const Vec3& place, double size, const auto& look) {
+  Chosen chosen;
+  chosen.candidate = nearest_point(mesh, look.points(place, on_point * size), place);
+  std::tie(chosen.key, chosen.rank) = agree(mesh.comm, chosen.candidate.key);
+  if (chosen.key <= on_point * size) return chosen;
+  chosen.candidate = containing_cell(mesh, look.cells(place, on_point * size), place);
+  std::tie(chosen.key, chosen.rank) = agree(mesh.comm, chosen.candidate.key);
+  if (chosen.key != none) return chosen;
+  chosen.candidate = nearest_on_boundary(mesh, look.faces(place, on_boundary * size), place);
+  std::tie(chosen.key, chosen.rank) = agree(mesh.comm, chosen.candidate.key);
+  chosen.outside = true;
+  return chosen;
+}
+
+// For a single place, which pays for no tree.
+struct Everything {
+  const Mesh& mesh;
+  auto points(const Vec3&, double) const { return std::views::iota(Index(0), mesh.points.n_owned()); }
+  auto cells(const Vec3&, double) const { return std::views::iota(Index(0), mesh.cells.n_owned()); }
+  auto faces(const Vec3&, double) const { return std::views::iota(mesh.n_interior, mesh.n_flux_faces()); }
+};
+
+}  // namespace
+
+void Probe::take(const Vec3& place, int rank, std::vector<Index>&& points, std::vector<double>&& weights) {
+  place_ = place;
+  MPI_Bcast(place_.data(), 3, MPI_DOUBLE, rank, comm_);
+  if (comm_rank(comm_) != rank) return;
+  points_ = std::move(points);
+  weights_ = std::move(weights);
+}
+
+Probe::Probe(const Mesh& mesh, const std::string& name, const Vec3& place, std::optional<double> tolerance)
+    : comm_(mesh.comm) {
+  const double size = mesh_size(mesh);
+  Chosen chosen = choose(mesh, place, size, Everything{mesh});
+  take(chosen.candidate.place, chosen.rank, std::move(chosen.candidate.points),
+       std::move(chosen.candidate.weights));
+  if (chosen.outside && chosen.key > tolerance.value_or(on_boundary * size))
+    throw Error(
+        "The probe '{}' at ({}, {}, {}) lies outside the mesh: the nearest place of it is ({:.6g}, "
+        "{:.6g}, {:.6g}), "
+        "{:.3g} m away. Move the probe there or into the mesh.",
+        name, place[0], place[1], place[2], place_[0], place_[1], place_[2], chosen.key);
+}
+
+std::optional<Probe> Probe::in(const PlaceSearch& search, const Vec3& place) {
+  const Mesh& mesh = search.mesh();
+  const double size = search.size();
+  Chosen chosen = choose(mesh, place, size, search);
+  if (chosen.outside && !(chosen.key <= on_boundary * size)) return {};
+  Probe probe(mesh.comm);
+  probe.take(chosen.candidate.place, chosen.rank, std::move(chosen.candidate.points),
+             std::move(chosen.candidate.weights));
+  return probe;
+}
+
+std::vector<double> Probe::sample(std::span<const double> values, int components) const {
+  std::vector<double> result(components, 0.0);
+  for (std::size_t i = 0; i < points_.size(); ++i)
+    for (int c = 0; c < components; ++c)
+      result[c] += weights_[i] * values[std::size_t(points_[i]) * components + c];
+  // All ranks but one bring zeros.
+  const bool root = comm_rank(comm_) == 0;
+  MPI_Reduce(root ? MPI_IN_PLACE : result.data(), result.data(), components, MPI_DOUBLE, MPI_SUM, 0, comm_);
+  if (!root) result.clear();
+  return result;
+}
+
+}  // namespace couplet

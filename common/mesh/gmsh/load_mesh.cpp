@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <malloc.h>
+
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
+#include "common/mesh/load.hpp"
+#include "common/mesh/on_root.hpp"
+#include "common/mesh/quality.hpp"
+
+namespace couplet {
+namespace {
+
+/// A cached mesh that cannot be read (a machine that went down, a full disk) is made anew: it is no fault of the
+/// user's.
+RawMesh read_geo_mesh(const std::filesystem::path& geo, int dim, const MeshParameters& parameters) {
+  const std::filesystem::path cached = mesh_geo(geo, dim, parameters);
+  try {
+    return read_msh(cached);
+  } catch (const Error& error) {
+    log::warn("The cached mesh is damaged and made anew: {}", error.what());
+  }
+  std::filesystem::remove(cached);
+  return read_msh(mesh_geo(geo, dim, parameters));
+}
+
+}  // namespace
+
+Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const MeshParameters& parameters,
+               const std::vector<std::array<std::string, 2>>& periodic,
+               const std::vector<std::vector<std::string>>& materials, bool find_wide_points, double scale) {
+  RawMesh raw;
+  on_root(comm, [&] {
+    if (!std::filesystem::is_regular_file(file))
+      throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
+                  file.string());
+    const std::string kind = file.extension().string();
+    const bool foreign = kind == ".unv" || kind == ".med" || kind == ".cgns";
+    if (kind == ".inp" || kind == ".vtk")
+      throw Error(
+          "The mesh file '{}' cannot be read: gmsh writes {} but {}. Convert it with meshio to .msh 4.1 with physical "
+          "names, or have it written as .unv, whose groups become patches and zones.",
+          file.string(), kind, kind == ".inp" ? "does not read it" : "its parts have no names there");
+    if (kind != ".msh" && kind != ".geo" && !foreign)
+      throw Error(
+          "The mesh file '{}' is neither .msh nor .geo, .unv, .med or .cgns. Convert it with gmsh or meshio to .msh 4.1 "
+          "with physical names.",
+          file.string());
+    if (kind != ".geo" && !parameters.empty())
+      throw Error(
+          "The mesh '{}' is finished, so 'mesh-parameters' cannot change it. Leave them out, or give the "
+          ".geo "
+          "it was made from.",
+          file.string());
+    raw =
+        kind == ".geo" ? read_geo_mesh(file, dim, parameters) : read_msh(foreign ? convert_mesh(file) : file);
+    for (Vec3& x : raw.points) x *= scale;
+    if (raw.cell_type.empty())
+      throw Error("The mesh '{}' has no cells. Put the {} into a physical group, else gmsh does not save {}.",
+                  file.string(), dim == 2 ? "surface" : "volume", dim == 2 ? "its triangles" : "its cells");
+    if (raw.dim != dim)
+      throw Error(
+          "The mesh '{}' is {}-dimensional, but 'dimension: {}' is asked for.{}", file.string(), raw.dim, dim,
+          dim == 3 ? " Put the volume into a physical group, else gmsh does not save its cells." : "");
+    raw.periodic = periodic;
+    raw.materials = materials;
+    raw.find_wide_points = find_wide_points;
+  });
+  try {
+    Mesh mesh = distribute(comm, raw);
+    raw = {};
+    malloc_trim(0);  // the whole mesh has left holes that nothing else fills
+    check_and_report(mesh);
+    return mesh;
+  } catch (const Error& e) {
+    throw Error("The mesh '{}' cannot be used. {}", file.string(), e.what());
+  }
+}
+
+}  // namespace couplet

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "coupler/parameters/parameters.hpp"
+
+namespace couplet {
+
+class CheckpointReader;
+class CheckpointWriter;
+
+/// One vector of the fixed point x = H(x): this rank's part of the unknown, and what is no unknown of its own
+/// but undergoes the same linear combinations (the velocity that goes with a displacement).
+struct Iterate {
+  std::vector<double> unknown;  ///< any unit
+  std::vector<double> rider;    ///< any unit, any length; may be empty
+};
+
+/// How the next guess of x = H(x) follows from the passes made so far: r = H(x) - x is to vanish. Vectors are
+/// flat and distributed, scalar products are taken over `comm` of the maker; all calls are collective over
+/// it.
+///
+///   start_step()  next()  next() ... accept()      a step, however many passes it needs
+///   start_step()  next()  start_step()  ...        a step that was given up and is tried again
+class Accelerator {
+ public:
+  virtual ~Accelerator() = default;
+  /// A step begins; one that was not accepted is forgotten.
+  virtual void start_step() = 0;
+  /// The next x after a pass from x to image = H(x). Give x away where it is not needed any more: a relaxation
+  /// works in its place.
+  virtual Iterate next(Iterate x, const Iterate& image) = 0;
+  /// The step has converged with this last pass, which `next` was not called for.
+  virtual void accept(const Iterate& x, const Iterate& image) = 0;
+  /// H is another map from now on, though the step goes on: no difference is taken across this.
+  virtual void map_changed() = 0;
+  /// Share of r that led to the x of the pass under way: the factor of a relaxation, (dx . r) / (r . r) else.
+  /// In the first pass of a step, whose x is the guess, the factor that the first update would take.
+  virtual double relaxation() const = 0;
+  /// Pairs of differences in use (0 for relaxations), and how often old ones were given up as misleading.
+  virtual int columns() const { return 0; }
+  virtual long resets() const { return 0; }
+  /// Between steps only. After load the run continues bit for bit on equal ranks.
+  virtual void save(CheckpointWriter& file) const = 0;
+  virtual void load(CheckpointReader& file) = 0;
+};
+
+std::unique_ptr<Accelerator> make_accelerator(const AccelerationParameters& parameters, MPI_Comm comm);
+
+/// x += omega (image - x), of unknown and rider.
+void relax(Iterate& x, double omega, const Iterate& image);
+/// Sums over all ranks of a few values at once, in place.
+void sum_over(MPI_Comm comm, std::span<double> values);
+double dot(std::span<const double> a, std::span<const double> b);  // of this rank
+/// Of this rank, in one sweep.
+struct ChangeSquares {
+  double change = 0, size = 0;  ///< |a - b|^2, |a|^2
+};
+ChangeSquares squares_of_change(std::span<const double> a, std::span<const double> b);
+/// Calls work(first, count) for stretches of `rows` entries that stay in the cache: operations on the same arrays read
+/// them from memory once.
+template <class Work>
+void for_blocks(std::size_t rows, Work work) {
+  constexpr std::size_t block = 1024;
+  for (std::size_t first = 0; first < rows; first += block) work(first, std::min(block, rows - first));
+}
+
+}  // namespace couplet

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/acceleration/fixed_point.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+
+bool converged(const Residual& residual, const ConvergenceParameters& parameters) {
+  return residual.relative <= parameters.relative || residual.absolute <= parameters.absolute;
+}
+
+Residual worst(const std::vector<Residual>& residuals) {
+  Residual all;
+  for (const Residual& r : residuals) {
+    // Not a number stays not a number.
+    if (!(r.relative <= all.relative)) all.relative = r.relative;
+    if (!(r.absolute <= all.absolute)) all.absolute = r.absolute;
+  }
+  return all;
+}
+
+FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const ResidualMeasure& measure,
+                                   const ConvergenceParameters& parameters, Accelerator& accelerator,
+                                   const IterationObserver& observer) {
+  FixedPointResult result;
+  accelerator.start_step();
+  for (int k = 1; k <= parameters.max_iterations; ++k) {
+    Iterate image = map(x);
+    const std::vector<Residual> residuals = measure(x, image);
+    result.residual = worst(residuals);
+    result.iterations = k;
+    observer(k, result.residual, accelerator.relaxation());
+    if (!std::isfinite(result.residual.absolute))
+      throw SolveFailure("the interface values are not finite after {} coupling iterations.", k);
+    if (std::ranges::all_of(residuals, [&](const Residual& r) { return converged(r, parameters); })) {
+      accelerator.accept(x, image);
+      result.x = std::move(x);
+      result.image = std::move(image);
+      return result;
+    }
+    x = accelerator.next(std::move(x), image);
+  }
+  throw SolveFailure(
+      "the coupling did not converge in {} iterations: the relative residual is {:.2e} ({:.1e} is asked "
+      "for).",
+      parameters.max_iterations, result.residual.relative, parameters.relative);
+}
+
+}  // namespace couplet

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "coupler/acceleration/accelerator.hpp"
+#include "coupler/acceleration/unknown.hpp"
+#include "coupler/parameters/parameters.hpp"
+
+namespace couplet {
+
+bool converged(const Residual& residual, const ConvergenceParameters& parameters);
+/// The largest of each kind.
+Residual worst(const std::vector<Residual>& residuals);
+
+/// One pass through all participants: x to H(x). Throws SolveFailure if one of them fails.
+using FixedPointMap = std::function<Iterate(const Iterate&)>;
+/// Residuals of H(x) - x, one for each unknown.
+using ResidualMeasure = std::function<std::vector<Residual>(const Iterate& x, const Iterate& image)>;
+/// After each pass: its number from 1, its residual, and the share of the residual before that led to its x.
+using IterationObserver = std::function<void(int, const Residual&, double)>;
+
+struct FixedPointResult {
+  Iterate x, image;  ///< of the last pass: x and H(x)
+  Residual residual;
+  int iterations = 0;
+};
+
+/// x = H(x) by passes and accelerated updates from the guess x, until the residual of every unknown is below
+/// its bound. Throws SolveFailure if it does not converge within the allowed iterations or a residual is not
+/// finite.
+FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const ResidualMeasure& measure,
+                                   const ConvergenceParameters& parameters, Accelerator& accelerator,
+                                   const IterationObserver& observer);
+
+}  // namespace couplet

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/acceleration/unknown.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+
+Unknown::Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
+                 const std::vector<std::size_t>& group, bool side_by_side)
+    : comm_(comm) {
+  const auto place_in_group = [&](std::size_t i) { return std::ranges::find(group, i) - group.begin(); };
+  const auto add = [&](const Links::Link& link) {
+    const auto known = std::ranges::find_if(
+        parts_, [&](const Part& p) { return p.giver == link.giver && p.datum.name == link.datum.name; });
+    if (known != parts_.end()) return;
+    parts_.push_back({link.giver, link.datum, link.components, 0,
+                      sides[link.giver].entries(link.datum.place) * std::size_t(link.components)});
+  };
+  for (const auto& link : links.all()) {
+    if (place_in_group(link.giver) == std::ssize(group)) continue;  // not a member
+    const auto taker = place_in_group(link.taker);
+    // A mover takes before everyone.
+    if (taker == std::ssize(group) || side_by_side || place_in_group(link.giver) >= taker) add(link);
+  }
+  // The guess of a displacement, for the mover alone, needs its velocity, too.
+  const std::vector<Part> taken = parts_;
+  for (const Part& p : taken)
+    for (const auto& link : links.all())
+      if (p.datum.name == "displacement" && link.giver == p.giver && link.datum.name == "velocity") add(link);
+  for (Part& p : parts_) {
+    if (p.datum.name != "velocity") continue;
+    for (Part& d : parts_)
+      if (d.giver == p.giver && d.datum.name == "displacement" && d.count == p.count) p.rides = true;
+  }
+  for (Part& p : parts_) {
+    std::size_t& n = p.rides ? n_rider_ : n_unknown_;
+    p.first = n;
+    n += p.count;
+  }
+  for (Part& d : parts_)
+    for (const Part& p : parts_)
+      if (p.rides && p.giver == d.giver && d.datum.name == "displacement") d.velocity = p.first;
+  // Data of one kind need no scale.
+  const auto lead = std::ranges::find(parts_, false, &Part::rides);
+  scaled_ =
+      std::ranges::all_of(parts_, [&](const Part& p) { return p.rides || p.datum.unit == lead->datum.unit; });
+}
+
+bool Unknown::complete(const std::vector<Exchange>& given) const {
+  bool missing = false;
+  for (const Part& p : parts_) missing = missing || !given[p.giver].contains(p.datum.name);
+  return !missing;
+}
+
+Iterate Unknown::gather(const std::vector<Exchange>& given) const {
+  Iterate x;
+  x.unknown.reserve(n_unknown_);
+  x.rider.reserve(n_rider_);
+  for (const Part& p : parts_) {
+    const std::vector<double>& values = given[p.giver].at(p.datum.name);
+    if (values.size() != p.count)
+      throw Error("A participant gave {} values of '{}' where {} had been announced.", values.size(),
+                  p.datum.name, p.count);
+    std::vector<double>& to = p.rides ? x.rider : x.unknown;  // parts lie in it one after the other
+    to.insert(to.end(), values.begin(), values.end());
+    if (p.weight != 1)
+      for (std::size_t i = p.first; i < p.first + p.count; ++i) to[i] *= p.weight;
+  }
+  return x;
+}
+
+void Unknown::scatter(const Iterate& x, std::vector<Exchange>& given) const {
+  for (const Part& p : parts_) {
+    const std::vector<double>& from = p.rides ? x.rider : x.unknown;
+    std::vector<double>& values = given[p.giver][p.datum.name];
+    values.assign(from.begin() + std::ptrdiff_t(p.first), from.begin() + std::ptrdiff_t(p.first + p.count));
+    if (p.weight != 1)
+      for (double& v : values) v /= p.weight;
+  }
+}
+
+bool Unknown::start_at_rest(std::vector<Exchange>& given) const {
+  bool all = true;
+  for (const Part& p : parts_) {
+    const bool motion = p.rides || p.velocity;
+    if (motion) given[p.giver][p.datum.name].assign(p.count, 0.);
+    all = all && motion;
+  }
+  return all;
+}
+
+void Unknown::scale(const std::vector<Exchange>& given) {
+  scaled_ = true;
+  for (Part& p : parts_) {
+    if (p.rides) continue;
+    const std::vector<double>& values = given[p.giver].at(p.datum.name);
+    const double square = sum(comm_, dot(values, values));
+    if (square > 0) p.weight = 1 / std::sqrt(square);
+  }
+  for (Part& p : parts_)  // the velocity goes with its displacement
+    for (const Part& d : parts_)
+      if (p.rides && d.giver == p.giver && d.datum.name == "displacement") p.weight = d.weight;
+}
+
+std::vector<double> Unknown::weights() const {
+  std::vector<double> w{double(scaled_)};
+  for (const Part& p : parts_) w.push_back(p.weight);
+  return w;
+}
+
+void Unknown::restore_weights(const std::vector<double>& w) {
+  if (w.size() != parts_.size() + 1) throw Error("The checkpoint is of a coupling with other data.");
+  scaled_ = w[0] != 0;
+  for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].weight = w[i + 1];
+}
+
+std::vector<Residual> Unknown::measure(const Iterate& x, const Iterate& image) const {
+  std::vector<double> sums;
+  for (const Part& p : parts_) {
+    if (p.rides) continue;
+    const std::span<const double> here(x.unknown.data() + p.first, p.count),
+        there(image.unknown.data() + p.first, p.count);
+    const ChangeSquares squares = squares_of_change(there, here);
+    sums.insert(sums.end(), {squares.change, squares.size, double(p.count) / p.components});
+  }
+  sum_over(comm_, sums);
+  std::vector<Residual> list;
+  std::size_t k = 0;
+  for (const Part& p : parts_) {
+    if (p.rides) continue;
+    const double r = sums[k], h = sums[k + 1], places = sums[k + 2];
+    k += 3;
+    // Nothing moves: converged; anything else against nothing: not.
+    const double relative = h > 0 ? std::sqrt(r / h) : (r > 0 ? std::numeric_limits<double>::infinity() : r);
+    list.push_back({relative, places > 0 ? std::sqrt(r / places) / p.weight : 0});
+  }
+  return list;
+}
+
+std::vector<double> Unknown::motion(const Iterate& x) const {
+  std::vector<double> values;
+  for (const Part& p : parts_)
+    if (p.datum.name == "displacement")
+      for (std::size_t i = p.first; i < p.first + p.count; ++i) values.push_back(x.unknown[i] / p.weight);
+  return values;
+}
+
+void History::accepted(Iterate x, double dt, int order) {
+  if (order > 1) older = std::move(old), older_dt = old_dt;
+  if (order > 0) old = std::move(now), old_dt = dt;
+  now = std::move(x);
+}
+
+namespace {
+
+/// Lagrange weights of the values at 0, -a and -a-b for the value at dt.
+struct LagrangeWeights {
+  double now = 1, old = 0, older = 0;
+};
+LagrangeWeights extrapolation(const History& h, double dt, int order) {
+  if (order == 0 || h.old.unknown.size() + h.old.rider.size() == 0) return {};
+  const double a = h.old_dt;
+  if (order == 1 || h.older.unknown.size() + h.older.rider.size() == 0) return {1 + dt / a, -dt / a, 0};
+  const double b = h.old_dt + h.older_dt;
+  return {(dt + a) * (dt + b) / (a * b), -dt * (dt + b) / (a * (b - a)), dt * (dt + a) / (b * (b - a))};
+}
+
+}  // namespace
+
+Iterate predict(const Unknown& unknown, const History& history, double dt, int order) {
+  Iterate guess = history.now;
+  if (order == 0) return guess;
+  const LagrangeWeights w = extrapolation(history, dt, order);
+  const bool two_levels = order == 2 && !history.old.rider.empty();
+  const double r = two_levels ? dt / history.old_dt : 0;
+  const auto& v_now = history.now.rider;
+  for (const auto& p : unknown.parts()) {
+    if (p.rides) continue;
+    for (std::size_t i = p.first; i < p.first + p.count; ++i) {
+      if (!p.velocity) {
+        guess.unknown[i] = w.now * history.now.unknown[i];
+        if (w.old != 0) guess.unknown[i] += w.old * history.old.unknown[i];
+        if (w.older != 0) guess.unknown[i] += w.older * history.older.unknown[i];
+        continue;
+      }
+      const std::size_t k = *p.velocity + (i - p.first);
+      const double change = two_levels ? v_now[k] - history.old.rider[k] : 0;
+      guess.unknown[i] += dt * (v_now[k] + r / 2 * change);
+      guess.rider[k] += r * change;
+    }
+  }
+  return guess;
+}
+
+}  // namespace couplet

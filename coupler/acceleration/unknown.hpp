@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <optional>
+
+#include "coupler/acceleration/accelerator.hpp"
+#include "coupler/mapping/links.hpp"
+#include "coupler/parameters/schedule.hpp"
+
+namespace couplet {
+
+struct Residual {
+  double relative = 0;  ///< |r|_2 / |H(x)|_2; 0 if both vanish
+  double absolute = 0;  ///< root mean square of the vectors r over the places [unit of the datum]
+};
+
+/// What a group iterates on: the data that somebody takes before its giver has given it in the same pass (its own
+/// data always). In
+/// the order of the list (Gauss-Seidel) these are the data given to earlier members, side by side (Jacobi)
+/// all of the group's. A velocity that goes with a displacement of the same giver is no unknown of its own:
+/// it rides on the displacement's combinations. Several data are scaled to like size, once.
+class Unknown {
+ public:
+  struct Part {
+    std::size_t giver;
+    Interface::Datum datum;
+    int components = 1;
+    std::size_t first = 0, count = 0;  ///< values of this rank, within `unknown` or `rider`
+    bool rides = false;
+    std::optional<std::size_t> velocity{};  ///< of a displacement: first value of its velocity in `rider`
+    double weight = 1;
+  };
+  /// `group`: indices into `sides`.
+  Unknown(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
+          const std::vector<std::size_t>& group, bool side_by_side);
+
+  const std::vector<Part>& parts() const { return parts_; }
+  /// Values of this rank.
+  std::size_t n_unknown() const { return n_unknown_; }
+  std::size_t n_rider() const { return n_rider_; }
+  /// Whether all of it has been given.
+  bool complete(const std::vector<Exchange>& given) const;
+  /// From what all have given, scaled; to it. Data of the unknown alone.
+  Iterate gather(const std::vector<Exchange>& given) const;
+  void scatter(const Iterate& x, std::vector<Exchange>& given) const;
+  /// Zero displacements and their velocities; nothing of other data, which have no natural start. Whether
+  /// that is all of the unknown.
+  bool start_at_rest(std::vector<Exchange>& given) const;
+  /// The scales from the first values that all have given; collective.
+  void scale(const std::vector<Exchange>& given);
+  bool scaled() const { return scaled_; }
+  std::vector<double> weights() const;
+  void restore_weights(const std::vector<double>& weights);
+
+  /// Residual of each unknown (riders left out), over all ranks. Collective.
+  std::vector<Residual> measure(const Iterate& x, const Iterate& image) const;
+  /// Values of the unknown that are displacements [m], this rank's.
+  std::vector<double> motion(const Iterate& x) const;
+
+ private:
+  MPI_Comm comm_;
+  std::vector<Part> parts_;
+  std::size_t n_unknown_ = 0, n_rider_ = 0;
+  bool scaled_ = false;
+};
+
+/// What the predictor remembers of accepted steps.
+struct History {
+  Iterate now, old, older;          ///< at t^n, t^{n-1}, t^{n-2}; empty before there were such
+  double old_dt = 0, older_dt = 0;  ///< t^n - t^{n-1}, t^{n-1} - t^{n-2}
+  /// Keeps what a predictor of this order needs.
+  void accepted(Iterate x, double dt, int order);
+};
+
+/// First guess for t^{n+1}, r = dt / old_dt (1 for constant steps). A displacement with its velocity:
+///   order 0  eta* = eta^n                                               v* = v^n
+///   order 1  eta* = eta^n + dt v^n                                      v* = v^n
+///   order 2  eta* = eta^n + dt ((1 + r/2) v^n - r/2 v^{n-1})            v* = v^n + r (v^n - v^{n-1})
+/// All else: the polynomial of this order through the last values. Fewer levels lower the order.
+Iterate predict(const Unknown& unknown, const History& history, double dt, int order);
+
+}  // namespace couplet

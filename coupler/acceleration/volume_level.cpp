@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/acceleration/volume_level.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "coupler/acceleration/accelerator.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr const char* inflow_name = "inflow";
+constexpr const char* load_name = "pressure-force";
+// Of all that flows through the wall: below it is round-off; up to here a structure's own solver may leave.
+constexpr double exact = 1e-11, good_enough = 1e-6;
+// What the fluid's load would move in a step counts as flow with this share: where nothing flows the level holds a
+// load at rest (gravity), and the defect is measured by that, not by the round-off of a wall that stands.
+constexpr double resting = 1e-2;
+constexpr int most_tries = 12;
+// Share of a swing that a step takes away (0.15 has the least spectral radius of the recursion, 0.612), and how much
+// of all that flows may swing: that moves the level by less than a coupling tolerance of 1e-6 does.
+constexpr double damping = 0.15, calm = 1e-5;
+// Of the largest flow that is left as a measure after each step: flows pass through zero.
+constexpr double fading = 0.98;
+
+bool has(const std::vector<Interface::Datum>& list, const std::string& name) {
+  return std::ranges::find(list, name, &Interface::Datum::name) != list.end();
+}
+
+const std::vector<double>& values_of(const Exchange& data, const std::string& name) {
+  static const std::vector<double> none;
+  const auto found = data.find(name);
+  return found == data.end() ? none : found->second;
+}
+
+}  // namespace
+
+VolumeLevel::VolumeLevel(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
+                         const Schedule& schedule, const std::vector<std::size_t>& group)
+    : comm_(comm), links_(&links) {
+  const auto takes_of_cavity = [&](std::size_t i) {
+    return std::ranges::any_of(links.all(), [&](const Links::Link& l) {
+      return l.taker == i && l.datum.name == load_name && has(sides[l.giver].interface.gives, inflow_name);
+    });
+  };
+  for (const std::size_t i : group) {
+    if (takes_of_cavity(i)) structures_.push_back(i);
+    if (!has(sides[i].interface.gives, inflow_name)) continue;
+    if (!schedule.iterates || schedule.side_by_side)
+      throw Error(
+          "'{}' is a closed fluid whose pressure level the structure sets: that is found in the iteration of a "
+          "step, one after the other; take 'scheme: semi-implicit' or 'implicit' with 'order: serial'.",
+          sides[i].name);
+    if (!schedule.sub_steps.empty())
+      throw Error(
+          "coupling.sub-steps: '{}' is a closed fluid whose pressure level the structure sets (volume-level: structure) "
+          "from its motion at the end of the same step; leave 'sub-steps' out and take a smaller time step.",
+          sides[i].name);
+    if (!structures_.empty())
+      throw Error(
+          "'{}' is a closed fluid whose pressure level the structure sets: it must stand before '{}' in the order "
+          "of a step.",
+          sides[i].name, sides[structures_.front()].name);
+    dim_ = sides[i].interface.dim;
+    cavities_.push_back({i, sides[i].name, CavityWall(comm, sides[i], schedule.moved == sides[i].name)});
+  }
+  if (!cavities_.empty() && structures_.empty())
+    throw Error("Nobody takes the '{}' of '{}', a closed fluid whose pressure level a structure must set.",
+                load_name, cavities_.front().name);
+}
+
+void VolumeLevel::start_step(double dt) {
+  dt_ = dt;
+  for (Cavity& c : cavities_) {
+    c.level = c.accepted_level;
+    const double swing = (c.swing[0] - c.swing[1]) / 2, beyond = std::abs(swing) - calm * c.flow;
+    c.allowed = beyond > 0 ? damping * dt / 2 * std::copysign(beyond, swing) : 0;
+  }
+}
+
+/// On the areas between those at the begin and at the end of the step: then the level's work is that on the volume.
+void VolumeLevel::loaded(std::size_t i, const Exchange& taken, Exchange& given) {
+  const auto found = std::ranges::find(cavities_, i, &Cavity::side);
+  if (found == cavities_.end()) return;
+  found->load = values_of(given, load_name);
+  found->areas = found->wall.areas(values_of(taken, "displacement"));
+  if (!found->place.empty() && found->place.size() != values_of(taken, "displacement").size())
+    throw Error("The checkpoint's place of the closed fluid '{}' is damaged. Use an earlier one.",
+                found->name);
+  const std::vector<Vec3> begin = found->wall.areas(found->place);
+  for (std::size_t f = 0; f < begin.size(); ++f) found->areas[f] = (found->areas[f] + begin[f]) / 2;
+  put(*found, given);
+}
+
+void VolumeLevel::put(const Cavity& cavity, Exchange& given) const {
+  std::vector<double>& load = given[load_name];
+  load = cavity.load;
+  load.resize(cavity.areas.size() * std::size_t(dim_), 0.);
+  for (std::size_t f = 0; f < cavity.areas.size(); ++f)
+    for (int c = 0; c < dim_; ++c)
+      load[f * std::size_t(dim_) + std::size_t(c)] += cavity.level * cavity.areas[f][c];
+}
+
+/// At the end and at the begin of the step [m^3/s].
+std::array<double, 2> VolumeLevel::inflow(const Cavity& cavity, const std::vector<Exchange>& known) const {
+  std::vector<double> sums(2, 0.);
+  const std::vector<double>& shares = values_of(known[cavity.side], inflow_name);
+  for (std::size_t k = 0; k < shares.size(); ++k) sums[k % 2] += shares[k];
+  sum_over(comm_, sums);
+  return {sums[0], sums[1]};
+}
+
+VolumeLevel::Flow VolumeLevel::flow(const Cavity& c, const std::vector<Exchange>& known) const {
+  const Exchange wall = links_->input(c.side, known);
+  const std::vector<double>& place = values_of(wall, "displacement");
+  const CavityWall::Flux flux = c.wall.flux(values_of(wall, "velocity"), c.wall.areas(place));
+  std::array<double, 3> sums{flux.net, flux.size, c.wall.swept(c.place, place)};
+  sum_over(comm_, sums);
+  const auto [end, begin] = inflow(c, known);
+  return {sums[0] - end, sums[1] + std::abs(begin) + std::abs(end), end, begin, sums[2]};
+}
+
+VolumeLevel::Defect VolumeLevel::defect(const std::vector<Exchange>& known) const {
+  const auto n = Eigen::Index(cavities_.size());
+  Defect d{Eigen::VectorXd(n), Eigen::VectorXd(n)};
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Cavity& c = cavities_[std::size_t(k)];
+    const Flow now = flow(c, known);
+    const double error = c.change + now.swept - c.inflow - dt_ / 2 * (now.begin + now.end);
+    d.value[k] = 2 / dt_ * (error - c.allowed);
+    d.size[k] = now.size + 2 / dt_ * std::abs(c.change - c.inflow);
+  }
+  return d;
+}
+
+VolumeLevel::Defect VolumeLevel::answer_to(std::vector<Exchange>& known,
+                                           const std::function<void()>& answer) {
+  for (const Cavity& c : cavities_) put(c, known[c.side]);
+  answer();
+  return defect(known);
+}
+
+/// Root mean square of a load over the areas [Pa].
+double VolumeLevel::pressure(const Cavity& c, const std::vector<double>& load) const {
+  std::vector<double> sums(2, 0.);
+  for (const double f : load) sums[0] += f * f;
+  for (const Vec3& s : c.areas) sums[1] += s.squaredNorm();
+  sum_over(comm_, sums);
+  return sums[1] > 0 ? std::sqrt(sums[0] / sums[1]) : 0;
+}
+
+/// The structure's answer to a further pressure in each cavity, of the size of the load.
+void VolumeLevel::probe(std::vector<Exchange>& known, const std::function<void()>& answer,
+                        const Eigen::VectorXd& now) {
+  slope_.resize(now.size(), now.size());
+  for (Eigen::Index k = 0; k < now.size(); ++k) {
+    Cavity& c = cavities_[std::size_t(k)];
+    const double mean = pressure(c, values_of(known[c.side], load_name)), size = mean > 0 ? mean : 1,
+                 before = c.level;
+    c.level += size;
+    slope_.col(k) = (answer_to(known, answer).value - now) / size;
+    c.level = before;
+  }
+  slope_dt_ = dt_;
+}
+
+Eigen::VectorXd VolumeLevel::step_to(const Eigen::VectorXd& g) const {
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(slope_);
+  if (!slope_.allFinite() || !lu.isInvertible())
+    throw SolveFailure(
+        "no pressure in the closed fluid{} '{}' holds {} volume: a pressure there moves no wall, or two of them "
+        "share all they could move.",
+        cavities_.size() > 1 ? "s beginning with" : "", cavities_.front().name,
+        cavities_.size() > 1 ? "their" : "its");
+  return lu.solve(-g);
+}
+
+void VolumeLevel::find(std::vector<Exchange>& known, const std::function<void()>& answer) {
+  Defect now = defect(known);
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(now.value.size());  // by the loads at rest [m^3/s]
+  const auto measure = [&] {
+    for (Eigen::Index k = 0; slope_dt_ == dt_ && k < moved.size(); ++k) {
+      const Cavity& c = cavities_[std::size_t(k)];
+      moved[k] = resting * std::abs(slope_(k, k)) * pressure(c, c.load);
+    }
+  };
+  const auto share = [&](const Defect& d) {
+    double worst = 0;
+    for (Eigen::Index k = 0; k < d.value.size(); ++k)
+      if (const double size = d.size[k] + moved[k]; size > 0)
+        worst = std::max(worst, std::abs(d.value[k]) / size);
+    return worst;
+  };
+  measure();
+  double best = share(now);
+  if (best <= exact) return;
+  if (slope_dt_ != dt_) probe(known, answer, now.value);
+  measure();
+  for (int k = 0; k < most_tries; ++k) {
+    const Eigen::VectorXd change = step_to(now.value);
+    for (Eigen::Index j = 0; j < change.size(); ++j) cavities_[std::size_t(j)].level += change[j];
+    const Defect next = answer_to(known, answer);
+    const double left = share(next);
+    if (!std::isfinite(left)) break;
+    // What a structure's own solver leaves tells nothing about the slope.
+    if (left > good_enough && change.squaredNorm() > 0)
+      slope_ += next.value * change.transpose() / change.squaredNorm();
+    if (left <= exact || (left <= good_enough && left > best / 2)) return;
+    now = next;
+    best = left;
+  }
+  throw SolveFailure(
+      "no pressure level was found for the closed fluid '{}' in {} tries: the volume still misses {:.1e} of what "
+      "flows through its wall.",
+      cavities_.front().name, most_tries, best);
+}
+
+void VolumeLevel::accept(const std::vector<Exchange>& given) {
+  for (Cavity& c : cavities_) {
+    const Flow now = flow(c, given);
+    c.change += now.swept;
+    c.inflow += dt_ / 2 * (now.begin + now.end);
+    // The wall stood before the first step.
+    c.swing = {now.mismatch, c.begun ? c.swing[0] : -now.begin};
+    c.flow = std::max(now.size, fading * c.flow);
+    c.begun = true;
+    c.place = values_of(links_->input(c.side, given), "displacement");
+    c.accepted_level = c.level;
+  }
+}
+
+void VolumeLevel::save(CheckpointWriter& file) const {
+  std::vector<double> numbers{slope_dt_};
+  for (const Cavity& c : cavities_)
+    numbers.insert(numbers.end(), {c.accepted_level, c.change, c.inflow, c.swing[0], c.swing[1], c.flow});
+  numbers.insert(numbers.end(), slope_.data(), slope_.data() + slope_.size());
+  file.write("volume-level", comm_rank(comm_) == 0 ? numbers : std::vector<double>{});
+  for (const Cavity& c : cavities_) file.write("volume-place-" + c.name, c.place);
+}
+
+void VolumeLevel::load(CheckpointReader& file) {
+  // Every rank needs all of it.
+  const std::vector<double> numbers = all_gather(comm_, file.read("volume-level"));
+  const std::size_t n = cavities_.size();
+  if (numbers.size() != 1 + 6 * n && numbers.size() != 1 + 6 * n + n * n)
+    throw Error("The checkpoint is of a coupling with other closed fluids.");
+  slope_dt_ = numbers[0];
+  for (std::size_t k = 0; k < n; ++k) {
+    Cavity& c = cavities_[k];
+    const double* saved = &numbers[1 + 6 * k];
+    c.accepted_level = saved[0], c.change = saved[1], c.inflow = saved[2];
+    c.swing = {saved[3], saved[4]}, c.flow = saved[5], c.begun = true;
+    c.place = file.read("volume-place-" + c.name);
+  }
+  if (numbers.size() == 1 + 6 * n + n * n)
+    slope_ = Eigen::Map<const Eigen::MatrixXd>(&numbers[1 + 6 * n], Eigen::Index(n), Eigen::Index(n));
+}
+
+std::vector<std::string> VolumeLevel::columns() const {
+  std::vector<std::string> list{"time [s]"};
+  for (const Cavity& c : cavities_)
+    for (const char* what : {"level [Pa]", "volume change [m^3]", "inflow [m^3]", "volume error [m^3]"})
+      list.push_back(c.name + " " + what);
+  return list;
+}
+
+std::vector<double> VolumeLevel::row() const {
+  std::vector<double> list;
+  for (const Cavity& c : cavities_)
+    list.insert(list.end(), {c.accepted_level, c.change, c.inflow, c.change - c.inflow});
+  return list;
+}
+
+}  // namespace couplet

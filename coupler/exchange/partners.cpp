@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/exchange/partners.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+
+namespace couplet {
+
+Reply Partner::receive() {
+  Reply reply = channel->receive();
+  seconds += reply.seconds;
+  seconds_since_accepted += reply.seconds;
+  if (reply.status == Reply::Status::hopeless) throw SchemeFailure("'{}' says: {}", name(), reply.text);
+  if (reply.status == Reply::Status::failure) throw SolveFailure("'{}' says: {}", name(), reply.text);
+  return reply;
+}
+
+void ask_all(const std::vector<Partner*>& partners, const Command& command) {
+  for (Partner* p : partners) p->send(Command(command));
+  std::string failures;
+  for (Partner* p : partners) {
+    try {
+      const Reply reply = p->receive();
+      if (command.op == Op::accept_step || command.op == Op::load) p->advised_dt = reply.suggested_dt;
+      if (command.op != Op::accept_step) continue;
+      p->report = reply.report;
+      p->report.seconds = std::exchange(p->seconds_since_accepted, 0.0);
+    } catch (const SolveFailure& failure) {
+      failures += (failures.empty() ? "" : " ") + std::string(failure.what());
+    }
+  }
+  if (!failures.empty()) throw SolveFailure(failures);
+}
+
+std::vector<Interface> initialise_all(const std::vector<Partner*>& partners) {
+  std::vector<Interface> interfaces;
+  for (Partner* p : partners) p->send({Op::initialise, {}, {}, 0, -1, ""});
+  for (Partner* p : partners) {
+    Reply reply = p->receive();
+    p->advised_dt = reply.suggested_dt;
+    interfaces.push_back(std::move(reply.interface));
+  }
+  return interfaces;
+}
+
+std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners, const std::string& problem) {
+  std::vector<NamedErrors> errors;
+  for (Partner* p : partners) {
+    p->send({Op::finalise, {}, {}, 0, -1, problem});
+    const std::string text = p->receive().text;
+    try {
+      errors.push_back({p->name(), ErrorParts::of(text)});
+    } catch (const Error& error) {  // of a guest: no reason to lose a run that has ended
+      log::warn("'{}' says at its end what is left aside: {}", p->name(), error.what());
+    }
+  }
+  return errors;
+}
+
+double advised_dt(const std::vector<Partner*>& partners) {
+  double dt = std::numeric_limits<double>::infinity();
+  for (const Partner* p : partners) dt = std::min(dt, p->advised_dt);
+  return dt;
+}
+
+}  // namespace couplet

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/exchange/side.hpp"
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+
+Side::Side(MPI_Comm comm, std::string its_name, Interface its_interface)
+    : name(std::move(its_name)), interface(std::move(its_interface)) {
+  const auto cut = [&](std::size_t n, std::vector<GlobalIndex>& ids) {
+    const Starts starts = starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
+    if (ids.empty())
+      for (std::size_t i = 0; i < n; ++i)
+        ids.push_back(starts[std::size_t(comm_rank(comm))] + GlobalIndex(i));
+    return starts;
+  };
+  vertices = cut(interface.vertices.size(), interface.vertex_ids);
+  faces = cut(interface.face_centres.size(), interface.face_ids);
+  rank_ = std::size_t(comm_rank(comm));
+}
+
+PointSet Side::places(Interface::Place place) const {
+  const bool at_vertices = place == Interface::Place::vertices;
+  PointSet set;
+  set.what = (at_vertices ? "vertices of '" : "faces of '") + name + "'";
+  set.points = at_vertices ? interface.vertices : interface.face_centres;
+  set.surface = &interface;
+  set.place = place;
+  set.ids = at_vertices ? interface.vertex_ids : interface.face_ids;
+  set.starts = at_vertices ? vertices : faces;
+  for (std::size_t i = 0; i < set.points.size(); ++i)
+    set.positions.push_back(set.starts[rank_] + GlobalIndex(i));
+  if (!at_vertices)
+    for (const Vec3& area : interface.face_areas) set.sizes.push_back(area.norm());
+  return set;
+}
+
+}  // namespace couplet

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <string>
+
+#include "common/coupling/participant.hpp"
+#include "coupler/exchange/search.hpp"
+
+namespace couplet {
+
+/// One participant as the coupler knows it after `initialise`: this rank's part of its places, and how they
+/// are cut over the coupler's ranks.
+struct Side {
+  std::string name;
+  Interface interface;
+  Starts vertices, faces;
+
+  /// Collective; fills in ids where there are none.
+  Side(MPI_Comm comm, std::string name, Interface interface);
+  std::size_t entries(Interface::Place place) const {
+    return place == Interface::Place::vertices ? interface.vertices.size() : interface.face_centres.size();
+  }
+  /// All places of a kind.
+  PointSet places(Interface::Place place) const;
+
+ private:
+  std::size_t rank_ = 0;
+};
+
+}  // namespace couplet

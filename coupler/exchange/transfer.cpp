@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/exchange/transfer.hpp"
+
+#include <algorithm>
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+/// Of entries sorted by target and source, equal ones added up.
+void add_up(std::vector<Transfer::Entry>& entries) {
+  std::size_t kept = 0;
+  for (const auto& e : entries)
+    if (kept > 0 && entries[kept - 1].target == e.target && entries[kept - 1].source == e.source)
+      entries[kept - 1].weight += e.weight;
+    else
+      entries[kept++] = e;
+  entries.resize(kept);
+}
+
+/// Every entry on the rank that has its target, by target and source, each pair once.
+std::vector<Transfer::Entry> by_owner(MPI_Comm comm, const Starts& targets,
+                                      std::vector<Transfer::Entry> entries) {
+  if (comm_size(comm) > 1) {
+    std::vector<std::vector<Transfer::Entry>> to(std::size_t(comm_size(comm)));
+    for (const auto& e : entries) to[std::size_t(owner_of(targets, e.target))].push_back(e);
+    entries.clear();
+    for (const auto& part : all_to_all(comm, to)) entries.insert(entries.end(), part.begin(), part.end());
+  }
+  std::ranges::stable_sort(entries, [](const auto& a, const auto& b) {
+    return a.target != b.target ? a.target < b.target : a.source < b.source;
+  });
+  add_up(entries);
+  return entries;
+}
+
+}  // namespace
+
+Transfer::Transfer(MPI_Comm comm, const Starts& targets, const Starts& sources, std::vector<Entry> entries)
+    : comm_(comm), alone_(comm_size(comm) == 1) {
+  const auto rank = std::size_t(comm_rank(comm));
+  entries = by_owner(comm, targets, std::move(entries));
+  n_sources_ = std::size_t(sources[rank + 1] - sources[rank]);
+  std::vector<GlobalIndex> foreign;
+  for (const Entry& e : entries)
+    if (owner_of(sources, e.source) != int(rank)) foreign.push_back(e.source);
+  std::ranges::sort(foreign);
+  foreign.erase(std::unique(foreign.begin(), foreign.end()), foreign.end());
+  const std::size_t n_targets = std::size_t(targets[rank + 1] - targets[rank]);
+  first_.assign(n_targets + 1, 0);
+  for (const Entry& e : entries) {
+    ++first_[std::size_t(e.target - targets[rank]) + 1];
+    const bool mine = e.source >= sources[rank] && e.source < sources[rank + 1];
+    column_.push_back(mine ? std::size_t(e.source - sources[rank])
+                           : n_sources_ +
+                                 std::size_t(std::ranges::lower_bound(foreign, e.source) - foreign.begin()));
+    weight_.push_back(e.weight);
+  }
+  for (std::size_t t = 0; t < n_targets; ++t) first_[t + 1] += first_[t];
+  same_ = alone_ && n_sources_ == n_targets && column_.size() == n_targets;
+  for (std::size_t t = 0; same_ && t < n_targets; ++t)
+    same_ = first_[t + 1] == t + 1 && column_[t] == t && weight_[t] == 1;
+  if (alone_) return;
+  // Foreign positions are ascending, so they come rank by rank.
+  std::vector<std::vector<GlobalIndex>> wanted(std::size_t(comm_size(comm)));
+  for (const GlobalIndex s : foreign) wanted[std::size_t(owner_of(sources, s))].push_back(s);
+  for (const auto& list : wanted) take_.push_back(int(list.size()));
+  for (const auto& list : all_to_all(comm, wanted)) {
+    auto& mine = give_.emplace_back();
+    for (const GlobalIndex s : list) mine.push_back(std::size_t(s - sources[rank]));
+  }
+}
+
+std::vector<double> Transfer::fetch(std::span<const double> values, int components) const {
+  const auto n = std::size_t(components);
+  std::vector<double> all(values.begin(), values.end()), out;
+  std::vector<int> out_counts, out_first, in_counts, in_first;
+  for (const auto& list : give_) {
+    out_first.push_back(int(out.size()));
+    for (const std::size_t s : list)
+      out.insert(out.end(), values.begin() + std::ptrdiff_t(s * n),
+                 values.begin() + std::ptrdiff_t((s + 1) * n));
+    out_counts.push_back(int(out.size()) - out_first.back());
+  }
+  int total = 0;
+  for (const int count : take_) {
+    in_first.push_back(total);
+    in_counts.push_back(count * components);
+    total += in_counts.back();
+  }
+  all.resize(n_sources_ * n + std::size_t(total));
+  MPI_Alltoallv(out.data(), out_counts.data(), out_first.data(), MPI_DOUBLE, all.data() + n_sources_ * n,
+                in_counts.data(), in_first.data(), MPI_DOUBLE, comm_);
+  return all;
+}
+
+namespace {
+
+/// The product for N components, known when this is compiled or (0) not.
+template <std::size_t N>
+void multiply(const std::vector<std::size_t>& first, const std::vector<std::size_t>& column,
+              const std::vector<double>& weight, const double* from, std::size_t components, double* to) {
+  const std::size_t n = N > 0 ? N : components;
+  for (std::size_t t = 0; t + 1 < first.size(); ++t)
+    for (std::size_t e = first[t]; e < first[t + 1]; ++e)
+      for (std::size_t c = 0; c < n; ++c) to[t * n + c] += weight[e] * from[column[e] * n + c];
+}
+
+}  // namespace
+
+std::vector<double> Transfer::apply(std::span<const double> values, int components) const {
+  if (same_) return {values.begin(), values.end()};
+  const std::vector<double> fetched = alone_ ? std::vector<double>{} : fetch(values, components);
+  const double* from = alone_ ? values.data() : fetched.data();
+  const auto n = std::size_t(components);
+  std::vector<double> result((first_.size() - 1) * n, 0.);
+  const auto product = n == 1 ? multiply<1> : n == 2 ? multiply<2> : n == 3 ? multiply<3> : multiply<0>;
+  product(first_, column_, weight_, from, n, result.data());
+  return result;
+}
+
+std::vector<Transfer::Entry> transposed(std::vector<Transfer::Entry> entries) {
+  for (auto& e : entries) std::swap(e.target, e.source);
+  return entries;
+}
+
+std::vector<Transfer::Entry> product(MPI_Comm comm, const Starts& between,
+                                     std::vector<Transfer::Entry> second,
+                                     std::vector<Transfer::Entry> first) {
+  // On the rank that has the place between, both by that place.
+  const auto after = by_owner(comm, between, transposed(std::move(second))),
+             before = by_owner(comm, between, std::move(first));
+  std::vector<Transfer::Entry> result;
+  auto from = before.begin();
+  for (const auto& e : after) {
+    while (from != before.end() && from->target < e.target) ++from;
+    for (auto b = from; b != before.end() && b->target == e.target; ++b)
+      result.push_back({e.source, b->source, e.weight * b->weight});
+  }
+  return result;
+}
+
+}  // namespace couplet

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/judge/audit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "common/app/run_audit.hpp"
+#include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+
+CouplingAudit::CouplingAudit(MPI_Comm comm, const std::vector<Side>& sides, const Links& links)
+    : comm_(comm) {
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    std::vector<Force> forces;
+    for (const Interface::Datum& datum : sides[i].interface.gives) {
+      if (datum.unit != "N" || datum.place != Interface::Place::faces) continue;
+      const bool taken = std::ranges::any_of(links.all(), [&](const Links::Link& link) {
+        return link.giver == i && link.datum.name == datum.name;
+      });
+      forces.push_back({i, datum.name, taken});
+    }
+    // Where nothing is taken the coupling does not act by forces at all.
+    if (std::ranges::any_of(forces, &Force::taken) && !std::ranges::all_of(forces, &Force::taken))
+      forces_.insert(forces_.end(), forces.begin(), forces.end());
+  }
+}
+
+bool CouplingAudit::looks_at(GlobalIndex step) {
+  const auto n = static_cast<std::uint64_t>(step);
+  return n >= 4 && std::has_single_bit(n) && std::countr_zero(n) % 2 == 0;
+}
+
+void CouplingAudit::returned(const Residual& first, const Residual& second) {
+  // Participants solve to about 1e-8 of their values: less than that would be a ratio of their noise.
+  if (!(first.relative > 1e-6) || !std::isfinite(second.absolute)) return;
+  evidence_.returned = std::fmax(evidence_.returned, second.absolute / first.absolute);
+}
+
+void CouplingAudit::loads(const std::vector<Exchange>& given) {
+  if (forces_.empty()) return;
+  double size[2] = {0, 0};  // of the forces that nobody takes, and of those that somebody does
+  for (const Force& force : forces_)
+    if (const auto found = given[force.giver].find(force.name); found != given[force.giver].end())
+      for (const double value : found->second) size[force.taken] += value * value;
+  const double lost = std::sqrt(sum(comm_, size[0])), taken = std::sqrt(sum(comm_, size[1]));
+  if (taken > 0) evidence_.lost_load = std::fmax(evidence_.lost_load, lost / taken);
+}
+
+void CouplingAudit::tell(const CouplingParameters& parameters, double time) {
+  for (const EffectVerdict& v : trail_.news(audit(coupling_effect_cards(), parameters, evidence_)))
+    report(comm_rank(comm_), time, v);
+}
+
+void CouplingAudit::tell_at_end(const CouplingParameters& parameters, bool with_sound) const {
+  for (const EffectVerdict& v : audit(coupling_effect_cards(), parameters, evidence_))
+    if (with_sound || !v.sound()) log::info("{}", text(v));
+}
+
+}  // namespace couplet

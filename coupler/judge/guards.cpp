@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/judge/guards.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+double dot_over(MPI_Comm comm, const std::vector<double>& a, const std::vector<double>& b) {
+  double total = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) total += a[i] * b[i];
+  return sum(comm, total);
+}
+
+double norm(MPI_Comm comm, const std::vector<double>& values) {
+  return std::sqrt(dot_over(comm, values, values));
+}
+
+const char* cure_of_oscillation(Scheme scheme) {
+  switch (scheme) {
+    case Scheme::explicit_:
+      return "This is the explicit coupling's added-mass instability: the fluid that moves along is too "
+             "heavy "
+             "for the "
+             "structure, and no smaller step helps. `scheme: semi-implicit` takes the added mass into the "
+             "iteration, "
+             "`scheme: implicit` all of the fluid.";
+    case Scheme::semi_implicit:
+      return "The semi-implicit scheme takes the wall shear at the guessed velocity: where viscosity is "
+             "strong "
+             "and the "
+             "structure light, that grows though every step converges, and no smaller step helps much. "
+             "`scheme: implicit` iterates it.";
+    default:
+      return "The scheme iterates all that the participants exchange: tighten `convergence.relative`, lower "
+             "`predictor.order`, or look at the participants' own time schemes.";
+  }
+}
+
+}  // namespace
+
+void IterationGuard::pass(double residual, double omega, bool constant) {
+  ++passes_;
+  if (passes_ == 1) first_ = residual;
+  if (passes_ > 1 && residual > last_) {
+    if (growing_ == 0) at_turn_ = last_;
+    ++growing_;
+  } else {
+    growing_ = 0;
+  }
+  last_ = residual;
+  if (growing_ == 0 || !(residual > 2 * at_turn_)) return;
+  const bool ran_away = residual > too_far * first_;
+  if (growing_ < patience && !ran_away) return;
+  const double factor = std::pow(residual / at_turn_, 1. / growing_);
+  if (!constant)
+    throw SolveFailure(
+        "the coupling diverges: the residual has grown by {:.3g} a pass over {} passes. The last factor was "
+        "{:.3g}. If smaller steps do not help, `acceleration.type: iqn-ils` follows several modes at once, "
+        "and "
+        "the "
+        "participants' own tolerances may be too loose for it.",
+        factor, growing_, omega);
+  // |1 - omega (1 + r)| = factor for the heaviest mode
+  const double r = (factor + 1) / omega - 1;
+  throw SchemeFailure(
+      "the coupling diverges: the residual has grown by {:.3g} a pass over {} passes. With constant "
+      "relaxation "
+      "{:g} "
+      "that is an added mass of about {:.3g} times the structure's; only relaxations below {:.3g} converge, "
+      "whatever "
+      "the step. `acceleration.type: aitken` or `iqn-ils` adapt it.",
+      factor, growing_, omega, r, 2 / (1 + r));
+}
+
+namespace {
+
+std::string swing(int turns, double factor, double growth, Scheme scheme) {
+  return fmt::format(
+      "the interface swings to and fro from step to step and more each time: over {} steps the swing has "
+      "grown "
+      "{:.3g}-fold, {:.3g} a step, though every step was solved. {}",
+      turns, factor, growth, cure_of_oscillation(scheme));
+}
+
+}  // namespace
+
+std::optional<std::string> OscillationGuard::accepted(const std::vector<double>& x, double dt,
+                                                      Scheme scheme) {
+  std::vector<double> velocity(x.size()), jump;
+  if (levels_ >= 1)
+    for (std::size_t i = 0; i < x.size(); ++i) velocity[i] = (x[i] - x_[i]) / dt;
+  if (levels_ >= 2) {
+    jump = velocity;
+    for (std::size_t i = 0; i < x.size(); ++i) jump[i] -= velocity_[i];
+  }
+  const double size = norm(comm_, jump), old_size = norm(comm_, jump_);
+  speed_.push_back(norm(comm_, velocity));
+  if (speed_.size() > 4) speed_.pop_front();
+  // It turns round: most of the shape is the last one's with the other sign.
+  const bool turned = levels_ >= 3 && dot_over(comm_, jump, jump_) < -0.3 * size * old_size;
+  if (turned) {
+    if (turns_ == 0) sizes_.assign(1, old_size);
+    ++turns_;
+    sizes_.push_back(size);
+  } else {
+    turns_ = 0;
+    sizes_.clear();
+  }
+  levels_ = std::min(levels_ + 1, 3);
+  x_ = x;
+  velocity_ = std::move(velocity);
+  jump_ = std::move(jump);
+  if (turns_ < 4) return {};
+  // Pairs of neighbours: the growth need not be even.
+  const std::size_t n = sizes_.size();
+  const double then = sizes_[0] + sizes_[1], now = sizes_[n - 2] + sizes_[n - 1];
+  const double speed = *std::ranges::max_element(speed_);
+  const double wanted = turns_ < 8 ? 3 : turns_ < 20 ? 2 : 1.5;
+  if (!(now > wanted * then) || now < speed) return {};
+  return swing(turns_, now / then, std::pow(now / then, 1. / double(n - 2)), scheme);
+}
+
+std::optional<std::string> OscillationGuard::suspects(Scheme scheme) const {
+  if (turns_ < 2 || speed_.empty()) return {};
+  const double factor = sizes_.back() / sizes_.front();
+  if (factor < 3 || 2 * sizes_.back() < *std::ranges::max_element(speed_)) return {};
+  return swing(turns_, factor, std::pow(factor, 1. / double(sizes_.size() - 1)), scheme);
+}
+
+std::optional<std::string> WorkGuard::suspects(Scheme scheme) const {
+  if (scheme != Scheme::explicit_ || steps_ < 4 || !(std::abs(fluid_ - structure_) > 0.5 * exchanged_))
+    return {};
+  return fmt::format(
+      "the fluid gave {:.3g} J and the structure took {:.3g} J, more than half of all work apart: the added-mass "
+      "instability of the explicit scheme. `scheme: semi-implicit` or `implicit` iterates it.",
+      fluid_, structure_);
+}
+
+double WorkGuard::Window::apart() const { return std::abs(given - taken); }
+
+std::optional<std::string> WorkGuard::accepted(double fluid, double structure, Scheme scheme) {
+  const double larger = std::max(std::abs(fluid), std::abs(structure));
+  fluid_ += fluid;
+  structure_ += structure;
+  exchanged_ += larger;
+  stored_ = std::max(stored_, std::abs(structure_));
+  ++steps_;
+  if (windows_.empty() || windows_.back().steps == window) {
+    if (windows_.size() == 3) windows_.erase(windows_.begin());
+    windows_.emplace_back();
+  }
+  Window& last = windows_.back();
+  last.given += fluid, last.taken += structure, last.size += larger, ++last.steps;
+  if (windows_.size() < 3 || last.steps < window) return {};
+  // More than half of what goes to and fro is made by the scheme, it is no small part of the whole run's, and
+  // it grows: a guess that jitters parts the work, too, but stays as it is.
+  const bool grows = last.apart() > 2 * windows_[1].apart() && windows_[1].apart() > 2 * windows_[0].apart();
+  if (!grows || !(last.apart() > 0.5 * last.size) || !(last.apart() > 0.1 * exchanged_)) return {};
+  return fmt::format(
+      "the work on the two sides of the interface parts more and more: over the last {} steps the fluid gave "
+      "{:.4g} J and the structure took {:.4g} J. The scheme itself feeds or drains the motion. {}",
+      window, last.given, last.taken, cure_of_oscillation(scheme));
+}
+
+WorkGuard::Verdict WorkGuard::verdict(bool by_nearest) const {
+  if (steps_ == 0 || exchanged_ == 0) return {};
+  const double apart = std::abs(fluid_ - structure_), net = std::min(std::abs(fluid_), std::abs(structure_)),
+               energy = energy_ > 0 ? energy_ : stored_, against = std::max(net, energy);
+  Verdict v;
+  // Nothing but noise has gone over where all of it is apart by rounding alone.
+  v.part = apart <= 1e-12 * exchanged_ ? 0 : apart / std::max(against, 1e-12 * exchanged_);
+  v.sound = v.part < sound_part;
+  v.useless = apart / exchanged_ >= useless_part && steps_ >= judged_steps;
+  v.text = fmt::format(
+      "interface work of {} steps: fluid gave {:.6g} J, structure took {:.6g} J, {:.2g} % of the {} apart: {}",
+      steps_, fluid_, structure_, 100 * v.part, net >= energy ? "net work" : "structure's largest energy",
+      v.sound ? "closed."
+      : by_nearest
+          ? "NOT CLOSED: `mapping.type: nearest` carries motion and load by maps that do not belong together; "
+            "`projection` keeps the work on any meshes."
+          : "NOT CLOSED: the wall that the fluid saw moved otherwise than the structure; smaller steps "
+            "or a scheme that iterates close it.");
+  return v;
+}
+
+void WorkGuard::restore(const std::array<double, 6>& totals) {
+  fluid_ = totals[0];
+  structure_ = totals[1];
+  exchanged_ = totals[2];
+  steps_ = long(totals[3]);
+  energy_ = totals[4];
+  stored_ = totals[5];
+  windows_.clear();
+}
+
+}  // namespace couplet

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/judge/mechanics.hpp"
+
+#include <algorithm>
+
+namespace couplet {
+
+Mechanics::Mechanics(MPI_Comm comm, const std::vector<Side>& sides, const Links& links,
+                     std::vector<std::string> labels)
+    : labels_(std::move(labels)) {
+  const auto has = [](const std::vector<Interface::Datum>& list) {
+    return std::ranges::find(list, std::string("displacement"), &Interface::Datum::name) != list.end();
+  };
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    std::vector<Interface::Datum> loads;
+    bool gives = false;
+    for (const auto& link : links.all()) {
+      const Interface::Datum& d = link.datum;
+      if (d.unit != "N" || d.place != Interface::Place::faces || (link.giver != s && link.taker != s))
+        continue;
+      gives = link.giver == s;
+      if (std::ranges::find(loads, d.name, &Interface::Datum::name) == loads.end()) loads.push_back(d);
+    }
+    const Interface& interface = sides[s].interface;
+    if (loads.empty() || !(has(interface.takes) || has(interface.gives))) continue;
+    members_.push_back({s, gives, Balancing(comm, sides[s]), loads});
+    walls_.emplace_back(interface.vertices.size() * std::size_t(interface.dim), 0.);
+    dim_ = interface.dim;
+    knows_work_ = knows_work_ && members_.back().balancing.knows_work();
+  }
+}
+
+std::vector<std::string> Mechanics::labels() const {
+  std::vector<std::string> list;
+  for (const Member& m : members_) list.push_back(labels_[m.side]);
+  return list;
+}
+
+std::vector<SideBalance> Mechanics::accepted(const std::vector<Exchange>& given,
+                                             const std::vector<Exchange>& taken) {
+  std::vector<SideBalance> list;
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    const Member& m = members_[i];
+    const Exchange& motion = given[m.side].contains("displacement") ? given[m.side] : taken[m.side];
+    const auto found = motion.find("displacement");
+    const std::vector<double>& now = found == motion.end() ? walls_[i] : found->second;
+    std::vector<double> increment(now.size());
+    for (std::size_t k = 0; k < now.size(); ++k) increment[k] = now[k] - walls_[i][k];
+    list.push_back(
+        {labels_[m.side], m.gives, m.balancing(m.gives ? given[m.side] : taken[m.side], m.loads, increment)});
+    if (found != motion.end()) walls_[i] = found->second;
+  }
+  return list;
+}
+
+}  // namespace couplet

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <vector>
+
+#include "coupler/exchange/side.hpp"
+#include "coupler/exchange/transfer.hpp"
+#include "coupler/parameters/parameters.hpp"
+
+namespace couplet {
+
+/// One map between a structure and a surface that moves with it and gives its load, used both ways:
+///   motion: B N A,   load: transpose of B N
+/// A: means of the motion over the structure's faces; N: from these to the surface's vertices; B: means over the
+/// surface's faces. So the load's work on the means of both sides' motion is the same to rounding, on any meshes;
+/// N carries linear fields exactly, so that the load keeps its force and moment. Where the motion is given at
+/// faces A falls away, where the load is given at vertices B does, and a load taken at vertices goes on by the
+/// transpose of A. Collective; both sides must outlive it.
+class ConjugateMap {
+ public:
+  using Place = Interface::Place;
+  using Entries = std::vector<Transfer::Entry>;
+  ConjugateMap(MPI_Comm comm, const Side& structure, const Side& surface, MappingParameters::Type type);
+  /// From the structure to the surface.
+  Entries motion(Place from, Place to) const;
+  /// From the surface to the structure.
+  Entries load(Place from, Place to) const;
+
+ private:
+  /// N, behind it A, before it B, as the places are.
+  Entries between(Place structure, Place surface) const;
+  MPI_Comm comm_;
+  const Side *structure_, *surface_;
+  Entries to_faces_, across_, to_surface_faces_;  // A, N, B
+};
+
+}  // namespace couplet

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/mapping/mapping.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "coupler/mapping/map_projection.hpp"
+#include "coupler/mapping/surface_rows.hpp"
+#include "coupler/mapping/surroundings.hpp"
+
+namespace couplet {
+namespace {
+
+double extent(MPI_Comm comm, const std::vector<Vec3>& points) {
+  double square = 0;
+  for (int c = 0; c < 3; ++c) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Vec3& p : points) low = std::min(low, p[c]), high = std::max(high, p[c]);
+    low = min(comm, low), high = max(comm, high);
+    if (high > low) square += (high - low) * (high - low);
+  }
+  return std::sqrt(square);
+}
+
+GlobalIndex count(MPI_Comm comm, const PointSet& set) { return sum(comm, GlobalIndex(set.points.size())); }
+
+/// Points of `set` that are further than `tolerance` from every point of `other`, up to five of them by
+/// place.
+std::string without_twin(MPI_Comm comm, const PointSet& set, const std::vector<Neighbour>& to_other,
+                         const PointSet& other, double tolerance) {
+  struct Lone {
+    Vec3 point;
+    double distance;
+  };
+  std::vector<Lone> lone;
+  GlobalIndex all = 0;
+  for (std::size_t i = 0; i < set.points.size(); ++i) {
+    if (to_other[i].distance <= tolerance) continue;
+    if (++all <= 5) lone.push_back({set.points[i], to_other[i].distance});
+  }
+  all = sum(comm, all);
+  if (all == 0) return "";
+  lone = all_gather(comm, lone);
+  std::string list;
+  for (std::size_t i = 0; i < std::min<std::size_t>(5, lone.size()); ++i)
+    list += fmt::format("\n  ({:.9g}, {:.9g}, {:.9g}): the nearest is {:.3g} m away", lone[i].point.x(),
+                        lone[i].point.y(), lone[i].point.z(), lone[i].distance);
+  if (all > 5) list += fmt::format("\n  and {} more", all - 5);
+  const GlobalIndex n = count(comm, set), m = count(comm, other);
+  return fmt::format("{} of {} {} match none of the {} {} within {:.3g} m:{}", all, n, set.what, m,
+                     other.what, tolerance, list);
+}
+
+/// Whether two points of `found` follow the same one.
+bool some_twice(MPI_Comm comm, const std::vector<Neighbour>& found, const Starts& starts) {
+  std::vector<std::vector<GlobalIndex>> used(std::size_t(comm_size(comm)));
+  for (const Neighbour& n : found) used[std::size_t(owner_of(starts, n.position))].push_back(n.position);
+  std::vector<GlobalIndex> mine;
+  for (const auto& part : all_to_all(comm, used)) mine.insert(mine.end(), part.begin(), part.end());
+  std::ranges::sort(mine);
+  return any(comm, std::ranges::adjacent_find(mine) != mine.end());
+}
+
+void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                   const std::vector<Neighbour>& forth, const std::vector<Neighbour>& back,
+                   const MappingParameters& parameters) {
+  const double widest = std::max(extent(comm, from.points), extent(comm, to.points));
+  const double tolerance = parameters.tolerance.value_or(1e-6 * widest);
+  const std::string advice =
+      "\nGive both meshes the same points on the interface, or set `coupling.mapping.type: projection`.";
+  if (const std::string text = without_twin(comm, to, forth, from, tolerance); !text.empty())
+    throw Error("{}{}", text, advice);
+  if (const std::string text = without_twin(comm, from, back, to, tolerance); !text.empty())
+    throw Error("{}{}", text, advice);
+  if (!some_twice(comm, forth, from.starts) && count(comm, from) == count(comm, to)) return;
+  throw Error(
+      "Several {} lie within {:.3g} m of each other or of the same one of the {}: the twins are not clear. "
+      "Set "
+      "a smaller `coupling.mapping.tolerance`.",
+      to.what, tolerance, from.what);
+}
+
+/// Shares of the targets that a source is nearest to, by their size; a source that is nearest to no target
+/// gives all to its own nearest one. So a finer target takes smooth loads and a coarser one takes all of
+/// them.
+std::vector<Transfer::Entry> shares(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                                    const std::vector<Neighbour>& forth, const std::vector<Neighbour>& back) {
+  std::vector<std::vector<Transfer::Entry>> by_source(std::size_t(comm_size(comm)));
+  for (std::size_t i = 0; i < to.points.size(); ++i)
+    by_source[std::size_t(owner_of(from.starts, forth[i].position))].push_back(
+        {to.positions[i], forth[i].position, to.sizes.empty() ? 1. : to.sizes[i]});
+  std::vector<Transfer::Entry> entries;
+  for (const auto& part : all_to_all(comm, by_source))
+    entries.insert(entries.end(), part.begin(), part.end());
+  const GlobalIndex first = from.starts[std::size_t(comm_rank(comm))],
+                    end = from.starts[std::size_t(comm_rank(comm)) + 1];
+  std::vector<double> total(std::size_t(end - first), 0.);
+  for (const auto& e : entries) total[std::size_t(e.source - first)] += e.weight;
+  for (auto& e : entries) e.weight /= total[std::size_t(e.source - first)];
+  for (std::size_t i = 0; i < from.points.size(); ++i)
+    if (total[std::size_t(from.positions[i] - first)] == 0)
+      entries.push_back({back[i].position, from.positions[i], 1});
+  return entries;
+}
+
+/// Displacements and the like by projection onto the other surface's faces.
+std::vector<Transfer::Entry> projected(MPI_Comm comm, const PointSet& from, const PointSet& to) {
+  std::vector<Transfer::Entry> entries;
+  const Surroundings source(comm, *from.surface);
+  require_corners(source.has_corners());
+  if (comm_size(comm) == 1) {
+    add_entries(nearest_projection(*from.surface, to.points), to.positions, source.vertices().positions,
+                entries);
+    return entries;
+  }
+  std::vector<GlobalIndex> faces =
+      source.faces_around(nearby(comm, to.points, {}, projection_vertices, source.vertices()).positions);
+  const Nearby near = nearby(comm, to.points, {}, projection_faces, source.faces());
+  faces.insert(faces.end(), near.positions.begin(), near.positions.end());
+  std::ranges::sort(faces);
+  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+  const SurfacePart part = source.with(faces);
+  if (!to.points.empty())
+    add_entries(nearest_projection(part.surface, to.points), to.positions, part.vertices, entries);
+  return entries;
+}
+
+/// Projection and radial functions. No rank sees more of the other surface than what lies about its own part.
+std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, const PointSet& from,
+                                          const PointSet& to, MappingParameters::Type type) {
+  const bool projection = type == MappingParameters::Type::projection;
+  const int dim = from.surface != nullptr ? from.surface->dim : 3;
+  const std::size_t k = dim == 2 ? (projection ? 3 : 5) : (projection ? 5 : 10);
+  const bool consistent = kind == Mapping::Kind::consistent;
+  if (!consistent && from.surface && to.surface && Surroundings(comm, *from.surface).has_corners() &&
+      Surroundings(comm, *to.surface).has_corners())
+    return transposed(faces_to_faces(comm, *to.surface, *from.surface, type));
+  if (consistent && projection && from.surface && from.place == Interface::Place::vertices)
+    return projected(comm, from, to);
+  const PointSet &ask = consistent ? to : from, &among = consistent ? from : to;
+  const Nearby near = nearby(comm, ask.points, {}, k, among);
+  std::vector<Transfer::Entry> entries;
+  if (ask.points.empty()) return entries;
+  add_entries(local_interpolation(near.points, ask.points, k), ask.positions, near.positions, entries);
+  if (!consistent)
+    for (auto& e : entries) std::swap(e.target, e.source);
+  return entries;
+}
+
+/// Without the rows and columns of places that are not in the sets.
+std::vector<Transfer::Entry> between(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                                     std::vector<Transfer::Entry> entries) {
+  const auto kept = [](const PointSet& set) {
+    std::vector<Transfer::Entry> same;
+    for (const GlobalIndex p : set.positions) same.push_back({p, p, 1});
+    return same;
+  };
+  if (count(comm, to) < to.starts.back()) entries = product(comm, to.starts, kept(to), std::move(entries));
+  if (count(comm, from) < from.starts.back())
+    entries = product(comm, from.starts, std::move(entries), kept(from));
+  return entries;
+}
+
+void require_places(const PointSet& from, const PointSet& to, GlobalIndex n_from, GlobalIndex n_to) {
+  if (n_from == 0 || n_to == 0)
+    throw Error(
+        "There are {} {} and {} {}: an interface needs some on both sides. Check which patches are of type "
+        "interface.",
+        n_from, from.what, n_to, to.what);
+}
+
+}  // namespace
+
+Mapping::Mapping(MPI_Comm comm, Kind kind, const PointSet& from, const PointSet& to,
+                 const MappingParameters& parameters) {
+  require_places(from, to, count(comm, from), count(comm, to));
+  const bool matched = parameters.type == MappingParameters::Type::matched;
+  const std::vector<Neighbour> forth = nearest(comm, to.points, from);
+  std::vector<Neighbour> back;
+  const bool by_nearest = matched || parameters.type == MappingParameters::Type::nearest;
+  if (matched || (by_nearest && kind == Kind::conservative)) back = nearest(comm, from.points, to);
+  if (matched) require_twins(comm, from, to, forth, back, parameters);
+  std::vector<Transfer::Entry> entries;
+  if (!by_nearest)
+    entries = between(comm, from, to, second_order(comm, kind, from, to, parameters.type));
+  else if (kind == Kind::conservative)
+    entries = shares(comm, from, to, forth, back);
+  else
+    for (std::size_t i = 0; i < to.points.size(); ++i)
+      entries.push_back({to.positions[i], forth[i].position, 1});
+  set(comm, from, to, std::move(entries), forth,
+      kind == Kind::conservative ? back : std::vector<Neighbour>{});
+}
+
+Mapping::Mapping(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                 std::vector<Transfer::Entry> entries) {
+  require_places(from, to, count(comm, from), count(comm, to));
+  set(comm, from, to, between(comm, from, to, std::move(entries)), nearest(comm, to.points, from), {});
+}
+
+void Mapping::set(MPI_Comm comm, const PointSet& from, const PointSet& to,
+                  std::vector<Transfer::Entry> entries, const std::vector<Neighbour>& forth,
+                  const std::vector<Neighbour>& back) {
+  n_from_ = std::size_t(count(comm, from)), n_to_ = std::size_t(count(comm, to));
+  double total = 0;
+  for (const Neighbour& n : forth) max_distance_ = std::max(max_distance_, n.distance), total += n.distance;
+  if (n_from_ > n_to_)
+    for (const Neighbour& n : back) max_distance_ = std::max(max_distance_, n.distance);
+  max_distance_ = max(comm, max_distance_);
+  mean_distance_ = sum(comm, total) / double(n_to_);
+  transfer_ = Transfer(comm, to.starts, from.starts, std::move(entries));
+  summary_ = fmt::format("{} {} to {} {}, distance at most {:.3g} m, mean {:.3g} m", n_from_, from.what,
+                         n_to_, to.what, max_distance_, mean_distance_);
+}
+
+}  // namespace couplet

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/mapping/surroundings.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "common/base/point_tree.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double rounding = 1 + 1e-9;
+
+struct Count {
+  PointBox box;
+  std::size_t points;
+};
+
+/// An upper bound on the distance of the k-th nearest from boxes alone; infinity: there are fewer points.
+double bound_by_boxes(const std::vector<Count>& all, const Vec3& p, std::size_t k) {
+  std::vector<std::pair<double, std::size_t>> far;
+  for (const Count& c : all)
+    if (c.points > 0) far.emplace_back(c.box.furthest(p), c.points);
+  std::ranges::sort(far);
+  std::size_t points = 0;
+  for (const auto& [distance, n] : far)
+    if ((points += n) >= k) return distance;
+  return infinite;
+}
+
+/// For each centre a distance within which there are k points: from the rank whose box is nearest, or, where it
+/// has fewer, from the boxes.
+std::vector<double> bounds(MPI_Comm comm, const std::vector<Vec3>& centres, std::size_t k,
+                           const std::vector<Count>& all, const PointSet& among, const PointTree* tree) {
+  std::vector<std::vector<Vec3>> ask(all.size());
+  std::vector<std::vector<std::size_t>> asked(all.size());
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    std::size_t home = 0;
+    double least = infinite;
+    for (std::size_t r = 0; r < all.size(); ++r)
+      if (all[r].points > 0 && all[r].box.nearest(centres[i]) < least)
+        least = all[r].box.nearest(centres[i]), home = r;
+    ask[home].push_back(centres[i]), asked[home].push_back(i);
+  }
+  std::vector<std::vector<double>> answers;
+  for (const auto& questions : all_to_all(comm, ask)) {
+    auto& distances = answers.emplace_back();
+    for (const Vec3& p : questions) {
+      const bool enough = tree != nullptr && among.points.size() >= k;
+      distances.push_back(enough ? (p - among.points[std::size_t(tree->nearest(p, k).back())]).norm()
+                                 : infinite);
+    }
+  }
+  const auto replies = all_to_all(comm, answers);
+  std::vector<double> bound(centres.size(), infinite);
+  for (std::size_t r = 0; r < replies.size(); ++r)
+    for (std::size_t q = 0; q < replies[r].size(); ++q) bound[asked[r][q]] = replies[r][q];
+  for (std::size_t i = 0; i < centres.size(); ++i)
+    if (bound[i] == infinite) bound[i] = bound_by_boxes(all, centres[i], k);
+  return bound;
+}
+
+/// Values at these positions (ascending) from the ranks that have them.
+template <class Value, class Get>
+std::vector<Value> fetch(MPI_Comm comm, const Starts& starts, const std::vector<GlobalIndex>& positions,
+                         Get get) {
+  std::vector<std::vector<GlobalIndex>> wanted(std::size_t(comm_size(comm)));
+  for (const GlobalIndex p : positions) wanted[std::size_t(owner_of(starts, p))].push_back(p);
+  const GlobalIndex first = starts[std::size_t(comm_rank(comm))];
+  std::vector<std::vector<Value>> answers;
+  for (const auto& list : all_to_all(comm, wanted)) {
+    auto& values = answers.emplace_back();
+    for (const GlobalIndex p : list) get(std::size_t(p - first), values);
+  }
+  std::vector<Value> all;
+  for (const auto& part : all_to_all(comm, answers)) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+void sort_and_keep_one_each(std::vector<GlobalIndex>& list) {
+  std::ranges::sort(list);
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+}  // namespace
+
+Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
+              std::size_t k, const PointSet& among) {
+  struct Ball {
+    Vec3 centre;
+    double radius;
+  };
+  struct Found {
+    GlobalIndex position;
+    Vec3 point;
+  };
+  const std::vector<Count> all =
+      all_gather(comm, std::vector<Count>{{PointBox(among.points), among.points.size()}});
+  std::optional<PointTree> tree;
+  if (!among.points.empty()) tree.emplace(among.points);
+  const std::vector<double> bound = bounds(comm, centres, k, all, among, tree ? &*tree : nullptr);
+  std::vector<std::vector<Ball>> ask(all.size());
+  for (std::size_t i = 0; i < centres.size(); ++i) {
+    const double radius = (bound[i] + (reach.empty() ? 0 : 2 * reach[i])) * rounding;
+    for (std::size_t r = 0; r < all.size(); ++r)
+      if (all[r].points > 0 && all[r].box.nearest(centres[i]) <= radius)
+        ask[r].push_back({centres[i], radius});
+  }
+  std::vector<std::vector<Found>> answers;
+  for (const auto& balls : all_to_all(comm, ask)) {
+    std::vector<char> inside(among.points.size(), 0);
+    for (const Ball& ball : balls)
+      for (const Index i : tree->within(ball.centre, ball.radius)) inside[std::size_t(i)] = 1;
+    auto& found = answers.emplace_back();
+    for (std::size_t i = 0; i < inside.size(); ++i)
+      if (inside[i]) found.push_back({among.positions[i], among.points[i]});
+  }
+  std::vector<Found> found;
+  for (const auto& part : all_to_all(comm, answers)) found.insert(found.end(), part.begin(), part.end());
+  std::ranges::sort(found, {}, &Found::position);
+  Nearby result;
+  for (const Found& f : found) result.points.push_back(f.point), result.positions.push_back(f.position);
+  return result;
+}
+
+Surroundings::Surroundings(MPI_Comm comm, const Interface& part) : comm_(comm), part_(part) {
+  const auto cut = [&](std::size_t n) {
+    return starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
+  };
+  vertex_starts_ = cut(part.vertices.size()), face_starts_ = cut(part.face_centres.size());
+  has_corners_ =
+      !any(comm, part.face_offset.size() != part.face_centres.size() + 1 && !part.face_centres.empty());
+}
+
+namespace {
+
+PointSet owned(MPI_Comm comm, const std::vector<Vec3>& points, const Starts& starts) {
+  PointSet set;
+  set.points = points, set.starts = starts;
+  set.positions.resize(points.size());
+  std::iota(set.positions.begin(), set.positions.end(), starts[std::size_t(comm_rank(comm))]);
+  set.ids = set.positions;
+  return set;
+}
+
+}  // namespace
+
+PointSet Surroundings::vertices() const { return owned(comm_, part_.vertices, vertex_starts_); }
+PointSet Surroundings::faces() const { return owned(comm_, part_.face_centres, face_starts_); }
+
+SurfacePart Surroundings::with(const std::vector<GlobalIndex>& faces) const {
+  SurfacePart result;
+  Interface& s = result.surface;
+  s.dim = part_.dim;
+  result.faces = faces;
+  s.face_centres = fetch<Vec3>(comm_, face_starts_, faces,
+                               [&](std::size_t f, auto& to) { to.push_back(part_.face_centres[f]); });
+  s.face_areas = fetch<Vec3>(comm_, face_starts_, faces,
+                             [&](std::size_t f, auto& to) { to.push_back(part_.face_areas[f]); });
+  if (!has_corners_) return result;
+  const auto counts = fetch<Index>(comm_, face_starts_, faces, [&](std::size_t f, auto& to) {
+    to.push_back(part_.face_offset[f + 1] - part_.face_offset[f]);
+  });
+  const auto corners = fetch<GlobalIndex>(comm_, face_starts_, faces, [&](std::size_t f, auto& to) {
+    to.insert(to.end(), part_.face_vertices.begin() + part_.face_offset[f],
+              part_.face_vertices.begin() + part_.face_offset[f + 1]);
+  });
+  s.face_offset.push_back(0);
+  for (const Index n : counts) s.face_offset.push_back(s.face_offset.back() + n);
+  result.vertices = corners;
+  sort_and_keep_one_each(result.vertices);
+  s.vertices = fetch<Vec3>(comm_, vertex_starts_, result.vertices,
+                           [&](std::size_t v, auto& to) { to.push_back(part_.vertices[v]); });
+  for (const GlobalIndex c : corners)
+    s.face_vertices.push_back(Index(std::ranges::lower_bound(result.vertices, c) - result.vertices.begin()));
+  return result;
+}
+
+std::vector<GlobalIndex> Surroundings::faces_around(const std::vector<GlobalIndex>& vertices) const {
+  struct Touch {
+    GlobalIndex vertex, face;
+  };
+  // A face may be another rank's than its vertices: each vertex' owner learns of its faces.
+  const auto rank = std::size_t(comm_rank(comm_));
+  std::vector<std::vector<Touch>> tell(std::size_t(comm_size(comm_)));
+  for (std::size_t f = 0; f < part_.face_centres.size(); ++f)
+    for (Index k = part_.face_offset[f]; k < part_.face_offset[f + 1]; ++k) {
+      const GlobalIndex v = part_.face_vertices[std::size_t(k)];
+      tell[std::size_t(owner_of(vertex_starts_, v))].push_back({v, face_starts_[rank] + GlobalIndex(f)});
+    }
+  std::vector<Touch> known;
+  for (const auto& part : all_to_all(comm_, tell)) known.insert(known.end(), part.begin(), part.end());
+  std::ranges::sort(known, [](const Touch& a, const Touch& b) {
+    return a.vertex != b.vertex ? a.vertex < b.vertex : a.face < b.face;
+  });
+  auto faces = fetch<GlobalIndex>(comm_, vertex_starts_, vertices, [&](std::size_t v, auto& to) {
+    const GlobalIndex vertex = vertex_starts_[rank] + GlobalIndex(v);
+    for (auto at = std::ranges::lower_bound(known, vertex, {}, &Touch::vertex);
+         at != known.end() && at->vertex == vertex; ++at)
+      to.push_back(at->face);
+  });
+  sort_and_keep_one_each(faces);
+  return faces;
+}
+
+}  // namespace couplet

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <vector>
+
+#include "coupler/exchange/search.hpp"
+
+namespace couplet {
+
+/// Points of a list that is cut over the ranks, those alone that a rank asked for, by position.
+struct Nearby {
+  std::vector<Vec3> points;
+  std::vector<GlobalIndex> positions;  ///< ascending, each once
+};
+
+/// The points of `among` (any rank's) that are one of the `k` nearest of a centre on this rank, those that are
+/// equally far (to rounding) as its k-th, and with `reach` [m] all that are nearer than the k-th and twice this
+/// centre's reach: then the k nearest of every place within the reach are there. Each centre asks the rank whose
+/// box is nearest for a bound, then those ranks whose boxes lie within it. Collective.
+Nearby nearby(MPI_Comm comm, const std::vector<Vec3>& centres, const std::vector<double>& reach,
+              std::size_t k, const PointSet& among);
+
+/// Some faces of a surface and the vertices that these need, with their positions in the whole lists; corners
+/// count vertices within the part.
+struct SurfacePart {
+  Interface surface;
+  std::vector<GlobalIndex> vertices, faces;  ///< ascending
+};
+
+/// The surface of `set` as far as this rank needs it, from the ranks that have its parts. All collective.
+class Surroundings {
+ public:
+  /// `part`: this rank's part, corners by position in the list of vertices. It must outlive this.
+  Surroundings(MPI_Comm comm, const Interface& part);
+  bool has_corners() const { return has_corners_; }  ///< on all ranks
+  PointSet vertices() const;                         ///< this rank's
+  PointSet faces() const;
+  /// These faces (positions, ascending) with the vertices that they need.
+  SurfacePart with(const std::vector<GlobalIndex>& faces) const;
+  /// The faces of which one of these vertices (positions, ascending) is a corner: positions, ascending.
+  std::vector<GlobalIndex> faces_around(const std::vector<GlobalIndex>& vertices) const;
+
+ private:
+  MPI_Comm comm_;
+  const Interface& part_;
+  Starts vertex_starts_, face_starts_;
+  bool has_corners_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/output/interface_output.hpp"
+
+#include <cmath>
+#include <fstream>
+
+#include "common/base/error.hpp"
+#include "common/csv/cells.hpp"
+#include "common/csv/line_reader.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+namespace fs = std::filesystem;
+
+void array(std::ofstream& out, const std::string& name, const std::vector<double>& values, int components) {
+  // ParaView takes vectors of three components for arrows and warps.
+  const int shown = components == 2 ? 3 : components;
+  out << fmt::format("<DataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n",
+                     name, shown);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    out << fmt::format("{:.9g} ", values[i]);
+    if (shown != components && (i + 1) % std::size_t(components) == 0) out << "0 ";
+  }
+  out << "\n</DataArray>\n";
+}
+
+void integers(std::ofstream& out, const char* name, const std::vector<GlobalIndex>& values) {
+  out << fmt::format("<DataArray type=\"Int64\" Name=\"{}\" format=\"ascii\">\n", name);
+  for (const GlobalIndex v : values) out << v << ' ';
+  out << "\n</DataArray>\n";
+}
+
+/// Entries "  <DataSet timestep="..." part="0" file="..."/>" of an earlier run up to this time.
+std::vector<std::pair<double, std::string>> kept(const fs::path& list, double restart_time) {
+  std::vector<std::pair<double, std::string>> files;
+  if (std::isnan(restart_time)) return files;
+  std::error_code ignored;
+  if (!fs::exists(list, ignored)) return files;
+  csv::LineReader in(list, "list of interface files", {.bytes = 1 << 30, .lines = 10000000});
+  for (std::string_view line; in.next(line);) {
+    const auto time = line.find("timestep=\""), part = line.find("part=\"0\""), file = line.find("file=\"");
+    if (time == std::string::npos || part == std::string::npos || file == std::string::npos) continue;
+    const auto quoted = [&](std::size_t from) { return line.substr(from, line.find('"', from) - from); };
+    const auto t = csv::number_of(quoted(time + 10));
+    const std::string_view name = quoted(file + 6);  // "side-000001.0.vtp"
+    if (!t || !name.ends_with(".0.vtp"))
+      throw Error("{}: this line is damaged. Move the list away; the files it names stay.", in.place());
+    if (*t <= restart_time * (1 + 1e-12)) files.emplace_back(*t, name.substr(0, name.size() - 6));
+  }
+  return files;
+}
+
+}  // namespace
+
+InterfaceOutput::InterfaceOutput(MPI_Comm comm, fs::path folder, const std::vector<Side>& sides,
+                                 double restart_time)
+    : comm_(comm), folder_(std::move(folder)) {
+  std::error_code failed;
+  if (comm_rank(comm) == 0) fs::create_directories(folder_, failed);
+  if (any(comm, bool(failed)))
+    throw Error("The folder {} could not be made: {}.", folder_.string(), failed.message());
+  for (const Side& side : sides) {
+    const Interface& i = side.interface;
+    if (side.faces.back() == 0) continue;
+    const std::size_t n = i.face_vertices.size();
+    const Starts corners = starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(n)}));
+    const GlobalIndex first = corners[std::size_t(comm_rank(comm))];
+    std::vector<Transfer::Entry> entries;
+    for (std::size_t k = 0; k < n; ++k) entries.push_back({first + GlobalIndex(k), i.face_vertices[k], 1});
+    Surface& s = surfaces_.emplace_back();
+    s.side = &side;
+    s.index = std::size_t(&side - sides.data());
+    s.to_corners = Transfer(comm, corners, side.vertices, std::move(entries));
+    std::vector<double> xyz;
+    for (const Vec3& v : i.vertices) xyz.insert(xyz.end(), {v.x(), v.y(), v.z()});
+    s.corners = s.to_corners.apply(xyz, 3);
+    s.files = kept(folder_ / (side.name + ".pvd"), restart_time);
+  }
+}
+
+void InterfaceOutput::write(double time, int number, const std::vector<Exchange>& given,
+                            const std::vector<Exchange>& taken) {
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+    Surface& surface = surfaces_[s];
+    const std::string stem = fmt::format("{}-{:06d}", surface.side->name, number);
+    write_piece(surface, folder_ / fmt::format("{}.{}.vtp", stem, comm_rank(comm_)), given[surface.index],
+                taken[surface.index]);
+    surface.files.emplace_back(time, stem);
+    if (comm_rank(comm_) == 0) write_list(surface);
+  }
+}
+
+void InterfaceOutput::write_piece(const Surface& surface, const fs::path& file, const Exchange& given,
+                                  const Exchange& taken) const {
+  const Interface& i = surface.side->interface;
+  const std::size_t faces = i.face_centres.size();
+  const bool has_corners = !i.face_vertices.empty();
+  // Without known vertices a face is its centre.
+  std::vector<double> points = surface.corners;
+  std::vector<GlobalIndex> connectivity, offsets;
+  if (!has_corners)
+    for (const Vec3& c : i.face_centres) points.insert(points.end(), {c.x(), c.y(), c.z()});
+  for (std::size_t k = 0; k < points.size() / 3; ++k) connectivity.push_back(GlobalIndex(k));
+  for (std::size_t f = 0; f < faces; ++f)
+    offsets.push_back(has_corners ? i.face_offset[f + 1] : GlobalIndex(f) + 1);
+  const char* kind = !has_corners ? "Verts" : i.dim == 2 ? "Lines" : "Polys";
+  std::ofstream out(file);
+  out << "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+         "header_type=\"UInt64\">\n<PolyData>\n"
+      << fmt::format("<Piece NumberOfPoints=\"{}\" NumberOf{}=\"{}\">\n<Points>\n", points.size() / 3, kind,
+                     faces);
+  array(out, "Points", points, 3);
+  out << "</Points>\n<" << kind << ">\n";
+  integers(out, "connectivity", connectivity);
+  integers(out, "offsets", offsets);
+  out << "</" << kind << ">\n";
+  std::vector<std::pair<const Interface::Datum*, const std::vector<double>*>> data;
+  for (const auto& [list, values] : {std::pair{&i.gives, &given}, std::pair{&i.takes, &taken}})
+    for (const auto& datum : *list)
+      if (const auto found = values->find(datum.name); found != values->end())
+        data.emplace_back(&datum, &found->second);
+  out << "<PointData>\n";
+  for (const auto& [datum, values] : data)
+    if (datum->place == Interface::Place::vertices && surface.side->faces.back() > 0)
+      if (const auto at_corners = surface.to_corners.apply(*values, datum->size(i.dim)); has_corners)
+        array(out, datum->name, at_corners, datum->size(i.dim));
+  out << "</PointData>\n<CellData>\n";
+  for (const auto& [datum, values] : data)
+    if (datum->place == Interface::Place::faces) array(out, datum->name, *values, datum->size(i.dim));
+  out << "</CellData>\n</Piece>\n</PolyData>\n</VTKFile>\n";
+  if (!out) throw Error("{} could not be written: is the disk full?", file.string());
+}
+
+void InterfaceOutput::write_list(const Surface& surface) const {
+  const fs::path file = folder_ / (surface.side->name + ".pvd"), part = file.string() + ".part";
+  {
+    std::ofstream out(part);
+    out << "<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n";
+    for (const auto& [time, stem] : surface.files)
+      for (int r = 0; r < comm_size(comm_); ++r)
+        out << fmt::format("  <DataSet timestep=\"{:.12g}\" part=\"{}\" file=\"{}.{}.vtp\"/>\n", time, r,
+                           stem, r);
+    out << "</Collection>\n</VTKFile>\n";
+  }
+  fs::rename(part, file);
+}
+
+}  // namespace couplet

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/output/monitor.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/coupling/wait.hpp"
+#include "common/log/log.hpp"
+#include "common/log/progress.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// Forces and work as ever, moments after them.
+std::vector<std::string> balance_columns(const std::vector<std::string>& sides, int dim) {
+  std::vector<std::string> columns{"time [s]"};
+  for (const std::string& side : sides) {
+    for (int c = 0; c < dim; ++c) columns.push_back(fmt::format("{} force {} [N]", side, "xyz"[c]));
+    columns.push_back(fmt::format("{} work of the step [J]", side));
+  }
+  for (const std::string& side : sides)
+    for (int c = dim == 2 ? 2 : 0; c < 3; ++c)
+      columns.push_back(fmt::format("{} moment {} [N m]", side, "xyz"[c]));
+  return columns;
+}
+
+std::vector<std::string> participant_columns(const std::vector<std::string>& names) {
+  std::vector<std::string> columns{"time [s]", "step", "coupling iterations", "wall clock [s]"};
+  for (const std::string& name : names)
+    for (const char* what : {"working [s]", "waiting [s]", "linear iterations", "time error", "energy [J]"})
+      columns.push_back(name + " " + what);
+  columns.push_back("coupler working [s]");
+  return columns;
+}
+
+}  // namespace
+
+Monitor::Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names,
+                 const std::vector<std::string>& balanced, int dim, double end_time, double restart_time)
+    : folder_(std::move(folder)),
+      writes_(comm_rank(comm) == 0),
+      names_(std::move(names)),
+      dim_(dim),
+      end_time_(end_time),
+      restart_time_(restart_time),
+      start_time_(std::isnan(restart_time) ? 0. : restart_time),
+      worked_(names_.size(), 0.) {
+  if (!writes_) return;
+  // Not every run writes these: what an earlier run has left in the folder would be taken for this one's.
+  if (std::isnan(restart_time))
+    for (const char* file : {"balance.csv", "amounts.csv", "volume.csv", "watch.csv"})
+      std::filesystem::remove(folder_ / file);
+  residuals_.emplace(folder_ / "residuals.csv",
+                     std::vector<std::string>{"time [s]", "dt [s]", "step", "iteration", "relative residual",
+                                              "absolute residual [m]", "relaxation"},
+                     restart_time);
+  participants_.emplace(folder_ / "participants.csv", participant_columns(names_), restart_time);
+  if (!balanced.empty())
+    balance_.emplace(folder_ / "balance.csv", balance_columns(balanced, dim), restart_time);
+}
+
+void Monitor::iteration(const Step& step, int number, const Residual& residual, double omega) {
+  if (!writes_) return;
+  residuals_->row(std::array<double, 7>{step.time + step.dt, step.dt, double(step.number + 1), double(number),
+                                        residual.relative, residual.absolute, omega});
+}
+
+void Monitor::balance(double time, const std::vector<SideBalance>& sides) {
+  if (!balance_) return;
+  std::vector<double> row{time};
+  for (const SideBalance& side : sides) {
+    for (int c = 0; c < dim_; ++c) row.push_back(side.balance.force[c]);
+    row.push_back(side.balance.work);
+  }
+  for (const SideBalance& side : sides)
+    for (int c = dim_ == 2 ? 2 : 0; c < 3; ++c) row.push_back(side.balance.moment[c]);
+  balance_->row(row);
+}
+
+void Monitor::amounts(double time, const std::vector<Links::Amount>& amounts) {
+  if (!writes_ || amounts.empty()) return;
+  if (!amounts_) {
+    std::vector<std::string> columns{"time [s]"};
+    for (const auto& amount : amounts) columns.push_back(amount.column);
+    amounts_.emplace(folder_ / "amounts.csv", columns, restart_time_);
+  }
+  std::vector<double> row{time};
+  for (const auto& amount : amounts) row.push_back(amount.value);
+  amounts_->row(row);
+}
+
+void Monitor::volume(double time, const VolumeLevel& level) {
+  if (!writes_) return;
+  if (!volume_) volume_.emplace(folder_ / "volume.csv", level.columns(), restart_time_);
+  std::vector<double> row{time};
+  for (const double value : level.row()) row.push_back(value);
+  volume_->row(row);
+}
+
+void Monitor::watched(double time, const std::vector<std::string>& columns,
+                      const std::vector<double>& values) {
+  if (!writes_) return;
+  if (!watched_) {
+    std::vector<std::string> all{"time [s]"};
+    all.insert(all.end(), columns.begin(), columns.end());
+    watched_.emplace(folder_ / "watch.csv", all, restart_time_);
+  }
+  std::vector<double> row{time};
+  row.insert(row.end(), values.begin(), values.end());
+  watched_->row(row);
+}
+
+namespace {
+
+/// Processor seconds of this process without what it waited for replies.
+double own_seconds(const std::vector<Partner>& partners) {
+  double seconds = processor_seconds();
+  for (const Partner& p : partners) seconds -= p.channel->waiting_seconds();
+  return seconds;
+}
+
+}  // namespace
+
+void Monitor::start(const std::vector<Partner>& partners) {
+  step_start_ = Clock::now();
+  own_before_ = own_seconds(partners);
+}
+
+void Monitor::step(const Step& step, double time, const FixedPointResult& result,
+                   const std::vector<Partner>& partners) {
+  const auto now = Clock::now();
+  const double wall = std::chrono::duration<double>(now - step_start_).count();
+  step_start_ = now;
+  wall_ += wall;
+  ++steps_;
+  iterations_ += result.iterations;
+  most_iterations_ = std::max<long>(most_iterations_, result.iterations);
+  std::vector<double> row{time, double(step.number + 1), double(result.iterations), wall};
+  std::string text;
+  double longest = 0;
+  for (std::size_t i = 0; i < partners.size(); ++i) {
+    const double worked = partners[i].report.seconds;
+    worked_[i] += worked;
+    longest = std::max(longest, worked);
+    text += fmt::format("  {} {:.2f} s", partners[i].name(), worked);
+    row.insert(row.end(), {worked, std::max(0., wall - worked), double(partners[i].report.iterations),
+                           partners[i].report.error, partners[i].report.energy});
+  }
+  const double own = own_seconds(partners);
+  row.push_back(own - own_before_);
+  own_ += own - std::exchange(own_before_, own);
+  if (!writes_) return;
+  participants_->row(row);
+  if (step.scheme == Scheme::explicit_ && std::chrono::duration<double>(now - last_line_).count() < 0.5 &&
+      time < end_time_)
+    return;
+  last_line_ = now;
+  log::info("t={:.6g}/{:g} s  step {}{}  {} its  |r|={:.1e}{}  {}", time, end_time_, step.number + 1,
+            step.scheme == Scheme::explicit_ ? " (explicit)" : "", result.iterations,
+            result.residual.relative, text,
+            log::eta(time - start_time_, end_time_ - start_time_,
+                     std::chrono::duration<double>(now - start_).count()));
+}
+
+std::string Monitor::summary(int halvings) const {
+  const double steps = double(std::max(1L, steps_));
+  std::string text = fmt::format(
+      "{} steps, {} halvings in {:.2f} s; coupling iterations: {:.2f} on average, {} at most\n  {:<20} "
+      "{:>11} {:>11} "
+      "{:>15}",
+      steps_, halvings, wall_, double(iterations_) / steps, most_iterations_, "", "working", "waiting",
+      "working");
+  for (std::size_t i = 0; i < names_.size(); ++i)
+    text += fmt::format("\n  {:<20} {:>9.2f} s {:>9.2f} s {:>9.3f} ms a step", names_[i], worked_[i],
+                        std::max(0., wall_ - worked_[i]), 1e3 * worked_[i] / steps);
+  text += fmt::format("\n  {:<20} {:>9.2f} s {:>11} {:>9.3f} ms a step (of the processor)", "coupler", own_,
+                      "", 1e3 * own_ / steps);
+  return text;
+}
+
+}  // namespace couplet

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mpi.h>
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/coupling/participant.hpp"
+#include "common/io/series.hpp"
+#include "coupler/acceleration/fixed_point.hpp"
+#include "coupler/acceleration/volume_level.hpp"
+#include "coupler/exchange/partners.hpp"
+#include "coupler/judge/mechanics.hpp"
+#include "coupler/mapping/links.hpp"
+
+namespace couplet {
+
+/// The coupler's own output, by its rank 0: residuals.csv (a row a pass), participants.csv (a row a step:
+/// what each worked and waited, what it says of its step, the coupler's own work), balance.csv (forces, moments and work),
+/// amounts.csv (sums that go over), volume.csv (levels of closed fluids), watch.csv (integrals asked for), the console line of
+/// each step and the closing summary.
+class Monitor {
+ public:
+  /// `names`: of everyone; `balanced`: of those in balance.csv. restart_time: NaN for a fresh start.
+  Monitor(MPI_Comm comm, std::filesystem::path folder, std::vector<std::string> names,
+          const std::vector<std::string>& balanced, int dim, double end_time, double restart_time);
+
+  /// The first step begins now: what went before is not its work.
+  void start(const std::vector<Partner>& partners);
+  void iteration(const Step& step, int number, const Residual& residual, double omega);
+  void balance(double time, const std::vector<SideBalance>& sides);
+  void amounts(double time, const std::vector<Links::Amount>& amounts);
+  void volume(double time, const VolumeLevel& level);
+  void watched(double time, const std::vector<std::string>& columns, const std::vector<double>& values);
+  void step(const Step& step, double time, const FixedPointResult& result,
+            const std::vector<Partner>& partners);
+  /// Mean and largest number of iterations, time by participant.
+  std::string summary(int halvings) const;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::filesystem::path folder_;
+  bool writes_;
+  std::vector<std::string> names_;
+  std::optional<Series> residuals_, participants_, balance_, amounts_, volume_, watched_;
+  int dim_;
+  double end_time_, restart_time_, start_time_;
+  Clock::time_point start_ = Clock::now(), step_start_ = Clock::now(), last_line_{};
+  long steps_ = 0, iterations_ = 0, most_iterations_ = 0;
+  std::vector<double> worked_;  // seconds of each over the run
+  double wall_ = 0;
+  double own_ = 0,
+         own_before_ = 0;  // processor seconds of the coupler: of the run, up to this step since it began
+};
+
+}  // namespace couplet

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/output/watch_integrals.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+using Datum = Interface::Datum;
+using Place = Interface::Place;
+
+const Datum* find(const Interface& interface, const std::string& name) {
+  for (const auto* list : {&interface.gives, &interface.takes})
+    for (const Datum& datum : *list)
+      if (datum.name == name) return &datum;
+  return nullptr;
+}
+
+std::string names_of(const Interface& interface) {
+  std::vector<std::string> names;
+  for (const auto* list : {&interface.gives, &interface.takes})
+    for (const Datum& datum : *list)
+      if (std::ranges::find(names, datum.name) == names.end()) names.push_back(datum.name);
+  return names.empty() ? "nothing" : join(names);
+}
+
+/// What it gives itself, else what it takes.
+const std::vector<double>* values_of(const std::string& name, const Exchange& given, const Exchange& taken) {
+  for (const Exchange* data : {&given, &taken})
+    if (const auto found = data->find(name); found != data->end()) return &found->second;
+  return nullptr;
+}
+
+Vec3 corner(const std::vector<double>& xyz, std::size_t k, int dim) {
+  Vec3 x = Vec3::Zero();
+  for (int c = 0; c < dim; ++c) x[c] = xyz[k * std::size_t(dim) + std::size_t(c)];
+  return x;
+}
+
+/// Of the polygon (2-D: the edge, 1 m deep) with corners `from` to `to`, by their order: half the sum of x_i x x_{i+1}.
+Vec3 area_of(const std::vector<double>& xyz, std::size_t from, std::size_t to, int dim) {
+  if (dim == 2) {
+    const Vec3 edge = corner(xyz, from + 1, 2) - corner(xyz, from, 2);
+    return {edge.y(), -edge.x(), 0};
+  }
+  const Vec3 first = corner(xyz, from, 3);
+  Vec3 area = Vec3::Zero();
+  for (std::size_t k = from + 1; k + 1 < to; ++k)
+    area += (corner(xyz, k, 3) - first).cross(corner(xyz, k + 1, 3) - first) / 2;
+  return area;
+}
+
+std::vector<bool> faces_of_part(MPI_Comm comm, const std::string& name, const WatchParameters& p,
+                                const Interface& interface) {
+  std::vector<bool> counts(interface.face_centres.size(), true);
+  if (p.part.empty()) return counts;
+  const auto found = std::ranges::find(interface.parts, p.part);
+  const int number = found == interface.parts.end() ? -1 : int(found - interface.parts.begin());
+  for (std::size_t f = 0; f < counts.size(); ++f)
+    counts[f] = number >= 0 && f < interface.face_part.size() && interface.face_part[f] == number;
+  if (sum(comm, GlobalIndex(std::ranges::count(counts, true))) == 0)
+    throw Error("coupling.watch.{}.part: the interface of '{}' has no part '{}'. It has: {}.", name,
+                p.participant, p.part, interface.parts.empty() ? "none with a name" : join(interface.parts));
+  return counts;
+}
+
+}  // namespace
+
+WatchIntegrals::Surface WatchIntegrals::surface_of(const Side& side, std::size_t index) const {
+  const Interface& i = side.interface;
+  Surface s{index, i.dim, false, false, {}, {}, i.face_offset, i.face_areas, {}};
+  const std::size_t n = i.face_vertices.size();
+  s.knows_corners = sum(comm_, GlobalIndex(n)) > 0;
+  if (!s.knows_corners) return s;
+  const Starts corners = starts_of(all_gather(comm_, std::vector<GlobalIndex>{GlobalIndex(n)}));
+  const GlobalIndex first = corners[std::size_t(comm_rank(comm_))];
+  std::vector<Transfer::Entry> entries;
+  for (std::size_t k = 0; k < n; ++k) entries.push_back({first + GlobalIndex(k), i.face_vertices[k], 1});
+  s.to_corners = Transfer(comm_, corners, side.vertices, std::move(entries));
+  std::vector<double> x;
+  for (const Vec3& v : i.vertices) x.insert(x.end(), v.data(), v.data() + i.dim);
+  s.corners = s.to_corners.apply(x, i.dim);
+  const Datum* motion = find(i, "displacement");
+  s.moves = motion && motion->place == Place::vertices && motion->size(i.dim) == i.dim;
+  for (std::size_t f = 0; f + 1 < s.offset.size(); ++f)
+    s.sign.push_back(area_of(s.corners, std::size_t(s.offset[f]), std::size_t(s.offset[f + 1]), i.dim)
+                                 .dot(s.reference_area[f]) < 0
+                         ? -1
+                         : 1);
+  return s;
+}
+
+WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, const WatchParameters& p,
+                                                     const Side& side, const Surface& surface) const {
+  const Datum* datum = find(side.interface, p.data);
+  if (!datum)
+    throw Error("coupling.watch.{}.data: '{}' neither gives nor takes '{}'. It has: {}.", name, p.participant,
+                p.data, names_of(side.interface));
+  const int n = datum->size(side.interface.dim);
+  Integral i{0, Kind::amount, *datum, faces_of_part(comm_, name, p, side.interface), std::size_t(n)};
+  if (is_amount(*datum)) {
+    if (datum->place == Place::faces) return i;
+    if (!p.part.empty())
+      throw Error(
+          "coupling.watch.{}.part: '{}' of '{}' is at vertices, which belong to no part. Leave `part` out.",
+          name, p.data, p.participant);
+    i.counts.assign(side.interface.vertices.size(), true);
+    return i;
+  }
+  if (n != 1 && n != side.interface.dim)
+    throw Error(
+        "coupling.watch.{}.data: '{}' has {} components; those with 1 or {} can be integrated over the surface.",
+        name, p.data, n, side.interface.dim);
+  if (datum->place == Place::vertices && !surface.knows_corners)
+    throw Error(
+        "coupling.watch.{}.data: '{}' does not tell the corners of its faces, which the integral of '{}' needs. "
+        "Watch that of the participant on the other side.",
+        name, p.participant, p.data);
+  i.kind = n == 1 ? Kind::scalar : Kind::flux;
+  i.columns = n == 1 ? 2 : 1;
+  return i;
+}
+
+WatchIntegrals::WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
+                               const std::map<std::string, WatchParameters>& watched)
+    : comm_(comm) {
+  for (const auto& [name, p] : watched) {
+    const auto side = std::ranges::find(sides, p.participant, &Side::name);
+    if (side == sides.end())
+      throw Error("coupling.watch.{}.participant: '{}' is no participant of this coupling.", name,
+                  p.participant);
+    const auto index = std::size_t(side - sides.begin());
+    auto surface = std::ranges::find(surfaces_, index, &Surface::side);
+    if (surface == surfaces_.end()) surface = surfaces_.insert(surface, surface_of(*side, index));
+    integrals_.push_back(integral_of(name, p, *side, *surface));
+    integrals_.back().surface = std::size_t(surface - surfaces_.begin());
+    const Integral& i = integrals_.back();
+    const std::string what = name + " " + p.data, &unit = i.datum.unit;
+    const std::string times_area = unit == "m/s"  ? "m^3/s"
+                                   : unit == "m"  ? "m^3"
+                                   : unit.empty() ? "m^2"
+                                                  : unit + " m^2";
+    if (i.kind == Kind::amount)
+      for (std::size_t c = 0; c < i.columns; ++c)
+        columns_.push_back(
+            fmt::format("{}{} [{}]", what, i.columns > 1 ? std::string(" ") + "xyz"[c % 3] : "", unit));
+    else if (i.kind == Kind::flux)
+      columns_.push_back(fmt::format("{} flux [{}]", what, times_area));
+    else {
+      columns_.push_back(fmt::format("{} integral [{}]", what, times_area));
+      columns_.push_back(fmt::format("{} mean [{}]", what, unit));
+    }
+  }
+}
+
+std::vector<Vec3> WatchIntegrals::areas(const Surface& s, const Exchange& given,
+                                        const Exchange& taken) const {
+  const std::vector<double>* moved = s.moves ? values_of("displacement", given, taken) : nullptr;
+  // A rank without vertices has no such name: all ranks together must know.
+  if (!any(comm_, moved != nullptr)) return s.reference_area;
+  std::vector<double> at = s.to_corners.apply(moved ? *moved : std::vector<double>{}, s.dim);
+  for (std::size_t k = 0; k < at.size(); ++k) at[k] += s.corners[k];
+  std::vector<Vec3> areas;
+  for (std::size_t f = 0; f + 1 < s.offset.size(); ++f)
+    areas.push_back(s.sign[f] * area_of(at, std::size_t(s.offset[f]), std::size_t(s.offset[f + 1]), s.dim));
+  return areas;
+}
+
+void WatchIntegrals::add_up(const Integral& i, const std::vector<double>& values,
+                            const std::vector<Vec3>& areas, double* sums) const {
+  const Surface& s = surfaces_[i.surface];
+  const auto n = std::size_t(i.datum.size(s.dim));
+  const bool at_corners = i.kind != Kind::amount && i.datum.place == Place::vertices;
+  for (std::size_t f = 0; f < i.counts.size(); ++f) {
+    if (!i.counts[f]) continue;
+    Vec3 q = Vec3::Zero();
+    const std::size_t from = at_corners ? std::size_t(s.offset[f]) : f,
+                      to = at_corners ? std::size_t(s.offset[f + 1]) : f + 1;
+    for (std::size_t k = from; k < to; ++k)
+      for (std::size_t c = 0; c < std::min<std::size_t>(n, 3); ++c)
+        q[Index(c)] += values[k * n + c] / double(to - from);
+    if (i.kind == Kind::amount)
+      for (std::size_t c = 0; c < n; ++c) sums[c] += values[f * n + c];
+    else if (i.kind == Kind::flux)
+      sums[0] += q.dot(areas[f]);
+    else
+      sums[0] += q.x() * areas[f].norm(), sums[1] += areas[f].norm();
+  }
+}
+
+std::vector<double> WatchIntegrals::row(const std::vector<Exchange>& given,
+                                        const std::vector<Exchange>& taken) const {
+  std::vector<double> row(columns_.size(), 0);
+  std::size_t column = 0;
+  for (const Integral& i : integrals_) {
+    const Surface& s = surfaces_[i.surface];
+    const std::vector<double>* values = values_of(i.datum.name, given[s.side], taken[s.side]);
+    const bool known = any(comm_, values != nullptr);
+    if (known) {
+      std::vector<double> here = values ? *values : std::vector<double>{};
+      if (i.kind != Kind::amount && i.datum.place == Place::vertices)
+        here = s.to_corners.apply(here, i.datum.size(s.dim));
+      const std::vector<Vec3> moved =
+          i.kind == Kind::amount ? std::vector<Vec3>{} : areas(s, given[s.side], taken[s.side]);
+      add_up(i, here, moved, row.data() + column);
+      MPI_Allreduce(MPI_IN_PLACE, row.data() + column, int(i.columns), MPI_DOUBLE, MPI_SUM, comm_);
+      if (i.kind == Kind::scalar) row[column + 1] = row[column] / row[column + 1];
+    } else {
+      std::fill_n(row.begin() + std::ptrdiff_t(column), i.columns, std::numeric_limits<double>::quiet_NaN());
+    }
+    column += i.columns;
+  }
+  return row;
+}
+
+}  // namespace couplet

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupler/parameters/effect_cards.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "coupler/parameters/schedule.hpp"
+
+namespace couplet {
+namespace {
+
+using P = CouplingParameters;
+using AccelerationType = AccelerationParameters::Type;
+using MappingType = MappingParameters::Type;
+
+std::string when(bool on, const char* reason) { return on ? reason : ""; }
+bool iterates(const P& p) { return p.scheme != Scheme::explicit_; }
+/// Whether participants see the motion of the guess before the structure has given its own.
+bool predicts(const P& p) { return predictor_order_of(p) > 0; }
+bool is_quasi_newton(const P& p) {
+  return p.acceleration.type == AccelerationType::iqn_ils || p.acceleration.type == AccelerationType::iqn_mvj;
+}
+
+// One pass a step holds while the guess that the load is of is not thrown over: a guess with velocity v^n returns
+// r = added mass / mass of the last change, lambda = -r; one of 2 v^n - v^{n-1} (order 2) gives
+// lambda^2 + r (2 lambda - 1) = 0, which reaches -1 at r = 1/3. The error goes with r: half the limit is asked for.
+std::optional<EffectVerdict> judge_one_pass(const P& p, const CouplingEvidence& e) {
+  if (p.scheme != Scheme::explicit_ || std::isnan(e.returned)) return {};
+  const double limit = predictor_order_of(p) >= 2 ? 1.0 / 3 : 1.0;
+  return EffectVerdict{
+      "", e.returned, limit / 2,
+      fmt::format(
+          "of a change of the motion {:.3g} comes back by the load in the next pass (the added mass over the "
+          "structure's); one pass a step diverges from {:.2g} on",
+          e.returned, limit),
+      "take the added mass into the iteration: 'scheme: semi-implicit'"};
+}
+
+std::optional<EffectVerdict> judge_lost_load(const P&, const CouplingEvidence& e) {
+  if (std::isnan(e.lost_load)) return {};
+  return EffectVerdict{
+      "", e.lost_load, 0.02,
+      fmt::format("forces that a fluid gives and no structure takes are {:.2g} of those taken", e.lost_load),
+      "let the structure take 'viscous-force', too ('interface: {load: forces}' of a solid)"};
+}
+
+const std::array cards{
+    CouplingCard{"exchange among any participants",
+                 "`exchange`",
+                 [](const P& p) { return when(p.exchange.has_value(), "exchange"); },
+                 {"sums of the amounts that go over", 0, 0}},
+    CouplingCard{"iteration of the whole step",
+                 "`scheme: implicit`",
+                 [](const P& p) { return when(p.scheme == Scheme::implicit, "scheme: implicit"); },
+                 {"all participants and the mesh motion once a pass", 0, 0}},
+    CouplingCard{
+        "iteration of pressure and structure",
+        "`scheme: semi-implicit`",
+        [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
+        {"a pressure solve and a structure's step a pass; mesh motion and predictor once a step", 0, 0},
+        "explicit: share of a change of the motion that the next pass returns, 0.5 (predictor of order 2: 0.17); two "
+        "passes more in steps 4, 16, 64, ...",
+        judge_one_pass},
+    CouplingCard{"friction of the current wall velocity",
+                 "`scheme: semi-implicit`, implicit viscous term",
+                 [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
+                 {"two vectors a face of the interface, a loop over it a pass", 0, 0}},
+    CouplingCard{
+        "prediction renewed",
+        "`scheme: semi-implicit`, where friction misses over 0.1 % of the load (heavy structures: 5 %), up to four times a step",
+        [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
+        {"sums over the interface a pass; where it acts, the first part of the fluid's step once more each time",
+         0, 0}},
+    CouplingCard{"viscous coupling load",
+                 "by a structure that takes `viscous-force` beside `pressure-force`",
+                 [](const P& p) {
+                   return when(p.fluid.has_value() || p.exchange.has_value(), "what the structure takes");
+                 },
+                 {"a force a face of the interface", 0, 0},
+                 "forces given that nobody takes over those taken, 0.02",
+                 judge_lost_load,
+                 true},
+    CouplingCard{"relaxation by Aitken",
+                 "`acceleration.type: aitken`",
+                 [](const P& p) {
+                   return when(iterates(p) && p.acceleration.type == AccelerationType::aitken,
+                               "acceleration.type: aitken");
+                 },
+                 {"two vectors of the interface", 0, 0}},
+    CouplingCard{"quasi-Newton of the interface",
+                 "`acceleration.type: iqn-ils` or `iqn-mvj`",
+                 [](const P& p) { return when(iterates(p) && is_quasi_newton(p), "acceleration.type"); },
+                 {"three vectors of the interface for each of at most `maximum-columns` differences", 0, 0}},
+    CouplingCard{"prediction",
+                 "`predictor.order` above 0",
+                 [](const P& p) { return when(predicts(p), "predictor.order"); },
+                 {"the motion of two earlier steps", 0, 0}},
+    CouplingCard{"mapping between surfaces that do not match",
+                 "`mapping.type` other than `matched`",
+                 [](const P& p) { return when(p.mapping.type != MappingType::matched, "mapping.type"); },
+                 {"a sparse matrix over the interface, made once", 0, 0}},
+    CouplingCard{"mesh motion",
+                 "`mesh`",
+                 [](const P& p) { return when(p.mesh.has_value(), "mesh"); },
+                 {"the process mesh_mover", 0, 0}},
+    CouplingCard{"mesh on the guess",
+                 "`mesh-on-guess`, implicit scheme",
+                 [](const P& p) { return when(p.mesh_on_guess, "mesh-on-guess"); },
+                 {"the motion of the guess kept for the step", 0, 0}},
+    CouplingCard{"load as the unknown",
+                 "`order: structure-first`",
+                 [](const P& p) {
+                   return when(p.order == P::Exchange::Order::structure_first, "order: structure-first");
+                 },
+                 {"forces of the faces beside the motion of the vertices in the unknown", 0, 0}},
+    CouplingCard{"sub-steps",
+                 "`sub-steps`",
+                 [](const P& p) { return when(!p.sub_steps.empty(), "sub-steps"); },
+                 {"state n of who takes them, in memory; that many of its steps a pass", 0, 0}},
+    CouplingCard{"interface data for ParaView",
+                 "`interface-output: true`",
+                 [](const P& p) { return when(p.interface_output, "interface-output"); },
+                 {"a file of each interface with each output", 0, 0}},
+    CouplingCard{
+        "integrals over interfaces",
+        "`watch`",
+        [](const P& p) { return when(!p.watch.empty(), "watch"); },
+        {"coordinates of the corners of each interface that is watched, a loop over its faces a step", 0, 0}},
+    CouplingCard{
+        "guards that stop",
+        "`on-divergence: stop`",
+        [](const P& p) { return when(p.on_divergence == P::OnDivergence::stop, "on-divergence: stop"); },
+        {"a few sums over the interface a step", 0, 0},
+        "motion that the coupling itself makes: swings that grow, work that parts, iterations that diverge"},
+};
+
+}  // namespace
+
+std::span<const CouplingCard> coupling_effect_cards() { return cards; }
+
+}  // namespace couplet

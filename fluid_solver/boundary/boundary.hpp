@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/fv/expression.hpp"
+#include "fluid_solver/boundary/inlet_profile.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
+#include "fluid_solver/state/placement.hpp"
+
+namespace couplet::fluid {
+
+/// What is known at a boundary face. Arrays over "boundary faces" are indexed by f - mesh.n_interior.
+enum class FaceKind : unsigned char {
+  velocity,  ///< w given: inlets, walls, interface
+  slip,      ///< only the normal velocity is given: that of the mesh
+  pressure,  ///< p given, velocity from inside
+};
+
+template <int D>
+class Boundary {
+ public:
+  /// Throws Error if a patch has no boundary or a boundary names no patch.
+  Boundary(const Mesh& mesh, const FluidParameters& parameters);
+
+  const std::vector<FaceKind>& kind() const { return kind_; }
+  /// No face of the whole domain has a given pressure: the pressure level is free.
+  bool closed() const { return closed_; }
+  /// Names of the patches of type interface.
+  const std::vector<std::string>& interface_patches() const { return interface_patches_; }
+  /// Patches of type body.
+  const std::vector<const Patch*>& body_patches() const { return body_patches_; }
+  /// A wall whose velocity is given from outside: by the structure or by the prescribed motion.
+  bool is_interface(Index boundary_face) const { return interface_[boundary_face] != 0; }
+
+  /// Some walls of the interface have a mass that the pressure equation foresees; the mass per area of each boundary
+  /// face [kg/m^2], 0: none.
+  bool yields() const { return yields_; }
+  const std::vector<double>& wall_mass() const { return wall_mass_; }
+  /// The structure says these masses (`impedance: structure`), for all its faces of the interface or some.
+  bool asks_for_mass() const { return asks_for_mass_; }
+  /// What it said, at boundary faces [kg/m^2]; counts where it was asked. Whether one of this rank's has changed. Throws
+  /// Error if one is not above 0.
+  bool set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses);
+
+  /// w at time t [m/s] at the faces with given velocity; interface faces are left as they are.
+  void velocity_at(double t, const std::vector<Vec3>& centres, Vectors<D>& w) const;
+  /// Some walls may turn or stretch: the same on all ranks.
+  bool walls_turn() const { return turns_; }
+  /// The turn (see turn_of()) of the walls whose velocity the case gives and that differs from place to place, at
+  /// their faces of `turn`, which has all boundary faces. `points`: of the mesh at time t.
+  void add_turn(const Mesh& mesh, std::span<const Vec3> points, double t, Vectors<D>& turn) const;
+  /// p at time t [Pa] at the faces with given pressure; the others are left as they are.
+  void pressure_at(double t, const std::vector<Vec3>& centres, std::vector<double>& p) const;
+  /// Velocity at all boundary faces from that in the cells: u_b = w, u_P with the normal part of w, or u_P.
+  void close(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w,
+             Vectors<D>& u_boundary) const;
+  /// w one sub-step further at convective outlets, from w and u at its begin: dw/dt + U dw/dn = 0, implicit,
+  /// U the mean outflow speed of the patch. Collective.
+  void convect(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& w_begin,
+               double dt, Vectors<D>& w) const;
+  /// Faces that take up what a closed domain would let out or in: convective outlets, else interfaces.
+  bool is_adjustable(Index boundary_face) const {
+    return convective_patches_.empty() ? is_interface(boundary_face) : convective_[boundary_face] != 0;
+  }
+  bool has_convective_outlet() const { return !convective_patches_.empty(); }
+  bool is_convective(Index boundary_face) const { return convective_[boundary_face] != 0; }
+  /// Part of the cell's velocity that convection sees at a face of given pressure where fluid comes in: 1/2
+  /// makes the face's share of the kinetic energy vanish, phi (u_b - u_P/2).u_P = 0.
+  double backflow(Index boundary_face) const { return free_backflow_[boundary_face] ? 1.0 : 0.5; }
+
+ private:
+  void add_patch(const Mesh& mesh, const Patch& patch, const BoundaryParameters& b);
+  struct Given {
+    Index first = 0, count = 0;  // boundary faces
+    BoundaryParameters parameters;
+    std::vector<Expression> velocity;
+    Expression pressure, mean_speed;
+    InletShape<D> shape;             // with mean_speed
+    std::optional<GridTable> table;  // of the velocity
+    Expression turning;              // [rad/s], with a rotation
+    const Patch* turns = nullptr;    // a wall whose velocity differs from place to place
+  };
+  /// At places of the patch, in the order of its faces where a profile was made for them [m/s].
+  void velocity_of(const Given& given, double t, std::span<const Vec3> places, Vec<D>* w) const;
+  MPI_Comm comm_;
+  std::vector<FaceKind> kind_;
+  std::vector<char> interface_, convective_, free_backflow_;
+  std::vector<std::string> interface_patches_;
+  std::vector<const Patch*> body_patches_;
+  std::vector<Given> velocity_patches_, pressure_patches_;
+  std::vector<std::pair<Index, Index>> convective_patches_;  // first boundary face, count; also empty ones
+  bool closed_ = true, yields_ = false, asks_for_mass_ = false, turns_ = false;
+  std::vector<double> wall_mass_;
+  std::vector<char> asked_;  // by boundary face: its mass is the structure's word
+};
+
+}  // namespace couplet::fluid

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/judge/error_estimate.hpp"
+#include "common/base/saved_numbers.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+constexpr double adams_bashforth_error = 5. / 12;
+
+/// Sums of a linear fit through the neighbours of a cell, weighted by 1 / d^2.
+template <int D>
+struct Fit {
+  Eigen::Matrix<double, D + 1, D + 1> moments = Eigen::Matrix<double, D + 1, D + 1>::Zero();
+  Eigen::Matrix<double, D + 1, D> values = Eigen::Matrix<double, D + 1, D>::Zero();
+  void add(const Vec<D>& d, const Vec<D>& value) {
+    Eigen::Matrix<double, D + 1, 1> row;
+    const double length = d.norm();
+    row << 1, d / length;
+    moments += row * row.transpose() / (length * length);
+    values += row * value.transpose() / (length * length);
+  }
+  /// In the cell itself.
+  Vec<D> value() const { return moments.completeOrthogonalDecomposition().solve(values).row(0).transpose(); }
+};
+
+}  // namespace
+
+/// Root mean square over the volume; per local cell.
+template <int D>
+double FluidErrorEstimate<D>::size(const Vectors<D>& values) const {
+  const std::vector<double>& volume = fluid_.state().placement->volume;
+  double squares = 0, whole = 0;
+  for (Index c = 0; c < fluid_.mesh().cells.n_owned(); ++c) {
+    squares += volume[c] * values[c].squaredNorm();
+    whole += volume[c];
+  }
+  squares = sum(fluid_.mesh().comm, squares), whole = sum(fluid_.mesh().comm, whole);
+  return whole > 0 ? std::sqrt(squares / whole) : 0;
+}
+
+// Divided differences of u at the ends of the last four steps, their lengths nearly alike: the rate over each step,
+// the change of the rate, the change of that. One loop and one sum over the ranks: a cheap step costs little more.
+template <int D>
+void FluidErrorEstimate<D>::accepted(double dt) {
+  const Vectors<D>& u = fluid_.state().u;
+  const std::vector<double>& volume = fluid_.state().placement->volume;
+  const auto n = std::size_t(fluid_.mesh().cells.n_owned());
+  const double apart = 0.5 * (dt + dt_old_), per_step = 1 / dt, per_apart = 1 / apart;
+  const bool knows_rate = seen_ > 0, knows_change = seen_ > 1, knows_third = seen_ > 2;
+  u_.resize(n, Vec<D>::Zero()), rate_.resize(n, Vec<D>::Zero()), rate_change_.resize(n, Vec<D>::Zero());
+  std::array<double, 5> squares{};  // of u, its rate, the change of that, the change of that; the volume
+  for (std::size_t c = 0; c < n && knows_rate; ++c) {
+    const Vec<D> rate = (u[c] - u_[c]) * per_step;
+    Vec<D> change = Vec<D>::Zero();
+    if (knows_change) change = (rate - rate_[c]) * per_apart;
+    if (knows_third) squares[3] += volume[c] * (change - rate_change_[c]).squaredNorm();
+    squares[0] += volume[c] * u[c].squaredNorm();
+    squares[1] += volume[c] * rate.squaredNorm();
+    squares[2] += volume[c] * change.squaredNorm();
+    squares[4] += volume[c];
+    rate_[c] = rate, rate_change_[c] = change;
+  }
+  std::copy_n(u.begin(), n, u_.begin());
+  if (knows_third) {
+    MPI_Allreduce(MPI_IN_PLACE, squares.data(), 5, MPI_DOUBLE, MPI_SUM, fluid_.mesh().comm);
+    const auto mean = [&](int k) { return squares[4] > 0 ? std::sqrt(squares[k] / squares[4]) : 0; };
+    const double cut = std::max(1, fluid_.statistics().sub_steps), highest = mean(3) / apart;
+    steps_.add({.error = adams_bashforth_error * dt * dt * dt / (cut * cut) * highest,
+                .rate = mean(1),
+                .size = mean(0),
+                .dt = dt,
+                .order = 2,
+                .below = mean(2),
+                .highest = highest},
+               judged_ ? 1 : 3);
+    judged_ = true;
+  }
+  dt_old_ = dt;
+  ++seen_;
+}
+
+template <int D>
+double FluidErrorEstimate<D>::recovered_difference() const {
+  const State<D>& s = fluid_.state();
+  const Mesh& mesh = fluid_.mesh();
+  const Placement<D>& at = *s.placement;
+  std::vector<Fit<D>> fits(mesh.cells.n_local());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    const Vec<D> d = (at.area[f] - at.oblique_of(f)) / at.conductance[f];  // S = k + g d
+    const Index owner = mesh.owner[f];
+    if (f >= mesh.n_interior) {
+      fits[owner].add(d, s.u_boundary[f - mesh.n_interior]);
+      continue;
+    }
+    const Index neighbour = mesh.neighbour[f];
+    fits[owner].add(d, s.u[neighbour]);
+    fits[neighbour].add(-d, s.u[owner]);
+  }
+  Vectors<D> gap(mesh.cells.n_local(), Vec<D>::Zero());
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    if (!s.blocked || !(*s.blocked)[c]) gap[c] = fits[c].value() - s.u[c];
+  return size(gap);
+}
+
+template <int D>
+double FluidErrorEstimate<D>::net_outflow() const {
+  const State<D>& s = fluid_.state();
+  const Mesh& mesh = fluid_.mesh();
+  std::vector<double> net(mesh.cells.n_local()), through(mesh.cells.n_local());
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    net[mesh.owner[f]] += s.phi[f], through[mesh.owner[f]] += 0.5 * std::abs(s.phi[f]);
+    if (f >= mesh.n_interior) continue;
+    net[mesh.neighbour[f]] -= s.phi[f], through[mesh.neighbour[f]] += 0.5 * std::abs(s.phi[f]);
+  }
+  double left = 0, all = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) left += net[c] * net[c], all += through[c] * through[c];
+  left = sum(mesh.comm, left), all = sum(mesh.comm, all);
+  return all > 0 ? std::sqrt(left / all) : 0;
+}
+
+template <int D>
+ErrorParts FluidErrorEstimate<D>::parts() const {
+  ErrorParts parts;
+  const double speed = size(fluid_.state().u);
+  if (!(speed > 0) || seen_ == 0) return parts;
+  parts.mesh = recovered_difference() / speed;
+  parts.step = steps_.over_size();
+  const double across = std::pow(double(fluid_.mesh().cells.n_global()), 1. / D);
+  parts.linear = net_outflow() * std::sqrt(across);
+  return parts;
+}
+
+template <int D>
+std::vector<double> FluidErrorEstimate<D>::state() const {
+  std::vector<double> values{double(seen_), judged_ ? 1. : 0., dt_old_, double(rate_.size())};
+  for (const Vectors<D>* vectors : {&rate_, &rate_change_})
+    for (const Vec<D>& v : *vectors) values.insert(values.end(), v.begin(), v.end());
+  const std::vector<double> sums = steps_.state();
+  values.insert(values.end(), sums.begin(), sums.end());
+  return values;
+}
+
+template <int D>
+void FluidErrorEstimate<D>::restore(std::span<const double> state) {
+  seen_ = 0, judged_ = false, steps_ = {};
+  u_.clear(), rate_.clear(), rate_change_.clear();
+  if (state.empty()) return;
+  SavedNumbers saved(state, "errors of steps");
+  seen_ = int(saved.count(1e9)), judged_ = saved.real() != 0, dt_old_ = saved.real();
+  const std::size_t n = saved.count_of(2 * D);
+  const Vectors<D>& u = fluid_.state().u;
+  if (n != 0 && n != std::size_t(fluid_.mesh().cells.n_owned())) saved.damaged();
+  for (Vectors<D>* vectors : {&rate_, &rate_change_})
+    for (std::size_t c = 0; c < n; ++c) vectors->emplace_back(saved.next(D).data());
+  steps_.restore(saved.rest());
+  u_.assign(u.begin(), u.begin() + fluid_.mesh().cells.n_owned());
+}
+
+template class FluidErrorEstimate<2>;
+template class FluidErrorEstimate<3>;
+
+}  // namespace couplet::fluid

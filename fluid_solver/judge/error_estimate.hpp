@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/coupling/error_parts.hpp"
+#include "common/time/step_errors.hpp"
+#include "fluid_solver/step/fluid.hpp"
+
+namespace couplet::fluid {
+
+/// What a run leaves in the velocity, over its size, as norms over the volume:
+///   mesh    difference of u from the value that a linear fit through the neighbours of each cell has in it, h^2/4
+///           times the Laplacian of u on equal cells: recovery of the values
+///   step    sum of the local errors 5/12 dt^3 d3u/dt3 of Adams and Bashforth's second order, see StepErrors; of
+///           k sub-steps each k^-3
+///   linear  what the pressure's solver leaves of the cells' net outflow against what passes through them, times the
+///           square root of the number of cells across: an outflow that alternates moves its neighbours alone, one
+///           that does not the whole field; this is the mean of the two in logarithms
+/// Collective.
+template <int D>
+class FluidErrorEstimate {
+ public:
+  /// By reference.
+  explicit FluidErrorEstimate(const Fluid<D>& fluid) : fluid_(fluid) {}
+  /// After the step of `dt` [s] was accepted.
+  void accepted(double dt);
+  ErrorParts parts() const;
+  /// For checkpoints.
+  std::vector<double> state() const;
+  /// After the fluid's own state; empty: of a run that collected nothing.
+  void restore(std::span<const double> state);
+
+ private:
+  double size(const Vectors<D>& values) const;
+  double recovered_difference() const;
+  double net_outflow() const;
+
+  const Fluid<D>& fluid_;
+  Vectors<D> u_, rate_, rate_change_;  // u of the last accepted step, first and second differences in time
+  int seen_ = 0;                       // steps that these hold
+  bool judged_ = false;                // a step has been judged
+  double dt_old_ = 0;
+  StepErrors steps_;
+};
+
+}  // namespace couplet::fluid

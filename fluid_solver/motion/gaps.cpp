@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/motion/gaps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/constants.hpp"
+#include "common/base/error.hpp"
+#include "common/base/nearest.hpp"
+#include "common/base/text.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+/// Of x from segments (2-D) or triangles, whose corners stand one after the other.
+template <int D>
+double distance(const Vec3& x, const std::vector<double>& corners) {
+  double least = infinity;
+  const auto corner = [&](std::size_t i) { return Vec3(Eigen::Map<const Vec3>(corners.data() + 3 * i)); };
+  for (std::size_t i = 0; i + D <= corners.size() / 3; i += D)
+    least = std::min(least,
+                     D == 2 ? nearest_on_segment(corner(i), corner(i + 1), x).distance
+                            : nearest_on_triangle(corner(i), corner(i + 1), corner(i + D - 1), x).distance);
+  return least;
+}
+
+bool inside(const Vec3& x, const Vec3& low, const Vec3& high) {
+  return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
+}
+
+}  // namespace
+
+template <int D>
+Gaps<D>::Gaps(const Mesh& mesh, const FluidParameters& parameters)
+    : mesh_(mesh), never_(mesh.cells.n_local(), 0), gap_(mesh.cells.n_local(), -1) {
+  std::vector<std::string> there;
+  for (const Patch& patch : mesh.patches) there.push_back(patch.name);
+  for (const auto& [name, gap] : parameters.gaps) {
+    names_.push_back(name);
+    limit_.push_back(gap.opening);
+    walls_.emplace_back();
+    for (int side = 0; side < 2; ++side) {
+      const std::string& patch = gap.between[side];
+      if (!mesh.find_patch(patch))
+        throw Error("gaps.{}.between: the mesh has no patch '{}'. {}", name, patch,
+                    did_you_mean(patch, there, "patches"));
+      if (!is_wall(parameters.boundaries.at(patch).type))
+        throw Error("gaps.{}.between: '{}' is no wall; a gap lies between two walls.", name, patch);
+      walls_.back()[side].patches.push_back(mesh.find_patch(patch));
+    }
+  }
+  facts_.resize(names_.size());
+  std::vector<double> never(mesh.cells.n_local(), 0.0);
+  for (const Patch& patch : mesh.patches)
+    if (parameters.boundaries.at(patch.name).type == BoundaryType::outlet)
+      for (Index f = patch.first; f < patch.first + patch.count; ++f) never[mesh.owner[f]] = 1;
+  mesh.cells.update_ghosts(never);
+  for (std::size_t c = 0; c < never.size(); ++c) never_[c] = never[c] != 0;
+}
+
+template <int D>
+void Gaps<D>::Wall::extend(const Mesh& mesh, std::span<const Vec3> points, Vec3& low, Vec3& high) const {
+  for (const Patch* patch : patches)
+    for (Index f = patch->first; f < patch->first + patch->count; ++f)
+      for (const Index v : mesh.face_points[f])
+        low = low.cwiseMin(points[v]), high = high.cwiseMax(points[v]);
+  MPI_Allreduce(MPI_IN_PLACE, low.data(), 3, MPI_DOUBLE, MPI_MIN, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, high.data(), 3, MPI_DOUBLE, MPI_MAX, mesh.comm);
+}
+
+/// Of the faces of all ranks that reach into a box, as segments or triangles.
+template <int D>
+std::vector<double> Gaps<D>::Wall::corners(const Mesh& mesh, std::span<const Vec3> points, const Vec3& low,
+                                           const Vec3& high) const {
+  std::vector<double> mine;
+  for (const Patch* patch : patches)
+    for (Index f = patch->first; f < patch->first + patch->count; ++f) {
+      const auto v = mesh.face_points[f];
+      Vec3 least = points[v[0]], most = least;
+      for (const Index p : v) least = least.cwiseMin(points[p]), most = most.cwiseMax(points[p]);
+      if ((least.array() > high.array()).any() || (most.array() < low.array()).any()) continue;
+      const auto add = [&](std::initializer_list<std::size_t> corner) {
+        for (const std::size_t i : corner)
+          mine.insert(mine.end(), points[v[i]].data(), points[v[i]].data() + 3);
+      };
+      if (D == 2) add({0, 1});
+      for (std::size_t i = 2; D == 3 && i < v.size(); ++i) add({0, i - 1, i});
+    }
+  return all_gather(mesh.comm, mine);
+}
+
+template <int D>
+void Gaps<D>::mark_gap(int gap, std::span<const Vec3> points, const Placement<D>& at) {
+  const double limit = limit_[gap];
+  Facts& facts = facts_[gap];
+  facts = {std::numeric_limits<double>::quiet_NaN(), 0, 0};
+  std::array<Vec3, 2> low, high;
+  for (int side = 0; side < 2; ++side) {
+    low[side].setConstant(infinity);
+    high[side].setConstant(-infinity);
+    walls_[gap][side].extend(mesh_, points, low[side], high[side]);
+  }
+  // A cell that is blocked is nearer than the limit to both.
+  const Vec3 room = Vec3::Constant(limit), from = low[0].cwiseMax(low[1]) - room,
+             to = high[0].cwiseMin(high[1]) + room;
+  if ((from.array() > to.array()).any()) return;
+  const std::vector<double> one = walls_[gap][0].corners(mesh_, points, from - room, to + room),
+                            other = walls_[gap][1].corners(mesh_, points, from - room, to + room);
+  double least = infinity, sums[2] = {0, 0};
+  for (Index c = 0; c < mesh_.cells.n_local(); ++c) {
+    Vec3 x = Vec3::Zero();
+    x.template head<D>() = at.centre[c];
+    if (!inside(x, from, to)) continue;
+    const double opening = distance<D>(x, one) + distance<D>(x, other);
+    least = std::min(least, opening);
+    if (opening >= limit || never_[c]) continue;
+    gap_[c] = gap;
+    if (c >= mesh_.cells.n_owned()) continue;
+    sums[0] += 1;
+    sums[1] += at.volume[c];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  least = min(mesh_.comm, least);
+  facts = {std::isfinite(least) ? least : facts.opening, sums[0], sums[1]};
+}
+
+template <int D>
+bool Gaps<D>::mark(std::span<const Vec3> points, const Placement<D>& at) {
+  const std::vector<int> before = gap_;
+  std::fill(gap_.begin(), gap_.end(), -1);
+  for (std::size_t g = 0; g < names_.size(); ++g) mark_gap(static_cast<int>(g), points, at);
+  active_ = std::ranges::any_of(facts_, [](const Facts& f) { return f.cells > 0; });
+  return any(mesh_.comm, before != gap_);
+}
+
+template <int D>
+void Gaps<D>::follow(const Placement<D>& from, const Placement<D>& to, double dt) {
+  velocity_.assign(gap_.size(), Vec<D>::Zero());
+  for (std::size_t c = 0; c < gap_.size(); ++c)
+    if (gap_[c] >= 0 && dt > 0) velocity_[c] = (to.centre[c] - from.centre[c]) / dt;
+}
+
+template <int D>
+void Gaps<D>::hold(Vectors<D>& u) const {
+  for (std::size_t c = 0; c < gap_.size(); ++c)
+    if (gap_[c] >= 0) u[c] = velocity_[c];
+}
+
+template <int D>
+std::shared_ptr<const std::vector<char>> Gaps<D>::marks() const {
+  if (!active_) return nullptr;
+  auto marks = std::make_shared<std::vector<char>>(gap_.size(), 0);
+  for (std::size_t c = 0; c < gap_.size(); ++c) (*marks)[c] = gap_[c] >= 0;
+  return marks;
+}
+
+template <int D>
+bool Gaps<D>::differs(const std::vector<char>* marks) const {
+  bool other = false;
+  for (std::size_t c = 0; c < gap_.size(); ++c)
+    other |= is_blocked(static_cast<Index>(c)) != (marks && (*marks)[c]);
+  return any(mesh_.comm, other);
+}
+
+template class Gaps<2>;
+template class Gaps<3>;
+
+}  // namespace couplet::fluid

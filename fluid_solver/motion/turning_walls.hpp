@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "fluid_solver/state/placement.hpp"
+
+namespace couplet::fluid {
+
+/// What a wall's motion along itself and its turning add to the friction on it: the integral of (grad u)^T.n over
+/// a face [m^2/s] from the velocities of its corners alone. Where div u = 0, (grad u)^T.n = (n x grad) x u, and by
+/// Stokes' theorem its integral is that of dl x u around the face: exact for linear velocities (w x r gives -w x S),
+/// and the edges of a closed wall cancel. `corners` [m], `velocities` [m/s]: one after the other around the face, as
+/// the mesh has them; in two dimensions the places do not count.
+template <int D>
+Vec<D> turn_of(std::span<const Vec3> corners, std::span<const Vec3> velocities);
+
+/// Sets `turn` at the faces of a patch from the velocities of their corners, face by face. `points`: of the mesh.
+template <int D>
+void set_turn(const Mesh& mesh, const Patch& patch, std::span<const Vec3> points,
+              std::span<const Vec3> velocities, Vectors<D>& turn);
+
+/// Force of that on what is outside, -mu [T + (T.n) n]: T of the transposed gradient, and T.n = du_n/dn, which the
+/// friction of Loads leaves out. `area`: out of the fluid.
+template <int D>
+Vec<D> turning_force(double viscosity, const Vec<D>& turn, const Vec<D>& area);
+
+}  // namespace couplet::fluid

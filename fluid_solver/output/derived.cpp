@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/output/derived.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+
+template <int D>
+std::vector<double> vorticity(const std::vector<Tensor<D>>& gradient) {
+  std::vector<double> curl;
+  curl.reserve(gradient.size() * (D == 2 ? 1 : 3));
+  for (const Tensor<D>& g : gradient) {
+    if constexpr (D == 3) {
+      curl.push_back(g(2, 1) - g(1, 2));
+      curl.push_back(g(0, 2) - g(2, 0));
+    }
+    curl.push_back(g(1, 0) - g(0, 1));
+  }
+  return curl;
+}
+
+template <int D>
+std::vector<double> q_criterion(const std::vector<Tensor<D>>& gradient) {
+  std::vector<double> q;
+  q.reserve(gradient.size());
+  for (const Tensor<D>& g : gradient) q.push_back(-0.5 * (g * g).trace());
+  return q;
+}
+
+template <int D>
+std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid) {
+  const Mesh& mesh = fluid.mesh();
+  const Placement<D>& at = *fluid.state().placement;
+  const double rho = fluid.parameters().density, nu = fluid.parameters().viscosity / rho;
+  std::vector<std::array<double, 2>> units(fluid.viscous_force().size());
+  for (std::size_t b = 0; b < units.size(); ++b) {
+    const Index f = mesh.n_interior + static_cast<Index>(b);
+    const double area = at.area[f].norm();
+    const Vec<D> n = at.area[f] / area, &force = fluid.viscous_force()[b];
+    const double shear = (force - force.dot(n) * n).norm() / area;
+    const double distance = area / at.conductance[f];
+    units[b] = {shear, nu > 0 ? distance * std::sqrt(shear / rho) / nu : 0};
+  }
+  return units;
+}
+
+template <int D>
+WallSummary summarise_wall(const Fluid<D>& fluid, const Patch& patch) {
+  const Mesh& mesh = fluid.mesh();
+  const auto units = wall_units(fluid);
+  double sums[3] = {}, largest[2] = {};
+  if (!units.empty())
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const double area = fluid.state().placement->area[f].norm();
+      const auto& here = units[f - mesh.n_interior];
+      sums[2] += area;
+      for (int i = 0; i < 2; ++i) {
+        sums[i] += area * here[i];
+        largest[i] = std::max(largest[i], here[i]);
+      }
+    }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, mesh.comm);
+  if (!(sums[2] > 0)) return {};
+  return {largest[0], sums[0] / sums[2], largest[1], sums[1] / sums[2]};
+}
+
+template <int D>
+double through_moving_walls(const Fluid<D>& fluid) {
+  const Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  double worst = std::numeric_limits<double>::quiet_NaN();
+  for (const Patch& patch : mesh.patches) {
+    if (fluid.parameters().boundaries.at(patch.name).type != BoundaryType::moving_wall) continue;
+    double through = 0, size = 0;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f) {
+      const Vec<D>& w = s.w[f - mesh.n_interior];
+      through += std::abs(w.dot(s.placement->area[f]));
+      size += w.norm() * s.placement->area[f].norm();
+    }
+    through = sum(mesh.comm, through), size = sum(mesh.comm, size);
+    if (size > 0) worst = std::isnan(worst) ? through / size : std::max(worst, through / size);
+  }
+  return worst;
+}
+
+template double through_moving_walls<2>(const Fluid<2>&);
+template double through_moving_walls<3>(const Fluid<3>&);
+
+template <int D>
+Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& c) {
+  const Mesh& mesh = fluid.mesh();
+  Vec3 sums[2] = {Vec3::Zero(), Vec3::Zero()};  // force, moment
+  for (const std::string& name : c.patches) {
+    const Patch& patch = *mesh.find_patch(name);
+    if (fluid.pressure_force().empty()) break;  // before the first step
+    for (Index b = patch.first - mesh.n_interior; b < patch.first - mesh.n_interior + patch.count; ++b) {
+      Vec3 force = Vec3::Zero();
+      force.template head<D>() = fluid.pressure_force()[b] + fluid.viscous_force()[b];
+      sums[0] += force;
+      sums[1] += (fluid.state().placement->boundary_centre[b] - c.centre).cross(force);
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  const double qa = 0.5 * fluid.parameters().density * c.speed * c.speed * c.area;
+  return {sums[0].dot(c.drag.normalized()) / qa, sums[0].dot(c.lift.normalized()) / qa,
+          sums[1].dot(c.axis.normalized()) / (qa * c.length)};
+}
+
+template <int D>
+EnergyBudget energy_budget(const Fluid<D>& fluid) {
+  const Mesh& mesh = fluid.mesh();
+  const State<D>& s = fluid.state();
+  const Placement<D>& at = *s.placement;
+  const double rho = fluid.parameters().density, mu = fluid.parameters().viscosity;
+  double sums[4] = {};
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) sums[0] += 0.5 * rho * at.volume[c] * s.u[c].squaredNorm();
+  const bool before = s.u_old.size() == s.u.size();
+  for (Index c = 0; s.pressure[0] && c < mesh.cells.n_owned(); ++c) {
+    const Vec<D> middle = before ? Vec<D>(0.5 * (s.u[c] + s.u_old[c])) : s.u[c];
+    sums[3] += at.volume[c] * s.pressure[0]->gradient[c].dot(middle);
+  }
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const Index p = mesh.owner[f], n = mesh.neighbour[f];
+    const int owned = (p < mesh.cells.n_owned()) + (n < mesh.cells.n_owned());  // shared by two ranks: half
+    sums[1] += 0.5 * owned * mu * at.conductance[f] * (s.u[n] - s.u[p]).squaredNorm();
+  }
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+    sums[1] +=
+        mu * at.conductance[f] * (s.u_boundary[f - mesh.n_interior] - s.u[mesh.owner[f]]).squaredNorm();
+  if (!s.eddy.empty()) {
+    std::vector<Tensor<D>> gradient;
+    velocity_gradient<D>(mesh, at, s.u, s.u_boundary, gradient);
+    for (Index f = 0; f < mesh.n_interior; ++f) {
+      const Index p = mesh.owner[f], n = mesh.neighbour[f];
+      const int owned = (p < mesh.cells.n_owned()) + (n < mesh.cells.n_owned());
+      sums[2] += 0.5 * owned * rho * eddy_stress<D>(at, s, gradient, f, p, n).dot(s.u[n] - s.u[p]);
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 4, MPI_DOUBLE, MPI_SUM, mesh.comm);
+  return {sums[0], sums[1], sums[2], sums[3]};
+}
+
+template std::vector<double> vorticity<2>(const std::vector<Tensor<2>>&);
+template std::vector<double> vorticity<3>(const std::vector<Tensor<3>>&);
+template std::vector<double> q_criterion<2>(const std::vector<Tensor<2>>&);
+template std::vector<double> q_criterion<3>(const std::vector<Tensor<3>>&);
+template std::vector<std::array<double, 2>> wall_units<2>(const Fluid<2>&);
+template std::vector<std::array<double, 2>> wall_units<3>(const Fluid<3>&);
+template WallSummary summarise_wall<2>(const Fluid<2>&, const Patch&);
+template WallSummary summarise_wall<3>(const Fluid<3>&, const Patch&);
+template Coefficients force_coefficients<2>(const Fluid<2>&, const CoefficientParameters&);
+template Coefficients force_coefficients<3>(const Fluid<3>&, const CoefficientParameters&);
+template EnergyBudget energy_budget<2>(const Fluid<2>&);
+template EnergyBudget energy_budget<3>(const Fluid<3>&);
+
+}  // namespace couplet::fluid

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "fluid_solver/step/fluid.hpp"
+
+namespace couplet::fluid {
+
+/// curl u per local cell from its gradients [1/s]: one value in 2-D, three in 3-D.
+template <int D>
+std::vector<double> vorticity(const std::vector<Tensor<D>>& gradient);
+/// Q = (|W|^2 - |S|^2)/2 = -g:g^T/2 for a divergence-free field, per local cell [1/s^2].
+template <int D>
+std::vector<double> q_criterion(const std::vector<Tensor<D>>& gradient);
+
+/// Wall shear and the distance of the first cell in wall units, y+ = y (tau/rho)^(1/2) / nu, y from the
+/// cell's centre straight to the wall, tau the mean over the last step.
+struct WallSummary {
+  double largest_shear = 0, mean_shear = 0;  ///< [Pa]; mean over the area
+  double largest_yplus = 0, mean_yplus = 0;
+};
+/// Collective.
+template <int D>
+WallSummary summarise_wall(const Fluid<D>& fluid, const Patch& patch);
+/// tau [Pa] and y+ at each boundary face; empty before the first step.
+template <int D>
+std::vector<std::array<double, 2>> wall_units(const Fluid<D>& fluid);
+
+/// Of the moving walls of a mesh at rest the largest sum of |w . S| over the sum of |w| |S|; NaN without such walls, or
+/// before they move. Collective.
+template <int D>
+double through_moving_walls(const Fluid<D>& fluid);
+
+/// Coefficients of drag, lift and moment: sum F.d / (q A), sum F.l / (q A), sum ((x - c) x F).a / (q A L) of
+/// the forces on some walls, means over the last step.
+struct Coefficients {
+  double drag = 0, lift = 0, moment = 0;
+};
+/// Collective.
+template <int D>
+Coefficients force_coefficients(const Fluid<D>& fluid, const CoefficientParameters& parameters);
+
+/// Kinetic energy [J] and what takes it away [W], as the scheme has it: the sum over the faces of mu g |du|^2
+/// (orthogonal part), of the eddies' force times du, and what the pressure takes because the cells' velocity
+/// is not quite free of divergence, the sum of V grad p.u at t^{n+1/2}: the price of no checkerboard (in an
+/// open domain it holds the work at inlets and outlets too). Collective.
+struct EnergyBudget {
+  double kinetic = 0, viscous = 0, eddies = 0, pressure = 0;
+};
+template <int D>
+EnergyBudget energy_budget(const Fluid<D>& fluid);
+
+}  // namespace couplet::fluid

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/io/field_writer.hpp"
+#include "common/io/series.hpp"
+#include "fluid_solver/output/samples.hpp"
+#include "fluid_solver/step/fluid.hpp"
+#include "fluid_solver/turbulence/statistics.hpp"
+
+namespace couplet::fluid {
+
+/// Where a fluid writes to.
+struct FluidContext {
+  std::string name = "fluid";
+  std::filesystem::path output_folder;  ///< empty: nothing is written
+  double restart_time = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, balance.csv, energy.csv,
+/// bodies.csv, probes.csv, sample-NAME.csv. They are opened when first written to.
+template <int D>
+class FluidOutput {
+ public:
+  FluidOutput(const Fluid<D>& fluid, FluidContext context);
+  /// `statistics` may be null.
+  void write_fields(double time, const RunningStatistics<D>* statistics);
+  void write_series(double time);
+  /// Lines and planes. `statistics` may be null. Collective.
+  void write_samples(double time, const RunningStatistics<D>* statistics);
+
+ private:
+  void set_up_points();
+  void write_forces(double time);
+  void write_walls(double time);
+  void write_coefficients(double time);
+  void check_coefficients() const;
+  void write_energy(double time);
+  void write_bodies(double time);
+  void write_gaps(double time);
+  void write_balance(double time);
+  void write_probes(double time);
+  Series open(const std::string& file, const std::vector<std::string>& columns) const;
+
+  const Fluid<D>& fluid_;
+  const Mesh& mesh_;
+  FluidContext context_;
+  bool root_;
+  std::vector<Probe> probes_;
+  std::vector<Sample> samples_;
+  std::optional<PointValues<D>> point_values_;  // only with probes or samples
+  std::vector<const Patch*> walls_;
+  std::optional<FieldWriter> fields_;
+  std::vector<double> divergence_;
+  std::optional<Series> forces_, coefficients_, walls_series_, balance_, energy_, bodies_, gaps_,
+      probe_series_;                                  // on rank 0
+  std::vector<std::optional<Series>> sample_series_;  // one a sample, on rank 0
+};
+
+}  // namespace couplet::fluid

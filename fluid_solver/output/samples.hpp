@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/fv/vertex_interpolation.hpp"
+#include "common/io/probes/probe.hpp"
+#include "fluid_solver/step/fluid.hpp"
+#include "fluid_solver/turbulence/statistics.hpp"
+
+namespace couplet::fluid {
+
+/// Values at mesh points from those in the cells and at the boundary, on the mesh as it is: what probes and
+/// samples are made of.
+template <int D>
+class PointValues {
+ public:
+  explicit PointValues(const Fluid<D>& fluid);
+  /// To be called when the mesh may have moved, before the others. Collective.
+  void follow();
+  /// At the probes' local points: velocity, then pressure of the accepted state. `values`: D + 1 a local point,
+  /// the others are left alone. Collective.
+  void state(std::span<const Probe> probes, std::span<double> values) const;
+  /// The mean velocity, mean pressure, rms of velocity, of pressure: 2 (D + 1) a local point. Collective.
+  void means(const RunningStatistics<D>& statistics, std::span<const Probe> probes,
+             std::span<double> values) const;
+
+ private:
+  using Flat = std::span<const double>;
+  void fill(std::span<const Probe> probes, Flat cell_velocity, Flat face_velocity, Flat cell_pressure,
+            Flat face_pressure, std::span<double> values, int stride, int offset) const;
+  const Fluid<D>& fluid_;
+  VertexInterpolation interpolation_;
+};
+
+/// The places of a line or plane that lie in the mesh.
+class Sample {
+ public:
+  /// Throws Error if none does. Collective.
+  Sample(const Mesh& mesh, std::string name, const SampleParameters& parameters);
+  const std::string& name() const { return name_; }
+  const std::vector<Probe>& probes() const { return probes_; }
+  /// Of each probe: how far along from-to and from-up, 0 to 1.
+  const std::vector<std::array<double, 2>>& along() const { return along_; }
+  /// Values at each probe from those at local points, `components` each, on rank 0; empty elsewhere. Collective.
+  std::vector<double> gather(MPI_Comm comm, std::span<const double> at_points, int components) const;
+
+ private:
+  std::string name_;
+  std::vector<Probe> probes_;
+  std::vector<std::array<double, 2>> along_;
+};
+
+}  // namespace couplet::fluid

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/effects/choice.hpp"
+#include "common/effects/expected.hpp"
+#include "common/mesh/gmsh/mesh_facts.hpp"
+#include "fluid_solver/parameters/parameters.hpp"
+
+namespace couplet::fluid {
+
+/// `effects: auto` of a fluid: its dimension, laminar or large-eddy, how the viscous term is stepped, and whether the mesh moves.
+/// The speed is the largest that boundaries, profiles and the start name; the Reynolds number stands on the smallest side of
+/// the mesh's box.
+std::vector<EffectChoice> choose_effects(const FluidParameters& parameters, const MeshFacts& mesh,
+                                         const ChoiceScene& scene);
+
+/// By the numbers of configs/cavity and taylor-green-3d on one rank.
+ExpectedCost expected_cost(const FluidParameters& parameters, const MeshFacts& mesh);
+
+}  // namespace couplet::fluid

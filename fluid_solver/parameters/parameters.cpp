@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/parameters/parameters.hpp"
+
+#include "common/config/pairs.hpp"
+#include "common/mesh/periodic_points.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+void declare_ramp(config::Section& s, BoundaryParameters& b) {
+  s.value("ramp", b.ramp)
+      .unit("s")
+      .plausible(1e-12, 1e10)
+      .positive()
+      .doc("the velocity grows from 0 as (1 - cos(pi t/ramp))/2 until t = ramp; absent: no ramp");
+}
+
+void declare_rotation(config::Section& r, RotationParameters& rotation) {
+  r.value("speed", rotation.speed)
+      .unit("rad/s")
+      .plausible(1e-6, 1e6)
+      .required()
+      .doc("expression of t [s] in rad/s; where there is a ramp, it holds for it, too");
+  r.value("centre", rotation.centre).unit("m").plausible(1e-9, 1e4).doc("a point of the axis");
+  r.value("axis", rotation.axis).size(3).doc("3-D; a plane scene turns about z");
+  r.check([&rotation] { return rotation.axis.norm() > 0 ? std::string() : "'axis' must not be zero"; },
+          "axis");
+}
+
+/// Velocity from a file, and a rotation besides.
+void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
+  s.optional_section<VelocityTableParameters>(
+      "table", b.table,
+      [](config::Section& t, VelocityTableParameters& table) {
+        t.value("file", table.file)
+            .required()
+            .doc(
+                "CSV file beside the case; its first line names the columns: some of x, y, z [m], t [s], and u, v, w "
+                "[m/s]; its lines are a full grid, linear in between");
+        t.choice("outside", table.outside,
+                 {{"error", GridTable::Outside::error}, {"clamp", GridTable::Outside::clamp}})
+            .doc("where a value beyond the ends is needed: error, or clamp (the ends hold)");
+      },
+      "velocity from a file instead of 'velocity'");
+  s.optional_section<RotationParameters>(
+      "rotation", b.rotation, declare_rotation,
+      "omega x (r - centre) besides the other velocity: a rotating inlet or wall; absent: none");
+}
+
+void declare_inlet(config::Section& s, BoundaryParameters& b) {
+  s.value("velocity", b.velocity)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("one expression of x, y, z [m] and t [s] a component");
+  s.value("mean-speed", b.mean_speed)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("instead of a velocity: mean speed straight into the domain, an expression of t [s]");
+  s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
+      .doc("of mean-speed; parabolic: zero at the rim of the patch, a straight line in 2-D, a disc in 3-D");
+  declare_ramp(s, b);
+  declare_table_and_rotation(s, b);
+  s.check(
+      [&b] {
+        const int given = !b.velocity.empty() + b.mean_speed.has_value() + b.table.has_value();
+        if (given != 1) return std::string("give either 'velocity', 'mean-speed' or 'table'");
+        if (b.profile == InletProfile::parabolic && !b.mean_speed)
+          return std::string(
+              "'profile: parabolic' is that of 'mean-speed'; give 'mean-speed' in place of the other, or leave 'profile' out");
+        return std::string();
+      },
+      "type");
+}
+
+void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
+  s.value("velocity", b.velocity)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("one expression of x, y, z [m] and t [s] a component");
+  declare_ramp(s, b);
+  declare_table_and_rotation(s, b);
+  s.check(
+      [&b] {
+        if (!b.velocity.empty() && b.table) return std::string("give either 'velocity' or 'table'");
+        if (b.velocity.empty() && !b.table && !b.rotation)
+          return std::string("give 'velocity', 'table' or 'rotation'");
+        return std::string();
+      },
+      "type");
+}
+
+void declare_outlet(config::Section& s, BoundaryParameters& b) {
+  s.value("pressure", b.pressure).unit("Pa").plausible(1e-9, 1e11).doc("expression of x, y, z [m] and t [s]");
+  s.value("backflow-stabilisation", b.backflow_stabilisation)
+      .doc("fluid that comes in here brings no kinetic energy along; without it strong backflow may grow");
+}
+
+void declare_boundary(config::Section& s, BoundaryParameters& b) {
+  using config::Section;
+  const auto nothing = [](Section&) {};
+  s.variant(
+      "type", b.type,
+      {{"inlet", BoundaryType::inlet, [&b](Section& v) { declare_inlet(v, b); }},
+       {"outlet", BoundaryType::outlet, [&b](Section& v) { declare_outlet(v, b); }},
+       {"convective-outlet", BoundaryType::convective_outlet, nothing},
+       {"no-slip", BoundaryType::no_slip, nothing},
+       {"moving-wall", BoundaryType::moving_wall, [&b](Section& v) { declare_moving_wall(v, b); }},
+       {"slip", BoundaryType::slip, nothing},
+       {"symmetry", BoundaryType::symmetry, nothing},
+       {"periodic", BoundaryType::periodic,
+        [&b](Section& v) {
+          v.value("partner", b.partner).required().doc("the patch that is the translated copy of this one");
+        }},
+       {"interface", BoundaryType::interface,
+        [&b](Section& v) {
+          v.value("surface-density", b.surface_density)
+              .unit("kg/m^2")
+              .plausible(1e-6, 1e6)
+              .positive()
+              .doc(
+                  "mass per area of the structure behind it: its answer is then foreseen in the pressure equation "
+                  "(Robin condition), with `coupling.order: structure-first`; a solid's density times its thickness, or "
+                  "less: too little costs passes, too much may diverge; absent: the wall moves as the coupling says");
+          v.choice("impedance", b.impedance,
+                   {{"given", Impedance::given}, {"structure", Impedance::structure}})
+              .doc(
+                  "who says it: given: `surface-density`, if there is one; structure: the structure itself, for each face "
+                  "(solid_solver with `interface: {surface-density: true}`, plate_modal with `surface-density: true`, or any "
+                  "program that gives 'surface-density' [kg/m^2] at its faces)");
+          v.check(
+              [&b] {
+                return b.surface_density && b.impedance == Impedance::structure
+                           ? "the structure says it: leave 'surface-density' out"
+                           : "";
+              },
+              "impedance");
+        }},
+       {"body", BoundaryType::body, nothing}},
+      "inlet: given velocity; outlet: given pressure; convective-outlet: what is there moves out with the "
+      "mean outflow speed, its mean pressure is 0; no-slip: wall at rest; moving-wall: wall with a given "
+      "velocity; slip, symmetry: no flow through, no friction; periodic: what leaves here enters at the "
+      "partner; interface: wall that moves with the structure; body: wall that moves as 'motion' says",
+      true);
+}
+
+}  // namespace
+
+std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters) {
+  std::map<std::string, std::string> partner_of;
+  for (const auto& [name, b] : parameters.boundaries)
+    if (b.type == BoundaryType::periodic) partner_of[name] = b.partner;
+  return periodic_pairs(partner_of);
+}
+
+namespace {
+
+void declare_gap(config::Section& s, GapParameters& gap) {
+  s.value("between", gap.between).required().doc("the two walls (patches), a valve and its seat");
+  s.value("opening", gap.opening)
+      .unit("m")
+      .plausible(1e-8, 10)
+      .positive()
+      .required()
+      .doc("cells where the walls are nearer to each other than this are blocked");
+  s.check(
+      [&gap] {
+        const bool two = gap.between.size() == 2 && gap.between[0] != gap.between[1];
+        return two ? std::string() : "names two different patches";
+      },
+      "between");
+}
+
+}  // namespace
+
+void declare(config::Section& s, FluidParameters& p) {
+  s.value("mesh", p.mesh).required().doc("mesh file, .msh or .geo, relative to the case's folder");
+  s.value("mesh-scale", p.mesh_scale)
+      .positive()
+      .doc(
+          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
+  s.value("mesh-parameters", p.mesh_parameters)
+      .doc("numbers for names that the .geo defines by DefineConstant: {n: 8}");
+  s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D scene is 1 m deep");
+  s.value("density", p.density).unit("kg/m^3").plausible(0.01, 25000).positive().required().doc("density");
+  s.value("viscosity", p.viscosity)
+      .unit("Pa s")
+      .plausible(1e-6, 1e6)
+      .not_negative()
+      .required()
+      .doc("dynamic viscosity");
+  s.doubt([&p] { return config::doubt_of_kinematic_viscosity(p.viscosity, p.density); }, "viscosity");
+  s.map<BoundaryParameters>("boundaries", p.boundaries, declare_boundary, "patch",
+                            "what happens at each patch of the mesh; every patch needs an entry");
+  s.value("time-step", p.time_step)
+      .unit("s")
+      .plausible(1e-12, 1e10)
+      .positive()
+      .doc(
+          "largest step of the fluid itself; a coupling step is cut into equal parts not larger than it. "
+          "Absent: "
+          "the stability limit");
+  s.value("safety-factor", p.safety_factor)
+      .range(0.05, 1)
+      .doc("part of the stability limit that is used when time-step is absent");
+  s.choice("viscous", p.viscous,
+           {{"auto", ViscousTreatment::automatic},
+            {"explicit", ViscousTreatment::explicit_},
+            {"implicit", ViscousTreatment::implicit}})
+      .doc(
+          "time scheme of the viscous term; auto: implicit where its explicit stability limit would cost "
+          "clearly "
+          "more steps;");
+  s.value("implicit-stretch", p.implicit_stretch)
+      .range(1, 1e6)
+      .doc(
+          "largest step with an implicit viscous term, in limits of the explicit one: bounds it by accuracy, since the "
+          "second order of the implicit term shows where nu dt / h^2 is about 1 or less only (4 gives it on the flap); "
+          "absent: by stability alone, which is cheaper");
+  s.check(
+      [&p] {
+        return p.implicit_stretch && p.viscous == ViscousTreatment::explicit_
+                   ? "it bounds steps with an implicit viscous term, and 'viscous' is explicit; remove it"
+                   : "";
+      },
+      "implicit-stretch");
+  s.value("pressure-tolerance", p.pressure_tolerance)
+      .range(1e-14, 1e-1)
+      .doc(
+          "of the pressure equation, relative to the divergence of the predicted velocity; a coupled run "
+          "needs about "
+          "1e-4 of the coupling tolerance");
+  s.value("initial-velocity", p.initial_velocity)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("one expression of x, y, z [m] a component; made divergence-free at the start. Absent: at rest");
+  s.value("initial-pressure", p.initial_pressure)
+      .unit("Pa")
+      .plausible(1e-9, 1e11)
+      .doc("expression of x, y, z [m]; a first guess only");
+  s.value("body-force", p.body_force)
+      .unit("m/s^2")
+      .plausible(1e-4, 1e6)
+      .doc("force per mass, one expression of x, y, z [m] and t [s] a component; absent: none");
+  s.choice(
+       "scheme", p.scheme,
+       {{"adams-bashforth", ExplicitScheme::adams_bashforth}, {"runge-kutta", ExplicitScheme::runge_kutta}})
+      .doc(
+          "time scheme of the explicit terms; runge-kutta: three stages with a projection each, steps 2.5 "
+          "times as "
+          "long for three times the work, explicit viscous term, mesh at rest");
+  s.choice("projection", p.projection,
+           {{"flux-memory", Projection::flux_memory},
+            {"incremental", Projection::incremental},
+            {"non-incremental", Projection::non_incremental}})
+      .doc(
+          "what becomes of the difference between face fluxes and averaged cell velocities; flux-memory: "
+          "kept "
+          "from step to step and evened out by friction and convection, robust, steady loads do not depend "
+          "on "
+          "the step; incremental: only the change of the pressure makes it, second order in time and the "
+          "least "
+          "loss of kinetic energy, but pressure noise is not damped; non-incremental: new in each step, "
+          "first "
+          "order in time");
+  s.choice("volume-level", p.volume_level,
+           {{"none", VolumeLevelBy::nobody}, {"structure", VolumeLevelBy::structure}})
+      .doc(
+          "of a fluid without an outlet whose interface is a wall of its cavity: who sets the pressure level that "
+          "holds its volume; none: such a fluid is refused; structure: the coupler finds the level from the "
+          "structure's answer to a pressure (coupler/volume.csv); the fluid's own pressures keep the mean zero");
+  s.map<BodyParameters>(
+      "bodies", p.bodies,
+      [](config::Section& b, BodyParameters& body) {
+        b.value("level", body.level)
+            .unit("m")
+            .plausible(1e-9, 1e4)
+            .required()
+            .doc(
+                "expression of x, y, z [m] and t [s]: below zero inside, near the surface about the distance "
+                "to it");
+        b.value("velocity", body.velocity)
+            .unit("m/s")
+            .plausible(1e-9, 1e4)
+            .doc(
+                "one expression of x, y, z [m] and t [s] a component, that of the motion which level "
+                "describes; "
+                "absent: at rest");
+      },
+      "body", "rigid bodies in a mesh that does not know them; needs an outlet and a mesh at rest");
+  s.map<GapParameters>(
+      "gaps", p.gaps, declare_gap, "gap",
+      "gaps that nearly close as the mesh moves: their cells let nothing through, take no part in "
+      "the size of the step, and open again");
+  s.optional_section<MotionParameters>(
+      "motion", p.motion,
+      [](config::Section& m, MotionParameters& motion) { couplet::declare(m, motion, true); },
+      "prescribed motion of the mesh, of all of it or about a body, without a mesh mover; it starts from the "
+      "reference configuration; absent: none");
+  s.optional_section<RotationParameters>(
+      "rotating-frame", p.rotating_frame, declare_rotation,
+      "a frame that turns: the mesh rests in it, all velocities are relative to it, and Coriolis, centrifugal and Euler "
+      "forces act; absent: none");
+  s.optional_section<TurbulenceParameters>(
+      "turbulence", p.turbulence,
+      [](config::Section& t, TurbulenceParameters& turbulence) {
+        t.choice("model", turbulence.model,
+                 {{"smagorinsky", TurbulenceModel::smagorinsky}, {"wale", TurbulenceModel::wale}})
+            .doc("wale: no eddy viscosity in pure shear, right at walls; smagorinsky: the classic");
+        t.value("constant", turbulence.constant)
+            .positive()
+            .doc("of the model, times the cell's width; absent: 0.325 (wale), 0.17 (smagorinsky)");
+      },
+      "eddy viscosity of the scales that the mesh does not resolve; absent: none");
+  s.optional_section<StatisticsParameters>(
+      "statistics", p.statistics,
+      [](config::Section& t, StatisticsParameters& statistics) {
+        t.value("start", statistics.start)
+            .unit("s")
+            .plausible(1e-12, 1e10)
+            .not_negative()
+            .doc("time from which on means are taken");
+      },
+      "time means of velocity and pressure, their fluctuations and Reynolds stresses in the field output");
+  s.optional_section<CompressibilityParameters>(
+      "compressibility", p.compressibility,
+      [](config::Section& c, CompressibilityParameters& known) { declare(c, known); },
+      "what is known of the fluid's compressibility, by which a run judges whether neglecting it was right; absent: the speed of "
+      "sound of a gas at 1 atm or of a liquid, where density and viscosity are of such");
+  s.section(
+      "output", [&p](config::Section& o) { declare_output(o, p.output); },
+      "what is written beyond velocity, pressure, forces and balance");
+  s.map<ProbeParameters>(
+      "probes", p.probes,
+      [](config::Section& q, ProbeParameters& probe) {
+        q.value("point", probe.point)
+            .unit("m")
+            .plausible(1e-9, 1e4)
+            .required()
+            .doc("place in the reference configuration");
+      },
+      "probe", "points whose velocity and pressure are written after each step");
+}
+
+}  // namespace couplet::fluid

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/section.hpp"
+#include "common/fv/grid_table.hpp"
+#include "common/fv/prescribed_motion.hpp"
+#include "fluid_solver/parameters/sound.hpp"
+
+namespace couplet::fluid {
+
+enum class BoundaryType {
+  inlet,
+  outlet,
+  convective_outlet,
+  no_slip,
+  moving_wall,
+  slip,
+  symmetry,
+  periodic,
+  interface,
+  body
+};
+/// No-slip wall, whoever gives its velocity.
+inline bool is_wall(BoundaryType type) {
+  return type == BoundaryType::no_slip || type == BoundaryType::moving_wall ||
+         type == BoundaryType::interface || type == BoundaryType::body;
+}
+enum class InletProfile { uniform, parabolic };
+enum class ViscousTreatment { automatic, explicit_, implicit };
+/// Of the explicit terms: Adams-Bashforth of two levels, or Heun's Runge-Kutta of three stages.
+enum class ExplicitScheme { adams_bashforth, runge_kutta };
+/// How the face fluxes follow the cells' velocities from step to step.
+enum class Projection { flux_memory, incremental, non_incremental };
+
+/// Velocities in a file, see GridTable: columns u, v (and w) over some of x, y, z, t.
+struct VelocityTableParameters {
+  std::string file;
+  GridTable::Outside outside = GridTable::Outside::error;
+};
+
+/// omega(t) a x (x - c), besides the other velocity.
+struct RotationParameters {
+  config::ExpressionText speed;                      // [rad/s], of t
+  Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();  // [m]
+};
+
+/// Who says what mass per area stands behind an interface of type Robin.
+enum class Impedance { given, structure };
+
+/// Who sets the pressure level, and so holds the volume, of a fluid without an outlet.
+enum class VolumeLevelBy { nobody, structure };
+
+struct BoundaryParameters {
+  BoundaryType type = BoundaryType::no_slip;
+  std::vector<config::ExpressionText> velocity;      // [m/s], inlet and moving wall
+  std::optional<VelocityTableParameters> table;      // instead of velocity; inlet and moving wall
+  std::optional<RotationParameters> rotation;        // inlet and moving wall
+  std::optional<config::ExpressionText> mean_speed;  // [m/s] into the domain, of t; inlet
+  InletProfile profile = InletProfile::uniform;      // of mean_speed
+  std::optional<double> ramp;                        // [s], inlet and moving wall
+  config::ExpressionText pressure;                   // [Pa], outlet
+  bool backflow_stabilisation = true;                // outlet
+  std::string partner;                               // periodic
+  std::optional<double> surface_density;             // [kg/m^2], interface: of the structure behind it
+  Impedance impedance = Impedance::given;            // interface
+  /// The wall's answer is foreseen in the pressure equation.
+  bool foresees() const { return surface_density || impedance == Impedance::structure; }
+};
+
+enum class TurbulenceModel { smagorinsky, wale };
+
+/// Large-eddy simulation; absent: no model, no cost.
+struct TurbulenceParameters {
+  TurbulenceModel model = TurbulenceModel::wale;
+  std::optional<double> constant;  // by default the usual one of the model
+  double constant_of() const { return constant.value_or(model == TurbulenceModel::wale ? 0.325 : 0.17); }
+};
+
+/// A rigid body inside the mesh.
+struct BodyParameters {
+  config::ExpressionText level;                  // [m], below zero inside
+  std::vector<config::ExpressionText> velocity;  // [m/s]; empty: at rest
+};
+
+/// Two walls between which nothing passes where they are nearer than `opening`.
+struct GapParameters {
+  std::vector<std::string> between;
+  double opening = 0;  // [m]
+};
+
+/// Running means from a time on; absent: none.
+struct StatisticsParameters {
+  double start = 0;  // [s]
+};
+
+/// Force and moment coefficients of some walls together.
+struct CoefficientParameters {
+  std::vector<std::string> patches;
+  double speed = 1, area = 1, length = 1;  // [m/s], [m^2] (2-D: m of depth 1 m), [m]
+  Vec3 drag = Vec3::UnitX(), lift = Vec3::UnitY(), axis = Vec3::UnitZ(), centre = Vec3::Zero();
+};
+
+/// Places where velocity and pressure are written at each output: a line (one side) or a plane (two).
+struct SampleParameters {
+  enum class Type { line, plane };
+  Type type = Type::line;
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();  // [m]; of a plane: two corners, the third is `up`
+  Vec3 up = Vec3::Zero();                       // [m]
+  int points = 101, rows = 21;                  // along from-to; along from-up
+};
+
+/// Fields and series beyond velocity, pressure, forces and balance.
+struct FluidOutputParameters {
+  bool vorticity = false, q_criterion = false, energy_budget = false, walls = false;
+  std::map<std::string, CoefficientParameters> coefficients;
+  std::map<std::string, SampleParameters> samples;
+};
+
+struct ProbeParameters {
+  Vec3 point = Vec3::Zero();  // [m]
+};
+
+struct FluidParameters {
+  std::string mesh;
+  std::map<std::string, double> mesh_parameters;
+  double mesh_scale = 1;
+  int dimension = 3;
+  double density = 0;    // [kg/m^3]
+  double viscosity = 0;  // dynamic [Pa s]
+  std::map<std::string, BoundaryParameters> boundaries;
+  std::optional<double> time_step;  // [s]; empty: by the stability limit
+  double safety_factor = 0.8;
+  ViscousTreatment viscous = ViscousTreatment::automatic;
+  std::optional<double>
+      implicit_stretch;  // largest implicit sub-step over the explicit limit; empty: no such bound
+  double pressure_tolerance = 1e-6;
+  std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
+  config::ExpressionText initial_pressure;               // [Pa]
+  std::vector<config::ExpressionText> body_force;        // [m/s^2]; empty: none
+  std::optional<TurbulenceParameters> turbulence;
+  std::optional<StatisticsParameters> statistics;
+  FluidOutputParameters output;
+  std::map<std::string, BodyParameters> bodies;
+  std::map<std::string, GapParameters> gaps;
+  std::optional<MotionParameters> motion;            // of the mesh; absent: none
+  std::optional<RotationParameters> rotating_frame;  // that mesh and velocities are seen from; absent: none
+  ExplicitScheme scheme = ExplicitScheme::adams_bashforth;
+  Projection projection = Projection::flux_memory;
+  VolumeLevelBy volume_level = VolumeLevelBy::nobody;
+  std::optional<CompressibilityParameters> compressibility;  // by what it is judged; absent: by the density
+  std::map<std::string, ProbeParameters> probes;
+};
+
+/// Pairs of periodic patches. Throws Error if two patches do not name each other.
+std::vector<std::array<std::string, 2>> periodic_patches(const FluidParameters& parameters);
+
+void declare(config::Section& section, FluidParameters& parameters);
+/// The section `output`.
+void declare_output(config::Section& section, FluidOutputParameters& parameters);
+
+}  // namespace couplet::fluid

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/parameters/sound.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/base/text.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+constexpr double gas_constant = 8.314462618;  // [J/(mol K)]
+constexpr double room = 293.15, atmosphere = 101325;
+
+struct Gas {
+  const char* name;
+  double molar_mass, heat_capacity_ratio;  // [kg/mol], at 20 degC
+};
+constexpr std::array gases{Gas{"air", 0.028965, 1.400},      Gas{"nitrogen", 0.028013, 1.400},
+                           Gas{"oxygen", 0.031999, 1.395},   Gas{"argon", 0.039948, 1.667},
+                           Gas{"helium", 0.0040026, 1.667},  Gas{"hydrogen", 0.002016, 1.405},
+                           Gas{"methane", 0.016043, 1.306},  Gas{"carbon-dioxide", 0.044010, 1.289},
+                           Gas{"ammonia", 0.017031, 1.31},   Gas{"propane", 0.044097, 1.13},
+                           Gas{"isobutane", 0.058122, 1.10}, Gas{"r134a", 0.10203, 1.11},
+                           Gas{"sf6", 0.14606, 1.095},       Gas{"steam", 0.018015, 1.33}};
+
+struct Liquid {
+  const char* name;
+  double speed_of_sound;  // [m/s], at 20 degC
+};
+constexpr std::array liquids{Liquid{"water", 1482},    Liquid{"sea-water", 1522}, Liquid{"ethanol", 1160},
+                             Liquid{"glycerol", 1920}, Liquid{"oil", 1430},       Liquid{"mercury", 1450}};
+
+/// Marczak (1997), 0 to 95 degC.
+double of_water(double t) {
+  constexpr std::array c{1402.385, 5.038813, -5.799136e-2, 3.287156e-4, -1.398845e-6, 2.787860e-9};
+  double speed = 0;
+  for (std::size_t i = c.size(); i-- > 0;) speed = speed * t + c[i];
+  return speed;
+}
+
+Sound of_substance(const CompressibilityParameters& p) {
+  const double t = p.temperature.value_or(room), celsius = t - 273.15;
+  const std::string name = fmt::format("{} at {:.3g} degC", p.substance, celsius);
+  for (const Gas& gas : gases)
+    if (p.substance == gas.name) {
+      const double gamma = p.heat_capacity_ratio.value_or(gas.heat_capacity_ratio);
+      return {std::sqrt(gamma * gas_constant * t / gas.molar_mass), name};
+    }
+  if (p.substance == "water" && celsius > 0 && celsius < 95) return {of_water(celsius), name};
+  const auto liquid =
+      std::ranges::find(liquids, p.substance, [](const Liquid& l) { return std::string(l.name); });
+  return {liquid->speed_of_sound, p.substance};
+}
+
+/// At 1 atm c^2 = gamma p / rho needs no name: gamma is that of the gas whose density at 20 degC is the nearest.
+Sound of_gas(double density, double pressure, std::optional<double> gamma) {
+  const auto apart = [&](const Gas& gas) {
+    return std::abs(std::log(density * gas_constant * room / (pressure * gas.molar_mass)));
+  };
+  const Gas& nearest = *std::ranges::min_element(gases, {}, apart);
+  const double ratio = gamma.value_or(apart(nearest) < 0.1 ? nearest.heat_capacity_ratio : 1.3);
+  return {std::sqrt(ratio * pressure / density),
+          fmt::format("a gas of {:.3g} kg/m^3 at {:.4g} kPa", density, 1e-3 * pressure)};
+}
+
+}  // namespace
+
+std::vector<std::string> substances() {
+  std::vector<std::string> names;
+  for (const Gas& gas : gases) names.push_back(gas.name);
+  for (const Liquid& liquid : liquids) names.push_back(liquid.name);
+  return names;
+}
+
+void declare(config::Section& s, CompressibilityParameters& p) {
+  s.value("speed-of-sound", p.speed_of_sound).unit("m/s").plausible(10, 2e4).positive().doc("of the fluid");
+  s.value("substance", p.substance)
+      .doc("instead: a gas or liquid whose speed of sound is known: " + join(substances()));
+  s.value("temperature", p.temperature)
+      .unit("K")
+      .plausible(70, 5000)
+      .positive()
+      .doc("of the substance, absolute (20 degC or 293.15 K); absent: 20 degC");
+  s.value("pressure", p.pressure)
+      .unit("Pa")
+      .plausible(1, 1e10)
+      .positive()
+      .doc(
+          "instead: absolute pressure of a gas; the speed of sound is sqrt(heat-capacity-ratio pressure/density)");
+  s.value("heat-capacity-ratio", p.heat_capacity_ratio)
+      .range(1, 2)
+      .doc("of a gas; absent: of the substance, or of the gas with the nearest density");
+  s.value("upstream-volume", p.upstream_volume)
+      .unit("m^3")
+      .plausible(1e-15, 1e6)
+      .not_negative()
+      .doc(
+          "fluid before the inlets that the mesh does not have (a plenum, a cylinder); it is compressed by the pressure at the "
+          "inlets. In 2-D per metre of depth");
+  s.check(
+      [&p]() -> std::string {
+        if (p.substance.empty()) return p.temperature ? "'temperature' needs a 'substance'" : "";
+        const std::vector<std::string> known = substances();
+        if (std::ranges::count(known, p.substance) == 0)
+          return fmt::format("unknown substance '{}'. {}", p.substance,
+                             did_you_mean(p.substance, known, "substances"));
+        return p.speed_of_sound || p.pressure ? "give one of 'speed-of-sound', 'substance' and 'pressure'"
+                                              : "";
+      },
+      "substance");
+  s.check(
+      [&p] {
+        return p.speed_of_sound && p.pressure ? "give one of 'speed-of-sound', 'substance' and 'pressure'"
+                                              : "";
+      },
+      "pressure");
+}
+
+std::optional<Sound> sound_of(const std::optional<CompressibilityParameters>& given, double density,
+                              double viscosity) {
+  const CompressibilityParameters p = given.value_or(CompressibilityParameters{});
+  if (p.speed_of_sound) return Sound{*p.speed_of_sound, "the fluid"};
+  if (!p.substance.empty()) return of_substance(p);
+  if (p.pressure) return of_gas(density, *p.pressure, p.heat_capacity_ratio);
+  // Gases of any temperature have 5e-6 to 1e-4 Pa s; a fluid as light and more viscous is a model.
+  if (density > 0.02 && density < 50 && viscosity > 5e-6 && viscosity < 1e-4)
+    return of_gas(density, atmosphere, p.heat_capacity_ratio);
+  if (density > 900 && density < 1100) return Sound{1482, "water"};
+  if (density > 500) return Sound{1200, "a liquid"};
+  return {};
+}
+
+}  // namespace couplet::fluid

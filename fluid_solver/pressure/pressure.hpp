@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/io/checkpoint.hpp"
+#include "common/linalg/linear_solver.hpp"
+#include "common/linalg/matrix.hpp"
+#include "fluid_solver/boundary/boundary.hpp"
+#include "fluid_solver/state/placement.hpp"
+
+namespace couplet::fluid {
+
+/// A = -sum_f g (p_N - p_P), and g p_P at faces of given pressure: symmetric, positive (semi-)definite. Faces
+/// of given flux have no entry. The places of the entries are fixed; a moved mesh only refills the values.
+template <int D>
+class PressureEquation {
+ public:
+  /// `fixed`: the mesh rests; nothing is kept for a second set().
+  PressureEquation(const Mesh& mesh, const Boundary<D>& boundary, bool fixed);
+  /// `yields`: walls answer to the pressure with `admittance`, per boundary face [m]. Collective.
+  void set(const Placement<D>& at, bool yields = false, std::span<const double> admittance = {});
+  /// The preconditioner lags behind a matrix that moves: what it was made from, to make it again. A fixed matrix needs
+  /// none of this.
+  void save(CheckpointWriter& file) const;
+  /// What save() saves is what there is now.
+  void accept() { accepted_ = now_; }
+  /// The matrix is then that of the preconditioner: set() has to come before the next solve. Collective.
+  void load(CheckpointReader& file);
+  /// A new preconditioner at the next solve.
+  void refresh() {
+    if (solver_) solver_->refresh();
+  }
+  /// `b`: per owned cell, made compatible here when the domain is closed; `p`: per local cell, guess on
+  /// entry, mean zero in a closed domain (at its convective outlets, if there are any), ghosts current on
+  /// exit. Stops at max(relative |b|, absolute). Collective.
+  SolveStatistics solve(const Placement<D>& at, std::vector<double>& b, std::vector<double>& p,
+                        double relative, double absolute);
+
+ private:
+  void make_pattern();
+  void make_fixed(const Placement<D>& at);
+  /// The pressure is known up to a constant only.
+  bool singular() const { return boundary_.closed() && !yields_; }
+  std::vector<double> diagonal(const Placement<D>& at, std::span<const double> admittance) const;
+  void remove_mean(std::vector<double>& b) const;
+  SolveStatistics solve_or_tell(const Placement<D>& at, std::span<const double> b, std::span<double> p,
+                                double relative, double absolute);
+  const Mesh& mesh_;
+  const Boundary<D>& boundary_;
+  bool fixed_, yields_ = false;
+  bool direct_;  // small 2-D meshes: kept Cholesky factors
+  std::unique_ptr<SparseMatrix> matrix_;
+  std::unique_ptr<LinearSolver> solver_;
+  std::vector<double> coefficients() const;
+  void fill(std::span<const double> coefficients);
+  // Of a moving mesh: the matrix's triplets, and the preconditioner with the coefficients that it was made from: now,
+  // and as the accepted level had it.
+  std::vector<double> values_;
+  struct Lagging {
+    PreconditionerMemory memory;
+    std::shared_ptr<const std::vector<double>> made_from;
+  };
+  Lagging now_, accepted_;
+};
+
+}  // namespace couplet::fluid

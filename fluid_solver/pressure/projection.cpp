@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pressure equation of a fractional step.
+#include "fluid_solver/pressure/projection.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// Absolute goal of the pressure equation relative to the size of the fluxes: below it there is only
+// round-off, on which a relative tolerance would spin (uniform flow, fluid at rest).
+constexpr double flux_floor = 3e-15;
+// A closed domain: share of the boundary fluxes that a moving wall may leave over as an error of
+// discretisation, and the speed below which there is no flow [m/s].
+// What walls that only move along themselves leave over of their speeds is the error of these.
+constexpr double largest_leftover = 0.1, least_speed = 1e-9, round_speed = 1e-6;
+constexpr int oblique_passes = 2, most_oblique_passes = 200;
+constexpr double standing = 1e-3;  // change of the pressure gradient in a pass
+// The first pass only gives the second one the gradient of its non-orthogonal part: what that share of the
+// operator leaves of a looser tolerance.
+constexpr double first_pass_tolerance = 10, loosest_tolerance = 0.5;
+// Up to here two passes of the pressure equation hold after an implicit predictor (measured: 40 hold, 50
+// grow).
+constexpr double largest_degrees = 40;
+
+}  // namespace
+
+template <int D>
+PressureProjection<D>::PressureProjection(StepWork<D>& work, bool moving)
+    : k_(work),
+      pressure_(work.mesh, work.boundary,
+                !moving && work.parameters.bodies.empty() && !work.boundary.yields()) {}
+
+template <int D>
+void PressureProjection<D>::assemble() {
+  const bool same = k_.assembled && (k_.assembled == k_.step.to ||
+                                     (k_.step.to->shape && k_.assembled->shape == k_.step.to->shape));
+  if (same && assembled_yielding_ == k_.step.yields) return;
+  if (k_.oblique) set_obliqueness(*k_.step.to);
+  pressure_.set(k_.pressure_placement(), k_.step.yields, admittance());
+  k_.assembled = k_.step.to;
+  assembled_yielding_ = k_.step.yields;
+}
+
+template <int D>
+void PressureProjection<D>::set_obliqueness(const Placement<D>& at) {
+  k_.degrees = std::atan(max(k_.mesh.comm, at.obliqueness)) * 180 / std::numbers::pi;
+  k_.very_oblique = k_.degrees > largest_degrees;
+}
+
+/// p~ at t^{n+1/2}, the guess of the pressure equation, through the levels at hand (three only where the
+/// solver's noise is small), and the gradient to start the non-orthogonal part with, linear in time through
+/// the last two. With q < 1 its share of the operator, two passes make that z^2 = q^2 (2 z - 1), |z| = q: no
+/// step amplifies it. A parabola would need q < 0.7, a single pass q < 1/3.
+template <int D>
+void PressureProjection<D>::extrapolate_pressure() {
+  const std::size_t order = k_.parameters.pressure_tolerance >= 1e-3 ? 2 : 3;
+  const double t = k_.by.time + k_.step.dt / 2;
+  std::vector<const PressureLevel<D>*> levels;
+  for (std::size_t k = 0; k < order && k_.by.pressure[k]; ++k) levels.push_back(k_.by.pressure[k].get());
+  std::array<double, 3> weight{1, 1, 1};
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    for (std::size_t j = 0; j < levels.size(); ++j)
+      if (j != k) weight[k] *= (t - levels[j]->time) / (levels[k]->time - levels[j]->time);
+  if (levels.size() == 3) {
+    k_.p.resize(k_.mesh.cells.n_local());
+    for (std::size_t c = 0; c < k_.p.size(); ++c)
+      k_.p[c] = weight[0] * levels[0]->p[c] + weight[1] * levels[1]->p[c] + weight[2] * levels[2]->p[c];
+  } else {
+    k_.p.assign(k_.mesh.cells.n_local(), 0.0);
+    for (std::size_t k = 0; k < levels.size(); ++k)
+      for (std::size_t c = 0; c < k_.p.size(); ++c) k_.p[c] += weight[k] * levels[k]->p[c];
+  }
+  k_.gradient_start.clear();
+  if (!k_.oblique || levels.empty()) return;
+  k_.gradient_start = levels[0]->gradient;
+  if (levels.size() < 2 || levels[1]->gradient.empty()) return;
+  const double ahead = (t - levels[0]->time) / (levels[0]->time - levels[1]->time);
+  for (std::size_t c = 0; c < k_.gradient_start.size(); ++c)
+    k_.gradient_start[c] += ahead * (levels[0]->gradient[c] - levels[1]->gradient[c]);
+}
+
+template <int D>
+void PressureProjection<D>::set_boundary_flux(const Vectors<D>& w) {
+  for (std::size_t b = 0; b < w.size(); ++b) {
+    if (k_.boundary.kind()[b] == FaceKind::pressure) continue;
+    if (k_.boundary.kind()[b] == FaceKind::velocity) k_.w[b] = w[b];
+    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
+    k_.phi_p[f] = k_.w[b].dot(k_.step.to->area[f]);
+  }
+  if (k_.boundary.closed() && !k_.step.yields) balance_closed_domain();
+}
+
+// An incompressible fluid without an outlet needs boundary fluxes that add up to nothing. What a moving wall
+// leaves over (discretisation error) is spread over the interface, or over all moving faces, by their area;
+// at a convective outlet what flows in elsewhere has to leave.
+template <int D>
+void PressureProjection<D>::balance_closed_domain() {
+  enum { total, size, adjustable_area, other_area, speeds };
+  double sums[5] = {};
+  for (std::size_t b = 0; b < k_.w.size(); ++b) {
+    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
+    const double area = k_.step.to->area[f].norm();
+    sums[total] += k_.phi_p[f];
+    sums[size] += std::abs(k_.phi_p[f]);
+    sums[speeds] += k_.w[b].norm() * area;
+    sums[k_.boundary.is_adjustable(b) ? adjustable_area : other_area] += area;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, k_.mesh.comm);
+  const bool adjustable = sums[adjustable_area] > 0;
+  // Walls that turn let nothing through but round-off of their speeds.
+  if (!adjustable && std::abs(sums[total]) > std::max(1e-6 * sums[size], 1e-12 * sums[speeds]))
+    throw Error(
+        "The fluid domain is closed, but the given velocities let {:.6g} m^3/s more out than in. Add an "
+        "outlet or "
+        "correct the velocities.",
+        sums[total]);
+  // With a level that holds the volume, or walls that yield to one, only guesses of the wall's motion leave so much over.
+  if (adjustable && !k_.boundary.has_convective_outlet() &&
+      k_.parameters.volume_level == VolumeLevelBy::nobody && !k_.boundary.yields() &&
+      std::abs(sums[total]) > largest_leftover * sums[size] &&
+      std::abs(sums[total]) > round_speed * sums[speeds] &&
+      sums[size] > least_speed * (sums[adjustable_area] + sums[other_area]))
+    throw Error(
+        "The fluid domain is closed: at t = {:.6g} s {:.6g} m^3/s more flow out than in, and neither the "
+        "given velocities "
+        "nor the motion of the interface make up for it. What a pressure level would have to push through "
+        "the interface "
+        "is not computed: give the fluid an outlet (a small one far from the interface will do).",
+        k_.by.time + k_.step.dt, sums[total]);
+  const double correction = sums[total] / (adjustable ? sums[adjustable_area] : sums[other_area]);
+  for (std::size_t b = 0; b < k_.w.size(); ++b) {
+    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
+    if (adjustable && !k_.boundary.is_adjustable(b)) continue;
+    k_.phi_p[f] -= correction * k_.step.to->area[f].norm();
+    if (k_.boundary.is_convective(b)) k_.w[b] -= correction * k_.step.to->area[f].normalized();
+  }
+}
+
+/// phi^p without and with -(dt/rho) grad p~ . k.
+template <int D>
+void PressureProjection<D>::add_oblique_pressure() {
+  const Placement<D>& now = *k_.step.to;
+  const double factor = k_.step.dt / k_.rho;
+  const Placement<D>& around = k_.pressure_placement();
+  k_.phi_p = k_.phi_orthogonal;
+  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+    const double w = now.weight[f];
+    k_.phi_p[f] -=
+        factor * (w * k_.gradient_guess[k_.mesh.owner[f]] + (1 - w) * k_.gradient_guess[k_.mesh.neighbour[f]])
+                     .dot(around.oblique_of(f));
+  }
+  for (std::size_t b = 0; b < k_.w.size(); ++b) {
+    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
+    if (k_.boundary.kind()[b] == FaceKind::pressure)
+      k_.phi_p[f] -= factor * k_.gradient_guess[k_.mesh.owner[f]].dot(now.oblique_of(f));
+  }
+}
+
+/// On an oblique mesh in passes: the gradient in the non-orthogonal part is that of the steps before in the
+/// first, then that of the pass before. Two are enough where no old pressure is in the predictor (|z| = q,
+/// see extrapolate_pressure()) or q is small; an implicit predictor gives the old one back unsmoothed, and
+/// what two passes leave of it grows from about 45 degrees on: there the passes go on until the gradient
+/// stands.
+template <int D>
+void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w) {
+  k_.gradient_guess = k_.gradient_start;
+  const bool to_the_end = k_.oblique && k_.by.implicit && k_.very_oblique;
+  const int passes = to_the_end ? most_oblique_passes : k_.oblique ? oblique_passes : 1;
+  for (int pass = 1; pass <= passes; ++pass) {
+    if (k_.gradient_guess.empty())
+      k_.phi_p = k_.phi_orthogonal;
+    else
+      add_oblique_pressure();
+    const double tolerance = (pass < passes ? first_pass_tolerance : 1) * k_.parameters.pressure_tolerance;
+    solve_pressure(from, w, std::min(tolerance, loosest_tolerance));
+    if (pass == passes && to_the_end)
+      throw SolveFailure(
+          "The non-orthogonal part of the pressure equation did not converge in {} passes at t = {:.6g} s: "
+          "the "
+          "mesh is too oblique, {:.0f} degrees between a face and the line of its cells.",
+          passes, k_.by.time + k_.step.dt, k_.degrees);
+    if (pass == passes) break;
+    if (to_the_end) gradient_before_ = k_.gradient_guess;
+    pressure_gradient(*k_.step.to, k_.p, k_.p_boundary, k_.gradient_guess);
+    for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) k_.gradient_guess[c] /= k_.step.to->volume[c];
+    k_.mesh.cells.update_ghosts(flat<D>(k_.gradient_guess), D);
+    if (to_the_end && pass >= oblique_passes && gradient_stands()) break;
+  }
+}
+
+template <int D>
+bool PressureProjection<D>::gradient_stands() const {
+  double sums[2] = {0, 0};
+  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) {
+    if (!gradient_before_.empty()) sums[0] += (k_.gradient_guess[c] - gradient_before_[c]).squaredNorm();
+    sums[1] += k_.gradient_guess[c].squaredNorm();
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, k_.mesh.comm);
+  return !gradient_before_.empty() && sums[0] <= standing * standing * sums[1];
+}
+
+template <int D>
+void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance) {
+  const Placement<D>& now = *k_.step.to;
+  const double factor = k_.rho / k_.step.dt;
+  set_boundary_flux(w);
+  if (k_.step.yields) foresee_walls(from);
+  k_.p_boundary.resize(w.size());
+  k_.boundary.pressure_at(k_.by.time + k_.step.dt / 2, now.boundary_centre, k_.p_boundary);
+  for (std::size_t b = 0; k_.frame && b < w.size(); ++b)
+    if (k_.boundary.kind()[b] == FaceKind::pressure)
+      k_.p_boundary[b] -= k_.rho * k_.frame->potential(k_.by.time + k_.step.dt / 2, now.boundary_centre[b]);
+  b_.assign(k_.mesh.cells.n_local(), 0.0);
+  double size = 0;
+  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+    b_[k_.mesh.owner[f]] -= factor * k_.phi_p[f];
+    b_[k_.mesh.neighbour[f]] += factor * k_.phi_p[f];
+    size += k_.phi_p[f] * k_.phi_p[f];
+  }
+  for (std::size_t b = 0; b < w.size(); ++b) {
+    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
+    b_[k_.mesh.owner[f]] -= factor * k_.phi_p[f];
+    size += k_.phi_p[f] * k_.phi_p[f];
+    if (k_.boundary.kind()[b] == FaceKind::pressure)
+      b_[k_.mesh.owner[f]] += now.conductance[f] * k_.p_boundary[b];
+  }
+  if (k_.gap_closed()) clear_gaps(b_);
+  if (k_.bodies) {
+    clear_bodies(b_);
+    clear_bodies(k_.p);
+  }
+  b_.resize(k_.mesh.cells.n_owned());
+  const double floor = flux_floor * factor * std::sqrt(sum(k_.mesh.comm, size));
+  const SolveStatistics solved =
+      pressure_.solve(now, b_, k_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()));
+  k_.statistics.pressure_iterations += solved.iterations;
+  if (k_.bodies) fill_pressure_in_bodies();
+  if (k_.step.yields) let_walls_yield();
+  set_boundary_pressure(from, w);
+}
+
+/// Wall: grad p . S = -(rho/dt) (w^{n+1} - w^n).S, the added-mass pressure, exact for a rigidly moving box;
+/// p_b = p_P + (grad p . S - grad p~ . k)/g.
+template <int D>
+void PressureProjection<D>::set_boundary_pressure(const State<D>& from, const Vectors<D>& w) {
+  const Placement<D>& now = *k_.step.to;
+  for (std::size_t b = 0; b < w.size(); ++b) {
+    if (k_.boundary.kind()[b] == FaceKind::pressure) continue;
+    const Index f = k_.mesh.n_interior + static_cast<Index>(b), p = k_.mesh.owner[f];
+    const Vec<D> acceleration = (k_.w[b] - from.w[b]) / k_.step.dt;
+    double normal = -k_.rho * acceleration.dot(now.area[f]);
+    if (!k_.force.empty()) normal += k_.rho * k_.force[p].dot(now.area[f]);
+    if (!k_.gradient_guess.empty()) normal -= k_.gradient_guess[p].dot(now.oblique_of(f));
+    k_.p_boundary[b] = k_.p[p] + normal / now.conductance[f];
+  }
+}
+
+/// sum p_f S per local cell, p_f linear between the cells; on skewed meshes carried on to the face's centre
+/// by the gradient of that: exact for linear p.
+template <int D>
+void PressureProjection<D>::pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
+                                              const std::vector<double>& boundary, Vectors<D>& sum) const {
+  sum.assign(k_.mesh.cells.n_local(), Vec<D>::Zero());
+  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+    const Index o = k_.mesh.owner[f], n = k_.mesh.neighbour[f];
+    const Vec<D> part = (at.weight[f] * p[o] + (1 - at.weight[f]) * p[n]) * at.area[f];
+    sum[o] += part;
+    sum[n] -= part;
+  }
+  for (std::size_t b = 0; b < boundary.size(); ++b) {
+    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
+    sum[k_.mesh.owner[f]] += boundary[b] * at.area[f];
+  }
+  if (k_.gap_closed()) part_from_gaps(at, p, sum);
+  if (!at.skewed()) return;
+  Vectors<D> gradient(sum.size());
+  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c)
+    gradient[c] = at.gradient_cure[c].transpose() * sum[c] / at.volume[c];
+  k_.mesh.cells.update_ghosts(flat<D>(gradient), D);
+  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+    const Vec<D> part = k_.skew_part(at, gradient, f) * at.area[f];
+    sum[k_.mesh.owner[f]] += part;
+    sum[k_.mesh.neighbour[f]] -= part;
+  }
+}
+
+template <int D>
+void PressureProjection<D>::set_gradient(const Placement<D>& at, PressureLevel<D>& level) const {
+  pressure_gradient(at, level.p, level.boundary, level.gradient);
+  for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) level.gradient[c] /= at.volume[c];
+  k_.mesh.cells.update_ghosts(flat<D>(level.gradient), D);
+}
+
+template <int D>
+std::shared_ptr<PressureLevel<D>> PressureProjection<D>::pressure_level() const {
+  auto level = std::make_shared<PressureLevel<D>>();
+  level->time = k_.by.time + k_.step.dt / 2;
+  level->p = k_.p;
+  level->boundary = k_.p_boundary;
+  set_gradient(*k_.step.to, *level);
+  return level;
+}
+
+template <int D>
+void PressureProjection<D>::solve_initial(const Placement<D>& at) {
+  b_.assign(k_.mesh.cells.n_local(), 0.0);
+  double size = 0;
+  for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f) {
+    b_[k_.mesh.owner[f]] -= k_.phi_p[f];
+    if (f < k_.mesh.n_interior) b_[k_.mesh.neighbour[f]] += k_.phi_p[f];
+    size += k_.phi_p[f] * k_.phi_p[f];
+  }
+  if (k_.gap_closed()) clear_gaps(b_);
+  if (k_.bodies) clear_bodies(b_);
+  b_.resize(k_.mesh.cells.n_owned());
+  const double floor = 1e-14 * std::sqrt(sum(k_.mesh.comm, size));
+  pressure_.solve(at, b_, k_.p, std::min(1e-8, k_.parameters.pressure_tolerance),
+                  std::max(floor, std::numeric_limits<double>::min()));
+  if (k_.bodies) fill_pressure_in_bodies();
+}
+
+template class PressureProjection<2>;
+template class PressureProjection<3>;
+
+}  // namespace couplet::fluid

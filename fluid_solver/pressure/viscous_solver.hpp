@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "fluid_solver/boundary/boundary.hpp"
+#include "fluid_solver/state/placement.hpp"
+
+namespace couplet::fluid {
+
+/// Solves  V u + beta sum_f g (u_P - u_f) = b  for all components at once: CG with Jacobi, no matrix, so that
+/// a mesh that moves costs nothing extra. beta = a nu dt [m^2]. The system is well conditioned wherever
+/// convection limits the step.
+template <int D>
+class ViscousSolver {
+ public:
+  ViscousSolver(const Mesh& mesh, const Boundary<D>& boundary) : mesh_(mesh), boundary_(boundary) {}
+  /// The system of the solves that follow. `at` has to stay.
+  void prepare(const Placement<D>& at, double beta);
+  /// Of its diagonal, per owned cell.
+  const std::vector<double>& inverse_diagonal() const { return inverse_diagonal_; }
+  /// `b`: per local cell (owned ones count) without boundary parts; `w`: given velocity per boundary face;
+  /// `u`: guess on entry, with ghosts current on exit. Returns the iterations; throws SolveFailure.
+  /// Collective.
+  int solve(const Vectors<D>& w, double tolerance, Vectors<D>& b, Vectors<D>& u);
+
+ private:
+  void add_boundary(const Vectors<D>& w, Vectors<D>& b) const;
+  void multiply(Vectors<D>& x, Vectors<D>& y) const;
+  const Mesh& mesh_;
+  const Boundary<D>& boundary_;
+  const Placement<D>* at_ = nullptr;
+  double beta_ = 0;
+  Vectors<D> r_, q_, search_;
+  std::vector<double> inverse_diagonal_;
+};
+
+}  // namespace couplet::fluid

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/state/placement.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// Cosine of the angle between S and d below which the over-relaxed coefficient is no longer raised.
+constexpr double least_cosine = 0.05;
+// Skewness, in distances of the cells, below which it is round-off.
+constexpr double least_skewness = 1e-6;
+// A cell whose gradient cannot be cured: too few of its faces say something.
+constexpr double least_determinant = 0.1;
+
+template <int D>
+void set_face(Placement<D>& p, Index f, const Vec<D>& d) {
+  const Vec<D>& s = p.area[f];
+  const double square = s.squaredNorm(), lengths = square * d.squaredNorm();
+  double projected = s.dot(d);
+  if (projected <= 0 || projected * projected < least_cosine * least_cosine * lengths)
+    projected = least_cosine * std::sqrt(lengths);
+  p.conductance[f] = square / projected;
+  p.oblique[f] = s - p.conductance[f] * d;
+  const double oblique = p.oblique[f].squaredNorm();
+  if (oblique > p.obliqueness * p.obliqueness * square) p.obliqueness = std::sqrt(oblique / square);
+}
+
+/// B of each cell. The Gauss gradient takes its values where the weights lead to on the line between the
+/// cells: (1 - w) d from the owner, -w d from the neighbour.
+template <int D>
+void cure_gradients(const Mesh& mesh, Placement<D>& p) {
+  p.gradient_cure.assign(mesh.cells.n_local(), Tensor<D>::Zero());
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const Index o = mesh.owner[f], n = mesh.neighbour[f];
+    const Tensor<D> part =
+        (p.centre[n] + mesh.shift(f).template head<D>() - p.centre[o]) * p.area[f].transpose();
+    p.gradient_cure[o] += (1 - p.weight[f]) * part;
+    p.gradient_cure[n] += p.weight[f] * part;
+  }
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) {
+    const Vec<D> centre = p.boundary_centre[f - mesh.n_interior].template head<D>();
+    p.gradient_cure[mesh.owner[f]] += (centre - p.centre[mesh.owner[f]]) * p.area[f].transpose();
+  }
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) {
+    const Tensor<D> sum = p.gradient_cure[c] / p.volume[c];  // of ghosts: without their outer faces, not used
+    p.gradient_cure[c] =
+        sum.determinant() > least_determinant ? Tensor<D>(sum.inverse()) : Tensor<D>::Identity();
+  }
+}
+
+/// All that follows from volumes, centres and S; `centre_of(f)`: centre of a flux face.
+template <int D, class FaceCentre>
+void set_faces(const Mesh& mesh, const FaceCentre& centre_of, Placement<D>& p) {
+  const Index n_faces = mesh.n_flux_faces();
+  p.conductance.resize(n_faces);
+  p.oblique.resize(n_faces);
+  p.weight.resize(mesh.n_interior);
+  p.skew.resize(mesh.n_interior);
+  double skewness = 0;
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const Vec<D>& from = p.centre[mesh.owner[f]];
+    const Vec<D> to = p.centre[mesh.neighbour[f]] + mesh.shift(f).template head<D>();
+    set_face<D>(p, f, to - from);
+    const Vec<D> centre = centre_of(f);
+    const double before = std::abs(p.area[f].dot(centre - from)),
+                 after = std::abs(p.area[f].dot(to - centre));
+    p.weight[f] = after / (before + after);
+    p.skew[f] = centre - p.weight[f] * from - (1 - p.weight[f]) * to;
+    const double off = p.skew[f].squaredNorm(), apart = (to - from).squaredNorm();
+    if (off > skewness * apart) skewness = off / apart;
+  }
+  p.boundary_centre.assign(n_faces - mesh.n_interior, Vec3::Zero());
+  for (Index f = mesh.n_interior; f < n_faces; ++f) {
+    const Vec<D> centre = centre_of(f);
+    p.boundary_centre[f - mesh.n_interior].template head<D>() = centre;
+    set_face<D>(p, f, centre - p.centre[mesh.owner[f]]);
+  }
+  if (std::sqrt(max(mesh.comm, skewness)) > least_skewness)
+    cure_gradients(mesh, p);
+  else
+    Vectors<D>().swap(p.skew);
+  if (p.obliqueness <= orthogonal) Vectors<D>().swap(p.oblique);
+}
+
+/// Cell by cell, counter-clockwise, which writes every value once. Triangles from the mean of the points keep
+/// round-off small far from the origin.
+void set_cells(const Mesh& mesh, std::span<const Vec3> points, Placement<2>& p) {
+  p.volume.resize(mesh.cells.n_local());
+  p.centre.resize(mesh.cells.n_local());
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) {
+    const std::span<const Index> corner = mesh.cell_points[c];
+    Vec<2> apex = Vec<2>::Zero(), moment = apex;
+    for (const Index v : corner) apex += points[v].head<2>();
+    apex /= double(corner.size());
+    double volume = 0;
+    Vec<2> a = points[corner.back()].head<2>() - apex;
+    for (const Index v : corner) {
+      const Vec<2> b = points[v].head<2>() - apex;
+      const double triangle = 0.5 * (a[0] * b[1] - a[1] * b[0]);
+      volume += triangle;
+      moment += triangle / 3 * (a + b);
+      a = b;
+    }
+    p.volume[c] = volume;
+    p.centre[c] = volume == 0 ? apex : Vec<2>(apex + moment / volume);
+  }
+}
+
+}  // namespace
+
+template <int D>
+std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, const Geometry& geometry) {
+  auto placement = std::make_shared<Placement<D>>();
+  Placement<D>& p = *placement;
+  p.volume = geometry.volume;
+  p.centre.resize(mesh.cells.n_local());
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) p.centre[c] = geometry.cell_centre[c].template head<D>();
+  p.area.resize(mesh.n_flux_faces());
+  for (std::size_t f = 0; f < p.area.size(); ++f) p.area[f] = geometry.face_area[f].template head<D>();
+  set_faces<D>(
+      mesh, [&](Index f) -> Vec<D> { return geometry.face_centre[f].template head<D>(); }, p);
+  return placement;
+}
+
+/// In two dimensions without the arrays of a Geometry. Periodic cells do not have all points of their faces.
+template <int D>
+std::shared_ptr<const Placement<D>> make_placement(const Mesh& mesh, std::span<const Vec3> points) {
+  if constexpr (D == 2) {
+    if (mesh.neighbour_shift.empty()) {
+      auto placement = std::make_shared<Placement<2>>();
+      set_cells(mesh, points, *placement);
+      placement->area.resize(mesh.n_flux_faces());
+      for (std::size_t f = 0; f < placement->area.size(); ++f) {
+        const std::span<const Index> v = mesh.face_points[static_cast<Index>(f)];
+        placement->area[f] = {points[v[1]][1] - points[v[0]][1], points[v[0]][0] - points[v[1]][0]};
+      }
+      const auto centre_of = [&](Index f) -> Vec<2> {
+        const std::span<const Index> v = mesh.face_points[f];
+        return 0.5 * (points[v[0]] + points[v[1]]).template head<2>();
+      };
+      set_faces<2>(mesh, centre_of, *placement);
+      return placement;
+    }
+  }
+  return make_placement<D>(mesh, compute_geometry(mesh, points));
+}
+
+template <int D>
+std::shared_ptr<const Placement<D>> translated(const Placement<D>& from, const Vec3& by) {
+  auto placement = std::make_shared<Placement<D>>(from);
+  const Vec<D> shift = by.template head<D>();
+  for (Vec<D>& centre : placement->centre) centre += shift;
+  for (Vec3& centre : placement->boundary_centre) centre += by;
+  return placement;
+}
+
+template std::shared_ptr<const Placement<2>> translated<2>(const Placement<2>&, const Vec3&);
+template std::shared_ptr<const Placement<3>> translated<3>(const Placement<3>&, const Vec3&);
+template std::shared_ptr<const Placement<2>> make_placement<2>(const Mesh&, const Geometry&);
+template std::shared_ptr<const Placement<3>> make_placement<3>(const Mesh&, const Geometry&);
+template std::shared_ptr<const Placement<2>> make_placement<2>(const Mesh&, std::span<const Vec3>);
+template std::shared_ptr<const Placement<3>> make_placement<3>(const Mesh&, std::span<const Vec3>);
+
+}  // namespace couplet::fluid

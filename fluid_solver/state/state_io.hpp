@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/io/checkpoint.hpp"
+#include "fluid_solver/state/state.hpp"
+
+namespace couplet::fluid {
+
+/// All of a state, history included, bit for bit. Collective.
+template <int D>
+void write_state(CheckpointWriter& file, const State<D>& state);
+/// `at_rest`: the placement of a mesh that does not move; null: the file says where the points are. Throws
+/// Error if the file does not fit the mesh. Collective.
+template <int D>
+State<D> read_state(CheckpointReader& file, const Mesh& mesh, std::shared_ptr<const Placement<D>> at_rest);
+
+}  // namespace couplet::fluid

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/step/energy_guard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/step/step_size.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// Share of what passes the boundaries that may be wrong: their rates are means of two levels.
+constexpr double boundary_share = 0.25;
+// Of the pressure's level: what a solver whose tolerance is relative to it may leave. It moves the fluid.
+constexpr double level_share = 1e-4;
+// Excess, in kinetic energies, that is called a blow-up.
+constexpr double largest_excess = 0.5;
+// Of the largest energy so far: below it there is only round-off.
+constexpr double least_energy = 1e-10;
+// omega h^2/nu from which friction no longer holds what a turning frame makes (docs/theory.md, frame that turns).
+constexpr double fast_frame = 4;
+// What a sub-step leaves of the energy that an excess is measured by: a flow that turns back is at rest for
+// some steps, where its own energy is no measure.
+constexpr double remembered = 0.85;
+
+}  // namespace
+
+template <int D>
+double EnergyGuard<D>::kinetic(const Placement<D>& at, const Vectors<D>& u) const {
+  double sum = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) sum += at.volume[c] * u[c].squaredNorm();
+  return 0.5 * rho_ * sum;
+}
+
+/// About which the work of the pressure is counted when no step before says it. Collective.
+template <int D>
+double EnergyGuard<D>::mean_pressure(const EnergyStep<D>& s) const {
+  double sums[2] = {};
+  for (std::size_t b = 0; b < s.w.size(); ++b) {
+    const std::size_t f = mesh_.n_interior + b;
+    const double flux = std::abs(0.5 * (s.from.phi[f] + s.phi[f]));
+    sums[0] += s.p[b] * flux;
+    sums[1] += flux;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  return sums[1] > 0 ? sums[0] / sums[1] : 0;
+}
+
+/// sums: work, what passed, p |phi|, |phi|.
+template <int D>
+void EnergyGuard<D>::add_boundary(const EnergyStep<D>& s, double level, double* sums) const {
+  const bool moving = !s.swept.empty();
+  for (std::size_t b = 0; b < s.w.size(); ++b) {
+    const Index f = mesh_.n_interior + static_cast<Index>(b), p = mesh_.owner[f];
+    const Vec<D> inside = 0.5 * (s.from.u[p] + s.u[p]);
+    const double flux = 0.5 * (s.from.phi[f] + s.phi[f]), through = flux - (moving ? s.swept[f] / s.dt : 0);
+    const double pressure = -(s.p[b] - level) * flux;
+    sums[2] += s.p[b] * std::abs(flux);
+    sums[3] += std::abs(flux);
+    double convection = 0, friction = 0;
+    switch (boundary_.kind()[b]) {
+      case FaceKind::velocity: {
+        const Vec<D> on_face = 0.5 * (s.from.u_boundary[b] + s.w[b]);
+        convection = -rho_ * through * (on_face.dot(inside) - 0.5 * inside.squaredNorm());
+        // At most, at either level: a stiff layer changes within the step, its mean says nothing.
+        const Vec<D>&before = s.from.u_boundary[b], &after = s.w[b];
+        friction =
+            mu_ * s.to.conductance[f] *
+            std::max(before.norm() * (before - s.from.u[p]).norm(), after.norm() * (after - s.u[p]).norm());
+        break;
+      }
+      case FaceKind::pressure:
+        convection =
+            -rho_ * through * ((through < 0 ? boundary_.backflow(b) : 1.0) - 0.5) * inside.squaredNorm();
+        break;
+      case FaceKind::slip:
+        break;
+    }
+    sums[0] += s.dt * (pressure + convection + friction);
+    sums[1] += s.dt * (std::abs(pressure) + std::abs(convection) + std::abs(friction));
+  }
+}
+
+template <int D>
+EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
+  const EnergyLedger& before = s.from.ledger;
+  enum { work, passed, weighted, fluxes, energy, old_energy };
+  double sums[6] = {};
+  add_boundary(s, before.energy < 0 ? mean_pressure(s) : before.level, sums);
+  sums[energy] = kinetic(s.to, s.u);
+  if (before.energy < 0) sums[old_energy] = kinetic(*s.from.placement, s.from.u);
+  if (!s.force.empty())
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+      const double done = 0.5 * s.dt * rho_ * s.to.volume[c] * s.force[c].dot(s.from.u[c] + s.u[c]);
+      sums[work] += done;
+      sums[passed] += std::abs(done);
+    }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  EnergyJudgement j;
+  j.gain = sums[energy] - (before.energy < 0 ? sums[old_energy] : before.energy);
+  j.work = sums[work];
+  j.ledger.energy = sums[energy];
+  j.ledger.largest = std::max({before.largest, sums[energy], before.energy < 0 ? sums[old_energy] : 0});
+  j.ledger.level = sums[fluxes] > 0 ? sums[weighted] / sums[fluxes] : 0;
+  const double unsure =
+      boundary_share * sums[passed] + level_share * std::abs(j.ledger.level) * sums[fluxes] * s.dt;
+  j.ledger.reference = std::max(sums[energy], remembered * before.reference);
+  j.ledger.excess = std::max(0.0, before.excess + j.gain - std::max(0.0, j.work) - unsure);
+  j.out_of_bounds = j.gain > 0 && j.ledger.excess > largest_excess * j.ledger.reference &&
+                    sums[energy] > least_energy * j.ledger.largest;
+  return j;
+}
+
+template <int D>
+std::string likely_cause(const Mesh& mesh, const Boundary<D>& boundary, const EnergyStep<D>& s, Index cell,
+                         double nu, bool implicit, double frame_rate) {
+  double convection = 0, diffusion = 0, tangent = 0;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    const bool outside = f >= mesh.n_interior;
+    if (mesh.owner[f] != cell && (outside || mesh.neighbour[f] != cell)) continue;
+    convection += 0.5 * std::abs(s.from.phi[f] - (s.swept.empty() ? 0 : s.swept[f] / s.dt));
+    if (!outside || boundary.kind()[f - mesh.n_interior] == FaceKind::velocity)
+      diffusion += 2 * nu * s.to.conductance[f];
+    tangent = std::max(tangent, s.to.oblique_of(f).norm() / s.to.area[f].norm());
+  }
+  convection *= s.dt / s.to.volume[cell];
+  diffusion *= s.dt / s.to.volume[cell];
+  const double limit = explicit_limit(std::atan2(convection, diffusion)),
+               size = std::hypot(convection, diffusion);
+  const double degrees = std::atan(tangent) * 180 / std::numbers::pi;
+  if (!implicit && diffusion > convection && size > limit)
+    return fmt::format(
+        "The explicit viscous term is stable there up to a step of {:.3g} s, and this one is {:.3g} s: use "
+        "'viscous: auto' or leave 'time-step' out.",
+        s.dt * limit / size, s.dt);
+  if (convection > 1)
+    return fmt::format(
+        "The flow crosses {:.3g} of that cell in one step of {:.3g} s; convection is explicit and needs less "
+        "than 1: leave 'time-step' out or make it smaller.",
+        convection, s.dt);
+  if (degrees > 40)
+    return fmt::format(
+        "A face of that cell is {:.0f} degrees off the line between the cells: a smaller step does not help, "
+        "a mesh without such cells does.",
+        degrees);
+  const double beside_friction = 0.5 * frame_rate * std::pow(s.to.volume[cell], 2. / D) / nu;
+  if (beside_friction > fast_frame)
+    return fmt::format(
+        "The frame turns fast beside friction, omega h^2/nu = {:.3g} in that cell: what it makes at walls is not "
+        "damped from about {:g} on. A smaller step does not help; finer cells do, or a mesh that turns in a frame at rest "
+        "('motion').",
+        beside_friction, fast_frame);
+  return "Try a smaller time step.";
+}
+
+template class EnergyGuard<2>;
+template class EnergyGuard<3>;
+template std::string likely_cause<2>(const Mesh&, const Boundary<2>&, const EnergyStep<2>&, Index, double,
+                                     bool, double);
+template std::string likely_cause<3>(const Mesh&, const Boundary<3>&, const EnergyStep<3>&, Index, double,
+                                     bool, double);
+
+}  // namespace couplet::fluid

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// The predicted face fluxes and what they remember of the mean velocities.
+#include "fluid_solver/step/face_flux.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fluid_solver/step/rates.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// Decay of the flux memory in one step for which its AB2 is stable and does not overshoot.
+constexpr double largest_decay = 2.0 / 3;
+
+}  // namespace
+
+/// phi^p = (mean u^p).S^{n+1} + delta' - (dt/rho) grad p~ . k, delta' on interior faces only.
+template <int D>
+void FaceFlux<D>::predict(const State<D>& from) {
+  const Placement<D>& now = *k_.step.to;
+  k_.phi_orthogonal.resize(k_.mesh.n_flux_faces());
+  // Without the pressure the velocity at a wall is still that of level n: its change comes with grad p.
+  if (now.skewed()) k_.boundary.close(k_.mesh, now, k_.u_p, from.w, k_.u_boundary);
+  k_.gradient_of = 0;
+  mean_flux<D>(k_.mesh, now, k_.u_p, k_.u_boundary, k_.velocity_gradient, k_.phi_orthogonal);
+  if (k_.parameters.projection == Projection::incremental)
+    add_increment(from);
+  else if (!from.memory.empty())
+    add_memory(from);
+  for (std::size_t b = 0; b < k_.w.size(); ++b) {
+    const Index f = k_.mesh.n_interior + static_cast<Index>(b);
+    if (k_.boundary.kind()[b] == FaceKind::pressure)
+      k_.phi_orthogonal[f] = k_.u_p[k_.mesh.owner[f]].dot(now.area[f]);
+  }
+  if (!k_.bodies) return;
+  for (Index f = 0; f < k_.mesh.n_interior; ++f)
+    if (k_.bodies->blocked(f)) k_.phi_orthogonal[f] = k_.bodies->flux(f, now);
+}
+
+/// Rate at which friction and convection even out a difference in the cells, per local cell [1/s]. Fluxes
+/// relative to the mesh: the same in every frame.
+template <int D>
+void FaceFlux<D>::set_relaxation(const State<D>& from) {
+  relaxation_.assign(k_.mesh.cells.n_local(), 0.0);
+  const Placement<D>& at = *from.placement;
+  const bool moving = !from.mesh_flux.empty();
+  for (Index f = 0; f < k_.mesh.n_flux_faces(); ++f) {
+    const double flux = std::abs(from.phi[f] - (moving ? from.mesh_flux[f] : 0.0));
+    const double rate = k_.nu * at.conductance[f] + 0.5 * flux;
+    relaxation_[k_.mesh.owner[f]] += rate / at.volume[k_.mesh.owner[f]];
+    if (f < k_.mesh.n_interior) relaxation_[k_.mesh.neighbour[f]] += rate / at.volume[k_.mesh.neighbour[f]];
+  }
+  k_.mesh.cells.update_ghosts(relaxation_);
+}
+
+/// d delta/dt = e - a delta: e is what the pressure does to the flux and not to the mean velocity, O(h^2); a
+/// is the rate at which friction and convection would even it out, as in an implicit momentum interpolation.
+/// Without a the memory would grow for ever in a steady flow, without the memory the steady flow would depend
+/// on dt. The decay is AB2 while a dt is small. Where it is large the projection's own dt e is too much: with
+/// the e of the step before delta goes to (delta + dt e)/(1 + a dt), so that a steady flow keeps e/a whatever
+/// the step.
+template <int D>
+void FaceFlux<D>::add_memory(const State<D>& from) {
+  set_relaxation(from);
+  const double ratio = k_.by.dt_old > 0 ? k_.step.dt / k_.by.dt_old : 0;
+  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+    const double rate = 0.5 * (relaxation_[k_.mesh.owner[f]] + relaxation_[k_.mesh.neighbour[f]]);
+    const double decay = rate * k_.step.dt;
+    if (decay > largest_decay && k_.by.pressure[0]) {
+      const double share = decay / (1 + decay);
+      k_.phi_orthogonal[f] +=
+          from.memory[f] - share * (from.memory[f] + k_.step.dt * pressure_excess(from, f));
+      continue;
+    }
+    double mid = (1 + ratio / 2) * from.memory[f];
+    if (ratio > 0) mid -= ratio / 2 * from.memory_old[f];
+    k_.phi_orthogonal[f] += from.memory[f] - std::min(decay, largest_decay) * mid;
+  }
+}
+
+/// Incremental projection: with delta' = -dt e^{n-1/2} the equation for p is that of the increment
+/// p - p^{n-1/2}, and the flux keeps dt (e^{n+1/2} - e^{n-1/2}), of second order in time. What the start
+/// leaves between flux and mean velocity is not taken away at once, which would be an impulse that p never
+/// forgets on its checkerboard modes, but fades at the rate a.
+template <int D>
+void FaceFlux<D>::add_increment(const State<D>& from) {
+  set_relaxation(from);
+  fading_.resize(k_.mesh.n_interior);
+  for (Index f = 0; f < k_.mesh.n_interior; ++f) {
+    const double rate = 0.5 * (relaxation_[k_.mesh.owner[f]] + relaxation_[k_.mesh.neighbour[f]]);
+    const double decay = rate * k_.step.dt;
+    fading_[f] = from.memory[f] / (1 + decay * (1 + decay / 2));  // exp(-decay) to second order
+    k_.phi_orthogonal[f] += fading_[f];
+    if (k_.by.pressure[0]) k_.phi_orthogonal[f] -= k_.step.dt * pressure_excess(from, f);
+  }
+}
+
+/// e of the last step: what its pressure does to the flux and not to the mean velocity [m^3/s^2].
+template <int D>
+double FaceFlux<D>::pressure_excess(const State<D>& from, Index f) const {
+  const Placement<D>& at = *from.placement;
+  const PressureLevel<D>& level = *k_.by.pressure[0];
+  const Index p = k_.mesh.owner[f], n = k_.mesh.neighbour[f];
+  const double w = at.weight[f];
+  const double flux = at.conductance[f] * (level.p[n] - level.p[p]) +
+                      (w * level.gradient[p] + (1 - w) * level.gradient[n]).dot(at.oblique_of(f));
+  return (0.5 * (level.gradient[p] + level.gradient[n]).dot(at.area[f]) - flux) / k_.rho;
+}
+
+template <int D>
+void FaceFlux<D>::remember(State<D>& s) {
+  if (k_.parameters.projection == Projection::non_incremental) return;
+  s.memory_old.swap(s.memory);
+  if (k_.parameters.projection == Projection::incremental && !fading_.empty()) {
+    s.memory.swap(fading_);
+  } else {
+    s.memory.resize(k_.mesh.n_interior);
+    mean_flux<D>(k_.mesh, *k_.step.to, s.u, s.u_boundary, k_.velocity_gradient, s.memory);
+    if (k_.step.to->skewed()) k_.gradient_of = s.number;
+    for (Index f = 0; f < k_.mesh.n_interior; ++f) s.memory[f] = s.phi[f] - s.memory[f];
+  }
+  if (!k_.bodies && !k_.gap_closed()) return;
+  for (Index f = 0; f < k_.mesh.n_interior; ++f)
+    if (k_.bodies ? k_.bodies->blocked(f) : k_.gaps->blocked(f)) s.memory[f] = 0;
+}
+
+template class FaceFlux<2>;
+template class FaceFlux<3>;
+
+}  // namespace couplet::fluid

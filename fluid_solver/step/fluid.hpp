@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/mesh/periodic_points.hpp"
+#include "common/parallel/collective.hpp"
+#include "fluid_solver/step/fractional_step.hpp"
+#include "fluid_solver/step/step_size.hpp"
+
+namespace couplet::fluid {
+
+struct FluidStatistics {
+  int sub_steps = 0;  ///< of the last step
+  long all_sub_steps = 0, pressure_iterations = 0, viscous_iterations = 0, pressure_solves = 0;
+  StepLimits limits;  ///< at the begin of the last step; left out where nothing depends on them
+};
+
+/// The fluid through whole coupling steps: cuts them into stable sub-steps, moves the mesh and the walls
+/// linearly within them. The accepted state changes when the step is accepted only: a step that fails, is
+/// repeated or begun again leaves nothing to be put back.
+///
+///   begin_step; prepare(points, w); solve_pressure(w') ...; accept
+///
+/// prepare() does all but the last pressure equation with the wall velocity w (predicted). solve_pressure(w')
+/// then costs one pressure equation and may be repeated. The impulse of the added mass is exact for any
+/// number of sub-steps: each contributes rho mu dw, and the dw add up to w'^{n+1} - w^n.
+template <int D>
+class Fluid {
+ public:
+  Fluid(const Mesh& mesh, const FluidParameters& parameters, bool moving_mesh, double start_time = 0);
+
+  void begin_step(double time, double dt);
+  /// `points`: at t^{n+1}, empty if the mesh rests. `wall_velocity`: per boundary face at t^{n+1} [m/s], only
+  /// the interface faces count (empty: at rest). Collective.
+  void prepare(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
+  /// Before prepare() and solve_pressure(): the pressure that gave the interface its velocity, per boundary face [Pa].
+  /// Walls of a known mass then answer to what the pressure differs from it (see yielding_walls.cpp).
+  void yield_from(std::vector<double> load) {
+    yields_ = boundary_.yields();
+    step_.set_wall_load(std::move(load));
+  }
+  /// Before yield_from(): Boundary::set_wall_mass. Collective.
+  void set_wall_mass(std::span<const Index> boundary_faces, std::span<const double> masses) {
+    if (any(mesh_.comm, boundary_.set_wall_mass(boundary_faces, masses))) step_.forget_walls();
+  }
+  /// At the boundary faces, of the last solve_pressure() [Pa].
+  const std::vector<double>& boundary_pressure() const { return step_.boundary_pressure(); }
+  /// Before solve_pressure(): the turn of the interface's and the bodies' faces at the step's end, see turn_of();
+  /// empty: they do not turn. At the faces of other walls zeros.
+  void set_turn(Vectors<D> turn) { given_turn_ = std::move(turn); }
+  /// Throws SolveFailure if the flow that follows is none; everything that can fail is here and in prepare().
+  void solve_pressure(const Vectors<D>& wall_velocity);
+  /// Force that friction would add if it saw the wall velocity w instead of w*, that of prepare(),
+  /// rho sqrt(nu dt) |w - w*| S / dt, over the load of the last solve_pressure() (less a uniform pressure),
+  /// both as root mean square over the interface. Collective.
+  double unseen_share(const Vectors<D>& w) const;
+  /// prepare and solve_pressure.
+  void solve(std::span<const Vec3> points, const Vectors<D>& wall_velocity);
+  /// The step becomes level n. Cannot fail.
+  void accept();
+
+  const State<D>& state() const { return accepted_; }
+  /// The pressure of the accepted state; null: none yet. In a frame that turns the state's lacks the centrifugal part.
+  std::shared_ptr<const PressureLevel<D>> pressure() const;
+  /// Of the step that was prepared.
+  const Placement<D>& end() const { return step_.to(); }
+  /// For checkpoints: replaces the accepted state.
+  void restore(State<D> state);
+  /// For its save() and load(): what the solvers remember of earlier steps; load() comes after restore().
+  FractionalStep<D>& solvers() { return step_; }
+  /// Time means over the coupling step of the forces on what is outside, per boundary face [N].
+  const Vectors<D>& pressure_force() const { return pressure_force_; }
+  const Vectors<D>& viscous_force() const { return viscous_force_; }
+
+  const Boundary<D>& boundary() const { return boundary_; }
+  const Mesh& mesh() const { return mesh_; }
+  const FluidParameters& parameters() const { return parameters_; }
+  const FluidStatistics& statistics() const { return statistics_; }
+  /// Largest cell Reynolds number |phi| / (nu g) of the accepted state. Collective.
+  double largest_peclet() {
+    step_size_.limits(accepted_);
+    return step_size_.largest_peclet();
+  }
+  bool moving() const { return moving_; }
+  /// What limits the steps that follow the accepted state. Collective.
+  StepLimiter step_limiter() { return step_size_.limiter(accepted_, accepted_.implicit); }
+
+  /// Null: no immersed bodies.
+  const ImmersedBodies<D>* bodies() const { return step_.bodies(); }
+  /// Null: no gaps that may close.
+  const Gaps<D>* gaps() const { return step_.gaps(); }
+
+ private:
+  /// What the sub-step under way starts from.
+  const State<D>& level() const { return split_ ? trial_ : accepted_; }
+  void run_stages(SubStep<D>& step, double done, const Vectors<D>& wall_velocity);
+  void start(double time);
+  void check_wall_velocity() const;
+  void refuse_inverted(const Placement<D>& at) const;
+  void choose_viscous_treatment();
+  double implicit_limit(const StepLimits& limits) const;
+  double next_size(double remaining, bool& last);
+  SubStep<D> make_sub_step(double dt, double done, std::span<const Vec3> points) const;
+  Vectors<D> wall_velocity_at(double done, const Vectors<D>& interface_velocity,
+                              const SubStep<D>& step) const;
+  void start_pressure(const SubStep<D>& step, const Vectors<D>& w);
+  void add_forces(double share);
+  void add_turning();
+
+  const Mesh& mesh_;
+  FluidParameters parameters_;
+  bool moving_;
+  bool translates_;                         // the mesh moves as a frame that does not turn
+  std::optional<PeriodicPoints> periodic_;  // with patches joined on a mesh that moves
+  Boundary<D> boundary_;
+  FractionalStep<D> step_;
+  StepSize<D> step_size_;
+  std::shared_ptr<const Placement<D>> frame_;  // with translates_: the reference placement
+  State<D> accepted_;                          // level n: accept() and restore() alone change it
+  History<D> begin_;                           // how the step under way sees level n
+  State<D> trial_;                             // after the last finished sub-step of the step under way
+  History<D> history_;                         // how the sub-step under way sees level()
+  bool split_ = false;   // a sub-step of the step under way is finished: it goes on from trial_
+  bool judged_ = false;  // the prediction under way has given a sound level n+1
+  bool yields_ = false;  // the walls, in the last sub-step
+  double time_ = 0, dt_ = 0;
+  Vectors<D> guess_;                         // given velocities at the step's end as prepare() had them
+  Vectors<D> last_w_;                        // given velocities at the end of the last sub-step
+  Vectors<D> pressure_done_, viscous_done_;  // time integrals over the finished sub-steps / dt_
+  Vectors<D> pressure_force_, viscous_force_;
+  Vectors<D> given_turn_, turn_;  // at the step's end: what set_turn() gave; of all walls. Empty: none
+  FluidStatistics statistics_;
+};
+
+}  // namespace couplet::fluid

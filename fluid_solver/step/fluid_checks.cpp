@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/step/fluid_checks.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+
+namespace {
+
+// Of the distance of periodic patches: how far apart their sides may move.
+constexpr double most_torn = 1e-8;
+
+template <int D>
+void check_frame(const Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
+                 bool moving) {
+  if (!parameters.rotating_frame) return;
+  const auto refuse = [](const char* what) { throw Error("rotating-frame: {}", what); };
+  if (moving)
+    refuse(
+        "the mesh rests in the frame. Give the turn to 'motion' (angle), or remove 'motion' and the mesh mover.");
+  if (!boundary.interface_patches().empty())
+    refuse(
+        "a structure would have to know the frame, too, and none does: there must be no boundary of type interface.");
+  if (!parameters.bodies.empty()) refuse("a fluid with immersed bodies has none; leave 'bodies' out.");
+  if (parameters.scheme == ExplicitScheme::runge_kutta)
+    refuse("its forces are extrapolated from step to step: use 'scheme: adams-bashforth'.");
+  const RotationParameters& frame = *parameters.rotating_frame;
+  const Vec3 axis = D == 2 ? Vec3(Vec3::UnitZ()) : Vec3(frame.axis.normalized());
+  bool across = false;
+  for (const Vec3& shift : mesh.neighbour_shift)
+    across = across || shift.cross(axis).norm() > 1e-6 * shift.norm();
+  if (any(mesh.comm, across))
+    refuse("the centrifugal force is not the same at periodic patches that are not shifted along the axis.");
+}
+
+void check_axes(const FluidParameters& parameters, int dim) {
+  if (parameters.rotating_frame) check_axis(parameters.rotating_frame->axis, dim, "rotating-frame.axis");
+  for (const auto& [name, b] : parameters.boundaries)
+    if (b.rotation) check_axis(b.rotation->axis, dim, "boundaries." + name + ".rotation.axis");
+  for (const auto& [name, c] : parameters.output.coefficients)
+    check_axis(Vec3(c.axis[0], c.axis[1], std::abs(c.axis[2])), dim,  // a moment may be taken about -z
+               "output.coefficients." + name + ".axis");
+}
+
+}  // namespace
+
+template <int D>
+void check_together(const Mesh& mesh, const Boundary<D>& boundary, FluidParameters& parameters, bool moving) {
+  check_axes(parameters, D);
+  check_frame(mesh, boundary, parameters, moving);
+  if (!parameters.bodies.empty()) {
+    if (!parameters.gaps.empty())
+      throw Error("gaps: a fluid with immersed bodies has none; leave 'gaps' or 'bodies' out.");
+    if (moving)
+      throw Error("bodies: the mesh of a fluid with immersed bodies must rest; remove its mesh mover.");
+    if (boundary.closed())
+      throw Error("bodies: a fluid with immersed bodies needs an outlet, since they may displace fluid.");
+    if (parameters.viscous == ViscousTreatment::implicit)
+      throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
+    parameters.viscous = ViscousTreatment::explicit_;
+  }
+  if (!parameters.gaps.empty() && boundary.closed())
+    throw Error("gaps: a fluid with gaps that close needs an outlet: its blocked cells keep what they hold.");
+  if (parameters.scheme != ExplicitScheme::runge_kutta) return;
+  if (moving) throw Error("scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover.");
+  if (parameters.viscous == ViscousTreatment::implicit)
+    throw Error(
+        "scheme: runge-kutta takes the viscous term explicitly; use 'viscous: explicit' or adams-bashforth.");
+  parameters.viscous = ViscousTreatment::explicit_;
+}
+
+void refuse_torn(const Mesh& mesh, const PeriodicPoints& periodic, std::span<const Vec3> points,
+                 double time) {
+  std::vector<double> moved;
+  for (std::size_t v = 0; v < points.size(); ++v)
+    for (int c = 0; c < mesh.dim; ++c) moved.push_back(points[v][c] - mesh.reference_points[v][c]);
+  const double gap = periodic.largest_gap(moved, mesh.dim);
+  double size = 0;
+  for (Index f = 0; f < mesh.n_interior; ++f) size = std::max(size, mesh.shift(f).norm());
+  if (gap > most_torn * max(mesh.comm, size))
+    throw Error(
+        "The motion of the mesh to t = {:.6g} s parts the two sides of periodic patches by {:.3g} m. Both must move "
+        "alike: in a mesh mover give them 'type: periodic', too; a 'motion' must repeat itself from side to side, "
+        "which a turn of the whole mesh does not.",
+        time, gap);
+}
+
+template void check_together<2>(const Mesh&, const Boundary<2>&, FluidParameters&, bool);
+template void check_together<3>(const Mesh&, const Boundary<3>&, FluidParameters&, bool);
+
+}  // namespace couplet::fluid

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "fluid_solver/motion/step_work.hpp"
+#include "fluid_solver/pressure/projection.hpp"
+#include "fluid_solver/step/energy_guard.hpp"
+#include "fluid_solver/step/face_flux.hpp"
+#include "fluid_solver/step/loads.hpp"
+#include "fluid_solver/step/predictor.hpp"
+
+namespace couplet::fluid {
+
+/// One step of the non-incremental projection method on a moving mesh, in three parts, so that a
+/// semi-implicit coupling can repeat the middle one:
+///   predict   V' u^p = V u^n + dt [(1 + r/2) R^n - r/2 R^{n-1}] + sum dV_f u_f~ - (dt/rho) sum p_f^{n-1/2}
+///   (S^{n+1/2} - S^{n+1}) project   sum g (p_N - p_P) = (rho/dt) sum phi^p                      p =
+///   p^{n+1/2} complete    phi = phi^p - (dt/rho) g dp,  u^{n+1} = u^p - dt/(rho V') sum p_f S^{n+1}
+/// r = dt/dt_old; u~ = (1 + r/2) u^n - r/2 u^{n-1}; the thesis's (4.5)-(4.8) with its errata (density, sign
+/// of diffusion).
+template <int D>
+class FractionalStep {
+ public:
+  /// `moving`: the mesh will move.
+  FractionalStep(const Mesh& mesh, const Boundary<D>& boundary, const FluidParameters& parameters,
+                 bool moving);
+
+  /// `by`: how the step sees the level it starts from; `w`: given velocity per boundary face at t^{n+1}, as
+  /// far as it is known. Collective.
+  void predict(const State<D>& from, const History<D>& by, SubStep<D> step, const Vectors<D>& w);
+  /// R of a state, explicit, and its viscous force on the boundary faces. Collective.
+  void rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& shear);
+  /// May be called again with another w after one predict(). Collective.
+  void project(const State<D>& from, const Vectors<D>& w);
+  /// Makes level n+1 of the last project(), beside level n, and judges it. Throws SolveFailure naming time
+  /// and place if its velocity is not finite. Collective.
+  void complete(const State<D>& from);
+  /// Puts level n+1 in the place of the level n it was made from, by swapping; makes it first if complete()
+  /// was not called since the last project(). Cannot fail. Collective.
+  void commit(State<D>& state);
+  /// Makes the initial velocity divergence-free: state.u, w and u_boundary (u at the faces) are given, phi is
+  /// filled.
+  void project_initial(State<D>& state);
+
+  /// state.blocked, of a level that no step made: the first, or one from a checkpoint. Collective.
+  void mark_level(State<D>& state);
+  /// Null: none.
+  const Gaps<D>* gaps() const { return k_.gaps.get(); }
+  /// The result of the last project() as a level of history. Collective.
+  std::shared_ptr<PressureLevel<D>> pressure_level() const { return projection_.pressure_level(); }
+  /// Fills level.gradient from p and boundary. Collective.
+  void set_gradient(const Placement<D>& at, PressureLevel<D>& level) const {
+    projection_.set_gradient(at, level);
+  }
+  /// Of the last project(), acting on what is outside the fluid [N]: +p_b S^{n+1/2} and the wall shear.
+  const Vectors<D>& pressure_force() const { return loads_.pressure_force(); }
+  const Vectors<D>& viscous_force() const { return k_.viscous_force; }
+  /// state.eddy, if there is a turbulence model. Collective.
+  void set_eddy_viscosity(State<D>& state);
+  /// Null: none.
+  const ImmersedBodies<D>* bodies() const { return k_.bodies.get(); }
+  /// Null: none.
+  const RotatingFrame<D>* frame() const { return k_.frame ? &*k_.frame : nullptr; }
+  /// Pressure that gave the interface its w, per boundary face [Pa]: for steps that yield.
+  void set_wall_load(std::vector<double> load) { k_.wall_load = std::move(load); }
+  /// The masses of such walls have changed: the pressure matrix is made anew when it is needed next.
+  void forget_walls() { k_.assembled = nullptr; }
+  /// Of the last project(), per boundary face [Pa].
+  const std::vector<double>& boundary_pressure() const { return k_.p_boundary; }
+  /// What the next solves depend on beside the level they start from, as of the last keep(). load(): collective.
+  void keep() { projection_.equation().accept(); }
+  void save(CheckpointWriter& file) const { projection_.equation().save(file); }
+  void load(CheckpointReader& file) {
+    projection_.equation().load(file);
+    k_.assembled = nullptr;
+  }
+  const StepStatistics& statistics() const { return k_.statistics; }
+  double size() const { return k_.step.dt; }
+  /// Of its points at the end.
+  const Placement<D>& to() const { return *k_.step.to; }
+  /// At the end; empty: the mesh rests.
+  const std::vector<Vec3>& points() const { return k_.step.points; }
+  /// Of the accepted steps [m/s].
+  double largest_speed() const { return speed_scale_; }
+  /// The mesh is not orthogonal, or may become so.
+  bool oblique() const { return k_.oblique; }
+
+ private:
+  std::shared_ptr<PressureLevel<D>> correct();
+  struct Judgement {
+    EnergyJudgement energy;
+    double speed = 0;        // largest [m/s]; infinity where one is not finite
+    double given_speed = 0;  // largest of the boundaries [m/s]
+  };
+  EnergyStep<D> energy_step(const State<D>& from) const;
+  Judgement judge(const State<D>& from) const;
+  bool too_fast() const;
+  void check(const State<D>& from);
+
+  StepWork<D> k_;
+  Predictor<D> predictor_;
+  FaceFlux<D> flux_;
+  PressureProjection<D> projection_;
+  Loads<D> loads_;
+  EnergyGuard<D> energy_guard_;
+  std::shared_ptr<PressureLevel<D>> level_;  // of level n+1; null: not made since the last project()
+  Judgement judgement_;                      // of level_
+  std::uint64_t states_ = 0;                 // numbered so far
+  double speed_scale_ = 0;                   // largest of the accepted steps [m/s]
+};
+
+}  // namespace couplet::fluid

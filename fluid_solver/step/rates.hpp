@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "fluid_solver/boundary/boundary.hpp"
+#include "fluid_solver/state/state.hpp"
+
+namespace couplet::fluid {
+
+/// Gauss gradient du_i/dx_j per local cell (ghosts updated): (1/V) sum u_f S, u_f linear between the cells;
+/// on skewed meshes made exact for linear fields. Collective.
+template <int D>
+void velocity_gradient(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u,
+                       const Vectors<D>& u_boundary, std::vector<Tensor<D>>& gradient);
+
+/// u.S of the interior faces [m^3/s]: the mean of the cells, on skewed meshes carried on to the face's centre
+/// by the mean gradient (which is filled then; else left alone). Collective.
+template <int D>
+void mean_flux(const Mesh& mesh, const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
+               std::vector<Tensor<D>>& gradient, std::span<double> flux);
+
+/// nu_t (grad u + grad u^T).S at an interior face between p and n [m^4/s^2], force per density.
+template <int D>
+Vec<D> eddy_stress(const Placement<D>& at, const State<D>& s, const std::vector<Tensor<D>>& gradient, Index f,
+                   Index p, Index n) {
+  const double w = at.weight[f];
+  const Tensor<D> mean = w * gradient[p] + (1 - w) * gradient[n];
+  return 0.5 * (s.eddy[p] + s.eddy[n]) *
+         (at.conductance[f] * (s.u[n] - s.u[p]) + mean * at.oblique_of(f) + mean.transpose() * at.area[f]);
+}
+
+/// R = -sum phi u_f + nu sum [g du + (grad u)_f . k], see reference [trias2014] for the skew-symmetric
+/// mid-point u_f. All at level n, on mesh n. `split`: the viscous part goes to Rates::viscous.
+/// `correct_oblique`: the mesh is not orthogonal. With an eddy viscosity, which vanishes on walls, its stress
+/// nu_t (grad u + grad u^T) comes to the explicit part. Collective.
+template <int D>
+class RateOperator {
+ public:
+  RateOperator(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity)
+      : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity) {}
+  /// `gradient`: that of the state's velocity, if it is at hand.
+  void apply(const State<D>& state, bool split, bool correct_oblique, Rates<D>& rates,
+             const std::vector<Tensor<D>>* gradient = nullptr);
+  /// Adds the non-orthogonal viscous part nu sum (grad u)_f . k of any velocity field (ghosts current).
+  /// Collective.
+  void add_oblique(const Placement<D>& at, const Vectors<D>& u, const Vectors<D>& u_boundary,
+                   Vectors<D>& rate);
+  /// state.eddy from state.u. Collective.
+  void set_eddy_viscosity(const TurbulenceParameters& model, State<D>& state);
+
+ private:
+  void add_eddies(const State<D>& state, const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
+  void add_oblique(const Placement<D>& at, const std::vector<Tensor<D>>& gradient, Vectors<D>& rate) const;
+  template <bool Split>
+  void face_loop(const State<D>& state, Rates<D>& rates) const;
+  const Mesh& mesh_;
+  const Boundary<D>& boundary_;
+  double nu_;
+  std::vector<Tensor<D>> gradient_;
+};
+
+/// Viscous force of the fluid on each boundary face at level n [N]: mu g (u_P - u_b), tangential part. On a
+/// no-slip wall the normal part of mu (grad u + grad u^T).S vanishes for a divergence-free field.
+template <int D>
+void wall_shear(const Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
+                const Vectors<D>& u_boundary, Vectors<D>& force);
+
+}  // namespace couplet::fluid

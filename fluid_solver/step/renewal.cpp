@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/step/renewal.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// An oscillation that grows is held down to what this share of the load makes of it. Heavy structures, of whose
+// change of velocity a third pass leaves little, do not begin to swing: only a coarse guess is mended.
+constexpr double largest_unseen_share = 0.001, largest_of_heavy = 0.05, slow = 0.1;
+// In the third pass of a prediction w is better than the guess. After a renewal already in the second if the gap
+// has shrunk by this: quasi-Newton methods end there, while in the passes of a relaxation w is not good yet.
+constexpr int enough_passes = 3;
+constexpr double shrunk = 0.7;
+constexpr int most = 4;  // then the whole step might as well be iterated
+constexpr double least_factor = 0.1, largest_factor = 1;
+
+template <int D>
+double squares(const Vectors<D>& v) {
+  double sum = 0;
+  for (const Vec<D>& value : v) sum += value.squaredNorm();
+  return sum;
+}
+
+}  // namespace
+
+template <int D>
+void Renewal<D>::start(const Vectors<D>& w) {
+  guess_ = w;
+  last_ = w;
+  last_change_ = 0;
+  gap_.clear();
+  factor_ = 1;
+  passes_ = 1;
+  count_ = 0;
+}
+
+/// How much w changed since the pass before, over what it did then.
+template <int D>
+double Renewal<D>::contraction(MPI_Comm comm, const Vectors<D>& w) {
+  double square = 0;
+  for (std::size_t b = 0; b < w.size(); ++b) square += (w[b] - last_[b]).squaredNorm();
+  const double change = std::sqrt(sum(comm, square)), before = std::exchange(last_change_, change);
+  last_ = w;
+  return before > 0 ? change / before : 0;
+}
+
+template <int D>
+bool Renewal<D>::is_good(MPI_Comm comm, const Vectors<D>& w) const {
+  if (passes_ >= enough_passes) return true;
+  if (count_ == 0) return false;
+  double sums[2] = {0, squares<D>(gap_)};
+  for (std::size_t b = 0; b < w.size(); ++b) sums[0] += (w[b] - guess_[b]).squaredNorm();
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm);
+  return sums[0] < shrunk * shrunk * sums[1];
+}
+
+/// g + omega (w - g), omega as in (13).
+template <int D>
+void Renewal<D>::move_guess(MPI_Comm comm, const Vectors<D>& w) {
+  const bool first = gap_.empty();
+  gap_.resize(w.size(), Vec<D>::Zero());
+  double sums[2] = {};
+  for (std::size_t b = 0; b < w.size(); ++b) {
+    const Vec<D> gap = w[b] - guess_[b], change = gap - gap_[b];
+    sums[0] += gap_[b].dot(change);
+    sums[1] += change.squaredNorm();
+    gap_[b] = gap;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm);
+  if (!first && sums[1] > 0) factor_ = std::clamp(-factor_ * sums[0] / sums[1], least_factor, largest_factor);
+  for (std::size_t b = 0; b < w.size(); ++b) guess_[b] += factor_ * gap_[b];
+}
+
+template <int D>
+bool Renewal<D>::wanted(MPI_Comm comm, const Vectors<D>& w, double unseen) {
+  ++passes_;
+  const double left = contraction(comm, w);
+  // Quasi-Newton methods hide how heavy the structure is as soon as they know it: the slowest step counts.
+  if (count_ == 0 && passes_ == enough_passes && unseen > largest_unseen_share)
+    slowest_ = std::max(slowest_, left);
+  const double allowed = slowest_ > slow ? largest_unseen_share : largest_of_heavy;
+  if (count_ == most || unseen <= allowed || !is_good(comm, w)) return false;
+  move_guess(comm, w);
+  passes_ = 1;
+  ++count_;
+  return true;
+}
+
+template class Renewal<2>;
+template class Renewal<3>;
+
+}  // namespace couplet::fluid

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fluid_solver/step/step_size.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include "common/base/constants.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::fluid {
+namespace {
+
+// AB2 is not quite stable on the imaginary axis: growth per step that the scheme's own damping elsewhere
+// makes up for.
+constexpr double tolerated_growth = 5e-4;
+// Of cells with few faces, in limits of the explicit term: see StepSize.
+constexpr double longest_implicit = 16;
+constexpr double largest_courant =
+    1;  // accuracy: beyond it the explicit convection is no longer resolved in time
+
+// Roots of (1 + a d) z^2 - (1 - b d + 3/2 i k) z + (c d + i k / 2) = 0, the pair at constant step, a = 9/16,
+// b = 3/8, c = 1/16.
+bool stable(double k, double d) {
+  using namespace std::complex_literals;
+  const std::complex<double> p = 1 + 9.0 / 16 * d, q = -(1 - 3.0 / 8 * d + 1.5i * k), r = d / 16 + 0.5i * k;
+  const std::complex<double> root = std::sqrt(q * q - 4.0 * p * r);
+  return std::max(std::abs(-q + root), std::abs(-q - root)) <= 2 * std::abs(p) * (1 + tolerated_growth);
+}
+
+double compute_implicit_limit(double q) {
+  constexpr int waves = 48;
+  double low = 0, high = largest_courant;
+  const auto all_stable = [q](double courant) {
+    for (int i = 1; i <= waves; ++i) {
+      const double theta = std::numbers::pi * i / waves;
+      if (!stable(courant * std::sin(theta), q * courant * (1 - std::cos(theta)) / 2)) return false;
+    }
+    return true;
+  };
+  if (all_stable(high)) return high;
+  for (int i = 0; i < 30; ++i) (all_stable((low + high) / 2) ? low : high) = (low + high) / 2;
+  return low;
+}
+
+// The limit over log10(q) in [-2, 2].
+class LimitTable {
+ public:
+  LimitTable() {
+    for (int i = 0; i < n; ++i) values_[i] = compute_implicit_limit(std::pow(10.0, -2 + 4.0 * i / (n - 1)));
+  }
+  double least() const { return *std::min_element(values_.begin(), values_.end()); }
+  double operator()(double q) const {
+    if (!(q > 1e-2)) return values_.front();
+    if (q >= 1e2) return values_.back();
+    const double place = (std::log10(q) + 2) / 4 * (n - 1);
+    const int i = std::min(static_cast<int>(place), n - 2);
+    return std::min(values_[i], values_[i] + (place - i) * (values_[i + 1] - values_[i]));
+  }
+
+ private:
+  static constexpr int n = 81;
+  std::array<double, n> values_{};
+};
+
+double round_down(double value) {
+  if (!std::isfinite(value) || value <= 0) return value;
+  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 5);
+  return std::floor(value / unit) * unit;
+}
+
+}  // namespace
+
+namespace {
+
+const LimitTable& implicit_table() {
+  static const LimitTable table;
+  return table;
+}
+constexpr std::array<double, 6> degrees{0, 45, 60, 75, 85, 90},
+    adams_bashforth{1, 0.96, 0.91, 0.81, 0.63, 0.25}, runge_kutta{2.51, 2.37, 2.5, 2.4, 2.1, 1.73};
+
+/// What the limit is at least: cells that this keeps from deciding are passed over, which spares most of them
+/// the angle.
+double lowest_limit(double convection, double diffusion, ExplicitScheme scheme) {
+  const bool rk = scheme == ExplicitScheme::runge_kutta;
+  if (convection <= diffusion) return rk ? 2.37 : 0.96;
+  return rk ? 1.73 : 0.25;
+}
+
+}  // namespace
+
+double implicit_convective_limit(double q) { return implicit_table()(q); }
+
+double explicit_limit(double angle, ExplicitScheme scheme) {
+  const auto& limit = scheme == ExplicitScheme::runge_kutta ? runge_kutta : adams_bashforth;
+  const double a = angle * 180 / std::numbers::pi;
+  for (std::size_t i = 1; i < degrees.size(); ++i)
+    if (a <= degrees[i])
+      return limit[i - 1] + (a - degrees[i - 1]) / (degrees[i] - degrees[i - 1]) * (limit[i] - limit[i - 1]);
+  return limit.back();
+}
+
+template <int D>
+StepSize<D>::StepSize(const Mesh& mesh, const Boundary<D>& boundary, double kinematic_viscosity,
+                      ExplicitScheme scheme)
+    : mesh_(mesh), boundary_(boundary), nu_(kinematic_viscosity), scheme_(scheme) {
+  std::vector<int> faces(std::size_t(mesh.cells.n_local()), 0);
+  for (Index f = 0; f < mesh.n_faces(); ++f) {
+    ++faces[mesh.owner[f]];
+    if (f < mesh.n_interior) ++faces[mesh.neighbour[f]];
+  }
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) few_faces_.push_back(faces[c] < 2 * D);
+}
+
+/// Of the implicit term, by what friction does in a cell whose explicit rates have this angle and size.
+template <int D>
+double StepSize<D>::friction_limit(Index cell, double angle, double size) const {
+  return few_faces_[cell] && size > 0 ? longest_implicit * explicit_limit(angle, scheme_) / size : infinity;
+}
+
+// The stress nu_t (grad u + grad u^T) has at most twice the rate of nu_t grad u.
+template <int D>
+void StepSize<D>::add_eddies(const State<D>& s) {
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const double rate = 2 * (s.eddy[p] + s.eddy[n]) * s.placement->conductance[f];
+    eddy_[p] += rate;
+    eddy_[n] += rate;
+  }
+}
+
+/// sum |phi - dV/dt| / 2 and 2 nu sum g of each cell; with `peclet` also the largest |phi - dV/dt| / (nu g)
+/// of its faces. Gives the largest of all on this rank.
+template <int D>
+double StepSize<D>::add_rates(const State<D>& s, bool peclet) {
+  const Placement<D>& at = *s.placement;
+  rates_.assign(mesh_.cells.n_local(), Vec<2>::Zero());
+  peclet_of_.assign(peclet ? mesh_.cells.n_local() : 0, 0.0);
+  const bool moving = !s.mesh_flux.empty();
+  const auto flux_of = [&](Index f) { return std::abs(s.phi[f] - (moving ? s.mesh_flux[f] : 0.0)); };
+  double largest = 0;
+  for (Index f = 0; f < mesh_.n_interior; ++f) {
+    const Index p = mesh_.owner[f], n = mesh_.neighbour[f];
+    const double flux = flux_of(f), g = at.conductance[f];
+    const Vec<2> part(0.5 * flux, 2 * nu_ * g);
+    rates_[p] += part;
+    rates_[n] += part;
+    if (!peclet) continue;
+    const double number = nu_ > 0 ? flux / (nu_ * g) : infinity;
+    largest = std::max(largest, number);
+    peclet_of_[p] = std::max(peclet_of_[p], number);
+    peclet_of_[n] = std::max(peclet_of_[n], number);
+  }
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f) {
+    const bool given = boundary_.kind()[f - mesh_.n_interior] == FaceKind::velocity;
+    rates_[mesh_.owner[f]] += Vec<2>(0.5 * flux_of(f), given ? 2 * nu_ * at.conductance[f] : 0);
+  }
+  eddy_.assign(s.eddy.size(), 0.0);
+  if (!s.eddy.empty()) add_eddies(s);
+  return largest;
+}
+
+/// No friction damps what the frame makes of the fluid as a whole.
+template <int D>
+double StepSize<D>::frame_limit() const {
+  return frame_rate_ > 0 ? explicit_limit(std::numbers::pi / 2, scheme_) / frame_rate_ : infinity;
+}
+
+template <int D>
+double StepSize<D>::explicit_viscous_limit(const State<D>& s) {
+  add_rates(s, false);
+  double least = infinity;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    if (s.blocked && (*s.blocked)[c]) continue;
+    const Vec<2> rate = (rates_[c] + Vec<2>(0, eddy_.empty() ? 0 : eddy_[c])) / s.placement->volume[c];
+    const double lowest = lowest_limit(rate[0], rate[1], scheme_);
+    if (lowest * lowest < least * least * rate.squaredNorm())
+      least = std::min(least, explicit_limit(std::atan2(rate[0], rate[1]), scheme_) / rate.norm());
+  }
+  return round_down(std::min(min(mesh_.comm, least), frame_limit()));
+}
+
+/// The limit is at most that of the negative real axis, and a cell's diffusion at least that of one of its
+/// faces.
+template <int D>
+bool StepSize<D>::explicit_viscous_limit_is_below(double size, const State<D>& s) {
+  const Placement<D>& at = *s.placement;
+  const auto stiffness = [&](Index f) {
+    if (s.blocked && (*s.blocked)[mesh_.owner[f]]) return 0.0;
+    return 2 * nu_ * at.conductance[f] / at.volume[mesh_.owner[f]];
+  };
+  const double highest = explicit_limit(0, scheme_);
+  if (any(mesh_.comm, stiff_face_ >= 0 && highest < 0.999 * size * stiffness(stiff_face_))) return true;
+  stiff_face_ = -1;
+  for (Index f = 0; f < mesh_.n_interior; ++f)
+    if (mesh_.owner[f] < mesh_.cells.n_owned() && (stiff_face_ < 0 || stiffness(f) > stiffness(stiff_face_)))
+      stiff_face_ = f;
+  return explicit_viscous_limit(s) < size;
+}
+
+template <int D>
+StepLimits StepSize<D>::limits(const State<D>& s) {
+  const Placement<D>& at = *s.placement;
+  const double largest = add_rates(s, true);
+  const double lowest_implicit = implicit_table().least();
+  double least[3] = {infinity, infinity, -largest};
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    if (s.blocked && (*s.blocked)[c]) continue;
+    const double convection = rates_[c][0] / at.volume[c];
+    const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
+    const double diffusion = rates_[c][1] / at.volume[c] + eddy;
+    const double size = std::sqrt(convection * convection + diffusion * diffusion);
+    if (lowest_limit(convection, diffusion, scheme_) < least[0] * size)
+      least[0] = std::min(least[0], explicit_limit(std::atan2(convection, diffusion), scheme_) / size);
+    if (few_faces_[c] && longest_implicit * lowest_limit(convection, diffusion, scheme_) < least[1] * size)
+      least[1] = std::min(least[1], friction_limit(c, std::atan2(convection, diffusion), size));
+    if (lowest_implicit < least[1] * convection)
+      least[1] = std::min(least[1], implicit_convective_limit(4 / peclet_of_[c]) / convection);
+    if (eddy > 0)  // the eddy part stays explicit
+      least[1] =
+          std::min(least[1], explicit_limit(std::atan2(convection, eddy)) / std::hypot(convection, eddy));
+  }
+  MPI_Allreduce(MPI_IN_PLACE, least, 3, MPI_DOUBLE, MPI_MIN, mesh_.comm);
+  peclet_ = -least[2];
+  for (double& limit : std::span(least, 2)) limit = std::min(limit, frame_limit());
+  return {round_down(least[0]), round_down(least[1])};
+}
+
+template <int D>
+StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
+  const Placement<D>& at = *s.placement;
+  add_rates(s, implicit);
+  StepLimiter found{infinity};
+  Index where = -1;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    if (s.blocked && (*s.blocked)[c]) continue;
+    const double convection = rates_[c][0] / at.volume[c];
+    const double eddy = eddy_.empty() ? 0 : eddy_[c] / at.volume[c];
+    const double diffusion = rates_[c][1] / at.volume[c] + eddy;
+    const double size = std::hypot(convection, diffusion);
+    const double angle = std::atan2(convection, diffusion);
+    double limit = size > 0 ? explicit_limit(angle, scheme_) / size : infinity;
+    bool friction = diffusion > convection;
+    if (implicit) {
+      limit = convection > 0 ? implicit_convective_limit(4 / peclet_of_[c]) / convection : infinity;
+      if (eddy > 0)
+        limit = std::min(limit, explicit_limit(std::atan2(convection, eddy)) / std::hypot(convection, eddy));
+      friction = eddy > convection;
+      if (const double own = friction_limit(c, angle, size); own < limit) limit = own, friction = true;
+    }
+    if (limit >= found.limit) continue;
+    found = {limit, mesh_.cell_id[c], Vec3::Zero(), friction};
+    where = c;
+  }
+  if (where >= 0) found.place.template head<D>() = at.centre[where];
+  const std::vector<StepLimiter> all = all_gather(mesh_.comm, std::vector<StepLimiter>{found});
+  return *std::ranges::min_element(all, [](const StepLimiter& a, const StepLimiter& b) {
+    return a.limit != b.limit ? a.limit < b.limit : a.cell < b.cell;
+  });
+}
+
+std::string in_words(const StepLimiter& by) {
+  return fmt::format("{} in cell {} at ({:.6g}, {:.6g}, {:.6g}) m allows no longer ones.",
+                     by.friction ? "Friction" : "The velocity", by.cell, by.place.x(), by.place.y(),
+                     by.place.z());
+}
+
+template class StepSize<2>;
+template class StepSize<3>;
+
+}  // namespace couplet::fluid

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/model/build_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/base/constants.hpp"
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/log/log.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
+#include "common/mesh/msh/msh_entities.hpp"
+#include "common/mesh/on_root.hpp"
+#include "common/mesh/quality.hpp"
+#include "common/modes/facing.hpp"
+#include "common/modes/modes_file.hpp"
+#include "plate_modal/model/outline.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// To be counted up when the same data would give other modes.
+constexpr int model_version = 3;
+
+/// FNV-1a over all that the modes depend on.
+class Key final {
+ public:
+  void add(const void* data, std::size_t bytes) {
+    const auto* at = static_cast<const unsigned char*>(data);
+    for (std::size_t i = 0; i < bytes; ++i) hash_ = (hash_ ^ at[i]) * 1099511628211ull;
+  }
+  void add(double value) { add(&value, sizeof value); }
+  void add(const Vec3& value) { add(value.data(), sizeof(double) * 3); }
+  template <class T>
+  void add(const std::vector<T>& values) {
+    add(double(values.size()));
+    add(values.data(), values.size() * sizeof(T));
+  }
+  std::string text() const { return fmt::format("{:016x}", hash_); }
+
+ private:
+  std::uint64_t hash_ = 14695981039346656037ull;
+};
+
+std::vector<Support> supports(const Midsurface& surface, const Parameters& p) {
+  std::vector<Support> result;
+  for (const std::string& patch : surface.patches) result.push_back(p.boundaries.at(patch).support);
+  return result;
+}
+
+/// The stretch of a plate whose edges cannot move in its plane stiffens it by about an eighth at these deflections: of a
+/// clamped circle as 1 + 0.49 (w/h)^2, of a hinged one as 1 + 1.85 (w/h)^2 [Timoshenko and Woinowsky-Krieger 1959, section
+/// 97], of hinged strips as 1 + 3 (w/h)^2.
+double stretch_limit(const std::vector<Support>& patches) {
+  const auto n = [&](Support s) { return std::ranges::count(patches, s); };
+  if (n(Support::free) > 0 && n(Support::clamped) + n(Support::simply_supported) < 2) return 0;
+  return n(Support::simply_supported) > 0 ? 0.2 : 0.5;
+}
+
+std::vector<bool> open_patches(const Midsurface& surface, const Parameters& p) {
+  std::vector<bool> result;
+  for (const Support support : supports(surface, p)) result.push_back(support == Support::free);
+  return result;
+}
+
+std::string key_of(const PlateModel& plate, const Parameters& p) {
+  const Midsurface& s = plate.surface();
+  Key key;
+  key.add(double(model_version));
+  key.add(double(p.n_modes()));
+  for (const Vec2& x : s.points) key.add(x.x()), key.add(x.y());
+  key.add(s.cells.offset);
+  key.add(s.cells.index);
+  for (Index c = 0; c < s.cells.size(); ++c) {
+    const PlateCell& cell = plate.cell(c);
+    for (const double v : {cell.thickness, cell.density, cell.youngs_modulus, cell.poissons_ratio})
+      key.add(v);
+  }
+  const std::vector<Support> held = supports(s, p);
+  for (const auto& e : s.edges)
+    key.add(double(e.from)), key.add(double(e.to)), key.add(double(e.curve)), key.add(double(held[e.patch]));
+  for (const Vec3& v : {p.placement.origin, p.placement.x, p.placement.y}) key.add(v);
+  key.add(double(p.wetted));
+  return key.text();
+}
+
+std::vector<std::string> quoted(const std::vector<std::string>& names) {
+  std::vector<std::string> result;
+  for (const std::string& name : names) result.push_back("'" + name + "'");
+  return result;
+}
+
+void check_names(const Midsurface& s, const Parameters& p, const std::string& name) {
+  for (const auto& [zone, values] : p.zones)
+    if (std::ranges::find(s.zones, zone) == s.zones.end())
+      throw Error("participants.{}.zones: the mesh has no zone '{}'; it has {}.", name, zone,
+                  join(quoted(s.zones)));
+  for (const auto& [patch, values] : p.boundaries)
+    if (std::ranges::find(s.patches, patch) == s.patches.end())
+      throw Error("participants.{}.boundaries: the mesh has no patch '{}'; it has {}.", name, patch,
+                  join(quoted(s.patches)));
+  for (const std::string& patch : s.patches)
+    if (!p.boundaries.contains(patch))
+      throw Error(
+          "participants.{}.boundaries: patch '{}' has no entry; give it type: free, clamped, "
+          "simply-supported or "
+          "symmetry.",
+          name, patch);
+}
+
+/// The file of the mid-surface, meshed if it is a drawing.
+std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / *p.mesh;
+  if (!std::filesystem::is_regular_file(file))
+    throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
+                file.string());
+  const std::string kind = file.extension().string();
+  if (kind != ".geo" && !p.mesh_parameters.empty())
+    throw Error(
+        "The mesh '{}' is finished, so 'mesh-parameters' cannot change it. Leave them out, or give the .geo it was made from.",
+        file.string());
+  if (kind == ".unv" || kind == ".med" || kind == ".cgns") return convert_mesh(file);
+  if (kind != ".msh" && kind != ".geo")
+    throw Error("The mesh file '{}' is neither .msh nor .geo, .unv, .med or .cgns.", file.string());
+  return kind == ".geo" ? mesh_geo(file, 2, p.mesh_parameters) : file;
+}
+
+/// The mid-surface of the mesh that the parameters name, its lengths times their scale.
+Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
+  const std::filesystem::path file = mesh_file(p, folder);
+  RawMesh raw = read_msh(file);
+  if (raw.dim != 2 || raw.cell_type.empty())
+    throw Error(
+        "The mesh '{}' is not a plane one. The mid-surface of a plate is a 2-D mesh with its surface in a "
+        "physical "
+        "group.",
+        (folder / *p.mesh).string());
+  for (Vec3& x : raw.points) x *= p.mesh_scale;
+  Midsurface surface = midsurface_of(raw, read_boundary_entities(file));
+  for (Vec3& x : raw.points) x.z() = 0;  // what rounding the file left of another plane
+  check_and_report(distribute(MPI_COMM_SELF, raw));
+  return surface;
+}
+
+/// Rigid motions come with the rounding of the stiffness: below this eigenvalue they are none [1/s^2].
+double rigid_limit(const PlateModel& plate) { return 1e-6 * plate.frequency_scale(); }
+
+/// A plate that may fall and turn in some ways must be able to do so in all of them.
+void refuse_lost_rigid(const PlateModel& plate, const EigenModes& modes) {
+  if (!(modes.next < rigid_limit(plate))) return;
+  const EigenModes first = plate.modes(3);  // there are no more: a fall and two turns
+  const auto rigid =
+      std::ranges::count_if(first.eigenvalue, [&](double value) { return value < rigid_limit(plate); });
+  throw Error(
+      "modes.number: nothing holds the plate against {} rigid motions (modes of 0 Hz), and only {} of them would be "
+      "kept: it would fall and turn in some ways and not in others. Keep at least {}.",
+      rigid, modes.eigenvalue.size(), rigid);
+}
+
+/// The key of the data with a digest of what was made of them: a file whose values were edited is not used again.
+std::string key_with_content(const std::string& key, const ModalModel& model) {
+  Key content;
+  content.add(model.vertices);
+  content.add(model.faces.offset);
+  content.add(model.faces.index);
+  for (const auto* part :
+       {&model.frequency, &model.vertex_shape, &model.face_shape, &model.participation, &model.face_density})
+    content.add(*part);
+  content.add(model.mass);
+  return key + "-" + content.text();
+}
+
+/// Takes the modes of an earlier run if they belong to the same mesh and data and are as they were written.
+bool reuse_modes(Built& built, const std::filesystem::path& file, const std::string& key) {
+  const std::string kept = key_of_modes(file);
+  if (!kept.starts_with(key + "-")) return false;
+  try {
+    ModalModel model = read_modes(file);
+    if (key_with_content(key, model) == kept) {
+      built.model = std::move(model);
+      built.reused = true;
+      return true;
+    }
+  } catch (const Error&) {  // said below
+  }
+  log::warn("'{}' is not as it was written: its modes are found again.", file.string());
+  return false;
+}
+
+/// What a user who draws a curved edge by straight lines should know; empty: there is none.
+void look_at_corners(Built& built, const Midsurface& surface, const std::vector<Support>& support) {
+  const std::vector<OutlinePoint> outline = outline_of(surface);
+  const std::vector<Index> corners = blunt_corners(surface, outline, support);
+  if (corners.empty()) return;
+  double least = std::numbers::pi, most = 0, order = 2;
+  for (const Index p : corners) {
+    const double kink = outline[p].kink;
+    built.kinks.push_back(kink);
+    least = std::min(least, std::abs(kink)), most = std::max(most, std::abs(kink));
+    order = std::min(order, order_at_corner(kink));
+  }
+  const Vec2& x = surface.points[corners.front()];
+  built.outline = fmt::format(
+      "the simply supported outline has {} corner{} between straight edges that turn{} by {:.3g} to {:.3g} degrees, one at "
+      "({:.4g}, {:.4g}): moments are singular there, and the error falls as h^{:.2g} in place of h^2, h the cells' size. "
+      "The plate is a polygon, which deflects less than one with a curved edge however many sides it has "
+      "(Babuska's paradox), and blunt corners take a very fine mesh: with 13 edges a side of 20 the deflection is 13 % too "
+      "large, with 16 edges a side of 12 it is 22 % too small. Draw an edge that is meant to be curved by a curve (Circle, "
+      "Ellipse, Spline); else compare with a finer mesh.",
+      corners.size(), corners.size() > 1 ? "s" : "", corners.size() > 1 ? "" : "s", least / degree,
+      most / degree, x.x(), x.y(), order);
+}
+
+void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const PlateContext& context) {
+  const std::filesystem::path file = context.output_folder / "modes.h5";
+  const std::string key = key_of(plate, p);
+  if (!context.output_folder.empty() && reuse_modes(built, file, key)) return;
+  const EigenModes modes = plate.modes(p.n_modes());
+  refuse_lost_rigid(plate, modes);
+  if (cuts_a_group(modes, 1e-3))
+    built.note = fmt::format(
+        "modes {} and {} have the same frequency (to 0.1 %), and only the first is kept: the plate answers differently "
+        "in "
+        "directions that should be alike. Keep one more or one less.",
+        p.n_modes(), p.n_modes() + 1);
+  built.model = skin_of(plate, modes, p.placement, p.wetted, open_patches(plate.surface(), p));
+  const double least = std::sqrt(rigid_limit(plate)) / (2 * std::numbers::pi);
+  for (double& f : built.model.frequency)
+    if (f < least) f = 0;
+  // Without the key they are found again, and what was noted is said again.
+  if (!context.output_folder.empty())
+    write_modes(file, built.model, built.note.empty() ? key_with_content(key, built.model) : "");
+}
+
+}  // namespace
+
+PlateModel plate_of(Midsurface surface, const Parameters& p, const std::string& name) {
+  check_names(surface, p, name);
+  std::vector<PlateCell> of_zone;
+  for (const std::string& zone : surface.zones) {
+    const auto found = p.zones.find(zone);
+    const Zone other = found == p.zones.end() ? Zone{} : found->second;
+    of_zone.push_back({other.thickness.value_or(p.thickness), other.density.value_or(p.material.density),
+                       other.youngs_modulus.value_or(p.material.youngs_modulus), p.material.poissons_ratio});
+  }
+  std::vector<PlateCell> cells;
+  for (const int zone : surface.zone) cells.push_back(of_zone[zone]);
+  const std::vector<Support> support = supports(surface, p);
+  return PlateModel(std::move(surface), std::move(cells), support);
+}
+
+ModalModel modes_of_file(const Parameters& p, const std::filesystem::path& file) {
+  ModalModel model = read_modes(file);
+  const std::string problem = facing_problem_of(model, p.cavity ? Facing::inward : Facing::outward);
+  if (problem.empty()) return model;
+  throw Error(
+      "modes.file: the file of modes '{}' cannot be used: {}. {}docs/formats.md says what it must hold.",
+      file.string(), problem,
+      p.cavity
+          ? ""
+          : "If it is the wall of a cavity, whose outside is the space within, say 'modes.cavity: true'. ");
+}
+
+Built build_model(const Parameters& p, const PlateContext& context, const RawMesh* raw) {
+  Built built;
+  const SlepcEnvironment slepc;
+  on_root(context.comm, [&] {
+    if (p.modes_file) {
+      built.model = modes_of_file(p, context.case_folder / *p.modes_file);
+      return;
+    }
+    auto plate = std::make_unique<PlateModel>(
+        plate_of(raw ? midsurface_of(*raw) : read(p, context.case_folder), p, context.name));
+    const std::vector<Support> held = supports(plate->surface(), p);
+    look_at_corners(built, plate->surface(), held);
+    built.stretch_limit = stretch_limit(held);
+    add_modes(built, *plate, p, context);
+    if (p.analysis != Parameters::Analysis::modal) built.plate = std::move(plate);
+  });
+  return built;
+}
+
+double seat_stiffness(const Parameters& p) {
+  return p.material.youngs_modulus / (3 * (1 - 2 * p.material.poissons_ratio)) / p.thickness;
+}
+
+}  // namespace couplet::plate

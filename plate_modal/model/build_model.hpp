@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "common/modes/modal_model.hpp"
+#include "plate_modal/model/parameters.hpp"
+
+namespace couplet::plate {
+
+/// Where a structure runs.
+struct PlateContext {
+  MPI_Comm comm = MPI_COMM_SELF;
+  std::string name = "plate";
+  std::filesystem::path case_folder, output_folder;  ///< output empty: nothing is written
+  double restart_time = std::numeric_limits<double>::quiet_NaN();
+  double time_step = std::numeric_limits<double>::quiet_NaN();  ///< of the run; NaN: not known
+};
+
+/// What the configuration describes, on rank 0 (the model is empty elsewhere).
+struct Built {
+  ModalModel model;
+  std::unique_ptr<PlateModel> plate;  ///< of a mesh, but for a modal analysis
+  bool reused = false;                ///< modes of an earlier run
+  /// Of a plate with two held edges or more: deflection over thickness from which its stretch matters; 0: it has none.
+  double stretch_limit = 0;
+  std::vector<double> kinks;  ///< at blunt corners of hinged edges [rad]
+  std::string outline;        ///< what the user should know of the outline, or nothing
+  std::string note;           ///< something the user should know, or nothing
+};
+
+/// Cells of the mid-surface with their materials, supports of its patches. Throws Error naming zones and
+/// patches that the mesh does not have, or that have no entry.
+PlateModel plate_of(Midsurface surface, const Parameters& parameters, const std::string& name);
+
+/// Modes of the mesh (from modes.h5 of the output folder if they belong to the same mesh and data), or those
+/// of the file that the parameters name. `raw`: mesh on rank 0 in place of that of the parameters.
+/// Collective.
+Built build_model(const Parameters& parameters, const PlateContext& context, const RawMesh* raw = nullptr);
+
+/// Modes of another program, whose surface says by its faces alone where its outside is. Throws Error.
+ModalModel modes_of_file(const Parameters& parameters, const std::filesystem::path& file);
+
+/// kappa / S of thesis (4.33) for f_SI = 1: bulk modulus over thickness [N/m^3].
+double seat_stiffness(const Parameters& parameters);
+
+}  // namespace couplet::plate

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/model/parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/config/pairs.hpp"
+#include "common/fv/expression.hpp"
+
+namespace couplet::plate {
+namespace {
+
+void declare_body(config::Section& s, Parameters& p) {
+  s.value("mesh", p.mesh)
+      .doc("mid-surface: 2-D mesh of triangles or quadrilaterals (.msh, or .geo to be meshed by gmsh)");
+  s.value("mesh-scale", p.mesh_scale)
+      .positive()
+      .doc(
+          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
+  s.value("mesh-parameters", p.mesh_parameters)
+      .doc("numbers for names that the .geo defines by DefineConstant");
+  s.section(
+      "material",
+      [&](config::Section& m) {
+        m.value("density", p.material.density)
+            .unit("kg/m^3")
+            .plausible(1, 25000)
+            .not_negative()
+            .doc("density");
+        m.value("youngs-modulus", p.material.youngs_modulus)
+            .unit("Pa")
+            .plausible(1, 2e12)
+            .not_negative()
+            .doc("Young's modulus");
+        m.value("poissons-ratio", p.material.poissons_ratio).range(-0.99, 0.499).doc("Poisson's ratio");
+        m.doubt([&] { return config::doubt_of_wave_speed(p.material.youngs_modulus, p.material.density); },
+                "density");
+      },
+      "isotropic material of the plate; needed with 'mesh'");
+  s.value("thickness", p.thickness)
+      .unit("m")
+      .plausible(1e-7, 10)
+      .not_negative()
+      .doc("of the plate; needed with 'mesh'");
+  s.map<Zone>(
+      "zones", p.zones,
+      [](config::Section& z, Zone& v) {
+        z.value("thickness", v.thickness)
+            .unit("m")
+            .plausible(1e-7, 10)
+            .positive()
+            .doc("in place of the plate's");
+        z.value("density", v.density)
+            .unit("kg/m^3")
+            .plausible(1, 25000)
+            .positive()
+            .doc("in place of the plate's");
+        z.value("youngs-modulus", v.youngs_modulus)
+            .unit("Pa")
+            .plausible(1, 2e12)
+            .positive()
+            .doc("in place of the plate's");
+      },
+      "zone", "parts of the mesh (physical surfaces) that differ from the rest");
+  s.map<Edge>(
+      "boundaries", p.boundaries,
+      [](config::Section& b, Edge& v) {
+        b.choice("type", v.support,
+                 {{"free", Support::free},
+                  {"clamped", Support::clamped},
+                  {"simply-supported", Support::simply_supported},
+                  {"symmetry", Support::symmetry}})
+            .required()
+            .doc("how the edge is held; symmetry: no slope across it");
+      },
+      "patch", "one entry for each part of the outline; needed with 'mesh'");
+}
+
+void declare_place(config::Section& s, Parameters& p) {
+  s.section(
+      "placement",
+      [&](config::Section& q) {
+        q.value("origin", p.placement.origin)
+            .unit("m")
+            .plausible(1e-9, 1e4)
+            .doc("where the origin of the mesh lies in space");
+        q.value("x-axis", p.placement.x).doc("direction of the mesh's x in space, of any length");
+        q.value("y-axis", p.placement.y)
+            .doc("direction of the mesh's y, of any length; the plate's normal is x cross y");
+        q.check(
+            [&]() -> std::string {
+              // By their largest components first: the square of a small length is 0.
+              const Vec3 x = p.placement.x.stableNormalized(), y = p.placement.y.stableNormalized();
+              return x.norm() > 0.5 && y.norm() > 0.5 && std::abs(x.dot(y)) < 1e-9
+                         ? ""
+                         : "x-axis and y-axis must be at right angles, and not 0";
+            },
+            "x-axis");
+      },
+      "where the mid-surface lies in space");
+  s.choice("wetted", p.wetted, {{"both", Wetted::both}, {"upper", Wetted::upper}, {"lower", Wetted::lower}})
+      .doc("sides that are the interface; upper: where the normal points; both: with the free edges' rims");
+  s.value("surface-density", p.surface_density)
+      .doc("also give the mass behind each face [kg/m^2], the impedance for a Robin interface");
+}
+
+void declare_modes(config::Section& s, Parameters& p) {
+  s.section(
+      "modes",
+      [&](config::Section& m) {
+        m.value("number", p.number)
+            .range(1, 10000)
+            .doc("of modes of a mesh that are kept, the lowest first; absent: 15");
+        m.check(
+            [&] { return p.number && *p.number != std::floor(*p.number) ? "a whole number is needed" : ""; },
+            "number");
+        m.value("file", p.modes_file)
+            .doc("modes that another program wrote (docs/formats.md), in place of 'mesh'");
+        m.value("cavity", p.cavity)
+            .doc(
+                "with 'file': its surface is the wall of a cavity, so the normals must point into the space that it encloses; "
+                "false: such a surface is refused as turned inside out");
+        m.check([&] { return p.cavity && !p.modes_file ? "it says something of a 'file' alone" : ""; },
+                "cavity");
+        m.check(
+            [&] {
+              return p.modes_file && !p.mesh && p.number
+                         ? "with 'modes.file' it is of no use: all modes of the file are taken"
+                         : "";
+            },
+            "number");
+      },
+      "modes of the structure; those of a mesh are kept in modes.h5 of the output folder and used again "
+      "while "
+      "mesh and data are the same");
+  s.section(
+      "time-scheme", [&](config::Section& t) { couplet::declare(t, p.time_scheme); }, "integration in time");
+  s.optional_section<Damping>(
+      "damping", p.damping,
+      [](config::Section& d, Damping& v) {
+        d.value("ratio", v.ratio).range(0, 1).doc("of critical damping, the same in every mode");
+        d.value("mass", v.mass)
+            .unit("1/s")
+            .plausible(1e-9, 1e9)
+            .not_negative()
+            .doc("Rayleigh coefficient of the mass");
+        d.value("stiffness", v.stiffness)
+            .unit("s")
+            .plausible(1e-15, 1e4)
+            .not_negative()
+            .doc("Rayleigh coefficient of the stiffness");
+      },
+      "modal damping");
+}
+
+void declare_loads(config::Section& s, Parameters& p) {
+  s.value("gravity", p.gravity)
+      .unit("m/s^2")
+      .plausible(1e-3, 2000)
+      .size(3)
+      .doc("acceleration of gravity in space, three numbers");
+  s.optional_section<Load>(
+      "load", p.load,
+      [](config::Section& l, Load& v) {
+        l.value("upper-pressure", v.upper)
+            .unit("Pa")
+            .plausible(1e-9, 1e11)
+            .doc("on the side the normal points to (with 'modes.file': +z), of x, y, z, t");
+        l.value("lower-pressure", v.lower)
+            .unit("Pa")
+            .plausible(1e-9, 1e11)
+            .doc("on the other side (with 'modes.file': -z), of x, y, z, t");
+        l.check([&] { return v.upper ? problem_of(*v.upper) : ""; }, "upper-pressure");
+        l.check([&] { return v.lower ? problem_of(*v.lower) : ""; }, "lower-pressure");
+      },
+      "pressures that push into the sides, beside those of a fluid; a table of a file: 'table(t, "
+      "\"p.csv\")'");
+  s.optional_section<ContactParameters>(
+      "contact", p.contact, [](config::Section& c, ContactParameters& v) { declare(c, v); },
+      "a rigid seat under the structure, in a dynamic analysis alone");
+}
+
+/// What describes a plate says nothing about the modes of a file, which have their own surface, place and mass.
+void check_file_alone(config::Section& s, const Parameters& p) {
+  const auto of_no_use = [&](const char* key, const char* why, auto&& is_given) {
+    s.check(
+        [&p, why, is_given] {
+          return p.modes_file && !p.mesh && is_given()
+                     ? fmt::format("with 'modes.file' it is of no use: {}", why)
+                     : "";
+        },
+        key);
+  };
+  const char* inside = "the modes hold it already";
+  of_no_use("mesh-parameters", "there is no .geo", [&p] { return !p.mesh_parameters.empty(); });
+  of_no_use("mesh-scale", "the file is in metres", [&p] { return p.mesh_scale != 1; });
+  of_no_use("material", inside, [&p] {
+    const Material m;
+    return p.material.density != m.density || p.material.youngs_modulus != m.youngs_modulus ||
+           p.material.poissons_ratio != m.poissons_ratio;
+  });
+  of_no_use("thickness", inside, [&p] { return p.thickness > 0; });
+  of_no_use("zones", inside, [&p] { return !p.zones.empty(); });
+  of_no_use("boundaries", inside, [&p] { return !p.boundaries.empty(); });
+  of_no_use("placement", "the surface of the file stands where the file says", [&p] {
+    const Placement here;
+    return p.placement.origin != here.origin || p.placement.x != here.x || p.placement.y != here.y;
+  });
+  of_no_use("wetted", "the interface is the surface of the file", [&p] { return p.wetted != Wetted::both; });
+}
+
+void check_together(config::Section& s, Parameters& p) {
+  using Analysis = Parameters::Analysis;
+  s.check(
+      [&] {
+        return p.mesh.has_value() == p.modes_file.has_value()
+                   ? "give either 'mesh' (of the mid-surface) or 'modes.file' (modes of another program)"
+                   : "";
+      },
+      "mesh");
+  const auto needed = [&](const char* key, auto&& is_missing) {
+    s.check(
+        [&p, key, is_missing] {
+          return p.mesh && is_missing() ? fmt::format("a plate needs '{}' above 0", key) : "";
+        },
+        p.mesh ? "mesh" : "modes");
+  };
+  needed("thickness", [&p] { return !(p.thickness > 0); });
+  needed("material.density", [&p] { return !(p.material.density > 0); });
+  needed("material.youngs-modulus", [&p] { return !(p.material.youngs_modulus > 0); });
+  s.check(
+      [&] {
+        return p.contact && p.analysis != Analysis::dynamic
+                   ? "contact is part of a dynamic analysis; remove it"
+                   : "";
+      },
+      "contact");
+  s.check(
+      [&] {
+        return p.contact && p.modes_file && !p.contact->stiffness
+                   ? "with 'modes.file' the material is not known: give 'stiffness'"
+                   : "";
+      },
+      "contact");
+  s.check(
+      [&] {
+        return p.contact && p.contact->rule == ContactRule::conserving &&
+                       p.time_scheme.type != TimeScheme::trapezoidal
+                   ? "'rule: conserving' goes with the trapezoidal time scheme; take 'rule: midpoint'"
+                   : "";
+      },
+      "contact");
+  s.check(
+      [&] {
+        return p.damping && p.analysis != Analysis::dynamic
+                   ? "damping has no effect in this analysis; remove it"
+                   : "";
+      },
+      "damping");
+  s.check(
+      [&] {
+        return p.mesh && std::ssize(p.initial_amplitudes) > p.n_modes()
+                   ? fmt::format("{} amplitudes are given for {} modes", p.initial_amplitudes.size(),
+                                 p.n_modes())
+                   : "";
+      },
+      "initial-amplitudes");
+}
+
+}  // namespace
+
+void declare(config::Section& s, ContactParameters& c) {
+  s.value("height", c.height)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc("of the seat along 'direction', of x, y, z of the structure at rest");
+  s.value("where", c.where).doc("there is a seat where this expression of x, y, z is above 0");
+  s.value("direction", c.direction)
+      .size(3)
+      .doc("from the seat to the structure, of any length; absent: the plate's normal");
+  s.value("scale", c.scale).positive().doc("f_SI of thesis (4.33): kappa = f_SI K S / h");
+  s.value("stiffness", c.stiffness)
+      .unit("N/m^3")
+      .plausible(1, 1e16)
+      .positive()
+      .doc("force per area and penetration, in place of (4.33)");
+  s.value("starts-inside", c.starts_inside)
+      .doc(
+          "the structure may stand in the seat at the start, whose springs then push from there; false: an error");
+  s.choice("rule", c.rule, {{"conserving", ContactRule::conserving}, {"midpoint", ContactRule::midpoint}})
+      .doc(
+          "conserving: a bounce keeps the energy to rounding, with the trapezoidal time scheme alone; midpoint: the force "
+          "where the scheme has equilibrium, with any scheme");
+  const auto problem = [](const config::ExpressionText& text) -> std::string {
+    if (std::string wrong = problem_of(text); !wrong.empty()) return wrong;
+    return Expression(text).uses_time() ? "a seat stands still: an expression of x, y, z, without t" : "";
+  };
+  s.check(
+      [&] {
+        return c.stiffness && c.scale != 1 ? "with 'stiffness' it is of no use: it scales (4.33) alone" : "";
+      },
+      "scale");
+  s.check([&] { return problem(c.height); }, "height");
+  s.check([&] { return problem(c.where); }, "where");
+  s.check(
+      [&] {
+        const auto& d = c.direction;
+        return !d.empty() && !(std::hypot(d[0], d[1], d[2]) > 0) ? "a direction is needed, not 0" : "";
+      },
+      "direction");
+}
+
+void declare(config::Section& s, Parameters& p) {
+  using Analysis = Parameters::Analysis;
+  s.choice("analysis", p.analysis,
+           {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}, {"modal", Analysis::modal}})
+      .doc("static: deflection of the plate without inertia; modal: frequencies and shapes alone");
+  declare_body(s, p);
+  declare_place(s, p);
+  declare_modes(s, p);
+  declare_loads(s, p);
+  s.value("initial-velocity", p.initial_velocity)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("of the whole structure at the start");
+  s.value("initial-amplitudes", p.initial_amplitudes)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc("of the modes at the start: the displacement where each is largest");
+  s.map<Watched>(
+      "probes", p.probes,
+      [](config::Section& q, Watched& v) {
+        q.value("point", v.point)
+            .required()
+            .unit("m")
+            .plausible(1e-9, 1e4)
+            .doc(
+                "place on the undeformed surface, or no farther from it than the thickness or a hundredth of the structure's "
+                "size: the nearest place of the surface is taken");
+      },
+      "probe", "places of the surface whose displacement is written to probes.csv at each step");
+  s.section(
+      "output",
+      [&](config::Section& o) {
+        o.value("modes", p.output.modes).doc("write the shapes of the modes, one a time of a series");
+        o.value("fields", p.output.fields).doc("write the moving surface at the output interval");
+      },
+      "what is written");
+  check_file_alone(s, p);
+  check_together(s, p);
+}
+
+}  // namespace couplet::plate

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/section.hpp"
+#include "common/time/time_scheme.hpp"
+#include "plate_modal/model/contact_parameters.hpp"
+#include "plate_modal/model/skin.hpp"
+
+namespace couplet::plate {
+
+struct Material {
+  double density = 0, youngs_modulus = 0, poissons_ratio = 0.3;
+};
+
+struct Edge {
+  Support support = Support::free;
+};
+
+/// A zone of the mesh that differs from the rest of the plate.
+struct Zone {
+  std::optional<double> thickness, density, youngs_modulus;
+};
+
+/// Of every mode: ratio + (mass / omega + stiffness omega) / 2 of the critical damping.
+struct Damping {
+  double ratio = 0, mass = 0, stiffness = 0;
+};
+
+/// Pressures on the two sides in a run without a fluid [Pa]; each pushes into the plate.
+struct Load {
+  std::optional<config::ExpressionText> upper, lower;
+};
+
+struct Watched {
+  Vec3 point = Vec3::Zero();
+};
+
+struct PlateOutput {
+  bool modes = false;
+  bool fields = true;
+};
+
+struct Parameters {
+  enum class Analysis { modal, static_, dynamic };
+  Analysis analysis = Analysis::dynamic;
+  std::optional<std::string> mesh, modes_file;  // one of the two
+  bool cavity = false;                          // the file's surface encloses the outside
+  std::map<std::string, double> mesh_parameters;
+  double mesh_scale = 1;  // all lengths of the mesh file times this
+  Material material;
+  double thickness = 0;
+  std::map<std::string, Zone> zones;
+  std::map<std::string, Edge> boundaries;
+  Placement placement;
+  Wetted wetted = Wetted::both;
+  std::optional<double> number;  // of modes of a mesh
+  int n_modes() const { return number ? static_cast<int>(*number) : 15; }
+  TimeSchemeParameters time_scheme;
+  std::optional<Damping> damping;
+  std::vector<double> gravity;  // [m/s^2]; empty: none
+  std::optional<Load> load;
+  std::optional<ContactParameters> contact;
+  bool surface_density = false;  // given at the faces, for a Robin interface
+  Vec3 initial_velocity = Vec3::Zero();
+  std::vector<double> initial_amplitudes;
+  std::map<std::string, Watched> probes;
+  PlateOutput output;
+};
+
+/// The keys of `participants.<name>` of a plate_modal.
+void declare(config::Section& section, Parameters& parameters);
+
+}  // namespace couplet::plate

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/linalg/matrix.hpp"
+#include "common/modes/lowest_modes.hpp"
+#include "plate_modal/model/kirchhoff.hpp"
+
+namespace couplet::plate {
+
+enum class Support { free, clamped, simply_supported, symmetry };
+
+/// What a cell is made of.
+struct PlateCell {
+  double thickness = 0;       ///< h [m]
+  double density = 0;         ///< rho [kg/m^3]
+  double youngs_modulus = 0;  ///< [Pa]
+  double poissons_ratio = 0;
+  double rigidity() const {
+    return youngs_modulus * thickness * thickness * thickness / (12 * (1 - poissons_ratio * poissons_ratio));
+  }
+  double surface_density() const { return density * thickness; }
+};
+
+/// K and M of a Kirchhoff plate on one rank, thesis (4.24) with its erratum (inertia rho h). Unknown 3 p + c
+/// of point p: deflection, then the slopes about axes that are turned at supported points, so that each
+/// support is a row of its own. Supported rows hold a one in K and nothing in M.
+class PlateModel final {
+ public:
+  /// `support`: one a patch. Throws Error.
+  PlateModel(Midsurface surface, std::vector<PlateCell> cells, const std::vector<Support>& support);
+
+  const Midsurface& surface() const { return surface_; }
+  const PlateCell& cell(Index c) const { return cells_[c]; }
+  const SparseMatrix& stiffness() const { return *stiffness_; }
+  const SparseMatrix& mass() const { return *mass_; }
+  std::size_t n_unknowns() const { return 3 * surface_.points.size(); }
+  bool is_supported(std::size_t unknown) const { return fixed_[unknown]; }
+
+  /// Deflection and slopes w, w,x, w,y of each point (3 a point) from the unknowns, and the other way round.
+  std::vector<double> to_points(std::span<const double> unknowns) const;
+  std::vector<double> to_unknowns(std::span<const double> points) const;
+  /// Right-hand side of a pressure [Pa], one value a cell, that pushes to positive w.
+  std::vector<double> load_of(std::span<const double> pressure) const;
+  /// Mean deflection over each cell from w, w,x, w,y of the points.
+  std::vector<double> cell_means(std::span<const double> points) const;
+  std::vector<double> cell_areas() const;
+  /// The least square of a frequency this plate could have [1/s^2], in size: where to look from.
+  double frequency_scale() const;
+
+  /// The plate's lowest modes.
+  EigenModes modes(int n) const;
+  /// Puts K + shift M in the place of K.
+  void stiffen(double shift);
+  /// K u = load. Throws Error if the supports leave it free, SolveFailure. In unknowns.
+  std::vector<double> deflect(std::span<const double> load) const;
+
+ private:
+  void support_points(const std::vector<Support>& support);
+  void assemble();
+  TriangleMatrix turned(const TriangleMatrix& matrix, const std::array<Index, 3>& points) const;
+
+  Midsurface surface_;
+  std::vector<PlateCell> cells_;
+  std::vector<Vec2> axis_;  // per point: direction of its second unknown
+  std::vector<bool> fixed_;
+  std::unique_ptr<SparseMatrix> stiffness_, mass_;
+};
+
+}  // namespace couplet::plate

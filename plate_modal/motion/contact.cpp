@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/motion/contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+#include "common/fv/expression.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// A face looks at the seat when its normal is within 60 degrees of the way to it.
+constexpr double least_cosine_to_seat = 0.5;
+
+}  // namespace
+
+Contact::Contact(const Share& share, const ContactParameters& p, const Vec3& normal, double stiffness)
+    : share_(share), rule_(p.rule), n_modes_(share.n_modes()) {
+  const Vec3 direction = p.direction.empty() ? normal : Vec3(p.direction[0], p.direction[1], p.direction[2]);
+  std::vector<std::size_t> faces;
+  const Expression height(p.height, "contact.height"), where(p.where, "contact.where");
+  for (std::size_t f = 0; f < share.n_faces(); ++f) {
+    const Vec3 &x = share.centres()[f], &area = share.areas()[f];
+    const double towards = -area.dot(direction);
+    if (towards < least_cosine_to_seat * area.norm() || !(where(x, 0) > 0)) continue;
+    faces.push_back(f);
+    centre_.push_back(x);
+    gap_.push_back(x.dot(direction) - height(x, 0));
+    kappa_.push_back(p.stiffness.value_or(p.scale * stiffness) * towards);
+    for (int m = 0; m < n_modes_; ++m) {
+      double along = 0;
+      for (int c = 0; c < 3; ++c) along += direction[c] * share.face_shape(f)[std::size_t(c) * n_modes_ + m];
+      shape_.push_back(along);
+    }
+  }
+  if (couplet::sum(share.comm(), GlobalIndex(gap_.size())) == 0)
+    throw Error("contact: no face of the structure looks at the seat. Check 'direction' and 'where'.");
+  refuse_sliding(direction, faces);
+}
+
+/// A seat pushes along its direction. Faces that the modes move across it alone (the rim of a plate that looks at a
+/// seat beside it) would sink through it without a force that anything feels.
+void Contact::refuse_sliding(const Vec3& direction, std::span<const std::size_t> faces) const {
+  double moves[2] = {0, 0};  // along the direction, in all
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    const auto shape = share_.face_shape(faces[i]);
+    for (int m = 0; m < n_modes_; ++m) {
+      const double along = shape_[i * n_modes_ + m];
+      moves[0] += kappa_[i] * along * along;
+      for (int c = 0; c < 3; ++c) {
+        const double one = shape[std::size_t(c) * n_modes_ + m];
+        moves[1] += kappa_[i] * one * one;
+      }
+    }
+  }
+  share_.sum(moves);
+  const double cosine = std::sqrt(moves[0] / moves[1]);
+  if (cosine >= least_cosine_to_seat) return;
+  throw Error(
+      "contact.direction: the modes move the faces that look at the seat along ({:g}, {:g}, {:g}) by {:.0f} % of their "
+      "motion only; at least {:.0f} % is needed for the seat to hold them. A seat lies across the motion.",
+      direction.x(), direction.y(), direction.z(), moves[1] > 0 ? 100 * cosine : 0,
+      100 * least_cosine_to_seat);
+}
+
+Contact::Place Contact::deepest(std::span<const double> q) const {
+  std::vector<double> here{-std::numeric_limits<double>::infinity(), 0, 0, 0};
+  for (std::size_t f = 0; f < gap_.size(); ++f)
+    if (const double delta = penetration(f, q); delta > here[0])
+      here = {delta, centre_[f].x(), centre_[f].y(), centre_[f].z()};
+  const std::vector<double> all = all_gather(share_.comm(), here);
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < all.size(); i += 4)
+    if (all[i] > all[best]) best = i;
+  return {all[best], Vec3(&all[best + 1])};
+}
+
+double Contact::stiffness_of_impact(std::span<const double> from, std::span<const double> q,
+                                    const Eigen::VectorXd& force) const {
+  double seen = 0;
+  for (std::size_t f = 0; f < gap_.size(); ++f) {
+    if (!(std::max(penetration(f, from), penetration(f, q)) > 0)) continue;
+    const double along = Eigen::Map<const Eigen::VectorXd>(shape_.data() + f * n_modes_, n_modes_).dot(force);
+    seen += kappa_[f] * along * along;
+  }
+  const double square = force.squaredNorm();
+  seen = couplet::sum(share_.comm(), seen);
+  return square > 0 ? seen / square : 0;
+}
+
+double Contact::largest_stiffness() const {
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(n_modes_, n_modes_);
+  for (std::size_t f = 0; f < gap_.size(); ++f)
+    all.selfadjointView<Eigen::Lower>().rankUpdate(
+        Eigen::Map<const Eigen::VectorXd>(shape_.data() + f * n_modes_, n_modes_), kappa_[f]);
+  share_.sum({all.data(), std::size_t(n_modes_) * n_modes_});
+  // Power iteration: a percent is enough, and it comes from below by less.
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(n_modes_).normalized();
+  double value = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::VectorXd y = all.selfadjointView<Eigen::Lower>() * x;
+    value = y.norm();
+    if (!(value > 0)) break;
+    x = y / value;
+  }
+  return value;
+}
+
+double Contact::penetration(std::size_t face, std::span<const double> q) const {
+  const double* shape = shape_.data() + face * n_modes_;
+  double delta = -gap_[face];
+  for (int m = 0; m < n_modes_; ++m) delta -= shape[m] * q[m];
+  return delta;
+}
+
+void Contact::evaluate(std::span<const double> from, std::span<const double> q, Result& r) const {
+  const int n = n_modes_;
+  r.force.setZero(n);
+  r.tangent.setZero(n, n);
+  for (std::size_t f = 0; f < gap_.size(); ++f) {
+    const double now = penetration(f, q);
+    double force = std::max(now, 0.), slope = now > 0 ? 1 : 0;
+    if (rule_ == ContactRule::conserving) {
+      const double before = penetration(f, from);
+      if (now > 0 && before > 0) {
+        force = 0.5 * (now + before), slope = 0.5;
+      } else if (now > 0) {  // it arrives
+        force = 0.5 * now * now / (now - before);
+        slope = 0.5 * now * (now - 2 * before) / ((now - before) * (now - before));
+      } else if (before > 0) {  // it leaves
+        force = 0.5 * before * before / (before - now);
+        slope = 0.5 * before * before / ((before - now) * (before - now));
+      }
+    }
+    if (force == 0) continue;
+    const Eigen::Map<const Eigen::VectorXd> shape(shape_.data() + f * n, n);
+    r.force += kappa_[f] * force * shape;
+    r.tangent.selfadjointView<Eigen::Lower>().rankUpdate(shape, kappa_[f] * slope);
+  }
+  share_.sum({r.force.data(), std::size_t(n)});
+  share_.sum({r.tangent.data(), std::size_t(n) * n});
+  r.tangent.triangularView<Eigen::StrictlyUpper>() = r.tangent.transpose();
+}
+
+void Contact::look(std::span<const double> q, Result& r) const {
+  double sums[2] = {0, 0};
+  double deepest = 0;
+  for (std::size_t f = 0; f < gap_.size(); ++f) {
+    const double delta = penetration(f, q);
+    if (!(delta > 0)) continue;
+    sums[0] += 0.5 * kappa_[f] * delta * delta;
+    sums[1] += kappa_[f] * delta;
+    deepest = std::max(deepest, delta);
+  }
+  share_.sum(sums);
+  r.energy = sums[0];
+  r.total = sums[1];
+  r.penetration = couplet::max(share_.comm(), deepest);
+}
+
+}  // namespace couplet::plate

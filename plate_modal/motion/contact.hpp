@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+
+#include "plate_modal/model/contact_parameters.hpp"
+#include "plate_modal/motion/share.hpp"
+
+namespace couplet::plate {
+
+/// Penalty contact of the faces that look at a rigid seat, without friction, thesis (4.32)-(4.33): a face of
+/// area S that is delta below the seat is pushed back by kappa delta, kappa = stiffness S.
+class Contact final {
+ public:
+  /// `normal`: direction where the parameters give none; `stiffness`: per area where they give none [N/m^3].
+  /// Throws Error if no face of the structure looks at the seat. Collective.
+  Contact(const Share& share, const ContactParameters& parameters, const Vec3& normal, double stiffness);
+
+  struct Result {
+    Eigen::VectorXd force;    ///< on the modes
+    Eigen::MatrixXd tangent;  ///< - d force / d q
+    double energy = 0;        ///< kept in the seat at q [J]
+    double penetration = 0;   ///< the deepest at q [m]
+    double total = 0;         ///< sum of the forces along the direction [N]
+  };
+  /// Forces for the displacement q: midpoint rule kappa <delta(q)>; conserving rule the mean force between
+  /// `from` and q, (V(q) - V(from)) / (delta(q) - delta(from)) with V = kappa <delta>^2 / 2 of each face, so
+  /// that the work is the change of the energy whatever the step [gonzalez2000]. Both grow with q and have
+  /// one solution. Collective; no allocation once `result` has its size.
+  void evaluate(std::span<const double> from, std::span<const double> q, Result& result) const;
+  /// Energy, penetration and total alone, at rest in q. Collective.
+  void look(std::span<const double> q, Result& result) const;
+
+  /// Where the structure stands deepest in the seat with the displacement q.
+  struct Place {
+    double depth = 0;            ///< [m]; not above 0: nowhere
+    Vec3 centre = Vec3::Zero();  ///< of the face, undeformed [m]
+  };
+  Place deepest(std::span<const double> q) const;  ///< Collective.
+  /// What an impact sees of the seat: kappa over mass [1/s^2] in the direction of its force on the modes, of the
+  /// faces that touch at either end of the step. 0: none. Collective.
+  double stiffness_of_impact(std::span<const double> from, std::span<const double> q,
+                             const Eigen::VectorXd& force) const;
+  /// The largest that any impact can see [1/s^2]: with all faces. Collective.
+  double largest_stiffness() const;
+
+  std::size_t n_faces() const { return gap_.size(); }  ///< of this rank
+  bool is_conserving() const { return rule_ == ContactRule::conserving; }
+
+ private:
+  double penetration(std::size_t face, std::span<const double> q) const;
+
+  const Share& share_;
+  ContactRule rule_;
+  void refuse_sliding(const Vec3& direction, std::span<const std::size_t> faces) const;
+  std::vector<Vec3> centre_;
+  std::vector<double> gap_, kappa_, shape_;  // per face: at rest [m], [N/m], along the direction (modes)
+  int n_modes_;
+};
+
+}  // namespace couplet::plate

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "common/time/time_scheme.hpp"
+#include "plate_modal/motion/contact.hpp"
+
+namespace couplet::plate {
+
+/// Energies since the start of the run [J]: thesis (4.29)-(4.31) and the works that go with them.
+struct Energies {
+  double kinetic = 0, strain = 0, gravity = 0, contact = 0;  ///< at the accepted time
+  double initial = 0;                                        ///< their sum at the start
+  double load_work = 0;    ///< done by the fluid and by prescribed pressures
+  double impact_work = 0;  ///< done by the seat
+  double damping_loss = 0;
+  double total() const { return kinetic + strain + gravity + contact; }
+  /// What the scheme made or lost: of the structure together with the seat's springs.
+  double mismatch() const { return total() - initial - load_work + damping_loss; }
+};
+
+/// Generalised coordinates of the modes, thesis (4.26)-(4.27), at an accepted or a tried time.
+struct ModalState {
+  std::vector<double> q, v, a;       ///< displacement, rate, acceleration
+  std::vector<double> q_old, v_old;  ///< one level further back, for schemes that use it
+  double dt = 0;                     ///< of the last step [s]; 0: none yet
+  Energies energies;
+};
+
+/// Integrates q'' + c q' + omega^2 q = Q + impact of all modes over one step. Without a seat every mode is a
+/// number of its own; with one the modes meet in its forces and Newton's method solves for all at once.
+class Oscillators final {
+ public:
+  /// `damping`: c of each mode [1/s]; `gravity`: its load on each mode; `contact`: null without a seat.
+  Oscillators(std::vector<double> omega, std::vector<double> damping, std::vector<double> gravity,
+              TimeSchemeParameters scheme, const Contact* contact);
+
+  /// A state at rest with these displacements and rates.
+  ModalState start(std::vector<double> q, std::vector<double> v) const;
+  /// From `now` over dt to `next`; `load(t, Q)` fills the loads on the modes at t within the step. Throws
+  /// SolveFailure if Newton's method does not end. Collective.
+  using LoadAt = std::function<void(double, std::span<double>)>;
+  void step(const ModalState& now, double dt, const LoadAt& load, ModalState& next);
+
+  int newton_iterations() const { return iterations_; }  ///< of the last step, most of its stages
+  /// Of the last solve, in its last stage: fluid and prescribed pressures on each mode.
+  std::span<const double> load() const { return load_; }
+  const Contact::Result& seat() const { return seat_; }  ///< at the end of the last step
+
+ private:
+  double known(const Levels& levels, const ModalState& at, std::size_t mode) const;
+  void advance(const Stage& stage, const ModalState& at, ModalState& next);
+  void solve_contact(const Stage& stage, const ModalState& at);
+  void add_energies(const Stage& stage, const ModalState& at, ModalState& next);
+  void finish(ModalState& state);
+
+  std::vector<double> omega_, damping_, gravity_;
+  TimeSchemeParameters scheme_;
+  const Contact* contact_;
+  std::vector<double> load_, diagonal_, rhs_, x_, shown_;
+  ModalState work_;
+  Contact::Result seat_;
+  Eigen::VectorXd residual_, correction_;
+  Eigen::MatrixXd jacobian_;
+  int iterations_ = 0;
+};
+
+}  // namespace couplet::plate

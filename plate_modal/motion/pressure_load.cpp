@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plate_modal/motion/pressure_load.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::plate {
+namespace {
+
+/// A side of the plate: faces whose normal is within 60 degrees of that of the plate.
+constexpr double least_cosine = 0.5;
+/// Beyond the pressure in any structure (the centre of the earth has 4e11 Pa), and far from what doubles overflow at.
+constexpr double largest_pressure = 1e15;
+
+bool is_on(const Vec3& area, const Vec3& normal, double sign) {
+  return sign * area.dot(normal) > least_cosine * area.norm();
+}
+
+}  // namespace
+
+PressureLoad::PressureLoad(const Share& share, const Load& load, const Vec3& normal, std::string name)
+    : share_(share), normal_(normal), name_(std::move(name)) {
+  if (load.upper) upper_.emplace(*load.upper, "load.upper-pressure");
+  if (load.lower) lower_.emplace(*load.lower, "load.lower-pressure");
+  int i = 0;
+  for (const auto& [side, sign, name] :
+       {std::tuple{&upper_, 1., "upper"}, std::tuple{&lower_, -1., "lower"}}) {
+    std::vector<double>& unit = of_one_pascal_[i++];
+    if (!*side) continue;
+    const auto faces =
+        std::ranges::count_if(share.areas(), [&](const Vec3& area) { return is_on(area, normal_, sign); });
+    if (couplet::sum(share.comm(), GlobalIndex(faces)) == 0)
+      throw Error(
+          "load.{}-pressure: the surface of the structure has no face on this side ({:g}, {:g}, {:g}).", name,
+          sign * normal.x(), sign * normal.y(), sign * normal.z());
+    if ((*side)->uses_space()) continue;
+    unit.assign(share.n_modes(), 0);
+    add_faces(Expression(1.0), sign, 0, unit);
+  }
+}
+
+bool PressureLoad::changes_in_time() const {
+  return (upper_ && upper_->uses_time()) || (lower_ && lower_->uses_time());
+}
+bool PressureLoad::is_uniform() const {
+  return !(upper_ && upper_->uses_space()) && !(lower_ && lower_->uses_space());
+}
+
+double PressureLoad::push(const Vec3& area, const Vec3& x, double t) const {
+  double sum = 0;
+  if (upper_ && is_on(area, normal_, 1)) sum += value(*upper_, x, t);
+  if (lower_ && is_on(area, normal_, -1)) sum += value(*lower_, x, t);
+  return sum;
+}
+
+void PressureLoad::add_faces(const Expression& side, double sign, double t, std::span<double> load) const {
+  std::vector<double> force(3 * share_.n_faces(), 0);
+  for (std::size_t f = 0; f < share_.n_faces(); ++f) {
+    const Vec3& area = share_.areas()[f];
+    if (!is_on(area, normal_, sign)) continue;
+    const double pressure = value(side, share_.centres()[f], t);
+    for (int c = 0; c < 3; ++c) force[3 * f + c] = -pressure * area[c];
+  }
+  share_.add_load(force, load);
+}
+
+void PressureLoad::fill(double t, std::span<double> load) const {
+  std::ranges::fill(load, 0);
+  int i = 0;
+  for (const auto& [side, sign] : {std::pair{&upper_, 1.}, std::pair{&lower_, -1.}}) {
+    const std::vector<double>& unit = of_one_pascal_[i++];
+    if (!*side) continue;
+    if (unit.empty()) {
+      add_faces(**side, sign, t, load);
+      continue;
+    }
+    const double pressure = value(**side, Vec3::Zero(), t);
+    for (std::size_t m = 0; m < unit.size(); ++m) load[m] += pressure * unit[m];
+  }
+}
+
+double PressureLoad::value(const Expression& side, const Vec3& x, double t) const {
+  const auto fail = [&](const std::string& what) {
+    throw Error("participants.{}.load.{}-pressure: at t = {:g} s{}: {}", name_,
+                &side == &*upper_ ? "upper" : "lower", t,
+                side.uses_space() ? fmt::format(" and ({:g}, {:g}, {:g})", x.x(), x.y(), x.z()) : "", what);
+  };
+  double pressure = 0;
+  try {
+    pressure = side(x, t);
+  } catch (const Error& error) {
+    fail(error.what());
+  }
+  if (!(std::abs(pressure) <= largest_pressure))
+    fail(fmt::format("a pressure of {:g} Pa is none: sizes up to {:g} Pa are taken.", pressure,
+                     largest_pressure));
+  return pressure;
+}
+
+void PressureLoad::at(double t, std::span<double> load) const {
+  std::string problem;
+  try {
+    fill(t, load);
+  } catch (const Error& error) {
+    problem = error.what();
+    std::ranges::fill(load, std::numeric_limits<double>::quiet_NaN());
+  }
+  share_.sum(load);  // what is no number on one rank is none on any
+  if (!std::ranges::any_of(load, [](double one) { return std::isnan(one); })) return;
+  // The same sentence on every rank: that of the first which has one.
+  if (!problem.empty()) problem += '\n';
+  const std::vector<char> all = all_gather(share_.comm(), std::vector<char>(problem.begin(), problem.end()));
+  const std::string texts(all.begin(), all.end());
+  throw Error(texts.substr(0, texts.find('\n')));
+}
+
+PressureLoad::Seen PressureLoad::seen(double t, double dt, int samples) const {
+  const std::size_t n = share_.n_modes();
+  std::vector<double> all((samples + 1) * n + 1, 0);  // in the middle, at each sample; failures
+  try {
+    fill(t + 0.5 * dt, std::span(all).first(n));
+    for (int i = 0; i < samples; ++i)
+      fill(t + (i + 0.5) / samples * dt, std::span(all).subspan((i + 1) * n, n));
+  } catch (const Error&) {
+    all.back() = 1;  // the scheme need not ask for it there
+  }
+  share_.sum(all);
+  Seen seen;
+  if (all.back() > 0) return seen;
+  for (std::size_t m = 0; m < n; ++m) {
+    double mean = 0;
+    for (int i = 1; i <= samples; ++i) {
+      mean += all[i * n + m] / samples;
+      seen.size += all[i * n + m] * all[i * n + m] / samples;
+    }
+    seen.apart += (mean - all[m]) * (mean - all[m]);
+  }
+  return seen;
+}
+
+}  // namespace couplet::plate

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/fv/expression.hpp"
+#include "plate_modal/model/parameters.hpp"
+#include "plate_modal/motion/share.hpp"
+
+namespace couplet::plate {
+
+/// Prescribed pressures on the two sides of a structure, as loads on its modes. A pressure that is the same
+/// everywhere is a number times what 1 Pa does, found once.
+class PressureLoad final {
+ public:
+  /// A side are the faces whose normal is within 60 degrees of `normal` (upper) or of its opposite (lower).
+  /// Collective. Throws Error if a side with a pressure has no face.
+  /// `name`: of the participant, for messages.
+  PressureLoad(const Share& share, const Load& load, const Vec3& normal, std::string name = "plate");
+
+  const std::optional<Expression>& upper() const { return upper_; }
+  const std::optional<Expression>& lower() const { return lower_; }
+  bool changes_in_time() const;
+  bool is_uniform() const;  ///< in space: cheap to ask for
+  /// Loads on the modes at t [N/sqrt(kg)], of all ranks. Collective. Throws Error with key, time and place, the same on
+  /// all ranks, where a pressure has no value or one that no structure sees.
+  void at(double t, std::span<double> load) const;
+
+  /// Of one of the two sides at a place and time [Pa]. Throws as at().
+  double value(const Expression& side, const Vec3& x, double t) const;
+  /// Pressures at x on a face of this area, those that push against its normal [Pa].
+  double push(const Vec3& area, const Vec3& x, double t) const;
+
+  /// What a step from t sees of the load: it takes the value in its middle for the mean over it.
+  struct Seen {
+    double apart = 0;  ///< square of (mean over the step - value in the middle), over all modes
+    double size = 0;   ///< mean of the square of the load
+  };
+  /// `samples`: times within the step. Zeros if the load has no finite value at one of them. Collective.
+  Seen seen(double t, double dt, int samples) const;
+
+ private:
+  void add_faces(const Expression& side, double sign, double t, std::span<double> load) const;
+  void fill(double t, std::span<double> load) const;
+
+  const Share& share_;
+  Vec3 normal_;
+  std::string name_;
+  std::optional<Expression> upper_, lower_;
+  std::array<std::vector<double>, 2>
+      of_one_pascal_;  // on this rank's faces: upper, lower; empty: not uniform
+};
+
+}  // namespace couplet::plate

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/body/solid_body.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/boundary/mesh_checks.hpp"
+#include "solid_solver/boundary/rigid_modes.hpp"
+#include "solid_solver/large_strain/updated_lagrangian.hpp"
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet {
+
+namespace {
+
+/// Of the gradients without an energy: beyond it they only lock.
+constexpr double most_poissons_ratio = 0.499;
+
+/// A support's face has a vertex that is free in a direction which the face knows.
+bool has_loose_vertex(const Mesh& mesh, const ElasticOperator& elastic) {
+  for (const Index f : elastic.known_faces()) {
+    if (elastic.condition(f) != ElasticCondition::support) continue;
+    const Tensor3& known = elastic.support(f).known;
+    for (const Index v : mesh.face_points[f])
+      if ((known * elastic.constraints().free_part(v) * known).trace() > 0.5) return true;
+  }
+  return false;
+}
+
+/// Left to the program, the symmetric gradient steps aside where it would lose a part of the reaction.
+FaceGradientScheme scheme_for(const Mesh& mesh, const SolidParameters& parameters,
+                              const ElasticOperator& elastic) {
+  const FaceGradientScheme scheme = face_gradient_scheme(parameters);
+  const bool free_to_choose = parameters.method.face_gradient == MethodParameters::FaceGradient::automatic &&
+                              !has_finite_strain(parameters) && !has_orthotropic(parameters) &&
+                              !elastic.volume_by_cells();
+  if (free_to_choose && scheme == FaceGradientScheme::symmetric &&
+      any(mesh.comm, has_loose_vertex(mesh, elastic)))
+    return FaceGradientScheme::thesis;
+  return scheme;
+}
+
+}  // namespace
+
+SolidBody::SolidBody(Mesh mesh, SolidParameters parameters)
+    : mesh_(std::move(mesh)),
+      parameters_(std::move(parameters)),
+      materials_(materials_of(parameters_)),
+      boundaries_(mesh_, parameters_),
+      elastic_(mesh_, boundaries_.elastic(), elastic_body(parameters_, mesh_)),
+      kernel_(mesh_, elastic_, scheme_for(mesh_, parameters_, elastic_)),
+      prescribed_(mesh_, boundaries_, elastic_) {
+  check_supports();
+  if (has_finite_strain(parameters_)) make_finite();
+  find_mass();
+  if (!parameters_.body_force.empty())
+    body_force_ = make_expressions(parameters_.body_force, mesh_.dim, "body-force");
+  effects_ = make_effects(mesh_, elastic_, parameters_);
+}
+
+void SolidBody::make_finite() {
+  if (parameters_.method.type == MethodParameters::Type::segregated) {
+    finite_ = std::make_unique<UpdatedLagrangian>(mesh_, elastic_, parameters_);
+    return;
+  }
+  auto newton = std::make_unique<FiniteStrain>(mesh_, elastic_, parameters_);
+  newton_ = newton.get();
+  finite_ = std::move(newton);
+}
+
+void SolidBody::check_supports() const {
+  check_mesh(mesh_, elastic_.vertices());
+  check_symmetry(parameters_, mesh_, elastic_);
+  if (!parameters_.gravity.empty() && std::ssize(parameters_.gravity) != mesh_.dim)
+    throw Error("gravity: {} components are given where the {}-dimensional scene needs {}.",
+                parameters_.gravity.size(), mesh_.dim, mesh_.dim);
+  if (!is_dynamic()) check_supported(mesh_, elastic_);
+}
+
+void SolidBody::find_mass() {
+  bool has_no_energy = false;
+  for (Index f = mesh_.n_interior; f < mesh_.n_flux_faces(); ++f)
+    has_no_energy = has_no_energy || elastic_.condition(f) == ElasticCondition::zero_gradient;
+  if (kernel_.is_symmetric() && any(mesh_.comm, has_no_energy))
+    throw Error(
+        "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no "
+        "energy, so that "
+        "this gradient cannot have it; use 'symmetry' or 'frictionless', or 'face-gradient: thesis'.");
+  if (kernel_.is_symmetric() && any(mesh_.comm, has_loose_vertex(mesh_, elastic_)))
+    throw Error(
+        "solution-method.face-gradient: symmetric: a part of a patch holds components of the displacement and ends "
+        "at vertices that it does not hold; there this gradient would lose a part of the reaction. Give the part a "
+        "patch of its own, hold all components, or take 'face-gradient: thesis'.");
+  if (!kernel_.is_symmetric() && largest_poissons_ratio(parameters_) > most_poissons_ratio)
+    throw Error(
+        "material.poissons-ratio: {:g} is beyond {:g}, up to which 'face-gradient: thesis' and 'corrected' "
+        "can go; "
+        "'symmetric' can (with 'solution-method: {{type: auto}}' and no 'zero-normal-gradient').",
+        largest_poissons_ratio(parameters_), most_poissons_ratio);
+  if (!is_dynamic()) return;
+  std::vector<double> densities;
+  for (Index c = 0; c < mesh_.cells.n_local(); ++c) densities.push_back(density(c));
+  has_mass_ = kernel_.set_density(densities);
+  if (newton_) newton_->set_density(densities);
+}
+
+bool SolidBody::apply_stiffness() {
+  bool changed = false;
+  for (const auto& effect : effects_) {
+    const auto lame = effect->stiffness();
+    if (lame.empty()) continue;
+    changed = true;
+    elastic_.set_lame({lame.begin(), lame.end()});
+    kernel_ = ElasticKernel(mesh_, elastic_, kernel_.scheme());
+    find_mass();
+  }
+  return changed;
+}
+
+std::vector<double> SolidBody::body_forces(double t) const {
+  if (!has_body_forces()) return {};
+  const int dim = mesh_.dim;
+  std::vector<double> forces(std::size_t(mesh_.cells.n_owned()) * dim);
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    for (int a = 0; a < dim; ++a) {
+      double force = body_force_.empty() ? 0 : body_force_[a](mesh_.reference.cell_centre[c], t);
+      if (!parameters_.gravity.empty()) force += density(c) * parameters_.gravity[a];
+      forces[std::size_t(c) * dim + a] = force * mesh_.reference.volume[c];  // (2.59)
+    }
+  return forces;
+}
+
+std::vector<double> SolidBody::known_inertia(double t, double h) const {
+  if (!prescribed_.uses_time()) return {};
+  const double damping = parameters_.damping ? parameters_.damping->mass : 0;
+  std::vector<double> before(prescribed_.size() * mesh_.dim), now(before), after(before);
+  prescribed_.evaluate(t - h, before);
+  prescribed_.evaluate(t, now);
+  prescribed_.evaluate(t + h, after);
+  for (std::size_t i = 0; i < now.size(); ++i)
+    now[i] = (after[i] - 2 * now[i] + before[i]) / (h * h) + damping * (after[i] - before[i]) / (2 * h);
+  return now;
+}
+
+bool SolidBody::wants_acceleration() const {
+  if (!is_dynamic()) return false;
+  return parameters_.output.acceleration || parameters_.step_control ||
+         std::ranges::any_of(parameters_.probes, [](const auto& entry) {
+           return std::ranges::count(entry.second.fields, "acceleration") > 0;
+         });
+}
+
+}  // namespace couplet

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/elasticity.hpp"
+#include "common/fv/expression.hpp"
+#include "common/mesh/mesh.hpp"
+#include "solid_solver/boundary/boundaries.hpp"
+#include "solid_solver/large_strain/finite_strain.hpp"
+#include "solid_solver/large_strain/large_strain.hpp"
+#include "solid_solver/parameters/parameters.hpp"
+#include "solid_solver/thermal/effect.hpp"
+
+namespace couplet {
+
+/// A displacement (or velocity, ...) in all local cells, boundary faces and points, `dim` values each.
+struct BodyField {
+  std::span<const double> cells, faces, points;
+};
+
+/// What is deformed and how it resists: mesh, material law, operator, boundary rows, loads that do not come
+/// through the interface. It has no time of its own.
+class SolidBody final {
+ public:
+  /// Throws Error for a scene that cannot be. Collective over mesh.comm.
+  SolidBody(Mesh mesh, SolidParameters parameters);
+  SolidBody(const SolidBody&) = delete;
+  SolidBody& operator=(const SolidBody&) = delete;
+
+  const Mesh& mesh() const { return mesh_; }
+  const SolidParameters& parameters() const { return parameters_; }
+  const std::vector<SolidMaterial>& materials() const { return materials_; }
+  const SolidBoundaries& boundaries() const { return boundaries_; }
+  const ElasticOperator& elastic() const { return elastic_; }
+  /// The rows of elastic() with the face gradient that was chosen.
+  const ElasticKernel& kernel() const { return kernel_; }
+  /// Large strain: in place of the kernel's Hooke's law; null: small.
+  LargeStrain* finite() const { return finite_.get(); }
+  /// The same if Newton's method solves for it, else null.
+  FiniteStrain* newton() const { return newton_; }
+  const PrescribedDisplacement& prescribed() const { return prescribed_; }
+  /// Those that the scene has.
+  const std::vector<std::unique_ptr<SolidEffect>>& effects() const { return effects_; }
+  /// The kernel has its own mass, and all its nodes inertia.
+  bool has_mass() const { return has_mass_; }
+  bool is_dynamic() const { return parameters_.analysis == SolidParameters::Analysis::dynamic; }
+  bool is_corrected() const { return kernel_.scheme() == FaceGradientScheme::corrected; }
+  /// The acceleration is written or watched, so that it is kept.
+  bool wants_acceleration() const;
+  /// [kg/m^3]
+  double density(Index cell) const { return materials_[mesh_.material_of(cell)].density; }
+
+  /// Takes the elastic constants that an effect has changed; true: all that was made for the old ones is of no
+  /// use any more. Collective.
+  bool apply_stiffness();
+  bool has_body_forces() const { return !body_force_.empty() || !parameters_.gravity.empty(); }
+  /// Body forces and weight of the owned cells at time t [N], `dim` values each; empty: none.
+  std::vector<double> body_forces(double t) const;
+  /// Acceleration of the known columns at time t from differences over h, with mass damping of their velocity;
+  /// empty: they rest.
+  std::vector<double> known_inertia(double t, double h) const;
+
+  /// The unknowns of elastic() in these fields.
+  std::vector<double> unknowns_of(std::span<const double> cells, std::span<const double> faces) const;
+  /// The known columns of elastic() in this field.
+  std::vector<double> known_of(const BodyField& field) const;
+  /// Values at all local points; `known`: one a known column. Collective.
+  std::vector<double> to_points(std::span<const double> cells, std::span<const double> faces,
+                                std::span<const double> known) const;
+  /// At these points by the interpolation of the operator, which needs no exchange.
+  std::vector<double> at_points(std::span<const Index> points, std::span<const double> cells,
+                                std::span<const double> faces, std::span<const double> known) const;
+  /// Gradients of all flux faces. Collective.
+  void visit_gradients(const BodyField& field, const ElasticKernel::TakeGradient& take) const;
+  /// Those of the flux faces first, first + 1, ... (`count` of them). Collective.
+  std::vector<Tensor3> face_gradients(Index first, Index count, const BodyField& field) const;
+
+ private:
+  void check_supports() const;
+  void make_finite();
+  void find_mass();
+
+  const Mesh mesh_;
+  const SolidParameters parameters_;
+  const std::vector<SolidMaterial> materials_;
+  SolidBoundaries boundaries_;
+  ElasticOperator elastic_;
+  ElasticKernel kernel_;
+  std::unique_ptr<LargeStrain> finite_;
+  FiniteStrain* newton_ = nullptr;
+  bool has_mass_ = false;
+  PrescribedDisplacement prescribed_;
+  std::vector<Expression> body_force_;
+  std::vector<std::unique_ptr<SolidEffect>> effects_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/body/solid_fields.hpp"
+
+namespace couplet {
+namespace {
+
+Tensor3 symmetric(const Tensor3& gradient) { return 0.5 * (gradient + gradient.transpose()); }
+
+/// Green's strain (F^T F - I) / 2; entry (i, j) of the gradient is d u_j / d x_i.
+Tensor3 green(const Tensor3& gradient) { return symmetric(gradient) + 0.5 * gradient * gradient.transpose(); }
+
+}  // namespace
+
+SolidFields::SolidFields(const SolidBody& body, const SolidState& state, const LastSolve& last)
+    : body_(body),
+      state_(state),
+      last_(last),
+      mesh_(body.mesh()),
+      parameters_(body.parameters()),
+      elastic_(body.elastic()) {}
+
+std::vector<double> SolidFields::point_displacement() const {
+  return body_.to_points(state_.cell_u, state_.face_u, state_.known);
+}
+
+std::vector<double> SolidFields::point_velocity() const {
+  return body_.to_points(state_.cell_v, state_.face_v, state_.known_rate);
+}
+
+std::vector<double> SolidFields::point_acceleration() const {
+  return body_.to_points(state_.acceleration, state_.face_acceleration, known_acceleration());
+}
+
+/// Of the prescribed columns at the accepted time: a difference over half of the last step.
+std::vector<double> SolidFields::known_acceleration() const {
+  std::vector<double> result(state_.known.size(), 0), before(result.size()), now(result.size());
+  if (!body_.prescribed().uses_time() || !(state_.dt > 0)) return result;
+  const double h = 0.25 * state_.dt;
+  body_.prescribed().evaluate(state_.time - h, before);
+  body_.prescribed().evaluate(state_.time, now);
+  body_.prescribed().evaluate(state_.time + h, result);
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = (result[i] - 2 * now[i] + before[i]) / (h * h);
+  return result;
+}
+
+std::vector<Tensor3> SolidFields::face_stress(Index first, Index count,
+                                              std::span<const double> points) const {
+  if (body_.finite()) return finite_face_stress(first, count);
+  std::vector<Tensor3> stress = body_.face_gradients(first, count, displacement(points));
+  for (Index i = 0; i < count; ++i) stress[i] = elastic_.stress(mesh_.owner[first + i], stress[i]);
+  for (const auto& effect : body_.effects()) effect->add_face_stress(first, stress);
+  return stress;
+}
+
+std::vector<Tensor3> SolidFields::face_strain(Index first, Index count,
+                                              std::span<const double> points) const {
+  std::vector<Tensor3> strain = body_.face_gradients(first, count, displacement(points));
+  for (Tensor3& e : strain) e = body_.finite() ? green(e) : symmetric(e);
+  return strain;
+}
+
+std::vector<Tensor3> SolidFields::cell_strain(std::span<const double> points) const {
+  std::vector<Tensor3> strain = cell_gradient(points);
+  for (Tensor3& e : strain) e = body_.finite() ? green(e) : symmetric(e);
+  return strain;
+}
+
+std::vector<Tensor3> SolidFields::cell_stress(std::span<const double> points) const {
+  if (body_.finite()) return finite_cell_stress();
+  std::vector<Tensor3> stress = cell_gradient(points);
+  for (std::size_t c = 0; c < stress.size(); ++c) stress[c] = elastic_.stress(Index(c), stress[c]);
+  for (const auto& effect : body_.effects()) effect->add_cell_stress(stress);
+  // Across a 2-D scene: lambda tr(epsilon) in plane strain (it stands there already), nothing in plane
+  // stress.
+  if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
+    for (Tensor3& s : stress) s(2, 2) = 0;
+  return stress;
+}
+
+const PointTensors& SolidFields::point_tensors() const {
+  if (!point_tensors_) {
+    std::vector<bool> is_symmetry;
+    for (const Patch& patch : mesh_.patches) {
+      const auto found = parameters_.boundaries.find(patch.name);
+      is_symmetry.push_back(found != parameters_.boundaries.end() && found->second.parts.empty() &&
+                            found->second.type == SolidBoundary::Type::symmetry);
+    }
+    point_tensors_ = std::make_unique<PointTensors>(mesh_, is_symmetry, elastic_.vertices());
+  }
+  return *point_tensors_;
+}
+
+/// Of the boundary faces of owned cells, small strain: tractions as the loads have them, no shear at planes of symmetry.
+std::vector<SurfaceTraction> SolidFields::known_tractions() const {
+  const std::vector<double> forces = loads_now().faces;
+  std::vector<SurfaceTraction> result(std::size_t(mesh_.boundary.n_owned()));
+  for (std::size_t b = 0; b < result.size(); ++b) {
+    const Index f = mesh_.n_interior + Index(b);
+    const double area = mesh_.reference.face_area[f].norm();
+    SurfaceTraction& known = result[b];
+    switch (elastic_.condition(f)) {
+      case ElasticCondition::traction:
+        known.projector = Tensor3::Identity();
+        break;
+      case ElasticCondition::symmetry: {
+        const Vec3 n = mesh_.reference.face_area[f] / area;
+        known.projector -= n * n.transpose() - Tensor3::Identity();
+        known.symmetry = true;
+        continue;
+      }
+      case ElasticCondition::support:
+        if (elastic_.support(f).spring.isZero(0))
+          known.projector = Tensor3::Identity() - elastic_.support(f).known;
+        break;
+      default:
+        continue;
+    }
+    Vec3 force = Vec3::Zero();
+    for (int a = 0; a < mesh_.dim; ++a) force[a] = forces[b * std::size_t(mesh_.dim) + std::size_t(a)];
+    known.traction = known.projector * force / area;
+  }
+  return result;
+}
+
+DiscreteStress SolidFields::discrete_stress(std::span<const double> points) const {
+  DiscreteStress found{cell_stress(points),
+                       face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points),
+                       {},
+                       {},
+                       state_.cell_u,
+                       state_.face_u,
+                       known_tractions()};
+  if (body_.effects().empty()) return found;
+  found.other_in_cells.assign(found.cells.size(), Tensor3::Zero());
+  found.other_on_faces.assign(found.faces.size(), Tensor3::Zero());
+  for (const auto& effect : body_.effects()) {
+    effect->add_cell_stress(found.other_in_cells);
+    effect->add_face_stress(mesh_.n_interior, found.other_on_faces);
+  }
+  return found;
+}
+
+std::vector<double> SolidFields::point_stress(std::span<const double> points,
+                                              std::span<const std::uint8_t> wanted) const {
+  if (body_.finite()) {
+    const std::vector<Tensor3> faces = face_stress(mesh_.n_interior, mesh_.boundary.n_owned(), points);
+    return point_tensors().interpolate(cell_stress(points), faces);
+  }
+  if (!recovery_) recovery_ = std::make_unique<StressRecovery>(mesh_, elastic_);
+  std::vector<double> stress = recovery_->at_points(discrete_stress(points), wanted);
+  if (mesh_.dim == 2 && parameters_.plane == SolidParameters::Plane::stress)
+    for (std::size_t i = 2; i < stress.size(); i += tensor_size) stress[i] = 0;
+  return stress;
+}
+
+std::vector<double> SolidFields::point_strain(std::span<const double> points) const {
+  return point_tensors().interpolate(cell_strain(points),
+                                     face_strain(mesh_.n_interior, mesh_.boundary.n_owned(), points));
+}
+
+}  // namespace couplet

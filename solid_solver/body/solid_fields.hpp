@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "solid_solver/body/solid_body.hpp"
+#include "solid_solver/body/solid_state.hpp"
+#include "solid_solver/body/stress_recovery.hpp"
+#include "solid_solver/effects/effect_cards.hpp"
+#include "solid_solver/material/stress.hpp"
+
+namespace couplet {
+
+/// Force on the solid at a constrained patch [N].
+struct PatchForce {
+  std::string patch;
+  Vec3 force = Vec3::Zero();
+};
+
+/// What follows from the accepted state. `points`: as point_displacement() gives them. All is collective.
+class SolidFields final {
+ public:
+  /// All by reference. `last`: whose loads the forces are of.
+  SolidFields(const SolidBody& body, const SolidState& state, const LastSolve& last);
+
+  /// Packed values of all local points.
+  std::vector<double> point_displacement() const;
+  std::vector<double> point_velocity() const;
+  /// Needs wants_acceleration().
+  std::vector<double> point_acceleration() const;
+  /// Packed symmetric tensors (see stress.hpp) of all local points: at small strain recovered from patches of cells
+  /// (StressRecovery), else interpolated from those in the cells and on the boundary faces. `wanted`: flags of local
+  /// points, empty: all; others may hold anything.
+  std::vector<double> point_stress(std::span<const double> points,
+                                   std::span<const std::uint8_t> wanted = {}) const;
+  std::vector<double> point_strain(std::span<const double> points) const;
+  /// Stress of the local faces first, first + 1, ... (`count` of them) [Pa].
+  std::vector<Tensor3> face_stress(Index first, Index count, std::span<const double> points) const;
+  /// Stress of the local owned cells [Pa] by cell_gradient(); exact for linear displacements.
+  std::vector<Tensor3> cell_stress(std::span<const double> points) const;
+  /// The same for strains, of faces and of cells.
+  std::vector<Tensor3> face_strain(Index first, Index count, std::span<const double> points) const;
+  std::vector<Tensor3> cell_strain(std::span<const double> points) const;
+  /// Forces the solid gets at fixed and symmetry patches from the stress.
+  std::vector<PatchForce> reactions(std::span<const double> points) const;
+  /// All loads of the last solve: tractions, pressures, interface, body forces.
+  Vec3 total_load() const;
+  /// Largest displacement gradient, strain and rotation at any face.
+  SolidEvidence deformation(std::span<const double> points) const;
+  /// Largest equivalent stress (von Mises) over the yield strength, where that is known; else NaN.
+  double share_of_yield(std::span<const double> points) const;
+
+ private:
+  BodyField displacement(std::span<const double> points) const {
+    return {state_.cell_u, state_.face_u, points};
+  }
+  std::vector<double> known_acceleration() const;
+  std::vector<Tensor3> cell_gradient(std::span<const double> points) const;
+  const PointTensors& point_tensors() const;
+  std::vector<SurfaceTraction> known_tractions() const;
+  DiscreteStress discrete_stress(std::span<const double> points) const;
+  std::vector<PatchForce> reactions_by_trial_functions() const;
+  ElasticLoads loads_now() const;
+  // Of large strain, finite_fields.cpp.
+  void visit_accepted(const LargeStrain::Take& take) const;
+  std::vector<Tensor3> finite_face_stress(Index first, Index count) const;
+  std::vector<Tensor3> finite_cell_stress() const;
+
+  const SolidBody& body_;
+  const SolidState& state_;
+  const LastSolve& last_;
+  const Mesh& mesh_;
+  const SolidParameters& parameters_;
+  const ElasticOperator& elastic_;
+  mutable std::unique_ptr<PointTensors> point_tensors_;  // made when first asked for
+  mutable std::unique_ptr<StressRecovery> recovery_;     // likewise
+};
+
+}  // namespace couplet

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Forces on the solid, and the largest strain, rotation and stress, from the accepted state.
+#include <algorithm>
+#include <cmath>
+
+#include "common/parallel/collective.hpp"
+#include "solid_solver/body/solid_fields.hpp"
+
+namespace couplet {
+
+std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) const {
+  if (body_.kernel().is_symmetric() || body_.finite()) return reactions_by_trial_functions();
+  std::vector<PatchForce> forces;
+  // One pass over the faces between the first and the last that is held, often few of the boundary's.
+  Index first = mesh_.n_flux_faces(), end = mesh_.n_interior;
+  for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+    const Patch& patch = mesh_.patches[p];
+    if (!body_.boundaries().holds(p) || patch.count == 0) continue;
+    first = std::min(first, patch.first);
+    end = std::max(end, patch.first + patch.count);
+  }
+  const std::vector<Tensor3> stress = face_stress(first, std::max<Index>(end - first, 0), points);
+  for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+    if (!body_.boundaries().holds(p)) continue;
+    const Patch& patch = mesh_.patches[p];
+    Vec3 force = Vec3::Zero();
+    for (Index f = patch.first; f < patch.first + patch.count; ++f)
+      force += elastic_.holding_force(f, stress[f - first], state_.face_u, state_.known);
+    for (int a = 0; a < 3; ++a) force[a] = sum(mesh_.comm, force[a]);
+    forces.push_back({mesh_.patches[p].name, force});
+  }
+  return forces;
+}
+
+/// What the symmetric kernel's stress leaves there.
+std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
+  std::vector<PatchForce> forces;
+  const std::vector<double> u = body_.unknowns_of(state_.cell_u, state_.face_u);
+  if (body_.finite()) body_.finite()->set_pressure(body_.boundaries().pressures(state_.time));
+  const std::vector<Vec3> held = body_.finite() ? body_.finite()->holding_forces(u, state_.known, loads_now())
+                                                : body_.kernel().holding_forces(u, state_.known, loads_now());
+  for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
+    if (!body_.boundaries().holds(p)) continue;
+    Vec3 force = held[p];
+    for (int a = 0; a < 3; ++a) force[a] = sum(mesh_.comm, force[a]);
+    forces.push_back({mesh_.patches[p].name, force});
+  }
+  return forces;
+}
+
+/// At the accepted time; of the interface what it had in the last solve.
+ElasticLoads SolidFields::loads_now() const {
+  ElasticLoads loads;
+  loads.faces.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
+  body_.boundaries().add_forces(state_.time, loads.faces, !body_.finite());
+  for (std::size_t i = 0; i < last_.interface.size(); ++i) loads.faces[i] += last_.interface[i];
+  loads.cells = body_.body_forces(state_.time);
+  for (const auto& effect : body_.effects()) {
+    const std::vector<double> pressure = effect->pressure(state_.time);
+    if (loads.pressure.empty()) loads.pressure.resize(pressure.size(), 0);
+    for (std::size_t i = 0; i < pressure.size(); ++i) loads.pressure[i] += pressure[i];
+  }
+  return loads;
+}
+
+Vec3 SolidFields::total_load() const {
+  Vec3 load = last_.body_force + last_.face_force;
+  if (body_.finite()) load += body_.finite()->pressure_force();
+  for (int a = 0; a < 3; ++a) load[a] = sum(mesh_.comm, load[a]);
+  return load;
+}
+
+SolidEvidence SolidFields::deformation(std::span<const double> points) const {
+  double gradient = 0, strain = 0, rotation = 0;
+  body_.visit_gradients(displacement(points), [&](Index, const Tensor3& g) {
+    gradient = std::max(gradient, g.squaredNorm());
+    strain = std::max(strain, (0.5 * (g + g.transpose())).squaredNorm());
+    rotation = std::max(rotation, (0.5 * (g - g.transpose())).squaredNorm());
+  });
+  // The skew part of a rotation by a small angle phi holds phi twice.
+  return {.largest_gradient = max(mesh_.comm, std::sqrt(gradient)),
+          .largest_strain = max(mesh_.comm, std::sqrt(strain)),
+          .largest_rotation = max(mesh_.comm, std::sqrt(rotation / 2))};
+}
+
+double SolidFields::share_of_yield(std::span<const double> points) const {
+  if (std::ranges::none_of(body_.materials(),
+                           [](const SolidMaterial& m) { return m.yield_strength.has_value(); }))
+    return SolidEvidence::unknown;
+  const std::vector<Tensor3> stress = face_stress(0, mesh_.n_flux_faces(), points);
+  double share = 0;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const auto& yield = body_.materials()[mesh_.material_of(mesh_.owner[f])].yield_strength;
+    if (!yield) continue;
+    const Tensor3 deviator = stress[f] - stress[f].trace() / 3 * Tensor3::Identity();
+    share = std::max(share, std::sqrt(1.5) * deviator.norm() / *yield);
+  }
+  return max(mesh_.comm, share);
+}
+
+}  // namespace couplet

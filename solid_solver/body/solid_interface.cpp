@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/body/solid_interface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+
+namespace couplet {
+
+namespace {
+
+/// Of pressure waves without motion across [m/s]; infinite for materials of which it is not known.
+double speed_in(const SolidMaterial& m) {
+  const double nu = m.poissons_ratio, modulus = m.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+  return modulus > 0 && m.density > 0 ? std::sqrt(modulus / m.density)
+                                      : std::numeric_limits<double>::infinity();
+}
+
+/// For `interface: {surface-density: true}`. Collective.
+WallImpedance impedance_of(const SolidBody& body, const Interface& interface) {
+  const Mesh& mesh = body.mesh();
+  if (body.boundaries().interface_patches().empty())
+    throw Error("interface: surface-density: no patch has 'type: interface', where it could be given.");
+  if (!body.is_dynamic())
+    throw Error(
+        "interface: surface-density: a static solid answers without its mass; take 'analysis: dynamic' or remove "
+        "the key.");
+  std::vector<double> densities, speeds, volumes;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    densities.push_back(body.density(c));
+    speeds.push_back(speed_in(body.materials()[std::size_t(mesh.material_of(c))]));
+    volumes.push_back(mesh.reference.volume[c]);
+  }
+  return wall_impedance(mesh.comm, densities, speeds, volumes, interface.face_areas);
+}
+
+}  // namespace
+
+SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
+  const Mesh& mesh = body.mesh();
+  const SolidParameters& parameters = body.parameters();
+  if (!body.boundaries().interface_patches().empty()) {
+    map_ = std::make_unique<InterfaceMap>(mesh, body.boundaries().interface_patches());
+    description_ = map_->describe();
+  }
+  description_.dim = mesh.dim;
+  description_.takes = taken(parameters.interface_data.value_or(InterfaceData{}));
+  description_.gives = {{"displacement", "m", Interface::Place::vertices},
+                        {"velocity", "m/s", Interface::Place::vertices}};
+  if (parameters.interface_data && parameters.interface_data->surface_density) {
+    impedance_ = impedance_of(body, description_);
+    description_.gives.push_back({"surface-density", "kg/m^2", Interface::Place::faces, 1});
+  }
+  if (!parameters.interface_data || !parameters.interface_data->temperature) return;
+  if (!map_) throw Error("interface: no patch has 'type: interface', where a temperature could be taken.");
+  takes_temperature_ = true;
+  for (const auto& effect : body.effects())
+    if (effect->wants_temperature()) effect->set_interface(description_.face_centres);
+}
+
+void SolidInterface::take_temperature(const Exchange& in) const {
+  const auto found = in.find("temperature");
+  const std::vector<double> faces = found == in.end() ? std::vector<double>{} : found->second;
+  for (const auto& effect : body_.effects())
+    if (effect->wants_temperature()) effect->take_temperature(faces);
+}
+
+std::vector<double> SolidInterface::load(const Exchange& in) const {
+  if (!map_) return {};
+  const Mesh& mesh = body_.mesh();
+  const int dim = mesh.dim;
+  std::vector<double> total(description_.face_centres.size() * dim, 0.0);
+  for (const auto& [name, values] : in) {
+    if (name == "temperature" && takes_temperature_) continue;
+    if (std::ranges::none_of(description_.takes, [&](const auto& datum) { return datum.name == name; }))
+      throw Error("The solid was given '{}', which it does not take.", name);
+    if (name == "pressure" && values.size() * dim == total.size()) {
+      // A normal force on each face; the areas point out of the solid.
+      for (std::size_t i = 0; i < values.size(); ++i)
+        for (int a = 0; a < dim; ++a) total[i * dim + a] -= values[i] * description_.face_areas[i][a];
+      continue;
+    }
+    if (values.size() != total.size())
+      throw Error("The solid was given {} values of '{}'; its interface has {} faces of {} components.",
+                  values.size(), name, description_.face_centres.size(), dim);
+    for (std::size_t i = 0; i < values.size(); ++i) total[i] += values[i];
+  }
+  std::vector<double> force(std::size_t(mesh.boundary.n_owned()) * dim, 0);
+  const std::vector<double> local = map_->scatter_faces(total, dim);
+  for (std::size_t i = 0; i < map_->faces().size(); ++i)
+    for (int a = 0; a < dim; ++a)
+      force[std::size_t(map_->faces()[i] - mesh.n_interior) * dim + a] += local[i * dim + a];
+  return force;
+}
+
+Exchange SolidInterface::values(const SolidState& state, double dt) const {
+  if (!map_) return {};
+  const int dim = body_.mesh().dim;
+  Exchange out;
+  out["displacement"] =
+      map_->gather_vertices(body_.at_points(map_->points(), state.cell_u, state.face_u, state.known), dim);
+  out["velocity"] = map_->gather_vertices(
+      body_.at_points(map_->points(), state.cell_v, state.face_v, state.known_rate), dim);
+  if (impedance_) out["surface-density"].assign(description_.face_areas.size(), impedance_->in_step(dt));
+  return out;
+}
+
+}  // namespace couplet

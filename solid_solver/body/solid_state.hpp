@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/base/types.hpp"
+#include "common/time/time_scheme.hpp"
+#include "solid_solver/body/energies.hpp"
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet {
+
+/// One accepted time: `dim` values a local cell or boundary face (ghosts up to date).
+struct SolidState {
+  double time = 0, dt = 0;  ///< dt: of the step that ended here
+  int steps = 0;            ///< accepted so far
+  std::vector<double> cell_u, cell_v, face_u, face_v;
+  std::vector<double> known, known_rate;               ///< prescribed, one a known column
+  std::vector<double> cell_a;                          ///< generalised-alpha alone
+  std::vector<double> cell_u_old, cell_v_old;          ///< a step earlier; three-point, Adams's predictor
+  std::vector<double> face_a, face_u_old, face_v_old;  ///< the same of faces, where they have inertia
+  double stage_dt = 0;                                 ///< of the last stage
+  double offset_lag = 0;                               ///< `offset` lives so long before `time`
+  std::vector<double> offset;       ///< u_B - u_P of the traction faces where the last stage was solved
+  std::vector<double> offset_rate;  ///< v_B - v_P at the middle of the last stage
+  SolidEnergies energies;           ///< if they are wanted
+  double load_work = 0;             ///< of the loads since the start, dynamic runs, this rank's [J]
+  double error = 0;                 ///< estimated for the last step if the step size is controlled, rms [m]
+  // If the acceleration is wanted: at `time`, in cells and on faces, and its mean over the last step in
+  // cells.
+  std::vector<double> acceleration, face_acceleration, mean_acceleration;
+};
+
+/// What the solves of the last step took.
+struct SolverEffort {
+  int solves = 0, iterations = 0, inner_iterations = 0;
+  double residual = 0;  ///< norm of the last solve's
+};
+
+/// What belongs to one size of the inertia term: factors and preconditioners are made once for it.
+struct SolidSystem {
+  double mass_factor;                      ///< (d + alpha c) / s, see SolidStepper [1/s^2]; 0: static
+  std::vector<double> inertia;             ///< per owned cell: mass factor times mass [N/m]; empty: static
+  std::unique_ptr<SolutionMethod> method;  ///< null: finite strain has its own
+  std::vector<double> node_inertia;        ///< of finite strain: of the unknown nodes; empty: static
+  ResidualProjection* projection() const { return method ? method->projection() : nullptr; }  ///< null: none
+};
+
+/// A stage of the step under way, with all that does not depend on the interface load.
+struct StageWork {
+  Stage stage;
+  double damping_scale = 1;  ///< s = 1 + beta c
+  SolidSystem* system = nullptr;
+  double start_time = 0, place_time = 0, end_time = 0;
+  std::vector<double> rhs;          ///< loads and prescribed displacements, without face forces and inertia;
+                                    ///< empty: none
+  std::vector<double> known_force;  ///< what `rhs` holds of the prescribed displacements; empty: none
+  std::vector<double> known;        ///< prescribed w, one a known column
+  // If energies are wanted: rows of body forces and effects, change of the prescribed displacements.
+  std::vector<double> loads, known_change;
+  std::vector<double> face_force;  ///< loads but the interface's, per boundary face of owned cells
+};
+
+/// The last solve: its rows and what loaded them; this rank's part.
+struct LastSolve {
+  std::vector<double> rhs, unknowns;  ///< as the operator has its rows and unknowns
+  std::vector<double> load_rows;      ///< without inertia and prescribed motion; kernels with mass
+  std::vector<double> interface;      ///< forces, `dim` values a boundary face of owned cells; empty: none
+  Vec3 body_force = Vec3::Zero(), face_force = Vec3::Zero();  ///< sums
+};
+
+}  // namespace couplet

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/body/stress_recovery.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/elasticity/vector_at.hpp"
+
+namespace couplet {
+namespace {
+
+// Measured on the fillet of an L-bracket, LE1, LE10 and LE11; the stress hangs little on any of them.
+constexpr double of_far = 1. / 9;           // weight of a sample at the patch's rim over one in its centre
+constexpr double of_traction = 1;           // weight of a traction over a sample, fit of stress ...
+constexpr double of_scaled_traction = 0.1;  // ... and of displacement, as h t / (2 mu + lambda)
+constexpr double of_face = 3;               // weight of a face's displacement over a cell's
+
+/// Of the mean over the vertices, in that over the volume: exact for simplices and boxes.
+double share_of_vertices(CellType type) {
+  switch (type) {
+    case CellType::triangle:
+      return 1. / 4;
+    case CellType::tetrahedron:
+      return 1. / 5;
+    case CellType::prism:
+    case CellType::pyramid:
+      return 7. / 24;
+    default:
+      return 1. / 3;
+  }
+}
+
+bool is_simplex(CellType type) { return type == CellType::triangle || type == CellType::tetrahedron; }
+
+/// Rows 0 .. n - 1 from visit(take), which calls take(row, entry) for all entries, twice.
+template <class Visit>
+Csr rows_from(Index n, const Visit& visit) {
+  std::vector<Index> first(std::size_t(n) + 1, 0);
+  visit([&](Index row, Index) { ++first[std::size_t(row) + 1]; });
+  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+  Csr result;
+  result.index.resize(std::size_t(first.back()));
+  std::vector<Index> next = first;
+  visit([&](Index row, Index entry) { result.index[std::size_t(next[std::size_t(row)]++)] = entry; });
+  result.offset = std::move(first);
+  return result;
+}
+
+std::vector<Tensor3> with_ghosts(const IndexMap& map, const std::vector<Tensor3>& owned) {
+  std::vector<Tensor3> all(std::size_t(map.n_local()), Tensor3::Zero());
+  std::ranges::copy(owned, all.begin());
+  map.update_ghosts(std::as_writable_bytes(std::span(all)), sizeof(Tensor3));
+  return all;
+}
+
+/// Row of the fit of packed tensors for e . (stress . n) at a place.
+QuadraticFit::Row row_of_stress(const QuadraticFit::Terms& phi, const Vec3& e, const Vec3& n) {
+  Eigen::Matrix<double, 1, tensor_size> factor;
+  factor << e[0] * n[0], e[1] * n[1], e[2] * n[2], e[0] * n[1] + e[1] * n[0], e[1] * n[2] + e[2] * n[1],
+      e[0] * n[2] + e[2] * n[0];
+  return phi * factor;
+}
+
+/// A patch seen in a plane of symmetry.
+struct Mirror {
+  Vec3 normal, origin;
+  Tensor3 reflection() const { return Tensor3::Identity() - 2 * normal * normal.transpose(); }
+  double height(const Vec3& place) const { return normal.dot(place - origin); }
+  Vec3 image(const Vec3& place) const { return place - 2 * height(place) * normal; }
+};
+
+}  // namespace
+
+struct StressRecovery::Local {
+  std::vector<Tensor3> cells, faces, other_in_cells, other_on_faces;
+  std::span<const double> cell_u, face_u;
+  std::vector<SurfaceTraction> surface;
+};
+
+struct StressRecovery::Patch {
+  std::vector<Index> cells, faces;  // faces: of the boundary, not of symmetry planes
+  std::vector<Index> loaded;        // those with a known traction, and all of symmetry planes
+  std::vector<Mirror> mirrors;
+  bool simplices = true;    // triangles or tetrahedra alone
+  bool at_surface = false;  // some face has a known traction and is no symmetry plane's
+  double reach = 0;
+  std::vector<Index> mark;  // per local cell: for which cell it was last gathered
+};
+
+StressRecovery::StressRecovery(const Mesh& mesh, const ElasticOperator& rows)
+    : mesh_(mesh), rows_(rows), moment_(std::size_t(mesh.cells.n_local()), Tensor3::Zero()) {
+  cells_of_point_ = rows_from(mesh.points.n_local(), [&](const auto& take) {
+    for (Index c = 0; c < mesh.cells.n_local(); ++c)
+      for (const Index v : mesh.cell_points[c]) take(v, c);
+  });
+  faces_of_cell_ = rows_from(mesh.cells.n_local(), [&](const auto& take) {
+    for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) take(mesh.owner[f], f);
+  });
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) {
+    Tensor3& moment = moment_[std::size_t(c)];
+    for (const Index v : mesh.cell_points[c]) {
+      const Vec3 arm = mesh.reference_points[v] - mesh.reference.cell_centre[c];
+      moment += arm * arm.transpose();
+    }
+    moment *= share_of_vertices(mesh.cell_type[c]) / double(mesh.cell_points[c].size());
+  }
+}
+
+StressRecovery::Local StressRecovery::localise(const DiscreteStress& found) const {
+  Local local{with_ghosts(mesh_.cells, found.cells),
+              with_ghosts(mesh_.boundary, found.faces),
+              {},
+              {},
+              found.cell_u,
+              found.face_u,
+              found.surface};
+  if (!found.other_in_cells.empty() || !found.other_on_faces.empty()) {
+    local.other_in_cells = with_ghosts(mesh_.cells, found.other_in_cells);
+    local.other_on_faces = with_ghosts(mesh_.boundary, found.other_on_faces);
+  }
+  local.surface.resize(std::size_t(mesh_.boundary.n_local()));
+  mesh_.boundary.update_ghosts(std::as_writable_bytes(std::span(local.surface)), sizeof(SurfaceTraction));
+  return local;
+}
+
+void StressRecovery::gather(Index cell, const Local& local, Patch& patch) const {
+  const Geometry& g = mesh_.reference;
+  patch.cells.clear(), patch.faces.clear(), patch.loaded.clear(), patch.mirrors.clear();
+  patch.mark.resize(std::size_t(mesh_.cells.n_local()), -1);
+  patch.simplices = true, patch.at_surface = false;
+  patch.reach = 0;
+  for (const Index v : mesh_.cell_points[cell])
+    for (const Index c : cells_of_point_[v]) {
+      if (patch.mark[std::size_t(c)] == cell || mesh_.material_of(c) != mesh_.material_of(cell)) continue;
+      patch.mark[std::size_t(c)] = cell;
+      patch.cells.push_back(c);
+      patch.simplices = patch.simplices && is_simplex(mesh_.cell_type[c]);
+      patch.reach = std::max(patch.reach, (g.cell_centre[c] - g.cell_centre[cell]).norm());
+    }
+  for (const Index c : patch.cells)
+    for (const Index f : faces_of_cell_[c]) {
+      const SurfaceTraction& known = local.surface[std::size_t(f - mesh_.n_interior)];
+      patch.reach = std::max(patch.reach, (g.face_centre[f] - g.cell_centre[cell]).norm());
+      if (!known.projector.isZero(0)) patch.loaded.push_back(f);
+      if (!known.symmetry) {
+        patch.faces.push_back(f);
+        patch.at_surface = patch.at_surface || !known.projector.isZero(0);
+        continue;
+      }
+      const Mirror mirror{g.face_area[f].normalized(), g.face_centre[f]};
+      if (std::ranges::none_of(patch.mirrors,
+                               [&](const Mirror& m) { return m.normal.dot(mirror.normal) > 0.99; }))
+        patch.mirrors.push_back(mirror);
+    }
+  if (patch.reach == 0) patch.reach = std::pow(g.volume[cell], 1. / mesh_.dim);
+}
+
+void StressRecovery::fit_tensors(Index cell, const std::vector<Tensor3>& cells,
+                                 const std::vector<Tensor3>& faces,
+                                 const std::vector<SurfaceTraction>* surface, Patch& patch,
+                                 QuadraticFit& fit) const {
+  const Geometry& g = mesh_.reference;
+  const Vec3 centre = g.cell_centre[cell];
+  fit.start(mesh_.dim, tensor_size, centre, patch.reach);
+  const auto add = [&](const Vec3& place, const Tensor3& moment, const Tensor3& value) {
+    const double far = (place - centre).squaredNorm() / (patch.reach * patch.reach);
+    const double weight = 1 / (1 + (1 / of_far - 1) * far);
+    fit.add_sample(place, moment, pack(value), weight);
+    for (const Mirror& m : patch.mirrors) {
+      const Tensor3 r = m.reflection();
+      fit.add_sample(m.image(place), r * moment * r, pack(r * value * r), weight);
+    }
+  };
+  for (const Index c : patch.cells) add(g.cell_centre[c], moment_[std::size_t(c)], cells[std::size_t(c)]);
+  for (const Index f : patch.faces)
+    if (rows_.condition(f) == ElasticCondition::traction)
+      add(g.face_centre[f], Tensor3::Zero(), faces[std::size_t(f - mesh_.n_interior)]);
+  if (surface)
+    for (const Index f : patch.loaded) {
+      const SurfaceTraction& known = (*surface)[std::size_t(f - mesh_.n_interior)];
+      const Vec3 n = g.face_area[f].normalized();
+      const QuadraticFit::Terms phi = fit.terms(g.face_centre[f]);
+      for (int a = 0; a < mesh_.dim; ++a) {
+        const Vec3 e = known.projector.row(a);
+        if (!e.isZero(0)) fit.add_row(row_of_stress(phi, e, n), known.traction[a], of_traction);
+      }
+    }
+  fit.solve();
+}
+
+void StressRecovery::fit_displacement(Index cell, const Local& local, Patch& patch, QuadraticFit& fit) const {
+  const Geometry& g = mesh_.reference;
+  const Vec3 centre = g.cell_centre[cell];
+  const int dim = mesh_.dim;
+  fit.start(dim, dim, centre, patch.reach);
+  const auto add = [&](const Vec3& place, const Vec3& value, double weight) {
+    const double far = (place - centre).squaredNorm() / (patch.reach * patch.reach);
+    weight /= 1 + (1 / of_far - 1) * far;
+    fit.add_sample(place, Tensor3::Zero(), {value.data(), 3}, weight);
+    for (const Mirror& m : patch.mirrors) {
+      const Vec3 image = m.reflection() * value;
+      fit.add_sample(m.image(place), Tensor3::Zero(), {image.data(), 3}, weight);
+    }
+  };
+  for (const Index c : patch.cells) add(g.cell_centre[c], vector_at(local.cell_u, c, dim), 1);
+  for (const Index f : patch.faces)
+    add(g.face_centre[f], vector_at(local.face_u, f - mesh_.n_interior, dim), of_face);
+  const double unit = patch.reach / (2 * rows_.lame(cell).mu + rows_.lame(cell).lambda);
+  for (const Index f : patch.loaded) {
+    const SurfaceTraction& known = local.surface[std::size_t(f - mesh_.n_interior)];
+    const Vec3 n = g.face_area[f].normalized();
+    const QuadraticFit::Slopes slope = fit.slopes(g.face_centre[f]);
+    std::array<QuadraticFit::Row, 3> rows;
+    rows.fill(QuadraticFit::Row::Zero(fit.n_terms(), dim));
+    for (int k = 0; k < dim; ++k)
+      for (int i = 0; i < fit.n_terms(); ++i) {
+        Tensor3 gradient = Tensor3::Zero();
+        gradient.col(k) = slope.row(i);
+        const Vec3 traction = known.projector * (rows_.stress(cell, gradient) * n);
+        for (int a = 0; a < dim; ++a) rows[std::size_t(a)](i, k) = unit * traction[a];
+      }
+    Vec3 traction = known.traction;
+    if (!local.other_on_faces.empty())
+      traction -= known.projector * (local.other_on_faces[std::size_t(f - mesh_.n_interior)] * n);
+    for (int a = 0; a < dim; ++a)
+      if (!known.projector.row(a).isZero(0))
+        fit.add_row(rows[std::size_t(a)], unit * traction[a], of_scaled_traction);
+  }
+  fit.solve();
+}
+
+template <class Take>
+void StressRecovery::visit_some(const DiscreteStress& found, const std::function<bool(Index)>& wants,
+                                const Take& take) const {
+  const Local local = localise(found);
+  Patch patch;
+  QuadraticFit fit, other;
+  const auto tensor_at = [](const QuadraticFit& of, const Vec3& place) {
+    const Eigen::Matrix<double, tensor_size, 1> s = of.coefficients().transpose() * of.terms(place);
+    return unpack({s.data(), tensor_size});
+  };
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    if (!wants(c)) continue;
+    gather(c, local, patch);
+    if (!patch.simplices || !patch.at_surface || rows_.volume_by_cells()) {
+      fit_tensors(c, local.cells, local.faces, &local.surface, patch, fit);
+      take(c, [&](const Vec3& place) { return tensor_at(fit, place); });
+      continue;
+    }
+    fit_displacement(c, local, patch, fit);
+    const bool has_other = !local.other_in_cells.empty();
+    if (has_other) fit_tensors(c, local.other_in_cells, local.other_on_faces, nullptr, patch, other);
+    take(c, [&](const Vec3& place) {
+      Tensor3 gradient = Tensor3::Zero();
+      gradient.leftCols(mesh_.dim) = fit.slopes(place).transpose() * fit.coefficients();
+      Tensor3 stress = rows_.stress(c, gradient);
+      if (has_other) stress += tensor_at(other, place);
+      return stress;
+    });
+  }
+}
+
+void StressRecovery::visit(const DiscreteStress& found,
+                           const std::function<void(Index, const Stress&)>& take) const {
+  visit_some(
+      found, [](Index) { return true; }, [&](Index c, const Stress& stress) { take(c, stress); });
+}
+
+std::vector<double> StressRecovery::at_points(const DiscreteStress& found,
+                                              std::span<const std::uint8_t> wanted) const {
+  constexpr int size = tensor_size + 1;  // and how many cells there are
+  std::vector<double> sums(std::size_t(mesh_.points.n_local()) * size, 0);
+  const auto wants = [&](Index c) {
+    return wanted.empty() ||
+           std::ranges::any_of(mesh_.cell_points[c], [&](Index v) { return wanted[std::size_t(v)] != 0; });
+  };
+  visit_some(found, wants, [&](Index c, const auto& stress) {
+    for (const Index v : mesh_.cell_points[c]) {
+      double* at = sums.data() + std::size_t(v) * size;
+      const PackedTensor here = pack(stress(mesh_.reference_points[v]));
+      for (std::size_t k = 0; k < tensor_size; ++k) at[k] += here[k];
+      at[tensor_size] += 1;
+    }
+  });
+  mesh_.points.add_to_owners(sums, size);
+  std::vector<double> values(std::size_t(mesh_.points.n_local()) * tensor_size);
+  for (std::size_t v = 0; v < std::size_t(mesh_.points.n_local()); ++v)
+    for (std::size_t k = 0; k < tensor_size; ++k)
+      values[v * tensor_size + k] = sums[v * size + k] / std::max(1., sums[v * size + tensor_size]);
+  mesh_.points.update_ghosts(values, tensor_size);
+  return values;
+}
+
+}  // namespace couplet

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "common/elasticity/elasticity.hpp"
+#include "common/mesh/mesh.hpp"
+#include "solid_solver/body/quadratic_fit.hpp"
+#include "solid_solver/material/stress.hpp"
+
+namespace couplet {
+
+/// What is known of the traction on a boundary face: projector (stress . n) = traction [Pa], n out of the body.
+struct SurfaceTraction {
+  Tensor3 projector = Tensor3::Zero();  ///< zero: nothing is known
+  Vec3 traction = Vec3::Zero();
+  bool symmetry = false;  ///< the body goes on as its mirror image
+};
+
+/// What a discrete solution says, at small strain.
+struct DiscreteStress {
+  std::vector<Tensor3> cells, faces;  ///< stress of owned cells, of boundary faces of owned cells [Pa]
+  /// What of it does not come from the displacement (thermal stress); empty: nothing.
+  std::vector<Tensor3> other_in_cells, other_on_faces;
+  std::span<const double> cell_u, face_u;  ///< all local cells, boundary faces, `dim` values each [m]
+  std::vector<SurfaceTraction> surface;    ///< per boundary face of owned cells
+};
+
+/// Stress recovered from patches of cells: each cell gets a quadratic fitted to the cells that share a vertex with it,
+/// of its material, to their boundary faces, and to the tractions known there; a point takes the mean of its cells. At
+/// planes of symmetry the patch goes on as its mirror image.
+///
+/// The stress is fitted, whose means over cells are more exact than what is made of them (Zienkiewicz and Zhu, Int. J.
+/// Numer. Meth. Engng 33 (1992) 1331; with tractions, Blacker and Belytschko, ibid. 37 (1994) 517). Among triangles and
+/// tetrahedra at a surface it is the displacement, whose gradient shows peaks at curved surfaces that the strains of the
+/// faces, shared around edges, smooth away (Naga and Zhang, SIAM J. Numer. Anal. 42 (2004) 1780); but the stress there,
+/// too, where mean stresses are the cells' own (ElasticOperator::volume_by_cells).
+class StressRecovery {
+ public:
+  /// Both by reference.
+  StressRecovery(const Mesh& mesh, const ElasticOperator& rows);
+
+  /// Packed stress [Pa] of all local points; where materials meet, the mean of theirs. `wanted`: flags of local points,
+  /// empty: all; others may hold anything. Collective.
+  std::vector<double> at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted = {}) const;
+
+  /// Stress [Pa] at a place in or beside a cell.
+  using Stress = std::function<Tensor3(const Vec3& place)>;
+  /// take(cell, stress) for all owned cells. Collective.
+  void visit(const DiscreteStress& found, const std::function<void(Index, const Stress&)>& take) const;
+
+ private:
+  struct Local;  // with ghosts
+  struct Patch;
+  template <class Take>
+  void visit_some(const DiscreteStress& found, const std::function<bool(Index)>& wants,
+                  const Take& take) const;
+  Local localise(const DiscreteStress& found) const;
+  void gather(Index cell, const Local& local, Patch& patch) const;
+  void fit_tensors(Index cell, const std::vector<Tensor3>& cells, const std::vector<Tensor3>& faces,
+                   const std::vector<SurfaceTraction>* surface, Patch& patch, QuadraticFit& fit) const;
+  void fit_displacement(Index cell, const Local& local, Patch& patch, QuadraticFit& fit) const;
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  Csr cells_of_point_, faces_of_cell_;  // boundary faces
+  std::vector<Tensor3> moment_;         // of local cells: mean of (x - x_c) (x - x_c)^T [m^2]
+};
+
+}  // namespace couplet

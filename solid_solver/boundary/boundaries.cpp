@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/boundary/boundaries.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+using Type = SolidCondition::Type;
+
+std::vector<std::string> patch_names(const Mesh& mesh) {
+  std::vector<std::string> names;
+  for (const Patch& patch : mesh.patches)
+    if (!patch.bonded) names.push_back(patch.name);
+  return names;
+}
+
+void check_names(const Mesh& mesh, const SolidParameters& parameters) {
+  const std::vector<std::string> patches = patch_names(mesh);
+  for (const auto& [name, boundary] : parameters.boundaries)
+    if (std::ranges::find(patches, name) == patches.end())
+      throw Error("boundaries.{}: mesh '{}' has no patch of this name. {} The patches are {}.", name,
+                  parameters.mesh, did_you_mean(name, patches, "patches"), join(patches));
+  for (const std::string& name : patches)
+    if (!parameters.boundaries.contains(name))
+      throw Error(
+          "boundaries: patch '{}' of mesh '{}' has no entry; each patch needs one (a stress-free patch: "
+          "'type: free'). "
+          "The patches are {}.",
+          name, parameters.mesh, join(patches));
+}
+
+bool only_force(Type type) {
+  return type == Type::traction || type == Type::pressure || type == Type::free || type == Type::interface_;
+}
+
+}  // namespace
+
+SolidBoundaries::SolidBoundaries(const Mesh& mesh, const SolidParameters& parameters)
+    : mesh_(&mesh), condition_of_face_(mesh.boundary.n_local(), -1) {
+  check_names(mesh, parameters);
+  for (const Patch& patch : mesh.patches) {
+    holds_.push_back(0);
+    if (patch.bonded) continue;
+    const SolidBoundary& boundary = parameters.boundaries.at(patch.name);
+    holds_.back() = !only_force(boundary.type);
+    for (const SolidPart& part : boundary.parts) holds_.back() |= !only_force(part.type);
+    if (boundary.type == Type::interface_) {
+      if (!boundary.parts.empty())
+        throw Error("boundaries.{}: an interface cannot have parts; make them patches of their own.",
+                    patch.name);
+      interface_patches_.push_back(patch.name);
+    }
+    choose_faces(patch, boundary);
+  }
+}
+
+SolidBoundaries::Condition SolidBoundaries::make_condition(const SolidCondition& from,
+                                                           const std::string& where) const {
+  const int dim = mesh_->dim;
+  Condition c;
+  c.type = from.type;
+  c.by_component = from.type == Type::fixed_displacement && from.value.empty();
+  if (c.by_component) {
+    for (int i = 0; i < dim; ++i) {
+      c.known_components[i] = from.components[i].has_value();
+      c.known.emplace_back(from.components[i].value_or(config::ExpressionText{}), where + ".components");
+    }
+    // All components known: held like by `value`, at its vertices, too.
+    c.by_component = c.known_components.head(dim).minCoeff() == 0;
+  } else if (from.type == Type::fixed_displacement || from.type == Type::spring) {
+    if (!from.value.empty()) c.known = make_expressions(from.value, dim, where + ".value");
+    c.known_components.head(dim).setConstant(from.type == Type::fixed_displacement);
+  }
+  if (std::ranges::all_of(c.known, [](const Expression& e) { return e.is_zero(); })) c.known.clear();
+  if (from.type == Type::traction) c.traction = make_expressions(from.value, dim, where + ".value");
+  if (!from.traction.empty()) c.traction = make_expressions(from.traction, dim, where + ".traction");
+  if (from.type == Type::pressure) c.pressure = Expression(from.pressure, where + ".value");
+  if (from.type == Type::spring) c.stiffness = Expression(from.stiffness, where + ".stiffness");
+  if (c.stiffness.uses_time())
+    throw Error("{}.stiffness: the stiffness of a spring cannot depend on the time t.", where);
+  c.along_normal = from.along_normal;
+  c.plate_normal = from.plate_normal.normalized();
+  return c;
+}
+
+void SolidBoundaries::choose_faces(const Patch& patch, const SolidBoundary& boundary) {
+  const auto own = static_cast<Index>(conditions_.size());
+  const std::string where = "boundaries." + patch.name;
+  conditions_.push_back(make_condition(boundary, where));
+  std::vector<Expression> tests;
+  for (std::size_t i = 0; i < boundary.parts.size(); ++i) {
+    const std::string part = fmt::format("{}.parts[{}]", where, i);
+    conditions_.push_back(make_condition(boundary.parts[i], part));
+    tests.emplace_back(boundary.parts[i].where, part + ".where");
+  }
+  const auto choose = [&](Index f) {
+    Index chosen = own;
+    for (std::size_t i = 0; i < tests.size() && chosen == own; ++i)
+      if (tests[i](mesh_->reference.face_centre[f], 0) != 0) chosen = own + 1 + static_cast<Index>(i);
+    condition_of_face_[f - mesh_->n_interior] = chosen;
+    if (f < mesh_->n_flux_faces()) conditions_[chosen].faces.push_back(f);
+  };
+  for (Index f = patch.first; f < patch.first + patch.count; ++f) choose(f);
+  for (Index f = patch.ghost_first; f < patch.ghost_first + patch.ghost_count; ++f) choose(f);
+  for (std::size_t i = 0; i < tests.size(); ++i)
+    if (!any(mesh_->comm, !conditions_[own + 1 + i].faces.empty()))
+      throw Error(
+          "{}.parts[{}].where: '{}' selects no face of patch '{}'. It is tested at the centres of the faces; "
+          "widen it, for example to abs(z - 0.5) < half the height of a face.",
+          where, i, tests[i].text(), patch.name);
+}
+
+ElasticCondition SolidBoundaries::kind_of(const Condition& c) const {
+  switch (c.type) {
+    case Type::symmetry:
+      return ElasticCondition::symmetry;
+    case Type::zero_normal_gradient:
+      return ElasticCondition::zero_gradient;
+    case Type::fixed_displacement:
+      return c.by_component ? ElasticCondition::support : ElasticCondition::prescribed;
+    case Type::frictionless:
+    case Type::soft_support:
+    case Type::hard_support:
+    case Type::spring:
+      return ElasticCondition::support;
+    default:
+      return ElasticCondition::traction;
+  }
+}
+
+ElasticSupport SolidBoundaries::support_at(const Condition& c, Index face) const {
+  ElasticSupport support;
+  const Vec3 n = mesh_->reference.face_area[face].normalized();
+  if (c.type == Type::fixed_displacement) support.known = c.known_components.asDiagonal();
+  if (c.type == Type::frictionless) support.known = n * n.transpose();
+  if (c.type == Type::soft_support || c.type == Type::hard_support)
+    support.known = c.plate_normal * c.plate_normal.transpose();
+  if (c.type == Type::hard_support) {
+    const Vec3 along = n.cross(c.plate_normal);
+    // On the top or bottom of the plate there is no edge to go along.
+    if (along.norm() > 1e-3) support.known += along * along.transpose() / along.squaredNorm();
+  }
+  if (c.type == Type::spring) {
+    const double stiffness = c.stiffness(mesh_->reference.face_centre[face], 0);
+    if (stiffness < 0)
+      throw Error("boundaries: the spring stiffness '{}' is {:g} N/m^3 at a face; it must not be negative.",
+                  c.stiffness.text(), stiffness);
+    support.spring = stiffness * (c.along_normal ? Tensor3(n * n.transpose()) : Tensor3::Identity());
+  }
+  return support;
+}
+
+ElasticBoundary SolidBoundaries::elastic() const {
+  ElasticBoundary result;
+  result.condition.assign(condition_of_face_.size(), ElasticCondition::bonded);
+  for (std::size_t b = 0; b < condition_of_face_.size(); ++b) {
+    if (condition_of_face_[b] < 0) continue;
+    const Condition& c = at(static_cast<Index>(b));
+    result.condition[b] = kind_of(c);
+    if (result.condition[b] != ElasticCondition::support) continue;
+    if (result.support_of_face.empty()) result.support_of_face.assign(condition_of_face_.size(), -1);
+    const ElasticSupport here = support_at(c, mesh_->n_interior + static_cast<Index>(b));
+    if (result.supports.empty() || !(result.supports.back() == here)) result.supports.push_back(here);
+    result.support_of_face[b] = static_cast<Index>(result.supports.size()) - 1;
+  }
+  return result;
+}
+
+std::vector<double> SolidBoundaries::pressures(double t) const {
+  std::vector<double> pressure(mesh_->boundary.n_owned(), 0);
+  for (const Condition& c : conditions_) {
+    if (c.type != Type::pressure) continue;
+    for (const Index f : c.faces)
+      pressure[f - mesh_->n_interior] = c.pressure(mesh_->reference.face_centre[f], t);
+  }
+  return pressure;
+}
+
+void SolidBoundaries::add_forces(double t, std::span<double> forces, bool with_pressure) const {
+  const int dim = mesh_->dim;
+  for (const Condition& c : conditions_) {
+    if (c.traction.empty() && (c.type != Type::pressure || !with_pressure)) continue;
+    for (const Index f : c.faces) {
+      const Vec3& x = mesh_->reference.face_centre[f];
+      const Vec3& area = mesh_->reference.face_area[f];
+      double* force = forces.data() + std::size_t(f - mesh_->n_interior) * dim;
+      if (c.type == Type::pressure) {
+        const double pressure = c.pressure(x, t);
+        for (int a = 0; a < dim; ++a) force[a] -= pressure * area[a];
+      } else {
+        const double size = area.norm();
+        for (int a = 0; a < dim; ++a) force[a] += c.traction[a](x, t) * size;
+      }
+    }
+  }
+}
+
+PrescribedDisplacement::PrescribedDisplacement(const Mesh& mesh, const SolidBoundaries& boundaries,
+                                               const ElasticOperator& elastic)
+    : dim_(mesh.dim), size_(elastic.n_known()) {
+  std::vector<Group> all(boundaries.conditions_.size());
+  for (std::size_t c = 0; c < all.size(); ++c) all[c].value = &boundaries.conditions_[c].known;
+  const auto group_of = [&](Index entry) -> Group& { return all[boundaries.condition_of_face_[entry]]; };
+  const VertexConstraints& vertices = elastic.constraints();
+  for (const Index f : elastic.known_faces()) {
+    Group& group = group_of(f - mesh.n_interior);
+    group.columns.push_back(elastic.known_of_face(f));
+    group.places.push_back(mesh.reference.face_centre[f]);
+  }
+  for (std::size_t i = 0; i < vertices.points().size(); ++i)
+    for (const auto& [face, share] : vertices.sources(static_cast<Index>(i))) {
+      Group& group = group_of(face);
+      group.columns.push_back(static_cast<Index>(i));
+      group.places.push_back(mesh.reference_points[vertices.points()[i]]);
+      group.shares.push_back(share);
+    }
+  for (Group& group : all) {
+    if (group.value->empty()) continue;
+    for (const Expression& e : *group.value) uses_time_ = uses_time_ || e.uses_time();
+    groups_.push_back(std::move(group));
+  }
+}
+
+void PrescribedDisplacement::evaluate(double t, std::span<double> values) const {
+  std::ranges::fill(values, 0.0);
+  for (const Group& group : groups_) {
+    const std::size_t whole = group.places.size() - group.shares.size();
+    for (std::size_t i = 0; i < group.columns.size(); ++i) {
+      Vec3 g = Vec3::Zero();
+      for (int c = 0; c < dim_; ++c) g[c] = (*group.value)[c](group.places[i], t);
+      if (i >= whole) g = group.shares[i - whole] * g;
+      for (int c = 0; c < dim_; ++c) values[std::size_t(group.columns[i]) * dim_ + c] += g[c];
+    }
+  }
+}
+
+void PrescribedDisplacement::evaluate_rate(double t, double dt, std::span<double> values) const {
+  std::ranges::fill(values, 0.0);
+  if (!uses_time_) return;
+  const double h = 1e-3 * dt;
+  std::vector<double> before(values.size());
+  evaluate(t - h, before);
+  evaluate(t + h, values);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = (values[i] - before[i]) / (2 * h);
+}
+
+}  // namespace couplet

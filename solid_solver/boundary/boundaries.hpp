@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/elasticity/elasticity.hpp"
+#include "common/fv/expression.hpp"
+#include "common/mesh/mesh.hpp"
+#include "solid_solver/parameters/parameters.hpp"
+
+namespace couplet {
+
+/// The boundaries of the YAML on the faces of the mesh.
+class SolidBoundaries {
+ public:
+  /// Throws Error if a patch has no boundary, a boundary no patch, a part no face, or an expression is wrong.
+  /// Collective.
+  SolidBoundaries(const Mesh& mesh, const SolidParameters& parameters);
+
+  /// For the operator.
+  ElasticBoundary elastic() const;
+  const std::vector<std::string>& interface_patches() const { return interface_patches_; }
+  /// The patch can hold the solid: some of its faces know more than the force on them.
+  bool holds(std::size_t patch) const { return holds_[patch] != 0; }
+
+  /// Adds tractions and pressures at time t as forces [N] on the boundary faces of owned cells (`dim` values
+  /// a face): thesis (2.64), reference configuration.
+  void add_forces(double t, std::span<double> forces, bool with_pressure = true) const;
+  /// Pressures at time t on the boundary faces of owned cells [Pa].
+  std::vector<double> pressures(double t) const;
+
+ private:
+  friend class PrescribedDisplacement;
+  /// One entry of the YAML: a patch or a part of it.
+  struct Condition {
+    SolidCondition::Type type;
+    std::vector<Expression> known;     // vector g of the support, or displacement; empty: zero
+    std::vector<Expression> traction;  // empty: none
+    Expression pressure;
+    std::vector<Index> faces;  // those of owned cells
+    Expression stiffness;
+    bool along_normal = false;
+    /// fixed-displacement by component. A part of which all are known holds its faces, `value` also their
+    /// vertices.
+    bool by_component = false;
+    Vec3 known_components = Vec3::Zero(), plate_normal = Vec3::Zero();
+  };
+  Condition make_condition(const SolidCondition& from, const std::string& where) const;
+  void choose_faces(const Patch& patch, const SolidBoundary& boundary);
+  ElasticCondition kind_of(const Condition& condition) const;
+  ElasticSupport support_at(const Condition& condition, Index face) const;
+  const Condition& at(Index entry) const { return conditions_[condition_of_face_[entry]]; }
+
+  const Mesh* mesh_;
+  std::vector<Condition> conditions_;
+  std::vector<Index> condition_of_face_;  // per local boundary face, -1: bonded
+  std::vector<std::uint8_t> holds_;       // per patch
+  std::vector<std::string> interface_patches_;
+};
+
+/// The known values of the operator in the order of its columns: displacements of vertices and faces, far
+/// ends of springs.
+class PrescribedDisplacement {
+ public:
+  PrescribedDisplacement(const Mesh& mesh, const SolidBoundaries& boundaries, const ElasticOperator& elastic);
+
+  std::size_t size() const { return size_; }
+  bool is_zero() const { return groups_.empty(); }
+  bool uses_time() const { return uses_time_; }
+  /// dim values a known column.
+  void evaluate(double t, std::span<double> values) const;
+  /// The time derivative, central difference over 2e-3 dt.
+  void evaluate_rate(double t, double dt, std::span<double> values) const;
+
+ private:
+  struct Group {  // all that takes its values from one condition
+    const std::vector<Expression>* value;
+    std::vector<Index> columns;
+    std::vector<Vec3> places;
+    std::vector<Tensor3> shares;  // one a place, after the places without (their share is I)
+  };
+  int dim_;
+  std::size_t size_ = 0;
+  bool uses_time_ = false;
+  std::vector<Group> groups_;
+};
+
+}  // namespace couplet

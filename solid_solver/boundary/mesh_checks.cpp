@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/boundary/mesh_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+#include "common/mesh/quality.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+std::string text_of(const Vec3& x, int dim) {
+  return dim == 2 ? fmt::format("({:.4g}, {:.4g})", x[0], x[1])
+                  : fmt::format("({:.4g}, {:.4g}, {:.4g})", x[0], x[1], x[2]);
+}
+
+struct Found {
+  GlobalIndex count;
+  Vec3 first;  ///< place of the first one
+};
+
+/// Of points listed on each rank. Collective.
+std::optional<Found> find_any(const Mesh& mesh, const std::vector<Index>& points) {
+  std::vector<double> first;
+  if (!points.empty()) {
+    const Vec3& x = mesh.reference_points[points.front()];
+    first.assign(x.data(), x.data() + 3);
+  }
+  const std::vector<double> all = all_gather(mesh.comm, first);
+  if (all.empty()) return std::nullopt;
+  return Found{sum(mesh.comm, GlobalIndex(points.size())), Vec3(all[0], all[1], all[2])};
+}
+
+}  // namespace
+
+void check_mesh(const Mesh& mesh, const VertexInterpolation& vertices) {
+  if (const auto trouble = find_inverted(mesh, mesh.reference))
+    throw Error(
+        "The mesh has an inverted cell: cell {} at {} has the volume {:.3g} m^3. Its faces cross one "
+        "another; "
+        "mesh that place anew, coarser or with another element size.",
+        trouble->cell_id, text_of(trouble->centre, mesh.dim), trouble->volume);
+  // Where a cell does not lie behind its face the operator is not elliptic.
+  if (const auto fold = find_fold(mesh, mesh.reference))
+    throw Error(
+        "The mesh is folded at {}: cell {} (counted from 0 in the file) does not lie behind its face there. "
+        "A cell is "
+        "inverted or bent over; mesh that place anew.",
+        text_of(fold->centre, mesh.dim), fold->cell_id);
+  if (const auto bent = find_any(mesh, vertices.bent_points()))
+    throw Error(
+        "boundaries: a patch of 'type: symmetry' is not flat at {}. A symmetry plane must be a plane; 'type: "
+        "frictionless' also slides along curved surfaces.",
+        text_of(bent->first, mesh.dim));
+  if (const auto inexact = find_any(mesh, vertices.inexact_points()); inexact && comm_rank(mesh.comm) == 0)
+    log::warn(
+        "at {} vertices, the first at {}, the cells and faces around do not span space: values there are "
+        "means of "
+        "what is around, exact for constant fields only",
+        inexact->count, text_of(inexact->first, mesh.dim));
+}
+
+}  // namespace couplet

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/boundary/rigid_modes.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/base/constants.hpp"
+#include "common/base/disjoint_sets.hpp"
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// A motion is free if the supports resist it less than this, relative to the motion they resist most
+// (squares: a clamped spot of a thousandth of the body still holds it).
+constexpr double resisted = 1e-9;
+
+using Motion = Eigen::Matrix<double, 6, 1>;  // translation of the centre, rotation times the size of the body
+using Resistance = Eigen::Matrix<double, 6, 6>;
+
+/// Sum over the ranks, entry by entry.
+void add_over_ranks(MPI_Comm comm, std::vector<double>& values) {
+  const std::vector<double> all = all_gather(comm, values);
+  const std::size_t n = values.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    values[i] = 0;
+    for (std::size_t at = i; at < all.size(); at += n) values[i] += all[at];
+  }
+}
+
+/// The body of each local cell, numbered by the smallest cell_id in it.
+std::vector<Index> bodies_of_cells(const Mesh& mesh, Index& n_bodies) {
+  const Index n = mesh.cells.n_local();
+  DisjointSets sets(n);
+  for (Index f = 0; f < mesh.n_interior; ++f) sets.join(mesh.owner[f], mesh.neighbour[f]);
+  for (std::size_t b = 0; b < mesh.twin.size(); ++b)
+    if (mesh.twin[b] >= 0)
+      sets.join(mesh.owner[mesh.n_interior + static_cast<Index>(b)],
+                mesh.owner[mesh.n_interior + mesh.twin[b]]);
+  std::vector<GlobalIndex> label(mesh.cell_id.begin(), mesh.cell_id.end());
+  for (bool changed = true; changed;) {
+    std::vector<GlobalIndex> lowest(n, std::numeric_limits<GlobalIndex>::max());
+    for (Index c = 0; c < n; ++c) {
+      GlobalIndex& low = lowest[sets.find(c)];
+      low = std::min(low, label[c]);
+    }
+    const std::vector<GlobalIndex> before = label;
+    for (Index c = 0; c < n; ++c) label[c] = lowest[sets.find(c)];
+    mesh.cells.update_ghosts(std::span<GlobalIndex>(label));
+    changed = any(mesh.comm, label != before);
+  }
+  const auto owned_end = label.begin() + mesh.cells.n_owned();
+  std::vector<GlobalIndex> names(label.begin(), owned_end);
+  for (int pass = 0; pass < 2; ++pass) {
+    std::ranges::sort(names);
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    if (pass == 0) names = all_gather(mesh.comm, names);
+  }
+  n_bodies = static_cast<Index>(names.size());
+  std::vector<Index> body(n);
+  for (Index c = 0; c < n; ++c)
+    body[c] = static_cast<Index>(std::lower_bound(names.begin(), names.end(), label[c]) - names.begin());
+  return body;
+}
+
+struct Body {
+  Vec3 centre = Vec3::Zero();
+  double size = 0;
+  Resistance resistance = Resistance::Zero();
+};
+
+std::vector<Body> place_bodies(const Mesh& mesh, std::span<const Index> body_of_cell, Index n_bodies) {
+  std::vector<double> sums(std::size_t(n_bodies) * 4, 0);
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
+    double* at = sums.data() + 4 * body_of_cell[c];
+    at[0] += mesh.reference.volume[c];
+    for (int a = 0; a < 3; ++a) at[a + 1] += mesh.reference.volume[c] * mesh.reference.cell_centre[c][a];
+  }
+  add_over_ranks(mesh.comm, sums);
+  std::vector<Body> bodies(n_bodies);
+  for (Index b = 0; b < n_bodies; ++b)
+    bodies[b].centre = Eigen::Map<const Vec3>(sums.data() + 4 * b + 1) / sums[4 * b];
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    for (const Index v : mesh.cell_points[c]) {
+      Body& body = bodies[body_of_cell[c]];
+      body.size = std::max(body.size, (mesh.reference_points[v] - body.centre).norm());
+    }
+  for (Body& body : bodies) body.size = max(mesh.comm, body.size);
+  return bodies;
+}
+
+/// Displacement at x for the six motions (columns).
+Eigen::Matrix<double, 3, 6> displacements(const Body& body, const Vec3& x) {
+  const Vec3 r = (x - body.centre) / body.size;
+  Eigen::Matrix<double, 3, 6> d;
+  d.leftCols<3>().setIdentity();
+  d.rightCols<3>() << 0, r[2], -r[1], -r[2], 0, r[0], r[1], -r[0], 0;
+  return d;
+}
+
+/// n . grad u, times the size of the body, for the six motions.
+Eigen::Matrix<double, 3, 6> normal_gradients(const Vec3& n) {
+  Eigen::Matrix<double, 3, 6> d = Eigen::Matrix<double, 3, 6>::Zero();
+  d.rightCols<3>() << 0, n[2], -n[1], -n[2], 0, n[0], n[1], -n[0], 0;
+  return d;
+}
+
+void add_face(const Mesh& mesh, const ElasticOperator& elastic, Index face, Body& body) {
+  const auto resist = [&](const Eigen::Matrix<double, 3, 6>& d, const Tensor3& by) {
+    body.resistance += d.transpose() * by * d;
+  };
+  const auto at_centre = displacements(body, mesh.reference.face_centre[face]);
+  const Vec3 n = mesh.reference.face_area[face].normalized();
+  switch (elastic.condition(face)) {
+    case ElasticCondition::prescribed:
+      resist(at_centre, Tensor3::Identity());
+      break;
+    case ElasticCondition::symmetry:
+      resist(at_centre, n * n.transpose());
+      break;
+    case ElasticCondition::support: {
+      const ElasticSupport& s = elastic.support(face);
+      resist(at_centre, s.known);
+      // Any spring holds: its stiffness only says how far the body moves.
+      if (const double stiffest = s.spring.norm(); stiffest > 0) resist(at_centre, s.spring / stiffest);
+      break;
+    }
+    case ElasticCondition::zero_gradient:
+      resist(normal_gradients(n), Tensor3::Identity());
+      break;
+    default:
+      break;
+  }
+  for (const Index v : mesh.face_points[face])
+    if (elastic.constraints().is_constrained(v))
+      resist(displacements(body, mesh.reference_points[v]),
+             Tensor3::Identity() - elastic.constraints().free_part(v));
+}
+
+/// Reduced row echelon form: pivots in the order of the columns; rows without pivot are dropped.
+std::vector<Motion> reduce(std::vector<Motion> rows, const std::array<int, 6>& columns) {
+  std::vector<Motion> reduced;
+  for (const int column : columns) {
+    const auto best =
+        std::ranges::max_element(rows, {}, [column](const Motion& row) { return std::abs(row[column]); });
+    if (best == rows.end() || std::abs((*best)[column]) < 1e-3) continue;
+    const Motion pivot = *best / (*best)[column];
+    rows.erase(best);
+    for (auto* set : {&rows, &reduced})
+      for (Motion& row : *set) row -= row[column] * pivot;
+    reduced.push_back(pivot);
+  }
+  return reduced;
+}
+
+std::string direction(Vec3 d) {
+  d.normalize();
+  for (int a = 0; a < 3; ++a)
+    if (std::abs(d[a]) > 1 - 1e-6) return axis_letters[a];
+  const auto tidy = [](double value) { return std::abs(value) < 1e-6 ? 0.0 : value; };
+  return fmt::format("({:.3g}, {:.3g}, {:.3g})", tidy(d[0]), tidy(d[1]), tidy(d[2]));
+}
+
+std::string describe(const Motion& motion, const Body& body, int dim) {
+  const Vec3 t = motion.head<3>(), w = motion.tail<3>() / body.size;
+  if (w.norm() * body.size < 1e-6) return "translation along " + direction(t);
+  // u = t + w x (x - centre) vanishes on the axis through centre + w x t / |w|^2, or runs along it (a screw).
+  Vec3 x = body.centre + w.cross(t) / w.squaredNorm();
+  for (int a = 0; a < 3; ++a)
+    if (std::abs(x[a]) < 1e-6 * body.size) x[a] = 0;
+  const bool screw = std::abs(t.dot(w)) > 1e-6 * w.norm();
+  const std::string about = dim == 2 ? fmt::format("rotation about ({:.4g}, {:.4g})", x[0], x[1])
+                                     : fmt::format("rotation about {} through ({:.4g}, {:.4g}, {:.4g})",
+                                                   direction(w), x[0], x[1], x[2]);
+  return screw ? about + " with a translation along it" : about;
+}
+
+std::vector<std::string> free_modes(const Body& body, int dim) {
+  Resistance resistance = body.resistance;
+  // In 2-D the other three motions do not exist.
+  if (dim == 2)
+    for (const int i : {2, 3, 4}) {
+      resistance.row(i).setZero();
+      resistance.col(i).setZero();
+      resistance(i, i) = std::max(1.0, body.resistance.trace());
+    }
+  const Eigen::SelfAdjointEigenSolver<Resistance> eigen(resistance);
+  const double largest = std::max(eigen.eigenvalues()[5], std::numeric_limits<double>::min());
+  std::vector<Motion> free;
+  for (int i = 0; i < 6; ++i)
+    if (eigen.eigenvalues()[i] <= resisted * largest) free.push_back(eigen.eigenvectors().col(i));
+  std::vector<std::string> names;
+  // Rotations first, so that what is left of them are plain translations; these are named first.
+  for (const Motion& motion : reduce(free, {3, 4, 5, 0, 1, 2})) names.push_back(describe(motion, body, dim));
+  std::ranges::stable_partition(names, [](const std::string& n) { return n.starts_with("translation"); });
+  return names;
+}
+
+}  // namespace
+
+std::vector<FreeMotion> free_motions(const Mesh& mesh, const ElasticOperator& elastic) {
+  Index n_bodies = 0;
+  const std::vector<Index> body_of_cell = bodies_of_cells(mesh, n_bodies);
+  std::vector<Body> bodies = place_bodies(mesh, body_of_cell, n_bodies);
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+    add_face(mesh, elastic, f, bodies[body_of_cell[mesh.owner[f]]]);
+  std::vector<double> sums;
+  for (const Body& body : bodies)
+    sums.insert(sums.end(), body.resistance.data(), body.resistance.data() + 36);
+  add_over_ranks(mesh.comm, sums);
+  std::vector<FreeMotion> result;
+  for (Index b = 0; b < n_bodies; ++b) {
+    bodies[b].resistance = Eigen::Map<const Resistance>(sums.data() + 36 * b);
+    result.push_back({bodies[b].centre, free_modes(bodies[b], mesh.dim)});
+  }
+  return result;
+}
+
+void check_supported(const Mesh& mesh, const ElasticOperator& elastic) {
+  const std::vector<FreeMotion> bodies = free_motions(mesh, elastic);
+  std::string trouble;
+  for (const FreeMotion& body : bodies) {
+    if (body.modes.empty()) continue;
+    if (bodies.size() > 1)
+      trouble += fmt::format(
+          "{}the body around ({:.4g}, {:.4g}, {:.4g}), one of {} that do not hang together, is free in ",
+          trouble.empty() ? "" : "; ", body.centre[0], body.centre[1], body.centre[2], bodies.size());
+    for (std::size_t i = 0; i < body.modes.size(); ++i) trouble += (i ? ", " : "") + body.modes[i];
+  }
+  if (trouble.empty()) return;
+  throw Error(
+      "boundaries: a static analysis needs supports that hold the solid in place; these leave it free: {}. "
+      "Hold it "
+      "by 'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use "
+      "'analysis: dynamic'.",
+      trouble);
+}
+
+}  // namespace couplet

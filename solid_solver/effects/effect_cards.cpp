@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/effects/effect_cards.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet {
+namespace {
+
+using P = SolidParameters;
+using E = SolidEvidence;
+using V = std::optional<EffectVerdict>;
+
+bool is_dynamic(const P& p) { return p.analysis == P::Analysis::dynamic; }
+bool is_elastic(const P& p) { return p.analysis != P::Analysis::thermal; }
+std::string when(bool on, const char* reason) { return on ? reason : ""; }
+
+bool has_volume_strain_of_cells(const P& p) {
+  return is_elastic(p) && face_gradient_scheme(p) == FaceGradientScheme::symmetric &&
+         volume_strain_of(p) != VolumeStrain::faces;
+}
+
+bool varies(const P& p) {
+  return std::ranges::any_of(
+      materials_of(p), [](const SolidMaterial& m) { return m.heat.youngs_modulus || m.heat.poissons_ratio; });
+}
+
+V verdict(double number, double threshold, std::string sentence, std::string recommendation) {
+  if (std::isnan(number)) return {};
+  return EffectVerdict{"", number, threshold, std::move(sentence), std::move(recommendation)};
+}
+
+V judge_inertia(const P& p, const E& e) {
+  if (!is_elastic(p) || has_finite_strain(p)) return {};  // whose static steps are load steps: t is no time
+  return verdict(e.inertia_over_load, 0.01,
+                 fmt::format("it would have reached {:.2g} of the load", e.inertia_over_load),
+                 "use 'analysis: dynamic'");
+}
+
+// The stretch along a fibre that turns by an angle phi without straining is off by phi^2/2 in the linear
+// theory; a gradient of 0.02 is a fiftieth of that in the strain itself.
+V judge_geometry(const P& p, const E& e) {
+  if (!is_elastic(p) || has_finite_strain(p)) return {};
+  const double g = e.largest_gradient;
+  const std::string parts = std::isnan(e.largest_strain)
+                                ? ""
+                                : fmt::format(" (last: strain {:.2g}, rotation {:.2g} degrees)",
+                                              e.largest_strain, 57.29578 * e.largest_rotation);
+  const std::string change = e.large_strain.empty() ? "" : "; " + e.large_strain;
+  return verdict(g, 0.02,
+                 fmt::format("the largest displacement gradient seen is {:.2g}{}{}", g, parts, change),
+                 g < 0.1 ? "errors of some per cent are to be expected"
+                         : "it would matter: the result is that of the linear theory, not of the body; "
+                           "'kinematics: finite-strain' takes it into account");
+}
+
+V judge_yield(const P& p, const E& e) {
+  if (!is_elastic(p)) return {};
+  return verdict(
+      e.share_of_yield, 1,
+      fmt::format("the largest equivalent stress is {:.2g} of the yield strength", e.share_of_yield),
+      "the body would yield there: the result is that of an elastic body, this program knows no other");
+}
+
+V judge_incompressibility(const P& p, const E&) {
+  if (!is_elastic(p) || has_volume_strain_of_cells(p)) return {};
+  const double nu = std::max(0.0, largest_poissons_ratio(p));
+  return verdict(
+      nu, 0.45, fmt::format("the largest Poisson's ratio is {:g}", nu),
+      has_orthotropic(p)
+          ? "coarse meshes may be too stiff there, and an orthotropic material has no volume strain of cells: compare two "
+            "meshes"
+          : "coarse meshes are too stiff or worse there: 'solution-method: {face-gradient: symmetric}' takes one "
+            "volume strain a cell");
+}
+
+// The strain of a free body with a coefficient of 1e-5 1/K beside the largest gradient of the displacement.
+V judge_thermal_strain(const P& p, const E& e) {
+  if (!is_elastic(p)) return {};
+  const double strain = 1e-5 * e.temperature_range;
+  return verdict(
+      strain / std::max(e.largest_gradient, 1e-300), 0.02,
+      fmt::format(
+          "a temperature range of {:.3g} K would strain a free body with 1e-5 1/K by {:.2g}, the largest "
+          "displacement gradient being {:.2g}",
+          e.temperature_range, strain, e.largest_gradient),
+      "'thermal-expansion' takes it into account");
+}
+
+V judge_thermoelastic(const P&, const E& e) {
+  return verdict(e.coupling_number, 0.05,
+                 fmt::format("heat of deformation would stiffen the solid by {:.1e}", e.coupling_number),
+                 "'thermoelastic-coupling: true' takes it into account");
+}
+
+const std::array cards{
+    SolidCard{"inertia",
+              "`analysis: dynamic`",
+              [](const P& p) { return when(is_dynamic(p), "analysis: dynamic"); },
+              {"velocities, a mass in the matrix", 0, 0},
+              "inertia over load, 0.01",
+              judge_inertia},
+    SolidCard{
+        "geometric non-linearity",
+        "`kinematics: finite-strain`",
+        [](const P& p) { return when(has_finite_strain(p), "kinematics: finite-strain"); },
+        {"F and the derivatives of the law a face, Newton's method; `type: segregated` takes the thesis's way in place of it, at 9 to 17 times the solve's time",
+         0, 33},
+        "largest displacement gradient, 0.02",
+        judge_geometry},
+    SolidCard{"yielding",
+              "not available here",
+              [](const P&) { return std::string(); },
+              {},
+              "where `yield-strength` is given: equivalent stress over it, 1",
+              judge_yield},
+    SolidCard{
+        "near incompressibility",
+        "`solution-method: {face-gradient: symmetric, volume-strain: cells}` (or `shared`)",
+        [](const P& p) { return when(has_volume_strain_of_cells(p), "one volume strain a cell"); },
+        {"a mean stress a cell, a pass over the faces; from nu = 0.49 up without factors also an unknown a cell",
+         630, 0.1},
+        "largest Poisson's ratio, 0.45",
+        judge_incompressibility},
+    SolidCard{"orthotropic elasticity",
+              "`material.orthotropic`",
+              [](const P& p) { return when(is_elastic(p) && has_orthotropic(p), "orthotropic"); },
+              {"21 constants a face (6 in the plane) in place of 2", 116, 0}},
+    SolidCard{"gravity",
+              "`gravity`",
+              [](const P& p) { return when(!p.gravity.empty(), "gravity"); },
+              {"a load a cell", 21, 0.05}},
+    SolidCard{"body force",
+              "`body-force`",
+              [](const P& p) { return when(!p.body_force.empty(), "body-force"); },
+              {"a load a cell", 21, 0.05}},
+    SolidCard{"structural damping",
+              "`damping`",
+              [](const P& p) { return when(p.damping.has_value(), "damping"); },
+              {},
+              "said of every dynamic run without it"},
+    SolidCard{"conduction of heat",
+              "`heat`",
+              [](const P& p) { return when(p.heat.has_value(), "heat"); },
+              {"a temperature, its matrix and solver", 1820, 0.26}},
+    SolidCard{"thermal strain",
+              "`thermal-expansion`",
+              [](const P& p) { return when(p.expansion.has_value(), "thermal-expansion"); },
+              {"a temperature a face", 130, 0.15},
+              "strain of a free body over the displacement gradient, 0.02",
+              judge_thermal_strain},
+    SolidCard{"thermoelastic coupling",
+              "`thermoelastic-coupling: true`",
+              [](const P& p) { return when(p.thermoelastic_coupling, "thermoelastic-coupling"); },
+              {"a strain rate a cell", 0, 0},
+              "stiffening by heat of deformation, 0.05",
+              judge_thermoelastic},
+    SolidCard{"properties of temperature",
+              "`youngs-modulus-table`, `poissons-ratio-table`",
+              [](const P& p) { return when(varies(p), "a table of the material"); },
+              {"Lame's constants a cell; the matrix is made anew when they change", 0, 0}},
+    SolidCard{"third dimension", "`dimension: 3`",
+              [](const P& p) { return when(p.dimension == 3, "dimension: 3"); }},
+    SolidCard{"energies",
+              "`output.energies: true`",
+              [](const P& p) { return when(p.output.energies, "output.energies"); },
+              {"energies.csv, work of the step summed over the faces", 78, 1.06}},
+    SolidCard{
+        "free vibrations",
+        "`output.modes` above 0",
+        [](const P& p) { return when(p.output.modes > 0, "output.modes"); },
+        {"modes.csv and modes.h5, found once at the start: a preconditioner for K + M/t^2 and some forty solutions with "
+         "it",
+         0, 0}},
+};
+
+}  // namespace
+
+std::span<const SolidCard> solid_effect_cards() { return cards; }
+
+}  // namespace couplet

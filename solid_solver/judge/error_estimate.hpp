@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/coupling/error_parts.hpp"
+#include "common/time/step_errors.hpp"
+#include "common/time/velocity_errors.hpp"
+#include "solid_solver/body/solid_body.hpp"
+#include "solid_solver/body/solid_fields.hpp"
+#include "solid_solver/judge/judge.hpp"
+#include "solid_solver/judge/phase_drift.hpp"
+#include "solid_solver/motion/solid_stepper.hpp"
+
+namespace couplet {
+
+/// What a solid's run leaves in its displacement:
+///   mesh    by how much the work of the stresses misses the strain energy, which equilibrium would make equal, or,
+///           if more, the square of the relative difference of two face gradients' strains: an energy errs by the
+///           square of what the strains err. A symmetric operator misses nothing by itself, there the latter counts.
+///           In motion what that makes of the phase comes beside it, see PhaseDrift. A body at rest tells nothing.
+///   step    sum of the local errors, see VelocityErrors; static: none
+///   linear  static: the work of what equilibrium misses over that of the loads, which is the error of the compliance;
+///           dynamic: the relative residuals of all steps, see StepErrors
+/// Thermal strain: see weighted_mesh_error; in motion it makes the mesh's part unknown.
+/// Temperatures that are solved for add what they err by, over their distance from the reference, times the share of the strain energy
+/// that their strain makes. At finite strain the mesh's part is half the square of the difference of two gradients' Green strains, times
+/// how softly the deformed body follows a change of its stiffness (a static run: one linear solve with the tangent). Collective.
+class SolidErrorEstimate {
+ public:
+  /// All by reference.
+  SolidErrorEstimate(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields,
+                     const SolidJudge& judge);
+  /// Between solve and acceptance.
+  void see_step();
+  /// After the last step.
+  ErrorParts parts() const;
+  /// For checkpoints; empty: of a run that collected nothing.
+  std::vector<double> state() const;
+  void restore(std::span<const double> state);
+
+ private:
+  void see_swing(const SolidState& now, const StepErrors::Seen& step);
+  double left_by_solver() const;
+  double missed_work() const;
+  void add_loads(ErrorParts& parts) const;
+  double missed_of_large_strain(const SolidState& state, std::span<const double> unknowns) const;
+  double thermal_mesh_error(double known) const;
+  double finite_mesh_error() const;
+  double mean_square(std::span<const double> cells) const;
+
+  const SolidBody& body_;
+  const SolidStepper& stepper_;
+  const SolidFields& fields_;
+  const SolidJudge& judge_;
+  double volume_ = 0;  // of the body [m^3]
+  VelocityErrors steps_;
+  StepErrors linear_;
+  PhaseDrift drift_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// A solution judged by its own energy: work against strain energy, and one face gradient against another.
+#include "solid_solver/judge/strain_audit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/elasticity/vector_at.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/judge/inner_variation.hpp"
+#include "solid_solver/judge/judge.hpp"
+
+namespace couplet {
+namespace {
+
+/// From the owner to the node across.
+Vec3 line_of(const Mesh& mesh, Index f) {
+  const Geometry& g = mesh.reference;
+  const Vec3 across =
+      f < mesh.n_interior ? Vec3(g.cell_centre[mesh.neighbour[f]] + mesh.shift(f)) : g.face_centre[f];
+  return across - g.cell_centre[mesh.owner[f]];
+}
+
+FaceGradientScheme other_scheme(FaceGradientScheme scheme) {
+  return scheme == FaceGradientScheme::corrected ? FaceGradientScheme::thesis : FaceGradientScheme::corrected;
+}
+
+}  // namespace
+
+double StrainAudit::mismatch() const {
+  return strain_energy > 0 ? std::abs(stress_work - strain_energy) / strain_energy : 0;
+}
+
+bool StrainAudit::is_doubtful() const {
+  return mismatch() > most_mismatch || (compares_gradients && gradient_difference > most_difference) ||
+         inner_variation > most_variation;
+}
+
+std::string StrainAudit::text() const {
+  std::string text =
+      fmt::format("half the work of the loads is {:.6g} J, the strain energy {:.6g} J ({:.2g} % apart)",
+                  stress_work, strain_energy, 100 * mismatch());
+  if (compares_gradients)
+    text +=
+        fmt::format("; the strains of the two face gradients differ by {:.2g} %", 100 * gradient_difference);
+  if (inner_variation > most_variation)
+    text += fmt::format(
+        "; the strains within its quadrilaterals vary so much that they are {:.2g} % too stiff (more cells across, or 'volume-strain: "
+        "shared')",
+        100 * inner_variation);
+  return text;
+}
+
+std::string EnergyAudit::text() const {
+  return fmt::format(
+      "the solid holds {:.6g} J of kinetic and strain energy where loads and initial motion brought in "
+      "{:.6g} J ({:+.2g} %)",
+      held, given, 100 * created());
+}
+
+/// Of a displacement in all local cells, boundary faces and points. Collective.
+StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compare) const {
+  const SolidState& state = stepper_.state();
+  const int dim = mesh_.dim;
+  StrainAudit audit;
+  audit.compares_gradients = compare;
+  const Index n_faces = mesh_.n_flux_faces(), half = n_faces / 2;
+  Index first = 0;  // face of the first of the strains below
+  std::vector<std::array<float, 6>> strains(compare ? std::size_t(n_faces - half) : 0);
+  const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
+  const std::vector<double> known = body_.known_of({state.cell_u, state.face_u, points});
+  const ElasticOperator& rows = body_.elastic();
+  std::optional<InnerVariation> variation;  // thermal strain would count as one
+  if (compare && body_.kernel().is_symmetric() && body_.effects().empty() &&
+      InnerVariation::is_needed(mesh_, rows))
+    variation.emplace(mesh_, rows);
+  const auto is_mine = [&](Index f) { return mesh_.owner[f] < mesh_.cells.n_owned(); };
+  const auto volume = [&](Index f) {
+    return std::abs(mesh_.reference.face_area[f].dot(line_of(mesh_, f))) / dim;
+  };
+  double energy = 0, work = 0, difference = 0, size = 0;
+  const auto own = [&](Index f, const Tensor3& gradient) {
+    if (variation) variation->add(f, 0.5 * (gradient + gradient.transpose()));
+    if (!is_mine(f)) return;  // another rank's
+    const Index owner = mesh_.owner[f];
+    const Tensor3 stress = rows.stress(owner, gradient);
+    energy += 0.5 * volume(f) * contraction(stress, gradient);
+    Vec3 force = stress * mesh_.reference.face_area[f];
+    const Vec3 here = vector_at(state.cell_u, owner, dim);
+    if (f < mesh_.n_interior)
+      work += 0.5 * force.dot(vector_at(state.cell_u, mesh_.neighbour[f], dim) - here);
+    else if (rows.condition(f) == ElasticCondition::symmetry)
+      work -= 0.5 * mesh_.reference.face_area[f].dot(force) * mesh_.reference.face_area[f].dot(here) /
+              mesh_.reference.face_area[f].squaredNorm();
+    else
+      work += 0.5 * force.dot(vector_at(state.face_u, f - mesh_.n_interior, dim) - here);
+    if (!compare) return;
+    const Tensor3 symmetric = 0.5 * (gradient + gradient.transpose());
+    size += volume(f) * rows.lame(owner).mu * symmetric.squaredNorm();
+    std::ranges::copy(pack(symmetric), strains[f - first].begin());
+  };
+  const auto other = [&](Index f, const Tensor3& gradient) {
+    if (!is_mine(f)) return;
+    PackedTensor gap = pack(0.5 * (gradient + gradient.transpose()));
+    for (std::size_t i = 0; i < gap.size(); ++i) gap[i] -= strains[f - first][i];
+    difference += volume(f) * rows.lame(mesh_.owner[f]).mu * unpack(gap).squaredNorm();
+  };
+  if (!compare) {
+    body_.kernel().face_gradients(unknowns, known, own, 0, n_faces);
+  } else {
+    // Half of the faces after the other: the run needs most memory here, and half of the strains is a fiftieth of it.
+    const ElasticKernel beside(mesh_, rows, other_scheme(body_.kernel().scheme()));
+    for (const Index end : {half, n_faces}) {
+      body_.kernel().face_gradients(unknowns, known, own, first, end);
+      beside.face_gradients(unknowns, known, other, first, end);
+      first = end;
+    }
+    difference = sum(mesh_.comm, difference);
+    size = sum(mesh_.comm, size);
+  }
+  if (body_.kernel().is_symmetric()) {
+    const ElasticField u{unknowns, known};
+    energy = 0.5 * body_.kernel().product(ElasticPart::stiffness, u, u);
+    work = energy + 0.5 * residual_work(unknowns);
+  }
+  audit.strain_energy = sum(mesh_.comm, energy);
+  audit.stress_work = sum(mesh_.comm, work);
+  if (variation) audit.inner_variation = variation->missed();
+  if (size > 0) audit.gradient_difference = std::sqrt(difference / size);
+  return audit;
+}
+
+/// What equilibrium misses, times the displacement: where nothing is missing, a symmetric operator's strain
+/// energy is half of the loads' work. Static solves; this rank's part.
+double SolidJudge::residual_work(std::span<const double> unknowns) const {
+  const std::vector<double>& rhs = stepper_.last_solve().rhs;
+  if (body_.is_dynamic() || rhs.size() != unknowns.size()) return 0;
+  // Loaded from a checkpoint, and nothing solved since: the balance was judged when it was saved.
+  if (!any(mesh_.comm, std::ranges::any_of(rhs, [](double force) { return force != 0; }))) return 0;
+  std::vector<double> force(unknowns.size());
+  body_.kernel().apply(unknowns, {}, force);
+  double work = 0;
+  for (std::size_t i = 0; i < force.size(); ++i) work += unknowns[i] * (rhs[i] - force[i]);
+  return work;
+}
+
+}  // namespace couplet

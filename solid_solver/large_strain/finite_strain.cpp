@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/large_strain/finite_strain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/elasticity/finite/discrete_gradient.hpp"
+#include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/laws/laws.hpp"
+#include "solid_solver/method/newton_krylov.hpp"
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet {
+namespace {
+
+// Iterations after which a shorter load step is the cheaper way.
+constexpr int most_iterations = 20;
+// A step may multiply the residual by this much, of a residual of at least `small` of the load's.
+constexpr double growth = 30, small = 1e-3;
+// The first iteration of a step may do more: it goes through the linear theory's idea of the new state.
+constexpr double first = 1e6;
+// Of the step length: below it the direction is useless.
+constexpr double shortest = 1. / 128;
+// Forcing of the linear solves.
+constexpr double loosest = 0.05, tightest = 1e-4, with_pressures = 1e-6;
+// Where momenta are to be kept: what a linear solve leaves is momentum that the body gains (2e-10 of it in 40 steps at the
+// looser ones, 2e-13 at this).
+constexpr double conserving = 1e-6;
+constexpr std::size_t solvers_kept = 2;
+// From this Poisson's ratio on pressures are carried along, and the compact operator says too little of the tangent (in
+// motion inertia helps it further); bodies of so many cells can have factors.
+constexpr double factors_from_ratio = 0.48, factors_from_dynamic = 0.499;
+constexpr GlobalIndex tangent_factors_up_to_2d = 60000, tangent_factors_up_to_3d = 4000;
+// Slenderness from which static bodies of so many cells have them, too: 120 quadrilaterals of a bar 100:1 under a pressure that
+// follows were not solved without, a beam 1:20 in four times the time.
+constexpr double slender_2d = 12, slender_3d = 60;
+// Up to so many in space, where factors soon cost more than they save: of a beam 32:1 of 128, 432, 1024 and 2048 hexahedra or prisms they
+// took 1.4, 14, over 24 and over 25 s of processor time for 5.9, 14, 7.0 and 3.7 s without.
+constexpr GlobalIndex slender_up_to_3d = 400;
+// A correction of this size beside the displacement is rounding.
+constexpr double rounding = 1e-14;
+// Left of a load by rounding: told.
+constexpr double drowned = 0.01;
+
+}  // namespace
+
+FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters)
+    : mesh_(mesh),
+      rows_(rows),
+      tolerance_(parameters.method.relative_tolerance),
+      most_linear_(parameters.method.max_iterations) {
+  std::vector<const FiniteLaw*> all;
+  for (const SolidMaterial& material : materials_of(parameters)) {
+    const laws::Entry& law = *laws::of(material.law);
+    laws_.push_back(law.make(lame_constants(parameters, material), material.law_coefficients));
+    all.push_back(laws_.back().get());
+    if (rows.volume_by_cells() && !laws_.back()->has_bulk())
+      throw Error(
+          "solution-method.volume-strain: cells: the law '{}' has no part of the volume alone that could be one a "
+          "cell; take 'volume-strain: faces' or another law.",
+          law.name);
+  }
+  kernel_ = make_finite_kernel(mesh, rows, all);
+  using Preconditioner = MethodParameters::Preconditioner;
+  const GlobalIndex cells = mesh.cells.n_global();
+  const bool is_small = cells <= (mesh.dim == 2 ? tangent_factors_up_to_2d : tangent_factors_up_to_3d);
+  const double ratio = largest_poissons_ratio(parameters);
+  const bool is_dynamic = parameters.analysis == SolidParameters::Analysis::dynamic;
+  const bool is_slender = !is_dynamic && (mesh.dim == 2 || cells <= slender_up_to_3d) &&
+                          slenderness(mesh) > (mesh.dim == 2 ? slender_2d : slender_3d);
+  const bool wants_factors =
+      is_slender ||
+      (rows.volume_by_cells() && ratio >= (is_dynamic ? factors_from_dynamic : factors_from_ratio));
+  if (parameters.method.preconditioner == Preconditioner::factors ||
+      (parameters.method.preconditioner == Preconditioner::automatic && is_small && wants_factors))
+    by_ = TangentSolver::By::factors;
+  mixed_ = rows.volume_by_cells() && ratio >= factors_from_ratio;
+  r_.resize(rows.n_unknowns());
+  trial_ = du_ = r_;
+  noise_ = rounding_of_forces(mesh, rows);
+  noise_of_motion_ = rounding_of_motion(mesh, rows);
+}
+
+std::string FiniteStrain::name() const {
+  return fmt::format("Newton's method at large strain{}, symmetric face gradient",
+                     by_ == TangentSolver::By::factors ? " (factors of the tangent)" : "");
+}
+
+TangentSolver& FiniteStrain::solver_for(double mass_factor, std::span<const double> node_inertia) {
+  const auto same = [&](const std::unique_ptr<TangentSolver>& s) {
+    return std::abs(s->mass_factor() - mass_factor) <= 1e-10 * mass_factor;
+  };
+  const auto found = std::ranges::find_if(solvers_, same);
+  if (found != solvers_.end()) {
+    std::rotate(solvers_.begin(), found, found + 1);
+    return *solvers_.front();
+  }
+  if (solvers_.size() == solvers_kept) solvers_.pop_back();
+  solvers_.insert(solvers_.begin(),
+                  std::make_unique<TangentSolver>(mesh_, rows_, *kernel_, mass_factor, node_inertia, by_));
+  return *solvers_.front();
+}
+
+/// r = b - A(u) and its norm; infinite where a face is inside out.
+double FiniteStrain::residual(const Load& load, std::span<const double> u, double& ratio) {
+  kernel_->linearise(u, load.known, load.mass_factor, r_);
+  ratio = min(mesh_.comm, kernel_->worst().ratio);
+  if (!(ratio > 0)) return std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < r_.size(); ++i) r_[i] = load.rows[i] - r_[i];
+  double size = norm(mesh_.comm, r_);
+  whole_ = size;
+  if (is_carried_) {
+    // What the linear system wants on the right once its pressures are eliminated.
+    std::vector<double> defect(r_.size(), 0);
+    kernel_->add_pressure_defect(defect);
+    for (std::size_t i = 0; i < r_.size(); ++i) r_[i] -= defect[i];
+    whole_ = norm(mesh_.comm, r_);
+  }
+  return std::isfinite(size) && std::isfinite(whole_) ? size : std::numeric_limits<double>::infinity();
+}
+
+/// p of the accepted state, moved on with the linear change to the first guess.
+void FiniteStrain::start_pressures(const Load& load, std::span<const double> u) {
+  is_carried_ = false;
+  kernel_->set_own_pressures(false);
+  if (!mixed_ || load.is_conserving) return;
+  is_carried_ = true;
+  if (load.accepted.empty()) {
+    kernel_->linearise(u, load.known, load.mass_factor, r_);
+    return kernel_->set_own_pressures(true);
+  }
+  kernel_->linearise(load.accepted, load.accepted_known, load.mass_factor, r_);
+  kernel_->set_own_pressures(true);
+  std::vector<double> change(u.begin(), u.end()), known_change(load.known.begin(), load.known.end());
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= load.accepted[i];
+  for (std::size_t i = 0; i < known_change.size(); ++i)
+    known_change[i] -= (load.before.empty() ? load.accepted_known : load.known)[i];
+  predict_pressures(change, known_change);
+}
+
+void FiniteStrain::predict_pressures(std::span<const double> change, std::span<const double> known_change) {
+  if (!is_carried_) return;
+  kernel_->predict_pressures(change, known_change);
+  kernel_->set_pressure_fraction(1);
+  kernel_->accept_pressures();
+}
+
+/// The motion of what is known goes into the body by one linear step: left to the first guess it would be a jump
+/// in the cells beside it.
+void FiniteStrain::follow_known(const Load& load, TangentSolver& solver, std::span<double> u) {
+  std::vector<double> change(load.known.begin(), load.known.end());
+  double size = 0;
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    change[i] -= load.before[i];
+    size = std::max(size, std::abs(change[i]));
+  }
+  if (!(max(mesh_.comm, size) > 0)) return;
+  double ratio = 1;
+  if (!std::isfinite(residual({load.rows, load.before, {}, load.mass_factor, false}, u, ratio))) return;
+  solver.follow(true);
+  const std::vector<double> still(u.size(), 0);
+  kernel_->apply_tangent(still, change, load.mass_factor, trial_);
+  for (std::size_t i = 0; i < r_.size(); ++i) r_[i] -= trial_[i];
+  solver.solve(r_, du_, tightest, most_linear_);
+  predict_pressures(du_, change);
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] += du_[i];
+}
+
+std::string FiniteStrain::where_worst() const {
+  const FiniteKernel::Worst worst = kernel_->worst();
+  return worst_cell(mesh_, worst.ratio, worst.face);
+}
+
+/// u + s du with the largest s of 1, 1/2, ... that leaves det F positive and the residual below `most`.
+bool FiniteStrain::search(const Load& load, std::span<double> u, NewtonIterate& now, double most) {
+  for (double s = 1; s >= shortest; s *= 0.5) {
+    for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + s * du_[i];
+    kernel_->set_pressure_fraction(is_carried_ ? s : 0);
+    const double size = residual(load, trial_, now.ratio);
+    now.length = s;
+    now.residual = size;
+    if (!(size <= most)) continue;
+    std::ranges::copy(trial_, u.begin());
+    if (is_carried_) kernel_->accept_pressures();
+    return true;
+  }
+  return false;
+}
+
+/// What a residual is measured by: the loads; in motion the inner forces, since b holds the inertia of the place itself,
+/// which is far larger than what accelerates the body.
+double FiniteStrain::scale_of(const Load& load, std::span<const double> u, double residual) {
+  if (load.mass_factor == 0) return std::max(norm(mesh_.comm, load.rows), residual);
+  kernel_->linearise(u, load.known, 0, trial_);
+  const double inner = norm(mesh_.comm, trial_);
+  kernel_->linearise(u, load.known, load.mass_factor, trial_);
+  return std::max(inner, residual);
+}
+
+SolveStatistics FiniteStrain::solve(const Load& load, std::span<double> u) {
+  if (load.is_conserving) kernel_->set_start(load.accepted, load.accepted_known);
+  const SolveStatistics statistics = iterate(load, u);
+  kernel_->forget_start();
+  return statistics;
+}
+
+SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
+  TangentSolver& solver = solver_for(load.mass_factor, load.node_inertia);
+  solver.forget_factors();
+  SolveStatistics statistics;
+  iterates_.clear();
+  start_pressures(load, u);
+  if (any(mesh_.comm, !load.before.empty())) follow_known(load, solver, u);
+  NewtonIterate now;
+  now.residual = residual(load, u, now.ratio);
+  if (!std::isfinite(now.residual))
+    throw SolveFailure("The first guess of the step turns a cell inside out. {}", where_worst());
+  const double scale = scale_of(load, u, now.residual);
+  // Its difference quotients divide rounding by the change over the step.
+  const auto floor = [&] {
+    double largest = 0;
+    for (const double v : u) largest = std::max(largest, std::abs(v));
+    const double noise = noise_ + noise_of_motion_ * max(mesh_.comm, largest);
+    return load.is_conserving ? 0.5 / finite::smallest_change * noise : noise;
+  };
+  double before = now.residual;
+  for (;;) {
+    iterates_.push_back(now);
+    iterates_.back().residual = std::max(now.residual, whole_) / (scale > 0 ? scale : 1);
+    if (std::max(now.residual, whole_) <= std::max(tolerance_ * scale, floor())) break;
+    if (statistics.iterations == most_iterations)
+      throw SolveFailure(
+          "Newton's method did not find the equilibrium: after {} iterations the residual is {:.2g} of the load "
+          "({:.0e} wanted). {}",
+          statistics.iterations, std::max(now.residual, whole_) / scale, tolerance_, where_worst());
+    const double ratio = statistics.iterations == 0 ? 1 : now.residual / before;
+    const double wanted = 0.5 * tolerance_ * scale / now.residual;
+    const double inexact =
+        std::max(std::clamp(0.9 * ratio * ratio, tightest, loosest), std::min(wanted, loosest));
+    const double eta = load.is_conserving ? conserving : inexact;
+    solver.follow(statistics.iterations % 2 == 0);
+    now.linear = solver.solve(r_, du_, is_carried_ ? with_pressures : eta, most_linear_).iterations;
+    if (is_carried_) kernel_->predict_pressures(du_, {});
+    ++statistics.iterations;
+    statistics.inner_iterations += now.linear;
+    before = now.residual;
+    const double correction = norm(mesh_.comm, du_), size = norm(mesh_.comm, u);
+    if (!search(load, u, now,
+                (statistics.iterations == 1 ? first : growth) * std::max(before, small * scale)))
+      throw SolveFailure(
+          "Newton's method found no way on: steps down to {:.3f} of its length turn a cell inside out or raise the "
+          "residual more than {:g}-fold. {}",
+          now.length, growth, where_worst());
+    if (correction <= rounding * size && now.residual < small * scale) {
+      iterates_.push_back(now);
+      iterates_.back().residual = std::max(now.residual, whole_) / scale;
+      break;
+    }
+  }
+  kernel_->set_own_pressures(false);
+  is_carried_ = false;
+  statistics.residual = iterates_.back().residual;
+  const double left = std::max(now.residual, whole_);
+  if (load.mass_factor == 0 && left > tolerance_ * scale)
+    statistics.residual = judge_rounding(load, scale, left);
+  log::debug("{}", text());
+  return statistics;
+}
+
+double FiniteStrain::judge_rounding(const Load& load, double scale, double left) {
+  const double loads = presses_ ? scale : norm(mesh_.comm, load.rows);
+  if (loads == 0) return 0;
+  if (left > drowned * loads && !is_drowned_told_)
+    log::warn(
+        "The load ({:.2g} N) is hardly larger than the rounding of the inner forces of a body this stiff that was "
+        "moved this far ({:.2g} N): what it does to the body is not resolved.",
+        loads, left);
+  is_drowned_told_ = is_drowned_told_ || left > drowned * loads;
+  return left / loads;
+}
+
+std::string FiniteStrain::text() const {
+  std::string residuals;
+  int linear = 0;
+  for (const NewtonIterate& i : iterates_) {
+    residuals += fmt::format("{}{:.1e}", residuals.empty() ? "" : " ", i.residual);
+    linear += i.linear;
+  }
+  return fmt::format("Newton: residuals {}, {} linear iterations, smallest det F {:.3g}", residuals, linear,
+                     iterates_.empty() ? 1.0 : iterates_.back().ratio);
+}
+
+std::vector<double> FiniteStrain::forces(std::span<const double> unknowns, std::span<const double> known) {
+  std::vector<double> rows(rows_.n_unknowns());
+  kernel_->linearise(unknowns, known, 0, rows);
+  return rows;
+}
+
+void FiniteStrain::set_pressure(std::vector<double> of_faces) {
+  presses_ = any(mesh_.comm, std::ranges::any_of(of_faces, [](double p) { return p != 0; }));
+  kernel_->set_pressure(of_faces);
+}
+
+double FiniteStrain::energy(std::span<const double> unknowns, std::span<const double> known) {
+  kernel_->forget_start();
+  kernel_->set_own_pressures(false);
+  forces(unknowns, known);
+  return sum(mesh_.comm, kernel_->energy());
+}
+
+double FiniteStrain::softness(std::span<const double> unknowns, std::span<const double> known) {
+  const double strain = energy(unknowns, known);
+  std::vector<double> inner = forces(unknowns, known);
+  double work = 0;
+  for (std::size_t i = 0; i < inner.size(); ++i) work += unknowns[i] * inner[i];
+  work = sum(mesh_.comm, work);
+  const double size = norm(mesh_.comm, unknowns);
+  if (!(strain > 0) || !(size > 0)) return 1;
+  TangentSolver& solver = solver_for(0, {});
+  solver.forget_factors();
+  solver.follow(true);
+  std::vector<double> change(inner.size());
+  constexpr double tolerance = 1e-2;
+  solver.solve(inner, change, tolerance, most_linear_);
+  const double loaded = std::min(1.0, std::abs(work) / (2 * strain));
+  return loaded * norm(mesh_.comm, change) / size + 1 - loaded;
+}
+
+void FiniteStrain::visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) {
+  kernel_->forget_start();
+  forces(unknowns, known);
+  kernel_->visit(take);
+}
+
+}  // namespace couplet

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/elasticity/finite/finite_kernel.hpp"
+#include "solid_solver/large_strain/large_strain.hpp"
+#include "solid_solver/method/tangent_solver.hpp"
+#include "solid_solver/parameters/parameters.hpp"
+
+namespace couplet {
+
+/// One iterate of Newton's method.
+struct NewtonIterate {
+  double residual = 0;  ///< norm over that of the load
+  double length = 1;    ///< of the step that led here
+  double ratio = 1;     ///< smallest det F of any face
+  int linear = 0;       ///< iterations of the linear solver
+};
+
+/// The equilibrium of a body at large strain, inertia included: M m u + dE/du(u) = b. Newton's method with the
+/// consistent tangent, solved as exactly as the last step deserves [eisenstat1996] (formula 2.6: eta =
+/// 0.9 (r / r_before)^2, between 1e-4 and 0.05), and a line search that keeps det F positive. The residual may
+/// grow on the way: a beam that is bent passes states whose membrane forces are far larger than those at either
+/// end.
+class FiniteStrain final : public LargeStrain {
+ public:
+  /// Throws Error for what finite strain cannot have. Mesh and rows by reference. Collective.
+  FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const SolidParameters& parameters);
+
+  std::string name() const override;
+  /// Of the local cells; dynamic analyses.
+  void set_density(std::span<const double> of_cells) { kernel_->set_density(of_cells); }
+  using Load = LargeStrainLoad;
+  SolveStatistics solve(const Load& load, std::span<double> u) override;
+  void set_pressure(std::vector<double> of_faces) override;
+  std::vector<double> forces(std::span<const double> unknowns, std::span<const double> known) override;
+  double energy(std::span<const double> unknowns, std::span<const double> known) override;
+  void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
+  /// Of a state at rest in equilibrium: by how much it would give way, over itself, were the whole body softer by a (small)
+  /// share, over that share; of a linear body under loads 1, near a buckling load large. What is moved by prescribed
+  /// displacements gives way to nothing and counts as 1. Throws SolveFailure. Collective.
+  double softness(std::span<const double> unknowns, std::span<const double> known);
+  Vec3 pressure_force() override { return kernel_->pressure_force(); }
+  std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                   const ElasticLoads& loads) override {
+    return kernel_->holding_forces(unknowns, known, loads);
+  }
+  /// Of the last solve.
+  const std::vector<NewtonIterate>& iterates() const { return iterates_; }
+  /// "3 iterations of Newton's method, ...", of the last solve.
+  std::string text() const;
+
+ private:
+  double residual(const Load& load, std::span<const double> u, double& ratio);
+  void start_pressures(const Load& load, std::span<const double> u);
+  void predict_pressures(std::span<const double> change, std::span<const double> known_change);
+  bool search(const Load& load, std::span<double> u, NewtonIterate& now, double most);
+  void follow_known(const Load& load, TangentSolver& solver, std::span<double> u);
+  double scale_of(const Load& load, std::span<const double> u, double residual);
+  SolveStatistics iterate(const Load& load, std::span<double> u);
+  /// Over the load what rounding ended the iteration with; much of it is said once, nothing is left of no load. Collective.
+  double judge_rounding(const Load& load, double scale, double left);
+  TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia);
+  std::string where_worst() const;
+
+  const Mesh& mesh_;
+  const ElasticOperator& rows_;
+  TangentSolver::By by_ = TangentSolver::By::frames;
+  bool mixed_ = false;       // pressures of their own on the way to equilibrium
+  bool is_carried_ = false;  // in the solve under way
+  bool presses_ = false, is_drowned_told_ = false;
+  double tolerance_, noise_, noise_of_motion_;
+  double whole_ = 0;  // norm of the last residual with U'(J) in place of those pressures
+  int most_linear_;
+  std::vector<std::unique_ptr<FiniteLaw>> laws_;
+  std::unique_ptr<FiniteKernel> kernel_;
+  std::vector<std::unique_ptr<TangentSolver>> solvers_;  // by size of the inertia, latest first
+  std::vector<double> r_, trial_, du_;
+  std::vector<NewtonIterate> iterates_;
+};
+
+}  // namespace couplet

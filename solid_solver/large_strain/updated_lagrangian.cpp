@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/large_strain/updated_lagrangian.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/laws/laws.hpp"
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet {
+namespace {
+
+const char* name_of(ElasticCondition condition) {
+  switch (condition) {
+    case ElasticCondition::support:
+      return "a support or springs";
+    case ElasticCondition::zero_gradient:
+      return "'zero-normal-gradient'";
+    case ElasticCondition::bonded:
+      return "a bond between two materials";
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace
+
+UpdatedLagrangian::UpdatedLagrangian(const Mesh& mesh, const ElasticOperator& rows,
+                                     const SolidParameters& parameters)
+    : mesh_(mesh),
+      rows_(rows),
+      method_(parameters.method),
+      accelerator_(mesh.comm, rows.n_unknowns(), acceleration_of(parameters.method)) {
+  int unknown_condition = -1;
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+    if (name_of(rows.condition(f))) unknown_condition = static_cast<int>(rows.condition(f));
+  unknown_condition = max(mesh.comm, unknown_condition);
+  if (unknown_condition >= 0)
+    throw Error(
+        "solution-method.type: segregated: at finite strain it knows 'fixed-displacement' of all components, 'symmetry', "
+        "'traction', 'pressure', 'free' and 'interface', not {}; take 'type: newton-krylov' (or 'auto').",
+        name_of(static_cast<ElasticCondition>(unknown_condition)));
+  const SolidMaterial material = materials_of(parameters).front();
+  law_ = laws::of(material.law)->make(lame_constants(parameters, material), material.law_coefficients);
+  noise_ = rounding_of_forces(mesh, rows);
+  now_.points = mesh.reference_points;
+  now_.gradient.assign(mesh.n_flux_faces(), Tensor3::Identity());
+  now_.u.assign(rows.n_unknowns(), 0);
+  now_.known.assign(rows.n_known() * mesh.dim, 0);
+}
+
+UpdatedLagrangian::~UpdatedLagrangian() = default;
+
+std::string UpdatedLagrangian::name() const {
+  return segregated_name(method_) + " at large strain, updated Lagrangian, thesis's face gradient";
+}
+
+UpdatedFrame& UpdatedLagrangian::frame() {
+  if (!frame_) frame_ = std::make_unique<UpdatedFrame>(mesh_, rows_, now_.points);
+  return *frame_;
+}
+
+/// `known` may be empty: zeros.
+UpdatedLagrangian::Change UpdatedLagrangian::since_start(std::span<const double> unknowns,
+                                                         std::span<const double> known) const {
+  Change change{{unknowns.begin(), unknowns.end()}, std::vector<double>(now_.known.size(), 0)};
+  std::ranges::copy(known, change.known.begin());
+  for (std::size_t i = 0; i < change.u.size(); ++i) change.u[i] -= now_.u[i];
+  for (std::size_t i = 0; i < change.known.size(); ++i) change.known[i] -= now_.known[i];
+  return change;
+}
+
+/// f at the faces for the displacement since the step began; nothing has moved: no frame is needed.
+void UpdatedLagrangian::find_change(std::span<const double> unknowns, std::span<const double> known) {
+  const auto [u, g] = since_start(unknowns, known);
+  change_.assign(mesh_.n_flux_faces(), Tensor3::Identity());
+  const auto is_zero = [](double x) { return x == 0; };
+  if (!any(mesh_.comm, !std::ranges::all_of(u, is_zero) || !std::ranges::all_of(g, is_zero))) return;
+  frame().kernel().face_gradients(
+      u, g, [this](Index f, const Tensor3& gradient) { change_[f] += gradient.transpose(); }, 0,
+      mesh_.n_flux_faces());
+}
+
+/// F = f F_u, W and P at the faces. False: some face is inside out.
+bool UpdatedLagrangian::find_stress() {
+  const Index n = mesh_.n_flux_faces();
+  deformation_.resize(n);
+  least_ = 1;
+  worst_ = -1;
+  for (Index f = 0; f < n; ++f) {
+    deformation_[f] = change_[f] * now_.gradient[f];
+    const double ratio = std::min(change_[f].determinant(), deformation_[f].determinant());
+    if (ratio < least_ || !std::isfinite(ratio)) least_ = std::isfinite(ratio) ? ratio : -1, worst_ = f;
+  }
+  if (!(min(mesh_.comm, least_) > 0)) return false;
+  stress_.resize(n);
+  energy_.resize(n);
+  first_piola(*law_, deformation_, stress_, energy_);
+  return true;
+}
+
+/// sigma . (j f^-T S_u), (2.39) [N]
+Vec3 UpdatedLagrangian::force_through(Index f) {
+  const Tensor3& F = deformation_[f];
+  return stress_[f] * (F.transpose() * present_area(f)) / F.determinant();
+}
+
+/// Rows as ElasticOperator has them: cells minus what goes out, faces with a known traction what comes to them.
+void UpdatedLagrangian::add_forces(std::span<double> result) {
+  const Index n = mesh_.cells.n_owned();
+  const std::size_t dim = mesh_.dim;
+  const auto add = [&](std::size_t node, const Vec3& force) {
+    for (std::size_t a = 0; a < dim; ++a) result[node * dim + a] += force[Index(a)];
+  };
+  pressure_force_ = Vec3::Zero();
+  std::size_t open = n;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const Index here = mesh_.owner[f];
+    const Vec3 force = force_through(f);
+    if (f < mesh_.n_interior) {
+      if (here < n) add(here, -force);
+      if (mesh_.neighbour[f] < n) add(mesh_.neighbour[f], force);
+    } else if (rows_.condition(f) == ElasticCondition::traction) {
+      Vec3 push = Vec3::Zero();
+      if (!pressure_.empty()) push = -pressure_[f - mesh_.n_interior] * present_area(f);
+      pressure_force_ += push;
+      add(here, -push);
+      add(open++, force - push);
+    } else if (rows_.condition(f) == ElasticCondition::symmetry) {
+      const Vec3& S = frame().area()[f];
+      add(here, -S.dot(force) / S.squaredNorm() * S);
+    } else {
+      add(here, -force);
+    }
+  }
+}
+
+bool UpdatedLagrangian::look(std::span<const double> unknowns, std::span<const double> known) {
+  find_change(unknowns, known);
+  return find_stress();
+}
+
+/// r = b - M m u - A(u) and its norm; infinite where a face is inside out.
+double UpdatedLagrangian::residual(const LargeStrainLoad& load, std::span<const double> u,
+                                   std::span<double> r) {
+  if (!look(u, load.known)) return std::numeric_limits<double>::infinity();
+  std::ranges::fill(r, 0.0);
+  add_forces(r);
+  const std::size_t dim = mesh_.dim;
+  for (std::size_t c = 0; c < load.inertia.size(); ++c)
+    for (std::size_t a = 0; a < dim; ++a) r[c * dim + a] += load.inertia[c] * u[c * dim + a];
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = load.rows[i] - r[i];
+  return norm(mesh_.comm, r);
+}
+
+std::string UpdatedLagrangian::where_worst() const { return worst_cell(mesh_, least_, worst_); }
+
+/// What is known has moved: the body goes with it as a linear one would. Left to the first guess it would be a jump in
+/// the cells beside it.
+void UpdatedLagrangian::follow_known(const LargeStrainLoad& load, std::span<double> u) {
+  std::vector<double> change(load.known.begin(), load.known.end());
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= load.before[i];
+  if (!any(mesh_.comm, std::ranges::any_of(change, [](double x) { return x != 0; }))) return;
+  const std::vector<double> du = frame().linear_answer(change, method_);
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] += du[i];
+}
+
+SolveStatistics UpdatedLagrangian::solve(const LargeStrainLoad& load, std::span<double> u) {
+  const auto start = std::chrono::steady_clock::now();
+  ScalarSystems& systems = frame().systems(load.mass_factor, load.inertia);
+  SolveStatistics statistics;
+  std::vector<double> r(u.size()), step(u.size());
+  if (any(mesh_.comm, !load.before.empty())) follow_known(load, u);
+  accelerator_.restart();
+  double size = residual(load, u, r);
+  if (!std::isfinite(size))
+    throw SolveFailure("The first guess of the step turns a cell inside out. {}", where_worst());
+  // In motion b holds the inertia of the place itself, far larger than what accelerates the body.
+  std::vector<double> inner(u.size(), 0);
+  if (load.mass_factor > 0) add_forces(inner);
+  const std::span<const double> loads = load.mass_factor > 0 ? std::span<const double>(inner) : load.rows;
+  const double scale = std::max(norm(mesh_.comm, loads), size);
+  while (size > std::max(method_.relative_tolerance * scale, noise_)) {
+    if (statistics.iterations == method_.max_iterations)
+      throw SolveFailure(
+          "The segregated method did not find the equilibrium: {} outer iterations ('solution-method.max-iterations'), "
+          "residual {:.2g} of the load ({:.0e} wanted). {} Shorter load steps help; 'type: newton-krylov' needs far fewer.",
+          statistics.iterations, size / scale, method_.relative_tolerance, where_worst());
+    ++statistics.iterations;
+    statistics.inner_iterations += systems.find_step(r, step);
+    accelerator_.advance(u, step);
+    size = residual(load, u, r);
+    if (!std::isfinite(size))
+      throw SolveFailure("The segregated method turned a cell inside out in iteration {}. {}",
+                         statistics.iterations, where_worst());
+  }
+  statistics.residual = scale > 0 ? size / scale : 0;
+  statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return statistics;
+}
+
+}  // namespace couplet

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/method/block_coupled.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// Up to here LU wins in time and has the memory (about 20 kB an unknown in 3-D). Without inertia slender
+// bending stalls ILU, so that static problems stay with LU for longer.
+constexpr GlobalIndex direct_up_to = 60000, direct_up_to_static = 200000;
+
+LinearMethod linear_method(const SolidProblem& problem, const MethodParameters& parameters) {
+  using Choice = MethodParameters::LinearSolver;
+  switch (parameters.linear_solver) {
+    case Choice::direct:
+      return LinearMethod::direct;
+    case Choice::bicgstab_ilu:
+      return LinearMethod::bicgstab_ilu;
+    case Choice::gmres_multigrid:
+      return LinearMethod::gmres_multigrid;
+    case Choice::automatic:
+      break;
+  }
+  const GlobalIndex n = sum(problem.mesh.comm, static_cast<GlobalIndex>(problem.elastic.n_unknowns()));
+  return n <= (problem.is_static() ? direct_up_to_static : direct_up_to) ? LinearMethod::direct
+                                                                         : LinearMethod::bicgstab_ilu;
+}
+
+// Of an iterative linear solve within the deferred correction: more is lost on the next correction.
+constexpr double deferred_tolerance = 1e-2;
+constexpr int deferred_history = 8;
+
+LinearOptions options_of(LinearMethod method, const MethodParameters& parameters, bool deferred) {
+  LinearOptions options;
+  options.method = method;
+  options.relative_tolerance = deferred ? deferred_tolerance : parameters.relative_tolerance;
+  options.max_iterations = parameters.max_iterations;
+  return options;
+}
+
+const char* name_of(LinearMethod method) {
+  switch (method) {
+    case LinearMethod::direct:
+      return "block-coupled (direct)";
+    case LinearMethod::bicgstab_ilu:
+      return "block-coupled (BiCGStab, ILU)";
+    default:
+      return "block-coupled (GMRES, multigrid)";
+  }
+}
+
+}  // namespace
+
+BlockCoupled::BlockCoupled(const SolidProblem& problem, const MethodParameters& parameters)
+    : problem_(problem),
+      linear_(linear_method(problem, parameters)),
+      tolerance_(parameters.relative_tolerance),
+      max_iterations_(parameters.max_iterations),
+      matrix_(problem.elastic.matrix(problem.inertia)),
+      solver_("displacement", matrix_, options_of(linear_, parameters, problem.is_corrected())) {
+  name_ = name_of(linear_);
+  if (!problem.is_corrected()) return;
+  const std::size_t n = problem.elastic.n_unknowns();
+  accelerator_.emplace(problem.mesh.comm, n, Acceleration{Acceleration::Type::anderson, 1, deferred_history});
+  residual_.resize(n);
+  step_.resize(n);
+}
+
+SolveStatistics BlockCoupled::solve(std::span<const double> b, std::span<double> u) {
+  try {
+    return accelerator_ ? solve_corrected(b, u) : solver_.solve(b, u);
+  } catch (const SolveFailure& e) {
+    // Never the method that has just failed.
+    throw SolveFailure("{} The method is {}. If the loads are sound, 'solution-method: {}' is another way{}.",
+                       e.what(), name(),
+                       linear_ == LinearMethod::direct ? "{type: newton-krylov}" : "{linear-solver: direct}",
+                       linear_ == LinearMethod::direct ? "" : ", which needs most memory and bears most");
+  }
+}
+
+SolveStatistics BlockCoupled::solve_corrected(std::span<const double> b, std::span<double> u) {
+  const auto start = std::chrono::steady_clock::now();
+  SolveStatistics statistics;
+  const double size = norm(problem_.mesh.comm, b);
+  accelerator_->restart();
+  while (true) {
+    problem_.residual(b, u, residual_);
+    statistics.residual = norm(problem_.mesh.comm, residual_);
+    if (statistics.residual <= tolerance_ * size) break;
+    if (statistics.iterations == max_iterations_ || !std::isfinite(statistics.residual))
+      throw SolveFailure(
+          "The deferred correction of the block-coupled method did not converge: residual {:.3e} of the "
+          "right-hand "
+          "side after {} corrections, {:.3e} wanted.",
+          statistics.residual / size, statistics.iterations, tolerance_);
+    ++statistics.iterations;
+    std::ranges::fill(step_, 0.0);
+    statistics.inner_iterations += solver_.solve(residual_, step_).iterations;
+    accelerator_->advance(u, step_);
+  }
+  statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return statistics;
+}
+
+}  // namespace couplet

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "common/linalg/acceleration.hpp"
+#include "common/linalg/linear_solver.hpp"
+#include "common/linalg/matrix.hpp"
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet {
+
+/// The thesis's block-coupled method: all displacement components in one assembled matrix (2.77). The
+/// corrected face gradient comes by deferred correction: the assembled matrix solves for what the corrected
+/// operator leaves, again and again, Anderson-accelerated.
+class BlockCoupled final : public SolutionMethod {
+ public:
+  BlockCoupled(const SolidProblem& problem, const MethodParameters& parameters);
+  SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
+
+ private:
+  SolveStatistics solve_corrected(std::span<const double> b, std::span<double> u);
+
+  SolidProblem problem_;
+  LinearMethod linear_;
+  double tolerance_;
+  int max_iterations_;
+  SparseMatrix matrix_;
+  LinearSolver solver_;
+  std::optional<Accelerator> accelerator_;  // with the corrected gradient
+  std::vector<double> residual_, step_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/method/newton_krylov.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/elasticity/symmetric/symmetric_matrix.hpp"
+#include "common/log/timer.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// Aggregates of the rigid coarse space: more gain little and their factors grow.
+constexpr int most_aggregates = 200;
+// Fewer cells than this in an aggregate, and its rigid motions are no longer smooth beside the cells.
+constexpr GlobalIndex cells_of_aggregate = 64;
+// The same of the symmetric operator, whose slender bodies alone have them; and fewest of either.
+constexpr GlobalIndex cells_of_slender_aggregate = 32;
+constexpr int fewest_aggregates = 8;
+constexpr GlobalIndex fewest_cells = 4;
+// Length over thickness 2 V / S from which bending is slow without the rigid coarse space in front: a cube
+// has 3.
+constexpr double slender = 12;
+// The same of the symmetric operator: from here on, or from the first where there are so many cells.
+constexpr double very_slender = 60;
+constexpr GlobalIndex many_cells = 4000;
+// Inertia over the stiffness of a cell's faces from which no motion is slow.
+constexpr double heavy = 0.03;
+// Residual over right-hand side that double precision still gives.
+constexpr double finest_tolerance = 1e-15;
+
+}  // namespace
+
+double slenderness(const Mesh& mesh) {
+  double volume = 0, surface = 0;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume += mesh.reference.volume[c];
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f) surface += mesh.reference.face_area[f].norm();
+  double longest = 0;
+  for (int a = 0; a < mesh.dim; ++a) {
+    double lower = 1e300, upper = -1e300;
+    for (const Vec3& x : mesh.reference_points) {
+      lower = std::min(lower, x[a]);
+      upper = std::max(upper, x[a]);
+    }
+    longest = std::max(longest, max(mesh.comm, upper) - min(mesh.comm, lower));
+  }
+  return longest * sum(mesh.comm, surface) / (2 * sum(mesh.comm, volume));
+}
+
+double heaviness(const SolidProblem& problem) {
+  if (problem.is_static()) return 0;
+  const Mesh& mesh = problem.mesh;
+  double inertia = 0, stiffness = 0;
+  for (const double m : problem.inertia) inertia += m;
+  for (Index f = 0; f < mesh.n_interior; ++f) {
+    const LameConstants lame = problem.elastic.lame(mesh.owner[f]);
+    const FaceLine line = face_line(mesh, mesh.reference, f);
+    stiffness += 2 * (2 * lame.mu + lame.lambda) * line.area * line.inverse_dn;
+  }
+  return sum(mesh.comm, inertia) / sum(mesh.comm, stiffness);
+}
+
+std::vector<double> node_inertia(const SolidProblem& problem) {
+  if (problem.mass_factor == 0) return {};
+  const std::size_t n = problem.elastic.n_unknowns(), dim = problem.mesh.dim;
+  std::vector<double> ones(n, 1), row(n), result(n / dim, 0);
+  problem.kernel.apply_with_mass(ones, {}, problem.mass_factor, false, row);
+  for (std::size_t i = 0; i < n; ++i) result[i / dim] = std::max(result[i / dim], row[i]);
+  return result;
+}
+
+NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters)
+    : problem_(problem),
+      options_{parameters.relative_tolerance, parameters.max_iterations, problem.is_symmetric()} {
+  using Preconditioner = MethodParameters::Preconditioner;
+  // Of a small step the right-hand side is nearly all inertia, rho V u 4/dt^2, and what is left of it would be a force
+  // of its own: the energy of free vibration drifted by 4e-3 in 1e5 steps at an elastic Courant number of 0.01. The
+  // tolerance is meant of the elastic part.
+  if (problem.is_symmetric())
+    options_.relative_tolerance =
+        std::max(finest_tolerance, options_.relative_tolerance / std::max(1., heaviness(problem)));
+  if (parameters.preconditioner == Preconditioner::factors)
+    choose_factors();
+  else
+    choose_multigrid(parameters);
+  const std::size_t n = problem.elastic.n_unknowns();
+  const LinearMap apply = [this](std::span<const double> x, std::span<double> y) {
+    const log::ScopedTimer timer(log::timers(), "solid: products");
+    problem_.apply(x, y);
+  };
+  const LinearMap precondition = [this](std::span<const double> r, std::span<double> z) {
+    if (modes_) {
+      multigrid_->apply(r, z);
+      return modes_->add_correction(r, z);
+    }
+    if (multigrid_) return multigrid_->apply(r, z);
+    factors_->solve(r, z);
+  };
+  krylov_ = std::make_unique<KrylovSolver>("displacement", problem.mesh.comm, n, apply, precondition);
+  if (!problem.is_static() && parameters.corrections_kept > 0)
+    projection_ = std::make_unique<ResidualProjection>(problem.mesh.comm, parameters.corrections_kept);
+}
+
+void NewtonKrylov::choose_multigrid(const MethodParameters&) {
+  const Mesh& mesh = problem_.mesh;
+  const double heavy_here = heaviness(problem_);
+  ElasticPreconditioner::Options options;
+  options.scheme = problem_.kernel.scheme();
+  if (problem_.is_symmetric()) {
+    const std::vector<double> inertia = node_inertia(problem_);
+    options.node_inertia = inertia;
+    multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
+    const double length = slenderness(mesh);
+    const bool is_slender = length > very_slender || (length > slender && mesh.cells.n_global() > many_cells);
+    if (heavy_here <= heavy && is_slender) add_rigid_motions(inertia, length);
+    name_ = modes_ ? fmt::format(
+                         "newton-krylov (conjugate gradients, multigrid and rigid motions of {} aggregates)",
+                         modes_->n_aggregates())
+                   : "newton-krylov (conjugate gradients, multigrid)";
+    return;
+  }
+  options.n_aggregates = heavy_here > heavy
+                             ? 0
+                             : static_cast<int>(std::min<GlobalIndex>(
+                                   most_aggregates, mesh.cells.n_global() / cells_of_aggregate));
+  if (options.n_aggregates < fewest_aggregates) options.n_aggregates = 0;
+  if (options.n_aggregates > 0) {
+    if (options.scheme == FaceGradientScheme::thesis) {
+      options.between = &problem_.kernel;
+    } else if (slenderness(mesh) > slender) {
+      between_ = std::make_unique<ElasticKernel>(mesh, problem_.elastic, FaceGradientScheme::thesis);
+      options.between = between_.get();
+    }
+  }
+  multigrid_ = std::make_unique<ElasticPreconditioner>(mesh, problem_.elastic, problem_.inertia, options);
+  name_ =
+      options.n_aggregates == 0
+          ? "newton-krylov (BiCGStab, multigrid)"
+          : fmt::format("newton-krylov (BiCGStab, multigrid{}rigid motions of {} aggregates)",
+                        options.between ? " after " : " and ", multigrid_->coarse_space()->n_aggregates());
+}
+
+/// What bends a slender body varies too slowly for components by themselves: a beam 10:1 of 80x8x8 cells takes 53
+/// iterations with them and 143 without, one of 160x16x16 89 and 169, one 100:1 of 400x4x4 cubes 515 and 1945 (to 1e-10).
+/// A plate of 4600 cells gains six of its 46 iterations and no time; one of 295 000 takes 71 for 49.
+void NewtonKrylov::add_rigid_motions(const std::vector<double>& inertia, double length) {
+  const Mesh& mesh = problem_.mesh;
+  // Half as long as thick, where the cells are fine enough for that.
+  const GlobalIndex cells = mesh.cells.n_global();
+  const GlobalIndex aggregates = std::min<GlobalIndex>(
+      most_aggregates, std::max(cells / cells_of_slender_aggregate,
+                                std::min(static_cast<GlobalIndex>(length), cells / fewest_cells)));
+  if (aggregates < fewest_aggregates) return;
+  modes_ = std::make_unique<CurrentRigidModes>(mesh, problem_.elastic, static_cast<int>(aggregates), inertia);
+  DeformedBody at_rest;
+  at_rest.gradient.assign(std::size_t(mesh.n_flux_faces()), Tensor3::Identity());
+  at_rest.displacement.assign(std::size_t(mesh.cells.n_local()) + std::size_t(mesh.boundary.n_local()),
+                              Vec3::Zero());
+  modes_->update(at_rest);
+}
+
+void NewtonKrylov::choose_factors() {
+  LinearOptions of_factors;
+  if (problem_.is_symmetric()) {
+    matrix_ = std::make_unique<SparseMatrix>(
+        symmetric_matrix(problem_.mesh, problem_.elastic, node_inertia(problem_)));
+    of_factors.method = problem_.mesh.dim == 2 ? LinearMethod::direct_planar : LinearMethod::direct_symmetric;
+    factors_ = std::make_unique<LinearSolver>("displacement", *matrix_, of_factors);
+    name_ = "newton-krylov (conjugate gradients, Cholesky factors)";
+    return;
+  }
+  matrix_ = std::make_unique<SparseMatrix>(problem_.elastic.matrix(problem_.inertia));
+  LinearOptions options;
+  options.method = LinearMethod::direct;
+  factors_ = std::make_unique<LinearSolver>("displacement", *matrix_, options);
+  name_ = "newton-krylov (BiCGStab, factors of the thesis's operator)";
+}
+
+SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double> u) {
+  try {
+    const SolveStatistics statistics = krylov_->solve(b, u, options_, projection_.get());
+    if (problem_.inertia.empty()) krylov_->forget_vectors();  // static: what is written next needs room
+    return statistics;
+  } catch (const SolveFailure& e) {
+    // Never the method that has just failed.
+    const char* other = !problem_.is_symmetric() ? "{type: block-coupled, linear-solver: direct}"
+                        : multigrid_             ? "{face-gradient: symmetric, preconditioner: factors}"
+                                                 : "{face-gradient: corrected}";
+    throw SolveFailure(
+        "{} Is the solid held everywhere, is nu below 0.5, are the cells sound? If the loads and supports "
+        "are, 'solution-method: {}' is another way{}.",
+        e.what(), other,
+        !problem_.is_symmetric() || multigrid_ ? ", which needs most memory and bears most" : "");
+  }
+}
+
+}  // namespace couplet

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/solve/current_rigid_modes.hpp"
+#include "common/elasticity/solve/elastic_preconditioner.hpp"
+#include "common/linalg/krylov.hpp"
+#include "common/linalg/matrix.hpp"
+#include "solid_solver/method/solution_method.hpp"
+
+namespace couplet {
+
+/// BiCGStab on the operator applied matrix-free. One Newton step: the problem is linear. Preconditioned by
+/// the compact component-wise operator and the rigid coarse space (ElasticPreconditioner), or, when the body
+/// is small and one matrix serves many steps, by the factors of the thesis's operator.
+class NewtonKrylov final : public SolutionMethod {
+ public:
+  NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters);
+  SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
+
+ private:
+  void choose_multigrid(const MethodParameters& parameters);
+  void add_rigid_motions(const std::vector<double>& inertia, double length);
+  void choose_factors();
+
+  SolidProblem problem_;
+  KrylovOptions options_;
+  std::unique_ptr<ElasticKernel> between_;
+  std::unique_ptr<ElasticPreconditioner> multigrid_;
+  std::unique_ptr<CurrentRigidModes> modes_;  // of slender bodies with the symmetric operator
+  std::unique_ptr<SparseMatrix> matrix_;
+  std::unique_ptr<LinearSolver> factors_;
+  std::unique_ptr<KrylovSolver> krylov_;
+};
+
+/// Largest extent of a body over its mean thickness 2 V / S: a beam in the plane L/h, one of square section 2 L/h, a cube 3. Collective.
+double slenderness(const Mesh& mesh);
+
+/// Mean of inertia over (2 mu + lambda) |S| / (d . n) summed over the faces of a cell; static: 0. On squares with the trapezoidal
+/// rule it is one over the elastic Courant number squared. Collective.
+double heaviness(const SolidProblem& problem);
+
+/// Row sums of the kernel's mass times its factor, one an unknown node; empty: static.
+std::vector<double> node_inertia(const SolidProblem& problem);
+
+}  // namespace couplet

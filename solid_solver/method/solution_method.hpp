@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "common/elasticity/elastic_kernel.hpp"
+#include "common/elasticity/elasticity.hpp"
+#include "common/linalg/linear_solver.hpp"
+#include "common/linalg/residual_projection.hpp"
+#include "common/mesh/mesh.hpp"
+#include "solid_solver/parameters/parameters.hpp"
+
+namespace couplet {
+
+/// What a method solves: (diag(inertia) + A) u = b with the rows and unknowns of ElasticOperator. All that is
+/// referred to must outlive the method.
+struct SolidProblem {
+  const Mesh& mesh;
+  const ElasticOperator& elastic;
+  std::span<const double> inertia;  ///< per owned cell [N/m]; empty: static
+  const ElasticKernel& kernel;      ///< A, with the face gradient that was chosen
+  double mass_factor = 0;           ///< of the kernel's own mass [1/s^2], where it has one
+  bool is_static() const { return inertia.empty(); }
+  bool is_symmetric() const { return kernel.is_symmetric(); }
+  bool is_corrected() const { return kernel.scheme() == FaceGradientScheme::corrected; }
+  /// y = (diag(inertia) + A) x. Collective.
+  void apply(std::span<const double> x, std::span<double> y) const;
+  /// r = b - (diag(inertia) + A) u. Collective.
+  void residual(std::span<const double> b, std::span<const double> u, std::span<double> r) const;
+};
+
+/// Solves one problem again and again: what does not change with b is made once. Collective.
+class SolutionMethod {
+ public:
+  virtual ~SolutionMethod() = default;
+  /// `b`, `u`: packed rows of this rank (owned cells, then unknown faces); `u` holds the guess. Throws
+  /// SolveFailure if the tolerance was not reached.
+  virtual SolveStatistics solve(std::span<const double> b, std::span<double> u) = 0;
+  /// What the next first guess learns from accepted steps; none: nothing.
+  ResidualProjection* projection() const { return projection_.get(); }
+  /// "block-coupled (direct), thesis's face gradient": for the log, with the reason if the program chose.
+  const std::string& name() const { return name_; }
+
+ protected:
+  std::string name_;
+  std::unique_ptr<ResidualProjection> projection_;
+
+ private:
+  friend std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem&, const MethodParameters&);
+};
+
+/// The method that the parameters ask for; `automatic` picks by size and scene, the name says what and why.
+std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
+                                                     const MethodParameters& parameters);
+
+/// The face gradient that the parameters ask for; `automatic`: the symmetric one, which does not lock, in static runs and,
+/// in dynamic ones, from nu = 0.4 up (nearly_incompressible), where the others pass through a pole; else the thesis's,
+/// as where the symmetric one cannot be (symmetric_suits()).
+FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters);
+
+/// Euclidean norm over all ranks.
+double norm(MPI_Comm comm, std::span<const double> values);
+
+}  // namespace couplet

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/motion/ledger.hpp"
+
+#include <algorithm>
+
+#include "common/elasticity/vector_at.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+/// A displacement with ghosts and points.
+struct Placed {
+  std::vector<double> cells, faces, points;
+  BodyField field() const { return {cells, faces, points}; }
+};
+
+/// The displacement w of a solve, from the packed unknowns. Collective.
+Placed place_unknowns(const SolidBody& body, const StageWork& work, std::span<const double> unknowns) {
+  const Mesh& mesh = body.mesh();
+  const int dim = mesh.dim;
+  const std::size_t n_cells = std::size_t(mesh.cells.n_owned()) * dim;
+  Placed placed;
+  placed.cells.assign(std::size_t(mesh.cells.n_local()) * dim, 0);
+  placed.faces.assign(std::size_t(mesh.boundary.n_local()) * dim, 0);
+  std::copy_n(unknowns.begin(), n_cells, placed.cells.begin());
+  const auto& free = body.elastic().unknown_faces();
+  for (std::size_t i = 0; i < free.size(); ++i)
+    for (int a = 0; a < dim; ++a)
+      placed.faces[std::size_t(free[i] - mesh.n_interior) * dim + a] = unknowns[n_cells + i * dim + a];
+  body.elastic().impose_known(work.known, placed.faces);
+  mesh.cells.update_ghosts(placed.cells, dim);
+  mesh.boundary.update_ghosts(placed.faces, dim);
+  body.elastic().join_twins(placed.faces);
+  placed.points = body.to_points(placed.cells, placed.faces, work.known);
+  return placed;
+}
+
+}  // namespace
+
+SolidLedger::SolidLedger(const SolidBody& body)
+    : body_(body),
+      mesh_(body.mesh()),
+      parameters_(body.parameters()),
+      elastic_(body.elastic()),
+      kernel_(body.kernel()) {}
+
+/// Work of the stress of one displacement on the change of another in cells and on faces, over all faces: sum
+/// of sigma . S . jump. `on_boundary`: the share of the boundary's forces on the boundary's change.
+double SolidLedger::stress_work(const BodyField& stressed, const BodyField& change,
+                                double* on_boundary) const {
+  const int dim = mesh_.dim;
+  const Index n_owned = mesh_.cells.n_owned();
+  const std::vector<Tensor3> gradients = body_.face_gradients(0, mesh_.n_flux_faces(), stressed);
+  double work = 0, outside = 0;
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const Index owner = mesh_.owner[f];
+    if (owner >= n_owned) continue;  // another rank's
+    const Vec3& area = mesh_.reference.face_area[f];
+    Vec3 force = elastic_.stress(owner, gradients[f]) * area;
+    const Vec3 here = vector_at(change.cells, owner, dim);
+    if (f < mesh_.n_interior) {
+      work += force.dot(vector_at(change.cells, mesh_.neighbour[f], dim) - here);
+    } else if (elastic_.condition(f) == ElasticCondition::symmetry) {
+      work -= area.dot(force) * area.dot(here) / area.squaredNorm();
+    } else {
+      const Vec3 there = vector_at(change.faces, f - mesh_.n_interior, dim);
+      work += force.dot(there - here);
+      outside += force.dot(there);
+    }
+  }
+  if (on_boundary) *on_boundary = outside;
+  return work;
+}
+
+double SolidLedger::kinetic(const SolidState& state) const {
+  const int dim = mesh_.dim;
+  if (body_.has_mass()) {
+    const std::vector<double> rates = body_.unknowns_of(state.cell_v, state.face_v);
+    return 0.5 * kernel_.product(ElasticPart::mass, {rates, state.known_rate}, {rates, state.known_rate});
+  }
+  double energy = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    energy +=
+        0.5 * body_.density(c) * mesh_.reference.volume[c] * vector_at(state.cell_v, c, dim).squaredNorm();
+  return energy;
+}
+
+void SolidLedger::add_work(const SolvedStage& stage) const {
+  if (!body_.has_mass())
+    add_face_work(stage);
+  else if (body_.finite())
+    add_finite_work(stage);
+  else
+    add_symmetric_work(stage);
+}
+
+/// By the forces of the faces.
+void SolidLedger::add_face_work(const SolvedStage& stage) const {
+  const auto& [work, last, before, after] = stage;
+  const int dim = mesh_.dim;
+  std::vector<double> cells(after.cell_u.size()), faces(after.face_u.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = after.cell_u[i] - before.cell_u[i];
+  for (std::size_t i = 0; i < faces.size(); ++i) faces[i] = after.face_u[i] - before.face_u[i];
+  mesh_.cells.update_ghosts(cells, dim);
+  // Supports: the change over the stage, which the state of the faces may not hold yet.
+  elastic_.impose_known(work.known_change, faces);
+  mesh_.boundary.update_ghosts(faces, dim);
+  elastic_.join_twins(faces);
+  const BodyField change{cells, faces, {}};
+  double outside = 0;
+  const double inside = stress_work(place_unknowns(body_, work, last.unknowns).field(), change, &outside);
+  // Body forces and effects stand in the rows without the known force of the faces.
+  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
+  for (std::size_t i = 0; i < n_cells; ++i) outside += work.loads[i] * cells[i];
+  const auto& free = elastic_.unknown_faces();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    if (elastic_.condition(free[i]) == ElasticCondition::bonded) continue;  // their cells take the stress
+    for (int a = 0; a < dim; ++a)
+      outside -= work.loads[n_cells + i * dim + a] * cells[std::size_t(mesh_.owner[free[i]]) * dim + a];
+  }
+  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
+  const double dt = work.stage.dt, beta = damping.stiffness;
+  double loss = 0;
+  if (beta > 0) {
+    // sigma(w) = sigma(x) + beta sigma(v); v is the change over the stage by its length.
+    const std::vector<double> points = body_.to_points(cells, faces, work.known_change);
+    loss = beta / dt * stress_work({cells, faces, points}, change, nullptr);
+  }
+  SolidEnergies& energies = after.energies;
+  energies.internal_work += inside - loss;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    loss += damping.mass / dt * body_.density(c) * mesh_.reference.volume[c] *
+            vector_at(cells, c, dim).squaredNorm();
+  energies.damping_loss += loss;
+  energies.external_work += outside;
+  energies.kinetic = kinetic(after);
+}
+
+std::vector<double> SolidLedger::change_over(const SolvedStage& stage) const {
+  std::vector<double> change = body_.unknowns_of(stage.after.cell_u, stage.after.face_u);
+  const std::vector<double> start = body_.unknowns_of(stage.before.cell_u, stage.before.face_u);
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= start[i];
+  return change;
+}
+
+/// With the symmetric kernel, whose own products these are: all that acts by its trial functions.
+void SolidLedger::add_symmetric_work(const SolvedStage& stage) const {
+  const auto& [work, last, before, after] = stage;
+  const std::vector<double> change = change_over(stage);
+  const ElasticField w{last.unknowns, work.known}, moved{change, work.known_change};
+  const std::vector<double> loads = mean_of_ends(work, last.load_rows);
+  double outside = -kernel_.product(ElasticPart::springs, w, moved);
+  for (std::size_t i = 0; i < change.size(); ++i) outside += loads[i] * change[i];
+  if (!body_.prescribed().is_zero()) outside += known_work(stage);
+  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
+  double loss = damping.stiffness > 0 ? damping.stiffness / work.stage.dt *
+                                            kernel_.product(ElasticPart::stiffness, moved, moved)
+                                      : 0;
+  SolidEnergies& energies = after.energies;
+  energies.internal_work += kernel_.product(ElasticPart::stiffness, w, moved) - loss;
+  if (damping.mass > 0)
+    loss += damping.mass / work.stage.dt * kernel_.product(ElasticPart::mass, moved, moved);
+  energies.damping_loss += loss;
+  energies.external_work += outside;
+  energies.kinetic = kinetic(after);
+}
+
+/// At large strain the inner work is the scheme's inner force at its place on the change over the stage.
+void SolidLedger::add_finite_work(const SolvedStage& stage) const {
+  const auto& [work, last, before, after] = stage;
+  const std::vector<double> change = change_over(stage);
+  const std::vector<double> loads = mean_of_ends(work, last.load_rows);
+  const std::vector<double> force = body_.finite()->forces(last.unknowns, work.known);
+  double inside = 0, outside = 0;
+  for (std::size_t i = 0; i < change.size(); ++i) {
+    inside += force[i] * change[i];
+    outside += loads[i] * change[i];
+  }
+  SolidEnergies& energies = after.energies;
+  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
+  if (damping.mass > 0) {
+    const ElasticField moved{change, work.known_change};
+    energies.damping_loss += damping.mass / work.stage.dt * kernel_.product(ElasticPart::mass, moved, moved);
+  }
+  energies.internal_work += inside;
+  energies.external_work += outside;
+  energies.kinetic = kinetic(after);
+}
+
+/// Of the schemes other than the trapezoidal rule: the loads of a stage at its place become the mean of those at
+/// its ends, whose work on the change is second order.
+std::vector<double> SolidLedger::mean_of_ends(const StageWork& work,
+                                              const std::vector<double>& at_place) const {
+  std::vector<double> rows = at_place;
+  if (parameters_.time_scheme.type == TimeScheme::trapezoidal) return rows;
+  const auto rows_at = [&](double t) {
+    std::vector<double> at_time(elastic_.n_unknowns(), 0);
+    const std::vector<double> body = body_.body_forces(t);
+    if (!body.empty()) kernel_.add_cell_forces(body, at_time);
+    for (const auto& effect : body_.effects()) effect->add_loads(t, kernel_, at_time);
+    std::vector<double> faces(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
+    body_.boundaries().add_forces(t, faces);
+    kernel_.add_face_forces(faces, at_time);
+    return at_time;
+  };
+  const std::vector<double> start = rows_at(work.start_time), place = rows_at(work.place_time),
+                            end = rows_at(work.end_time);
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] += 0.5 * (start[i] + end[i]) - place[i];
+  return rows;
+}
+
+/// What holds the known nodes does on their change: against stress and inertia.
+double SolidLedger::known_work(const SolvedStage& stage) const {
+  const auto& [work, last, before, trial] = stage;
+  const std::vector<double> still(last.unknowns.size(), 0);
+  double sum =
+      kernel_.product(ElasticPart::stiffness, {last.unknowns, work.known}, {still, work.known_change});
+  const std::vector<double> of_known = body_.known_inertia(work.place_time, 0.5 * work.stage.dt);
+  if (!body_.prescribed().uses_time()) return sum;  // not by the size: a rank may hold nothing
+  // The mean over the stage, which the trapezoidal rule has at its place.
+  const std::vector<double> after = body_.unknowns_of(trial.cell_v, trial.face_v);
+  std::vector<double> rate = body_.unknowns_of(before.cell_v, before.face_v);
+  const double alpha = parameters_.damping ? parameters_.damping->mass : 0;
+  for (std::size_t i = 0; i < rate.size(); ++i)
+    rate[i] = (after[i] - rate[i]) / work.stage.dt + alpha * 0.5 * (after[i] + rate[i]);
+  return sum + kernel_.product(ElasticPart::mass, {rate, of_known}, {still, work.known_change});
+}
+
+void SolidLedger::add_load_work(const StageWork& work, const LastSolve& last, const BodyField& before,
+                                SolidState& after) const {
+  const int dim = mesh_.dim;
+  double sum = 0;
+  if (body_.has_mass()) {
+    for (std::size_t i = 0; i < std::size_t(mesh_.cells.n_owned()) * dim; ++i)
+      sum += last.load_rows[i] * (after.cell_u[i] - before.cells[i]);
+    std::size_t row = std::size_t(mesh_.cells.n_owned()) * dim;
+    for (const Index f : elastic_.unknown_faces())
+      for (int a = 0; a < dim; ++a) {
+        const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
+        sum += last.load_rows[row++] * (after.face_u[b] - before.faces[b]);
+      }
+    after.load_work += sum;
+    return;
+  }
+  if (!work.rhs.empty())
+    for (std::size_t i = 0; i < std::size_t(mesh_.cells.n_owned()) * dim; ++i)
+      sum += work.rhs[i] * (after.cell_u[i] - before.cells[i]);
+  for (const Index f : elastic_.unknown_faces())
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t b = std::size_t(f - mesh_.n_interior) * dim + a;
+      const double force = work.face_force[b] + (last.interface.empty() ? 0 : last.interface[b]);
+      sum += force * (after.face_u[b] - before.faces[b]);
+    }
+  after.load_work += sum;
+}
+
+SolidEnergies SolidLedger::total(const SolidState& state, std::span<const double> points) const {
+  SolidEnergies e = state.energies;
+  e.conserving = parameters_.time_scheme.type == TimeScheme::trapezoidal;
+  if (kernel_.is_symmetric()) {
+    const std::vector<double> unknowns = body_.unknowns_of(state.cell_u, state.face_u);
+    if (body_.finite()) {
+      e = summed(e);
+      e.strain = body_.finite()->energy(unknowns, state.known);
+      return e;
+    }
+    const ElasticField u{unknowns, state.known};
+    e.strain = 0.5 * kernel_.product(ElasticPart::stiffness, u, u);
+    return summed(e);
+  }
+  const BodyField now{state.cell_u, state.face_u, points};
+  e.strain = 0.5 * stress_work(now, now, nullptr);
+  return summed(e);
+}
+
+SolidEnergies SolidLedger::summed(SolidEnergies e) const {
+  for (double* part :
+       {&e.kinetic, &e.initial_kinetic, &e.strain, &e.internal_work, &e.external_work, &e.damping_loss})
+    *part = sum(mesh_.comm, *part);
+  return e;
+}
+
+}  // namespace couplet

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solid_solver/body/energies.hpp"
+#include "solid_solver/body/solid_body.hpp"
+#include "solid_solver/body/solid_state.hpp"
+
+namespace couplet {
+
+/// Between which states a stage led, and what was solved for it. The sums go into `after`.
+struct SolvedStage {
+  const StageWork& work;
+  const LastSolve& last;
+  const SolidState& before;
+  SolidState& after;
+};
+
+/// Energies of a body and what is done to it; it keeps none. Sums are this rank's unless said.
+class SolidLedger final {
+ public:
+  /// By reference.
+  explicit SolidLedger(const SolidBody& body);
+
+  /// [J]
+  double kinetic(const SolidState& state) const;
+  /// Energies over all ranks; needs output.energies. `points`: its displacement there. Collective.
+  SolidEnergies total(const SolidState& state, std::span<const double> points) const;
+  /// Work of a stage, damping and kinetic energy at its end. Collective.
+  void add_work(const SolvedStage& stage) const;
+  /// Work of body forces, tractions, pressures and the interface over a stage: what the audit holds against
+  /// the energy found. Moving supports and effects do work that is not counted; no audit then. `before`: of
+  /// cells and faces at the start of the stage.
+  void add_load_work(const StageWork& work, const LastSolve& last, const BodyField& before,
+                     SolidState& after) const;
+
+ private:
+  double stress_work(const BodyField& stressed, const BodyField& change, double* on_boundary) const;
+  void add_face_work(const SolvedStage& stage) const;
+  void add_symmetric_work(const SolvedStage& stage) const;
+  void add_finite_work(const SolvedStage& stage) const;
+  std::vector<double> change_over(const SolvedStage& stage) const;
+  std::vector<double> mean_of_ends(const StageWork& work, const std::vector<double>& at_place) const;
+  double known_work(const SolvedStage& stage) const;
+  SolidEnergies summed(SolidEnergies local) const;
+
+  const SolidBody& body_;
+  const Mesh& mesh_;
+  const SolidParameters& parameters_;
+  const ElasticOperator& elastic_;
+  const ElasticKernel& kernel_;
+};
+
+}  // namespace couplet

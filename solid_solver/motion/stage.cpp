@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+// One stage of a step: the system, its right-hand side, its solution (equations: SolidStepper).
+#include <algorithm>
+#include <cmath>
+
+#include "common/log/log.hpp"
+#include "common/log/timer.hpp"
+#include "solid_solver/method/newton_krylov.hpp"
+#include "solid_solver/motion/history.hpp"
+#include "solid_solver/motion/solid_stepper.hpp"
+
+namespace couplet {
+namespace {
+
+// Systems of other step sizes that are kept: a step that was halved soon comes back to its length.
+constexpr std::size_t systems_kept = 2;
+
+}  // namespace
+
+std::vector<Stage> SolidStepper::stages_of(double dt) const {
+  if (body_.is_dynamic()) return second_order_stages(parameters_.time_scheme, dt, {state_.steps, state_.dt});
+  // No inertia, no damping; velocities are differences.
+  Stage still{.dt = dt};
+  still.end_value.x = 1;
+  still.end_rate.x = 1 / dt;
+  still.end_rate.u = -1 / dt;
+  return {still};
+}
+
+SolidSystem& SolidStepper::system_for(double mass_factor) {
+  const auto same = [&](const std::unique_ptr<SolidSystem>& s) {
+    return std::abs(s->mass_factor - mass_factor) <= 1e-10 * mass_factor;
+  };
+  const auto found = std::ranges::find_if(systems_, same);
+  if (found != systems_.end()) {
+    std::rotate(systems_.begin(), found, found + 1);
+    return *systems_.front();
+  }
+  if (systems_.size() == systems_kept) systems_.pop_back();
+  auto system = std::make_unique<SolidSystem>();
+  system->mass_factor = mass_factor;
+  if (mass_factor > 0)
+    for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+      system->inertia.push_back(mass_factor * body_.density(c) * mesh_.reference.volume[c]);
+  if (body_.newton()) {
+    system->node_inertia = node_inertia(problem_of(*system));
+  } else if (!body_.finite()) {
+    system->method = make_solution_method(problem_of(*system), parameters_.method);
+    elastic_.forget_faces();  // what the method needs of them it has by now
+  }
+  announce(*system);
+  systems_.insert(systems_.begin(), std::move(system));
+  return *systems_.front();
+}
+
+SolidProblem SolidStepper::problem_of(const SolidSystem& system) const {
+  return {mesh_, elastic_, system.inertia, kernel_, body_.has_mass() ? system.mass_factor : 0};
+}
+
+void SolidStepper::announce(const SolidSystem& system) {
+  const std::string chosen = body_.finite() ? body_.finite()->name() : system.method->name();
+  if (chosen == method_announced_) return;
+  method_announced_ = chosen;
+  log::info("Solution method: {}", chosen);
+}
+
+void SolidStepper::prepare_stage(StageWork& work) {
+  const Stage& stage = work.stage;
+  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
+  work.start_time = step_.time + stage.start;
+  work.place_time = work.start_time + stage.place * stage.dt;
+  work.end_time = work.start_time + stage.dt;
+  work.damping_scale = 1 + damping.stiffness * stage.rate.x;
+  work.system = &system_for((stage.acceleration.x + damping.mass * stage.rate.x) / work.damping_scale);
+  const bool is_loaded = body_.has_body_forces() || !body_.effects().empty() ||
+                         !body_.prescribed().is_zero() || parameters_.output.energies;
+  work.known_force.clear();
+  work.rhs.assign(is_loaded ? elastic_.n_unknowns() : 0, 0);
+  work.face_force.assign(std::size_t(mesh_.boundary.n_owned()) * mesh_.dim, 0);
+  add_body_forces(work.place_time, work.rhs);
+  for (const auto& effect : body_.effects()) effect->add_loads(work.place_time, kernel_, work.rhs);
+  body_.boundaries().add_forces(work.place_time, work.face_force, !body_.finite());
+  if (parameters_.output.energies) {
+    work.loads = work.rhs;
+    work.known.assign(trial_.known.size(), 0);
+    work.known_change = work.known;
+  }
+  if (!body_.prescribed().is_zero()) subtract_prescribed(work);
+}
+
+// Known w = x + beta v: the value between the ends is the same mean of them as in the cells.
+void SolidStepper::subtract_prescribed(StageWork& work) {
+  const double place = work.stage.place, beta = parameters_.damping ? parameters_.damping->stiffness : 0;
+  std::vector<double> start(trial_.known.size());
+  work.known.resize(trial_.known.size());
+  body_.prescribed().evaluate(work.start_time, start);
+  body_.prescribed().evaluate(work.end_time, work.known);
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const double change = work.known[i] - start[i];
+    if (!work.known_change.empty()) work.known_change[i] = change;
+    work.known[i] = start[i] + (place + beta / work.stage.dt) * change;
+  }
+  if (body_.finite()) return;  // it takes the known values themselves
+  std::vector<double> still(work.rhs.size(), 0), force(work.rhs.size());
+  kernel_.apply(still, work.known, force);
+  for (std::size_t i = 0; i < force.size(); ++i) work.rhs[i] -= force[i];
+  work.known_force = std::move(force);
+}
+
+void SolidStepper::add_body_forces(double t, std::span<double> rhs) {
+  const std::vector<double> forces = body_.body_forces(t);
+  if (forces.empty()) return;
+  kernel_.add_cell_forces(forces, rhs);
+  last_.body_force.setZero();
+  for (std::size_t i = 0; i < forces.size(); ++i) last_.body_force[Index(i % mesh_.dim)] += forces[i];
+}
+
+void SolidStepper::solve_stage(const StageWork& work, bool first) {
+  const SolidState& now = first ? state_ : trial_;
+  if (work.rhs.empty())
+    std::ranges::fill(last_.rhs, 0.0);
+  else
+    last_.rhs = work.rhs;
+  if (work.system->mass_factor > 0 && !body_.has_mass()) add_inertia(work, now);
+  add_face_forces(work);
+  if (body_.has_mass()) {
+    last_.load_rows = last_.rhs;
+    if (!work.known_force.empty())
+      for (std::size_t i = 0; i < last_.rhs.size(); ++i) last_.load_rows[i] += work.known_force[i];
+    add_inertia(work, now);
+  }
+  guess(work, now);
+  {
+    const log::ScopedTimer timer(log::timers(), "solid: linear solver");
+    const SolveStatistics statistics =
+        body_.finite() ? solve_finite(work) : work.system->method->solve(last_.rhs, last_.unknowns);
+    effort_ = {effort_.solves + 1, effort_.iterations + statistics.iterations,
+               effort_.inner_iterations + statistics.inner_iterations, statistics.residual};
+  }
+  if (first) trial_.energies = state_.energies, trial_.load_work = state_.load_work;
+  // A second stage starts from the trial state, which is about to change.
+  const bool keeps = body_.is_dynamic() && !first;
+  const std::vector<double> cells = keeps ? now.cell_u : std::vector<double>();
+  const std::vector<double> faces = keeps ? now.face_u : std::vector<double>();
+  const BodyField start{first ? state_.cell_u : cells, first ? state_.face_u : faces, {}};
+  const auto finish = [&] {
+    finish_offsets(work.stage, now);
+    finish_cells(work, now);
+    if (body_.is_dynamic()) ledger_.add_load_work(work, last_, start, trial_);
+  };
+  if (!parameters_.output.energies) return finish();
+  const SolidState before = now;
+  finish();
+  ledger_.add_work({work, last_, before, trial_});
+}
+
+/// A static guess stands where the known displacements were; a dynamic one has gone on with its own velocity.
+SolveStatistics SolidStepper::solve_finite(const StageWork& work) {
+  body_.finite()->set_pressure(body_.boundaries().pressures(work.place_time));
+  LargeStrainLoad load{last_.rhs, work.known, {}, work.system->mass_factor, parameters_.energy_momentum};
+  if (!body_.is_dynamic() && !work.known.empty()) load.before = state_.known;
+  const std::vector<double> accepted = body_.unknowns_of(state_.cell_u, state_.face_u);
+  load.accepted = accepted;
+  load.accepted_known = state_.known;
+  load.inertia = work.system->inertia;
+  load.node_inertia = work.system->node_inertia;
+  return body_.finite()->solve(load, last_.unknowns);
+}
+
+void SolidStepper::add_inertia(const StageWork& work, const SolidState& now) {
+  const Stage& stage = work.stage;
+  const SolidDamping damping = parameters_.damping.value_or(SolidDamping{});
+  Levels known =
+      stage.acceleration + (damping.mass - work.system->mass_factor * damping.stiffness) * stage.rate;
+  if (body_.has_mass()) return add_kernel_inertia(work, now, known);
+  const History levels(now, state_, false);
+  const int dim = mesh_.dim;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) {
+    const double mass = body_.density(c) * mesh_.reference.volume[c];
+    for (int a = 0; a < dim; ++a) {
+      const std::size_t i = std::size_t(c) * dim + a;
+      last_.rhs[i] -= mass * levels(known, i);
+    }
+  }
+}
+
+/// All nodes have inertia, known ones that of their own acceleration (and mass damping of their velocity).
+void SolidStepper::add_kernel_inertia(const StageWork& work, const SolidState& now, const Levels& known) {
+  const History cells(now, state_, false), faces(now, state_, true);
+  const int dim = mesh_.dim;
+  const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
+  std::vector<double> levels(last_.unknowns.size()), force(last_.unknowns.size());
+  for (std::size_t i = 0; i < n_cells; ++i) levels[i] = cells(known, i);
+  const auto& open = elastic_.unknown_faces();
+  for (std::size_t i = 0; i < open.size(); ++i)
+    for (int a = 0; a < dim; ++a)
+      levels[n_cells + i * dim + a] = faces(known, std::size_t(open[i] - mesh_.n_interior) * dim + a);
+  const std::vector<double> of_known = body_.known_inertia(work.place_time, 0.5 * work.stage.dt);
+  kernel_.apply_with_mass(levels, of_known, 1, false, force);
+  for (std::size_t i = 0; i < force.size(); ++i) last_.rhs[i] -= force[i];
+}
+
+void SolidStepper::add_face_forces(const StageWork& work) {
+  if (last_.interface.empty()) {
+    last_.face_force = kernel_.add_face_forces(work.face_force, last_.rhs);
+    return;
+  }
+  std::vector<double> force = work.face_force;
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] += last_.interface[i];
+  last_.face_force = kernel_.add_face_forces(force, last_.rhs);
+}
+
+}  // namespace couplet

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/output/modal_analysis.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// Of mu / (rho L^2): below the first bending of a body a hundred times longer than thick, and above what the rounding
+// of the stiffness makes of a rigid motion.
+constexpr double shift_part = 1e-4;
+// A frequency whose square is below this part of mu / (rho L^2) is a rigid motion.
+constexpr double rigid_part = 1e-8;
+
+/// mu / (rho L^2) of the slowest cell, with L the diagonal of the body's box [1/s^2].
+double slowest_scale(const SolidProblem& problem, std::span<const double> cell_mass) {
+  const Mesh& mesh = problem.mesh;
+  Vec3 lower = Vec3::Constant(1e300), upper = -lower;
+  for (const Vec3& x : mesh.reference_points) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
+  for (int a = 0; a < 3; ++a) {
+    lower[a] = min(mesh.comm, lower[a]);
+    upper[a] = max(mesh.comm, upper[a]);
+  }
+  double slowest = 1e300;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    slowest = std::min(slowest, problem.elastic.lame(c).mu * mesh.reference.volume[c] / cell_mass[c]);
+  return min(mesh.comm, slowest) / (upper - lower).squaredNorm();
+}
+
+/// A vertex of the surface as it travels to rank 0; its shapes go beside it.
+struct SurfacePoint {
+  GlobalIndex id;
+  double x[3];
+};
+
+/// Sum over this rank's rows of M x with a rigid motion along each axis.
+std::vector<double> participation(const SolidProblem& problem, const EigenModes& modes) {
+  const std::size_t dim = problem.mesh.dim, n = problem.elastic.n_unknowns(), count = modes.shape.size();
+  std::vector<double> along(n), inertia(n), sums(3 * count, 0);
+  for (std::size_t a = 0; a < dim; ++a) {
+    for (std::size_t i = 0; i < n; ++i) along[i] = i % dim == a ? 1 : 0;
+    problem.kernel.apply_with_mass(along, {}, 1, false, inertia);
+    for (std::size_t m = 0; m < count; ++m) {
+      double local = 0;
+      for (std::size_t i = 0; i < n; ++i) local += inertia[i] * modes.shape[m][i];
+      sums[a * count + m] = sum(problem.mesh.comm, local);
+    }
+  }
+  return sums;
+}
+
+/// The search with one preconditioner.
+EigenModes search(const SolidProblem& problem, const MethodParameters& method,
+                  std::span<const double> cell_mass, int n, double shift) {
+  std::vector<double> inertia;
+  for (const double m : cell_mass) inertia.push_back(shift * m);
+  const auto shifted =
+      make_solution_method({problem.mesh, problem.elastic, inertia, problem.kernel, shift}, method);
+  const SlepcEnvironment slepc;
+  const ModalOperators of{
+      .stiffness = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
+      .mass = [&](std::span<const double> x,
+                  std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
+      .solve =
+          [&](std::span<const double> x, std::span<double> y) {
+            std::ranges::fill(y, 0);
+            if (norm(problem.mesh.comm, x) > 0) shifted->solve(x, y);
+          }};
+  return lowest_modes(problem.mesh.comm, problem.elastic.n_unknowns(), of, n, -shift);
+}
+
+}  // namespace
+
+std::optional<SolidProblem> vibration(const SolidBody& body) {
+  if (!body.has_mass()) return {};
+  return SolidProblem{body.mesh(), body.elastic(), {}, body.kernel(), 0};
+}
+
+EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
+                       std::span<const double> cell_mass, int n) {
+  const double scale = slowest_scale(problem, cell_mass);
+  const bool chooses = method.preconditioner == MethodParameters::Preconditioner::automatic;
+  method.corrections_kept = 0;  // one right-hand side says nothing about the next
+  method.relative_tolerance = std::min(method.relative_tolerance, 1e-10);
+  EigenModes modes;
+  try {
+    modes = search(problem, method, cell_mass, n, shift_part * scale);
+  } catch (const SolveFailure& e) {
+    if (!chooses) throw;
+    log::info(
+        "modes: multigrid does not get there (thin body, nothing that holds it); factors of the matrix do.");
+    method.preconditioner = MethodParameters::Preconditioner::factors;
+    modes = search(problem, method, cell_mass, n, shift_part * scale);
+  }
+  for (double& value : modes.eigenvalue)
+    if (value < rigid_part * scale) value = 0;
+  return modes;
+}
+
+ModalModel modal_model(const SolidProblem& problem, const EigenModes& modes) {
+  const Mesh& mesh = problem.mesh;
+  const std::size_t dim = mesh.dim, count = modes.shape.size();
+  std::vector<Index> points;
+  std::vector<bool> is_taken(mesh.points.n_local(), false);
+  std::vector<GlobalIndex> faces;  // boundary_id, corners, their ids
+  for (const Patch& patch : mesh.patches)
+    for (Index f = patch.first; f < patch.first + patch.count && !patch.bonded; ++f) {
+      faces.push_back(mesh.boundary_id[f - mesh.n_interior]);
+      faces.push_back(GlobalIndex(mesh.face_points[f].size()));
+      for (const Index v : mesh.face_points[f]) {
+        faces.push_back(mesh.point_id[v]);
+        if (!is_taken[v]) points.push_back(v);
+        is_taken[v] = true;
+      }
+    }
+  std::vector<SurfacePoint> places;
+  for (const Index v : points) {
+    const Vec3& x = mesh.reference_points[v];
+    places.push_back({mesh.point_id[v], {x[0], x[1], x[2]}});
+  }
+  std::vector<double> shapes(points.size() * 3 * count, 0),
+      at_points(std::size_t(mesh.points.n_local()) * dim);
+  for (std::size_t m = 0; m < count; ++m) {
+    problem.kernel.point_values(modes.shape[m], {}, at_points);
+    mesh.points.update_ghosts(at_points, mesh.dim);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      for (std::size_t a = 0; a < dim; ++a)
+        shapes[(3 * i + a) * count + m] = at_points[std::size_t(points[i]) * dim + a];
+  }
+  ModalModel model;
+  model.participation = participation(problem, modes);
+  const std::vector<SurfacePoint> all = gather(mesh.comm, places);
+  const std::vector<double> all_shapes = gather(mesh.comm, shapes);
+  const std::vector<GlobalIndex> all_faces = gather(mesh.comm, faces);
+  if (comm_rank(mesh.comm) != 0) return {};
+  for (const double value : modes.eigenvalue)
+    model.frequency.push_back(std::sqrt(std::max(0.0, value)) / (2 * std::numbers::pi));
+  std::map<GlobalIndex, std::size_t>
+      source;  // a vertex between ranks comes more than once, with the same values
+  for (std::size_t i = 0; i < all.size(); ++i) source.try_emplace(all[i].id, i);
+  std::map<GlobalIndex, Index> number;
+  for (const auto& [id, i] : source) {
+    number[id] = static_cast<Index>(model.vertices.size());
+    model.vertices.push_back({all[i].x[0], all[i].x[1], all[i].x[2]});
+    const auto first = all_shapes.begin() + std::ptrdiff_t(i * 3 * count);
+    model.vertex_shape.insert(model.vertex_shape.end(), first, first + std::ptrdiff_t(3 * count));
+  }
+  std::map<GlobalIndex, std::vector<Index>> corners;
+  for (std::size_t i = 0; i < all_faces.size();) {
+    std::vector<Index>& face = corners[all_faces[i]];
+    const auto n = static_cast<std::size_t>(all_faces[i + 1]);
+    for (std::size_t k = 0; k < n; ++k) face.push_back(number.at(all_faces[i + 2 + k]));
+    i += 2 + n;
+  }
+  for (const auto& [id, face] : corners) model.faces.push_row(face);
+  if (dim == 3) average_faces(model);
+  return model;
+}
+
+}  // namespace couplet

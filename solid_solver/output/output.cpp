@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/output/output.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "common/base/constants.hpp"
+#include "common/base/error.hpp"
+#include "common/log/log.hpp"
+#include "common/modes/modes_file.hpp"
+#include "common/parallel/collective.hpp"
+#include "common/time/amplification.hpp"
+#include "solid_solver/judge/weighted_estimate.hpp"
+#include "solid_solver/material/stress.hpp"
+#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/output/spectrum.hpp"
+
+namespace couplet {
+namespace {
+
+using Place = OutputField::Place;
+
+/// Fields together with the values that were made for them.
+class Fields {
+ public:
+  void add(std::string name, const char* unit, Place place, int components, std::vector<double> values) {
+    values_.push_back(std::move(values));
+    list.push_back({std::move(name), unit, place, components, values_.back()});
+  }
+  /// One field a component; a 2-D scene has no shear across it. `packed`: tensor after tensor.
+  void add_tensor(const std::string& name, const char* unit, Place place, int dim,
+                  std::span<const double> packed) {
+    for (std::size_t i = 0; i < (dim == 2 ? 4 : tensor_size); ++i) {
+      std::vector<double> values(packed.size() / tensor_size);
+      for (std::size_t e = 0; e < values.size(); ++e) values[e] = packed[e * tensor_size + i];
+      add(name + "-" + tensor_component[i], unit, place, 1, std::move(values));
+    }
+  }
+  std::vector<OutputField> list;
+
+ private:
+  std::deque<std::vector<double>> values_;
+};
+
+/// Of all local cells; ghosts, which are not written, hold zeros.
+std::vector<double> packed_cells(const Mesh& mesh, std::span<const Tensor3> owned) {
+  std::vector<double> values(std::size_t(mesh.cells.n_local()) * tensor_size, 0);
+  for (std::size_t c = 0; c < owned.size(); ++c)
+    std::ranges::copy(pack(owned[c]), values.begin() + std::ptrdiff_t(c * tensor_size));
+  return values;
+}
+
+void add_cell_stress(const SolidBody& body, const SolidFields& derived, std::span<const double> points,
+                     Fields& fields) {
+  const SolidOutputParameters& chosen = body.parameters().output;
+  if (!chosen.stress && !chosen.principal_stress) return;
+  const Mesh& mesh = body.mesh();
+  const std::vector<Tensor3> tensors = derived.cell_stress(points);
+  if (chosen.stress) {
+    fields.add_tensor("stress", "Pa", Place::cells, mesh.dim, packed_cells(mesh, tensors));
+    std::vector<double> equivalent(mesh.cells.n_local(), 0);
+    for (std::size_t c = 0; c < tensors.size(); ++c) equivalent[c] = equivalent_stress(tensors[c]);
+    fields.add("equivalent-stress", "Pa", Place::cells, 1, std::move(equivalent));
+  }
+  if (chosen.principal_stress) {
+    std::vector<double> principal(std::size_t(mesh.cells.n_local()) * 3, 0);
+    for (std::size_t c = 0; c < tensors.size(); ++c)
+      std::ranges::copy(principal_stresses(tensors[c]), principal.begin() + std::ptrdiff_t(3 * c));
+    fields.add("principal-stress", "Pa", Place::cells, 3, std::move(principal));
+  }
+}
+
+}  // namespace
+
+SolidOutput::SolidOutput(const SolidFields& derived, const SolidStepper& stepper, const SolidBody& body,
+                         const SolidContext& context)
+    : derived_(derived), stepper_(stepper), body_(body), context_(context), probes_(body, derived) {}
+
+void SolidOutput::write_fields(double time, std::span<const double> points) {
+  if (context_.output_folder.empty()) return;
+  const Mesh& mesh = body_.mesh();
+  const SolidOutputParameters& chosen = body_.parameters().output;
+  const SolidState& state = stepper_.state();
+  const int dim = mesh.dim;
+  if (!fields_)
+    fields_.emplace(mesh, context_.output_folder, context_.name, chosen.deformed, context_.restart_time);
+  std::vector<Vec3> places = mesh.reference_points;
+  for (std::size_t v = 0; v < places.size(); ++v)
+    for (int a = 0; a < dim; ++a) places[v][a] += points[v * dim + a];
+  Fields fields;
+  fields.list.push_back({"displacement", "m", Place::points, dim, points});
+  if (body_.parameters().analysis == SolidParameters::Analysis::dynamic)
+    fields.add("velocity", "m/s", Place::points, dim, derived_.point_velocity());
+  fields.list.push_back({"cell-displacement", "m", Place::cells, dim, state.cell_u});
+  if (chosen.acceleration && !state.acceleration.empty()) {
+    fields.add("acceleration", "m/s^2", Place::points, dim, derived_.point_acceleration());
+    fields.list.push_back({"cell-acceleration", "m/s^2", Place::cells, dim, state.acceleration});
+  }
+  add_cell_stress(body_, derived_, points, fields);
+  if (chosen.strain)
+    fields.add_tensor("strain", "-", Place::cells, dim, packed_cells(mesh, derived_.cell_strain(points)));
+  if (chosen.point_stress)
+    fields.add_tensor("point-stress", "Pa", Place::points, dim, derived_.point_stress(points));
+  for (const auto& effect : body_.effects()) effect->add_fields(fields.list);
+  fields_->write(time, places, fields.list);
+}
+
+void SolidOutput::write_series(double time, std::span<const double> points) {
+  if (context_.output_folder.empty()) return;
+  if (!probes_.empty()) write_probes(time, points);
+  write_reactions(time, points);
+  write_effort(time);
+  if (body_.parameters().output.energies) write_energies(time, points);
+}
+
+void SolidOutput::write_spectrum(double dt) {
+  if (context_.output_folder.empty() || spectrum_written_) return;
+  spectrum_written_ = true;
+  const std::vector<std::complex<double>> values = eigenvalues(body_);
+  if (comm_rank(body_.mesh().comm) != 0) return;
+  const SolidParameters& p = body_.parameters();
+  const SolidDamping chosen = p.damping.value_or(SolidDamping{});
+  const RayleighCoefficients damping{chosen.mass, chosen.stiffness};
+  Series series(context_.output_folder / "spectrum.csv",
+                {"number", "real [1/s^2]", "imaginary [1/s^2]", "frequency [Hz]", "growth rate [1/s]",
+                 "growth rate of the scheme [1/s]"});
+  double growth = 0, discrete = -std::numeric_limits<double>::infinity();
+  int n_complex = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double rate = growth_rate(values[i]),
+                 of_scheme = growth_rate(p.time_scheme, dt, values[i], damping);
+    growth = std::max(growth, rate);
+    discrete = std::max(discrete, of_scheme);
+    n_complex += values[i].imag() != 0;
+    series.row(std::vector<double>{double(i + 1), values[i].real(), values[i].imag(),
+                                   std::sqrt(values[i]).real() / (2 * std::numbers::pi), rate, of_scheme});
+  }
+  log::info(
+      "spectrum of M^-1 K: {} eigenvalues, {} of them in complex pairs; undamped vibration grows by up to "
+      "{:.3g} 1/s, "
+      "with {} and dt = {:g} s{} by up to {:.3g} 1/s",
+      values.size(), n_complex, growth, name(p.time_scheme.type), dt, p.damping ? ", damped," : "", discrete);
+}
+
+void SolidOutput::write_modes(bool estimates) {
+  if (context_.output_folder.empty() || modes_written_) return;
+  modes_written_ = true;
+  const Mesh& mesh = body_.mesh();
+  const std::optional<SolidProblem> problem = vibration(body_);
+  if (!problem)
+    throw Error(
+        "output.modes: free vibrations want 'analysis: dynamic' and 'solution-method: {face-gradient: symmetric}': the "
+        "stiffness of the other face gradients is not symmetric.");
+  std::vector<double> mass;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    mass.push_back(body_.density(c) * mesh.reference.volume[c]);
+  const int n = body_.parameters().output.modes;
+  EigenModes found;
+  try {
+    found = solid_modes(*problem, body_.parameters().method, mass, n);
+  } catch (const SolveFailure& e) {
+    throw Error("output.modes: {}", e.what());  // no shorter step would help
+  }
+  std::string errs;
+  if (estimates) {
+    std::vector<std::span<const double>> swinging;
+    for (std::size_t m = 0; m < found.shape.size(); ++m)
+      if (found.eigenvalue[m] > 0) swinging.push_back(found.shape[m]);
+    if (!swinging.empty())
+      errs = fmt::format("; the mesh leaves an estimated {:.2g} % in the worst of them",
+                         100 * 0.5 * energy_mesh_error(body_, swinging));
+  }
+  ModalModel model = modal_model(*problem, found);
+  model.mass = 0;
+  for (const double m : mass) model.mass += m;
+  model.mass = sum(mesh.comm, model.mass);
+  if (comm_rank(mesh.comm) != 0) return;
+  Series series(context_.output_folder / "modes.csv", {"number", "frequency [Hz]", "effective mass x [kg]",
+                                                       "effective mass y [kg]", "effective mass z [kg]"});
+  for (std::size_t m = 0; m < model.n_modes(); ++m) {
+    std::vector<double> row{double(m + 1), model.frequency[m]};
+    for (std::size_t a = 0; a < 3; ++a)
+      row.push_back(std::pow(model.participation[a * model.n_modes() + m], 2));
+    series.row(row);
+  }
+  if (mesh.dim == 3) couplet::write_modes(context_.output_folder / "modes.h5", model, "");
+  log::info(
+      "modes: {} free vibrations from {:.6g} to {:.6g} Hz in modes.csv{}; largest residual {:.1e}{}", n,
+      model.frequency.front(), model.frequency.back(),
+      mesh.dim == 3 ? ", their shapes on the surface in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
+      found.worst_residual, errs);
+}
+
+void SolidOutput::write_probes(double time, std::span<const double> points) {
+  const std::vector<double> values = probes_.sample(points);
+  if (comm_rank(body_.mesh().comm) != 0) return;
+  if (!probe_series_) {
+    std::vector<std::string> columns{"time [s]"};
+    columns.insert(columns.end(), probes_.columns().begin(), probes_.columns().end());
+    probe_series_.emplace(context_.output_folder / "probes.csv", columns, context_.restart_time);
+  }
+  std::vector<double> row{time};
+  row.insert(row.end(), values.begin(), values.end());
+  probe_series_->row(row);
+}
+
+void SolidOutput::write_energies(double time, std::span<const double> points) {
+  const SolidEnergies e = stepper_.ledger().total(stepper_.state(), points);
+  if (comm_rank(body_.mesh().comm) != 0) return;
+  if (!energy_series_)
+    energy_series_.emplace(
+        context_.output_folder / "energies.csv",
+        std::vector<std::string>{"time [s]", "kinetic [J]", "strain [J]", "internal work [J]",
+                                 "external work [J]", "damping loss [J]", "lost by the scheme [J]"},
+        context_.restart_time);
+  energy_series_->row(std::vector<double>{time, e.kinetic, e.strain, e.internal_work, e.external_work,
+                                          e.damping_loss, e.lost()});
+}
+
+void SolidOutput::write_reactions(double time, std::span<const double> points) {
+  const int dim = body_.mesh().dim;
+  const std::vector<PatchForce> reactions = derived_.reactions(points);
+  const Vec3 load = derived_.total_load();
+  if (comm_rank(body_.mesh().comm) != 0) return;
+  std::vector<double> row{time};
+  for (const PatchForce& r : reactions) row.insert(row.end(), r.force.data(), r.force.data() + dim);
+  row.insert(row.end(), load.data(), load.data() + dim);
+  if (!reaction_series_) {
+    std::vector<std::string> columns{"time [s]"};
+    for (const PatchForce& r : reactions)
+      for (int a = 0; a < dim; ++a) columns.push_back(r.patch + " " + axis_letters[a] + " [N]");
+    for (int a = 0; a < dim; ++a) columns.push_back(std::string("load ") + axis_letters[a] + " [N]");
+    reaction_series_.emplace(context_.output_folder / "reactions.csv", columns, context_.restart_time);
+  }
+  reaction_series_->row(row);
+}
+
+void SolidOutput::write_effort(double time) {
+  const SolverEffort& effort = stepper_.effort();
+  if (effort.solves == 0 || comm_rank(body_.mesh().comm) != 0) return;  // at the start nothing was solved
+  if (!solver_series_)
+    solver_series_.emplace(
+        context_.output_folder / "solver.csv",
+        std::vector<std::string>{"time [s]", "solves", "iterations", "inner iterations", "residual"},
+        context_.restart_time);
+  const std::array<double, 5> row{time, static_cast<double>(effort.solves),
+                                  static_cast<double>(effort.iterations),
+                                  static_cast<double>(effort.inner_iterations), effort.residual};
+  solver_series_->row(row);
+}
+
+}  // namespace couplet

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "common/io/field_writer.hpp"
+#include "common/io/series.hpp"
+#include "solid_solver/body/solid_context.hpp"
+#include "solid_solver/body/solid_fields.hpp"
+#include "solid_solver/motion/solid_stepper.hpp"
+#include "solid_solver/output/probes.hpp"
+
+namespace couplet {
+
+/// The files of a solid: fields, probes.csv, reactions.csv, solver.csv. They are opened when first written
+/// to.
+class SolidOutput {
+ public:
+  /// All by reference.
+  SolidOutput(const SolidFields& derived, const SolidStepper& stepper, const SolidBody& body,
+              const SolidContext& context);
+
+  /// `points`: displacement of all local points.
+  void write_fields(double time, std::span<const double> points);
+  void write_series(double time, std::span<const double> points);
+  /// spectrum.csv and a sentence in the log, for steps of dt. Collective.
+  void write_spectrum(double dt);
+  /// modes.csv and, of a body in space, modes.h5; `estimates`: what the mesh leaves in the frequencies is told. Collective.
+  void write_modes(bool estimates);
+
+ private:
+  void write_probes(double time, std::span<const double> points);
+  void write_reactions(double time, std::span<const double> points);
+  void write_effort(double time);
+  void write_energies(double time, std::span<const double> points);
+
+  const SolidFields& derived_;
+  const SolidStepper& stepper_;
+  const SolidBody& body_;
+  const SolidContext& context_;
+  SolidProbes probes_;
+  bool spectrum_written_ = false, modes_written_ = false;
+  std::optional<FieldWriter> fields_;
+  // On rank 0.
+  std::optional<Series> probe_series_, reaction_series_, solver_series_, energy_series_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/output/probes.hpp"
+
+#include <algorithm>
+
+#include "common/base/constants.hpp"
+#include "common/base/error.hpp"
+#include "common/io/probes/mesh_scale.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/material/stress.hpp"
+
+namespace couplet {
+namespace {
+
+bool is_stress(std::string_view field) {
+  return field == "stress" || field == "equivalent-stress" || field == "principal-stress";
+}
+
+/// A field that an effect keeps at points; its name and unit are the effect's.
+OutputField effect_field(const SolidBody& body, const std::string& name) {
+  std::vector<OutputField> fields;
+  for (const auto& effect : body.effects()) effect->add_fields(fields);
+  for (const OutputField& field : fields)
+    if (field.name == name && field.place == OutputField::Place::points) return field;
+  throw Error("probes: the field '{}' is watched, but nothing in this scene computes it.", name);
+}
+
+}  // namespace
+
+SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : body_(body), derived_(derived) {
+  std::vector<Vec3> places;
+  for (const auto& [name, chosen] : body.parameters().probes) {
+    places.push_back(chosen.point);
+    probes_.push_back({Probe(body.mesh(), name, chosen.point), chosen.fields});
+    for (const std::string& field : chosen.fields) add_columns(name, field);
+  }
+  doubt_mesh_scale(body.mesh(), places);
+  stressed_ = points_with_stress();
+}
+
+std::vector<std::uint8_t> SolidProbes::points_with_stress() const {
+  const IndexMap& points = body_.mesh().points;
+  std::vector<double> flags(std::size_t(points.n_local()), 0);
+  for (const Watched& watched : probes_)
+    if (std::ranges::any_of(watched.fields, is_stress))
+      for (const Index v : watched.probe.points()) flags[std::size_t(v)] = 1;
+  points.add_to_owners(flags);
+  points.update_ghosts(flags);
+  return {flags.begin(), flags.end()};
+}
+
+void SolidProbes::add_columns(const std::string& probe, const std::string& field) {
+  const auto vector = [&](const std::string& what, const char* unit) {
+    for (int a = 0; a < body_.mesh().dim; ++a)
+      columns_.push_back(probe + " " + what + axis_letters[a] + " [" + unit + "]");
+  };
+  const auto tensor = [&](const char* unit) {
+    for (const char* component : tensor_component)
+      columns_.push_back(probe + " " + field + "-" + component + " [" + unit + "]");
+  };
+  if (field == "acceleration" && body_.parameters().analysis == SolidParameters::Analysis::static_)
+    throw Error("probes.{}: a static analysis has no acceleration to watch.", probe);
+  if (field == "displacement") return vector("", "m");
+  if (field == "velocity") return vector("velocity ", "m/s");
+  if (field == "acceleration") return vector("acceleration ", "m/s^2");
+  if (field == "stress") return tensor("Pa");
+  if (field == "strain") return tensor("-");
+  if (field == "equivalent-stress") return columns_.push_back(probe + " equivalent-stress [Pa]");
+  if (field == "principal-stress") {
+    for (const char* i : {"1", "2", "3"}) columns_.push_back(probe + " principal-stress-" + i + " [Pa]");
+    return;
+  }
+  columns_.push_back(probe + " " + field + " [" + effect_field(body_, field).unit + "]");
+}
+
+bool SolidProbes::any_watches(std::initializer_list<const char*> fields) const {
+  for (const Watched& watched : probes_)
+    for (const char* field : fields)
+      if (std::ranges::find(watched.fields, field) != watched.fields.end()) return true;
+  return false;
+}
+
+std::vector<double> SolidProbes::sample(std::span<const double> points) const {
+  const int dim = body_.mesh().dim;
+  std::vector<double> velocity, acceleration, stress, strain, row;
+  if (any_watches({"velocity"})) velocity = derived_.point_velocity();
+  if (any_watches({"acceleration"})) acceleration = derived_.point_acceleration();
+  if (any_watches({"stress", "equivalent-stress", "principal-stress"}))
+    stress = derived_.point_stress(points, stressed_);
+  if (any_watches({"strain"})) strain = derived_.point_strain(points);
+  for (const Watched& watched : probes_) {
+    for (const std::string& field : watched.fields) {
+      std::vector<double> values;
+      if (field == "displacement") {
+        values = watched.probe.sample(points, dim);
+      } else if (field == "velocity") {
+        values = watched.probe.sample(velocity, dim);
+      } else if (field == "acceleration") {
+        values = watched.probe.sample(acceleration, dim);
+      } else if (field == "strain") {
+        values = watched.probe.sample(strain, tensor_size);
+      } else if (is_stress(field)) {
+        values = watched.probe.sample(stress, tensor_size);
+        // Of the interpolated tensor; other ranks hold nothing.
+        if (field == "equivalent-stress" && !values.empty()) values = {equivalent_stress(unpack(values))};
+        if (field == "principal-stress" && !values.empty()) {
+          const auto principal = principal_stresses(unpack(values));
+          values.assign(principal.begin(), principal.end());
+        }
+      } else {
+        values = watched.probe.sample(effect_field(body_, field).values, 1);
+      }
+      row.insert(row.end(), values.begin(), values.end());
+    }
+  }
+  return row;
+}
+
+}  // namespace couplet

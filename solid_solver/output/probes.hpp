@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/io/probes/probe.hpp"
+#include "solid_solver/body/solid_body.hpp"
+#include "solid_solver/body/solid_fields.hpp"
+
+namespace couplet {
+
+/// The probes of a solid: which columns they fill, and their values.
+class SolidProbes {
+ public:
+  /// Throws Error if a probe lies outside or watches a field the scene does not have. All by reference. Collective.
+  SolidProbes(const SolidBody& body, const SolidFields& derived);
+  bool empty() const { return probes_.empty(); }
+  /// "tip x [m]", "tip velocity x [m/s]", "tip stress-xx [Pa]", ...
+  const std::vector<std::string>& columns() const { return columns_; }
+  /// One value a column at the accepted time on rank 0, empty elsewhere. `points`: displacement of all local
+  /// points. Collective.
+  std::vector<double> sample(std::span<const double> points) const;
+
+ private:
+  struct Watched {
+    Probe probe;
+    std::vector<std::string> fields;
+  };
+  void add_columns(const std::string& probe, const std::string& field);
+  bool any_watches(std::initializer_list<const char*> fields) const;
+
+  /// Flags of the local points from which stresses are watched, on all ranks that share them. Collective.
+  std::vector<std::uint8_t> points_with_stress() const;
+
+  const SolidBody& body_;
+  const SolidFields& derived_;
+  std::vector<Watched> probes_;
+  std::vector<std::string> columns_;
+  std::vector<std::uint8_t> stressed_;
+};
+
+}  // namespace couplet

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <complex>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "common/mesh/mesh.hpp"
+#include "solid_solver/body/solid_body.hpp"
+
+namespace couplet {
+
+/// y = A x on the packed rows of this rank (owned cells, then unknown faces); collective.
+using ElasticApplication = std::function<void(std::span<const double> x, std::span<double> y)>;
+
+/// Most displacement components of cells for which a spectrum is computed: the matrix is dense.
+constexpr GlobalIndex largest_spectrum = 4000;
+
+/// Eigenvalues of M^-1 K [1/s^2], smallest real part first: K is A with the massless faces eliminated, M
+/// holds `cell_mass`, one an owned cell [kg]. On rank 0, empty elsewhere. Throws Error beyond
+/// largest_spectrum. Collective.
+std::vector<std::complex<double>> spectrum(const Mesh& mesh, std::span<const double> cell_mass,
+                                           std::size_t n_unknowns, const ElasticApplication& apply);
+
+/// The same of a symmetric pair, M applied like A: real, smallest first. Rows without mass are eliminated.
+/// Collective.
+std::vector<std::complex<double>> symmetric_spectrum(const Mesh& mesh, std::size_t n_unknowns,
+                                                     const ElasticApplication& stiffness,
+                                                     const ElasticApplication& mass);
+
+/// Those of a body, see above. Collective.
+std::vector<std::complex<double>> eigenvalues(const SolidBody& body);
+
+}  // namespace couplet

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/parameters/boundary_parameters.hpp"
+
+#include "common/base/constants.hpp"
+#include "common/fv/expression.hpp"
+
+namespace couplet {
+namespace {
+
+using Type = SolidCondition::Type;
+
+/// Nothing, or one expression a component.
+void declare_vector(config::Section& s, const char* key, std::vector<config::ExpressionText>& texts,
+                    const int& dimension, const char* unit, const char* doc) {
+  constexpr std::pair usual_length{1e-9, 1e4}, usual_pressure{1e-9, 1e11};
+  const auto [lowest, highest] = std::string_view(unit) == "m" ? usual_length : usual_pressure;
+  s.value(key, texts).unit(unit).plausible(lowest, highest).doc(doc);
+  s.check([&] { return texts.empty() ? std::string() : problem_of(texts, dimension); }, key);
+}
+
+std::string problem_of_components(const SolidCondition& c, int dimension) {
+  const auto given = [&](int i) { return c.components[i].has_value(); };
+  const bool any = given(0) || given(1) || given(2);
+  if (any != c.value.empty())
+    return "give either 'value' (all components) or 'components' (those that are known, x, y, z)";
+  if (!c.value.empty()) return problem_of(c.value, dimension);
+  if (dimension == 2 && given(2)) return "a 2-dimensional scene has no component z";
+  for (const auto& text : c.components)
+    if (text)
+      if (std::string problem = problem_of(*text); !problem.empty()) return problem;
+  return "";
+}
+
+void declare_displacement(config::Section& s, SolidCondition& c, const int& dimension) {
+  s.value("value", c.value)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc("displacement, one expression of x, y, z, t a component");
+  s.section(
+      "components",
+      [&c](config::Section& v) {
+        for (int i = 0; i < 3; ++i)
+          v.value(axis_letters[i], c.components[i])
+              .unit("m")
+              .plausible(1e-9, 1e4)
+              .doc("displacement along this axis, of x, y, z, t");
+      },
+      "in place of value: these components are known, the others are free; a part of a patch then holds its "
+      "faces, but not the vertices at its edge");
+  s.check([&] { return problem_of_components(c, dimension); }, "value");
+  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area on the free components");
+}
+
+void declare_plate(config::Section& s, SolidCondition& c, const int& dimension) {
+  s.value("plate-normal", c.plate_normal).doc("normal of the plate, any length");
+  s.check([&c] { return c.plate_normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
+          "plate-normal");
+  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area on what is left free");
+}
+
+void declare_spring(config::Section& s, SolidCondition& c, const int& dimension) {
+  s.value("stiffness", c.stiffness)
+      .unit("N/m^3")
+      .plausible(1, 1e16)
+      .required()
+      .doc("force per area and displacement, of x, y, z (Winkler's bedding)");
+  s.check([&c] { return problem_of(c.stiffness); }, "stiffness");
+  s.choice("direction", c.along_normal, {{"all", false}, {"normal", true}})
+      .doc("which displacement the springs resist");
+  declare_vector(s, "value", c.value, dimension, "m",
+                 "displacement of the far ends of the springs, of x, y, z, t");
+  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area beside the springs");
+}
+
+void declare_condition(config::Section& s, SolidCondition& c, const int& dimension, bool whole_patch) {
+  const auto displacement = [&](config::Section& v) { declare_displacement(v, c, dimension); };
+  const auto traction = [&](config::Section& v) {
+    v.value("value", c.value)
+        .unit("Pa")
+        .plausible(1e-9, 1e11)
+        .required()
+        .doc("force per area, one expression of x, y, z, t a component");
+    v.check([&] { return problem_of(c.value, dimension); }, "value");
+  };
+  const auto pressure = [&](config::Section& v) {
+    v.value("value", c.pressure)
+        .unit("Pa")
+        .plausible(1e-9, 1e11)
+        .required()
+        .doc("pressure that pushes into the solid, of x, y, z, t");
+    v.check([&] { return problem_of(c.pressure); }, "value");
+  };
+  const auto plate = [&](config::Section& v) { declare_plate(v, c, dimension); };
+  const auto spring = [&](config::Section& v) { declare_spring(v, c, dimension); };
+  const auto nothing = [](config::Section&) {};
+  std::vector<std::tuple<std::string, Type, config::Section::Declare>> types{
+      {"fixed-displacement", Type::fixed_displacement, displacement},
+      {"traction", Type::traction, traction},
+      {"pressure", Type::pressure, pressure},
+      {"symmetry", Type::symmetry, nothing},
+      {"frictionless", Type::frictionless, nothing},
+      {"soft-support", Type::soft_support, plate},
+      {"hard-support", Type::hard_support, plate},
+      {"spring", Type::spring, spring},
+      {"zero-normal-gradient", Type::zero_normal_gradient, nothing},
+      {"free", Type::free, nothing}};
+  if (whole_patch) types.emplace_back("interface", Type::interface_, nothing);
+  s.variant<Type>(
+      "type", c.type, types,
+      "what is known there; symmetry: a plane of any orientation; frictionless: no displacement across the "
+      "surface, curved or not; soft-support: no displacement along the plate's normal; hard-support: nor "
+      "along the edge; zero-normal-gradient: the displacement does not change along the normal"
+      "; interface (whole patches): the load comes from the coupler",
+      true);
+}
+
+}  // namespace
+
+void declare(config::Section& s, SolidBoundary& b, const int& dimension) {
+  declare_condition(s, b, dimension, true);
+  s.list<SolidPart>(
+      "parts", b.parts,
+      [&dimension](config::Section& p, SolidPart& part) {
+        p.value("where", part.where)
+            .required()
+            .doc("expression of x, y, z at the centre of a face that is not 0 on the faces of this part");
+        p.check([&part] { return problem_of(part.where); }, "where");
+        declare_condition(p, part, dimension, false);
+      },
+      "parts of the patch, such as a line of faces, with a condition of their own; the first that selects a "
+      "face counts");
+}
+
+}  // namespace couplet

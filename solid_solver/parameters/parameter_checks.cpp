@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/parameters/parameter_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/fv/expression.hpp"
+
+namespace couplet {
+namespace {
+
+/// Of any condition, those of parts of patches too.
+template <class Test>
+bool any_condition(const SolidParameters& p, const Test& test) {
+  return std::any_of(p.boundaries.begin(), p.boundaries.end(), [&](const auto& entry) {
+    const auto& parts = entry.second.parts;
+    return test(entry.second) || std::any_of(parts.begin(), parts.end(), test);
+  });
+}
+
+bool has_interface(const SolidParameters& p) {
+  return any_condition(p, [](const SolidCondition& c) { return c.type == SolidCondition::Type::interface_; });
+}
+
+/// Whether a condition of any kind keeps some displacement from being free.
+bool is_held(const SolidParameters& p) {
+  return any_condition(p, [](const SolidCondition& c) {
+    using Type = SolidCondition::Type;
+    return c.type != Type::traction && c.type != Type::pressure && c.type != Type::free &&
+           c.type != Type::zero_normal_gradient;
+  });
+}
+
+/// What the thesis's own method at finite strain cannot have, each with the key to change.
+void check_updated_lagrangian(config::Section& s, SolidParameters& p) {
+  using Method = MethodParameters;
+  const auto refuse = [&](const char* key, bool is_wrong, const char* why) {
+    s.check([&p, is_wrong,
+             why] { return is_updated_lagrangian(p) && is_wrong ? std::string(why) : std::string(); },
+            key);
+  };
+  refuse(
+      "solution-method", p.method.face_gradient == Method::FaceGradient::symmetric,
+      "'type: segregated' at finite strain is the thesis's updated-Lagrangian method on 'face-gradient: thesis' with "
+      "the volume strain of the faces; the symmetric gradient goes with 'type: newton-krylov' (or 'auto')");
+  refuse(
+      "materials", p.materials.size() > 1,
+      "'solution-method: {type: segregated}' at finite strain knows one material; take 'type: newton-krylov' (or 'auto')");
+  refuse(
+      "energy-momentum", p.energy_momentum,
+      "'solution-method: {type: segregated}' at finite strain has no conserving stress; take 'type: newton-krylov'");
+  refuse(
+      "output", p.output.energies,
+      "'solution-method: {type: segregated}' at finite strain writes no energies; take 'type: newton-krylov' (or 'auto')");
+}
+
+}  // namespace
+
+void check_together(config::Section& s, SolidParameters& p) {
+  const auto check_components = [&](const char* key, const std::vector<config::ExpressionText>& texts) {
+    s.check([&] { return texts.empty() ? std::string() : problem_of(texts, p.dimension); }, key);
+  };
+  check_components("body-force", p.body_force);
+  check_components("initial-velocity", p.initial_velocity);
+  s.check(
+      [&] {
+        return p.gravity.empty() || std::ssize(p.gravity) == p.dimension
+                   ? std::string()
+                   : fmt::format("{} components are given where the {}-dimensional scene needs {}",
+                                 p.gravity.size(), p.dimension, p.dimension);
+      },
+      "gravity");
+  s.check(
+      [&] {
+        return p.damping && p.analysis == SolidParameters::Analysis::static_
+                   ? "damping has no effect in a static analysis; remove it"
+                   : "";
+      },
+      "damping");
+  s.check(
+      [&] {
+        return p.time_scheme.type != TimeScheme::trapezoidal &&
+                       p.analysis == SolidParameters::Analysis::static_
+                   ? "a static analysis has no inertia to integrate in time; remove it"
+                   : "";
+      },
+      "time-scheme");
+  s.check(
+      [&] {
+        return !p.initial_velocity.empty() && p.analysis != SolidParameters::Analysis::dynamic
+                   ? "it has an effect with 'analysis: dynamic' only; remove it"
+                   : "";
+      },
+      "initial-velocity");
+  s.check(
+      [&] {
+        return p.interface_data && p.analysis != SolidParameters::Analysis::thermal && !has_interface(p)
+                   ? "no patch is an interface: give one 'type: interface', or remove this section"
+                   : "";
+      },
+      "interface");
+  s.check(
+      [&] {
+        return p.boundaries.empty() && p.analysis != SolidParameters::Analysis::thermal
+                   ? "each patch of the mesh needs an entry"
+                   : "";
+      },
+      "boundaries");
+  s.check(
+      [&] {
+        return p.analysis != SolidParameters::Analysis::static_ || is_held(p)
+                   ? ""
+                   : "nothing holds the solid of this static analysis: at least one patch must be fixed, supported, "
+                     "sprung or on a plane of symmetry";
+      },
+      "boundaries");
+  s.check(
+      [&] {
+        return p.step_control && p.analysis != SolidParameters::Analysis::dynamic
+                   ? "a static analysis has no time error to control; remove it"
+                   : "";
+      },
+      "time-step-control");
+}
+
+/// What finite strain cannot have, each with the key to change.
+void check_finite_strain(config::Section& s, SolidParameters& p) {
+  using Method = MethodParameters;
+  const auto refuse = [&](const char* key, bool is_wrong, const char* why) {
+    s.check(
+        [&p, is_wrong, why] { return has_finite_strain(p) && is_wrong ? std::string(why) : std::string(); },
+        key);
+  };
+  const bool is_dynamic = p.analysis == SolidParameters::Analysis::dynamic;
+  refuse("solution-method", p.method.volume_strain == MethodParameters::VolumeStrain::shared,
+         "finite strain takes 'volume-strain: faces' or 'cells' and no share of both");
+  refuse(
+      "solution-method", p.method.preconditioner == MethodParameters::Preconditioner::mixed,
+      "'preconditioner: mixed' is that of small strain; at finite strain Newton's method carries the pressures of cells by "
+      "itself from nu = 0.48 up");
+  refuse("plane", p.dimension == 2 && p.plane == SolidParameters::Plane::stress,
+         "finite strain knows plane strain only; model the sheet in 3-D");
+  refuse("thermal-expansion", p.expansion.has_value(), "finite strain has no thermal strain");
+  refuse("damping", is_dynamic && p.damping && p.damping->stiffness > 0,
+         "'stiffness' damps rigid rotations at finite strain; use 'mass', or the losses of 'time-scheme'");
+  refuse("interface", p.interface_data && p.interface_data->load == InterfaceData::Load::pressure,
+         "finite strain takes forces; 'load: pressure' would not follow the surface");
+  s.check(
+      [&p]() -> std::string {
+        const bool fits = has_finite_strain(p) && p.analysis == SolidParameters::Analysis::dynamic &&
+                          p.time_scheme.type == TimeScheme::trapezoidal;
+        return p.energy_momentum && !fits
+                   ? "it needs 'kinematics: finite-strain', 'analysis: dynamic' and 'time-scheme: {type: trapezoidal}'"
+                   : "";
+      },
+      "energy-momentum");
+  refuse("time-step-control", p.step_control.has_value(), "it estimates the error of the linear solid only");
+  const bool is_segregated = p.method.type == Method::Type::segregated;
+  refuse(
+      "solution-method",
+      p.method.type == Method::Type::block_coupled ||
+          p.method.face_gradient == Method::FaceGradient::corrected ||
+          (!is_segregated && p.method.face_gradient == Method::FaceGradient::thesis),
+      "finite strain is solved by Newton's method on 'face-gradient: symmetric' ('type: newton-krylov' or 'auto'), or "
+      "by 'type: segregated' on 'face-gradient: thesis'");
+  check_updated_lagrangian(s, p);
+  bool has_tables = false;
+  for (const SolidMaterial& m : materials_of(p))
+    has_tables = has_tables || m.heat.youngs_modulus || m.heat.poissons_ratio;
+  s.check(
+      [&p]() -> std::string {
+        for (const SolidMaterial& m : materials_of(p))
+          if (!has_finite_strain(p) && (!m.law.empty() || !m.law_coefficients.empty()))
+            return "a law has an effect with 'kinematics: finite-strain' only";
+        return "";
+      },
+      p.materials.empty() ? "material" : "materials");
+  refuse("material", has_tables,
+         "finite strain takes no tables of the elastic constants over the temperature");
+  refuse("output", p.output.spectrum || p.output.modes > 0,
+         "'spectrum' and 'modes' are those of the linear solid; use small-strain");
+}
+
+void check_large_strain_estimate(config::Section& s, SolidParameters& p) {
+  s.check(
+      [&p]() -> std::string {
+        if (!p.output.large_strain_estimate) return "";
+        if (p.analysis != SolidParameters::Analysis::static_ || has_finite_strain(p))
+          return "'large-strain-estimate' is of a linear static analysis: 'analysis: static' without 'kinematics: "
+                 "finite-strain'";
+        if (p.dimension == 2 && p.plane == SolidParameters::Plane::stress)
+          return "'large-strain-estimate' knows plane strain only; model the sheet in 3-D";
+        if (has_orthotropic(p) || p.expansion)
+          return "'large-strain-estimate' knows neither orthotropic materials nor thermal strain";
+        MethodParameters any = p.method;
+        any.type = MethodParameters::Type::automatic;
+        SolidParameters q = p;
+        q.method = any;
+        return symmetric_suits(q) ? "" : "'large-strain-estimate' cannot have 'zero-normal-gradient'";
+      },
+      "output");
+}
+
+/// What an elastic matrix cannot have, each with the key to change.
+void check_orthotropic(config::Section& s, SolidParameters& p) {
+  using Method = MethodParameters;
+  const auto refuse = [&](const char* key, bool is_wrong, const char* why) {
+    s.check([&p, is_wrong, why] { return has_orthotropic(p) && is_wrong ? std::string(why) : std::string(); },
+            key);
+  };
+  refuse("kinematics", has_finite_strain(p),
+         "an orthotropic material is linear; finite strain knows the laws of docs/large-strain.md only");
+  refuse("thermal-expansion", p.expansion.has_value(), "an orthotropic material has no thermal strain here");
+  refuse(
+      "solution-method",
+      p.method.type == Method::Type::segregated || p.method.type == Method::Type::block_coupled ||
+          p.method.face_gradient == Method::FaceGradient::thesis ||
+          p.method.face_gradient == Method::FaceGradient::corrected ||
+          p.method.volume_strain == Method::VolumeStrain::cells ||
+          p.method.volume_strain == Method::VolumeStrain::shared,
+      "an orthotropic material goes with 'face-gradient: symmetric' (or 'auto'), 'type: newton-krylov' (or 'auto') "
+      "and the volume strain of the faces");
+  s.check(
+      [&p]() -> std::string {
+        for (const SolidMaterial& m : materials_of(p))
+          if (m.orthotropic && (m.heat.youngs_modulus || m.heat.poissons_ratio))
+            return "an orthotropic material takes no tables of the elastic constants over the temperature";
+        return "";
+      },
+      p.materials.empty() ? "material" : "materials");
+  s.check(
+      [&p]() -> std::string {
+        for (const SolidMaterial& m : materials_of(p)) {
+          if (!m.orthotropic) continue;
+          if (!m.orthotropic->first_axis.empty() && std::ssize(m.orthotropic->first_axis) != p.dimension)
+            return fmt::format("'orthotropic.first-axis' has {} components where the scene has {}",
+                               m.orthotropic->first_axis.size(), p.dimension);
+          if (p.dimension == 2 && !m.orthotropic->second_axis.empty())
+            return "in the plane 'orthotropic.second-axis' follows from the first (a quarter turn); remove it";
+          if (p.dimension == 3 && !m.orthotropic->second_axis.empty() &&
+              m.orthotropic->second_axis.size() != 3)
+            return "'orthotropic.second-axis' needs three components";
+        }
+        return "";
+      },
+      p.materials.empty() ? "material" : "materials");
+}
+
+}  // namespace couplet

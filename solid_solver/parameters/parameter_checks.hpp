@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solid_solver/parameters/parameters.hpp"
+
+namespace couplet {
+
+/// Rules between the keys of a solid, each told at the key to change.
+void check_together(config::Section& section, SolidParameters& parameters);
+/// What finite strain cannot have.
+void check_finite_strain(config::Section& section, SolidParameters& parameters);
+/// What the estimate of large strain cannot have.
+void check_large_strain_estimate(config::Section& section, SolidParameters& parameters);
+/// What an orthotropic material cannot have.
+void check_orthotropic(config::Section& section, SolidParameters& parameters);
+
+}  // namespace couplet

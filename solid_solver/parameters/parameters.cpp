@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/parameters/parameters.hpp"
+
+#include <fmt/format.h>
+
+#include "common/fv/expression.hpp"
+#include "solid_solver/parameters/parameter_checks.hpp"
+
+namespace couplet {
+namespace {
+
+bool takes_temperature(const SolidParameters& p) { return p.interface_data && p.interface_data->temperature; }
+
+void declare_heat(config::Section& s, SolidParameters& p) {
+  s.optional_section<HeatParameters>(
+      "heat", p.heat, [](config::Section& h, HeatParameters& v) { declare(h, v); },
+      "conduction of heat; the temperature of a step is solved for before its displacement");
+  s.value("temperature", p.temperature)
+      .unit("K")
+      .plausible(70, 5000)
+      .doc("prescribed temperature, of x, y, z, t");
+  s.optional_section<ThermalExpansion>(
+      "thermal-expansion", p.expansion, [](config::Section& e, ThermalExpansion& v) { declare(e, v); },
+      "thermal strain; needs 'heat' or 'temperature', and 'expansion' of the material");
+  s.optional_section<InterfaceData>(
+      "interface", p.interface_data, [](config::Section& i, InterfaceData& v) { declare(i, v); },
+      "what the patches of type 'interface' take from the coupler; absent: forces");
+  s.value("stiffness-tolerance", p.stiffness_tolerance)
+      .range(0, 0.1)
+      .doc(
+          "relative change of youngs-modulus-table and poissons-ratio-table at which the matrix is made "
+          "anew");
+  s.value("thermoelastic-coupling", p.thermoelastic_coupling)
+      .doc("a solid that is stretched cools: heat of the strain rate, thesis (2.27), one step late");
+  s.check(
+      [&] {
+        return p.thermoelastic_coupling &&
+                       !(p.expansion && p.heat && p.heat->analysis == HeatParameters::Analysis::transient)
+                   ? "it needs a transient 'heat' and 'thermal-expansion'"
+                   : "";
+      },
+      "thermoelastic-coupling");
+  const auto needs = [&](std::optional<config::ExpressionText> HeatMaterial::*property, bool needed,
+                         const char* key, const char* by) {
+    s.check(
+        [&p, property, needed, key, by]() -> std::string {
+          for (const SolidMaterial& m : materials_of(p))
+            if (needed && !(m.heat.*property))
+              return fmt::format("'{}' of the material is missing; {} needs it", key, by);
+          return "";
+        },
+        p.materials.empty() ? "material" : "materials");
+  };
+  s.check([&] { return p.temperature ? problem_of(*p.temperature) : ""; }, "temperature");
+  s.check(
+      [&] {
+        return takes_temperature(p) && (p.heat || p.temperature)
+                   ? "the temperature is taken at the interface; remove 'heat' or 'temperature'"
+                   : "";
+      },
+      "interface");
+  s.check(
+      [&] {
+        return p.heat && p.temperature ? "'heat' solves for the temperature; remove one of the two" : "";
+      },
+      "temperature");
+  s.check(
+      [&] {
+        return p.expansion && !p.heat && !p.temperature && !takes_temperature(p)
+                   ? "thermal strain needs a temperature; give 'heat' or 'temperature'"
+                   : "";
+      },
+      "thermal-expansion");
+  s.check(
+      [&] {
+        return p.analysis == SolidParameters::Analysis::thermal && !p.heat ? "a thermal analysis needs 'heat'"
+                                                                           : "";
+      },
+      "analysis");
+  needs(&HeatMaterial::conductivity, p.heat.has_value(), "conductivity", "'heat'");
+  needs(&HeatMaterial::specific_heat, p.heat && p.heat->analysis == HeatParameters::Analysis::transient,
+        "specific-heat", "a transient 'heat'");
+  needs(&HeatMaterial::expansion, p.expansion.has_value(), "expansion", "'thermal-expansion'");
+}
+
+}  // namespace
+
+void declare(config::Section& s, SolidParameters& p) {
+  using Analysis = SolidParameters::Analysis;
+  using Plane = SolidParameters::Plane;
+  s.value("mesh", p.mesh).required().doc("mesh file, .msh or .geo, relative to the YAML");
+  s.value("mesh-scale", p.mesh_scale)
+      .positive()
+      .doc(
+          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
+  s.value("mesh-parameters", p.mesh_parameters)
+      .doc("numbers for names that the .geo defines by DefineConstant: {n: 8}");
+  s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
+  s.choice("plane", p.plane, {{"strain", Plane::strain}, {"stress", Plane::stress}})
+      .doc("what a 2-D scene is a cut of");
+  s.check(
+      [&p] {
+        return p.dimension == 3 && p.plane == Plane::stress
+                   ? "a 3-dimensional scene is no cut; remove this key"
+                   : "";
+      },
+      "plane");
+  s.choice("analysis", p.analysis,
+           {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}, {"thermal", Analysis::thermal}})
+      .doc("static leaves out inertia; thermal conducts heat only");
+  using Kinematics = SolidParameters::Kinematics;
+  s.choice("kinematics", p.kinematics,
+           {{"small-strain", Kinematics::small_strain}, {"finite-strain", Kinematics::finite_strain}})
+      .doc(
+          "finite-strain: large rotations and strains, material.law by an energy, Newton's method on the symmetric "
+          "face gradient");
+  s.value("energy-momentum", p.energy_momentum)
+      .doc(
+          "of dynamic finite strain with the trapezoidal rule: the stress of a step does exactly the work that the strain "
+          "energy changes by, so that energy and momenta are kept");
+  const bool is_elastic = p.analysis != SolidParameters::Analysis::thermal;
+  s.optional_section<bool>(
+      "material", p.material_given,
+      [&p, is_elastic](config::Section& m, bool&) { declare(m, p.material, is_elastic); },
+      "linear elastic material of the whole solid");
+  s.map<ZoneMaterial>(
+      "materials", p.materials,
+      [is_elastic](config::Section& m, ZoneMaterial& v) { declare(m, v, is_elastic); }, "material",
+      "in place of material: several, each with its zones of the mesh; bonded where they meet");
+  s.check(
+      [&p] {
+        return p.material_given.has_value() == p.materials.empty()
+                   ? ""
+                   : "give either 'material' (of the whole solid) or 'materials' (by zone of the mesh)";
+      },
+      "material");
+  s.map<SolidBoundary>(
+      "boundaries", p.boundaries, [&p](config::Section& b, SolidBoundary& v) { declare(b, v, p.dimension); },
+      "patch", "one entry for each patch of the mesh");
+  s.value("body-force", p.body_force)
+      .unit("N/m^3")
+      .plausible(1e-6, 1e11)
+      .doc("force per volume, one expression of x, y, z, t a component");
+  s.value("gravity", p.gravity)
+      .unit("m/s^2")
+      .plausible(1e-3, 2000)
+      .doc("acceleration of gravity, one number a component");
+  s.value("initial-velocity", p.initial_velocity)
+      .unit("m/s")
+      .plausible(1e-9, 1e4)
+      .doc("velocity at the start, one expression of x, y, z a component");
+  s.section(
+      "time-scheme", [&](config::Section& t) { declare(t, p.time_scheme); },
+      "integration in time of a dynamic analysis");
+  s.optional_section<SolidDamping>(
+      "damping", p.damping, [](config::Section& d, SolidDamping& v) { declare(d, v); },
+      "structural damping; dynamic analysis only");
+  declare_heat(s, p);
+  s.optional_section<TimeStepControl>(
+      "time-step-control", p.step_control, [](config::Section& c, TimeStepControl& v) { declare(c, v); },
+      "halves steps ('simulation.time-step' is the longest, 'max-step-halvings' limits) where the estimated "
+      "error of "
+      "the time scheme asks for it; dynamic analysis only");
+  s.section(
+      "solution-method", [&](config::Section& m) { declare(m, p.method); },
+      "how the equations of a step are solved");
+  s.map<SolidProbe>(
+      "probes", p.probes, [](config::Section& q, SolidProbe& v) { declare(q, v); }, "probe",
+      "places whose displacement is written to probes.csv at each step");
+  s.section(
+      "output", [&](config::Section& o) { declare(o, p.output); }, "fields written at the output interval");
+  check_together(s, p);
+  check_finite_strain(s, p);
+  check_orthotropic(s, p);
+  check_large_strain_estimate(s, p);
+}
+
+}  // namespace couplet

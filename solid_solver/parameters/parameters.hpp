@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/section.hpp"
+#include "common/elasticity/elasticity.hpp"
+#include "solid_solver/parameters/boundary_parameters.hpp"
+#include "solid_solver/parameters/heat_parameters.hpp"
+#include "solid_solver/parameters/interface_data.hpp"
+#include "solid_solver/parameters/material_parameters.hpp"
+#include "solid_solver/parameters/method_parameters.hpp"
+#include "solid_solver/parameters/output_parameters.hpp"
+#include "solid_solver/parameters/time_parameters.hpp"
+
+namespace couplet {
+
+struct SolidParameters {
+  enum class Analysis { static_, dynamic, thermal };
+  enum class Plane { strain, stress };
+  enum class Kinematics { small_strain, finite_strain };
+  std::string mesh;
+  std::map<std::string, double> mesh_parameters;
+  double mesh_scale = 1;
+  int dimension = 3;
+  Plane plane = Plane::strain;
+  Analysis analysis = Analysis::dynamic;
+  Kinematics kinematics = Kinematics::small_strain;
+  bool energy_momentum = false;  // finite strain: the stress of a step is one that conserves
+  SolidMaterial material;
+  std::optional<bool> material_given;  // `material` stands in the YAML
+  ZoneMaterials materials;             // by zone of the mesh
+  std::map<std::string, SolidBoundary> boundaries;
+  std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty: none
+  std::vector<double> gravity;                           // [m/s^2]; empty: none
+  std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest
+  TimeSchemeParameters time_scheme;
+  std::optional<SolidDamping> damping;
+  std::optional<HeatParameters> heat;
+  std::optional<config::ExpressionText> temperature;  // prescribed [K]; none: solved for or not known
+  std::optional<InterfaceData> interface_data;        // none: forces only
+  std::optional<ThermalExpansion> expansion;
+  bool thermoelastic_coupling = false;
+  std::optional<TimeStepControl> step_control;
+  double stiffness_tolerance = 1e-3;  // change of elastic constants with the temperature that is let pass
+  MethodParameters method;
+  std::map<std::string, SolidProbe> probes;
+  SolidOutputParameters output;
+};
+
+/// The keys of `participants.<name>` of a solid_solver.
+void declare(config::Section& section, SolidParameters& parameters);
+
+/// The material, or the materials in the order of their names, which is that of Mesh::cell_material.
+std::vector<SolidMaterial> materials_of(const SolidParameters& parameters);
+
+/// Of a body in space.
+LameConstants lame_constants(double youngs_modulus, double poissons_ratio);
+/// Lame's constants of a material (of an orthotropic one an isotropic mean); in plane stress lambda is the effective one of the plane problem.
+LameConstants lame_constants(const SolidParameters& parameters, const SolidMaterial& material);
+inline LameConstants lame_constants(const SolidParameters& parameters) {
+  return lame_constants(parameters, parameters.material);
+}
+
+/// Large strain by the thesis's own method.
+inline bool is_updated_lagrangian(const SolidParameters& p) {
+  return p.kinematics == SolidParameters::Kinematics::finite_strain &&
+         p.analysis != SolidParameters::Analysis::thermal &&
+         p.method.type == MethodParameters::Type::segregated;
+}
+inline bool has_finite_strain(const SolidParameters& p) {
+  return p.kinematics == SolidParameters::Kinematics::finite_strain &&
+         p.analysis != SolidParameters::Analysis::thermal;
+}
+/// Some material is orthotropic: all cells have an elastic matrix.
+bool has_orthotropic(const SolidParameters& parameters);
+/// From here up the volume strain of faces locks.
+inline constexpr double nearly_incompressible = 0.4;
+double largest_poissons_ratio(const SolidParameters& parameters);
+/// Whose volume strain the symmetric gradient takes.
+VolumeStrain volume_strain_of(const SolidParameters& parameters);
+/// The symmetric gradient can have all of the scene's boundaries and the method that is asked for.
+bool symmetric_suits(const SolidParameters& parameters);
+
+/// For ElasticOperator: the constants of the cells.
+ElasticBody elastic_body(const SolidParameters& parameters, const Mesh& mesh);
+/// Throws Error where a symmetry plane does not mirror an orthotropic material into itself: it would be no plane of
+/// symmetry. Collective.
+void check_symmetry(const SolidParameters& parameters, const Mesh& mesh, const ElasticOperator& rows);
+
+}  // namespace couplet

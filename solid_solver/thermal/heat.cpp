@@ -1,0 +1,355 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/thermal/heat.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/log/timer.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// Up to here LU wins in time and has the memory.
+constexpr GlobalIndex direct_heat_up_to = 60000;
+
+// The three-point scheme is stable up to steps that grow by 1 + sqrt 2; beyond, Euler's begins anew.
+constexpr double largest_growth = 2.4;
+
+LinearOptions options_of(const HeatParameters& p, GlobalIndex n_unknowns) {
+  LinearOptions options;
+  options.relative_tolerance = p.linear_tolerance;
+  options.max_iterations = 2000;
+  options.method = n_unknowns <= direct_heat_up_to                  ? LinearMethod::direct
+                   : p.analysis == HeatParameters::Analysis::steady ? LinearMethod::gmres_multigrid
+                                                                    : LinearMethod::bicgstab_ilu;
+  return options;
+}
+
+}  // namespace
+
+/// Weights of the time levels n+1, n, n-1 over dt, and theta.
+struct Heat::Coefficients {
+  double next = 0, now = 0, before = 0, theta = 1;
+};
+
+Heat::Heat(const Mesh& mesh, std::vector<HeatProperties> materials, const HeatParameters& parameters,
+           const std::vector<std::string>& symmetry_patches)
+    : mesh_(&mesh),
+      materials_(std::move(materials)),
+      parameters_(parameters),
+      boundaries_(mesh, parameters_, symmetry_patches),
+      conduction_(mesh, boundaries_.conditions()),
+      source_(parameters_.source, "heat.source"),
+      matrix_(conduction_.make_matrix()) {
+  if (is_steady() && !boundaries_.fix_the_level())
+    throw Error(
+        "heat.boundaries: a steady temperature needs a level; give at least one patch 'type: temperature' or "
+        "'type: convection'.");
+  properties_vary_ =
+      std::ranges::any_of(materials_, [](const HeatProperties& m) { return !m.is_constant(); });
+  solver_ = std::make_unique<LinearSolver>(
+      "temperature", matrix_,
+      options_of(parameters_, sum(mesh.comm, static_cast<GlobalIndex>(conduction_.n_unknowns()))));
+  if (!is_steady() && parameters_.scheme == HeatParameters::Scheme::trapezoidal) swing_.emplace();
+  start();
+}
+
+Heat::~Heat() = default;
+
+void Heat::start() {
+  const Expression initial(parameters_.initial_temperature, "heat.initial-temperature");
+  const Index n_owned = mesh_->cells.n_owned();
+  state_.cells.resize(mesh_->cells.n_local());
+  state_.boundary.resize(mesh_->boundary.n_local());
+  initial.evaluate(mesh_->reference.cell_centre, 0, state_.cells);
+  initial.evaluate({mesh_->reference.face_centre.data() + mesh_->n_interior, state_.boundary.size()}, 0,
+                   state_.boundary);
+  state_.known.resize(conduction_.n_known());
+  boundaries_.known(conduction_, 0, state_.known);
+  const auto& faces = conduction_.known_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    state_.boundary[faces[i] - mesh_->n_interior] = state_.known[conduction_.known_points().size() + i];
+  mesh_->boundary.update_ghosts(state_.boundary);
+  conduction_.join_twins(state_.boundary);
+  state_.enthalpy.resize(n_owned);
+  for (Index c = 0; c < n_owned; ++c)
+    state_.enthalpy[c] = materials_[mesh_->cell_zone[c]].specific_heat.antiderivative(state_.cells[c]);
+  state_.enthalpy_before = state_.enthalpy;
+  state_.inflow.assign(n_owned, 0);
+
+  conductivity_.resize(mesh_->n_faces());
+  face_heat_.resize(conduction_.flux_faces().size());
+  if (boundaries_.any_transfer()) transfer_.resize(face_heat_.size());
+  if (!is_steady()) capacity_.resize(n_owned);
+  rhs_.resize(conduction_.n_unknowns());
+  unknowns_.resize(conduction_.n_unknowns());
+  set_conductivity(state_, conductivity_);
+  trial_ = state_;
+  boundaries_.fluxes(0, face_heat_, transfer_);
+  set_inflow(sources(0, {}));
+  state_.inflow = trial_.inflow;
+}
+
+Heat::Coefficients Heat::coefficients(double dt) const {
+  using Scheme = HeatParameters::Scheme;
+  if (is_steady()) return {};
+  if (parameters_.scheme == Scheme::trapezoidal) return {1 / dt, -1 / dt, 0, 0.5};
+  if (parameters_.scheme == Scheme::euler || state_.steps == 0) return {1 / dt, -1 / dt, 0, 1};
+  const double r = dt / state_.dt;  // (2.46)-(2.47) for variable steps
+  if (r > largest_growth) return {1 / dt, -1 / dt, 0, 1};
+  return {(1 + 2 * r) / (1 + r) / dt, -(1 + r) / dt, r * r / (1 + r) / dt, 1};
+}
+
+// Between different materials that are not bonded the conductance is that of the two layers in series, exact
+// for layers along the face: k = d . n / (d_P / k_P + d_N / k_N).
+void Heat::set_conductivity(const HeatState& state, std::span<double> conductivity) const {
+  const std::vector<double> at_faces = face_temperature(state);
+  const Geometry& g = mesh_->reference;
+  const FaceGradient& faces = conduction_.faces();
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
+    const Index owner = mesh_->owner[f];
+    const int zone = mesh_->cell_zone[owner];
+    const double here = materials_[zone].conductivity(at_faces[f]);
+    conductivity[f] = here;
+    if (f >= mesh_->n_interior) continue;
+    const int other = mesh_->cell_zone[mesh_->neighbour[f]];
+    if (other == zone) continue;
+    const double there = materials_[other].conductivity(at_faces[f]);
+    const double part = (g.face_centre[f] - g.cell_centre[owner]).dot(faces.normal[f]) * faces.inverse_dn[f];
+    conductivity[f] = 1 / (part / here + (1 - part) / there);
+  }
+  if (!mesh_->twin.empty()) mesh_->boundary.update_ghosts(conductivity.subspan(mesh_->n_interior));
+}
+
+std::vector<double> Heat::sources(double t, std::span<const double> further) const {
+  std::vector<double> source;
+  if (source_.is_zero() && further.empty()) return source;
+  const std::size_t n_owned = mesh_->cells.n_owned();
+  source.assign(n_owned, 0);
+  if (!source_.is_zero()) source_.evaluate({mesh_->reference.cell_centre.data(), n_owned}, t, source);
+  for (std::size_t c = 0; c < further.size(); ++c) source[c] += further[c];
+  for (std::size_t c = 0; c < n_owned; ++c) source[c] *= mesh_->reference.volume[c];
+  return source;
+}
+
+void Heat::solve(const Step& step, std::span<const double> source) {
+  const log::ScopedTimer timer(log::timers(), "solid: heat");
+  const Coefficients c = coefficients(step.dt);
+  const double end = step.time + step.dt;
+  trial_.time = end;
+  trial_.dt = step.dt;
+  trial_.steps = state_.steps + 1;
+  trial_.cells = state_.cells;
+  trial_.boundary = state_.boundary;
+  boundaries_.known(conduction_, end, trial_.known);
+  boundaries_.fluxes(end, face_heat_, transfer_);
+  const std::vector<double> in_cells = sources(end, source);
+  // Matrix of the last step: still right if nothing in it has changed.
+  const bool kept = !properties_vary_ && !boundaries_.transfer_uses_time() &&
+                    std::abs(filled_for_ - c.next) <= 1e-12 * c.next;
+  if (!kept) filled_for_ = -1;
+  for (int iteration = 1;; ++iteration) {
+    assemble(c, in_cells);
+    solver_->solve(rhs_, unknowns_);
+    const double change = take_solution();
+    if (!properties_vary_ || change <= parameters_.tolerance) break;
+    if (iteration == parameters_.max_iterations)
+      throw SolveFailure(
+          "The temperature at t = {:g} s still changes by {:.1e} of its range after {} iterations over the "
+          "properties that depend on it (tolerance {:.0e}); a smaller time step may help.",
+          end, change, iteration, parameters_.tolerance);
+    filled_for_ = -1;
+  }
+  trial_.enthalpy_before = state_.enthalpy;
+  for (Index i = 0; i < mesh_->cells.n_owned(); ++i)
+    trial_.enthalpy[i] = materials_[mesh_->cell_zone[i]].specific_heat.antiderivative(trial_.cells[i]);
+  set_inflow(in_cells);
+}
+
+void Heat::assemble(const Coefficients& c, std::span<const double> source) {
+  const Index n_owned = mesh_->cells.n_owned();
+  if (filled_for_ < 0) {
+    if (properties_vary_) set_conductivity(trial_, conductivity_);
+    for (Index i = 0; i < std::ssize(capacity_); ++i) {
+      const HeatProperties& m = materials_[mesh_->cell_zone[i]];
+      capacity_[i] = c.next * m.density * mesh_->reference.volume[i] * m.specific_heat(trial_.cells[i]);
+    }
+  }
+  const ConductionOperator::Weights weights{conductivity_, transfer_, capacity_, c.theta};
+  if (filled_for_ < 0) {
+    conduction_.fill(weights, matrix_);
+    solver_->matrix_changed();
+    filled_for_ = c.next;
+  }
+  std::ranges::fill(rhs_, 0.0);
+  // Newton for the stored heat: h(T) = h(T^k) + c(T^k) (T - T^k).
+  for (Index i = 0; i < std::ssize(capacity_); ++i) {
+    const HeatProperties& m = materials_[mesh_->cell_zone[i]];
+    const double mass = m.density * mesh_->reference.volume[i];
+    const double level = state_.enthalpy[i], now = m.specific_heat.antiderivative(trial_.cells[i]) - level;
+    const double before = state_.enthalpy_before[i] - level;  // sum of the weights is zero
+    rhs_[i] = capacity_[i] * trial_.cells[i] - mass * (c.next * now + c.before * before);
+    rhs_[i] += (1 - c.theta) * state_.inflow[i];
+  }
+  for (std::size_t i = 0; i < source.size(); ++i) rhs_[i] += c.theta * source[i];
+  const auto& faces = conduction_.flux_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    rhs_[mesh_->owner[faces[i]]] += c.theta * face_heat_[i];
+    rhs_[n_owned + i] = face_heat_[i];
+  }
+  conduction_.subtract_known(weights, trial_.known, rhs_);
+  std::copy_n(trial_.cells.begin(), n_owned, unknowns_.begin());
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    unknowns_[n_owned + i] = trial_.boundary[faces[i] - mesh_->n_interior];
+}
+
+/// Largest change of a cell over the range of all temperatures (at least a thousandth of their level).
+double Heat::take_solution() {
+  const Index n_owned = mesh_->cells.n_owned();
+  double change = 0, lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+  for (Index c = 0; c < n_owned; ++c) {
+    change = std::max(change, std::abs(unknowns_[c] - trial_.cells[c]));
+    trial_.cells[c] = unknowns_[c];
+    for (const double t : {state_.cells[c], trial_.cells[c]}) {
+      lowest = std::min(lowest, t);
+      highest = std::max(highest, t);
+    }
+  }
+  const auto& faces = conduction_.flux_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    trial_.boundary[faces[i] - mesh_->n_interior] = unknowns_[n_owned + i];
+  const auto& known = conduction_.known_faces();
+  for (std::size_t i = 0; i < known.size(); ++i)
+    trial_.boundary[known[i] - mesh_->n_interior] = trial_.known[conduction_.known_points().size() + i];
+  mesh_->cells.update_ghosts(trial_.cells);
+  mesh_->boundary.update_ghosts(trial_.boundary);
+  conduction_.join_twins(trial_.boundary);
+  const double level = max(mesh_->comm, highest), range = level - min(mesh_->comm, lowest);
+  return max(mesh_->comm, change) / std::max({range, 1e-3 * std::abs(level), 1e-300});
+}
+
+/// R(T^{n+1}), which the next step of the trapezoidal rule needs.
+void Heat::set_inflow(std::span<const double> source) {
+  if (is_steady() || parameters_.scheme != HeatParameters::Scheme::trapezoidal) return;
+  if (properties_vary_) set_conductivity(trial_, conductivity_);
+  const Index n_owned = mesh_->cells.n_owned();
+  const std::vector<double> points = point_temperature(trial_);
+  std::vector<double> heat(mesh_->n_flux_faces());
+  conduction_.face_heat(conductivity_, trial_.cells, trial_.boundary, points, heat);
+  // What is known of a flux face counts, as in the cell's row.
+  const auto& faces = conduction_.flux_faces();
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (conduction_.condition(faces[i]) == HeatCondition::bonded) continue;
+    const double h = transfer_.empty() ? 0 : transfer_[i];
+    heat[faces[i]] = face_heat_[i] - h * mesh_->reference.face_area[faces[i]].norm() *
+                                         trial_.boundary[faces[i] - mesh_->n_interior];
+  }
+  std::ranges::fill(trial_.inflow, 0.0);
+  for (std::size_t i = 0; i < source.size(); ++i) trial_.inflow[i] = source[i];
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
+    if (mesh_->owner[f] < n_owned) trial_.inflow[mesh_->owner[f]] += heat[f];
+    if (f < mesh_->n_interior && mesh_->neighbour[f] < n_owned) trial_.inflow[mesh_->neighbour[f]] -= heat[f];
+  }
+}
+
+void Heat::accept_step() {
+  if (swing_) swing_->accepted(*mesh_, state_.cells, trial_.cells, trial_.time);
+  std::swap(state_, trial_);
+}
+
+std::vector<double> Heat::point_temperature(const HeatState& state) const {
+  std::vector<double> points(mesh_->points.n_local());
+  conduction_.point_values(state.cells, state.boundary, state.known, points);
+  return points;
+}
+
+std::vector<double> Heat::face_temperature(const HeatState& state) const {
+  const std::vector<double> points = point_temperature(state);
+  std::vector<double> values(mesh_->n_flux_faces());
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f)
+    values[f] = conduction_.face_value(f, state.cells, state.boundary, points);
+  return values;
+}
+
+std::vector<PatchHeat> Heat::patch_heat() const {
+  std::vector<double> conductivity(mesh_->n_faces()), heat(mesh_->n_flux_faces());
+  set_conductivity(state_, conductivity);
+  conduction_.face_heat(conductivity, state_.cells, state_.boundary, point_temperature(state_), heat);
+  std::vector<PatchHeat> result;
+  for (const Patch& patch : mesh_->patches) {
+    if (patch.bonded) continue;
+    double through = 0;
+    for (Index f = patch.first; f < patch.first + patch.count; ++f)
+      if (conduction_.condition(f) != HeatCondition::symmetry) through += heat[f];
+    result.push_back({patch.name, sum(mesh_->comm, through)});
+  }
+  return result;
+}
+
+double Heat::stored_heat() const {
+  double heat = 0;
+  for (Index c = 0; c < mesh_->cells.n_owned(); ++c)
+    heat += materials_[mesh_->cell_zone[c]].density * mesh_->reference.volume[c] * state_.enthalpy[c];
+  return sum(mesh_->comm, heat);
+}
+
+// Heat needs L^2 / a to get through a solid of half thickness L = volume / surface, a = k / (rho c).
+void Heat::judge(std::vector<std::string>& sentences) const {
+  if (!is_steady() || state_.steps < 2) return;
+  const HeatProperties& m = materials_.front();
+  double volume = 0, surface = 0, level = 0;
+  for (Index c = 0; c < mesh_->cells.n_owned(); ++c) {
+    volume += mesh_->reference.volume[c];
+    level += mesh_->reference.volume[c] * state_.cells[c];
+  }
+  for (Index f = mesh_->n_interior; f < mesh_->n_flux_faces(); ++f)
+    if (conduction_.condition(f) != HeatCondition::symmetry &&
+        conduction_.condition(f) != HeatCondition::bonded)
+      surface += mesh_->reference.face_area[f].norm();
+  volume = sum(mesh_->comm, volume);
+  level = sum(mesh_->comm, level) / volume;
+  const double size = volume / sum(mesh_->comm, surface);
+  const double stored = m.density * m.specific_heat(level);
+  if (!(stored > 0)) {
+    sentences.push_back(
+        "heat storage left out (steady): give 'specific-heat' to have its time compared with the step.");
+    return;
+  }
+  const double time = size * size * stored / m.conductivity(level);
+  sentences.push_back(
+      fmt::format("heat storage left out (steady): heat needs about {:.2g} s to spread through the solid, a "
+                  "step is {:.2g} "
+                  "s (Fourier number {:.2g}); {}.",
+                  time, state_.dt, state_.dt / time,
+                  state_.dt > 3 * time ? "leaving it out was sound"
+                                       : "use 'analysis: transient' if the loads change that fast"));
+}
+
+void Heat::save(CheckpointWriter& file) const {
+  file.write("cell-temperature", state_.cells);
+  file.write("face-temperature", state_.boundary);
+  file.write("known-temperature", state_.known);
+  file.write("enthalpy", state_.enthalpy);
+  file.write("enthalpy-before", state_.enthalpy_before);
+  file.write("heat-inflow", state_.inflow);
+  file.write_scalar("heat-time", state_.time);
+  file.write_scalar("heat-dt", state_.dt);
+  file.write_scalar("heat-steps", state_.steps);
+}
+
+void Heat::load(CheckpointReader& file) {
+  file.read("cell-temperature", state_.cells);
+  file.read("face-temperature", state_.boundary);
+  file.read("known-temperature", state_.known);
+  file.read("enthalpy", state_.enthalpy);
+  file.read("enthalpy-before", state_.enthalpy_before);
+  file.read("heat-inflow", state_.inflow);
+  state_.time = file.read_scalar("heat-time");
+  state_.dt = file.read_scalar("heat-dt");
+  state_.steps = static_cast<int>(file.read_scalar("heat-steps"));
+}
+
+}  // namespace couplet

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/coupling/participant.hpp"
+#include "common/fv/conduction.hpp"
+#include "common/fv/table.hpp"
+#include "common/linalg/linear_solver.hpp"
+#include "solid_solver/parameters/heat_parameters.hpp"
+#include "solid_solver/thermal/heat_boundaries.hpp"
+#include "solid_solver/thermal/heat_swing.hpp"
+
+namespace couplet {
+
+/// What conduction needs to know of one material.
+struct HeatProperties {
+  double density = 0;      // [kg/m^3]
+  Property conductivity;   // [W/(m K)]
+  Property specific_heat;  // [J/(kg K)]
+  bool is_constant() const { return conductivity.is_constant() && specific_heat.is_constant(); }
+};
+
+/// Temperatures [K] at one accepted time, ghosts up to date.
+struct HeatState {
+  double time = 0, dt = 0;                        ///< dt: of the step that ended here
+  int steps = 0;                                  ///< accepted so far
+  std::vector<double> cells, boundary;            ///< per local cell, per local boundary face
+  std::vector<double> known;                      ///< prescribed values, see ConductionOperator
+  std::vector<double> enthalpy, enthalpy_before;  ///< per owned cell, at t^n and t^{n-1} [J/kg]
+  std::vector<double> inflow;                     ///< per owned cell [W]; trapezoidal rule only
+};
+
+/// Heat that flows through a patch into the solid [W].
+struct PatchHeat {
+  std::string patch;
+  double heat = 0;
+};
+
+/// Conduction of heat in a solid at rest, thesis (2.35):
+///   rho V sum_i a_i h(T^i) / dt = theta R(T^{n+1}) + (1 - theta) R(T^n),  R = sum_f k S . grad T + V source
+/// with h the integral of the specific heat, so that energy is kept also when it depends on T; a = (1, -1)
+/// and theta = 1 for Euler, theta = 1/2 for the trapezoidal rule, three levels for three-point backward
+/// (2.46)-(2.47). Properties that depend on T are iterated: conductivities at the last temperature, heat
+/// capacities by Newton's method.
+class Heat final {
+ public:
+  /// `materials`: one a zone of the mesh. Collective. Throws Error.
+  Heat(const Mesh& mesh, std::vector<HeatProperties> materials, const HeatParameters& parameters,
+       const std::vector<std::string>& symmetry_patches);
+  ~Heat();
+
+  /// Solves for the temperature at the end of the step; `source`: further heat per owned cell [W/m^3] or
+  /// empty. Throws SolveFailure. Collective.
+  void solve(const Step& step, std::span<const double> source = {});
+  void accept_step();
+  void save(CheckpointWriter& file) const;
+  void load(CheckpointReader& file);
+
+  const ConductionOperator& conduction() const { return conduction_; }
+  const HeatState& accepted() const { return state_; }
+  const HeatState& trial() const { return trial_; }
+  /// Of all local points. Collective.
+  std::vector<double> point_temperature(const HeatState& state) const;
+  /// Of the flux faces of the mesh. Collective.
+  std::vector<double> face_temperature(const HeatState& state) const;
+  /// Heat through each patch at the accepted time. Collective.
+  std::vector<PatchHeat> patch_heat() const;
+  /// Heat stored in the whole solid, from an arbitrary level on [J]. Collective.
+  double stored_heat() const;
+  /// What was left out, for Participant::finish(). Collective.
+  void judge(std::vector<std::string>& sentences) const;
+
+ private:
+  struct Coefficients;
+  bool is_steady() const { return parameters_.analysis == HeatParameters::Analysis::steady; }
+  void start();
+  Coefficients coefficients(double dt) const;
+  void set_conductivity(const HeatState& state, std::span<double> conductivity) const;
+  std::vector<double> sources(double t, std::span<const double> further) const;
+  void assemble(const Coefficients& c, std::span<const double> source);
+  double take_solution();
+  void set_inflow(std::span<const double> source);
+
+  const Mesh* mesh_;
+  std::vector<HeatProperties> materials_;
+  HeatParameters parameters_;
+  HeatBoundaries boundaries_;
+  ConductionOperator conduction_;
+  Expression source_;
+  bool properties_vary_ = false;
+
+  HeatState state_, trial_;
+  std::vector<double> conductivity_, face_heat_, transfer_, capacity_, rhs_, unknowns_;
+  SparseMatrix matrix_;
+  std::unique_ptr<LinearSolver> solver_;
+  double filled_for_ = -1;          // a_0 / dt of the matrix now there; -1: none
+  std::optional<HeatSwing> swing_;  // of the one scheme that does not damp
+};
+
+}  // namespace couplet

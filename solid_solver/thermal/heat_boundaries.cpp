@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/thermal/heat_boundaries.hpp"
+
+#include <algorithm>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+
+namespace couplet {
+namespace {
+
+using Kind = HeatBoundary::Type;
+
+HeatCondition condition_of(Kind type) {
+  if (type == Kind::temperature) return HeatCondition::temperature;
+  return type == Kind::symmetry ? HeatCondition::symmetry : HeatCondition::flux;
+}
+
+}  // namespace
+
+HeatBoundaries::HeatBoundaries(const Mesh& mesh, const HeatParameters& parameters,
+                               const std::vector<std::string>& symmetry_patches)
+    : mesh_(&mesh) {
+  std::vector<std::string> names;
+  for (const Patch& patch : mesh.patches)
+    if (!patch.bonded) names.push_back(patch.name);
+  for (const auto& [name, boundary] : parameters.boundaries)
+    if (!mesh.find_patch(name))
+      throw Error("heat.boundaries.{}: the mesh has no patch of this name. {}", name,
+                  did_you_mean(name, names, "patches"));
+  for (const std::string& name : names) {
+    OnPatch here;
+    const auto found = parameters.boundaries.find(name);
+    if (found != parameters.boundaries.end()) {
+      const HeatBoundary& b = found->second;
+      const std::string where = "heat.boundaries." + name;
+      here.type = b.type;
+      if (b.type == Kind::temperature || b.type == Kind::flux)
+        here.value = Expression(b.value, where + ".value");
+      if (b.type == Kind::convection) {
+        here.coefficient = Expression(b.coefficient, where + ".coefficient");
+        here.ambient = Expression(b.ambient, where + ".ambient");
+      }
+    } else if (std::ranges::count(symmetry_patches, name) > 0) {
+      here.type = Kind::symmetry;
+    }
+    conditions_.push_back(condition_of(here.type));
+    on_patch_.push_back(std::move(here));
+  }
+  // The patch of the faces between materials is the last one.
+  if (names.size() == mesh.patches.size()) return;
+  conditions_.push_back(HeatCondition::bonded);
+  on_patch_.emplace_back();
+}
+
+bool HeatBoundaries::fix_the_level() const {
+  return any_transfer() || std::ranges::count(conditions_, HeatCondition::temperature) > 0;
+}
+
+bool HeatBoundaries::any_transfer() const {
+  return std::ranges::any_of(on_patch_, [](const OnPatch& p) { return p.type == Kind::convection; });
+}
+
+bool HeatBoundaries::transfer_uses_time() const {
+  return std::ranges::any_of(on_patch_, [](const OnPatch& p) { return p.coefficient.uses_time(); });
+}
+
+void HeatBoundaries::known(const ConductionOperator& conduction, double t, std::span<double> values) const {
+  const auto& points = conduction.known_points();
+  // A vertex on two such patches takes the value of the first one (order of the mesh file).
+  std::vector<Index> column(mesh_->points.n_local(), -1);
+  for (std::size_t i = 0; i < points.size(); ++i) column[points[i]] = static_cast<Index>(i);
+  std::size_t next = points.size();
+  for (std::size_t p = 0; p < on_patch_.size(); ++p) {
+    if (conditions_[p] != HeatCondition::temperature) continue;
+    const Patch& patch = mesh_->patches[p];
+    const auto take_points = [&](Index first, Index count) {
+      for (Index f = first; f < first + count; ++f)
+        for (const Index v : mesh_->face_points[f]) {
+          if (column[v] < 0) continue;
+          values[column[v]] = on_patch_[p].value(mesh_->reference_points[v], t);
+          column[v] = -1;
+        }
+    };
+    take_points(patch.first, patch.count);
+    take_points(patch.ghost_first, patch.ghost_count);
+  }
+  for (std::size_t p = 0; p < on_patch_.size(); ++p) {
+    if (conditions_[p] != HeatCondition::temperature) continue;
+    const Patch& patch = mesh_->patches[p];
+    for (Index f = patch.first; f < patch.first + patch.count; ++f)
+      values[next++] = on_patch_[p].value(mesh_->reference.face_centre[f], t);
+  }
+}
+
+void HeatBoundaries::fluxes(double t, std::span<double> heat, std::span<double> transfer) const {
+  std::size_t next = 0;
+  for (std::size_t p = 0; p < on_patch_.size(); ++p) {
+    if (conditions_[p] != HeatCondition::flux) continue;
+    const OnPatch& here = on_patch_[p];
+    const Patch& patch = mesh_->patches[p];
+    for (Index f = patch.first; f < patch.first + patch.count; ++f, ++next) {
+      const Vec3& x = mesh_->reference.face_centre[f];
+      const double area = mesh_->reference.face_area[f].norm();
+      heat[next] = 0;
+      if (!transfer.empty()) transfer[next] = 0;
+      if (here.type == Kind::flux) heat[next] = area * here.value(x, t);
+      if (here.type == Kind::convection) {
+        transfer[next] = here.coefficient(x, t);
+        heat[next] = area * transfer[next] * here.ambient(x, t);
+      }
+    }
+  }
+}
+
+}  // namespace couplet

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/thermal/heat_errors.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/base/saved_numbers.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+TimeSchemeParameters scheme_of(HeatParameters::Scheme scheme) {
+  TimeSchemeParameters p;
+  p.type = scheme == HeatParameters::Scheme::euler         ? TimeScheme::euler
+           : scheme == HeatParameters::Scheme::three_point ? TimeScheme::three_point
+                                                           : TimeScheme::trapezoidal;
+  return p;
+}
+
+/// Sums of a linear fit through the neighbours of a cell, weighted by 1 / d^2.
+struct Fit {
+  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
+  Eigen::Vector4d values = Eigen::Vector4d::Zero();
+  void add(const Vec3& d, double value) {
+    const double weight = 1 / d.squaredNorm();
+    const Eigen::Vector4d row(1, d.x(), d.y(), d.z());
+    moments += weight * row * row.transpose();
+    values += weight * value * row;
+  }
+  /// In the cell itself; in a plane the third direction is left out.
+  double value() const { return moments.completeOrthogonalDecomposition().solve(values)[0]; }
+};
+
+}  // namespace
+
+HeatErrors::HeatErrors(const Mesh& mesh, const HeatParameters& parameters)
+    : mesh_(mesh),
+      steady_(parameters.analysis == HeatParameters::Analysis::steady),
+      steps_(scheme_of(parameters.scheme)) {
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c) volume_ += mesh.reference.volume[c];
+  volume_ = sum(mesh.comm, volume_);
+}
+
+double HeatErrors::root_mean_square(std::span<const double> cells) const {
+  double squares = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
+    squares += mesh_.reference.volume[c] * cells[c] * cells[c];
+  return std::sqrt(sum(mesh_.comm, squares) / volume_);
+}
+
+double HeatErrors::mean(std::span<const double> cells) const {
+  double whole = 0;
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) whole += mesh_.reference.volume[c] * cells[c];
+  return sum(mesh_.comm, whole) / volume_;
+}
+
+double HeatErrors::size(std::span<const double> temperature, double level) const {
+  std::vector<double> above(temperature.begin(), temperature.begin() + mesh_.cells.n_owned());
+  for (double& t : above) t -= level;
+  return root_mean_square(above);
+}
+
+void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
+  if (steady_) return;
+  if (!begun_) level_ = mean(before.cells), begun_ = true;
+  const auto n = std::size_t(mesh_.cells.n_owned());
+  std::vector<double> rate(n);
+  for (std::size_t c = 0; c < n; ++c) rate[c] = (now.cells[c] - before.cells[c]) / now.dt;
+  // Rates are those of the middles of steps, as far apart as half of both.
+  if (dt_ > 0 && rate_.size() != n)
+    throw Error("The checkpoint's errors of steps are those of another mesh. Use an earlier one.");
+  if (dt_ > 0)  // the same on all ranks, also on one without cells
+    steps_.add(rate_, rate, 0.5 * (now.dt + dt_), dt_, size(now.cells, level_),
+               [this](std::span<const double> cells) { return root_mean_square(cells); });
+  rate_ = std::move(rate);
+  dt_ = now.dt;
+}
+
+/// The temperature of each owned cell against that of a linear fit through its neighbours [K].
+std::vector<double> HeatErrors::gaps(const Heat& heat) const {
+  const HeatState& now = heat.accepted();
+  const std::vector<double> faces = heat.face_temperature(now);  // also where nothing is solved for
+  const Geometry& at = mesh_.reference;
+  std::vector<Fit> fits(std::size_t(mesh_.cells.n_local()));
+  for (Index f = 0; f < mesh_.n_flux_faces(); ++f) {
+    const Index owner = mesh_.owner[f];
+    if (f >= mesh_.n_interior) {
+      fits[owner].add(at.face_centre[f] - at.cell_centre[owner], faces[f]);
+      continue;
+    }
+    const Index neighbour = mesh_.neighbour[f];
+    const Vec3 d = at.cell_centre[neighbour] + mesh_.shift(f) - at.cell_centre[owner];
+    fits[owner].add(d, now.cells[neighbour]);
+    fits[neighbour].add(-d, now.cells[owner]);
+  }
+  std::vector<double> gap(std::size_t(mesh_.cells.n_owned()));
+  for (std::size_t c = 0; c < gap.size(); ++c) gap[c] = fits[c].value() - now.cells[c];
+  return gap;
+}
+
+ErrorParts HeatErrors::parts(const Heat& heat, std::optional<double> reference) const {
+  const HeatState& now = heat.accepted();
+  ErrorParts parts;
+  if (now.steps == 0) return parts;
+  const double level = steady_ || !begun_ ? mean(now.cells) : level_;
+  const double varies = size(now.cells, level);
+  const double size = reference ? this->size(now.cells, *reference) : varies;
+  if (!(varies > 1e-12 * std::abs(level)) || !(size > 1e-12 * std::abs(level)))
+    return parts;  // one temperature: nothing errs
+  parts.mesh = root_mean_square(gaps(heat)) / size;
+  if (!steady_) parts.step = steps_.over_size() * varies / size;
+  return parts;
+}
+
+std::vector<double> HeatErrors::state() const {
+  std::vector<double> values{begun_ ? 1. : 0., level_, dt_, double(rate_.size())};
+  const std::vector<double> sums = steps_.state();
+  for (const auto* part : {&rate_, &sums}) values.insert(values.end(), part->begin(), part->end());
+  return values;
+}
+
+void HeatErrors::restore(std::span<const double> state) {
+  if (state.empty()) return;
+  SavedNumbers saved(state, "errors of steps");
+  begun_ = saved.real() != 0, level_ = saved.real(), dt_ = saved.real();
+  const std::span<const double> rate = saved.next(saved.count_of(1));
+  rate_.assign(rate.begin(), rate.end());
+  steps_.restore(saved.rest());
+}
+
+}  // namespace couplet

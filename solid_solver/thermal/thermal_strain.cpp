@@ -1,0 +1,413 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/thermal/thermal_strain.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+std::vector<std::string> symmetry_patches(const SolidParameters& parameters) {
+  std::vector<std::string> names;
+  for (const auto& [name, boundary] : parameters.boundaries)
+    if (boundary.type == SolidBoundary::Type::symmetry) names.push_back(name);
+  return names;
+}
+
+Property property(const std::optional<config::ExpressionText>& text, const std::string& key,
+                  const char* needed_by) {
+  if (!text) throw Error("material.{}: this key is missing; {} needs it.", key, needed_by);
+  return Property(*text, "material." + key);
+}
+
+}  // namespace
+
+std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& parameters) {
+  const auto properties = [&](const SolidMaterial& material) {
+    const HeatMaterial& m = material.heat;
+    HeatProperties result{material.density, property(m.conductivity, "conductivity", "'heat'"), 0};
+    if (m.specific_heat || parameters.heat->analysis == HeatParameters::Analysis::transient)
+      result.specific_heat = property(m.specific_heat, "specific-heat", "a transient 'heat'");
+    return result;
+  };
+  const std::vector<SolidMaterial> materials = materials_of(parameters);
+  const auto zones = zones_of(parameters.materials);
+  std::vector<HeatProperties> of_zone;
+  for (const std::string& zone : mesh.zones) {
+    std::size_t i = 0;
+    while (i + 1 < zones.size() && std::ranges::find(zones[i], zone) == zones[i].end()) ++i;
+    of_zone.push_back(properties(materials[i]));
+  }
+  return std::make_unique<Heat>(mesh, std::move(of_zone), *parameters.heat, symmetry_patches(parameters));
+}
+
+ThermalStrain::ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic,
+                             const SolidParameters& parameters)
+    : mesh_(&mesh),
+      elastic_(&elastic),
+      parameters_(parameters),
+      materials_(materials_of(parameters)),
+      coupled_(parameters.thermoelastic_coupling) {
+  if (parameters.heat) heat_ = make_heat(mesh, parameters);
+  given_ = parameters.interface_data && parameters.interface_data->temperature;
+  if (parameters.temperature) prescribed_.emplace(*parameters.temperature, "temperature");
+  if (parameters.expansion) {
+    for (const SolidMaterial& material : materials_)
+      expansion_.push_back(property(material.heat.expansion, "expansion", "'thermal-expansion'"));
+    reference_ = parameters.expansion->reference_temperature;
+  }
+  for (const SolidMaterial& m : materials_) {
+    youngs_modulus_.emplace_back();
+    poissons_ratio_.emplace_back();
+    if (m.heat.youngs_modulus) youngs_modulus_.back().emplace(*m.heat.youngs_modulus, "youngs-modulus-table");
+    if (m.heat.poissons_ratio) poissons_ratio_.back().emplace(*m.heat.poissons_ratio, "poissons-ratio-table");
+    varies_ = varies_ || m.heat.youngs_modulus || m.heat.poissons_ratio;
+  }
+  plane_stress_ = mesh.dim == 2 && parameters.plane == SolidParameters::Plane::stress;
+  if (coupled_) dilation_.assign(mesh.cells.n_owned(), 0), dilation_rate_ = dilation_;
+  if (varies_) lame_ = lame_trial_ = lame_at(cell_temperature(0, false));
+  // What is given at the interface comes later: see set_interface().
+  start_ = given_ ? std::vector<double>(mesh.n_flux_faces(), reference_) : face_temperature(0, false);
+  lowest_ = *std::ranges::min_element(start_);
+  highest_ = *std::ranges::max_element(start_);
+  set_accepted();
+}
+
+double ThermalStrain::modulus(Index cell) const {
+  const LameConstants& lame = elastic_->lame(cell);
+  return (plane_stress_ ? 2 : 3) * lame.lambda + 2 * lame.mu;
+}
+
+// As the operator has its constants: the mean within a material.
+double ThermalStrain::face_modulus(Index face) const {
+  const double here = modulus(mesh_->owner[face]);
+  return face < mesh_->n_interior ? 0.5 * (here + modulus(mesh_->neighbour[face])) : here;
+}
+
+double ThermalStrain::three_bulk(Index cell) const {
+  LameConstants lame = elastic_->lame(cell);
+  if (plane_stress_) lame.lambda = 2 * lame.lambda * lame.mu / (2 * lame.mu - lame.lambda);  // the true one
+  return 3 * lame.lambda + 2 * lame.mu;
+}
+
+std::vector<double> ThermalStrain::cell_temperature(double t, bool trial) const {
+  if (heat_) return trial ? heat_->trial().cells : heat_->accepted().cells;
+  if (interface_) return given_at(at_cells, trial);
+  std::vector<double> values(mesh_->cells.n_local(), reference_);
+  if (given_) return values;  // set_interface() comes later
+  prescribed_->evaluate(mesh_->reference.cell_centre, t, values);
+  return values;
+}
+
+std::vector<LameConstants> ThermalStrain::lame_at(std::span<const double> temperature) const {
+  std::vector<LameConstants> result;
+  for (Index c = 0; c < mesh_->cells.n_local(); ++c) {
+    const int i = mesh_->material_of(c);
+    SolidMaterial m = materials_[i];
+    if (youngs_modulus_[i]) m.youngs_modulus = (*youngs_modulus_[i])(temperature[c]);
+    if (poissons_ratio_[i]) m.poissons_ratio = (*poissons_ratio_[i])(temperature[c]);
+    result.push_back(lame_constants(parameters_, m));
+  }
+  return result;
+}
+
+// The constants of the accepted step hold as long as they are good enough: a new matrix costs more.
+void ThermalStrain::choose_stiffness(double t) {
+  lame_trial_ = lame_at(cell_temperature(t, true));
+  double change = 0;
+  for (std::size_t c = 0; c < lame_.size(); ++c) {
+    const double size = 2 * lame_[c].mu + std::abs(lame_[c].lambda);
+    change = std::max({change, 2 * std::abs(lame_trial_[c].mu - lame_[c].mu) / size,
+                       std::abs(lame_trial_[c].lambda - lame_[c].lambda) / size});
+  }
+  if (max(mesh_->comm, change) <= parameters_.stiffness_tolerance) lame_trial_ = lame_;
+}
+
+// All ranks answer alike: new matrices are made together.
+std::span<const LameConstants> ThermalStrain::stiffness() const {
+  if (!varies_) return {};
+  bool differs = false;
+  for (std::size_t c = 0; c < lame_trial_.size(); ++c) {
+    const LameConstants now = elastic_->lame(static_cast<Index>(c));
+    differs = differs || now.mu != lame_trial_[c].mu || now.lambda != lame_trial_[c].lambda;
+  }
+  return any(mesh_->comm, differs) ? std::span<const LameConstants>(lame_trial_)
+                                   : std::span<const LameConstants>();
+}
+
+std::vector<double> ThermalStrain::face_temperature(double t, bool trial) const {
+  if (heat_) return heat_->face_temperature(trial ? heat_->trial() : heat_->accepted());
+  if (given_) return given_at(at_faces, trial);
+  std::vector<double> values(mesh_->n_flux_faces());
+  prescribed_->evaluate({mesh_->reference.face_centre.data(), values.size()}, t, values);
+  return values;
+}
+
+/// Before anything was given the solid has its reference temperature.
+std::vector<double> ThermalStrain::given_at(Places places, bool trial) const {
+  const std::vector<double>& faces = trial ? given_trial_ : given_accepted_;
+  const FaceInterpolation& at = interface_.value().at(places);
+  std::vector<double> values(at.size(), reference_);
+  for (std::size_t i = 0; i < values.size() && !faces.empty(); ++i) values[i] = at.value(i, faces);
+  return values;
+}
+
+void ThermalStrain::set_interface(const std::vector<Vec3>& face_centres) {
+  const auto& g = mesh_->reference;
+  const std::span flux_faces(g.face_centre.data(), std::size_t(mesh_->n_flux_faces()));
+  interface_.emplace(mesh_->comm, face_centres,
+                     std::vector<std::span<const Vec3>>{flux_faces, mesh_->reference_points, g.cell_centre});
+  start_ = face_temperature(0, false);
+  set_accepted();
+}
+
+void ThermalStrain::take_temperature(const std::vector<double>& faces) {
+  const std::vector<double> given = interface_.value().with_others(faces);
+  given_trial_ = given.empty() ? given_accepted_ : given;
+}
+
+std::vector<double> ThermalStrain::strain(std::span<const double> temperature) const {
+  std::vector<double> result(temperature.size());
+  for (std::size_t f = 0; f < temperature.size(); ++f)
+    result[f] = expansion_[mesh_->material_of(mesh_->owner[f])].integral(reference_, temperature[f]);
+  return result;
+}
+
+void ThermalStrain::set_accepted() {
+  if (!expands()) return;
+  accepted_strain_ = strain(start_);
+  stiffness_changed();
+}
+
+void ThermalStrain::stiffness_changed() {
+  if (expands() && by_cells()) accepted_stress_ = stress_of(accepted_strain_);
+}
+
+std::vector<double> ThermalStrain::stress_of(const std::vector<double>& strain) const {
+  std::vector<double> stress = strain;
+  for (std::size_t f = 0; f < stress.size(); ++f) stress[f] *= face_modulus(static_cast<Index>(f));
+  if (!by_cells()) return stress;
+  std::vector<double> of_cells = pyramid_means(strain);
+  of_cells.resize(std::size_t(mesh_->cells.n_local()));
+  const auto bulk = [&](Index c) { return 3 * bulk_of_cells(elastic_->lame(c), elastic_->volume_strain()); };
+  for (Index c = 0; c < mesh_->cells.n_owned(); ++c) of_cells[c] *= bulk(c);
+  mesh_->cells.update_ghosts(of_cells);
+  for (Index f = 0; f < std::ssize(stress); ++f) {
+    const Index owner = mesh_->owner[f];
+    if (f >= mesh_->n_interior) {
+      stress[f] += of_cells[owner] - bulk(owner) * strain[f];
+      continue;
+    }
+    const Index neighbour = mesh_->neighbour[f];
+    const auto [here, there] = pyramids(*mesh_, f);
+    stress[f] += (here * of_cells[owner] + there * of_cells[neighbour]) / (here + there) -
+                 0.5 * (bulk(owner) + bulk(neighbour)) * strain[f];
+  }
+  return stress;
+}
+
+void ThermalStrain::begin_step(const Step& step) {
+  step_ = step;
+  if (heat_) {
+    std::vector<double> source(dilation_rate_.size());
+    for (std::size_t c = 0; c < source.size(); ++c) {
+      const double temperature = heat_->accepted().cells[c];
+      const auto cell = static_cast<Index>(c);
+      source[c] = -three_bulk(cell) * expansion_[mesh_->material_of(cell)](temperature) * temperature *
+                  dilation_rate_[c];
+    }
+    heat_->solve(step, source);
+  }
+  end_ = face_temperature(step.time + step.dt, true);
+  if (varies_) choose_stiffness(step.time + step.dt);
+}
+
+void ThermalStrain::add_loads(double t, const ElasticKernel& kernel, std::span<double> rhs) {
+  if (expands()) kernel.add_pressure(pressure(t), rhs);
+}
+
+std::vector<double> ThermalStrain::pressure(double t) {
+  if (!expands()) return {};
+  std::vector<double> temperature;
+  if (prescribed_) {
+    temperature = face_temperature(t, true);
+  } else {
+    // After the step has been accepted `start_` is its end.
+    const double part = t > time_ ? (t - step_.time) / step_.dt : 0;
+    temperature = start_;
+    if (part > 0)
+      for (std::size_t f = 0; f < temperature.size(); ++f) temperature[f] += part * (end_[f] - start_[f]);
+  }
+  std::vector<double> pressure = stress_of(strain(temperature));
+  pressure.resize(mesh_->n_faces());
+  mesh_->boundary.update_ghosts(std::span(pressure).subspan(mesh_->n_interior));
+  return pressure;
+}
+
+void ThermalStrain::accept_step() {
+  if (errors_) errors_->see_step(heat_->accepted(), heat_->trial());
+  if (heat_) heat_->accept_step();
+  given_accepted_ = given_trial_;
+  time_ = step_.time + step_.dt;
+  std::swap(start_, end_);
+  lame_ = lame_trial_;
+  for (const double t : start_) {
+    lowest_ = std::min(lowest_, t);
+    highest_ = std::max(highest_, t);
+  }
+  set_accepted();
+}
+
+void ThermalStrain::add_face_stress(Index first, std::span<Tensor3> stress) const {
+  if (!expands()) return;
+  for (std::size_t i = 0; i < stress.size(); ++i) {
+    const Index f = first + static_cast<Index>(i);
+    stress[i].diagonal().array() -= by_cells() ? accepted_stress_[f] : face_modulus(f) * accepted_strain_[f];
+  }
+}
+
+std::vector<double> ThermalStrain::pyramid_means(const std::vector<double>& of_faces) const {
+  const Index n_owned = mesh_->cells.n_owned();
+  std::vector<double> total(n_owned, 0), weight(n_owned, 0);
+  for (Index f = 0; f < mesh_->n_flux_faces(); ++f) {
+    const auto add = [&](Index c, double pyramid) {
+      if (c >= n_owned) return;
+      total[c] += pyramid * of_faces[f];
+      weight[c] += pyramid;
+    };
+    const auto [here, there] = pyramids(*mesh_, f);
+    add(mesh_->owner[f], here);
+    if (f < mesh_->n_interior) add(mesh_->neighbour[f], there);
+  }
+  for (Index c = 0; c < n_owned; ++c) total[c] /= weight[c];
+  return total;
+}
+
+std::vector<double> ThermalStrain::cell_strain() const {
+  if (!by_cells()) return pyramid_means(accepted_strain_);
+  std::vector<double> result = pyramid_means(accepted_stress_);
+  for (std::size_t c = 0; c < result.size(); ++c) result[c] /= modulus(static_cast<Index>(c));
+  return result;
+}
+
+void ThermalStrain::add_cell_stress(std::span<Tensor3> stress) const {
+  if (!expands()) return;
+  const std::vector<double> strain = cell_strain();
+  for (Index c = 0; c < std::ssize(strain); ++c) stress[c].diagonal().array() -= modulus(c) * strain[c];
+}
+
+// tr(sigma) = 3 K [tr(eps) - 3 epsilon], in plane strain and plane stress, too.
+void ThermalStrain::take_stress(std::span<const Tensor3> stress) {
+  const std::vector<double> strain = cell_strain();
+  for (std::size_t c = 0; c < stress.size(); ++c) {
+    const double now = stress[c].trace() / three_bulk(static_cast<Index>(c)) + 3 * strain[c];
+    dilation_rate_[c] = (now - dilation_[c]) / step_.dt;
+    dilation_[c] = now;
+  }
+}
+
+/// (3 K alpha)^2 T / ((lambda + 2 mu) rho c): what the coupling adds to the stiffness, relatively; of the
+/// material where it is most.
+double ThermalStrain::coupling_number() const {
+  double most = 0;
+  const double temperature = max(mesh_->comm, highest_);
+  for (std::size_t i = 0; heat_ && expands() && i < materials_.size(); ++i) {
+    const SolidMaterial& m = materials_[i];
+    if (!m.heat.specific_heat) continue;
+    const double e = m.youngs_modulus, nu = m.poissons_ratio;
+    const double beta = e / (1 - 2 * nu) * expansion_[i](temperature);
+    const double stiff = e * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+    const double capacity =
+        m.density * Property(*m.heat.specific_heat, "material.specific-heat")(temperature);
+    most = std::max(most, beta * beta * temperature / (stiff * capacity));
+  }
+  return most;
+}
+
+std::vector<double> ThermalStrain::point_temperature() const {
+  if (heat_) return heat_->point_temperature(heat_->accepted());
+  if (given_) return given_at(at_points, false);
+  std::vector<double> values(mesh_->points.n_local());
+  prescribed_->evaluate(mesh_->reference_points, time_, values);
+  return values;
+}
+
+void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
+  points_ = point_temperature();
+  if (heat_) {
+    cells_ = heat_->accepted().cells;
+  } else if (given_) {
+    cells_ = given_at(at_cells, false);
+  } else {
+    cells_.resize(mesh_->cells.n_local());
+    prescribed_->evaluate(mesh_->reference.cell_centre, time_, cells_);
+  }
+  fields.push_back({"temperature", "K", OutputField::Place::points, 1, points_});
+  fields.push_back({"cell-temperature", "K", OutputField::Place::cells, 1, cells_});
+}
+
+void ThermalStrain::save(CheckpointWriter& file) const {
+  if (heat_)
+    heat_->save(file), file.write("temperature-errors", errors_ ? errors_->state() : std::vector<double>{});
+  if (given_) file.write("interface-temperature", given_accepted_);
+  if (coupled_) {
+    file.write("dilation", dilation_);
+    file.write("dilation-rate", dilation_rate_);
+  }
+  std::vector<double> constants;
+  for (const LameConstants& lame : lame_) constants.insert(constants.end(), {lame.mu, lame.lambda});
+  if (varies_) file.write("elastic-constants", constants);
+  file.write_scalar("temperature-time", time_);
+  file.write_scalar("lowest-temperature", min(mesh_->comm, lowest_));
+  file.write_scalar("highest-temperature", max(mesh_->comm, highest_));
+}
+
+void ThermalStrain::load(CheckpointReader& file) {
+  if (heat_) {
+    heat_->load(file);
+    const std::vector<double> errors = file.read("temperature-errors");
+    if (errors_) errors_->restore(errors);
+  }
+  if (given_)
+    given_trial_ = given_accepted_ =
+        file.read_or_none("interface-temperature", interface_ ? interface_->n_faces() : 0);
+  if (coupled_) {
+    file.read("dilation", dilation_);
+    file.read("dilation-rate", dilation_rate_);
+  }
+  if (varies_) {
+    std::vector<double> constants(2 * lame_.size());
+    file.read("elastic-constants", constants);
+    for (std::size_t c = 0; c < lame_.size(); ++c) lame_[c] = {constants[2 * c], constants[2 * c + 1]};
+    lame_trial_ = lame_;
+  }
+  time_ = file.read_scalar("temperature-time");
+  lowest_ = file.read_scalar("lowest-temperature");
+  highest_ = file.read_scalar("highest-temperature");
+  start_ = face_temperature(time_, false);
+  set_accepted();
+}
+
+void ThermalStrain::collect_errors() {
+  if (heat_ && expands()) errors_.emplace(*mesh_, parameters_.heat.value());
+}
+
+ErrorParts ThermalStrain::error_parts() const {
+  return errors_ ? errors_->parts(*heat_, reference_) : ErrorParts{};
+}
+
+void ThermalStrain::judge(std::vector<std::string>& sentences) const {
+  if (heat_) heat_->judge(sentences);
+}
+
+void ThermalStrain::add_evidence(SolidEvidence& evidence) const {
+  if (const double number = coupling_number(); number > 0) evidence.coupling_number = number;
+  evidence.temperature_range = max(mesh_->comm, highest_) - min(mesh_->comm, lowest_);
+}
+
+}  // namespace couplet

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/fv/expression.hpp"
+#include "common/fv/table.hpp"
+#include "solid_solver/thermal/effect.hpp"
+#include "solid_solver/thermal/heat.hpp"
+#include "solid_solver/thermal/heat_errors.hpp"
+
+namespace couplet {
+
+/// Conduction for this mesh and these parameters (`parameters.heat` must be there). Collective.
+std::unique_ptr<Heat> make_heat(const Mesh& mesh, const SolidParameters& parameters);
+
+/// Temperature in the solid, solved for or prescribed, and the stress it makes, thesis (2.21), (2.60):
+///   sigma = sigma(grad u) - B epsilon I,   epsilon = integral of alpha dT from T_ref on,   B = 3 lambda + 2 mu
+/// (plane stress: B = 2 lambda + 2 mu with the effective lambda). alpha is the instantaneous coefficient: 3 K
+/// alpha (T - T0) of (5.10) holds for a constant one only. In the equations B epsilon S is a known force of
+/// each face at its own temperature (or, with one volume strain a cell, at that of its cells): uniform temperatures leave a
+/// free body without stress, exactly.
+/// With thermoelastic coupling the strain rate of the step before gives the heat -3 K alpha T tr(d eps/dt)
+/// (2.27).
+class ThermalStrain final : public SolidEffect {
+ public:
+  ThermalStrain(const Mesh& mesh, const ElasticOperator& elastic, const SolidParameters& parameters);
+
+  void begin_step(const Step& step) override;
+  std::span<const LameConstants> stiffness() const override;
+  void stiffness_changed() override;
+  void add_loads(double t, const ElasticKernel& kernel, std::span<double> rhs) override;
+  std::vector<double> pressure(double t) override;
+  void accept_step() override;
+  bool wants_temperature() const override { return given_; }
+  void set_interface(const std::vector<Vec3>& face_centres) override;
+  void take_temperature(const std::vector<double>& faces) override;
+  bool wants_stress() const override { return coupled_; }
+  void take_stress(std::span<const Tensor3> stress) override;
+  void save(CheckpointWriter& file) const override;
+  void load(CheckpointReader& file) override;
+  void add_cell_stress(std::span<Tensor3> stress) const override;
+  void add_face_stress(Index first, std::span<Tensor3> stress) const override;
+  void add_fields(std::vector<OutputField>& fields) override;
+  void add_evidence(SolidEvidence& evidence) const override;
+  void judge(std::vector<std::string>& sentences) const override;
+  void collect_errors() override;
+  /// Of the temperature that is solved for, over its distance from the reference: the strain errs by as much.
+  ErrorParts error_parts() const override;
+
+  /// None: the temperature is prescribed.
+  const Heat* heat() const { return heat_.get(); }
+  /// Of all local points at the accepted time [K]. Collective.
+  std::vector<double> point_temperature() const;
+
+ private:
+  enum Places { at_faces, at_points, at_cells };  // groups of interface_
+  bool expands() const { return !expansion_.empty(); }
+  /// Temperatures of the flux faces of the mesh at an end of the step: T^{n+1} of the trial, or accepted.
+  std::vector<double> face_temperature(double t, bool trial) const;
+  std::vector<double> given_at(Places places, bool trial) const;
+  std::vector<double> strain(std::span<const double> temperature) const;
+  /// B epsilon of the flux faces [Pa] from their epsilon. With one volume strain a cell the bulk modulus acts on the cell's
+  /// mean of grad u, and so does epsilon: K (tr e_P - 3 epsilon_P), to the faces by their pyramids as K tr e_P is.
+  /// Otherwise each face's own temperature would pull on the mean of all, with K: at nu 0.499 and a temperature that
+  /// is linear in x 20 MPa in a body of 1 GPa that is free of stress. Collective.
+  std::vector<double> stress_of(const std::vector<double>& strain) const;
+  bool by_cells() const { return elastic_->volume_by_cells() && !plane_stress_; }
+  double modulus(Index cell) const;  // B
+  double face_modulus(Index face) const;
+  double three_bulk(Index cell) const;  // 3 K
+  /// Means over the faces by the pyramids on them, as the displacement gradient of a cell is; owned cells.
+  std::vector<double> pyramid_means(const std::vector<double>& of_faces) const;
+  std::vector<double> cell_strain() const;  // thermal, of owned cells at the accepted time
+  double coupling_number() const;
+  void set_accepted();
+  std::vector<double> cell_temperature(double t, bool trial) const;  // of all local cells
+  std::vector<LameConstants> lame_at(std::span<const double> temperature) const;
+  void choose_stiffness(double t);
+
+  const Mesh* mesh_;
+  const ElasticOperator* elastic_;
+  std::unique_ptr<Heat> heat_;        // none: prescribed
+  std::optional<HeatErrors> errors_;  // none: not wanted
+  std::optional<Expression> prescribed_;
+  bool given_ = false;                                // at the interface
+  std::optional<InterfaceTemperature> interface_;     // once it is known where that is
+  std::vector<double> given_accepted_, given_trial_;  // at its faces that are needed here [K]
+  std::vector<Property> expansion_;                   // one a material; none: no thermal strain
+  double reference_ = 0;                              // [K]
+  bool plane_stress_ = false;
+  SolidParameters parameters_;
+  std::vector<std::optional<Property>> youngs_modulus_, poissons_ratio_;  // one a material
+  bool varies_ = false;                                                   // some of them
+  std::vector<LameConstants> lame_,
+      lame_trial_;  // per local cell, of the accepted and the trial step; if varies_
+  std::vector<SolidMaterial> materials_;
+  bool coupled_ = false;
+  std::vector<double> dilation_, dilation_rate_;  // tr(eps) and its rate, per owned cell; when coupled
+
+  Step step_;
+  double time_ = 0;                      // of the accepted state
+  std::vector<double> start_, end_;      // face temperatures at both ends of the step
+  std::vector<double> accepted_strain_;  // per flux face of the mesh, at the accepted time
+  std::vector<double> accepted_stress_;  // the same times B [Pa]: see stress_of(); if by_cells()
+  std::vector<double> points_, cells_;   // of the last fields written
+  double lowest_ = 0, highest_ = 0;      // temperatures seen on this rank
+};
+
+}  // namespace couplet

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/bed/closures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace couplet::thermocline {
+namespace {
+
+const int n_nodes = 257;  // every 4 K over 1000 K
+
+}  // namespace
+
+double wakao_nusselt(double reynolds, double prandtl) {
+  return 2 + 1.1 * std::cbrt(prandtl) * std::pow(reynolds, 0.6);
+}
+
+double zehner_schluender(double porosity, double kappa) {
+  const double b = 1.25 * std::pow((1 - porosity) / porosity, 10.0 / 9), n = 1 - b / kappa;
+  const double root = std::sqrt(1 - porosity);
+  // The bracket over N; near kappa = B both vanish, and the first terms of its series serve.
+  const double bridge =
+      std::abs(n) < 1e-3
+          ? (2 * b + 1) / 6 + n * (3 * b + 1) / 12
+          : (b * (1 - 1 / kappa) / (n * n) * std::log(kappa / b) - (b + 1) / 2 - (b - 1) / n) / n;
+  return 1 - root + 2 * root * bridge;
+}
+
+MassFlux::MassFlux(double g_abs)
+    : g(g_abs),
+      g_film(std::pow(g_abs, 0.6)),
+      g_third(std::cbrt(g_abs)),
+      g_wall(std::pow(g_abs, 0.8)),
+      g_half(std::sqrt(g_abs)) {}
+
+LayerClosure::LayerClosure(const ClosureParameters& parameters, const Fluid& fluid, const Filler& filler,
+                           double porosity, double diameter)
+    : parameters_(parameters), fluid_(fluid), filler_(filler), porosity_(porosity), diameter_(diameter) {
+  // A little beyond the fluid's limits: a run that leaves them is warned about, not stopped.
+  const double lowest = std::max(fluid.lowest - 50, 150.0), highest = std::min(fluid.highest + 100, 1500.0);
+  first_ = lowest;
+  inverse_spacing_ = (n_nodes - 1) / (highest - lowest);
+  nodes_.reserve(n_nodes);
+  for (int i = 0; i < n_nodes; ++i) nodes_.push_back(node_at(lowest + i / inverse_spacing_));
+}
+
+LayerClosure::Node LayerClosure::node_at(double t) const {
+  const double k = fluid_.conductivity(t), mu = std::max(fluid_.viscosity(t), 1e-6), d = diameter_;
+  const double pr = mu * fluid_.specific_heat / k, re = d / mu;  // Re per unit flux
+  const double stagnant = zehner_schluender(std::min(porosity_, 0.999), filler_.conductivity / k) * k;
+  Node n{};
+  n.film_still = 2 * k / d;
+  n.film_flow = 1.1 * k / d * std::cbrt(pr) * std::pow(re, 0.6);
+  if (parameters_.film_coefficient > 0) n.film_still = parameters_.film_coefficient, n.film_flow = 0;
+  switch (parameters_.conduction) {
+    case Conduction::wakao:
+      n.conduction_still = 0.7 * porosity_ * k;
+      break;
+    case Conduction::molecular:
+      n.conduction_still = porosity_ * k;
+      break;
+    case Conduction::stagnant:
+      n.conduction_still = stagnant;
+      break;
+    case Conduction::constant:
+      n.conduction_still = parameters_.conductivity;
+      break;
+  }
+  // Beek 1962: (k/d) [0.203 (Re Pr)^(1/3) + 0.220 Re^0.8 Pr^0.4]. Yagi and Wakao 1959: Nu = 0.6 Pr^(1/3)
+  // Re^(1/2) up to Re = 40, 0.2 Pr^(1/3) Re^0.8 beyond. At least 2 k0/d, k0 the
+  // stagnant bed: grains that touch the wall conduct too, also below a slow flow.
+  n.wall_still = 2 * stagnant / d;
+  if (parameters_.wall_film == WallFilm::beek) {
+    n.wall_third = 0.203 * k / d * std::cbrt(re * pr);
+    n.wall_flow = 0.220 * k / d * std::pow(re, 0.8) * std::pow(pr, 0.4);
+  } else if (parameters_.wall_film == WallFilm::yagi_wakao) {
+    n.wall_half = 0.6 * k / d * std::cbrt(pr) * std::sqrt(re);
+    n.wall_flow = 0.2 * k / d * std::cbrt(pr) * std::pow(re, 0.8);
+    n.wall_switch = 40 / re;
+  } else {
+    n.wall_still = parameters_.wall_coefficient;
+  }
+  return n;
+}
+
+Closure LayerClosure::at(double temperature, const MassFlux& flux) const {
+  Closure c;
+  fill({&temperature, 1}, flux, &c.film, &c.conductivity, &c.wall);
+  return c;
+}
+
+void LayerClosure::fill(std::span<const double> temperature, const MassFlux& flux, double* film,
+                        double* conductivity, double* wall) const {
+  const bool disperses =
+      parameters_.conduction == Conduction::wakao || parameters_.conduction == Conduction::stagnant;
+  const double dispersion = disperses ? 0.5 * fluid_.specific_heat * diameter_ * flux.g : 0;  // 0.5 Re Pr k
+  const WallFilm kind = parameters_.wall_film;
+  const Node* const nodes = nodes_.data();
+  for (std::size_t k = 0; k < temperature.size(); ++k) {
+    const double place = std::clamp((temperature[k] - first_) * inverse_spacing_, 0.0, double(n_nodes - 2));
+    const int i = int(place);
+    const double w = place - i;
+    const Node &a = nodes[i], &b = nodes[i + 1];
+    const auto mix = [&](double Node::*member) { return a.*member + w * (b.*member - a.*member); };
+    film[k] = mix(&Node::film_still) + mix(&Node::film_flow) * flux.g_film;
+    conductivity[k] = mix(&Node::conduction_still) + dispersion;
+    double moving = 0;
+    if (kind == WallFilm::beek)
+      moving = mix(&Node::wall_third) * flux.g_third + mix(&Node::wall_flow) * flux.g_wall;
+    else if (kind == WallFilm::yagi_wakao)
+      moving = flux.g < mix(&Node::wall_switch) ? mix(&Node::wall_half) * flux.g_half
+                                                : mix(&Node::wall_flow) * flux.g_wall;
+    wall[k] = std::max(mix(&Node::wall_still), moving);
+  }
+}
+
+double LayerClosure::reynolds(double temperature, double flux) const {
+  return flux * diameter_ / fluid_.viscosity(temperature);
+}
+
+}  // namespace couplet::thermocline

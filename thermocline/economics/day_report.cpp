@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/economics/day_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "thermocline/base/celsius.hpp"
+#include "thermocline/base/clock.hpp"
+#include "thermocline/bed/thickness.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+using Sums = ReportSums;
+
+double share(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
+}  // namespace
+
+void declare(config::Section& s, ReportParameters& p) {
+  s.value("run-in", p.run_in)
+      .unit("day")
+      .plausible(1, 1e4)
+      .not_negative()
+      .doc("the means leave out these days at the start, in which the cycle becomes periodic");
+  s.value("profile-day", p.profile_day)
+      .unit("day")
+      .plausible(1, 1e4)
+      .not_negative()
+      .doc("so many days after the start the profiles of one day are written, every hour; absent: none");
+  s.value("thickness-margin", p.thickness_margin)
+      .unit("K difference")
+      .plausible(0.1, 500)
+      .positive()
+      .doc("the thermocline lies between the cold temperature plus and the hot temperature minus this");
+  s.value("outlet-margin", p.outlet_margin)
+      .unit("K difference")
+      .plausible(0.1, 500)
+      .positive()
+      .doc("the time is counted in which the tank's outlet is nearer than this to its design temperature");
+  s.optional_section<EconomicsParameters>(
+      "economics", p.economics, [](config::Section& q, EconomicsParameters& e) { declare(q, e); },
+      "prices, in a currency of one's own: the summary then has capital and levelised cost of the "
+      "electricity");
+  s.value("dead-state", p.dead_state)
+      .unit("K")
+      .plausible(200, 400)
+      .positive()
+      .doc("reference temperature of the exergy");
+  s.check(
+      [&p]() -> std::string {
+        if (p.dead_state >= 200) return "";
+        return fmt::format(
+            "{:g} K is {:.0f} degC, colder than any surroundings; write '{:g} degC' if that is meant",
+            p.dead_state, celsius(p.dead_state), p.dead_state);
+      },
+      "dead-state");
+}
+
+void ReportSums::add(const ReportSums& other) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += other.sum[i];
+}
+
+/// Books one step of the bed; gives the heat that the flow brought into it [J].
+double DayReport::add_step(const BedStep& step) {
+  const PlantParameters& plant = plant_.parameters();
+  const double dt = step.dt, c = plant_.specific_heat();
+  const double field = plant_.field_heat(weather_.irradiation(step.t, step.t + dt)),
+               block = plant_.block_heat() * plant_.load(step.t) * dt;
+  const double outlet = step.outlet_temperature, mass = std::abs(step.flow.mass_flow) * dt;
+  day_[Sums::field] += field;
+  day_[Sums::excess] += std::max(field - block, 0.);  // (5.24)
+  day_[Sums::lacking] += std::max(block - field, 0.);
+  day_[Sums::duration] += dt;
+  day_[Sums::asked] += block;
+  day_[Sums::pumping] += step.pump_power * dt;
+  largest_pump_ = std::max(largest_pump_, step.pump_power);
+  const auto book = [&](double electricity) {
+    day_[Sums::electricity] += electricity;
+    day_[Sums::revenue] += plant_.tariff(step.t) * electricity / megawatt_hour;
+  };
+  const auto sell = [&](double heat) {
+    day_[Sums::taken] += heat;
+    book(plant.block_efficiency * heat);
+  };
+  book(-step.pump_power * dt);  // pump and fan are driven by the plant's own electricity
+  sell(std::min(field, block));
+  const auto mode = static_cast<PlantMode>(step.flow.mode);
+  if (mode == PlantMode::standby) {
+    day_[field > block ? Sums::charged_rest : Sums::discharged_rest] += dt;
+    return 0;
+  }
+  const double inlet = step.flow.inlet_temperature;
+  if (mode == PlantMode::charge) {
+    day_[Sums::charging] += dt;
+    if (outlet < plant.cold + p_.outlet_margin) day_[Sums::cold_outlet] += dt;
+    return mass * c * (inlet - outlet);
+  }
+  const double delivered = mass * c * (outlet - plant.cold);
+  day_[Sums::discharging] += dt;
+  if (outlet > plant.hot - p_.outlet_margin) day_[Sums::hot_outlet] += dt;
+  day_[Sums::delivered] += delivered;
+  sell(delivered);
+  day_[Sums::lacking] -= delivered;
+  // (5.29)
+  day_[Sums::exergy] += delivered - mass * c * p_.dead_state * std::log(outlet / plant.cold);
+  return mass * c * (inlet - outlet);
+}
+
+void DayReport::add_thickness(const TankRecord& record) {
+  const PlantParameters& plant = plant_.parameters();
+  const auto thickness =
+      thermocline_thickness(record.z, bed_height_, record.fluid_temperature, plant.cold + p_.thickness_margin,
+                            plant.hot - p_.thickness_margin);
+  last_thickness_ = thickness.value_or(std::numeric_limits<double>::quiet_NaN());
+  if (!thickness) return;
+  day_[Sums::thickness] += *thickness * record.dt;
+  day_[Sums::thickness_time] += record.dt;
+}
+
+void DayReport::record(const TankRecord& record) {
+  if (bed_height_ == 0) {
+    for (const double dz : record.dz) bed_height_ += dz;
+    storable_ = record.heat_capacity * (plant_.parameters().hot - plant_.parameters().cold);
+  }
+  double brought = 0, charged = 0, charging_time = 0, moved = 0;
+  const double field = day_[Sums::field], asked = day_[Sums::asked], taken = day_[Sums::taken];
+  for (const BedStep& step : record.steps) {
+    const double heat = add_step(step);
+    brought += heat;
+    moved += step.flow.mass_flow * step.dt;
+    if (static_cast<PlantMode>(step.flow.mode) != PlantMode::charge) continue;
+    charged += heat;
+    charging_time += step.dt;
+  }
+  // What the flow brought less what the bed gained went through the walls, evenly over the step (5.25-5.27).
+  day_[Sums::stored] += charged - (brought - record.stored) * charging_time / record.dt;
+  day_[Sums::losses] += record.losses();
+  add_thickness(record);
+  if (!record.equivalent_stress.empty())
+    stress_.see(record.time, record.wall_z, record.equivalent_stress, record.yield_strength);
+  if (series_)
+    write_series(record, moved, day_[Sums::field] - field, day_[Sums::asked] - asked,
+                 day_[Sums::taken] - taken);
+  if (profiles_) write_profiles(record);
+  last_time_ = record.time;
+  // A hair's breadth before midnight is midnight.
+  if (record.time >= (days_seen_ + 1) * seconds_a_day - 1e-3) end_day(record.time);
+}
+
+bool DayReport::counts(int day) const { return day * seconds_a_day >= p_.run_in * seconds_a_day - 1; }
+
+void DayReport::end_day(double time) {
+  const bool counted = counts(days_seen_);
+  ++days_seen_;
+  stress_.end_day(counted);
+  write_day(time);
+  if (counted) {
+    ++days_counted_;
+    results_.add(day_);
+  }
+  day_ = {};
+}
+
+std::vector<ReportLine> DayReport::lines_of(const ReportSums& s, double days) const {
+  const auto energy = [&](Sums::Item item) { return days > 0 ? s[item] / days / megawatt_hour : 0; };
+  const auto time = [&](Sums::Item item) { return days > 0 ? s[item] / days / seconds_an_hour : 0; };
+  const double thickness = s[Sums::thickness_time] > 0 ? s[Sums::thickness] / s[Sums::thickness_time] : 0;
+  return {{"Q_SF", "MWh/day", energy(Sums::field)},
+          {"Q_excess/Q_SF", "%", share(s[Sums::excess], s[Sums::field])},
+          {"Q_C/Q_excess", "%", share(s[Sums::stored], s[Sums::excess])},
+          {"Q_D/Q_C", "%", share(s[Sums::delivered], s[Sums::stored])},
+          {"B_D", "MWh/day", energy(Sums::exergy)},
+          {"Q_lacking/Q_PB", "%", share(s[Sums::lacking], s[Sums::asked])},
+          {"energy losses", "MWh/day", energy(Sums::losses)},
+          {"charge time", "h", time(Sums::charging)},
+          {"discharge time", "h", time(Sums::discharging)},
+          {"charged stand-by time", "h", time(Sums::charged_rest)},
+          {"discharged stand-by time", "h", time(Sums::discharged_rest)},
+          {"time with cold outlet", "%", share(s[Sums::cold_outlet], s[Sums::charging])},
+          {"time with hot outlet", "%", share(s[Sums::hot_outlet], s[Sums::discharging])},
+          {"eta_th", "%", share(s[Sums::stored], storable_ * days)},
+          {"h_th/h_bed", "%", share(thickness, bed_height_)}};
+}
+
+std::vector<ReportLine> DayReport::lines() const {
+  std::vector<ReportLine> all = lines_of(results_, results_[Sums::duration] / seconds_a_day);
+  if (!(results_[Sums::duration] > 0)) {  // no day counts: zeros would look like answers
+    for (ReportLine& line : all) line.value = std::numeric_limits<double>::quiet_NaN();
+    return all;
+  }
+  if (results_[Sums::pumping] > 0)
+    all.push_back({"pumping", "MWh/day",
+                   results_[Sums::pumping] / megawatt_hour / (results_[Sums::duration] / seconds_a_day)});
+  add_money(all);
+  if (stress_.empty()) return all;
+  const StressHistory::Factor least = stress_.static_factor(), dynamic = stress_.dynamic_factor();
+  all.push_back({"FoS_static", "-", least.value});
+  all.push_back({"FoS_static height", "m", least.z});
+  all.push_back({"FoS_static time", "s", least.time});
+  all.push_back({"FoS_dynamic", "-", dynamic.value});
+  all.push_back({"FoS_dynamic height", "m", dynamic.z});
+  return all;
+}
+
+std::vector<double> DayReport::state() const {
+  std::vector<double> all{double(days_seen_), double(days_counted_), storable_,
+                          bed_height_,        last_thickness_,       largest_pump_};
+  all.insert(all.end(), day_.sum.begin(), day_.sum.end());
+  all.insert(all.end(), results_.sum.begin(), results_.sum.end());
+  const std::vector<double> stress = stress_.state();
+  all.insert(all.end(), stress.begin(), stress.end());
+  return all;
+}
+
+void DayReport::restore(std::span<const double> state) {
+  constexpr std::size_t scalars = 6;
+  const std::size_t sums = scalars + 2 * Sums::n_items;
+  if (state.size() < sums + 1 ||
+      double(state.size()) != double(sums) + StressHistory::state_size(state[sums]))
+    throw Error("report: the checkpoint is of another version of this program: its sums are not ours.");
+  constexpr double most_days = 1e6;
+  for (const double days : {state[0], state[1]})
+    if (!(days >= 0 && days <= most_days))
+      throw Error("report: the checkpoint's numbers of days are damaged.");
+  days_seen_ = static_cast<int>(state[0]);
+  days_counted_ = static_cast<int>(state[1]);
+  int counted = 0;
+  for (int day = 0; day < days_seen_; ++day) counted += this->counts(day);
+  if (counted != days_counted_)
+    throw Error(
+        "report.run-in: the run to be continued has lived through {} days and counted {} of them; with a run-in of {:g} "
+        "days it would be {}. What was counted cannot be taken back: keep the run-in, or start anew.",
+        days_seen_, days_counted_, p_.run_in, counted);
+  storable_ = state[2];
+  bed_height_ = state[3];
+  last_thickness_ = state[4];
+  largest_pump_ = state[5];
+  state = state.subspan(scalars);
+  for (ReportSums* sums : {&day_, &results_}) {
+    std::copy_n(state.begin(), sums->sum.size(), sums->sum.begin());
+    state = state.subspan(sums->sum.size());
+  }
+  stress_.restore(state);
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/judge/elsewhere.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "common/base/error.hpp"
+#include "common/base/saved_numbers.hpp"
+#include "common/io/checkpoint.hpp"
+#include "common/log/finding.hpp"
+#include "common/parallel/collective.hpp"
+#include "thermocline/judge/files.hpp"
+#include "thermocline/model/plausible.hpp"
+#include "thermocline/model/questions.hpp"
+#include "thermocline/model/tank.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+std::string books_of(const char* element, double taken, double passed, double stored) {
+  return fmt::format(
+      "{}: {:.4g} MWh taken from the tank, {:.4g} MWh passed on; the books are off by {:.1e} of that",
+      element, taken / 3.6e9, passed / 3.6e9,
+      std::abs(stored - taken + passed) / std::max(std::abs(taken) + std::abs(passed), 1e-300));
+}
+
+/// A value of each place, or nothing if nobody has given it yet.
+const std::vector<double>* find(const Exchange& in, const char* name) {
+  const auto found = in.find(name);
+  return found == in.end() ? nullptr : &found->second;
+}
+
+std::string other_length(const std::vector<double>* told, const char* key, double own, double slack,
+                         const char* where) {
+  if (!told || told->empty() || !(std::abs(told->front() - own) > slack * own)) return "";
+  return fmt::format("{} is {:.6g} m, but the tank's is {:.6g} m{}", key, own, told->front(), where);
+}
+
+class GroundModel {
+ public:
+  GroundModel(const GroundElementParameters& p, const Weather& weather)
+      : p_(p),
+        deep_(p.ground.deep_temperature.value_or(weather.mean_temperature())),
+        column_(ground_layers(p.ground), 0.25 * std::numbers::pi * p.diameter * p.diameter) {
+    column_.set_steady(p.initial_temperature, deep_);
+    start_ = column_.energy(deep_);
+  }
+  Interface describe() const {
+    Interface i;
+    i.face_centres = {{0, 0, 0}};
+    i.face_areas = {{0, 0, column_.area()}};
+    i.takes = {{"bottom-temperature", "K", Interface::Place::faces, 1},
+               {"bottom-coefficient", "W/(m^2 K)", Interface::Place::faces, 1},
+               {"tank-diameter", "m", Interface::Place::faces, 1}};
+    i.gives = {{"bottom-heat", "W", Interface::Place::faces, 1}};
+    return i;
+  }
+  /// What the tank says against the geometry here: a sentence, or empty.
+  std::string contradiction(const Exchange& in) const {
+    return other_length(find(in, "tank-diameter"), "diameter", p_.diameter, 1e-3, " (inside)");
+  }
+  Exchange advance(const Step& step, const Exchange& in, const Weather&) {
+    const auto *temperature = find(in, "bottom-temperature"), *coefficient = find(in, "bottom-coefficient");
+    const Film plate{coefficient ? coefficient->front() : 0,
+                     temperature ? temperature->front() : p_.initial_temperature};
+    const Film deep{std::numeric_limits<double>::infinity(), deep_};
+    const int parts = std::max(1, int(std::ceil(step.dt / p_.ground.step * (1 - 1e-9))));
+    double entered = 0;
+    for (int k = 0; k < parts; ++k) {
+      const Column::Heat heat = column_.step(step.dt / parts, plate, deep);
+      entered += heat.inner, passed_ += heat.outer;
+    }
+    taken_ += entered;
+    return {{"bottom-heat", {entered / step.dt}}};
+  }
+  std::vector<double> state() const {
+    std::vector<double> all{taken_, passed_, start_};
+    all.insert(all.end(), column_.temperature().begin(), column_.temperature().end());
+    return all;
+  }
+  void restore(const std::vector<double>& state) {
+    SavedNumbers saved(state, "temperatures of the ground");
+    taken_ = saved.real(), passed_ = saved.real(), start_ = saved.real();
+    saved.fill(column_.temperature());
+    if (saved.left() > 0) saved.damaged();
+  }
+  std::string books() const { return books_of("ground", taken_, passed_, column_.energy(deep_) - start_); }
+
+ private:
+  GroundElementParameters p_;
+  double deep_;
+  Column column_;
+  double start_ = 0, taken_ = 0, passed_ = 0;  // [J]
+};
+
+class BlanketModel {
+ public:
+  BlanketModel(const BlanketElementParameters& p, const Weather& weather)
+      : p_(p),
+        dz_(p.sections, p.height / p.sections),
+        wall_(p.sections, p.initial_temperature),
+        heat_(p.sections, 0.0),
+        blanket_(p.insulation, dz_, p.diameter / 2) {
+    require_sun(p.insulation.outside.solar_absorptance, weather, "insulation.solar-absorptance");
+    air_ = weather.at(0).temperature;
+    blanket_.set_steady(wall_, air_);
+    start_ = blanket_.energy(air_);
+  }
+  Interface describe() const {
+    Interface i;
+    const double area = std::numbers::pi * p_.diameter * dz_[0];
+    for (int k = 0; k < p_.sections; ++k) {
+      i.face_centres.emplace_back(p_.diameter / 2, 0, (k + 0.5) * dz_[0]);
+      i.face_areas.emplace_back(-area, 0, 0);
+    }
+    i.takes = {{"wall-temperature", "K", Interface::Place::faces, 1},
+               {"wall-diameter", "m", Interface::Place::faces, 1},
+               {"wall-height", "m", Interface::Place::faces, 1}};
+    i.gives = {{"wall-heat", "W", Interface::Place::faces, 1}};
+    return i;
+  }
+  std::string contradiction(const Exchange& in) const {
+    std::string problem = other_length(find(in, "wall-diameter"), "diameter", p_.diameter, 0.02,
+                                       " (outside of the lowest plate)");
+    return problem.empty() ? other_length(find(in, "wall-height"), "height", p_.height, 1e-3,
+                                          " of wall (its rings, bed and ullage)")
+                           : problem;
+  }
+  Exchange advance(const Step& step, const Exchange& in, const Weather& weather) {
+    if (const auto* wall = find(in, "wall-temperature")) wall_ = *wall;
+    const Ambient air = weather.at(step.time + step.dt / 2);
+    const double outer = p_.diameter + 2 * p_.insulation.thickness;
+    Film film = side_film(p_.insulation.outside, air.temperature + 5, outer, p_.height, air);
+    film = side_film(p_.insulation.outside, blanket_.outer_surface(film), outer, p_.height, air);
+    passed_ += blanket_.step(step.dt, wall_, film, heat_);
+    for (const double q : heat_) taken_ += q * step.dt;
+    return {{"wall-heat", heat_}};
+  }
+  std::vector<double> state() const {
+    std::vector<double> all{taken_, passed_, start_, air_};
+    all.insert(all.end(), wall_.begin(), wall_.end());
+    all.insert(all.end(), blanket_.temperature().begin(), blanket_.temperature().end());
+    return all;
+  }
+  void restore(const std::vector<double>& state) {
+    SavedNumbers saved(state, "temperatures of the insulation");
+    taken_ = saved.real(), passed_ = saved.real(), start_ = saved.real(), air_ = saved.real();
+    saved.fill(wall_);
+    saved.fill(blanket_.temperature());
+    if (saved.left() > 0) saved.damaged();
+  }
+  std::string books() const {
+    return books_of("insulation", taken_, passed_, blanket_.energy(air_) - start_);
+  }
+
+ private:
+  BlanketElementParameters p_;
+  std::vector<double> dz_, wall_, heat_;
+  Insulation blanket_;
+  double air_ = 0, start_ = 0, taken_ = 0, passed_ = 0;  // [K], [J]
+};
+
+/// What both have in common: a state that only accepted steps change. Rank 0 has the data and computes.
+template <class Model>
+class ElementParticipant final : public Participant {
+ public:
+  template <class Parameters>
+  ElementParticipant(const Parameters& p, const ParticipantContext& context)
+      : weather_(make_weather(p.ambient, context.case_folder)),
+        accepted_(p, *weather_),
+        next_(accepted_),
+        comm_(context.comm),
+        name_(context.name) {
+    if (!context.coupled)
+      throw Error(
+          "participants.{}: an element of a tank has nothing to do without that tank. Start it together with "
+          "a "
+          "coupler and a thermocline that has 'elsewhere'.",
+          context.name);
+    for (const std::string& sentence : weather_->doubts())
+      log::finding(comm_rank(comm_),
+                   {.id = "weather-data", .sentence = fmt::format("{}: {}", context.name, sentence)});
+  }
+  Interface initialise() override { return comm_rank(comm_) == 0 ? accepted_.describe() : Interface{}; }
+  void begin_step(const Step& step) override { step_ = step; }
+  Exchange solve(const Exchange& in) override {
+    next_ = accepted_;
+    std::string problem = comm_rank(comm_) == 0 ? accepted_.contradiction(in) : "";
+    broadcast(comm_, problem);
+    if (!problem.empty()) throw Error("participants.{}.{}.", name_, problem);
+    return comm_rank(comm_) == 0 ? next_.advance(step_, in, *weather_) : Exchange{};
+  }
+  StepReport accept_step() override {
+    std::swap(accepted_, next_);
+    return {.dt = step_.dt};
+  }
+  void save(CheckpointWriter& file) const override { file.write("element", accepted_.state()); }
+  void load(CheckpointReader& file) override { accepted_.restore(file.read("element")); }
+  void write_output(double, int) override {}
+  void write_monitors(double) override {}
+  std::vector<std::string> finish() override { return {accepted_.books()}; }
+
+ private:
+  std::unique_ptr<Weather> weather_;
+  Model accepted_, next_;
+  Step step_;
+  MPI_Comm comm_;
+  std::string name_;
+};
+
+void declare_surroundings(config::Section& s, double& initial, WeatherParameters& ambient, const char* what) {
+  s.value("initial-temperature", initial).unit("K").plausible(70, 5000).positive().required().doc(what);
+  s.section(
+      "ambient", [&ambient](config::Section& q) { declare(q, ambient); }, "weather");
+}
+
+}  // namespace
+
+void declare(config::Section& s, GroundElementParameters& p) {
+  s.value("diameter", p.diameter)
+      .unit("m")
+      .plausible(0.01, 300)
+      .positive()
+      .required()
+      .doc("inner diameter of the tank");
+  s.section(
+      "ground", [&p](config::Section& q) { declare(q, p.ground); }, "foundation and soil under the tank");
+  declare_surroundings(s, p.initial_temperature, p.ambient, "of the tank's bottom; the ground starts steady");
+  s.check([&p] { return slip_in_ground(p.ground); }, "ground");
+}
+
+void declare(config::Section& s, BlanketElementParameters& p) {
+  s.value("diameter", p.diameter)
+      .unit("m")
+      .plausible(0.01, 300)
+      .positive()
+      .required()
+      .doc("outer diameter of the wall");
+  s.value("height", p.height).unit("m").plausible(0.01, 300).positive().required().doc("of the wall");
+  s.value("sections", p.sections).range(1, 100000).doc("along the wall");
+  s.section(
+      "insulation", [&p](config::Section& q) { declare(q, p.insulation); }, "blanket around the wall");
+  declare_surroundings(s, p.initial_temperature, p.ambient, "of the wall; the blanket starts steady");
+  s.check([&p] { return slip_in_insulation(p.insulation, p.diameter); }, "insulation");
+}
+
+void declare(config::Section& section, ElementParameters& p) {
+  using Type = ElementParameters::Type;
+  section.variant<Type>(
+      "element", p.type,
+      {{"tank", Type::tank, [&p](config::Section& s) { declare(s, p.tank); }},
+       {"ground", Type::ground, [&p](config::Section& s) { declare(s, p.ground); }},
+       {"insulation", Type::insulation, [&p](config::Section& s) { declare(s, p.blanket); }}},
+      "a tank, or one element of a tank that another thermocline computes (elsewhere)");
+}
+
+std::unique_ptr<Participant> make_element(const ElementParameters& p, const ParticipantContext& context) {
+  if (p.type == ElementParameters::Type::ground)
+    return std::make_unique<ElementParticipant<GroundModel>>(p.ground, context);
+  if (p.type == ElementParameters::Type::insulation)
+    return std::make_unique<ElementParticipant<BlanketModel>>(p.blanket, context);
+  return std::make_unique<Tank>(with_files(p.tank, context.case_folder), context);
+}
+
+}  // namespace couplet::thermocline

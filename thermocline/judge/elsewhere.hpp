@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+
+#include "common/app/program.hpp"
+#include "common/coupling/participant.hpp"
+#include "thermocline/model/parameters.hpp"
+
+/// Elements of a tank as participants of their own: the tank gives temperatures, they give the heat back that
+/// they take from it. Heat is that of a whole tank.
+namespace couplet::thermocline {
+
+/// The ground under a tank. At the face of the tank's bottom
+///   takes bottom-temperature K, bottom-coefficient W/(m^2 K)   of the lowest cell, t^{n+1}
+///   takes tank-diameter m                                      inner; another one here is refused
+///   gives bottom-heat W                                        into the ground, mean over the step
+struct GroundElementParameters {
+  double diameter = 0;             ///< [m]
+  double initial_temperature = 0;  ///< of the tank's bottom at the start: the ground starts steady [K]
+  GroundParameters ground;
+  WeatherParameters ambient;
+};
+void declare(config::Section& section, GroundElementParameters& parameters);
+
+/// The blanket around the wall. At faces along it
+///   takes wall-temperature K   t^{n+1}
+///   takes wall-diameter m      outer, of the lowest plate; another one here (beyond 2 %) is refused
+///   takes wall-height m        of the rings; another one here (beyond 0.1 %) is refused
+///   gives wall-heat W          into the blanket, mean over the step
+struct BlanketElementParameters {
+  double diameter = 0, height = 0;  ///< outer diameter of the wall, its height [m]
+  int sections = 400;
+  double initial_temperature = 0;  ///< of the wall: the blanket starts steady [K]
+  InsulationParameters insulation;
+  WeatherParameters ambient;
+};
+void declare(config::Section& section, BlanketElementParameters& parameters);
+
+/// What one `thermocline` computes.
+struct ElementParameters {
+  enum class Type { tank, ground, insulation } type = Type::tank;
+  TankParameters tank;
+  GroundElementParameters ground;
+  BlanketElementParameters blanket;
+};
+void declare(config::Section& section, ElementParameters& parameters);
+std::unique_ptr<Participant> make_element(const ElementParameters& parameters,
+                                          const ParticipantContext& context);
+
+}  // namespace couplet::thermocline

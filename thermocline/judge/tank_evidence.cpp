@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run has seen, for the verdicts on its effects, and what its error is made of.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "thermocline/judge/effect_cards.hpp"
+#include "thermocline/model/tank.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+/// Of the layers of grains, at the largest flow and the bed's mean temperature.
+double largest_biot(const TankModel& m, double peak_flow) {
+  const std::span<const double> fluid = m.bed().fluid();
+  double mean = 0, largest = 0;
+  for (const double t : fluid) mean += t / double(fluid.size());
+  for (const auto& run : m.bed().grid().runs) {
+    if (run.layer.porosity >= 1 || run.layer.melting) continue;
+    const Filler& filler = run.layer.filler ? *run.layer.filler : m.setup().filler;
+    const LayerClosure closure(m.setup().parameters.bed.closures, m.setup().fluid, filler, run.layer.porosity,
+                               run.layer.diameter);
+    const double film = closure.at(mean, MassFlux(peak_flow / m.bed().area())).film;
+    largest = std::max(largest, film * run.layer.diameter / (2 * filler.conductivity));
+  }
+  return largest;
+}
+
+/// Of an ideal gas where it is hottest and the pores are narrowest, at the pressure at which it leaves.
+double largest_mach(const TankModel& m, double peak_flow) {
+  const Fluid& gas = m.setup().fluid;
+  double narrowest = 1;
+  for (const auto& run : m.bed().grid().runs) narrowest = std::min(narrowest, run.layer.porosity);
+  const double hottest = m.fluid_range().second, r = gas.gas_constant;
+  const double speed = peak_flow / m.bed().area() * r * hottest / (gas.pressure * narrowest);
+  return speed / std::sqrt(gas.specific_heat / (gas.specific_heat - r) * r * hottest);
+}
+
+/// Coldest and hottest fluid of the run, and what the flow will bring: a verdict on the first hours, in which the bed is still
+/// cold, would be one on another range than the run's.
+std::pair<double, double> range_to_come(const TankModel& m) {
+  auto [cold, hot] = m.fluid_range();
+  const auto see = [&](double t) { cold = std::min(cold, t), hot = std::max(hot, t); };
+  const FlowParameters& flow = m.setup().parameters.flow;
+  if (flow.type == FlowParameters::Type::plant) see(flow.plant.cold), see(flow.plant.hot);
+  if (flow.type == FlowParameters::Type::schedule)
+    for (const ScheduleRow& row : flow.rows)
+      if (row.mass_flow != 0) see(row.inlet_temperature);
+  return {cold, hot};
+}
+
+/// Power of a pump of 0.7 over the heat of the largest flow between the coldest and the hottest fluid, and the pressure loss [Pa]:
+/// Ergun at the mean of both temperatures, layer by layer.
+std::pair<double, double> pumping_share(const TankModel& m, double peak_flow) {
+  const Fluid& f = m.setup().fluid;
+  const auto [cold, hot] = range_to_come(m);
+  const double mean = 0.5 * (cold + hot), area = m.bed().area();
+  const double density = f.is_gas() ? f.pressure / (f.gas_constant * mean) : f.density;
+  double loss = 0;
+  for (const auto& run : m.bed().grid().runs)
+    if (run.layer.porosity < 1)
+      loss += run.layer.height * ergun(run.layer, f.viscosity(mean), peak_flow / area) / density;
+  constexpr double efficiency = 0.7;
+  return {loss / (density * efficiency * f.specific_heat * (hot - cold)), loss};
+}
+
+/// Of the scene's own pump or fan at the largest flow, the bed all at the mean of both temperatures: its power [W], and the heat
+/// that the flow carries between them [W].
+std::pair<double, double> driving_power(const TankModel& m, double peak_flow) {
+  const Fluid& f = m.setup().fluid;
+  const auto [cold, hot] = range_to_come(m);
+  const std::vector<double> mean(std::size_t(m.bed().grid().size()), 0.5 * (cold + hot));
+  const PressureLoss loss = pressure_loss(m.bed().grid(), f, mean, peak_flow, m.bed().area());
+  return {pump_power(loss, f, cold, peak_flow, m.setup().parameters.pump->efficiency),
+          peak_flow * f.specific_heat * (hot - cold)};
+}
+
+/// Heat capacity of the whole bed over that of a kilogram of fluid [kg]: what must flow in for a front to cross it.
+double crossing_mass(const TankModel& m) {
+  const Fluid& f = m.setup().fluid;
+  double capacity = 0;
+  for (const auto& run : m.bed().grid().runs) {
+    const Filler& filler = run.layer.filler ? *run.layer.filler : m.setup().filler;
+    double height = 0;
+    for (int i = run.first; i < run.first + run.count; ++i) height += m.bed().grid().dz[i];
+    capacity += height * m.bed().area() *
+                (run.layer.porosity * f.volumetric() + (1 - run.layer.porosity) * filler.volumetric());
+  }
+  return capacity / f.specific_heat;
+}
+
+}  // namespace
+
+ErrorParts Tank::error_parts() const {
+  std::vector<double> t;
+  accepted_.bed().filler_temperature(t);
+  const std::size_t n = t.size();
+  if (n < 3 || !(peak_flow_ > 0)) return {};
+  const double mean = std::accumulate(t.begin(), t.end(), 0.0) / double(n);
+  double bends = 0, size = 0;  // second differences, dz^2 times the second derivative
+  for (std::size_t i = 0; i < n; ++i) {
+    size += std::abs(t[i] - mean);
+    if (i > 0 && i + 1 < n) bends += std::abs(t[i - 1] - 2 * t[i] + t[i + 1]);
+  }
+  if (!(size > 1e-9 * std::abs(mean) * double(n))) return {};  // one temperature: nothing to be spread
+  const double one_cell = 0.5 * bends / size;                  // s = dz
+  const Advection scheme = accepted_.setup().parameters.bed.advection;
+  const double crossing = crossing_mass(accepted_);
+  const double way = double(n) * std::min(1., peak_flow_ * (step_.time + step_.dt) / crossing);  // in cells
+  ErrorParts parts{.mesh = scheme == Advection::tvd ? one_cell : std::max(1., way) * one_cell};
+  if (scheme == Advection::implicit) parts.step = peak_advance_ / crossing * double(n) * way * one_cell;
+  return parts;
+}
+
+std::vector<EffectVerdict> Tank::audit() const {
+  const TankModel& m = accepted_;
+  Evidence evidence;
+  if (m.setup().fluid.is_gas() && peak_flow_ > 0) evidence.largest_mach = largest_mach(m, peak_flow_);
+  if (const auto [cold, hot] = range_to_come(m); m.setup().fluid.is_gas() && hot > cold + 1) {
+    evidence.mean_capacity = air_heat_between(cold, hot) / (hot - cold);
+    evidence.capacity_error = std::abs(evidence.mean_capacity / m.setup().fluid.specific_heat - 1);
+  }
+  if (const auto [cold, hot] = range_to_come(m); peak_flow_ > 0 && hot > cold + 1) {
+    if (m.setup().parameters.pump)
+      std::tie(evidence.driving_power, evidence.carried_heat) = driving_power(m, peak_flow_);
+    else
+      std::tie(evidence.pumping_share, evidence.pressure_loss) = pumping_share(m, peak_flow_);
+  }
+  if (m.setup().parameters.bed.advection == Advection::implicit && peak_advance_ > 0) {
+    const double part = peak_advance_ / crossing_mass(m);  // v dt / H
+    evidence.implicit_spread = std::sqrt(part);
+    evidence.implicit_step = 0.9 * 0.05 * 0.05 / part * peak_advance_ / peak_flow_;  // a tenth to spare
+  }
+  if (m.bed().shells() == 1 && peak_flow_ > 0) evidence.largest_biot = largest_biot(m, peak_flow_);
+  if (m.shell() && !m.stress().yield.empty()) {
+    const WallStress& stress = m.stress();
+    evidence.share_of_yield = 0;
+    for (std::size_t i = 0; i < stress.equivalent.size(); ++i)
+      evidence.share_of_yield = std::max(evidence.share_of_yield, stress.equivalent[i] / stress.yield[i]);
+  }
+  if (bending_.share.shell > 0) {
+    evidence.share_as_rings = bending_.share.rings;
+    evidence.share_with_bending = bending_.share.shell;
+  }
+  ElementParameters scene;
+  scene.type = ElementParameters::Type::tank;
+  scene.tank = m.setup().parameters;
+  return couplet::audit(effect_cards(), scene, evidence);
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/material/properties.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace couplet::thermocline {
+namespace {
+
+Steel steel(std::string name, double density, std::vector<double> range, std::vector<double> cp,
+            std::vector<double> k, std::vector<double> e, std::vector<double> alpha,
+            std::vector<double> yield, double highest) {
+  const auto table = [&](const std::vector<double>& y) { return Table(range, y); };
+  return {std::move(name), density, 0.3, table(cp), table(k), table(e), table(alpha), table(yield), highest};
+}
+
+const std::map<std::string, Insulator>& foundations() {
+  // Handbook values (Incropera, tables A.3 and A.1, and makers' sheets); cellular glass grows with
+  // temperature.
+  static const std::map<std::string, Insulator> all{
+      {"steel-plate", {7850, 480, 50.0}},
+      {"dry-sand", {1515, 800, 0.27}},
+      {"foam-glass", {145, 1000, Table({298.15, 573.15}, {0.058, 0.10})}},
+      {"hard-firebrick", {2050, 960, 1.2}},
+      {"insulating-firebrick", {600, 960, 0.20}},
+      {"insulating-concrete", {800, 960, 0.25}},
+      {"concrete", {2300, 880, 1.4}},
+      {"soil", {2050, 1840, 1.2}},
+  };
+  return all;
+}
+
+}  // namespace
+
+Fluid solar_salt() {
+  // Table 5.1 prints the conductivity in kW with a slope ten times too low, and -1.24e-4 in the viscosity,
+  // which makes it negative above 407 degC; these are the correlations of Zavoico (SAND2001-2100). Density
+  // and specific heat are those at 340 degC, with which table 5.3 reproduces.
+  return {"solar salt",
+          1873.8,
+          1501.5,
+          [](double t) { return 0.443 + 1.9e-4 * celsius(t); },
+          [](double t) {
+            const double c = celsius(t);
+            return 2.2714e-2 + c * (-1.20e-4 + c * (2.281e-7 - c * 1.474e-10));
+          },
+          zero_celsius + 238,
+          zero_celsius + 600,
+          DensityLaw{2090, -0.636, 0}};
+}
+
+Fluid caloria_ht43() {
+  // Table 5.1 prints the conductivity in kW/(m K); its density is that at 280 degC of the fit given with it.
+  return {"Caloria HT-43",
+          692.4,
+          2700,
+          [](double t) { return 0.125 - 1.4e-4 * celsius(t); },
+          [](double t) { return 132.73 * std::pow(std::max(celsius(t), 20.0), -2.207); },
+          zero_celsius - 10,
+          zero_celsius + 315,
+          DensityLaw{885, -0.6617, -1.265e-4}};
+}
+
+double air_heat_between(double from, double to) {
+  // c_p/R of dry air, 300 to 1000 K, within 0.1 % there [moran2014, table A-21]; held constant beyond.
+  constexpr double r = 287.05, lowest = 300, highest = 1000;
+  constexpr double a[] = {3.653, -1.337e-3, 3.294e-6, -1.913e-9, 0.2763e-12};
+  const auto capacity = [&](double t) {
+    return r * (a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * a[4]))));
+  };
+  const auto integral = [&](double t) {
+    return r * t * (a[0] + t * (a[1] / 2 + t * (a[2] / 3 + t * (a[3] / 4 + t * a[4] / 5))));
+  };
+  const auto heat = [&](double t) {  // above `lowest`
+    const double within = std::clamp(t, lowest, highest);
+    return integral(within) - integral(lowest) + capacity(within) * (t - within);
+  };
+  return heat(to) - heat(from);
+}
+
+Fluid air_at(double pressure, double reference_temperature, double specific_heat) {
+  constexpr double gas_constant = 287.05;
+  Fluid air{"air",
+            pressure / (gas_constant * reference_temperature),
+            specific_heat,
+            [](double t) { return 0.0241 * std::pow(t / 273.15, 1.5) * (273.15 + 194) / (t + 194); },
+            [](double t) { return 1.716e-5 * std::pow(t / 273.15, 1.5) * (273.15 + 110.4) / (t + 110.4); },
+            150,
+            1500};
+  air.gas_constant = gas_constant, air.pressure = pressure;
+  return air;
+}
+
+Steel steel_a537() {
+  return steel("A537 class 2", 7850, {477, 577}, {512, 547}, {53.5, 49}, {1.92e11, 1.84e11},
+               {1.39e-5, 1.49e-5}, {3.11e8, 2.82e8}, zero_celsius + 371);
+}
+Steel steel_a387() {
+  return steel("A387 grade 91", 7850, {563, 663}, {541, 600}, {27.3, 27.8}, {1.95e11, 1.88e11},
+               {1.26e-5, 1.32e-5}, {3.76e8, 3.61e8}, zero_celsius + 649);
+}
+Steel nickel_n06022() {
+  // Table 5.1's highest temperature, 1250, is in degF.
+  return steel("N06022", 8691, {563, 838}, {482, 532}, {15.2, 20.8}, {1.91e11, 1.75e11}, {1.32e-5, 1.74e-5},
+               {2.16e8, 1.88e8}, zero_celsius + 677);
+}
+
+Insulator mineral_wool() {
+  return {
+      100, 840,
+      Table({323.15, 373.15, 473.15, 573.15, 673.15, 773.15}, {0.040, 0.047, 0.066, 0.091, 0.123, 0.163})};
+}
+
+Insulator foundation_material(const std::string& name) { return foundations().at(name); }
+
+std::vector<std::string> foundation_materials() {
+  std::vector<std::string> names;
+  for (const auto& [name, material] : foundations()) names.push_back(name);
+  return names;
+}
+
+Fluid make_fluid(const FluidParameters& p) {
+  if (p.type == FluidParameters::Type::air)
+    return air_at(p.pressure, p.reference_temperature, p.air_specific_heat);
+  if (p.type != FluidParameters::Type::custom) {
+    Fluid known = p.type == FluidParameters::Type::solar_salt ? solar_salt() : caloria_ht43();
+    known.real_density = p.real_density;
+    return known;
+  }
+  Fluid own{"fluid",
+            p.density,
+            p.specific_heat,
+            Table(p.temperature, p.conductivity),
+            Table(p.temperature, p.viscosity),
+            p.lowest,
+            p.highest};
+  if (p.temperature.size() > 1) own.known_from = p.temperature.front(), own.known_to = p.temperature.back();
+  return own;
+}
+
+Steel make_steel(const SteelParameters& p) {
+  using Type = SteelParameters::Type;
+  if (p.type == Type::a537) return steel_a537();
+  if (p.type == Type::a387) return steel_a387();
+  if (p.type == Type::n06022) return nickel_n06022();
+  Steel made = steel("shell metal", p.density, p.temperature, p.specific_heat, p.conductivity,
+                     p.youngs_modulus, p.expansion, p.yield_strength, p.highest);
+  made.poissons_ratio = p.poissons_ratio;
+  return made;
+}
+
+Insulator make_insulator(const InsulatorParameters& p) {
+  Insulator made = mineral_wool();
+  made.density = p.density;
+  made.specific_heat = p.specific_heat;
+  if (!p.conductivity.empty())
+    made.conductivity =
+        p.temperature.empty() ? Table(p.conductivity[0]) : Table(p.temperature, p.conductivity);
+  return made;
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/section.hpp"
+#include "thermocline/base/celsius.hpp"
+#include "thermocline/base/table.hpp"
+
+/// Materials of thesis table 5.1 with its misprints mended, the insulation and foundation materials of a
+/// tank, and materials of the user's own. Temperatures in K, everything in SI.
+namespace couplet::thermocline {
+
+inline constexpr double gravity = 9.81;  // [m/s^2]
+
+/// Density as a polynomial of the temperature in degC.
+struct DensityLaw {
+  double constant = 0, slope = 0, curve = 0;  // [kg/m^3], [kg/(m^3 K)], [kg/(m^3 K^2)]
+  double at(double kelvin) const {
+    const double c = celsius(kelvin);
+    return constant + c * (slope + c * curve);
+  }
+  /// Integral from one temperature to another [kg K/m^3].
+  double between(double from, double to) const {
+    const double a = celsius(from), b = celsius(to), d = b - a;
+    return d * (constant + 0.5 * slope * (a + b) + curve / 3 * (a * a + a * b + b * b));
+  }
+};
+
+/// A heat-transfer fluid. Specific heat is a constant, and so is the density unless it is asked to be real
+/// (thesis table 5.1): plant and tank count heat with them; conductivity and viscosity follow the
+/// temperature.
+struct Fluid {
+  std::string name;
+  double density = 0, specific_heat = 0;       // [kg/m^3], [J/(kg K)]
+  std::function<double(double)> conductivity;  // [W/(m K)] of [K]
+  std::function<double(double)> viscosity;     // [Pa s] of [K]
+  double lowest = 0, highest = 1e4;            // it is a liquid that lasts between these [K]
+  std::optional<DensityLaw> real = {};         // what the density really does, where that is known
+  bool real_density = false;                   // the tank follows it
+  double gas_constant = 0, pressure = 101325;  // of an ideal gas [J/(kg K)], [Pa]; 0: a liquid
+  double known_from = 0, known_to = 1e4;       // range of the tables of one's own [K]
+  bool is_gas() const { return gas_constant > 0; }
+  double volumetric() const { return density * specific_heat; }
+  double density_at(double kelvin) const { return real_density ? real->at(kelvin) : density; }
+};
+
+/// Grains: sand and rock.
+struct Filler {
+  double density = 2643, specific_heat = 1000.5, conductivity = 2.2;  // quartzite, table 5.1
+  double friction_angle = 0.5235987755982988;                         // [rad]; 30 degrees
+  double expansion = 7.92e-6;                                         // linear [1/K]
+  double volumetric() const { return density * specific_heat; }
+};
+
+/// A capsule's content melts within a range of temperatures; the heat of melting is spread over it evenly.
+struct Melting {
+  double temperature = 0;  ///< middle of the range [K]
+  double width = 2;        ///< of the range [K]
+  double latent_heat = 0;  ///< [J/kg]
+};
+void declare(config::Section& section, Melting& melting);
+
+/// A metal of the shell. `expansion` is the instantaneous coefficient d(strain)/dT, as ASME II-D lists it:
+/// the thermal strain is its integral (the products alpha (T - T0) of a mean coefficient would be a third too
+/// much).
+struct Steel {
+  std::string name;
+  double density = 7850, poissons_ratio = 0.3;
+  Table specific_heat, conductivity, youngs_modulus, expansion, yield_strength;
+  double highest = 1e4;  // [K]
+  /// Strain from the lower end of the table to this temperature [1].
+  double thermal_strain(double temperature) const { return expansion.integral(temperature); }
+};
+
+/// Something that only conducts: insulation, foundation, soil.
+struct Insulator {
+  double density = 0, specific_heat = 0;
+  Table conductivity;
+};
+
+Fluid solar_salt();
+Fluid caloria_ht43();
+/// Dry air as an ideal gas: specific heat a constant, conductivity and viscosity by Sutherland's laws. Its
+/// density at the reference temperature counts for the little heat that the pores hold, that of the moment
+/// for Ergun.
+Fluid air_at(double pressure, double reference_temperature, double specific_heat = 1075);
+/// What a kilogram of dry air takes from one temperature to another [J/kg], by the standard fit of its specific heat:
+/// what a run with a constant is judged by.
+double air_heat_between(double from, double to);
+Steel steel_a537();     // A537 class 2, 477-577 K
+Steel steel_a387();     // A387 grade 91, 563-663 K
+Steel nickel_n06022();  // 563-838 K
+/// Wired mineral-wool mat of 100 kg/m^3.
+Insulator mineral_wool();
+/// Layers of a foundation by name ("dry-sand", "foam-glass", ...); throws std::out_of_range for another.
+Insulator foundation_material(const std::string& name);
+std::vector<std::string> foundation_materials();
+
+// -- as they stand in the YAML ------------------------------------------------------------------------------
+struct FluidParameters {
+  enum class Type { solar_salt, caloria_ht43, air, custom } type = Type::solar_salt;
+  double pressure = 101325, reference_temperature = 600;  ///< of air [Pa], [K]
+  double air_specific_heat = 1075;                        ///< of air: its mean from 300 to 900 K [J/(kg K)]
+  bool real_density = false;
+  double density = 0, specific_heat = 0;
+  std::vector<double> temperature, conductivity, viscosity;
+  double lowest = 0, highest = 1e4;
+};
+void declare(config::Section& section, FluidParameters& parameters);
+Fluid make_fluid(const FluidParameters& parameters);
+
+void declare(config::Section& section, Filler& filler);
+
+struct SteelParameters {
+  enum class Type { a537, a387, n06022, custom } type = Type::a537;
+  double density = 7850, poissons_ratio = 0.3, highest = 1e4;
+  std::vector<double> temperature, specific_heat, conductivity, youngs_modulus, expansion, yield_strength;
+};
+void declare(config::Section& section, SteelParameters& parameters);
+Steel make_steel(const SteelParameters& parameters);
+
+struct InsulatorParameters {
+  double density = 100, specific_heat = 840;
+  std::vector<double> temperature, conductivity;  // both empty: mineral wool
+};
+void declare(config::Section& section, InsulatorParameters& parameters);
+Insulator make_insulator(const InsulatorParameters& parameters);
+
+}  // namespace couplet::thermocline

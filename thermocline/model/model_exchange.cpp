@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// One exchange step of the tank: the elements in turn.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+#include "thermocline/model/model.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Adds the time until the end of the scope to an element.
+class Stopwatch final {
+ public:
+  Stopwatch(Speed& speed, Element element) : seconds_(speed.seconds[std::size_t(element)]) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  Clock::time_point start_ = Clock::now();
+};
+
+}  // namespace
+
+/// Fluid and filler of a cell of the bed [J/(m^2 K)].
+double TankModel::cell_capacity(int i) const {
+  const BedGrid& grid = bed_.grid();
+  const BedLayer& layer = grid.runs[grid.layer[i]].layer;
+  const Filler& filler = layer.filler ? *layer.filler : setup_->filler;
+  return (layer.porosity * setup_->fluid.volumetric() + (1 - layer.porosity) * filler.volumetric()) *
+         grid.dz[i];
+}
+
+/// The bed's lowest cell against the flux that the ground computes from it: half its capacity over the
+/// coefficient. A plate under a thin cell holds more heat than that cell.
+double TankModel::stable_ground() const {
+  return 0.5 * cell_capacity(0) / std::max(1e-30, plate_coefficient());
+}
+
+double TankModel::stable_exchange() const {
+  // The bed's end cells against the fluxes that ullage and ground compute from them. Elsewhere the flux is
+  // computed by the lighter side.
+  double step = ground_ ? stable_ground() : std::numeric_limits<double>::infinity();
+  if (!ullage_) return step;
+  const double strongest = 100;  // of gas and radiation together at any temperature of interest [W/(m^2 K)]
+  step = std::min(step, 0.5 * cell_capacity(bed_.grid().size() - 1) / strongest);
+  if (!shell_) return step;
+  const Steel& steel = *setup_->steel;
+  for (int i = setup_->rings->in_bed; i < setup_->rings->size(); ++i)
+    step = std::min(
+        step, 0.5 * steel.density * steel.specific_heat.y.front() * setup_->rings->thickness[i] / strongest);
+  return step;
+}
+
+double TankModel::exchange(double t, double h, FlowControl& control, const AmbientSource& ambient,
+                           std::vector<BedStep>& steps, Speed& speed) {
+  const double tiny = 1e-9 * h;
+  const Ambient air = ambient.at(t + h / 2);
+  if (insulation_) {
+    const Stopwatch watch(speed, Element::insulation);
+    if (side_.until <= t + tiny) step_insulation(t, h, air);
+    if (side_.until > t + tiny) h = std::min(h, side_.until - t);
+  }
+  if (ground_) {
+    const Stopwatch watch(speed, Element::ground);
+    if (soil_.until <= t + tiny) step_ground(t, h);
+    if (soil_.until > t + tiny) h = std::min(h, soil_.until - t);
+  }
+  if (ullage_) {
+    const Stopwatch watch(speed, Element::ullage);
+    step_ullage(h, air);
+  }
+  // What the shell took in the step before: the wall sees the bed at the end of each step, so that both have
+  // the same time when the filler meets the wall; the bed, far heavier, pays one step later.
+  for (std::size_t i = 0; i < source_.size(); ++i) source_[i] = -owed_[i] / h;
+  source_.back() -= from_liquid_;
+  source_.front() -= soil_.in;
+  bed_.set_source(source_);
+  step_bed(t, t + h, control, ambient, steps, speed);
+  if (shell_) {
+    const Stopwatch watch(speed, Element::shell);
+    step_shell(h);
+    update_pressure();
+  }
+  ledger_.side += side_.out * h;
+  ledger_.ground += soil_.out * h;
+  ledger_.turnover += (std::abs(side_.out) + std::abs(soil_.out)) * h;
+  if (mechanics_) {
+    const Stopwatch watch(speed, Element::mechanics);
+    bed_.filler_temperature(filler_);
+    mechanics_->update(shell_->temperature(), filler_);
+  }
+  watch(t + h);
+  return h;
+}
+
+void TankModel::step_insulation(double t, double h, const Ambient& air) {
+  const TankParameters& p = setup_->parameters;
+  const double step = std::max(h, p.insulation->step);
+  const Rings& rings = *setup_->rings;
+  const double height = rings.z.back() + rings.dz.back() / 2;
+  const double outer = p.diameter + 2 * (rings.thickness.front() + p.insulation->thickness);
+  // The film belongs to the surface temperature; one correction is enough for so weak a dependence.
+  Film film = side_film(p.insulation->outside, air.temperature + 5, outer, height, air);
+  film = side_film(p.insulation->outside, insulation_->outer_surface(film), outer, height, air);
+  const double lost = insulation_->step(step, shell_->temperature(), film, into_blanket_);
+  side_ = {t + step, 0, lost / step};
+  for (const double q : into_blanket_) side_.in += q;
+}
+
+/// Bottom cell to the plate below it: the film of a wall, and half the cell in series, which conducts like
+/// the stagnant bed (k_0 = film d/2).
+double TankModel::plate_coefficient() const {
+  const BedGrid& grid = bed_.grid();
+  const double d = grid.runs.front().layer.diameter;
+  return bed_.wall_coefficient().front() * d / (d + grid.dz.front());
+}
+
+void TankModel::step_ground(double t, double h) {
+  const double step = std::max(h, std::min(setup_->parameters.ground->step, stable_ground()));
+  const Film plate{plate_coefficient(), bed_.bottom()};
+  const Film deep{std::numeric_limits<double>::infinity(), deep_temperature_};
+  const Column::Heat heat = ground_->step(step, plate, deep);
+  soil_ = {t + step, heat.inner / step, heat.outer / step};
+}
+
+double TankModel::upper_wall() const {
+  if (!shell_) return bed_.top();
+  const Rings& rings = *setup_->rings;
+  double sum = 0, height = 0;
+  for (int i = rings.in_bed; i < rings.size(); ++i)
+    sum += rings.dz[i] * shell_->temperature()[i], height += rings.dz[i];
+  return sum / height;
+}
+
+void TankModel::step_ullage(double h, const Ambient& air) {
+  const TankParameters& p = setup_->parameters;
+  // The roof's inner cell takes the heat explicitly: steps of half its time constant. Where these would be
+  // many (a blanket of millimetres) the gas sees the roof's implicit answer instead.
+  const double limit = roof_ ? 0.5 * roof_->inner_capacity() / roof_->inner_conductance() : h;
+  constexpr double most_parts = 8;
+  const bool light = h > most_parts * limit;
+  const int parts = light ? 1 : std::max(1, int(std::ceil(h / limit)));
+  from_liquid_ = wall_to_ullage_ = ullage_coefficient_ = 0;
+  for (int k = 0; k < parts; ++k) {
+    double roof_cell = roof_ ? roof_->inner_temperature() : 0;
+    double conductance = roof_ ? roof_->inner_conductance() * roof_->area() : 0;
+    if (light) {
+      Film outer = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
+      outer = roof_film(p.insulation->outside, roof_->outer_surface(outer), p.diameter, air);
+      const Film answer = roof_->inner_response(h, outer);
+      roof_cell = answer.reference, conductance = answer.coefficient * roof_->area();
+    }
+    const Ullage::Heat heat =
+        ullage_->step(h / parts, bed_.top(), upper_wall(), roof_cell, conductance, air.pressure);
+    from_liquid_ += heat.from_liquid / parts;
+    wall_to_ullage_ += heat.from_wall / parts;
+    ullage_coefficient_ += heat.wall_coefficient / parts;
+    if (!roof_) continue;
+    Film film = roof_film(p.insulation->outside, air.temperature + 5, p.diameter, air);
+    film = roof_film(p.insulation->outside, roof_->outer_surface(film), p.diameter, air);
+    const double lost = roof_->step(h / parts, heat.into_roof, film).outer;
+    ledger_.roof += lost;
+    ledger_.turnover += std::abs(lost);
+  }
+  if (!shell_) {  // a wall without a model of its own gives what it gets from the liquid beside it
+    from_liquid_ += wall_to_ullage_;
+    wall_to_ullage_ = 0;
+  }
+}
+
+void TankModel::step_shell(double h) {
+  const Rings& rings = *setup_->rings;
+  from_wall_ = into_blanket_;
+  // Rings above the bed: the mean flux, and more from those warmer than the mean.
+  double upper = 0;
+  for (int i = rings.in_bed; i < rings.size(); ++i) upper += rings.surface(i);
+  const double mean = upper_wall();
+  for (int i = rings.in_bed; i < rings.size(); ++i)
+    from_wall_[i] += rings.surface(i) *
+                     (wall_to_ullage_ / upper + ullage_coefficient_ * (shell_->temperature()[i] - mean));
+  shell_->step(h, bed_.fluid(), bed_.wall_coefficient(), from_wall_, owed_);
+  for (double& heat : owed_) heat *= h;
+}
+
+namespace {
+
+/// A flow given in another unit than its own would fill the memory with steps before it has run for a minute.
+void refuse_hopeless_flow(double mass_flow, double limit, double span) {
+  constexpr double most = 1e6;  // a thousand times what a flow through the finest of grids asks for
+  if (span <= most * limit) return;
+  throw Error(
+      "flow: {:.3g} kg/s crosses a cell of the bed in so short a time that {:.3g} s would need {:.2g} steps of it (at most {:.0g}). Is the "
+      "unit of the flow right? 'bed.advection: implicit' takes any step.",
+      mass_flow, span, span / limit, most);
+}
+
+}  // namespace
+
+void TankModel::step_bed(double t, double end, FlowControl& control, const AmbientSource& ambient,
+                         std::vector<BedStep>& steps, Speed& speed) {
+  const double tiny = 1e-9 * (end - t);
+  bool prepared = false;
+  // With a density of temperature the capacities are renewed so often that none changes by a thousandth.
+  const double renewal = bed_.has_real_density() ? 60 : std::numeric_limits<double>::infinity();
+  double block = t + renewal;
+  while (end - t > tiny) {
+    BedStep s;
+    s.t = t;
+    s.ambient = ambient.at(t);
+    s.flow = control.decide(t, bed_.top(), bed_.bottom(), s.ambient);
+    const double m = s.flow.mass_flow, limit = bed_.largest_step(m), now = bed_.prepared().mass_flow;
+    if (t > block - tiny) prepared = false, block = t + renewal;
+    const double until = std::min(block, s.flow.until > t + tiny ? std::min(end, s.flow.until) : end);
+    // New closures when the flow has changed by a tenth, a new step when the old one has become too long or
+    // would pass the time the control gave; a little over the limit is within the scheme's reserve.
+    const bool other_flow = (m == 0) != (now == 0) || m * now < 0 || std::abs(m - now) > 0.1 * std::abs(now);
+    const bool too_long = bed_.prepared().dt > 1.05 * limit || t + bed_.prepared().dt > until + tiny;
+    if (!prepared || other_flow || too_long) {
+      const Stopwatch watch(speed, Element::preparation);
+      const double steps_left = std::ceil((until - t) / limit * (1 - 1e-9));
+      refuse_hopeless_flow(m, limit, until - t);
+      bed_.prepare((until - t) / std::max(1.0, steps_left), m);
+      prepared = true;
+    }
+    s.dt = bed_.prepared().dt;
+    const Stopwatch watch(speed, Element::bed);
+    const PackedBed::StepHeat heat = bed_.step(m, s.flow.inlet_temperature);
+    s.outlet_temperature = heat.outlet;
+    ledger_.flow += heat.by_flow;
+    ledger_.bed += heat.by_flow + heat.by_source;
+    ledger_.turnover += std::abs(heat.by_flow);
+    if (setup_->parameters.pump && m != 0) {
+      const PressureLoss loss = pressure_loss(bed_.grid(), setup_->fluid, bed_.fluid(), m, bed_.area());
+      s.pressure_loss = loss.loss();
+      s.pump_power = pump_power(loss, setup_->fluid, bed_.bottom(), m, setup_->parameters.pump->efficiency);
+    }
+    steps.push_back(s);
+    speed.cell_steps += bed_.grid().size();
+    ++speed.bed_steps;
+    t += s.dt;
+  }
+  if (setup_->parameters.bed.mix_inversions) bed_.mix_inversions();
+  bed_.settle();
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "thermocline/bed/packed_bed.hpp"
+#include "thermocline/bed/pressure_loss.hpp"
+#include "thermocline/economics/day_report.hpp"
+#include "thermocline/plant/flow.hpp"
+#include "thermocline/wall/insulation.hpp"
+#include "thermocline/wall/shell.hpp"
+#include "thermocline/wall/ullage.hpp"
+#include "thermocline/wall/wall_interface.hpp"
+#include "thermocline/weather/weather_parameters.hpp"
+
+namespace couplet::thermocline {
+
+struct UllageSpace {
+  double height = 0;  ///< between bed and roof [m]
+  UllageParameters gas;
+};
+
+struct GroundLayer {
+  std::string material = "soil";
+  double thickness = 0;  ///< [m]
+};
+struct GroundParameters {
+  std::vector<GroundLayer> layers;         ///< from the tank downwards
+  double cell = 0.05;                      ///< largest height of a cell near the tank [m]
+  double step = 900;                       ///< its own step [s]
+  std::optional<double> deep_temperature;  ///< [K]; else the air's annual mean
+};
+
+struct FillerMechanicsParameters {};
+
+/// A section that stands in the YAML, for those that have defaults all through.
+struct Present {};
+
+/// Elements of this tank that participants of their own compute.
+struct ElsewhereParameters {
+  bool ground = false, insulation = false;
+};
+
+struct TankOutput {
+  double monitor_interval = 0;  ///< [s]; 0: each step
+};
+
+/// What `participants.<name>` holds; each optional member is an effect.
+struct TankParameters {
+  double diameter = 0;  ///< inner [m]
+  double exchange_step =
+      0;  ///< longest step between exchanges of the elements [s]; 0: that of the simulation
+  FluidParameters fluid;
+  Filler filler;
+  BedParameters bed;
+  std::optional<ShellParameters> shell;
+  std::optional<FillerMechanicsParameters> mechanics;
+  std::optional<ExternalWallParameters> external_wall;
+  std::optional<InsulationParameters> insulation;
+  std::optional<UllageSpace> ullage;
+  std::optional<GroundParameters> ground;
+  std::optional<ElsewhereParameters> elsewhere;
+  std::optional<PumpParameters> pump;
+  std::optional<Present> ambient_given;  ///< else `ambient` holds its defaults
+  WeatherParameters ambient;
+  FlowParameters flow;
+  std::optional<ReportParameters> report;
+  TankOutput output;
+};
+void declare(config::Section& section, GroundParameters& parameters);
+void declare(config::Section& section, TankParameters& parameters);
+
+}  // namespace couplet::thermocline

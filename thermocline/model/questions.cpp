@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/model/questions.hpp"
+
+#include "common/base/error.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+/// Empty if this temperature may be meant.
+std::string forgotten_unit(const std::string& what, double kelvin_given, const Fluid& fluid) {
+  const double as_celsius = kelvin(kelvin_given);
+  if (kelvin_given >= fluid.lowest || as_celsius < fluid.lowest || as_celsius > fluid.highest) return "";
+  return fmt::format(
+      "{} is {:.6g} K, that is {:.1f} degC, and {} is no liquid below {:.0f} degC; write '{:.6g} degC' if that is meant",
+      what, kelvin_given, celsius(kelvin_given), fluid.name, celsius(fluid.lowest), kelvin_given);
+}
+
+void ask_about_plant(const PlantParameters& p, const TankModel& model, std::vector<std::string>& all) {
+  if (p.restart > p.cut_off)
+    all.push_back(
+        fmt::format("flow.restart ({:g} K) is above flow.cut-off ({:g} K): what may start at a temperature "
+                    "is stopped at it, "
+                    "so that the cut-off alone decides about both.",
+                    p.restart, p.cut_off));
+  const double top = model.bed().top(), bottom = model.bed().bottom();
+  if (bottom > p.cold + p.restart && top < p.hot - p.restart)
+    all.push_back(
+        fmt::format("the tank starts between charged and discharged and cannot do either: its bottom is at "
+                    "{:.1f} degC and "
+                    "charging starts at {:.1f} degC or below, its top is at {:.1f} degC and discharging "
+                    "starts at {:.1f} degC "
+                    "or above. It rests until its losses have cooled it; give bed.initial-temperature (or a "
+                    "profile) that is "
+                    "cold at the bottom or hot at the top.",
+                    celsius(bottom), celsius(p.cold + p.restart), celsius(top), celsius(p.hot - p.restart)));
+}
+
+void ask_about_schedule(const FlowParameters& flow, const TankModel& model, std::vector<std::string>& all) {
+  const ScheduleRow& row = flow.rows.front();
+  if (row.mass_flow == 0) return;
+  const double outlet = row.mass_flow > 0 ? model.bed().top() : model.bed().bottom();
+  const bool above = row.stop_above && outlet > *row.stop_above,
+             below = row.stop_below && outlet < *row.stop_below;
+  if (above || below)
+    all.push_back(fmt::format(
+        "flow.rows[0] is stopped before it begins: the outlet is at {:.1f} degC and the row stops {} {:.1f} "
+        "degC. "
+        "Does the flow have the right sign (upward, out of the top, is above 0) and the bed the right "
+        "initial-temperature?",
+        celsius(outlet), above ? "above" : "below", celsius(above ? *row.stop_above : *row.stop_below)));
+}
+
+}  // namespace
+
+std::string forgotten_unit_of_bed(const TankParameters& p) {
+  const Fluid fluid = make_fluid(p.fluid);
+  const double unsaid = BedParameters().initial_temperature;
+  for (std::size_t i = 0; i < p.bed.layers.size(); ++i)
+    if (p.bed.layers[i].melting) {
+      const double melts = p.bed.layers[i].melting->temperature;
+      std::string found = forgotten_unit(fmt::format("layers[{}].melting.temperature", i), melts, fluid);
+      if (!found.empty()) return found;
+    }
+  if (p.bed.profile_temperature.empty())
+    return p.bed.initial_temperature == unsaid
+               ? ""
+               : forgotten_unit("initial-temperature", p.bed.initial_temperature, fluid);
+  for (const double t : p.bed.profile_temperature)
+    if (std::string found = forgotten_unit("a value of profile-temperature", t, fluid); !found.empty())
+      return found;
+  return "";
+}
+
+std::string forgotten_unit_of_flow(const TankParameters& p) {
+  const Fluid fluid = make_fluid(p.fluid);
+  std::vector<std::pair<std::string, double>> given;
+  if (p.flow.type == FlowParameters::Type::plant)
+    given = {{"hot", p.flow.plant.hot}, {"cold", p.flow.plant.cold}};
+  if (p.flow.type == FlowParameters::Type::schedule)
+    for (std::size_t i = 0; i < p.flow.rows.size(); ++i) {
+      const ScheduleRow& row = p.flow.rows[i];
+      if (row.mass_flow != 0)
+        given.emplace_back(fmt::format("rows[{}].inlet-temperature", i), row.inlet_temperature);
+      if (row.stop_above) given.emplace_back(fmt::format("rows[{}].stop-above", i), *row.stop_above);
+      if (row.stop_below) given.emplace_back(fmt::format("rows[{}].stop-below", i), *row.stop_below);
+    }
+  for (const auto& [name, value] : given)
+    if (std::string found = forgotten_unit(name, value, fluid); !found.empty()) return found;
+  return "";
+}
+
+std::vector<std::string> questions(const TankParameters& p, const TankModel& model) {
+  std::vector<std::string> all;
+  const bool plant = p.flow.type == FlowParameters::Type::plant;
+  const bool deep = p.ground && !p.ground->deep_temperature;
+  if (!p.ambient_given && (p.insulation || p.ullage || deep || plant))
+    all.push_back(
+        fmt::format("there is no section 'ambient': {} see still air of 20 degC{}.",
+                    plant ? "plant and tank" : "what surrounds the tank",
+                    plant ? " and no sun, day and night; the field collects nothing" : " and no sun"));
+  if (plant) ask_about_plant(p.flow.plant, model, all);
+  if (p.flow.type == FlowParameters::Type::schedule && p.flow.rows.front().at == 0)
+    ask_about_schedule(p.flow, model, all);
+  return all;
+}
+
+std::vector<std::string> never_melted(const TankModel& model) {
+  std::vector<std::string> all;
+  const auto [coldest, hottest] = model.fluid_range();
+  const std::vector<BedLayer>& layers = model.setup().parameters.bed.layers;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    if (!layers[i].melting || hottest < coldest) continue;
+    const Melting& m = *layers[i].melting;
+    const double low = m.temperature - m.width / 2, high = m.temperature + m.width / 2;
+    if (hottest <= low || coldest >= high)
+      all.push_back(fmt::format(
+          "bed.layers[{}]: its capsules melt from {:.1f} to {:.1f} degC and the fluid was nowhere between, but from {:.1f} to "
+          "{:.1f} degC: their latent heat has not acted",
+          i, celsius(low), celsius(high), celsius(coldest), celsius(hottest)));
+  }
+  return all;
+}
+
+std::vector<std::string> prices_for_nothing(const EconomicsParameters& p, const Inventory& i, bool pump) {
+  std::vector<std::string> all;
+  const auto look = [&](const char* name, double price, double amount, const char* why) {
+    if (price > 0 && amount == 0)
+      all.push_back(
+          fmt::format("report.economics.{} is {:g}, but there is nothing to pay for: {}", name, price, why));
+  };
+  look("steel", p.steel, i.steel, "the tank has no section 'shell'");
+  look("insulation", p.insulation, i.insulated, "the tank has no sections 'shell' and 'insulation'");
+  look("filler", p.filler, i.filler + (p.capsules ? 0 : i.capsules), "no layer holds grains");
+  look("capsules", p.capsules.value_or(0), i.capsules, "no layer melts");
+  look("pump", p.pump, pump ? 1 : 0, "the tank has no section 'pump'");
+  return all;
+}
+
+std::string season_without_dates(const TankParameters& p) {
+  if (p.flow.type != FlowParameters::Type::plant || p.ambient.kind != WeatherKind::constant) return "";
+  for (std::size_t i = 0; i < p.flow.plant.calendar.size(); ++i)
+    if (!p.flow.plant.calendar[i].from.empty())
+      return fmt::format(
+          "calendar[{}] has a season, whose days are those of the weather, and the weather is constant; give 'ambient' with "
+          "dates, or leave 'from' and 'to' out",
+          i);
+  return "";
+}
+
+void require_sun(double absorptance, const Weather& weather, const std::string& key) {
+  if (absorptance <= 0 || weather.has_site()) return;
+  throw Error(
+      "{}: the sun's height is needed to warm the cover and is not known: {} does not say where it is. Add "
+      "'site: "
+      "{{latitude, longitude, time-zone}}' to the section 'ambient', or leave solar-absorptance at 0.",
+      key, weather.source());
+}
+
+}  // namespace couplet::thermocline

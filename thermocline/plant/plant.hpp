@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/config/section.hpp"
+#include "thermocline/plant/calendar.hpp"
+
+namespace couplet::thermocline {
+
+/// Solar field, power block and the limits within which the store may work [thesis, section 5.2.1].
+struct PlantParameters {
+  double electric_power = 0;      ///< W_EG, day and night [W]
+  double block_efficiency = 0.4;  ///< eta_PB
+  double field_area = 0;          ///< S_SF [m^2]
+  double field_efficiency = 0.6;  ///< eta_SF
+  double hot = 0, cold = 0;       ///< design temperatures [K]
+  double cut_off = 15;            ///< dT_CO [K]
+  double restart = 10;            ///< dT_R [K]
+  /// What the cut-off looks at: the mixed temperature at the field's or the block's inlet (what the thesis's
+  /// text says), or what leaves the tank (what its tables follow); or one of them for charging and the other for
+  /// discharging: field: mixed and outlet; block: outlet and mixed.
+  enum class CutOffAt { mixed, outlet, field, block } cut_off_at = CutOffAt::mixed;
+  std::vector<double> load{
+      1};  ///< share of the power block's output that is asked for, always or by the hour
+  std::vector<double> tariff = {};  ///< of the electricity, always or by the hour [currency/MWh]; empty: none
+  std::vector<CalendarRule> calendar = {};  ///< days on which others hold
+  CalendarStart start = {};                 ///< its weekday is a key, its days are the weather's
+};
+void declare(config::Section& section, PlantParameters& parameters);
+
+enum class PlantMode { standby, charge, discharge };
+
+/// What flows in the plant during one step.
+struct PlantFlows {
+  PlantMode mode = PlantMode::standby;
+  double field_heat = 0;   ///< Q_SF: what the sun offers, mean over the step [W]
+  double block_heat = 0;   ///< Q_PB: what the power block asks for [W]
+  double field_flow = 0;   ///< m_SF [kg/s]
+  double block_flow = 0;   ///< m_PB [kg/s]
+  double field_inlet = 0;  ///< T_SF^in, mixed [K]
+  double block_inlet = 0;  ///< T_PB^in, mixed [K]
+  double tank_flow = 0;    ///< upward: > 0 discharge, < 0 charge [kg/s]
+  bool has_excess() const { return field_heat > block_heat; }
+};
+
+/// Plant management, equations 5.1 to 5.6. The fluid's specific heat is constant, so the mixing rules 5.5
+/// and 5.6 and the balances 5.3 and 5.4, each implicit in flow and temperature, have the closed solution
+///   m_C = (Q_SF - Q_PB) / (c (T_hot - T_C)),   m_D = (Q_PB - Q_SF) / (c (T_D - T_cold)).
+class Plant {
+ public:
+  /// `specific_heat` of the fluid [J/(kg K)].
+  Plant(const PlantParameters& parameters, double specific_heat);
+
+  /// Flows of a step that starts with the outlet temperatures `top` and `bottom` of the tank [K]. `before`
+  /// is the mode of the step before: a process that runs goes on until the mixed temperature reaches its
+  /// cut-off, one that does not run starts only within the restart tolerance.
+  /// `load`: share of the design load that is asked for.
+  PlantFlows flows(double field_heat, double top, double bottom, PlantMode before, double load = 1) const;
+
+  double field_heat(double irradiance) const;  ///< equation 5.2 [W]
+  double block_heat() const;                   ///< equation 5.1, at the design load [W]
+  /// At a time [s] from 00:00 of the first day: share of the design load, price [currency/MWh], and the end
+  /// of the hour if either follows clock or calendar (else infinity).
+  double load(double t) const;
+  double tariff(double t) const;
+  double load_until(double t) const;
+  const Calendar& calendar() const { return calendar_; }
+  const PlantParameters& parameters() const { return p_; }
+  double specific_heat() const { return c_; }
+
+ private:
+  PlantFlows idle(double field_heat, double load) const;
+  PlantFlows charge(double field_heat, double bottom, double load) const;
+  PlantFlows discharge(double field_heat, double top, double load) const;
+
+  PlantParameters p_;
+  Calendar calendar_;
+  double c_;
+};
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/wall/shell.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace couplet::thermocline {
+namespace {
+
+/// Half a ring's resistance from its conductivity, and the conductance between rings as lower and upper rows.
+[[gnu::target_clones("avx2", "default")]] void conduct(std::size_t n, const double* bare, double* resistance,
+                                                       double* a, double* c) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < n; ++i) resistance[i] = bare[i] / resistance[i];
+#pragma GCC ivdep
+  for (std::size_t i = 0; i + 1 < n; ++i) c[i] = -1 / (resistance[i] + resistance[i + 1]);
+  for (std::size_t i = 0; i + 1 < n; ++i) a[i + 1] = c[i];
+}
+
+struct Row {
+  const double *mass, *specific_heat, *a, *c, *temperature, *lost;
+};
+/// Storage, conduction and what is lost.
+[[gnu::target_clones("avx2", "default")]] void store(std::size_t n, double dt, const Row& in, double* b,
+                                                     double* r) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < n; ++i) {
+    const double capacity = in.mass[i] * in.specific_heat[i] / dt;
+    b[i] = capacity - in.a[i] - in.c[i];  // of the ends: 0
+    r[i] = capacity * in.temperature[i] - in.lost[i];
+  }
+}
+
+/// The fluid beside the rings.
+[[gnu::target_clones("avx2", "default")]] void wet(std::size_t n, const double* coupling, const double* fluid,
+                                                   double* b, double* r) {
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < n; ++i) {
+    b[i] += coupling[i];
+    r[i] += coupling[i] * fluid[i];
+  }
+}
+
+}  // namespace
+
+Rings::Rings(const ShellParameters& p, const BedGrid& bed, double d, double above)
+    : diameter(d), in_bed(bed.size()), z(bed.z), dz(bed.dz) {
+  if (above > 0) {
+    const int more = std::max(1, int(std::lround(above / bed.dz.back())));
+    for (int i = 0; i < more; ++i) {
+      dz.push_back(above / more);
+      z.push_back(bed.height + (i + 0.5) * above / more);
+    }
+  }
+  for (const double height : z) {
+    double top = 0;
+    thickness.push_back(p.plates.back().thickness);
+    for (const Plate& plate : p.plates) {
+      top += plate.height;
+      if (height < top) {
+        thickness.back() = plate.thickness;
+        break;
+      }
+    }
+  }
+}
+
+double Rings::surface(int i) const { return std::numbers::pi * diameter * dz[i]; }
+
+Shell::Shell(const Rings& rings, const Steel& steel)
+    : rings_(&rings),
+      steel_(&steel),
+      specific_heat_of_(steel.specific_heat),
+      conductivity_of_(steel.conductivity) {
+  const int n = rings.size();
+  const double around = std::numbers::pi * rings.diameter;
+  for (int i = 0; i < n; ++i) {
+    mass_.push_back(steel.density * around * rings.thickness[i] * rings.dz[i]);
+    bare_.push_back(rings.dz[i] / (2 * around * rings.thickness[i]));
+  }
+  temperature_.assign(n, 293.15);
+  for (auto* v : {&a_, &b_, &c_, &r_, &coupling_, &specific_heat_, &resistance_}) v->assign(n, 0.0);
+  matrix_.resize(n);
+}
+
+void Shell::set_temperature(std::span<const double> temperature) {
+  std::copy(temperature.begin(), temperature.end(), temperature_.begin());
+}
+
+void Shell::step(double dt, std::span<const double> fluid, std::span<const double> film,
+                 std::span<const double> lost, std::vector<double>& from_bed) {
+  const Rings& rings = *rings_;
+  const int n = rings.size();
+  const double around = std::numbers::pi * rings.diameter;
+  specific_heat_of_.values(temperature_.data(), specific_heat_.data(), n);
+  conductivity_of_.values(temperature_.data(), resistance_.data(), n);
+  conduct(n, bare_.data(), resistance_.data(), a_.data(), c_.data());
+  for (int i = 0; i < rings.in_bed; ++i) coupling_[i] = film[i] * around * rings.dz[i];
+  // Twice, so that the specific heat is its mean over the step: what is stored is then exactly what came in.
+  for (int pass = 0; pass < 2; ++pass) {
+    store(n, dt,
+          {mass_.data(), specific_heat_.data(), a_.data(), c_.data(), temperature_.data(), lost.data()},
+          b_.data(), r_.data());
+    wet(rings.in_bed, coupling_.data(), fluid.data(), b_.data(), r_.data());
+    matrix_.factorise(a_.data(), b_.data(), c_.data());
+    matrix_.solve(r_.data());
+    double largest = 0;
+    for (int i = 0; i < n; ++i) largest = std::max(largest, std::abs(r_[i] - temperature_[i]));
+    if (largest < 0.01 || pass == 1) break;  // then both agree to 1e-6
+    specific_heat_of_.means(temperature_.data(), r_.data(), specific_heat_.data(), n);
+  }
+  temperature_ = r_;
+  for (int i = 0; i < rings.in_bed; ++i) from_bed[i] = coupling_[i] * (fluid[i] - temperature_[i]);
+}
+
+double Shell::energy(double reference) const {
+  double sum = 0;
+  const Table& cp = steel_->specific_heat;
+  for (int i = 0; i < rings_->size(); ++i)
+    sum += steel_->density * std::numbers::pi * rings_->diameter * rings_->thickness[i] * rings_->dz[i] *
+           (cp.integral(temperature_[i]) - cp.integral(reference));
+  return sum;
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/weather/smooth_days.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/base/error.hpp"
+#include "thermocline/base/clock.hpp"
+#include "thermocline/weather/clear_sky.hpp"
+#include "thermocline/weather/weather_date.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+constexpr std::size_t months = 12;
+
+double of_month(const std::vector<double>& values, std::size_t month) {
+  return values.size() == 1 ? values.front() : values[month];
+}
+
+/// Means over the 24 hours of (1 - |2 t/T|^n)^p. Midpoints in parts of an hour: the ends of the day, where
+/// the slope may be infinite, fall into a part of 30 s.
+std::vector<double> form(double length, double n, double p) {
+  constexpr int parts = 120;
+  std::vector<double> mean(hours_a_day, 0.0);
+  for (int i = 0; i < hours_a_day * parts; ++i) {
+    const double x = std::abs(2 * ((i + 0.5) / parts - 12) / length);
+    if (x < 1) mean[std::size_t(i / parts)] += std::pow(1 - std::pow(x, n), p) / parts;
+  }
+  return mean;
+}
+
+}  // namespace
+
+std::string problem_of(const SmoothDays& d, std::string& key) {
+  key = "daily-sums";
+  if (d.daily_sums.size() != months)
+    return fmt::format("has {} values; one for each of the 12 months is needed, January first",
+                       d.daily_sums.size());
+  constexpr double least = 36e3;  // [J/m^2]: 10 Wh
+  const double highest = *std::max_element(d.daily_sums.begin(), d.daily_sums.end());
+  if (highest > 0 && highest < least)
+    return fmt::format(
+        "{:g} J/m^2 is the largest of its sums: no sun. A number without a unit is in J/m^2; write '{:g} kWh/m^2' if that is "
+        "meant",
+        highest, highest);
+  for (const double sum : d.daily_sums)
+    if (sum < 0 || sum > 24 * 1412 * seconds_an_hour)
+      return fmt::format(
+          "{:g} J/m^2 is no sum of a day; expected 0 to 33 kWh/m^2 (give the unit: 7.2 kWh/m^2)", sum);
+  for (const auto& [name, values] :
+       {std::pair{"form-n", &d.n}, {"form-p", &d.p}, {"day-length", &d.length}}) {
+    key = name;
+    if (values->size() != 1 && values->size() != months)
+      return fmt::format("has {} values; give one, or one for each of the 12 months", values->size());
+    for (const double v : *values)
+      if (!(v > 0 && v <= 100)) return fmt::format("{:g} is not a number above 0 and at most 100", v);
+  }
+  return "";
+}
+
+double day_length(double latitude, int day) {
+  // cos(omega_s) = -tan(phi) tan(delta), from the sun's height at noon and at midnight: sin sin + cos cos
+  // cos.
+  const double noon = sine_of_sun_height(latitude, day, 12), midnight = sine_of_sun_height(latitude, day, 0);
+  const double cosine = -(noon + midnight) / std::max(noon - midnight, 1e-12);
+  return 24 / std::numbers::pi * std::acos(std::clamp(cosine, -1.0, 1.0));
+}
+
+WeatherHours with_smooth_days(WeatherHours record, const SmoothDays& d) {
+  if (record.days() != days_a_year)
+    throw Error("{}: smooth days need the air of a whole year beside them; this file holds {} days.",
+                record.source, record.days());
+  for (int day = 0; day < days_a_year; ++day) {
+    const auto month = std::size_t(month_of_day(day));
+    const double sum = d.daily_sums[month];
+    const double sunny = day_length(d.latitude, day), length = of_month(d.length, month) * sunny;
+    if (length > 24 * (1 + 1e-9))
+      throw Error(
+          "smooth days: day-length {:g} makes a day of {:.1f} h on {}, where the sun is up for {:.1f} h at latitude {:g} deg: "
+          "it would shine at midnight.",
+          of_month(d.length, month), length, date_of_day(day), sunny, d.latitude);
+    const std::vector<double> mean = form(length, of_month(d.n, month), of_month(d.p, month));
+    double total = 0;
+    for (const double m : mean) total += m * seconds_an_hour;
+    if (sum > 0 && total <= 0)
+      throw Error(
+          "smooth days: on {} the sun does not rise at latitude {:g} deg, but daily-sums gives that month "
+          "{:g} J/m^2 a day.",
+          date_of_day(day), d.latitude, sum);
+    for (std::size_t h = 0; h < hours_a_day; ++h) {
+      const double dni = sum > 0 ? sum / total * mean[h] : 0;
+      if (dni > 1412)
+        throw Error(
+            "smooth days: on {} the irradiance reaches {:.0f} W/m^2, more than outside the atmosphere; "
+            "lower 'daily-sums' or widen the day (form-n, form-p, day-length).",
+            date_of_day(day), dni);
+      record.dni[std::size_t(day) * hours_a_day + h] = dni;
+    }
+  }
+  record.site = WeatherHours::Site{d.latitude, 0};
+  return record;
+}
+
+}  // namespace couplet::thermocline

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "thermocline/base/interfaces.hpp"
+#include "thermocline/weather/weather_hours.hpp"
+
+namespace couplet::thermocline {
+
+/// Which days of the weather are lived through: from the day `from`, where t = 0 at 00:00, to the end of the
+/// day `to`, then `from` again. Days of the year, 0 for 01-01; `from` may lie after `to` (a winter). Without
+/// `to`: the whole file.
+struct WeatherPeriod {
+  int from = 0;
+  std::optional<int> to;
+};
+
+/// Hourly weather as functions of time. States are straight lines between the hourly moments, also where the
+/// period begins again. The irradiance is a straight line within each hour, of the hour's mean and a slope
+/// limited so that no value leaves the range of the neighbouring hours (monotonised central differences
+/// [vanleer1977]): the energy of every hour is that of the file.
+class Weather final : public AmbientSource {
+ public:
+  /// The simulation's clock is `shift_hours` ahead of the file's. Throws Error if a day of the period is not
+  /// in the record.
+  Weather(const WeatherHours& record, const WeatherPeriod& period, int shift_hours = 0);
+
+  Ambient at(double t) const override;
+  double mean_temperature() const override { return mean_temperature_; }  ///< of the whole record [K]
+  /// Direct normal irradiation between two times [J/m^2].
+  double irradiation(double from, double to) const;
+  /// It is known where the sun stands.
+  bool has_site() const { return hours_.site.has_value(); }
+  const std::string& source() const { return hours_.source; }
+  /// What was mended in the record, with file:line.
+  const std::vector<std::string>& warnings() const { return hours_.warnings; }
+  /// Why it may not be what was meant.
+  const std::vector<std::string>& doubts() const { return hours_.doubts; }
+  /// Of the day in which t lies, as MM-DD.
+  std::string date(double t) const;
+
+  int first_day() const { return first_day_; }                                ///< of the year, 0 for 01-01
+  double period_length() const { return 3600. * double(hours_.dni.size()); }  ///< [s]
+
+ private:
+  double state(const std::vector<double>& values, double t) const;
+  double wrapped(double t) const;
+  double sun_height(double t) const;
+  double irradiation_since_start(double t) const;
+
+  WeatherHours hours_;  ///< of the period only
+  int first_day_, shift_hours_;
+  double mean_temperature_;        ///< [K]
+  std::vector<double> slope_;      ///< of the irradiance over each hour [W/m^2 per hour]
+  std::vector<double> cumulated_;  ///< irradiation before each hour [J/m^2], one more than hours
+};
+
+}  // namespace couplet::thermocline

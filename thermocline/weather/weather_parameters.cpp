@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thermocline/weather/weather_parameters.hpp"
+
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "thermocline/base/celsius.hpp"
+#include "thermocline/weather/weather_date.hpp"
+
+namespace couplet::thermocline {
+namespace {
+
+std::string wrong_date(const std::string& date) {
+  try {
+    day_of_year(date);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void declare_period(config::Section& s, WeatherParameters& p) {
+  s.value("from", p.from).doc("the simulation starts at 00:00 of this day, MM-DD");
+  s.value("to", p.to)
+      .doc(
+          "after this day, MM-DD, the weather begins again with that of 'from'; it may lie in the next year; "
+          "without it: "
+          "the year (or the file) goes round");
+  s.check([&] { return wrong_date(p.from); }, "from");
+  s.check([&] { return p.to.empty() ? "" : wrong_date(p.to); }, "to");
+}
+
+void declare_file(config::Section& s, WeatherParameters& p) {
+  s.value("file", p.file)
+      .required()
+      .doc(
+          "hourly weather: EnergyPlus (EPW), SAM or NSRDB, TMY3, the typical year of PVGIS (CSV), or a CSV "
+          "with the "
+          "columns hour (of the year, from 0), dni_W_m2 (mean of the hour), T_degC, wind_m_s, rh_pct, p_Pa; "
+          "all may be "
+          "compressed (.gz)");
+  s.value("shift", p.shift_hours)
+      .range(-12, 12)
+      .doc(
+          "whole hours by which the simulation's clock is ahead of the file's; absent: 0, but for PVGIS, whose clock is UTC, "
+          "to local standard time of its longitude");
+  s.check(
+      [&p] {
+        return !p.shift_hours || *p.shift_hours == std::floor(*p.shift_hours) ? ""
+                                                                              : "is a whole number of hours";
+      },
+      "shift");
+  s.choice("days", p.mean_days, {{"as-recorded", false}, {"monthly-mean", true}})
+      .doc(
+          "monthly-mean: each hour has the mean irradiance of that hour in its month, as tables of average "
+          "days give it");
+  s.optional_section<SiteParameters>(
+      "site", p.site, [](config::Section& q, SiteParameters& site) { declare(q, site); },
+      "for files that do not say it: the sun's height follows from it (solar-absorptance)");
+  declare_period(s, p);
+}
+
+void declare_air(config::Section& s, ClearSky& sky) {
+  s.value("altitude", sky.altitude).unit("m").range(0, 2500).doc("of the site above the sea");
+  s.value("coldest", sky.coldest).unit("K").range(200, 340).doc("temperature of the air at 03:00");
+  s.value("warmest", sky.warmest).unit("K").range(200, 340).doc("temperature of the air at 15:00");
+  s.value("wind", sky.wind).unit("m/s").range(0, 80).doc("speed of the wind");
+  s.value("humidity", sky.humidity).range(0, 1).doc("relative humidity of the air");
+}
+
+void declare_smooth_days(config::Section& s, WeatherParameters& p) {
+  SmoothDays& d = p.smooth;
+  s.value("latitude", d.latitude)
+      .unit("deg")
+      .range(-90, 90)
+      .required()
+      .doc("of the site, north positive; the length of the days follows from it");
+  s.value("daily-sums", d.daily_sums)
+      .unit("J/m^2")
+      .plausible(1e5, 5e7)
+      .required()
+      .doc("mean daily direct normal irradiation of the 12 months, for example 7.2 kWh/m^2");
+  s.value("form-n", d.n).doc("n of (1 - |2 t/T|^n)^p, one value or 12: 1 a peak, 2 round, large: a box");
+  s.value("form-p", d.p).doc("p of the same: small: steep sides, large: a narrow bell");
+  s.value("day-length", d.length).doc("T over the time from sunrise to sunset, one value or 12");
+  for (const char* name : {"daily-sums", "form-n", "form-p", "day-length"})
+    s.check(
+        [&d, name] {
+          std::string about;
+          const std::string problem = problem_of(d, about);
+          return about == name ? problem : "";
+        },
+        name);
+  s.value("air", p.file)
+      .doc("a weather file whose air, wind, humidity and pressure are taken; absent: the keys that follow");
+  declare_air(s, p.sky);
+  declare_period(s, p);
+}
+
+void declare_clear_sky(config::Section& s, WeatherParameters& p) {
+  s.value("latitude", p.sky.latitude)
+      .unit("deg")
+      .range(-90, 90)
+      .required()
+      .doc("of the site, north positive; the sun of cloudless days follows from it");
+  declare_air(s, p.sky);
+  declare_period(s, p);
+}
+
+void declare_constant(config::Section& s, WeatherParameters& p) {
+  Ambient& a = p.constant;
+  s.value("dni", a.dni).unit("W/m^2").range(0, 1412).doc("direct normal irradiance, day and night");
+  s.value("temperature", a.temperature).unit("K").range(200, 340).doc("of the air");
+  s.value("wind", a.wind).unit("m/s").range(0, 80).doc("speed of the wind");
+  s.value("humidity", a.humidity).range(0, 1).doc("relative humidity of the air");
+  s.value("pressure", a.pressure).unit("Pa").range(40000, 110000).doc("of the air");
+}
+
+WeatherHours constant_year(const WeatherParameters& p) {
+  WeatherHours year;
+  year.source = "constant weather";
+  year.state_offset = 0;
+  constexpr std::size_t n = days_a_year * hours_a_day;
+  year.dni.assign(n, p.constant.dni);
+  year.temperature.assign(n, celsius(p.constant.temperature));
+  year.wind.assign(n, p.constant.wind);
+  year.humidity.assign(n, p.constant.humidity);
+  year.pressure.assign(n, p.constant.pressure);
+  return year;
+}
+
+WeatherHours record_of(const WeatherParameters& p, const std::filesystem::path& case_folder) {
+  if (p.kind == WeatherKind::file) {
+    WeatherHours record = read_weather(case_folder / p.file);
+    constexpr double hour = 3600, seconds_a_degree = 240;  // the earth turns by 15 degrees an hour
+    if (p.site) {
+      const WeatherHours::Site given{p.site->latitude,
+                                     p.site->longitude * seconds_a_degree - p.site->time_zone * hour};
+      constexpr double close = 0.1, close_time = 360;  // [deg], [s]
+      if (record.site && (std::abs(given.latitude - record.site->latitude) > close ||
+                          std::abs(given.solar_ahead - record.site->solar_ahead) > close_time))
+        record.doubts.push_back(fmt::format(
+            "{}: 'site' (latitude {:g} deg, solar time {:+.2f} h against the clock) takes the place of the file's own (latitude "
+            "{:g} deg, {:+.2f} h)",
+            record.source, given.latitude, given.solar_ahead / hour, record.site->latitude,
+            record.site->solar_ahead / hour));
+      record.site = given;
+    }
+    for (const std::string& doubt : doubts_about_sun(record)) record.doubts.push_back(doubt);
+    return p.mean_days ? with_mean_days(std::move(record)) : record;
+  }
+  if (p.kind == WeatherKind::smooth_days) {
+    ClearSky sky = p.sky;
+    sky.latitude = p.smooth.latitude;
+    WeatherHours record =
+        with_smooth_days(p.file.empty() ? clear_sky_year(sky) : read_weather(case_folder / p.file), p.smooth);
+    if (p.file.empty()) record.source = "smooth days";
+    return record;
+  }
+  return p.kind == WeatherKind::clear_sky ? clear_sky_year(p.sky) : constant_year(p);
+}
+
+}  // namespace
+
+void declare(config::Section& s, SiteParameters& p) {
+  s.value("latitude", p.latitude).unit("deg").range(-90, 90).required().doc("north positive");
+  s.value("longitude", p.longitude).unit("deg").range(-180, 180).required().doc("east positive");
+  s.value("time-zone", p.time_zone)
+      .range(-14, 14)
+      .required()
+      .doc("hours that the file's clock is ahead of Greenwich");
+}
+
+void declare(config::Section& section, WeatherParameters& p) {
+  section.variant<WeatherKind>(
+      "type", p.kind,
+      {{"constant", WeatherKind::constant, [&](config::Section& s) { declare_constant(s, p); }},
+       {"file", WeatherKind::file, [&](config::Section& s) { declare_file(s, p); }},
+       {"clear-sky", WeatherKind::clear_sky, [&](config::Section& s) { declare_clear_sky(s, p); }},
+       {"smooth-days", WeatherKind::smooth_days, [&](config::Section& s) { declare_smooth_days(s, p); }}},
+      "where the sun and the air come from");
+}
+
+std::unique_ptr<Weather> make_weather(const WeatherParameters& p, const std::filesystem::path& case_folder) {
+  WeatherHours record = record_of(p, case_folder);
+  const int shift = int(p.shift_hours.value_or(record.local_ahead));
+  if (record.local_ahead != 0)
+    record.warnings.push_back(fmt::format(
+        "{}: its clock is UTC; the simulation's is {:+d} h ahead of it{}", record.source, shift,
+        p.shift_hours ? " (ambient.shift)" : ", local standard time of its longitude; 'shift: 0' keeps UTC"));
+  WeatherPeriod period{day_of_year(p.from), {}};
+  if (!p.to.empty()) period.to = day_of_year(p.to);
+  return std::make_unique<Weather>(record, period, shift);
+}
+
+}  // namespace couplet::thermocline
