@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Holds the table of docs/architecture.md: who may include whom, which folder sees which third-party headers, an SPDX
+"""Holds the table of docs/architecture.md: who may include whom (among sub-folders: floors.py), how many files lie in a folder, which folder sees which third-party headers, an SPDX
 line in every source file, file lengths, one reader for each format (readers.py), member functions of a class, the papers cited, links, and clang-format where it is installed.
 Usage: check_sources.py PROJECT_ROOT"""
 import pathlib
@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 
+from floors import climbs, crowded
 from readers import check_readers
 
 LONGEST = 500
@@ -86,6 +87,9 @@ def wrong_include(path, included):
                 return f"common/{own} stands below common/{layer} or beside it"
         elif layer in NOT_FOR.get(here, []):
             return f"{here} may not know common/{layer}"
+    reason = climbs(str(path), included)
+    if reason:
+        return reason
     for pattern, allowed in THIRD_PARTY.items():
         if re.match(pattern, included) and here not in allowed:
             return f"only {', '.join(allowed)} may include it"
@@ -245,6 +249,7 @@ def main(root):
     notes = [(f, (root / f).read_text()) for f in paths if not any(p.startswith((".", "build")) for p in f.parts)]
     sources = [(f.relative_to(root), f.read_text()) for f in files]
     trouble += check_references((root / "docs/references.bib").read_text(), sources + notes)
+    trouble += crowded([path for path, _ in sources])
     for found in check_readers(sources):
         trouble += found
     trouble += check_monitors(sources, (root / "docs/formats.md").read_text())

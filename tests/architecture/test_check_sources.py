@@ -5,6 +5,7 @@ import pathlib
 import sys
 
 from check_sources import check_findings, check_links, check_monitors, check_references, check_text
+from floors import FLOORS, MOST_FILES, UPWARDS, crowded
 from readers import READERS, check_readers
 
 HEAD = "// SPDX-License-Identifier: Apache-2.0\n"
@@ -27,6 +28,9 @@ WRONG = {
     ("coupler/a.cpp", HEAD + '#include "common/mesh/mesh.hpp"\n'): "coupler may not know common/mesh",
     ("solid_solver/a.cpp", HEAD + '#include "fluid_solver/step/fluid.hpp"\n'): "solid_solver may not include fluid_solver",
     ("fluid_solver/a.cpp", HEAD + "#include <petscksp.h>\n"): "only common/linalg",
+    ("fluid_solver/state/a.hpp", HEAD + '#include "fluid_solver/step/fluid.hpp"\n'): "fluid_solver/step stands above state",
+    ("common/mesh/mesh.hpp", HEAD + '#include "common/mesh/gmsh/gmsh.hpp"\n'): "common/mesh/gmsh stands above .",
+    ("coupler/cellar/a.hpp", HEAD + '#include "coupler/mapping/links.hpp"\n'): "coupler/cellar has no place",
     ("common/mesh/a.cpp", HEAD + "#include <hdf5.h>\n"): "only common/io",
     ("common/app/a.cpp", HEAD + "#include <yaml-cpp/yaml.h>\n"): "only common/config",
     ("coupler/a.cpp", HEAD + '#include "tests/support/a.hpp"\n'): "production code includes test code",
@@ -47,6 +51,7 @@ RIGHT = [
     ("common/io/a.cpp", HEAD + '#include <hdf5.h>\n#include "common/mesh/mesh.hpp"\n'),
     ("fluid_solver/a.cpp", HEAD + '#include "fluid_solver/step/fluid.hpp"\n#include "common/fv/expression.hpp"\n'),
     ("common/base/a.cpp", HEAD + "#include <nanoflann.hpp>\n"),
+    ("coupler/judge/a.cpp", HEAD + '#include "coupler/judge/b.hpp"\n#include "coupler/mapping/links.hpp"\n'),
     ("common/base/a.hpp", HEAD + class_of(40)),
     ("common/base/a.hpp", HEAD + class_of(40).replace("class A", "struct B {};\nstruct A")),
 ]
@@ -61,6 +66,21 @@ for path, text in RIGHT:
     found = check_text(pathlib.PurePosixPath(path), text)
     if found:
         print(f"{path}: nothing is wrong, found {found}")
+        failed += 1
+for n, folder, wanted in ((MOST_FILES, "coupler/mapping", 0), (MOST_FILES + 1, "coupler/mapping", 1), (99, "tests/unit/io", 0)):
+    found = crowded([pathlib.PurePosixPath(f"{folder}/f{i}.{'ch'[i % 2]}pp") for i in range(n)])
+    if len(found) != wanted:
+        print(f"{n} files in {folder}: wanted {wanted}, found {found}")
+        failed += 1
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+for home, floors in FLOORS.items():
+    there = {f.parent.relative_to(ROOT / home).as_posix() for f in (ROOT / home).rglob("*.cpp")}
+    if there != set(floors):
+        print(f"{home}: the floors are not its sub-folders: {sorted(there ^ set(floors))}")
+        failed += 1
+for place, included in UPWARDS:
+    if f'"{included}"' not in (ROOT / place).read_text():
+        print(f"floors.py: {place} does not include {included} any more")
         failed += 1
 BIB = "@article{stone1968,\n  year = {1968}\n}\n"
 CITES = "see [sto" + "ne1968]"

@@ -17,8 +17,8 @@ SANITIZER = "a build of the preset asan: build-asan, or the folder that COUPLET_
 
 def rooms(root):
     """Folders with sources of the programs, without tests."""
-    return sorted({path.parent for path in root.glob("*/*.cpp")} | {path.parent for path in root.glob("common/*/*.hpp")}
-                  - {root / "tests"})
+    homes = {path.parent for path in root.glob("*/*.cpp")} - {root / "tests"}
+    return sorted(homes | {path.parent for home in (*homes, root / "common") for path in home.rglob("*.hpp")})
 
 
 def formatting(job):
