@@ -2,10 +2,10 @@
 #include "solid_solver/output/spectrum.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "common/base/error.hpp"
+#include "common/linalg/dense_eigenvalues.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -27,6 +27,8 @@ Eigen::MatrixXd probe(MPI_Comm comm, std::size_t n_local, GlobalIndex n, const E
   }
   return a;
 }
+
+std::vector<double> columns(const Eigen::MatrixXd& a) { return {a.data(), a.data() + a.size()}; }
 
 void check_size(GlobalIndex n) {
   if (n > largest_spectrum)
@@ -56,8 +58,7 @@ std::vector<std::complex<double>> symmetric_spectrum(const Mesh& mesh, std::size
   m = (0.5 * (m + m.transpose())).eval();
   // An oblique support leaves a direction without mass on the diagonal blocks.
   m.diagonal().array() += 1e-13 * m.trace() / double(m.rows());
-  const Eigen::VectorXd values =
-      Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(k, m, Eigen::EigenvaluesOnly).eigenvalues();
+  const std::vector<double> values = symmetric_eigenvalues(columns(k), columns(m), int(k.rows()));
   return {values.begin(), values.end()};
 }
 
@@ -79,8 +80,7 @@ std::vector<std::complex<double>> spectrum(const Mesh& mesh, std::span<const dou
   if (!massless.empty())
     k -= a(massive, massless) * a(massless, massless).partialPivLu().solve(a(massless, massive));
   for (Eigen::Index i = 0; i < k.rows(); ++i) k.row(i) /= mass[massive[i]];
-  const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(k, false).eigenvalues();
-  std::vector<std::complex<double>> result(values.begin(), values.end());
+  std::vector<std::complex<double>> result = general_eigenvalues(columns(k), int(k.rows()));
   std::ranges::sort(result, {}, [](const std::complex<double>& z) { return std::pair(z.real(), z.imag()); });
   return result;
 }
