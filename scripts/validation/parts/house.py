@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of the house, counted from the sources: geometry, conditions, folders, namespaces, lengths, lines; minutes of a build."""
+import importlib
+import os
+import pathlib
+import re
+import resource
+import shutil
+import sys
+
+from validation.job import Bar
+
+PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "plate_modal", "coupler")
+HOUSE = ("common", *PROGRAMS)
+DEMO = ("coupler", "fluid_solver", "solid_solver", "mesh_mover")
+LONGEST_FUNCTION, MOST_MEMBERS = 60, 25
+# Of b350924, the commit that the plan was measured at.
+LINES_BEFORE, SCRIPT_LINES_BEFORE = 72600, 11437
+
+
+def tracked(job, *folders):
+    return job.once(("tracked", folders), lambda: job.run(["git", "-C", job.root, "ls-files", *folders]).stdout.split("\n")[:-1])
+
+
+def texts(job):
+    """{path: text} of the C++ of programs and common."""
+    def make():
+        return {f: (job.root / f).read_text() for f in tracked(job, *HOUSE) if f.endswith((".cpp", ".hpp"))}
+    return job.once("house texts", make)
+
+
+def checks(job, name):
+    """A module of tests/architecture, whose table the bars share."""
+    folder = str(job.root / "tests/architecture")
+    if folder not in sys.path:
+        sys.path.append(folder)
+    return importlib.import_module(name)
+
+
+def matches(pattern, *folders, apart=""):
+    """Lines of programs and common (or some of their folders) that hold the pattern, and the first files."""
+    def measure(job):
+        found = {f: n for f, text in texts(job).items() if (not folders or f.startswith(folders)) and not (apart and re.search(apart, f))
+                 for n in [sum(bool(re.search(pattern, line)) for line in text.splitlines())] if n}
+        return found
+    return measure
+
+
+def most(found, limit, what):
+    worst = sorted(found, key=lambda f: -found[f])[:3]
+    return f"{what}{': ' + ', '.join(f'{f} {found[f]}' for f in worst) + (' ...' if len(found) > 3 else '') if found else ''}", limit
+
+
+def lines_with(pattern, *folders, limit=0, apart=""):
+    def measure(job):
+        found = matches(pattern, *folders, apart=apart)(job)
+        n = sum(found.values())
+        return most(found, n <= limit, f"{n} lines in {len(found)} files")
+    return measure
+
+
+def files_with(pattern, *folders, limit):
+    def measure(job):
+        found = matches(pattern, *folders)(job)
+        return most(found, len(found) <= limit, f"{len(found)} files")
+    return measure
+
+
+def crowded(job):
+    paths = [pathlib.PurePosixPath(f) for f in texts(job)]
+    found = checks(job, "floors").crowded(paths)
+    return f"{len(found)} of {len({p.parent for p in paths})} folders{': ' + '; '.join(found[:3]) if found else ''}", not found
+
+
+def readmes(job):
+    folders = sorted({str(pathlib.PurePosixPath(f).parent) for f in texts(job)})
+    lengths = {f: len((job.root / f / "README.md").read_text().splitlines()) if (job.root / f / "README.md").exists() else 0 for f in folders}
+    below = [f for f in folders if f.count("/") > f.startswith("common/")]
+    bad = [f for f in folders if lengths[f] == 0 or f in below and lengths[f] > 20]
+    return f"{len(folders)} folders, {len(below)} of them sub-folders; without or too long: {', '.join(bad) or 'none'}", not bad
+
+
+def bare(job):
+    headers = {f: text for f, text in texts(job).items() if f.endswith(".hpp")}
+    found = [f for f, text in headers.items() if re.search(r"^namespace couplet \{", text, re.M)]
+    return f"{len(found)} of {len(headers)} headers", not found
+
+
+def bodies(text):
+    """(first line, number of lines) of the outermost functions with a body; the text's literals and comments are blanked first."""
+    blank = lambda match: re.sub(r"[^\n]", " ", match.group())
+    text = re.sub(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'(?!\w)', blank, text, flags=re.S)
+    text = re.sub(r"^[ \t]*#[^\n]*", blank, text, flags=re.M)
+    found, stack, begin = [], [], 0
+    for k, c in enumerate(text):
+        if c == "{":
+            head = text[begin:k]
+            if "function" in stack or "other" in stack:
+                stack.append("other")
+            elif re.search(r"\)[^=;]*$", head) and not re.search(r"\b(?:namespace|enum)\b", head):
+                stack.append("function")
+                start = begin + len(head) - len(head.lstrip())
+            else:
+                stack.append("scope" if re.search(r"\b(?:namespace|class|struct|union|extern)\b", head) else "other")
+            begin = k + 1
+        elif c == "}":
+            if stack and stack.pop() == "function":
+                found.append((text.count("\n", 0, start) + 1, text.count("\n", start, k) + 1))
+            begin = k + 1
+        elif c == ";":
+            begin = k + 1
+    return found
+
+
+def long_functions(job):
+    found = {f"{f}:{line}": n for f, text in texts(job).items() for line, n in bodies(text) if n > LONGEST_FUNCTION}
+    total = sum(len(bodies(text)) for text in texts(job).values())
+    return most(found, not found and total > 1000, f"{len(found)} of {total} functions")
+
+
+def large_classes(job):
+    members = checks(job, "check_sources").members_of_classes
+    found = {f"{name} ({f})": n for f, text in texts(job).items() for name, _, n in members(text) if n > MOST_MEMBERS}
+    return most(found, len(found) <= 3, f"{len(found)} classes")
+
+
+def long_files(job):
+    found = {f: n for f, text in texts(job).items() for n in [len(text.splitlines())] if n > 300}
+    return most(found, not found, f"{len(found)} files")
+
+
+def lines_of(job, files):
+    return sum(len((job.root / f).read_bytes().splitlines()) for f in files if (job.root / f).is_file())
+
+
+def mass(job):
+    n = lines_of(job, tracked(job, *HOUSE))
+    return f"{n} lines, {100 * n / LINES_BEFORE:.0f} % of {LINES_BEFORE}", n <= 0.95 * LINES_BEFORE
+
+
+def script_mass(job):
+    n = lines_of(job, [*tracked(job, "scripts"), *(f for f in tracked(job, "tests/verification", "benchmarks") if f.endswith((".py", ".sh")))])
+    return f"{n} lines, {100 * n / SCRIPT_LINES_BEFORE:.0f} % of {SCRIPT_LINES_BEFORE}", n <= 0.85 * SCRIPT_LINES_BEFORE
+
+
+def glossary(job):
+    there = (job.root / "docs/glossary.md").exists()
+    checked = any("glossary" in f.read_text() for f in (job.root / "tests/architecture").glob("check_*.py"))
+    return f"{'a' if there else 'no'} docs/glossary.md, {'a' if checked else 'no'} check of tests/architecture reads it", there and checked
+
+
+def comparison(job):
+    there = sorted(p.name for p in (job.root / "benchmarks").iterdir() if p.is_dir())
+    return f"benchmarks: {', '.join(there)}", "linalg" in there and (job.root / "benchmarks/linalg/README.md").exists()
+
+
+def minutes(limit, *targets):
+    """Processor minutes of compiler and linker from an empty folder, two jobs, no compiler cache."""
+    def measure(job):
+        folder = job.scratch / "house-build"
+        shutil.rmtree(folder, ignore_errors=True)
+        result = job.run(["cmake", "-G", "Ninja", "-S", job.root, "-B", folder], 600)
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        if result.returncode == 0:
+            result = job.run(["env", "CCACHE_DISABLE=1", "ninja", "-C", folder, "-j", min(2, os.cpu_count()), *targets], 4 * 3600)
+        if result.returncode != 0:
+            raise RuntimeError((result.stderr or result.stdout)[-300:])
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        used = (after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime) / 60
+        return f"{used:.1f} min", used <= limit
+    return measure
+
+
+BARS = [
+    Bar("lines that read mesh.reference outside common/mesh", "0 (209 before)", lines_with(r"\bmesh_?\.reference", apart=r"^common/mesh/")),
+    Bar("copies of a whole mesh, and geometry emptied to save memory", "0 (3 before)",
+        lines_with(r"\bMesh \w+ = \*?\w*mesh_?;|make_unique<Mesh>\(\w*mesh_?\)|\bmesh_?\.reference = \{\}")),
+    Bar("files of the solid that test the kind of a condition", "<= 3 (29 before)",
+        files_with(r"\bElasticCondition::", "solid_solver/", "common/elasticity/", limit=3)),
+    Bar("files of the fluid that test the kind of a face", "<= 4 (13 before)", files_with(r"\bFaceKind::", "fluid_solver/", limit=4)),
+    Bar("branches on the kind of strain", "0 (35 before)", lines_with(r"\b(?:body_?|solid_?)\.(?:finite|newton)\(\)", "solid_solver/")),
+    Bar("source folders with more than 25 files", "0 (11 before)", crowded),
+    Bar("a README in each source folder, at most 20 lines in sub-folders", "all", readmes),
+    Bar("headers in the bare namespace couplet", "0 (217 before)", bare),
+    Bar(f"functions of more than {LONGEST_FUNCTION} lines", "0 (14 before)", long_functions),
+    Bar(f"classes with more than {MOST_MEMBERS} member functions", "<= 3, each with its reason", large_classes),
+    Bar("files of more than 300 lines", "0", long_files),
+    Bar("lines of programs and common", "at most 95 % of 72600", mass),
+    Bar("lines of scripts, and of drivers in tests/verification and benchmarks", "at most 85 % of 11437", script_mass),
+    Bar("home-made words: a glossary, enforced by a check", "both", glossary),
+    Bar("our linear solvers against PETSc's on six systems: the comparison is committed", "benchmarks/linalg", comparison),
+    Bar("processor minutes of the demo's build, no compiler cache", "<= 10 (23 before)", minutes(10, *DEMO), long=True),
+    Bar("processor minutes of the whole build with its tests, no compiler cache", "<= 22 (41 before)", minutes(22), long=True),
+]
