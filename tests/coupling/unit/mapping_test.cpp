@@ -14,7 +14,7 @@ namespace couplet {
 namespace {
 
 using Kind = Mapping::Kind;
-using Type = MappingParameters::Type;
+using MapType = MappingParameters::Type;
 
 PointSet line(const std::string& what, int n, double y = 0) {
   std::vector<Vec3> points;
@@ -92,7 +92,7 @@ TEST(Mapping, refuses_an_empty_side) {
 
 TEST(NearestMapping, keeps_a_constant_motion_and_the_sum_of_forces) {
   MappingParameters parameters;
-  parameters.type = Type::nearest;
+  parameters.type = MapType::nearest;
   const PointSet a = line("a", 17, 0.01), b = line("b", 40);
   const std::vector<double> moved =
       Mapping(Kind::consistent, a, b, parameters).apply(std::vector<double>(17, 2.5), 1);
@@ -106,7 +106,7 @@ TEST(NearestMapping, keeps_a_constant_motion_and_the_sum_of_forces) {
 
 TEST(NearestMapping, shares_a_force_among_the_finer_faces_under_it_by_their_size) {
   MappingParameters parameters;
-  parameters.type = Type::nearest;
+  parameters.type = MapType::nearest;
   const PointSet coarse{"a", {Vec3(0.5, 0, 0), Vec3(1.5, 0, 0)}, {1, 1}};
   const PointSet fine{"b", {Vec3(0.3, 0, 0), Vec3(0.8, 0, 0), Vec3(1.5, 0, 0)}, {0.6, 0.4, 1}};
   const std::vector<double> given = Mapping(Kind::conservative, coarse, fine, parameters).apply({10, 7}, 1);

@@ -10,11 +10,10 @@
 #include "coupler/mapping/mapping.hpp"
 #include "coupler/mapping/surroundings.hpp"
 #include "tests/coupling/support/surfaces.hpp"
+#include "tests/support/world.hpp"
 
 namespace couplet {
 namespace {
-
-const MPI_Comm world = MPI_COMM_WORLD;
 
 /// n points on a spiral, this rank's part of them; `turned`: the list runs the other way.
 PointSet spiral(int n, bool turned) {

@@ -15,12 +15,12 @@ Side point(const std::string& name, std::vector<Interface::Datum> takes,
   Interface i{3, {{0, 0, 0}}, {{0, 0, 0}}, {{1, 0, 0}}, std::move(takes), std::move(gives)};
   return {MPI_COMM_SELF, name, i};
 }
-const std::vector<Interface::Datum> motion{{"displacement", "m", Place::vertices, 1},
-                                           {"velocity", "m/s", Place::vertices, 1}};
+const std::vector<Interface::Datum> lagged_motion{{"displacement", "m", Place::vertices, 1},
+                                                  {"velocity", "m/s", Place::vertices, 1}};
 const std::vector<Interface::Datum> force{{"force", "N", Place::faces, 1}};
 
 struct Pair {
-  std::vector<Side> sides{point("fluid", motion, force), point("solid", force, motion)};
+  std::vector<Side> sides{point("fluid", lagged_motion, force), point("solid", force, lagged_motion)};
   Links links{MPI_COMM_SELF, sides, {}};
   Unknown serial{MPI_COMM_SELF, sides, links, {0, 1}, false},
       parallel{MPI_COMM_SELF, sides, links, {0, 1}, true};

@@ -8,12 +8,12 @@
 #include "common/base/error.hpp"
 #include "coupler/output/watch_integrals.hpp"
 #include "tests/coupling/support/surfaces.hpp"
+#include "tests/support/world.hpp"
 
 namespace couplet {
 namespace {
 
 using Place = Interface::Place;
-const MPI_Comm world = MPI_COMM_WORLD;
 
 Interface sheet(bool triangles) {
   Interface s = tests::plate(4, triangles, -1);  // (0, 2) x (0, 1), areas down, corners counted the other way

@@ -13,14 +13,13 @@
 
 #include "common/base/error.hpp"
 #include "common/io/checkpoint.hpp"
+#include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"
 
 namespace couplet {
 namespace {
 
 using ::testing::HasSubstr;
-
-const MPI_Comm world = MPI_COMM_WORLD;
 
 // Another count on every rank (none on the last of three), with values that printing would spoil.
 std::vector<double> awkward_values() {

@@ -8,6 +8,7 @@
 #include "common/io/field_writer.hpp"
 #include "common/io/hdf5_reader.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"
 
 namespace couplet {
@@ -15,7 +16,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const MPI_Comm world = MPI_COMM_WORLD;
 const double nan_time = std::numeric_limits<double>::quiet_NaN();
 
 Mesh make_mesh(BoxCells cells, int n = 4) {

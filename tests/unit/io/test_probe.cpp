@@ -5,14 +5,13 @@
 #include "common/base/error.hpp"
 #include "common/io/probes/probe.hpp"
 #include "common/mesh/load.hpp"
+#include "tests/support/world.hpp"
 #include "tests/unit/io/scratch.hpp"
 
 namespace couplet {
 namespace {
 
 using ::testing::HasSubstr;
-
-const MPI_Comm world = MPI_COMM_WORLD;
 
 Mesh make_mesh(BoxCells cells, double distortion = 0.2) {
   const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/plant/plant.hpp"
 #include "thermocline/weather/weather_date.hpp"
 
@@ -12,8 +13,6 @@ namespace couplet::thermocline {
 namespace {
 
 using testing::HasSubstr;
-
-constexpr double hour = 3600, day = 24 * hour;
 
 /// Weekends ask for a fifth; summer evenings earn more, summer weekends less.
 PlantParameters working_week() {

@@ -5,13 +5,13 @@
 
 #include <cmath>
 
+#include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/plant/plant_control.hpp"
 
 namespace couplet::thermocline {
 namespace {
 
 constexpr double zero = 273.15;  // degC in K
-constexpr double salt = 1501.5;  // [J/(kg K)], table 5.1 of the thesis
 const PlantParameters andasol{50e6, 0.38, 510120, 0.70, zero + 390, zero + 290, 15, 10};
 const PlantParameters gemasolar{19.9e6, 0.40, 306658, 0.42, zero + 565, zero + 290, 15, 10};
 

@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/io/series.hpp"
+#include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/bed/thickness.hpp"
 #include "thermocline/economics/day_report.hpp"
 #include "thermocline/weather/weather_parameters.hpp"
@@ -13,7 +14,7 @@
 namespace couplet::thermocline {
 namespace {
 
-constexpr double salt = 1501.5, megawatt_hour = 3.6e9;
+constexpr double megawatt_hour = 3.6e9;
 
 // A plant whose tank gives back at the design temperature what it took: every row of the report can be had by
 // hand. From 00:00 the field gives 3 Q_PB for 6 h, then nothing. The tank is full after 5 h of charge and

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "common/base/error.hpp"
+#include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/weather/weather_hours.hpp"
 
 namespace couplet::thermocline {
@@ -53,8 +54,6 @@ std::string csv(const std::function<std::string(int, std::string)>& edit, int ho
   }
   return text;
 }
-std::string same(int, std::string line) { return line; }
-
 TEST_F(WeatherFile, a_right_csv_file_is_read) {
   const WeatherHours record = read_weather(write("right.csv", csv(same)));
   EXPECT_EQ(record.days(), 1);

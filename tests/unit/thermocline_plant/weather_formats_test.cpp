@@ -11,6 +11,7 @@
 #include <functional>
 
 #include "common/base/error.hpp"
+#include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/weather/weather_parameters.hpp"
 
 namespace couplet::thermocline {
@@ -43,8 +44,6 @@ class ForeignWeather : public testing::Test {
   }
   fs::path folder_;
 };
-
-std::string same(int, std::string line) { return line; }
 
 /// Two days of the NSRDB's head as its service gives it; line 4 is hour 0.
 std::string nsrdb(const Edit& edit = same, const std::string& pressure = "mbar") {

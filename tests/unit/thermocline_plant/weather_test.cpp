@@ -7,14 +7,13 @@
 #include <cmath>
 
 #include "common/base/error.hpp"
+#include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/weather/clear_sky.hpp"
 #include "thermocline/weather/weather_date.hpp"
 #include "thermocline/weather/weather_parameters.hpp"
 
 namespace couplet::thermocline {
 namespace {
-
-constexpr double hour = 3600, day = 24 * hour;
 
 /// Some days with values that differ everywhere.
 WeatherHours invented(int first_day, int days) {

@@ -7,13 +7,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/unit/thermocline_plant/support.hpp"
 #include "thermocline/economics/day_report.hpp"
 #include "thermocline/weather/weather_parameters.hpp"
 
 namespace couplet::thermocline {
 namespace {
-
-constexpr double salt = 1501.5;
 
 /// Steps of a tank at rest at 300 degC.
 void stand(DayReport& report, int steps, double dt) {

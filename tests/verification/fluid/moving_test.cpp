@@ -9,11 +9,9 @@
 namespace couplet::fluid::test {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 // Inner points swing about their places, each part of the box in its own phase.
 Vec3 swing(const Vec3& x, GlobalIndex, double t) {
-  const double shape = std::sin(pi * x.x()) * std::sin(pi * x.y());
+  const double shape = std::sin(std::numbers::pi * x.x()) * std::sin(std::numbers::pi * x.y());
   return x + 0.05 * shape *
                  Vec3(std::sin(9 * t + 4 * x.y()) - std::sin(4 * x.y()),
                       std::cos(7 * t + 3 * x.x()) - std::cos(3 * x.x()), 0);
@@ -53,7 +51,7 @@ RawMesh ring(int around, int layers, double inner, double outer) {
   for (int j = 0; j <= layers; ++j) {
     const double r = inner * std::pow(outer / inner, double(j) / layers);
     for (int i = 0; i < around; ++i) {
-      const double a = 2 * pi * i / around;
+      const double a = 2 * std::numbers::pi * i / around;
       raw.points.emplace_back(r * std::cos(a), r * std::sin(a), 0);
     }
   }
@@ -89,7 +87,7 @@ Vec<2> force_on_body(FluidCase<2>& c) {
 /// A cylinder swings in still fluid, once with its mesh, once at rest in a fluid that swings about it. The
 /// second force lacks what the swinging frame does to the displaced fluid, rho A dw/dt.
 TEST(OscillatingBody, feels_the_same_force_whether_mesh_or_frame_moves) {
-  const double amplitude = 0.2, omega = 2 * pi, rho = 1.2, inner = 0.5, dt = 0.005;
+  const double amplitude = 0.2, omega = 2 * std::numbers::pi, rho = 1.2, inner = 0.5, dt = 0.005;
   const int around = 48;
   const auto place = [&](double t) { return Vec3(amplitude * (1 - std::cos(omega * t)), 0, 0); };
   const auto speed = [&](double t) { return Vec3(amplitude * omega * std::sin(omega * t), 0, 0); };
@@ -105,7 +103,7 @@ TEST(OscillatingBody, feels_the_same_force_whether_mesh_or_frame_moves) {
   p.boundaries["body"] = boundary(BoundaryType::no_slip);
   p.boundaries["far"] = boundary(BoundaryType::moving_wall, {"-0.2*2*pi*sin(2*pi*t)", "0"});
   FluidCase<2> frame(MPI_COMM_WORLD, raw, p);
-  const double area = 0.5 * around * inner * inner * std::sin(2 * pi / around);
+  const double area = 0.5 * around * inner * inner * std::sin(2 * std::numbers::pi / around);
   double largest = 0, gap = 0, start = 0;
   for (int i = 0; i < 300; ++i) {
     const double t = i * dt;
