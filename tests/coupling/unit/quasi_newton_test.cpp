@@ -18,7 +18,7 @@ namespace {
 using Vector = std::vector<double>;
 using Type = AccelerationParameters::Type;
 
-AccelerationParameters of_type(Type type, int reused = 8) {
+AccelerationParameters of_quasi_newton(Type type, int reused = 8) {
   AccelerationParameters parameters;
   parameters.type = type;
   parameters.reused_steps = reused;
@@ -125,7 +125,7 @@ TEST(GrowingQr, survives_a_column_of_zeros) {
 
 TEST(QuasiNewton, needs_a_pass_more_than_a_linear_map_has_modes) {
   for (const Type type : {Type::iqn_ils, Type::iqn_mvj}) {
-    const auto accelerator = make_accelerator(of_type(type), MPI_COMM_SELF);
+    const auto accelerator = make_accelerator(of_quasi_newton(type), MPI_COMM_SELF);
     accelerator->start_step();
     Iterate x{{0, 0, 0}, {}};
     const auto map = [](const Iterate& x) {
@@ -139,7 +139,7 @@ TEST(QuasiNewton, needs_a_pass_more_than_a_linear_map_has_modes) {
 
 TEST(QuasiNewton, riders_take_the_same_combinations) {
   for (const Type type : {Type::iqn_ils, Type::iqn_mvj}) {
-    const auto accelerator = make_accelerator(of_type(type), MPI_COMM_SELF);
+    const auto accelerator = make_accelerator(of_quasi_newton(type), MPI_COMM_SELF);
     Iterate x;
     step(*accelerator, 20, 0, 200, &x);
     for (std::size_t i = 0; i < 40; ++i) EXPECT_NEAR(x.rider[i], 2 * x.unknown[i], 1e-13);
@@ -148,8 +148,8 @@ TEST(QuasiNewton, riders_take_the_same_combinations) {
 
 TEST(QuasiNewton, earlier_steps_save_passes) {
   for (const Type type : {Type::iqn_ils, Type::iqn_mvj}) {
-    const auto with = make_accelerator(of_type(type), MPI_COMM_SELF);
-    const auto without = make_accelerator(of_type(type, 0), MPI_COMM_SELF);
+    const auto with = make_accelerator(of_quasi_newton(type), MPI_COMM_SELF);
+    const auto without = make_accelerator(of_quasi_newton(type, 0), MPI_COMM_SELF);
     const int first = step(*with, 20);
     EXPECT_EQ(step(*without, 20), first);
     int reused = 0, fresh = 0;
@@ -160,7 +160,7 @@ TEST(QuasiNewton, earlier_steps_save_passes) {
 }
 
 TEST(QuasiNewton, keeps_no_more_steps_and_columns_than_it_may) {
-  AccelerationParameters parameters = of_type(Type::iqn_ils, 2);
+  AccelerationParameters parameters = of_quasi_newton(Type::iqn_ils, 2);
   parameters.filter = 0;
   const auto two_steps = make_accelerator(parameters, MPI_COMM_SELF);
   parameters.reused_steps = 8;
@@ -184,7 +184,7 @@ TEST(QuasiNewton, keeps_no_more_steps_and_columns_than_it_may) {
 TEST(QuasiNewton, reuses_the_pairs_of_as_many_steps_as_it_may_and_of_no_more) {
   for (const Type type : {Type::iqn_ils, Type::iqn_mvj})
     for (const int reused : {0, 1, 2, 4}) {
-      AccelerationParameters parameters = of_type(type, reused);
+      AccelerationParameters parameters = of_quasi_newton(type, reused);
       parameters.filter = 0;
       parameters.maximum_columns = 1000;
       const auto accelerator = make_accelerator(parameters, MPI_COMM_SELF);
@@ -211,7 +211,7 @@ TEST(QuasiNewton, a_map_that_is_known_from_the_step_before_is_solved_by_one_upda
         {}};
   };
   for (const Type type : {Type::iqn_ils, Type::iqn_mvj}) {
-    AccelerationParameters parameters = of_type(type, 1);
+    AccelerationParameters parameters = of_quasi_newton(type, 1);
     parameters.filter = 1e-6;
     const auto accelerator = make_accelerator(parameters, MPI_COMM_SELF);
     Iterate x{{0, 0, 0}, {}};
@@ -228,10 +228,10 @@ TEST(QuasiNewton, a_map_that_is_known_from_the_step_before_is_solved_by_one_upda
 /// After steps with one map comes another: what was learnt is wrong by far.
 TEST(QuasiNewton, pairs_that_mislead_are_given_up) {
   for (const Type type : {Type::iqn_ils, Type::iqn_mvj}) {
-    const auto accelerator = make_accelerator(of_type(type), MPI_COMM_SELF);
+    const auto accelerator = make_accelerator(of_quasi_newton(type), MPI_COMM_SELF);
     for (int n = 0; n < 3; ++n) step(*accelerator, 0.5, 0.1 * n);
     EXPECT_EQ(accelerator->resets(), 0);
-    const int fresh = step(*make_accelerator(of_type(type), MPI_COMM_SELF), 200);
+    const int fresh = step(*make_accelerator(of_quasi_newton(type), MPI_COMM_SELF), 200);
     EXPECT_LE(step(*accelerator, 200), fresh + 3) << int(type);
     EXPECT_GE(accelerator->resets(), 1) << "one update had made it ten times worse";
   }
@@ -240,7 +240,7 @@ TEST(QuasiNewton, pairs_that_mislead_are_given_up) {
 TEST(QuasiNewton, starts_from_rest) {
   // Steps in which nothing moves leave no column, and the first motion after them is solved like any other.
   for (const Type type : {Type::aitken, Type::iqn_ils, Type::iqn_mvj}) {
-    const auto accelerator = make_accelerator(of_type(type), MPI_COMM_SELF);
+    const auto accelerator = make_accelerator(of_quasi_newton(type), MPI_COMM_SELF);
     for (int n = 0; n < 3; ++n) {
       accelerator->start_step();
       const Iterate still{Vector(40, 0.), Vector(40, 0.)};
@@ -250,13 +250,13 @@ TEST(QuasiNewton, starts_from_rest) {
       accelerator->accept(still, still);
       EXPECT_EQ(accelerator->columns(), 0);
     }
-    EXPECT_EQ(step(*accelerator, 5), step(*make_accelerator(of_type(type), MPI_COMM_SELF), 5));
+    EXPECT_EQ(step(*accelerator, 5), step(*make_accelerator(of_quasi_newton(type), MPI_COMM_SELF), 5));
   }
 }
 
 TEST(QuasiNewton, takes_no_difference_across_a_change_of_the_map) {
   for (const Type type : {Type::iqn_ils, Type::iqn_mvj}) {
-    const auto accelerator = make_accelerator(of_type(type), MPI_COMM_SELF);
+    const auto accelerator = make_accelerator(of_quasi_newton(type), MPI_COMM_SELF);
     accelerator->start_step();
     Iterate x{Vector(40, 0.), {}};
     for (int k = 0; k < 2; ++k) x = accelerator->next(x, heavy(x, 5, 0));
@@ -271,7 +271,7 @@ TEST(QuasiNewton, takes_no_difference_across_a_change_of_the_map) {
 
 TEST(QuasiNewton, a_step_that_was_given_up_leaves_nothing) {
   for (const Type type : {Type::iqn_ils, Type::iqn_mvj}) {
-    const auto accelerator = make_accelerator(of_type(type), MPI_COMM_SELF);
+    const auto accelerator = make_accelerator(of_quasi_newton(type), MPI_COMM_SELF);
     step(*accelerator, 20, 0, 4);
     accelerator->start_step();
     EXPECT_EQ(accelerator->columns(), 0);
@@ -282,7 +282,7 @@ TEST(Accelerators, continue_from_a_checkpoint_bit_for_bit) {
   const auto file =
       std::filesystem::temp_directory_path() / ("couplet-acc-" + std::to_string(::getpid()) + ".h5");
   for (const Type type : {Type::constant, Type::aitken, Type::iqn_ils, Type::iqn_mvj}) {
-    AccelerationParameters parameters = of_type(type, 3);
+    AccelerationParameters parameters = of_quasi_newton(type, 3);
     if (type == Type::constant) parameters.initial_relaxation = 0.05;
     const auto whole = make_accelerator(parameters, MPI_COMM_SELF);
     const auto second = make_accelerator(parameters, MPI_COMM_SELF);
