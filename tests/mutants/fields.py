@@ -57,4 +57,4 @@ SHARES = {"fluid_solver": 42, "solid_solver": 40, "common/elasticity": 34, "comm
 
 def folder_of(file):
     """The program or the folder of common that a file belongs to, whatever its sub-folder."""
-    return next(folder for folder in SHARES if file.startswith(folder + "/"))
+    return next((folder for folder in SHARES if file.startswith(folder + "/")), "")

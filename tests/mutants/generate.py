@@ -43,7 +43,7 @@ def _number(*words):
 def of_file(root, file, kind):
     source = (root / file).read_text()
     found, seen = [], {}
-    known_as = f"{folder_of(file)}/{pathlib.PurePath(file).name}"  # names outlive a move to another sub-folder
+    known_as = str(pathlib.PurePath(folder_of(file)) / pathlib.PurePath(file).name)  # names outlive a move to another sub-folder
     for s in cpp_text.statements(source):
         for rule, begin, end, new in rules.broken(s):
             text = re.sub(r"\s+", " ", s.text).strip()
