@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Holds the table of docs/architecture.md: who may include whom (among sub-folders: floors.py), how many files lie in a folder, which folder sees which third-party headers, an SPDX
-line in every source file, file lengths, one reader for each format (readers.py), member functions of a class, the papers cited, links, and clang-format where it is installed.
+line in every source file, file lengths, one reader for each format (readers.py), member functions of a class, output of runs, the papers cited, links, and clang-format where it is installed.
 Usage: check_sources.py PROJECT_ROOT"""
 import pathlib
 import re
@@ -240,6 +240,11 @@ def check_findings(ids, docs, cards):
     return trouble + [f"common/log/finding_ids.cpp lacks {slug}" for slug in slugs if slug not in [h[0] for h in have]]
 
 
+def committed_output(paths):
+    """What runs write and nobody commits."""
+    return [f"{path}: output of a run" for path in paths if re.search(r"(^|/)out(-[^/]*)?/|\.(log|lock|xdmf)$|\.cache\.msh$", path)]
+
+
 def main(root):
     files = project_files(root)
     trouble = check_format(root, files)
@@ -255,6 +260,8 @@ def main(root):
     trouble += check_monitors(sources, (root / "docs/formats.md").read_text())
     trouble += check_findings((root / "common/log/finding_ids.cpp").read_text(), (root / "docs/findings.md").read_text(),
                               [text for path, text in sources if path.name == "effect_cards.cpp"])
+    tracked = subprocess.run(["git", "-C", root, "ls-files"], capture_output=True, text=True, check=False).stdout  # nothing in a tarball
+    trouble += committed_output(tracked.splitlines())
     trouble += check_links(notes, lambda link: (root / link).exists())
     print("\n".join(trouble) or f"{len(files)} files: in order")
     return 1 if trouble else 0

@@ -4,7 +4,7 @@
 import pathlib
 import sys
 
-from check_sources import check_findings, check_links, check_monitors, check_references, check_text
+from check_sources import check_findings, check_links, check_monitors, check_references, check_text, committed_output
 from floors import FLOORS, MOST_FILES, UPWARDS, crowded
 from readers import READERS, check_readers
 
@@ -56,7 +56,10 @@ RIGHT = [
     ("common/base/a.hpp", HEAD + class_of(40).replace("class A", "struct B {};\nstruct A")),
 ]
 
-failed = 0
+OUTPUT = ["configs/a/a.0f.vm.7.log", "configs/a/out/run.json", "configs/a/out-modal/a.h5", "configs/a/.checkpoints.lock", "configs/a/m.cache.msh"]
+NO_OUTPUT = ["coupler/output/monitor.cpp", "docs/output.md", "configs/a/layout/a.geo", "common/log/log.cpp"]
+
+failed = int(len(committed_output(OUTPUT)) != len(OUTPUT) or committed_output(NO_OUTPUT) != [])
 for (path, text), reason in WRONG.items():
     found = check_text(pathlib.PurePosixPath(path), text)
     if len(found) != 1 or reason not in found[0]:
