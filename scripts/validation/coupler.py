@@ -7,9 +7,9 @@ import sys
 import couplet_series as couplet
 from validation.job import Bar
 from validation.main_job import FLAP, steps_of
-from validation.parts.coupler_runs import RUNS
-from validation.parts.coupler_strangers import STRANGERS
-from validation.parts.coupler_tubes import TUBES
+from validation.parts.coupler.runs import RUNS
+from validation.parts.coupler.strangers import STRANGERS
+from validation.parts.coupler.tubes import TUBES
 
 RAMP = ["participants.fluid.boundaries.inlet.ramp=0.4"]
 LIGHT = [*RAMP, "participants.solid.material.density=1", "simulation.output.interval=1", "simulation.checkpoint.interval=10"]

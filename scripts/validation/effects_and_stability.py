@@ -8,7 +8,8 @@ import numpy as np
 
 import couplet_series as series
 from validation.job import Bar
-from validation.parts import effects_cost, effects_off, stability_cases
+from validation.parts.effects import cost as effects_cost, off as effects_off
+from validation.parts.stability import cases as stability_cases
 
 SOURCES = ("common/effects", "common/app", "common/time", "solid_solver", "fluid_solver", "thermocline", "plate_modal", "coupler",
            "scripts/couplet_atlas", "docs/stability")

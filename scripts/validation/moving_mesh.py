@@ -7,7 +7,7 @@ import numpy as np
 
 import couplet_series as couplet
 from validation.job import Bar
-from validation.parts.fluid_speed import ratio, second_core
+from validation.parts.fluid.speed import ratio, second_core
 
 SOURCES = ("common/base", "common/parallel", "common/linalg", "common/mesh", "common/fv", "common/elasticity", "mesh_mover",
            "fluid_solver", "configs/moving-mesh", "configs/oscillating-cylinder", "configs/cylinder", "configs/closing-gap",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of "right by default": what static solids give with no key of the method set."""
-from validation.parts import right_by_default_scenes, right_by_default_stress
+from validation.parts.right_by_default import scenes, stress
 
-BARS = right_by_default_scenes.BARS + right_by_default_stress.BARS
+BARS = scenes.BARS + stress.BARS

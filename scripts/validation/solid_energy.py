@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the solid on an energy: the symmetric face gradient, and what a run says of its own answer."""
-from validation.parts import (energy_beams, energy_bending, energy_defaults, energy_modes, energy_operator, energy_pictures, energy_plate,
-                              energy_speed, energy_wave)
+from validation.parts.energy import beams, bending, defaults, modes, operator, pictures, plate, speed, wave
 
-BARS = (energy_operator.BARS + energy_beams.BARS + energy_bending.BARS + energy_defaults.BARS + energy_plate.BARS + energy_modes.BARS +
-        energy_wave.BARS + energy_speed.BARS + energy_pictures.BARS)
+BARS = (operator.BARS + beams.BARS + bending.BARS + defaults.BARS + plate.BARS + modes.BARS +
+        wave.BARS + speed.BARS + pictures.BARS)

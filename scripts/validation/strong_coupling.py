@@ -9,9 +9,9 @@ import numpy as np
 import couplet_series as couplet
 from couplet_run.launch import RunFailed
 from validation.job import Bar
-from validation.parts.strong_flap_3d import FLAP_3D
-from validation.parts.strong_tube import ROBIN_TUBE
-from validation.parts.strong_walls import WALLS
+from validation.parts.strong.flap_3d import FLAP_3D
+from validation.parts.strong.tube import ROBIN_TUBE
+from validation.parts.strong.walls import WALLS
 
 FLAP = "configs/perpendicular-flap/case.yaml"
 LADDER = [(rho, mu) for rho in (42, 10, 1) for mu in (10, 1, 0.1)]

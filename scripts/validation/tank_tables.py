@@ -6,7 +6,7 @@ import re
 
 from validation.job import Bar
 from validation.parts.measures import all_pass, at_most
-from validation.parts.thermocline_plant import CASES, ROWS, TABLE, VARIANTS, published
+from validation.parts.thermocline.plant import CASES, ROWS, TABLE, VARIANTS, published
 
 SOURCES = ("thermocline", "configs/thermocline-andasol", "configs/thermocline-gemasolar", "scripts/couplet_optimise.py")
 UNIT, BED, MELTING, MECHANICS = "unit_thermocline_plant", *(f"verification_thermocline_{t}" for t in ("bed", "melting", "mechanics"))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of "coupling that keeps its work and its order": the lists of parts/work_and_order_*.py."""
+"""Bars of "coupling that keeps its work and its order": the lists of parts/work_and_order/*.py."""
 import importlib
 import pathlib
 
 HERE = pathlib.Path(__file__).resolve().parent
 ORDER = ("maps", "damping", "loads", "tolerances", "data", "restart", "light", "again")
-PARTS = [part for part in ORDER if (HERE / "parts" / f"work_and_order_{part}.py").exists()]
-BARS = [bar for part in PARTS for bar in importlib.import_module(f"validation.parts.work_and_order_{part}").BARS]
+PARTS = [part for part in ORDER if (HERE / "parts" / "work_and_order" / f"{part}.py").exists()]
+BARS = [bar for part in PARTS for bar in importlib.import_module(f"validation.parts.work_and_order.{part}").BARS]

@@ -3,7 +3,7 @@
 import math
 
 from validation.job import Bar
-from validation.parts.solid_speed import FINE, FINEST, cells_per_second, memory, race
+from validation.parts.solid.speed import FINE, FINEST, cells_per_second, memory, race
 
 COARSE = (16, 24, 12)
 # Each row's own mesh is about the coarsest that has the error.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the solid's own audit."""
 from validation.job import Bar
-from validation.parts.solid_cases import le10_strips
-from validation.parts.trust_runs import gtests
+from validation.parts.solid.cases import le10_strips
+from validation.parts.trust.runs import gtests
 
 BARS = [
     Bar("LE10 over the half width of the strip that holds it, and its limit", "reported", lambda job: (le10_strips("corrected")(job)[0], None)),

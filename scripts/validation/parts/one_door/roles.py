@@ -2,7 +2,7 @@
 """Bars of roles as contracts: who may play what, surfaces that move together, structures that stand still, waits in a circle,
 signs of life."""
 from validation.job import Bar
-from validation.parts.trust_runs import gtests, script
+from validation.parts.trust.runs import gtests, script
 
 ROLES = "tests/coupling/roles/roles.py"
 WALLS = "tests/coupling/roles/walls.py"

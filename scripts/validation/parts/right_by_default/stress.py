@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Stress at surfaces, recovered from patches of cells."""
 from validation.job import Bar
-from validation.parts.right_by_default_scenes import probe
+from validation.parts.right_by_default.scenes import probe
 
 FILLET = 69.64e6  # CalculiX 2.20, 28 585 C3D10, the fillet refined; 9714 of them give 68.60
 

@@ -4,7 +4,7 @@ import csv
 import math
 
 from validation.job import Bar
-from validation.parts.trust_runs import tests
+from validation.parts.trust.runs import tests
 
 THIN_PLATE = (13.468, 19.596, 24.271)  # omega a^2 sqrt(rho h / D), Leissa 1969
 SCALE = math.sqrt(210e9 * 0.01**3 / (12 * (1 - 0.3**2)) / (7800 * 0.01))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the fluid: restart alone, what fails fails in solve, energy budget, hard meshes, the mesh report."""
 from validation.job import Bar
-from validation.parts.trust_runs import gtests, tests
+from validation.parts.trust.runs import gtests, tests
 
 BARS = [
     Bar("every participant alone: restart, failure and ranks (contract suite)", "tests pass", tests("^contract_(solid|fluid|thermocline|plate)", 10)),

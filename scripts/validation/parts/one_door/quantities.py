@@ -3,7 +3,7 @@
 import re
 
 from validation.job import Bar
-from validation.parts.trust_runs import gtests, script
+from validation.parts.trust.runs import gtests, script
 
 RUN = "tests/mistakes/run.py"
 

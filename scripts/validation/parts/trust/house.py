@@ -8,7 +8,7 @@ import re
 import shutil
 
 from validation.job import Bar
-from validation.parts.trust_runs import tests
+from validation.parts.trust.runs import tests
 
 MOST_LINES = 40  # of a README
 PROGRAMS = ("coupler", "fluid_solver", "solid_solver", "mesh_mover")

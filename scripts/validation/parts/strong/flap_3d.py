@@ -4,7 +4,7 @@ import numpy as np
 
 import couplet_series as couplet
 from validation.job import Bar
-from validation.parts.strong_tube import IQN
+from validation.parts.strong.tube import IQN
 
 CASE = "configs/perpendicular-flap/flap-3d.yaml"
 ROBIN = ("coupling.order=structure-first", "participants.fluid.boundaries.flap.impedance=structure",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of jobs that are killed or stopped at any moment."""
 from validation.job import Bar
-from validation.parts.trust_runs import script
+from validation.parts.trust.runs import script
 
 BARS = [
     Bar("100 kills and stops of the flap at start-up, meshing, steps and finish",

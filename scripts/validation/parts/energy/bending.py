@@ -2,8 +2,8 @@
 """Bars of the symmetric face gradient in bending and near incompressibility: Cook's membrane, the elliptic plate."""
 import couplet_series as couplet
 from validation.job import Bar
-from validation.parts.energy_defaults import hexahedra
-from validation.parts.solid_cases import probe
+from validation.parts.energy.defaults import hexahedra
+from validation.parts.solid.cases import probe
 
 SYMMETRIC = "participants.solid.solution-method={face-gradient: symmetric, relative-tolerance: 1e-10}"
 # Upper corner [mm] at E = 250 MPa, plane strain, by quadratic finite elements refined to convergence.

@@ -7,7 +7,7 @@ import dataclasses
 import re
 
 from validation.job import Bar
-from validation.parts.effects_off import EFFECTS, Own, watched
+from validation.parts.effects.off import EFFECTS, Own, watched
 
 CELLS = 32  # along a side of the square; the bed of a tank has 200
 STEPS = {"fluid_solver": (20, 120), "solid_solver": (20, 120), "mesh_mover": (10, 60), "plate_modal": (50, 400), "thermocline": (20, 120)}

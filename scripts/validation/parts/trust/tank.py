@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the tank's odd scenes."""
 from validation.job import Bar
-from validation.parts.trust_runs import gtests, tests
+from validation.parts.trust.runs import gtests, tests
 
 BARS = [
     Bar("sun without a site, cut-off below restart, stopped tanks, absent ambient, 204 without a unit: said or refused", "tests pass",

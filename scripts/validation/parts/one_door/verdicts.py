@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of verdicts that act: severities, exit code 4, what is accepted, neglected effects as a channel of their own, and what compressibility does."""
 from validation.job import Bar
-from validation.parts.trust_runs import gtests, tests
+from validation.parts.trust.runs import gtests, tests
 
 BARS = [
     Bar("a finding `wrong` ends with exit code 4, --accept and simulation.accept let it pass, unknown ids are refused", "pass",

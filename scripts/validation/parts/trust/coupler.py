@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the coupler: closed fluids, divergence by name, places, the explicit scheme's balance."""
 from validation.job import Bar
-from validation.parts.trust_runs import gtests, tests
+from validation.parts.trust.runs import gtests, tests
 
 BARS = [
     Bar("a closed fluid whose interface must displace volume: refused at the start, and when it is pumped up", "tests pass",

@@ -10,7 +10,7 @@ import time
 
 from couplet_run import Case, environment
 from validation.job import Bar
-from validation.parts.trust_runs import script
+from validation.parts.trust.runs import script
 
 SECONDS = 25  # of each committed case
 # What guards say; verdicts on left-out effects are none.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of conjugate maps and of the work that is judged: what unit_conjugate_maps records, and the guards' claims."""
 from validation.job import Bar
-from validation.parts.trust_runs import gtests, tests
+from validation.parts.trust.runs import gtests, tests
 
 
 def recorded(name, key, limit, above=False):

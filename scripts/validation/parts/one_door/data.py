@@ -4,8 +4,8 @@ import json
 import os
 
 from validation.job import Bar
-from validation.parts import trust_house
-from validation.parts.trust_runs import gtests, tests
+from validation.parts.trust import house as trust_house
+from validation.parts.trust.runs import gtests, tests
 
 
 def cases(job, name, count):

@@ -6,7 +6,7 @@ import numpy as np
 
 from validation.job import Bar
 from validation.main_job import FLAP
-from validation.parts.coupler_runs import flap, tips
+from validation.parts.coupler.runs import flap, tips
 
 CYLINDER = "configs/spring-cylinder"
 

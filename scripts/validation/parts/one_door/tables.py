@@ -5,8 +5,8 @@ import os
 import re
 
 from validation.job import Bar
-from validation.parts import trust_house
-from validation.parts.trust_runs import gtests, wrong
+from validation.parts.trust import house as trust_house
+from validation.parts.trust.runs import gtests, wrong
 
 RUN = "tests/cli/check_files/run.py"
 

@@ -4,7 +4,7 @@ import json
 import os
 
 from validation.job import Bar
-from validation.parts.trust_runs import gtests, tests
+from validation.parts.trust.runs import gtests, tests
 
 
 def crafted(job, count=500):

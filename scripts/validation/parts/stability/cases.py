@@ -7,7 +7,7 @@ import numpy as np
 
 import couplet_series as series
 from validation.job import Bar
-from validation.parts.trust_runs import gtests, script
+from validation.parts.trust.runs import gtests, script
 
 TURNOVERS = 20
 REYNOLDS = (1e2, 1e3, 1e4, 1e5, 1e6)
