@@ -30,7 +30,6 @@ class QuadraticFit {
   Terms terms(const Vec3& place) const { return terms(place, Tensor3::Zero()); }
   Slopes slopes(const Vec3& place) const;
   int n_terms() const { return dim_ == 2 ? 6 : 10; }
-  double scale() const { return scale_; }
   /// c(i, k), after solve().
   const Eigen::MatrixXd& coefficients() const { return coefficients_; }
 

@@ -104,7 +104,7 @@ std::vector<SurfaceTraction> SolidFields::known_tractions() const {
         break;
       case ElasticCondition::symmetry: {
         const Vec3 n = mesh_.reference.face_area[f] / area;
-        known.projector -= n * n.transpose() - Tensor3::Identity();
+        known.projector = Tensor3::Identity() - n * n.transpose();
         known.symmetry = true;
         continue;
       }

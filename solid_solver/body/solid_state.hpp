@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/base/types.hpp"
+#include "common/parallel/collective.hpp"
 #include "common/time/time_scheme.hpp"
 #include "solid_solver/body/energies.hpp"
 #include "solid_solver/method/solution_method.hpp"
@@ -65,10 +66,14 @@ struct StageWork {
 
 /// The last solve: its rows and what loaded them; this rank's part.
 struct LastSolve {
-  std::vector<double> rhs, unknowns;  ///< as the operator has its rows and unknowns
-  std::vector<double> load_rows;      ///< without inertia and prescribed motion; kernels with mass
-  std::vector<double> interface;      ///< forces, `dim` values a boundary face of owned cells; empty: none
+  std::vector<double>
+      rhs;  ///< as the operator has its rows; empty: nothing solved since the start or a restart
+  std::vector<double> unknowns;   ///< as the operator has them
+  std::vector<double> load_rows;  ///< without inertia and prescribed motion; kernels with mass
+  std::vector<double> interface;  ///< forces, `dim` values a boundary face of owned cells; empty: none
   Vec3 body_force = Vec3::Zero(), face_force = Vec3::Zero();  ///< sums
+  /// Something was solved since the start or a restart. Collective.
+  bool is_known(MPI_Comm comm) const { return !any(comm, rhs.size() != unknowns.size()); }
 };
 
 }  // namespace couplet

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/elasticity/vector_at.hpp"
+#include "common/mesh/transpose.hpp"
 
 namespace couplet {
 namespace {
@@ -33,18 +34,13 @@ double share_of_vertices(CellType type) {
 
 bool is_simplex(CellType type) { return type == CellType::triangle || type == CellType::tetrahedron; }
 
-/// Rows 0 .. n - 1 from visit(take), which calls take(row, entry) for all entries, twice.
-template <class Visit>
-Csr rows_from(Index n, const Visit& visit) {
-  std::vector<Index> first(std::size_t(n) + 1, 0);
-  visit([&](Index row, Index) { ++first[std::size_t(row) + 1]; });
-  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-  Csr result;
-  result.index.resize(std::size_t(first.back()));
-  std::vector<Index> next = first;
-  visit([&](Index row, Index entry) { result.index[std::size_t(next[std::size_t(row)]++)] = entry; });
-  result.offset = std::move(first);
-  return result;
+/// Boundary faces of each local cell.
+Csr boundary_faces_of_cells(const Mesh& mesh) {
+  Csr owners;
+  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) owners.push_row({&mesh.owner[f], 1});
+  Csr faces = transpose(owners, 0, mesh.cells.n_local());
+  for (Index& f : faces.index) f += mesh.n_interior;
+  return faces;
 }
 
 std::vector<Tensor3> with_ghosts(const IndexMap& map, const std::vector<Tensor3>& owned) {
@@ -89,14 +85,11 @@ struct StressRecovery::Patch {
 };
 
 StressRecovery::StressRecovery(const Mesh& mesh, const ElasticOperator& rows)
-    : mesh_(mesh), rows_(rows), moment_(std::size_t(mesh.cells.n_local()), Tensor3::Zero()) {
-  cells_of_point_ = rows_from(mesh.points.n_local(), [&](const auto& take) {
-    for (Index c = 0; c < mesh.cells.n_local(); ++c)
-      for (const Index v : mesh.cell_points[c]) take(v, c);
-  });
-  faces_of_cell_ = rows_from(mesh.cells.n_local(), [&](const auto& take) {
-    for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) take(mesh.owner[f], f);
-  });
+    : mesh_(mesh),
+      rows_(rows),
+      cells_of_point_(transpose(mesh.cell_points, 0, mesh.points.n_local())),
+      faces_of_cell_(boundary_faces_of_cells(mesh)),
+      moment_(std::size_t(mesh.cells.n_local()), Tensor3::Zero()) {
   for (Index c = 0; c < mesh.cells.n_local(); ++c) {
     Tensor3& moment = moment_[std::size_t(c)];
     for (const Index v : mesh.cell_points[c]) {
@@ -230,9 +223,9 @@ void StressRecovery::fit_displacement(Index cell, const Local& local, Patch& pat
   fit.solve();
 }
 
-template <class Take>
-void StressRecovery::visit_some(const DiscreteStress& found, const std::function<bool(Index)>& wants,
-                                const Take& take) const {
+/// take(cell, stress) for the owned cells that wants(cell), with stress(place) [Pa].
+template <class Wants, class Take>
+void StressRecovery::visit(const DiscreteStress& found, const Wants& wants, const Take& take) const {
   const Local local = localise(found);
   Patch patch;
   QuadraticFit fit, other;
@@ -261,12 +254,6 @@ void StressRecovery::visit_some(const DiscreteStress& found, const std::function
   }
 }
 
-void StressRecovery::visit(const DiscreteStress& found,
-                           const std::function<void(Index, const Stress&)>& take) const {
-  visit_some(
-      found, [](Index) { return true; }, [&](Index c, const Stress& stress) { take(c, stress); });
-}
-
 std::vector<double> StressRecovery::at_points(const DiscreteStress& found,
                                               std::span<const std::uint8_t> wanted) const {
   constexpr int size = tensor_size + 1;  // and how many cells there are
@@ -275,7 +262,7 @@ std::vector<double> StressRecovery::at_points(const DiscreteStress& found,
     return wanted.empty() ||
            std::ranges::any_of(mesh_.cell_points[c], [&](Index v) { return wanted[std::size_t(v)] != 0; });
   };
-  visit_some(found, wants, [&](Index c, const auto& stress) {
+  visit(found, wants, [&](Index c, const auto& stress) {
     for (const Index v : mesh_.cell_points[c]) {
       double* at = sums.data() + std::size_t(v) * size;
       const PackedTensor here = pack(stress(mesh_.reference_points[v]));

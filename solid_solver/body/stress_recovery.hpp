@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -43,21 +42,15 @@ class StressRecovery {
   /// Both by reference.
   StressRecovery(const Mesh& mesh, const ElasticOperator& rows);
 
-  /// Packed stress [Pa] of all local points; where materials meet, the mean of theirs. `wanted`: flags of local points,
-  /// empty: all; others may hold anything. Collective.
+  /// Packed stress [Pa] of all local points, the mean of the cells around. `wanted`: flags of local points, empty: all;
+  /// others may hold anything. Collective.
   std::vector<double> at_points(const DiscreteStress& found, std::span<const std::uint8_t> wanted = {}) const;
-
-  /// Stress [Pa] at a place in or beside a cell.
-  using Stress = std::function<Tensor3(const Vec3& place)>;
-  /// take(cell, stress) for all owned cells. Collective.
-  void visit(const DiscreteStress& found, const std::function<void(Index, const Stress&)>& take) const;
 
  private:
   struct Local;  // with ghosts
   struct Patch;
-  template <class Take>
-  void visit_some(const DiscreteStress& found, const std::function<bool(Index)>& wants,
-                  const Take& take) const;
+  template <class Wants, class Take>
+  void visit(const DiscreteStress& found, const Wants& wants, const Take& take) const;
   Local localise(const DiscreteStress& found) const;
   void gather(Index cell, const Local& local, Patch& patch) const;
   void fit_tensors(Index cell, const std::vector<Tensor3>& cells, const std::vector<Tensor3>& faces,

@@ -47,6 +47,7 @@ double SolidErrorEstimate::left_by_solver() const {
 /// |u . (b - A u)| / |u . b| of the last static solve, linear: u . b grows by as much as A u misses of b.
 double SolidErrorEstimate::missed_work() const {
   const LastSolve& last = stepper_.last_solve();
+  if (!last.is_known(body_.mesh().comm)) return 0;
   std::vector<double> force(last.unknowns.size());
   body_.kernel().apply(last.unknowns, {}, force);
   double missed = 0, work = 0;

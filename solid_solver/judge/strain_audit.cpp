@@ -138,9 +138,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
 /// energy is half of the loads' work. Static solves; this rank's part.
 double SolidJudge::residual_work(std::span<const double> unknowns) const {
   const std::vector<double>& rhs = stepper_.last_solve().rhs;
-  if (body_.is_dynamic() || rhs.size() != unknowns.size()) return 0;
-  // Loaded from a checkpoint, and nothing solved since: the balance was judged when it was saved.
-  if (!any(mesh_.comm, std::ranges::any_of(rhs, [](double force) { return force != 0; }))) return 0;
+  if (body_.is_dynamic() || !stepper_.last_solve().is_known(mesh_.comm)) return 0;
   std::vector<double> force(unknowns.size());
   body_.kernel().apply(unknowns, {}, force);
   double work = 0;

@@ -155,8 +155,9 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
   if (asked.face_gradient == MethodParameters::FaceGradient::automatic)
     method->name_ += problem.elastic.is_anisotropic() ? " (auto: orthotropic)"
                      : problem.is_symmetric() ? " (auto: static, nu from 0.4 up, or as 'volume-strain' asks)"
-                     : problem.is_static()    ? " (auto: boundaries or solver have no energy)"
-                                              : " (auto: dynamic)";
+                     : problem.is_static()
+                         ? " (auto: the symmetric one cannot have the boundaries or the solver)"
+                         : " (auto: dynamic)";
   return method;
 }
 

@@ -30,8 +30,7 @@ void SolidStepper::start_from_rest() {
   state_.face_v = state_.offset = state_.offset_rate = state_.face_u;
   state_.known.assign(body_.prescribed().size() * dim, 0);
   state_.known_rate = state_.known;
-  last_.rhs.assign(elastic_.n_unknowns(), 0);
-  last_.unknowns = last_.rhs;
+  last_.unknowns.assign(elastic_.n_unknowns(), 0);
   if (body_.is_dynamic() && uses_acceleration(parameters_.time_scheme.type)) state_.cell_a = state_.cell_u;
   if (body_.is_dynamic() && (uses_old_level(parameters_.time_scheme.type) ||
                              parameters_.method.predictor == MethodParameters::Predictor::adams))

@@ -118,7 +118,7 @@ void SolidStepper::add_body_forces(double t, std::span<double> rhs) {
 void SolidStepper::solve_stage(const StageWork& work, bool first) {
   const SolidState& now = first ? state_ : trial_;
   if (work.rhs.empty())
-    std::ranges::fill(last_.rhs, 0.0);
+    last_.rhs.assign(last_.unknowns.size(), 0);
   else
     last_.rhs = work.rhs;
   if (work.system->mass_factor > 0 && !body_.has_mass()) add_inertia(work, now);

@@ -35,7 +35,7 @@ SolidProbes::SolidProbes(const SolidBody& body, const SolidFields& derived) : bo
     for (const std::string& field : chosen.fields) add_columns(name, field);
   }
   doubt_mesh_scale(body.mesh(), places);
-  stressed_ = points_with_stress();
+  if (watches_stress()) stressed_ = points_with_stress();
 }
 
 std::vector<std::uint8_t> SolidProbes::points_with_stress() const {
@@ -73,6 +73,11 @@ void SolidProbes::add_columns(const std::string& probe, const std::string& field
   columns_.push_back(probe + " " + field + " [" + effect_field(body_, field).unit + "]");
 }
 
+bool SolidProbes::watches_stress() const {
+  return std::ranges::any_of(probes_,
+                             [](const Watched& w) { return std::ranges::any_of(w.fields, is_stress); });
+}
+
 bool SolidProbes::any_watches(std::initializer_list<const char*> fields) const {
   for (const Watched& watched : probes_)
     for (const char* field : fields)
@@ -85,8 +90,7 @@ std::vector<double> SolidProbes::sample(std::span<const double> points) const {
   std::vector<double> velocity, acceleration, stress, strain, row;
   if (any_watches({"velocity"})) velocity = derived_.point_velocity();
   if (any_watches({"acceleration"})) acceleration = derived_.point_acceleration();
-  if (any_watches({"stress", "equivalent-stress", "principal-stress"}))
-    stress = derived_.point_stress(points, stressed_);
+  if (watches_stress()) stress = derived_.point_stress(points, stressed_);
   if (any_watches({"strain"})) strain = derived_.point_strain(points);
   for (const Watched& watched : probes_) {
     for (const std::string& field : watched.fields) {

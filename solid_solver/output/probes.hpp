@@ -30,6 +30,7 @@ class SolidProbes {
     std::vector<std::string> fields;
   };
   void add_columns(const std::string& probe, const std::string& field);
+  bool watches_stress() const;
   bool any_watches(std::initializer_list<const char*> fields) const;
 
   /// Flags of the local points from which stresses are watched, on all ranks that share them. Collective.

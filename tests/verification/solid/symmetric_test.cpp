@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <random>
 
+#include "common/base/error.hpp"
 #include "common/elasticity/elastic_kernel.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/output/spectrum.hpp"
@@ -194,6 +196,71 @@ TEST(Symmetric, half_the_work_of_the_loads_is_the_strain_energy) {
     step(*solid, 1);
     EXPECT_LT(solid->judge().audit_strain(solid->fields().point_displacement(), false).mismatch(), 1e-10)
         << name(cells);
+  }
+}
+
+TEST(Symmetric, is_the_default_of_static_runs_where_it_can_be) {
+  const RawMesh raw = make_box(BoxCells::quadrilaterals, {6, 5, 1}, Vec3::Zero(), Vec3(1.2, 1, 0));
+  SolidParameters p = box_parameters(2);
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  const auto scheme = [&raw](const SolidParameters& q) {
+    return make_solid(raw, q)->body().kernel().scheme();
+  };
+  EXPECT_EQ(scheme(p), FaceGradientScheme::symmetric);
+
+  SolidParameters moving = p;
+  moving.analysis = SolidParameters::Analysis::dynamic;
+  moving.material.density = 1000;
+  EXPECT_EQ(scheme(moving), FaceGradientScheme::thesis);
+  moving.material.poissons_ratio = 0.45;
+  EXPECT_EQ(scheme(moving), FaceGradientScheme::symmetric);
+
+  SolidParameters other = p;
+  other.method.type = MethodParameters::Type::segregated;
+  EXPECT_EQ(scheme(other), FaceGradientScheme::thesis);
+  other = p;
+  other.boundaries["ymax"] = boundary(Type::zero_normal_gradient);
+  EXPECT_EQ(scheme(other), FaceGradientScheme::thesis);
+
+  // Half of a side slides and ends at vertices that nothing holds: by name refused, else not chosen.
+  SolidPart part;
+  part.type = Type::frictionless;
+  part.where = {"y > 0.5"};
+  other = p;
+  other.boundaries["xmax"].parts = {part};
+  EXPECT_EQ(scheme(other), FaceGradientScheme::thesis);
+  other.method.face_gradient = FaceGradient::symmetric;
+  EXPECT_THROW(scheme(other), Error);
+  other.method.face_gradient = FaceGradient::automatic;
+  other.boundaries["xmax"].parts[0].where = {"y > -1"};
+  EXPECT_EQ(scheme(other), FaceGradientScheme::symmetric);
+}
+
+TEST(Symmetric, the_recovered_stress_is_that_of_one_rank) {
+  for (const BoxCells cells : all_cells) {
+    SCOPED_TRACE(name(cells));
+    const int dim = dimension_of(cells);
+    SolidParameters p = to_round_off(box_parameters(dim), FaceGradient::symmetric);
+    p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
+    p.boundaries["ymin"] = boundary(Type::symmetry);
+    p.boundaries["xmax"] = boundary(Type::traction, {"1e6*y", "-3e5", "2e5*z"});
+    p.boundaries["xmax"].value.resize(dim);
+    const auto stress = [&](MPI_Comm comm) {  // by the points' numbers
+      Solid solid(distribute(comm, distorted_box(cells)), p, SolidContext{});
+      step(solid, 1);
+      const std::vector<double> found = solid.fields().point_stress(solid.fields().point_displacement());
+      const Mesh& mesh = solid.body().mesh();
+      std::map<GlobalIndex, Tensor3> by_id;
+      for (Index v = 0; v < mesh.points.n_owned(); ++v)
+        by_id[mesh.point_id[v]] = unpack({found.data() + std::size_t(v) * tensor_size, tensor_size});
+      return by_id;
+    };
+    const auto alone = stress(MPI_COMM_SELF), together = stress(MPI_COMM_WORLD);
+    double size = 0, apart = 0;
+    for (const auto& [id, here] : alone) size = std::max(size, here.norm());
+    for (const auto& [id, here] : together) apart = std::max(apart, (here - alone.at(id)).norm());
+    EXPECT_GT(size, 1e5);
+    EXPECT_LT(apart, 1e-8 * size);
   }
 }
 
