@@ -2,6 +2,7 @@
 """Scenes that went wrong with an earlier default: by default settings within 3 % of what is right, without a warning."""
 import csv
 
+from couplet_run.warnings import WARNING
 from validation.job import Bar
 
 
@@ -12,7 +13,7 @@ def probe(run, column):
 
 
 def warnings(run):
-    return [line for line in run.log.splitlines() if "not to be trusted" in line or "[warning]" in line]
+    return WARNING.findall(run.log)
 
 
 def beam_theory(length, force=100.0, modulus=210e9, poisson=0.3):
@@ -43,11 +44,13 @@ BARS = [
         scene("slender-beam", "tip y [m]", beam_theory(10), beam(2, 20, 10, 1))),
     Bar("beam 100:1, 20x2x2 hexahedra: tip", "within 3 %, no warning",
         scene("slender-beam", "tip y [m]", beam_theory(100), beam(2, 20, 100, 0))),
-    Bar("L-bracket with a fillet, cells of 8 mm: tip", "within 3 %, no warning",
-        scene("filleted-bracket", "tip y [m]", -2.4535e-4, ("participants.solid.mesh-parameters={h: 0.008}",))),
+    Bar("L-bracket with a fillet, 779 tetrahedra: tip", "within 3 %, no warning",
+        scene("filleted-bracket", "tip y [m]", -2.4535e-4, ("participants.solid.mesh-parameters={h: 0.01}",))),
     Bar("LE10 as shipped: stress yy at D", "within 1 %, no warning", scene("le10", "D stress-yy [Pa]", LE10, within=0.01)),
     Bar("LE1, 48x72 quadrilaterals: stress yy at D", "within 1 %, no warning",
-        scene("le1", "D stress-yy [Pa]", LE1, ("participants.solid.mesh-parameters={nr: 48, nt: 72}",), within=0.01)),
+        scene("le1", "D stress-yy [Pa]", LE1, ("participants.solid.mesh-parameters={nr: 48, nt: 72}",), within=0.01),
+        but="the issue asks for the bars of other tables; 1 % on this mesh is a figure of our own"),
     Bar("LE11, refine 8: axial stress at A", "within 1 %, no warning",
-        scene("le11", "A stress-zz [Pa]", LE11, ("participants.solid.mesh-parameters={refine: 8}",), within=0.01), long=True),
+        scene("le11", "A stress-zz [Pa]", LE11, ("participants.solid.mesh-parameters={refine: 8}",), within=0.01), long=True,
+        but="the issue asks for the bars of other tables, of which this is the one that `corrected` met by 0.51 %"),
 ]
