@@ -10,13 +10,13 @@ import statistics
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
+sys.path[:0] = [str(ROOT / "client/python"), str(ROOT / "benchmarks/peers")]
 import calculix_beam  # noqa: E402
 import calculix_plate  # noqa: E402
 import openfoam_plate  # noqa: E402
 import plate as geometry  # noqa: E402
-from couplet_run import Results, launch  # noqa: E402
-from couplet_series import read_csv  # noqa: E402
+from couplet.runs import Results, launch  # noqa: E402
+from couplet import read_csv  # noqa: E402
 from runs import foam_environment  # noqa: E402
 
 METHODS = {  # keys of solution-method as in the thesis's table 3.1, and ours; its tolerance
@@ -76,7 +76,7 @@ def our_plate(job, n, method="newton-krylov, corrected", tolerance=1e-8, shape=0
 
 
 def cells_of(folder):
-    from couplet_series import find_series
+    from couplet import find_series
     return len(find_series(folder / "solid").cells)
 
 

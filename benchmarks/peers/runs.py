@@ -7,8 +7,8 @@ import shutil
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts")]
-from couplet_run import environment  # noqa: E402
+sys.path[:0] = [str(ROOT / "client/python")]
+from couplet.runs import environment  # noqa: E402
 
 
 def once(folder, make):

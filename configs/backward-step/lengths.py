@@ -8,8 +8,8 @@ import sys
 import numpy as np
 
 here = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(here.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(here.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 GARTLING = {"lower reattachment": 6.10, "upper separation": 4.85, "upper reattachment": 10.48}  # Gartling 1990
 

@@ -4,8 +4,8 @@ import math
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "client/python"))
+import couplet  # noqa: E402
 
 LENGTH = 2.0  # [m]
 

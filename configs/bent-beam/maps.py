@@ -18,9 +18,9 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path.insert(0, str(ROOT / "scripts"))
-import couplet_series as couplet  # noqa: E402
-from couplet_run import environment  # noqa: E402
+sys.path.insert(0, str(ROOT / "client/python"))
+import couplet  # noqa: E402
+from couplet.runs import environment  # noqa: E402
 
 SIDE, SIDES = 0.2, (10, 20, 40)
 S = "participants.solid."

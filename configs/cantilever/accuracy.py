@@ -3,8 +3,8 @@
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "client/python"))
+import couplet  # noqa: E402
 
 PROGRAM = "solid_solver"
 TITLE = "Cantilever under a transverse load"

@@ -4,9 +4,9 @@ import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
+sys.path[:0] = [str(ROOT / "client/python"), str(ROOT / "benchmarks/peers")]
 import calculix_beam  # noqa: E402
-from couplet_run import launch  # noqa: E402
+from couplet.runs import launch  # noqa: E402
 from runs import series  # noqa: E402
 
 BEAM = calculix_beam.Beam(side=2.0, length=20.0, young=10e6, large=False)

@@ -8,8 +8,8 @@ import sys
 import numpy as np
 
 here = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(here.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(here.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 REFERENCE = {"u_min": -0.3885698, "v_max": 0.3769447, "v_min": -0.5270771}
 

@@ -12,7 +12,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 here = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(here.parents[1] / "scripts"), str(here.parent / "cylinder")]
+sys.path[:0] = [str(here.parents[1] / "client/python"), str(here.parent / "cylinder")]
 import coefficients  # noqa: E402
 
 PATCHES = ["cylinder", "plate"]

@@ -12,8 +12,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 here = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(here.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(here.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 RE_TAU = 180
 # Peaks (y+, value) of the spectral simulation of Moser, Kim and Mansour, Phys. Fluids 11 (1999) 943.

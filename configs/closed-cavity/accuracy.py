@@ -3,8 +3,8 @@
 import pathlib
 import sys
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "client/python"))
+import couplet  # noqa: E402
 
 TITLE = "Closed box under an elastic lid"
 LID = 0.020633703  # [m], its middle at 0.4 s: this case, semi-implicit with the level and IQN-ILS, steps of 1.25 ms

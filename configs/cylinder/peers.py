@@ -11,9 +11,9 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers"), str(HERE)]
+sys.path[:0] = [str(ROOT / "client/python"), str(ROOT / "benchmarks/peers"), str(HERE)]
 import coefficients  # noqa: E402
-from couplet_run import launch  # noqa: E402
+from couplet.runs import launch  # noqa: E402
 from plane_mesh import PlaneMesh  # noqa: E402
 from runs import foam_environment, once, put_foam  # noqa: E402
 

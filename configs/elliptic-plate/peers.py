@@ -5,10 +5,10 @@ import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
+sys.path[:0] = [str(ROOT / "client/python"), str(ROOT / "benchmarks/peers")]
 import calculix_plate  # noqa: E402
 import openfoam_plate  # noqa: E402
-from couplet_run import launch  # noqa: E402
+from couplet.runs import launch  # noqa: E402
 from runs import foam_environment, series  # noqa: E402
 
 MESHES = ((4, 6, 3), (8, 12, 6), (16, 24, 12))

@@ -9,7 +9,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from nine_points import HERE, Plate, errors, map_back, von_mises  # puts the next one on the path
-import couplet_series as couplet  # noqa: E402
+import couplet  # noqa: E402
 
 
 def reference(file):

@@ -6,8 +6,8 @@ import sys
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[1] / "scripts"), str(HERE)]
-import couplet_series as couplet  # noqa: E402
+sys.path[:0] = [str(HERE.parents[1] / "client/python"), str(HERE)]
+import couplet  # noqa: E402
 from plot import exact  # noqa: E402
 
 

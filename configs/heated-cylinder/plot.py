@@ -12,8 +12,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(HERE.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 A, B, HOT, E, NU, ALPHA = 1.0, 1.5, 100.0, 200e9, 0.3, 12e-6
 

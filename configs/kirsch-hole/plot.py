@@ -12,8 +12,8 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(HERE.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 RADIUS, LOAD = 0.5, 1e6
 

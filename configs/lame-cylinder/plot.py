@@ -12,8 +12,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(HERE.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 INNER, OUTER, PRESSURE, E, NU = 7.0, 18.625, 100e6, 10e9, 0.3
 A = PRESSURE * INNER**2 / (OUTER**2 - INNER**2)

@@ -11,8 +11,8 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
-from couplet_run import launch  # noqa: E402
+sys.path[:0] = [str(ROOT / "client/python"), str(ROOT / "benchmarks/peers")]
+from couplet.runs import launch  # noqa: E402
 from plane_mesh import PlaneMesh  # noqa: E402
 from runs import foam_environment, put_foam, series  # noqa: E402
 

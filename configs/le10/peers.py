@@ -5,9 +5,9 @@ import pathlib
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
+sys.path[:0] = [str(ROOT / "client/python"), str(ROOT / "benchmarks/peers")]
 import calculix_plate  # noqa: E402
-from couplet_run import launch  # noqa: E402
+from couplet.runs import launch  # noqa: E402
 from runs import series  # noqa: E402
 
 STRESS = -5.38e6  # [Pa], yy at D

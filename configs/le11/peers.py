@@ -10,9 +10,9 @@ import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
+sys.path[:0] = [str(ROOT / "client/python"), str(ROOT / "benchmarks/peers")]
 import calculix_plate  # noqa: E402
-from couplet_run import launch  # noqa: E402
+from couplet.runs import launch  # noqa: E402
 from runs import series  # noqa: E402
 
 YOUNG, POISSON, EXPANSION, TOP, STRESS = 210e9, 0.3, 2.3e-4, 1.79, -105.67e6

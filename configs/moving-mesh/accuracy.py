@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs for scripts/accuracy: what each method of mesh motion leaves of the cells against its time. A plate is turned by 30 degrees."""
-import couplet_series as couplet
+import couplet
 
 PROGRAM = "mesh_mover"
 TITLE = "Plate in a square turned by 30 degrees in 50 steps"

@@ -6,8 +6,8 @@ import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "client/python"))
+import couplet  # noqa: E402
 
 TITLE = "Light flap: coupling error at 10 ms"
 # Tip [m] at 0.02, 0.04, ... 0.2 s: this case on this mesh, implicit, IQN-ILS, relative 1e-8, the same steps

@@ -12,8 +12,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 here = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(here.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(here.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 TABLE_4_1 = [30.57, 129.3, 319.7, 980.6, 1039, 1545, 2039, 2288, 2702, 3738, 3828, 3925, 4147, 5412, 5443]  # thesis, Hz
 

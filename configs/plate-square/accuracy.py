@@ -3,7 +3,7 @@
 (Timoshenko), lambda of six modes (Leissa)."""
 import numpy as np
 
-import couplet_series as couplet
+import couplet
 
 PROGRAM = "plate_modal"
 TITLE = "clamped square plate: deflection by modes"

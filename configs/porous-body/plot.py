@@ -13,8 +13,8 @@ from generate import faces_of
 from matplotlib.collections import PolyCollection
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(HERE.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 TURN, TILT = np.radians(-50), np.radians(25)  # of the camera
 

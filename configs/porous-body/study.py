@@ -4,7 +4,7 @@ import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[1] / "scripts"), str(HERE)]
+sys.path[:0] = [str(HERE.parents[1] / "client/python"), str(HERE)]
 import generate  # noqa: E402
 
 METHODS = {  # keys of solution-method; the thesis's operator and tolerance

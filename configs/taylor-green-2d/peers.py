@@ -10,8 +10,8 @@ import sys
 import numpy as np
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "benchmarks/peers")]
-from couplet_run import launch  # noqa: E402
+sys.path[:0] = [str(ROOT / "client/python"), str(ROOT / "benchmarks/peers")]
+from couplet.runs import launch  # noqa: E402
 from runs import foam_environment, once, put_foam  # noqa: E402
 
 SIZES = (16, 32, 64, 128)

@@ -5,7 +5,7 @@ import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
-import couplet_thermocline
+sys.path.insert(0, str(HERE.parents[1] / "client/python"))
+from couplet import tank  # noqa: E402
 
-print(couplet_thermocline.picture(HERE, 38, "Case A: Andasol, 50 MW, 290 to 390 °C"))
+print(tank.picture(HERE, 38, "Case A: Andasol, 50 MW, 290 to 390 °C"))

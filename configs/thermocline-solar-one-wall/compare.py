@@ -9,8 +9,8 @@ import sys
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(HERE.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 JOINTS, DAY, BED = (1.8, 4.66, 7.52, 10.38), 86400, 12.76
 

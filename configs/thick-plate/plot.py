@@ -12,8 +12,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(HERE.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 DEFLECTION, STRESS = "centre z [m]", "bottom stress-xx [Pa]"
 

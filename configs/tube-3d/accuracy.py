@@ -6,8 +6,8 @@ import sys
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "client/python"))
+import couplet  # noqa: E402
 
 TITLE = "Elastic tube: coupling error at 0.2 ms"
 # Radial motion of A [m] at 0.4, 0.8, ... 4 ms: this case on this mesh, implicit, IQN-ILS, relative 1e-10, the same steps

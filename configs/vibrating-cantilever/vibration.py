@@ -7,8 +7,8 @@ import sys
 import numpy as np
 
 here = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(here.parents[1] / "scripts"))
-import couplet_series as couplet  # noqa: E402
+sys.path.insert(0, str(here.parents[1] / "client/python"))
+import couplet  # noqa: E402
 
 FREE_FROM = 10.0  # s; the force is gone since 7 s
 

@@ -8,9 +8,9 @@ import re
 import subprocess
 import sys
 
-from couplet_run import Case
-from couplet_study import estimates, pictures, table
-from couplet_study.study import Study
+from couplet.runs import Case
+from couplet.study import estimates, pictures, table
+from couplet.study.study import Study
 from validation.job import Bar
 
 SOURCES = ("scripts", "benchmarks", "common/app")
@@ -204,8 +204,9 @@ def closing(kind):
 @functools.cache
 def lines(root, commit):
     """Lines of the four harnesses and of the runner at a commit (the studies by axes, which are new, are not counted)."""
-    names = subprocess.run(["git", "-C", root, "ls-tree", "-r", "--name-only", commit, "--", "scripts", "benchmarks"], capture_output=True, text=True).stdout.split()
-    chosen = [n for n in names if re.match(r"scripts/(accuracy|study|validate|couplet_run/.*|validation/job\.py|couplet_study/variants\.py)$|benchmarks/(?!README)", n)]
+    names = subprocess.run(["git", "-C", root, "ls-tree", "-r", "--name-only", commit, "--", "scripts", "client/python", "benchmarks"], capture_output=True, text=True).stdout.split()
+    chosen = [n for n in names if re.match(r"scripts/(accuracy|study|validate|couplet_run/.*|validation/job\.py|couplet_study/variants\.py)$|"
+              r"client/python/couplet/(runs/.*|study/(main|accuracy|variants)\.py)$|benchmarks/(?!README)", n)]
     return sum(subprocess.run(["git", "-C", root, "show", f"{commit}:{n}"], capture_output=True, text=True).stdout.count("\n") for n in chosen)
 
 

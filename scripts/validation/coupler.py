@@ -4,7 +4,7 @@ import json
 import re
 import sys
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 from validation.main_job import FLAP, steps_of
 from validation.parts.coupler.runs import RUNS

@@ -6,13 +6,13 @@ import time
 
 import numpy as np
 
-import couplet_series as series
+from couplet import series
 from validation.job import Bar
 from validation.parts.effects import cost as effects_cost, off as effects_off
 from validation.parts.stability import cases as stability_cases
 
 SOURCES = ("common/effects", "common/app", "common/time", "solid_solver", "fluid_solver", "thermocline", "plate_modal", "coupler",
-           "scripts/couplet_atlas", "docs/stability")
+           "client/python/couplet/atlas", "docs/stability")
 MAPS = ("solid-energy", "solid-stretch", "solid-nu", "large-nu", "large-swing", "large-load", "fluid-diffusion", "fluid-convection", "fluid-aspect",
         "fluid-gap", "mover-rotation", "coupling-mass", "coupling-viscous", "strong-robin", "strong-cavity", "tank-front", "tank-biot", "plate-contact")
 
@@ -45,14 +45,14 @@ def pairs(job):
 # -- prices -----------------------------------------------------------------------------------------------------------
 def price(job, scene):
     """Processor seconds and memory of the scene, and what each effect adds to it."""
-    from couplet_atlas import prices
+    from couplet.atlas import prices
     (_, seconds, memory, processes), *effects = prices.measure(next(s for s in prices.SCENES if s.name == scene), job.build, job.scratch)
     return "; ".join([f"{seconds:.2f} s, {memory:.0f} MB, {processes} process{'es' if processes > 1 else ''}",
                       *(f"{n} {s:+.2f} s {m:+.0f} MB" + (f" {p:+d} process" if p else "") for n, s, m, p in effects)]), None
 
 
 def priced(job):
-    from couplet_atlas import prices
+    from couplet.atlas import prices
     table, folder = prices.read(job.root / "docs/stability/prices.csv"), job.root / "docs/stability"
     there = [s.name for s in prices.SCENES if len(table.get(s.name, ())) == 1 + len(s.adds) + len(s.lacks)]
     return f"{len(there)} scenes, {sum(len(r) - 1 for r in table.values())} effects", len(there) == 5 and (folder / "prices.png").exists()
@@ -133,8 +133,8 @@ participants:
 # -- structure: energies over many steps --------------------------------------------------------------------------------
 def swing(job, name, scheme, gradient, courant, steps, lean=0.5, method=""):
     """Growth of the energy of the atlas's swinging beam."""
-    from couplet_atlas import solid
-    from couplet_atlas.atlas import Runner
+    from couplet.atlas import solid
+    from couplet.atlas.atlas import Runner
 
     def make():
         kept, solid.STEPS, solid.CASE = (solid.STEPS, solid.CASE), steps, solid.CASE.replace("{gradient}", "{gradient}" + method)
@@ -173,8 +173,8 @@ def limit(panel, factor):
     """The viscous limit of the program between the last step that holds and the first that does not, on the square cells of the atlas:
     bisection by runs to 1 %; theory: nu dt/h^2 = factor/8."""
     def measure(job):
-        from couplet_atlas import fluid
-        from couplet_atlas.atlas import Runner
+        from couplet.atlas import fluid
+        from couplet.atlas.atlas import Runner
         runner = Runner(job.build, job.scratch / f"limit-{panel[:9]}")
         low, high = 0.9 * factor / 8, 1.1 * factor / 8
         for _ in range(6):
@@ -187,8 +187,8 @@ def limit(panel, factor):
 
 def added_mass_limit(job):
     """Largest added mass over mass with which explicit coupling is bounded, by bisection with the programs; theory: 1."""
-    from couplet_atlas import coupling
-    from couplet_atlas.atlas import Runner
+    from couplet.atlas import coupling
+    from couplet.atlas.atlas import Runner
     kept, coupling.STEPS = coupling.STEPS, 200
     try:
         runner, low, high = Runner(job.build, job.scratch / "added-mass"), 0.7, 1.5
@@ -203,8 +203,8 @@ def added_mass_limit(job):
 
 def implicit_range(job):
     """Implicit, Aitken, mass over added mass 0.01 to 100."""
-    from couplet_atlas import coupling
-    from couplet_atlas.atlas import Runner
+    from couplet.atlas import coupling
+    from couplet.atlas.atlas import Runner
     runner, failed = Runner(job.build, job.scratch / "implicit"), []
     ratios = (0.01, 0.1, 1, 10, 100)
     for ratio in ratios:

@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 from typing import Callable
 
-from couplet_run import Case, Results, environment, launch
+from couplet.runs import Case, Results, environment, launch
 
 
 @dataclasses.dataclass

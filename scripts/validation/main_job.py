@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 
 FLAP = "configs/perpendicular-flap/case.yaml"
@@ -22,11 +22,11 @@ def fresh_clone(job, script, sign):
 
 
 def demo_time(job):
-    got, met = fresh_clone(job, "demo", r"Run time: \d+ s")
-    seconds = re.search(r"Run time: (\d+) s", got)
+    got, met = fresh_clone(job, "demo", r"done in [\d.]+ s")
+    seconds = re.search(r"done in ([\d.]+) s", got)
     picture = job.scratch / "clone/configs/perpendicular-flap/out/perpendicular-flap.png"
     there = picture.exists() and picture.stat().st_size > 10_000
-    return f"{got}; picture {'written' if there else 'missing'}", bool(met and there and int(seconds.group(1)) < 180)
+    return f"{got}; picture {'written' if there else 'missing'}", bool(met and there and float(seconds.group(1)) < 180)
 
 
 # -- flap -------------------------------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 from validation.parts.fluid.speed import ratio, second_core
 

@@ -5,7 +5,7 @@ import shutil
 
 import numpy as np
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 
 SOURCES = ("plate_modal", "common/modes", "common/time", "configs/thin-plate", "configs/plate-reed", "configs/plate-drop",

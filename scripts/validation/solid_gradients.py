@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 
 GRADIENTS = ("thesis", "corrected", "symmetric")

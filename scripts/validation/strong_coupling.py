@@ -6,8 +6,8 @@ import zlib
 
 import numpy as np
 
-import couplet_series as couplet
-from couplet_run.launch import RunFailed
+import couplet
+from couplet.runs.launch import RunFailed
 from validation.job import Bar
 from validation.parts.strong.flap_3d import FLAP_3D
 from validation.parts.strong.tube import ROBIN_TUBE

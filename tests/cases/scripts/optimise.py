@@ -6,9 +6,10 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(ROOT / "scripts"))
-import couplet_optimise as optimise  # noqa: E402
-from couplet_run.warnings import warnings_of  # noqa: E402
+sys.path.insert(0, str(ROOT / "client/python"))
+from couplet.runs import Case, Wrong  # noqa: E402
+from couplet.study import optimise  # noqa: E402
+from couplet.runs.warnings import warnings_of  # noqa: E402
 
 FUNCTIONS = {
     "valley": lambda x: 1 + 2 * (x[0] - .63) ** 2 + (x[1] - .31) ** 2 + .5 * (x[0] - .63) * (x[1] - .31),
@@ -100,13 +101,13 @@ with tempfile.TemporaryDirectory() as folder:
 
     def read(text):
         file.write_text(HEAD + text)
-        return optimise.Search(optimise.Case(file, file.parent))
+        return optimise.Search(Case(file, file.parent))
 
     for text, wanted in WRONG.items():
         try:
             read(text)
             sys.exit(f"FAILED: accepted {text}")
-        except optimise.Wrong as error:
+        except Wrong as error:
             check(wanted in str(error), f"'{error}' does not say '{wanted}'")
     shares = read("    maximise: heat\n    variables: {height: {from: 8, to: 16, unit: m, sets: {bed.layers.0.height: 0.25}}}\n")
     check(shares.changes([0.5], {}) == {"participants.tank.bed.layers.0.height": "3 m"}, "shares of a variable")
@@ -126,6 +127,6 @@ with tempfile.TemporaryDirectory() as folder:
         try:
             optimise.Runs(read(section.replace("cost", "cost" if sets else "price")), file.parent / "other", 1, sets, say=quiet)([[0.5]])
             sys.exit(f"FAILED: accepted {sets}")
-        except optimise.Wrong as error:
+        except Wrong as error:
             check(wanted in str(error), f"'{error}' does not say '{wanted}'")
 print("ok")

@@ -8,9 +8,9 @@ import types
 
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "scripts"))
-from couplet_run import Wrong  # noqa: E402
-from couplet_study import axes, convergence, dominance, expressions, predict, quantities  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "client/python"))
+from couplet.runs import Wrong  # noqa: E402
+from couplet.study import axes, convergence, dominance, expressions, predict, quantities  # noqa: E402
 
 # -- limits, orders, fronts
 sizes = [8, 12, 20]

@@ -120,8 +120,8 @@ def wrong(build, folder):
 
 def mappings(folder):
     """A key that changes within a mapping that the case lacks and another axis has given keeps the rest of it, and the later counts."""
-    sys.path.insert(0, str(ROOT / "scripts"))
-    from couplet_run import Case
+    sys.path.insert(0, str(ROOT / "client/python"))
+    from couplet.runs import Case
     case, method = Case(folder / "case.yaml"), "participants.solid.solution-method"
     given = {method: {"type": "segregated", "acceleration": "aitken"}, f"{method}.face-gradient": "thesis", "simulation.end-time": "1 s"}
     both = case.assignments(given)[-1] == method + '={"type": "segregated", "acceleration": "aitken", "face-gradient": "thesis"}'
@@ -166,7 +166,7 @@ study:
 def made_up(order, sizes):
     """A series whose value is 1 + n^-order and whose cost is start-up and n^3, without any run."""
     from types import SimpleNamespace as S
-    from couplet_study.predict import Series
+    from couplet.study.predict import Series
 
     def row(point):
         return S(point=point, good=True, values={"q": 1 + point.size**-order}, errors={}, record=S(cpu=0.1 + 2e-5 * point.size**3), reason="")
@@ -186,10 +186,10 @@ def far(row):
 
 def predicting():
     """Costs, the size for an error, and what runs say of their errors, on made-up numbers."""
-    sys.path.insert(0, str(ROOT / "scripts"))
+    sys.path.insert(0, str(ROOT / "client/python"))
     from types import SimpleNamespace as S
-    from couplet_study.estimates import guesses, uncertainty
-    from couplet_study.predict import approach, power_cost, said
+    from couplet.study.estimates import guesses, uncertainty
+    from couplet.study.predict import approach, power_cost, said
     a, b, q = power_cost([4, 8, 12], [0.1 + 2e-5 * 4**3, 0.5, 0.1 + 2e-5 * 12**3])  # 8 by another solver
     ratio = (a + b * 20**q) / (0.1 + 2e-5 * 20**3)
     failed = check("a small run that is dearer than a larger one does not spoil the cost", 0.8 < ratio < 1.25, str(ratio))

@@ -7,8 +7,8 @@ import pathlib
 import sys
 
 root = pathlib.Path(sys.argv[1]).resolve()
-sys.path.insert(0, str(root / "scripts"))
-from couplet_atlas import atlas, cases, coupling, fluid, large, moving, plate, solid, strong, tank, viscous  # noqa: E402
+sys.path.insert(0, str(root / "client/python"))
+from couplet.atlas import atlas, cases, coupling, fluid, large, moving, plate, solid, strong, tank, viscous  # noqa: E402
 
 wrong = []
 count = 0

@@ -5,7 +5,7 @@ import resource
 
 import numpy as np
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 from validation.main_job import FLAP, registered, steps_of
 

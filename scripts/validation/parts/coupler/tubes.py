@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 from validation.main_job import steps_of
 

@@ -6,7 +6,7 @@ import itertools
 import re
 import subprocess
 
-from couplet_run import environment
+from couplet.runs import environment
 from validation.job import Bar
 
 BASES = {  # program: (words of the participant, programs of the job)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the symmetric face gradient in bending and near incompressibility: Cook's membrane, the elliptic plate."""
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 from validation.parts.energy.defaults import hexahedra
 from validation.parts.solid.cases import probe

@@ -3,7 +3,7 @@
 are averaged over each cell of the coarser grid (the two prisms or six tetrahedra of one place: their mean)."""
 import numpy as np
 
-import couplet_series
+import couplet
 from validation.job import Bar
 
 REFERENCE = 128  # cells from the hole to the rim; 112 s and 4 GB
@@ -23,7 +23,7 @@ def fields(job, n, shape=0):
         run = job.solve_run("solid_solver", "elliptic-plate", (
             "participants.solid.mesh-parameters={nr: %d, nt: %d, nz: %d, shape: %d}" % (*shape_of(n), shape),
             "participants.solid.solution-method={face-gradient: symmetric, relative-tolerance: 1e-8}"))
-        tools, series = nine_points(job), couplet_series.find_series(run.folder / "solid")
+        tools, series = nine_points(job), couplet.find_series(run.folder / "solid")
         last, points = len(series.times) - 1, series.file["mesh/coordinates"][...]
         centres = np.array([points[list(cell)].mean(axis=0) for cell in series.cells])
         place = (*tools.grid(centres, shape_of(n)), shape_of(n))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The suddenly pulled bar: overshoot and energies of each time scheme beside the closed form."""
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 
 SCHEMES = {"trapezoidal": "{type: trapezoidal}", "Bathe": "{type: bathe}", "generalised-alpha 0.5": "{type: generalised-alpha, spectral-radius: 0.5}",

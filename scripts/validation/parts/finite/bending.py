@@ -2,7 +2,7 @@
 """Static bars of large strain: case E of the thesis, Turek and Hron's bar, Cook's membrane."""
 import math
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 
 S = "participants.solid."

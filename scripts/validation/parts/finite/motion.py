@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 from validation.parts.measures import programs_pass
 

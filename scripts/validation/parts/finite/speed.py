@@ -4,7 +4,7 @@ import csv
 import math
 import re
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 
 S = "participants.solid."

@@ -2,7 +2,7 @@
 """Scenes that went wrong with an earlier default: by default settings within 3 % of what is right, without a warning."""
 import csv
 
-from couplet_run.warnings import WARNING
+from couplet.runs.warnings import WARNING
 from validation.job import Bar
 
 

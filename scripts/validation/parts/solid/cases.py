@@ -2,7 +2,7 @@
 """Bars of the thesis's cases A, B and D and of LE10: solid_solver on configs/, meshes and methods chosen by --set."""
 import math
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 
 GRADIENTS = ("thesis", "corrected")

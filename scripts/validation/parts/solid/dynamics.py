@@ -2,7 +2,7 @@
 """Bars of the solid's integration in time: case C of the thesis (vibrating cantilever), orders, energies, growth."""
 import math
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 
 GRADIENTS = ("thesis", "corrected")

@@ -5,7 +5,7 @@ import time
 
 import numpy as np
 
-import couplet_series as series
+from couplet import series
 from validation.job import Bar
 from validation.parts.trust.runs import gtests, script
 
@@ -52,7 +52,7 @@ def quick_set(job):
 
 def held(job):
     """The table of hard cases in docs/stability.md."""
-    from couplet_atlas import cases
+    from couplet.atlas import cases
     lost = cases.missing(job.root)
     return f"{len(cases.CASES)} cases, {sum(bool(c.fails) for c in cases.CASES)} with a failing neighbour" + (f"; not there: {', '.join(lost)}" if lost else ""), not lost
 

@@ -2,7 +2,7 @@
 """Bars of strong coupling on a flap in three dimensions: light, in a viscous fluid; with the Robin interface, too."""
 import numpy as np
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 from validation.parts.strong.tube import IQN
 

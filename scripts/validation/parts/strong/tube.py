@@ -2,7 +2,7 @@
 """Bars of strong coupling: the Robin interface in the elastic tube, passes and cost beside the other choices."""
 import numpy as np
 
-import couplet_series as couplet
+import couplet
 from validation.job import Bar
 
 TUBE = "configs/tube-3d/case.yaml"

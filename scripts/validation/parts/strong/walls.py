@@ -4,10 +4,10 @@ import pathlib
 
 import numpy as np
 
-import couplet_series as couplet
-from couplet_atlas import strong
-from couplet_atlas.atlas import Runner
-from couplet_run.launch import RunFailed
+import couplet
+from couplet.atlas import strong
+from couplet.atlas.atlas import Runner
+from couplet.runs.launch import RunFailed
 from validation.job import Bar
 
 CAVITY = [f"participants.{name}.mesh-parameters={{n: 8}}" for name in ("fluid", "lid", "mover")]

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 
-from couplet_run import Case, environment
+from couplet.runs import Case, environment
 from validation.job import Bar
 from validation.parts.trust.runs import script
 

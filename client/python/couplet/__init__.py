@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Couplet from Python: reads what a run left, composes and starts runs, and takes part in a job as a program of one's own.
+
+    run = couplet.Results("out")                        # after a run
+    run.probes("solid")["tip displacement x [m]"]       # columns of probes.csv: numpy arrays
+    run.fields("fluid").field(-1, "velocity")           # of the last output: (cells, components)
+    run.findings(), run.budget()                        # what the run doubts; what made its error
+
+    run = couplet.run("case.yaml", ranks={"fluid": 2}, changes={"simulation.end-time": "1 s"})
+
+    job = couplet.Client("solid", "my_solver")          # in a program of a job: couplet/participant.py
+
+Names are loaded when they are first asked for: a participant needs mpi4py and numpy alone."""
+import importlib
+
+from couplet.transports import choose
+
+choose()  # before anybody starts MPI
+
+_PLACES = {
+    "participant": ("Client",),
+    "series": ("FieldSeries", "WIDTH", "extrema", "find_series", "passes_a_step", "result_of"),
+    "runs": ("Case", "Results", "RunFailed", "Wrong", "read_csv", "run"),
+}
+
+
+def __getattr__(name):
+    for module, names in _PLACES.items():
+        if name in names:
+            return getattr(importlib.import_module(f"couplet.{module}"), name)
+    raise AttributeError(f"module 'couplet' has no attribute '{name}'")
+
+
+def __dir__():
+    return sorted([*globals(), *(n for names in _PLACES.values() for n in names)])

@@ -1,0 +1,7 @@
+# SPDX-License-Identifier: Apache-2.0
+"""python3 -m couplet ..."""
+import sys
+
+from couplet.command import main
+
+sys.exit(main(["couplet", *sys.argv[1:]]))

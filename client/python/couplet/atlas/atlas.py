@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a map is, how its squares are run, kept and judged."""
+import csv
+import dataclasses
+import itertools
+import math
+import pathlib
+import subprocess
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from typing import Callable
+
+from couplet.runs import environment
+
+# How a square came out. RED is what must not be: a wrong answer with exit code 0 and no warning.
+HOLDS, POOR, WARNED, REFUSED, RED = "holds", "inaccurate", "warned", "refused", "wrong, exit code 0"
+
+
+@dataclasses.dataclass
+class Axis:
+    label: str
+    values: list
+    log: bool = True
+
+
+@dataclasses.dataclass
+class Map:
+    name: str
+    title: str
+    criterion: str            # what the number in a square is
+    x: Axis
+    y: Axis
+    panels: list              # names
+    run: Callable             # (panel, x, y, Runner) -> (number, exit code, doubted)
+    holds: Callable           # (number) -> True: the criterion is met
+    accurate: Callable = lambda number: True   # of those that hold
+    theory: list = dataclasses.field(default_factory=list)   # [(panels or None, label, [(x, y)])]
+    about: str = ""           # mechanism, failing neighbour, what the picture shows
+
+
+@dataclasses.dataclass
+class Square:
+    number: float
+    code: int
+    outcome: str
+
+
+class Runner:
+    """Runs the programs of a build in folders of its own."""
+
+    def __init__(self, build, scratch):
+        self.build, self.scratch = pathlib.Path(build), pathlib.Path(scratch)
+        self.lock, self.kept, self.numbers = threading.RLock(), {}, itertools.count()
+
+    def once(self, key, make):
+        """What several squares share is made by the first that asks; the others wait."""
+        with self.lock:
+            if key not in self.kept:
+                self.kept[key] = make()
+            return self.kept[key]
+
+    def folder(self, *key):
+        """A new folder; the key is for those who look into it."""
+        words = (str(k).replace("/", "_").replace(" ", "_") for k in (*key, next(self.numbers)))
+        place = self.scratch / "-".join(words)
+        place.mkdir(parents=True)
+        return place
+
+    def program(self, name):
+        file = self.build / "bin" / name
+        return file if file.exists() else self.build / "bin" / "tests" / name
+
+    def alone(self, program, folder, files, sets=()):
+        """Exit code, and whether the run doubts its answer. `files`: {name: text}, with case.yaml among them."""
+        for name, text in files.items():
+            (folder / name).write_text(text)
+        return self.command([self.program(program), "case.yaml", "--strict=effects", *(w for s in sets for w in ("--set", s))], folder)
+
+    def job(self, programs, folder, files):
+        for name, text in files.items():
+            (folder / name).write_text(text)
+        line = ["mpirun", "--oversubscribe"]
+        for i, name in enumerate(programs):
+            line += [":"] * (i > 0) + ["-n", "1", self.program(name), "case.yaml", "--strict=effects"]
+        return self.command(line, folder)
+
+    def command(self, line, folder, limit=300):
+        try:
+            result = subprocess.run([str(w) for w in line], cwd=folder, env=environment(), capture_output=True, text=True, timeout=limit)
+        except subprocess.TimeoutExpired:
+            return 124, False
+        text = result.stdout + result.stderr
+        (folder / "run.log").write_text(text)
+        if result.returncode == 2 and " is beyond " not in text:  # what a program says of values that it cannot compute with
+            raise RuntimeError(f"{folder}: the case is wrong: {text.strip().splitlines()[-1]}")
+        told = ("--strict: the result is in doubt", "The answer is useless (")
+        failed = any("error:" in line and not any(t in line for t in told) for line in text.splitlines())
+        strict = result.returncode in (1, 4) and any(t in text for t in told) and not failed
+        # That a mesh does not resolve turbulence is no word about the scheme.
+        words = [line for line in text.splitlines() if "warning:" in line and "turbulence model left out" not in line]
+        return (0 if strict else result.returncode), strict and bool(words)
+
+
+def outcome(map_, number, code, doubted):
+    if code != 0:
+        return REFUSED
+    if math.isfinite(number) and map_.holds(number):
+        return HOLDS if map_.accurate(number) else POOR
+    return WARNED if doubted else RED
+
+
+def read(file):
+    """{(panel, x, y): Square} of a table that is there."""
+    if not file.exists():
+        return {}
+    with open(file, newline="") as rows:
+        return {(r["panel"], float(r["x"]), float(r["y"])): Square(float(r["number"]), int(r["exit code"]), r["outcome"])
+                for r in csv.DictReader(rows)}
+
+
+def write(file, map_, squares):
+    with open(file, "w", newline="") as out:
+        rows = csv.writer(out, lineterminator="\n")
+        rows.writerow(["panel", "x", "y", "number", "exit code", "outcome"])
+        for panel in map_.panels:
+            for y in map_.y.values:
+                for x in map_.x.values:
+                    if s := squares.get((panel, float(x), float(y))):
+                        rows.writerow([panel, f"{x:g}", f"{y:g}", f"{s.number:.4g}", s.code, s.outcome])
+
+
+def make(map_, file, runner, fresh=False, workers=1):
+    """Runs the squares that the table does not have; it is written after each row of them. Gives all squares."""
+    squares = {} if fresh else read(file)
+    for square in squares.values():  # the criterion may have become another one
+        if square.code == 0 and math.isfinite(square.number) and map_.holds(square.number):
+            square.outcome = HOLDS if map_.accurate(square.number) else POOR
+    wanted = [(p, float(x), float(y)) for p in map_.panels for y in map_.y.values for x in map_.x.values]
+    missing = [k for k in wanted if k not in squares]
+
+    def one(key):
+        number, code, doubted = map_.run(*key, runner)
+        return key, Square(number, code, outcome(map_, number, code, doubted))
+
+    with ThreadPoolExecutor(workers) as pool:
+        for i, (key, square) in enumerate(pool.map(one, missing)):
+            squares[key] = square
+            if i % 8 == 7:
+                write(file, map_, squares)
+    squares = {k: squares[k] for k in wanted}
+    write(file, map_, squares)
+    return squares

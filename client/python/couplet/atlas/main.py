@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The atlas of stability: where each scheme holds and where it stops, from runs of the programs. Writes MAP.csv and MAP.png and,
+for docs/stability, docs/stability.md. Exit code 1 if a square is a wrong answer that no guard or warning has noticed."""
+import pathlib
+import tempfile
+import time
+
+from couplet.atlas import atlas, cases, coupling, draw, fluid, large, moving, plate, prices, solid, strong, tank, viscous
+from couplet.places import ROOT, build
+from couplet.runs import expect
+
+MAPS = [*solid.MAPS, *large.MAPS, *fluid.MAPS, *moving.MAPS, *coupling.MAPS, *viscous.MAPS, *strong.MAPS, *tank.MAPS, *plate.MAPS]
+HEAD = """# Where each scheme holds
+
+Written by `couplet atlas` from runs of the programs; do not edit. In each square stands the number of the map's criterion; a table lies
+beside each picture.
+
+| colour | meaning |
+|---|---|
+| green | the criterion is met; pale: met, but inaccurate |
+| yellow | not met, and the run said so (`--strict` makes it a failed run) |
+| blue | a guard ended the run: exit code 1 |
+| red | a wrong answer with exit code 0 and without a word: there must be none |
+"""
+
+
+def page(maps, folder):
+    text = HEAD
+    for m in maps:
+        squares = atlas.read(folder / f"{m.name}.csv")
+        if not squares:
+            continue
+        counts = {}
+        for s in squares.values():
+            counts[s.outcome] = counts.get(s.outcome, 0) + 1
+        text += f"\n## {m.title}\n\n{m.about}\n\n![{m.title}](stability/{m.name}.png)\n\n"
+        text += f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}: [table](stability/{m.name}.csv).*\n"
+    if lost := cases.missing(ROOT):
+        raise SystemExit(f"hard cases without their test in tests/stability: {', '.join(lost)}")
+    text += cases.page()
+    table = prices.read(folder / "prices.csv")
+    return text + ("\n" + prices.page(table) if table else "")
+
+
+def price(out, programs):
+    table = {}
+    for scene in prices.SCENES:
+        with tempfile.TemporaryDirectory(prefix="couplet-prices-") as scratch:
+            table[scene.name] = prices.measure(scene, programs, scratch)
+        print(f"{scene.name}: " + "; ".join(f"{n or 'itself'} {s:+.2f} s {m:+.0f} MB" for n, s, m, _ in table[scene.name]), flush=True)
+        prices.write(out / "prices.csv", table)
+    prices.picture(table, out / "prices.png")
+
+
+def declare(parser):
+    parser.add_argument("maps", nargs="*", metavar="MAP", help="names of maps (--list tells them); all if none are given")
+    parser.add_argument("--build", type=pathlib.Path, default=build(), metavar="FOLDER", help="the folder whose bin/ holds the programs")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "stability", metavar="FOLDER", help="where tables and pictures go (docs/stability)")
+    parser.add_argument("--fresh", action="store_true", help="runs every square anew; else the table of a map is completed only")
+    parser.add_argument("--list", action="store_true", help="lists the maps")
+    parser.add_argument("--prices", action="store_true", help="in place of maps: what each effect adds to five scenes; on a quiet machine")
+    parser.add_argument("--page", action="store_true", help="no runs: docs/stability.md alone, from the tables that are there")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="so many at a time")
+
+
+def run(arguments):
+    unknown = set(arguments.maps) - {m.name for m in MAPS}
+    expect(not unknown, f"there is no map '{min(unknown, default='')}'; there is: {', '.join(m.name for m in MAPS)}")
+    if arguments.list:
+        print("\n".join(f"{m.name:18} {m.title}" for m in MAPS))
+        return 0
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    red = []
+    if arguments.prices:
+        price(arguments.out, arguments.build.resolve())
+    for m in MAPS if not (arguments.prices or arguments.page) else ():
+        if arguments.maps and m.name not in arguments.maps:
+            continue
+        start = time.monotonic()
+        with tempfile.TemporaryDirectory(prefix="couplet-stability-") as scratch:
+            squares = atlas.make(m, arguments.out / f"{m.name}.csv", atlas.Runner(arguments.build.resolve(), scratch), arguments.fresh,
+                                 arguments.jobs)
+        draw.picture(m, squares, arguments.out / f"{m.name}.png")
+        wrong = [k for k, s in squares.items() if s.outcome == atlas.RED]
+        red += [(m.name, *k) for k in wrong]
+        print(f"{m.name}: {len(squares)} squares, {len(wrong)} red, {time.monotonic() - start:.0f} s", flush=True)
+    if arguments.out == ROOT / "docs" / "stability":
+        (ROOT / "docs" / "stability.md").write_text(page(MAPS, arguments.out))
+    for name, panel, x, y in red:
+        print(f"RED {name}: {panel}, x {x:g}, y {y:g}")
+    return 1 if red else 0
+

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command `couplet`: one module for each of its subcommands, with `declare(parser)` and `run(arguments)` -> exit code; what
+they declare is help, man page and completion alike."""
+import argparse
+import importlib
+import os
+import pathlib
+import signal
+import sys
+
+# name: (module, one line)
+SUBCOMMANDS = {
+    "run": ("command.run", "runs a case: all its programs, to the end"),
+    "resume": ("command.resume", "goes on with a run that was stopped"),
+    "stop": ("command.stop", "ends a run after its step, with a checkpoint"),
+    "watch": ("command.watch", "shows how a run goes on"),
+    "check": ("command.check", "finds all mistakes of a case without running it"),
+    "explain": ("command.explain", "tells what a case computes and leaves out, and what it needs"),
+    "new": ("command.new", "makes a case of one's own from one of the gallery"),
+    "gallery": ("command.gallery", "lists the cases that come along"),
+    "plot": ("plot", "makes pictures of what a run wrote"),
+    "compare": ("command.compare", "tells in what two runs differ"),
+    "study": ("study.main", "runs the study of a case: variants, error against time, the best of some variables"),
+    "accuracy": ("study.accuracy", "measures error against time of a case of the gallery"),
+    "atlas": ("atlas.main", "maps where each scheme holds"),
+    "validate": ("command.validate", "measures the project's bars (in a checkout)"),
+    "doctor": ("command.doctor", "looks whether this machine runs coupled cases"),
+}
+ALIASES = {"stability": "atlas"}  # scripts/stability
+GUIDE = "couplet COMMAND --help tells more of each. Exit codes are those of the programs: 0 done, 1 failed, 2 the case or the command is wrong, 3 stopped with a checkpoint, 4 done, but useless."
+
+
+def module_of(name):
+    return importlib.import_module("couplet." + SUBCOMMANDS[name][0])
+
+
+def parser_of(name, prog=None):
+    module = module_of(name)
+    parser = argparse.ArgumentParser(prog=prog or f"couplet {name}", description=module.__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     allow_abbrev=False)
+    module.declare(parser)
+    return parser
+
+
+def version():
+    from couplet.places import IN_CHECKOUT, PACKAGE, ROOT
+    import re
+    if IN_CHECKOUT:
+        return re.search(r"project\(couplet VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    return (PACKAGE / "VERSION").read_text().strip()
+
+
+def overview():
+    width = max(map(len, SUBCOMMANDS))
+    lines = [f"  {name:{width}}  {text}" for name, (_, text) in SUBCOMMANDS.items()]
+    return "\n".join(["usage: couplet COMMAND ...", "", *lines, "", GUIDE])
+
+
+def dispatch(name, words, prog):
+    arguments = parser_of(name, prog).parse_args(words)
+    from couplet.runs.case import Wrong, yaml
+    try:
+        return module_of(name).run(arguments)
+    except (Wrong, yaml.YAMLError, UnicodeDecodeError) as error:
+        print(f"{prog}: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print(f"{prog}: interrupted" + ("; started again it goes on from here" if name in ("study", "atlas", "accuracy") else ""), file=sys.stderr)
+        return 128 + signal.SIGINT
+    except BrokenPipeError:  # `| head` has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return 0
+
+
+def main(argv):
+    """`argv[0]`: couplet, or a link named like a subcommand (scripts/study)."""
+    called, words = pathlib.Path(argv[0]).name, argv[1:]
+    if called != "couplet":
+        return dispatch(ALIASES.get(called, called), words, f"scripts/{called}")
+    if not words or words[0] in ("-h", "--help", "help"):
+        print(overview())
+        return 0
+    if words[0] == "--version":
+        print("couplet", version())
+        return 0
+    if words[0] not in SUBCOMMANDS:
+        import difflib
+        near = difflib.get_close_matches(words[0], SUBCOMMANDS, 1)
+        print(f"couplet: there is no command '{words[0]}'" + (f"; did you mean '{near[0]}'?" if near else f"; there is: {', '.join(SUBCOMMANDS)}"), file=sys.stderr)
+        return 2
+    return dispatch(words[0], words[1:], f"couplet {words[0]}")

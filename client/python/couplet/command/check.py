@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Finds all mistakes of a case at once, with file, line and what is allowed, and runs nothing: asks every program that takes part.
+Exit code 0, or 2 if there are any."""
+import pathlib
+import subprocess
+import sys
+
+from couplet.command.run import build_of
+from couplet.runs.case import COUPLER, Case
+from couplet.runs.job import Job, surroundings
+
+
+def declare(parser):
+    parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
+    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets one value; repeatable")
+    parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
+
+
+def ask(arguments, question):
+    """Yields (participant, exit code, answer, complaint) of all our programs of the case, asked at the same time."""
+    case = Case(arguments.case, build_of(arguments.bin))
+    Job(case, sets=arguments.set)  # who takes part
+    sets = [word for s in arguments.set for word in ("--set", s)]
+    asked = {}
+    for name in [*([COUPLER] if case.coupled else []), *case.participants]:
+        program = case.build / "bin" / COUPLER if name == COUPLER else case.program(name)
+        if name == COUPLER or not case.guest(name):
+            line = [program, case.file, question, *(["--participant", name] if name != COUPLER else []), *sets]
+            asked[name] = subprocess.Popen(list(map(str, line)), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=surroundings())
+    for name, process in asked.items():
+        answer, complaint = process.communicate()
+        yield name, process.returncode, answer, complaint
+
+
+def run(arguments):
+    worst, told = 0, []
+    for name, code, answer, complaint in ask(arguments, "--check"):
+        worst = max(worst, code if code >= 0 else 1)
+        if code:  # what concerns the whole case is said by every program, but needs one reader only
+            told += [line for line in (complaint or answer).rstrip().splitlines() if line not in told]
+    print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
+    if worst == 0:
+        print(f"{arguments.case}: valid")
+    return worst

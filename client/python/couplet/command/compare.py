@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tells in what two runs differ: values in force, each column of their tables, each field at each output, findings. What they cost
+(seconds, iterations so far, logs) is left out. Exit code 0 if all else is equal bit for bit, or within --tolerance; 1 if not."""
+import pathlib
+import re
+
+from couplet.runs.case import expect, load
+from couplet.runs.results import Results, read_csv
+
+CLOCK = re.compile(r"seconds|waiting|working|processor|clock|so far")
+
+
+def declare(parser):
+    parser.add_argument("first", type=pathlib.Path, metavar="RUN", help="output folder of a run")
+    parser.add_argument("second", type=pathlib.Path, metavar="RUN", help="output folder of another")
+    parser.add_argument("--tolerance", type=float, default=0.0, metavar="SHARE", help="differences up to this share of the largest value count as none (0)")
+    parser.add_argument("--all", action="store_true", help="also lists what is equal")
+
+
+def flat(node, name=""):
+    if isinstance(node, dict):
+        for key, child in node.items():
+            yield from flat(child, f"{name}.{key}" if name else str(key))
+    else:
+        yield name, node
+
+
+def apart(a, b):
+    """(largest difference, over the largest value); None where they have not the same shape."""
+    import numpy as np
+    if a.shape != b.shape or a.dtype.kind != b.dtype.kind:
+        return None
+    if a.dtype.kind not in "fiu":
+        return (0.0, 0.0) if (a == b).all() else (float("inf"), float("inf"))
+    if a.tobytes() == b.tobytes():
+        return 0.0, 0.0
+    same = (a == b) | (np.isnan(a) & np.isnan(b)) if a.dtype.kind == "f" else a == b
+    if same.all():
+        return 0.0, 0.0
+    gap = np.abs(np.where(same, 0, a.astype(float) - b))
+    gap = float("inf") if np.isnan(gap).any() else float(gap.max())
+    return gap, gap / (float(np.nanmax(np.abs([a.astype(float), b]))) or 1.0)
+
+
+def arrays(folder):
+    """{name: array} of all tables and field series of a run, without what the clock says."""
+    import h5py
+    import numpy as np
+    found = {}
+    for file in sorted(folder.glob("*/*.csv")):
+        if file.stat().st_size:
+            for head, values in read_csv(file).items():
+                if not CLOCK.search(head):
+                    found[f"{file.relative_to(folder)}: {head}"] = values
+    for file in sorted(folder.glob("*/*.h5")):
+        if file.parent.name == "checkpoints":
+            continue
+        with h5py.File(file, "r") as series:
+            series.visititems(lambda name, item: found.update({f"{file.relative_to(folder)}: {name}": np.asarray(item[...])})
+                              if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def values_in_force(folder):
+    return {f"{file.parent.name}.{key}": value for file in folder.glob("*/effective.yaml") for key, value in flat(load(file.read_text()))}
+
+
+def of_mappings(first, second):
+    return [f"{key}: {first.get(key, 'absent')} | {second.get(key, 'absent')}" for key in sorted({*first, *second}) if first.get(key, 'absent') != second.get(key, 'absent')]
+
+
+def differences(first, second, tolerance):
+    """[(name, words, whether it is beyond the tolerance)] of all arrays."""
+    a, b = arrays(first), arrays(second)
+    for name in [*a, *(n for n in b if n not in a)]:
+        if name not in a or name not in b:
+            yield name, f"only in {first if name in a else second}", True
+            continue
+        gap = apart(a[name], b[name])
+        if gap is None:
+            yield name, f"shape {a[name].shape} | {b[name].shape}", True
+        elif gap[0]:
+            yield name, f"at most {gap[0]:.3g} apart, {gap[1]:.2g} of the largest", gap[1] > tolerance
+        else:
+            yield name, "equal", False
+
+
+def run(arguments):
+    runs = arguments.first, arguments.second
+    for folder in runs:
+        expect(folder.is_dir() and Results(folder).participants(), f"{folder}: is no output folder of a run")
+    changed = of_mappings(*map(values_in_force, runs))
+    findings = of_mappings(*({f"finding {f['participant']} {f['id']}": f.get("severity") for f in Results(folder).findings()} for folder in runs))
+    print(*changed, *findings, sep="\n", end="\n" if changed or findings else "")
+    found = list(differences(*runs, arguments.tolerance))
+    apart_ones = [(name, words) for name, words, _ in found if words != "equal"]
+    for name, words in [(n, w) for n, w, _ in found] if arguments.all else apart_ones:
+        print(f"{name}: {words}")
+    beyond = sum(far for _, _, far in found)
+    told = "equal bit for bit" if not apart_ones else f"{len(apart_ones)} differ" + (f", {beyond} by more than {arguments.tolerance:g}" if arguments.tolerance else "")
+    print(f"{len(found)} columns and fields: {told}")
+    return 1 if beyond else 0

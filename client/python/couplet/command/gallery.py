@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Lists the cases that come along: name, programs and what each shows. `couplet new` makes one's own of one of them."""
+import textwrap
+
+from couplet.runs import gallery
+from couplet.runs.case import expect
+
+
+def declare(parser):
+    parser.add_argument("words", nargs="*", metavar="WORD", help="only cases whose name, text or programs hold all of these words")
+    parser.add_argument("-l", "--long", action="store_true", help="also what each is about")
+
+
+def run(arguments):
+    words = [w.lower() for w in arguments.words]
+    found = [e for e in gallery.entries() if all(w in f"{e.name} {e.title} {e.about} {' '.join(e.programs)}".lower() for w in words)]
+    expect(found, f"no case holds {' and '.join(arguments.words)}")
+    for e in found:
+        print(f"{e.name:28} {', '.join(e.programs)}")
+        if arguments.long:
+            print(textwrap.fill(e.about, 96, initial_indent="    ", subsequent_indent="    "))
+    return 0

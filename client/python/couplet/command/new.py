@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Makes a case of one's own: copies one of the gallery with all files that it names into a new folder. The case runs at once; comments
+and order of the YAML stay as they are."""
+import pathlib
+
+from couplet.runs import gallery
+from couplet.runs.case import expect
+
+
+def declare(parser):
+    parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="the new folder")
+    parser.add_argument("--from", dest="source", default="perpendicular-flap", metavar="CASE", help="a case of the gallery (couplet gallery), or one of its other files: cavity/re400.yaml")
+    parser.add_argument("--end-time", metavar="T", help="simulation.end-time, such as '2 s'")
+    parser.add_argument("--time-step", metavar="T", help="simulation.time-step, such as '0.01 s'")
+    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="another value of a key that the case has; repeatable")
+
+
+def run(arguments):
+    expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
+    values = dict(s.split("=", 1) for s in arguments.set)
+    values |= {f"simulation.{key}": value for key, value in (("end-time", arguments.end_time), ("time-step", arguments.time_step)) if value}
+    file = gallery.copy(gallery.find(arguments.source), arguments.folder, values)
+    print(f"{file}: a case like {arguments.source}. couplet check, explain and run take it: couplet run {file}")
+    return 0

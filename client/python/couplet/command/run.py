@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs a case: composes the launch line of all its programs from the YAML, starts it, passes on what they say, and tells at the end
+where the results lie. The results are bit for bit those of the same line typed by hand (--print shows it). Ctrl-C ends the run
+after the step under way, with a checkpoint; a second one at once."""
+import os
+import pathlib
+import shlex
+import sys
+
+from couplet.runs import folder as folders
+from couplet.runs.case import Case, expect
+from couplet.runs.job import Job
+
+FLAGS = {"strict": "a run with warnings about its own answer fails; --strict=effects: also about neglected effects"}
+
+
+def declare(parser):
+    parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
+    parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help="ranks of participants (fluid=4,solid=2), or one number for all together, divided by measured or expected work")
+    parser.add_argument("--participant", metavar="NAME", help="this participant alone, without the others")
+    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="the command of a participant that is a program of somebody else")
+    parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
+    parser.add_argument("--print", action="store_true", help="shows the launch line and runs nothing")
+    parser.add_argument("--slurm", nargs="?", const="", metavar="OPTIONS", help="hands the run to Slurm as a batch job, with these options of sbatch; with --print shows the script")
+    parser.add_argument("--picture", action="store_true", help="afterwards runs the plot.py of the case")
+    options_of_programs(parser)
+
+
+def options_of_programs(parser):
+    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets one value; repeatable")
+    parser.add_argument("--restart", type=pathlib.Path, metavar="FOLDER", help="goes on from the checkpoints in this folder")
+    parser.add_argument("--restart-with-changes", action="store_true", help="goes on although keys that change what is solved are others now")
+    parser.add_argument("--allow-commands", action="store_true", help="lets a .geo run commands and write files: it does so with your rights")
+    parser.add_argument("--strict", nargs="?", const="", metavar="effects", help=FLAGS["strict"])
+    parser.add_argument("--accept", action="append", default=[], metavar="ID", help="lets a finding pass (docs/findings.md); repeatable")
+    parser.add_argument("-v", "--verbose", action="store_true", help="every rank tells more")
+    parser.add_argument("-q", "--quiet", action="store_true", help="warnings and errors only")
+
+
+def flags_of(arguments):
+    """Arguments that all programs get as they are."""
+    words = [f"--{name.replace('_', '-')}" for name in ("restart_with_changes", "allow_commands", "verbose", "quiet") if getattr(arguments, name)]
+    words += ["--restart", str(arguments.restart.absolute())] if arguments.restart else []
+    words += [] if arguments.strict is None else ["--strict" + (f"={arguments.strict}" if arguments.strict else "")]
+    return words + [word for finding in arguments.accept for word in ("--accept", finding)]
+
+
+def pairs(words, option):
+    expect(all("=" in w for w in words), f"{option}: expected NAME=...")
+    return dict(w.split("=", 1) for w in words)
+
+
+def ranks_of(words, case):
+    words = [w for word in words for w in word.split(",")]
+    if len(words) == 1 and words[0].isdigit():
+        from couplet.runs.ranks import divide
+        return divide(case, int(words[0]))
+    found = pairs(words, "-n")
+    expect(all(n.isdigit() and int(n) > 0 for n in found.values()), f"-n {','.join(words)}: expected whole numbers from 1 on, such as -n fluid=4,solid=2")
+    return {name: int(n) for name, n in found.items()}
+
+
+def build_of(folder):
+    if folder is not None:
+        expect(folder.is_dir(), f"--bin {folder}: there is no such folder")
+        expect(folder.resolve().name == "bin", f"--bin {folder}: expected a folder called bin")
+        return folder.absolute().parent
+    return None
+
+
+def run(arguments):
+    case = Case(arguments.case, build_of(arguments.bin))
+    expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
+    job = Job(case, ranks_of(arguments.ranks, case), arguments.set, flags_of(arguments), arguments.participant,
+              {name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()})
+    if arguments.slurm is not None:
+        from couplet.runs import slurm
+        return slurm.hand_over(job, shlex.split(arguments.slurm), arguments.print)
+    if arguments.print:
+        print(job.line())
+        return 0
+    return finish(job, job.run(), arguments.picture)
+
+
+def shown(path):
+    """A path as a person would type it."""
+    relative = os.path.relpath(path)
+    return str(path) if relative.startswith("../..") else relative
+
+
+def span(seconds):
+    return f"{seconds:.1f} s" if seconds < 10 else f"{seconds:.0f} s" if seconds < 600 else f"{seconds / 60:.0f} min"
+
+
+def picture_of(job):
+    """Makes the picture of the case; gives what the last line says about it."""
+    import subprocess
+    done = subprocess.run([sys.executable, "-m", "couplet", "plot", str(job.case.file)], capture_output=True, text=True, env={
+        **os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[2])})
+    words = done.stdout.split()
+    name = next((w for w in reversed(words) if w.rstrip(".,").endswith(".png")), None)
+    if done.returncode != 0:
+        return f"no picture ({(done.stderr.strip().splitlines() or ['plot.py failed'])[-1]})"
+    return f"picture {shown(name)}" if name else "picture made"
+
+
+def finish(job, code, picture):
+    """The last line: where the results lie, or what went wrong and what to do."""
+    out, took = shown(job.output), span(job.seconds)
+    again = f"couplet resume {shlex.quote(out)}"
+    if code == 0 or code == 4:
+        has_plot = (job.case.file.parent / "plot.py").is_file()
+        look = picture_of(job) if picture else f"picture: couplet plot {shlex.quote(shown(job.case.file) if has_plot else out)}"
+        doubt = ", but the answer is proved useless (above; docs/findings.md)" if code == 4 else ""
+        print(f"done in {took}{doubt}: results in {out}, {look}", flush=True)
+        return code
+    if code == 3 or (job.asked and job.recorded and folders.checkpoint(job.output)):
+        print(f"stopped after {took}, saved as {folders.checkpoint(job.output)}; go on: {again}", file=sys.stderr)
+        return 3 if code == 3 else code
+    what = {2: f"mend the case: couplet check {shlex.quote(shown(job.case.file))} tells all its mistakes at once"}.get(
+        code, f"from the last checkpoint: {again}" if job.recorded and folders.checkpoint(job.output) else f"logs in {out}")
+    why = "" if code == 2 else f": {job.last_words()}"  # what is wrong with a case stands just above
+    print(f"failed after {took}, exit code {code}{why}\n{what}", file=sys.stderr)
+    return code

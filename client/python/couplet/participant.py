@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A Python program as a participant of a Couplet job, over mpi4py and numpy alone; the protocol is docs/protocol.md.
+
+    c = couplet.Client("solid", "my_solver")            # all processes of the participant
+    c.vertices(xyz, dimension=2)                        # (n, 3): what this process owns, or process 0 all
+    c.faces(centres, areas, corners)                    # corners: for each face the positions of its vertices
+    c.takes("pressure-force", "N", "faces"); c.gives("displacement", "m", "vertices")
+    for event in c:                                     # "begin", "solve", "accept", "output", "save", "load"
+        if event == "solve": c.write("displacement", motion(c.read("pressure-force")))
+"""
+import atexit
+import math
+import struct
+import sys
+import time
+
+import numpy
+from mpi4py import MPI  # MPI starts here
+
+VERSION, COMMAND, REPLY, HELLO = 4, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
+JOIN_TAG, COMMAND_TAG, REPLY_TAG, INPUT_TAG, PLACES_TAG, OUTPUT_TAG = 100, 101, 102, 103, 104, 105
+EVENTS = {2: "begin", 3: "solve", 4: "accept", 5: "output", 6: "save", 7: "load"}
+INITIALISE, SOLVE, FINALISE = 1, 3, 8
+
+
+def _pause(since):
+    """Between two looks at what is awaited: the core belongs to the others."""
+    waited = time.monotonic() - since
+    time.sleep(0 if waited < 8e-5 else min(waited / 16, 2.5e-4))
+
+
+def _wait(request):
+    since = time.monotonic()
+    while not request.Test():
+        _pause(since)
+
+
+def _integers(*values):
+    return struct.pack(f"={len(values)}q", *values)
+
+
+def _reals(*values):
+    return struct.pack(f"={len(values)}d", *values)
+
+
+def _text(value):
+    data = value.encode()
+    return _integers(len(data)) + data
+
+
+def _list(values):
+    return _integers(len(values), *values)
+
+
+class _Reader:
+    def __init__(self, data):
+        self.data, self.at = data, 0
+
+    def take(self, kind):
+        value, = struct.unpack_from("=" + kind, self.data, self.at)
+        self.at += 8
+        return value
+
+    def text(self):
+        n = self.take("q")
+        self.at += n
+        return bytes(self.data[self.at - n:self.at]).decode()
+
+
+class Client:
+    def __init__(self, participant, program):
+        """Takes part in the start of the job, collective over all processes of the participant. Ends the program with
+        exit code 2 if the job does not start."""
+        world = MPI.COMM_WORLD
+        self.participant, self._takes, self._gives = participant, [], []
+        self._xyz = self._centres = self._areas = numpy.zeros((0, 3))
+        self._corners, self._dimension, self._advised, self._pending = [], 3, math.inf, False
+        self._begun = self.dt = 0.0
+        hello, everyone = numpy.array([HELLO, VERSION, 1, 0], "i8"), numpy.zeros(4 * world.size, "i8")
+        _wait(world.Iallgather(hello, everyone))
+        if (everyone[0::4] != HELLO).any() or (everyone[1::4] != VERSION).any():
+            others = sorted(set(everyone[1::4].tolist()) - {VERSION})
+            self._end("a process of the job speaks another protocol" +
+                      (f": version {others[0]}, this client version {VERSION}" if others else ""))
+        world.Split(MPI.UNDEFINED, world.rank)
+        number = world.Get_attr(MPI.APPNUM) or 0
+        fields = [program, participant, "(guest)", "0", "", "1", str(number), str(world.rank)]
+        strings = self._all_strings(world, ("".join(f + "\x1f" for f in fields) + "\x1e").encode())
+        participants = [s.split("\x1f")[1] for s in strings]
+        problem, worst = numpy.zeros(1, "i8"), numpy.zeros(1, "i8")
+        world.Allreduce(problem, worst, MPI.MAX)
+        if worst[0]:
+            MPI.Finalize()
+            sys.exit(2)
+        order = list(dict.fromkeys(participants))
+        self.comm = world.Split(order.index(participant), world.rank)
+        self._coupler = self.comm.Create_intercomm(0, world, participants.index("coupler"), JOIN_TAG)
+        self._over = False
+        atexit.register(self._leave)
+
+    def _leave(self):
+        """A program that ends before the job (an exception, sys.exit) takes the job along: MPI_Finalize would wait for ever."""
+        if not self._over and not MPI.Is_finalized():
+            sys.stdout.flush()
+            self._end(f"participant '{self.participant}' ended before the job was over")
+
+    @staticmethod
+    def _all_strings(world, mine):
+        counts = numpy.zeros(world.size, "i4")
+        world.Allgather(numpy.array([len(mine)], "i4"), counts)
+        everything = bytearray(int(counts.sum()))
+        world.Allgatherv([mine, MPI.BYTE], [everything, counts, numpy.r_[0, counts.cumsum()[:-1]], MPI.BYTE])
+        return bytes(everything).decode().split("\x1e")[:-1]
+
+    # -- the interface, before the first event ------------------------------------------------------------------------
+    def vertices(self, xyz, dimension=3):
+        """xyz: (n, 3) [m], reference configuration; dimension 2: z = 0, all per metre of depth."""
+        self._xyz, self._dimension = numpy.asarray(xyz, float).reshape(-1, 3), dimension
+
+    def faces(self, centres, areas, corners=None):
+        """centres [m], areas out of this participant [m^2]: (n, 3); corners: a list of positions of vertices a face."""
+        self._centres, self._areas = (numpy.asarray(a, float).reshape(-1, 3) for a in (centres, areas))
+        self._corners = corners or [[] for _ in self._centres]
+
+    def takes(self, datum, unit, place, components=0):
+        """place: "vertices" or "faces"; components: values a place, 0: one a dimension."""
+        self._takes.append((datum, unit, ("vertices", "faces").index(place), components))
+
+    def gives(self, datum, unit, place, components=0):
+        self._gives.append((datum, unit, ("vertices", "faces").index(place), components))
+
+    # -- events -------------------------------------------------------------------------------------------------------
+    def __iter__(self):
+        while (event := self.next()) is not None:
+            yield event
+
+    def next(self):
+        """Answers for the last event and waits for the next; None: the job is over. Collective."""
+        while True:
+            if self._pending:
+                self._send_reply()
+                if self.operation == FINALISE:
+                    self._over = True
+                    return None
+            self._receive_command()
+            if self.operation == INITIALISE and self.sub_steps > 1:
+                self._end(f"'coupling.sub-steps' of '{self.participant}': this library takes one step a coupling step; remove it, and cut the "
+                          "step in your own program.")
+            if self.operation in EVENTS:
+                return EVENTS[self.operation]
+
+    def read(self, datum):
+        """(places, components) of this process; zeros if nobody has given it yet."""
+        entry = next(d for d in self._takes if d[0] == datum)
+        return self._input.get(datum, numpy.zeros(self._shape(entry)))
+
+    def write(self, datum, values):
+        entry = next(d for d in self._gives if d[0] == datum)
+        self._output[datum] = numpy.ascontiguousarray(values, float).reshape(self._shape(entry))
+
+    def fail(self, why, halving_helps=True):
+        """Instead of writing: the step could not be solved."""
+        self._status, self._why = (1 if halving_helps else 2), why
+
+    def advise(self, dt):
+        self._advised = dt
+
+    def checkpoint(self):
+        """Beginning of the name of a file for save and load."""
+        return f"{self.folder}/{self.participant}"
+
+    # -- messages -----------------------------------------------------------------------------------------------------
+    def _shape(self, entry):
+        return len(self._centres if entry[2] else self._xyz), entry[3] or self._dimension
+
+    def _end(self, why):
+        print(f"couplet client: {why}", file=sys.stderr, flush=True)
+        MPI.COMM_WORLD.Abort(1)
+
+    def _receive(self, rank, tag):
+        since, status = time.monotonic(), MPI.Status()
+        while (message := self._coupler.Improbe(rank, tag, status)) is None:
+            _pause(since)
+        data = bytearray(status.Get_count(MPI.BYTE))
+        message.Recv([data, MPI.BYTE])
+        return data
+
+    def _send(self, data, rank, tag, kind=MPI.BYTE):
+        _wait(self._coupler.Isend([data, kind], rank, tag))
+
+    def _receive_command(self):
+        head = self._receive(0, COMMAND_TAG) if self.comm.rank == 0 else bytearray()
+        length = numpy.array([len(head)], "i8")
+        _wait(self.comm.Ibcast(length, 0))
+        head = head or bytearray(int(length[0]))
+        _wait(self.comm.Ibcast([head, MPI.BYTE], 0))
+        r = _Reader(head)
+        if r.take("q") != COMMAND or r.take("q") != VERSION:
+            self._end("a message of the coupler is no command of this version")
+        self.operation = r.take("q")
+        step = r.take("d"), r.take("d")
+        if self.operation == 2:
+            self._begun, self.dt = step
+        self.scheme, self.number, self.sub_steps, self.waveform = (r.take("q") for _ in range(4))
+        accepted, self.output, self.folder = r.take("d"), r.take("q"), r.text()
+        self.time = accepted if self.operation in (4, 5) else self._begun
+        names = [r.text() for _ in range(r.take("q"))]
+        self._input, self._output, self._status, self._why = {}, {}, 0, ""
+        self._started, self._pending = time.monotonic(), True
+        if self.operation == SOLVE:
+            self._receive_input(names)
+
+    def _cut(self, n):
+        counts = numpy.zeros(self.comm.size, "i8")
+        self.comm.Allgather(numpy.array([n], "i8"), counts)
+        return [0, *(int(c) for c in counts.cumsum())]
+
+    def _peers(self):
+        """(rank of the coupler, slice of my vertices, slice of my faces) for all that share some."""
+        ranks, mine = self._coupler.Get_remote_size(), self.comm.rank
+        list_ = []
+        for c in range(ranks):
+            slices = []
+            for cut in (self._vertex_cut, self._face_cut):
+                first, end = max(cut[mine], cut[-1] * c // ranks), min(cut[mine + 1], cut[-1] * (c + 1) // ranks)
+                slices.append(slice(first - cut[mine], max(first, end) - cut[mine]))
+            if any(s.stop > s.start for s in slices):
+                list_.append((c, slices))
+        return list_
+
+    def _receive_input(self, names):
+        entries = [next(d for d in self._takes if d[0] == name) for name in names]
+        for entry in entries:
+            if self._shape(entry)[0] > 0:
+                self._input[entry[0]] = numpy.zeros(self._shape(entry))
+        for rank, slices in self._peers():
+            parts = [(e[0], slices[e[2]]) for e in entries if slices[e[2]].stop > slices[e[2]].start]
+            if not parts:
+                continue
+            values, at = numpy.frombuffer(self._receive(rank, INPUT_TAG), "f8"), 0
+            for name, part in parts:
+                to = self._input[name][part]
+                to[...] = values[at:at + to.size].reshape(to.shape)
+                at += to.size
+
+    def _places(self, vertices, faces):
+        out = _integers(vertices.stop - vertices.start)
+        for v in range(vertices.start, vertices.stop):
+            out += _integers(v) + _reals(*self._xyz[v])
+        out += _integers(faces.stop - faces.start)
+        for f in range(faces.start, faces.stop):
+            out += _integers(f) + _reals(*self._centres[f], *self._areas[f]) + _integers(0) + _list(self._corners[f])
+        return out
+
+    def _send_reply(self):
+        first = self.operation == INITIALISE
+        if first:
+            self._dimension = self.comm.bcast(self._dimension, 0)
+            self._vertex_cut, self._face_cut = self._cut(len(self._xyz)), self._cut(len(self._centres))
+        if self.operation == SOLVE and self._status == 0 and (missing := {d[0] for d in self._gives} - set(self._output)):
+            self._end(f"'{self.participant}' did not give {', '.join(sorted(missing))}")
+        names = sorted(self._output) if self._status == 0 else []
+        if self.comm.rank == 0:
+            head = _integers(REPLY, VERSION, self._status) + _text(self._why)
+            head += _reals(time.monotonic() - self._started, self._advised, self.dt) + _integers(0) + _reals(math.nan, math.nan)
+            head += _integers(len(names)) + b"".join(map(_text, names)) + _integers(self._dimension, 0, 0)
+            for data in (self._takes, self._gives):
+                head += _integers(len(data) if first else 0)
+                for name, unit, place, components in data if first else []:
+                    head += _text(name) + _text(unit) + _integers(place, components)
+            head += _list(self._vertex_cut if first else [0]) + _list(self._face_cut if first else [0])
+            self._send(head, 0, REPLY_TAG)
+        for rank, slices in self._peers() if first or names else []:
+            if first:
+                self._send(self._places(*slices), rank, PLACES_TAG)
+                continue
+            parts = [self._output[n][slices[next(d for d in self._gives if d[0] == n)[2]]].ravel() for n in names]
+            values = numpy.concatenate(parts)
+            if values.size:
+                self._send(values, rank, OUTPUT_TAG, MPI.DOUBLE)
+        self._pending = False

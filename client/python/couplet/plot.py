@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of what a run wrote: monitors, lines and planes, residuals; of a case that has a plot.py its own picture. Columns of one
+unit share a diagram. A line is drawn over the way along it, a plane as a map of each column, residuals over all coupling
+iterations. Prints the name of each picture."""
+import csv
+import os
+import pathlib
+import subprocess
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+from couplet import places
+from couplet.runs.case import Wrong, expect
+
+PLACES = ("along [-]", "up [-]", "x [m]", "y [m]", "z [m]")
+MOST_LINES = 12  # with names of their own
+
+
+def read(file):
+    """Columns by name; rows that are cut off (a run that is still writing) are left out."""
+    try:
+        with open(file, newline="") as stream:
+            rows = list(csv.reader(stream))
+    except OSError as problem:
+        raise Wrong(f"{file}: {problem.strerror}.") from None
+    if len(rows) < 2 or not rows[0] or not rows[0][0].startswith("time"):
+        raise Wrong(f"{file}: is no monitor: its first line does not begin with 'time [s]', or there is no row below it.")
+    try:
+        values = np.array([[float(v) for v in row] for row in rows[1:] if len(row) == len(rows[0])])
+    except ValueError as problem:
+        raise Wrong(f"{file}: {problem}.") from None
+    return dict(zip(rows[0], values.T))
+
+
+def unit_of(name):
+    return name[name.rfind("[") + 1 : name.rfind("]")] if "[" in name else "-"
+
+
+def chosen(columns, options):
+    names = [n for n in columns if n != next(iter(columns)) and n not in PLACES]
+    if options.only:
+        names = [n for n in names if any(word in n for word in options.only)]
+        if not names:
+            raise Wrong(f"no column holds {' or '.join(options.only)}; there are: {', '.join(list(columns)[1:])}")
+    return names
+
+
+def by_unit(names):
+    units = {}
+    for name in names:
+        units.setdefault(unit_of(name), []).append(name)
+    return units
+
+
+def curves(x, label, columns, names, log, title):
+    units = by_unit(names)
+    made, axes = plt.subplots(len(units), 1, figsize=(7.5, 1.2 + 2.4 * len(units)), dpi=120, sharex=True, squeeze=False, constrained_layout=True)
+    for ax, (unit, some) in zip(axes[:, 0], units.items()):
+        for name in some:
+            y = np.abs(columns[name]) if log else columns[name]
+            if np.isfinite(y).any():
+                ax.plot(x, y, lw=1, marker="." if len(x) < 30 else None, label=name[: name.rfind("[")].strip() or name)
+        if log:
+            ax.set_yscale("log")
+        ax.set_ylabel(f"[{unit}]")
+        ax.grid(alpha=0.3)
+        if len(some) <= MOST_LINES:
+            ax.legend(fontsize=7)
+    axes[-1, 0].set_xlabel(label)
+    axes[0, 0].set_title(title, fontsize=10)
+    return made
+
+
+def maps(columns, names, title):
+    """A plane: each column over the two ways along it, which are straight on a mesh at rest."""
+    a, b = columns["along [-]"], columns["up [-]"]
+    across = int(np.ceil(np.sqrt(len(names))))
+    down = -(-len(names) // across)
+    made, axes = plt.subplots(down, across, figsize=(4.2 * across, 3.4 * down), dpi=120, squeeze=False, constrained_layout=True)
+    for ax, name in zip(axes.flat, names):
+        drawn = ax.scatter(a, b, c=columns[name], s=12, marker="s", cmap="viridis")
+        made.colorbar(drawn, ax=ax)
+        ax.set_title(name, fontsize=8)
+    for ax in axes.flat[len(names):]:
+        ax.axis("off")
+    made.suptitle(title, fontsize=10)
+    return made
+
+
+def draw(file, options):
+    columns = read(file)
+    time = columns[next(iter(columns))]
+    names = chosen(columns, options)
+    is_sample = "along [-]" in columns
+    if is_sample:
+        wanted = time[-1] if options.at is None else time[np.abs(time - options.at).argmin()]
+        rows, title = time == wanted, f"{file.name} at t = {wanted:g} s"
+    else:
+        low, high = options.low, options.high
+        rows = (time >= (-np.inf if low is None else low)) & (time <= (np.inf if high is None else high))
+        title = str(file)
+    if not rows.any():
+        raise Wrong(f"{file}: no row between these times; it goes from {time.min():g} s to {time.max():g} s.")
+    columns = {n: v[rows] for n, v in columns.items()}
+    if is_sample and np.ptp(columns["up [-]"]) > 0:
+        made = maps(columns, names, title)
+    elif is_sample:
+        made = curves(columns["along [-]"], "along the line [-]", columns, names, options.log, title)
+    elif file.name == "residuals.csv":
+        names = [n for n in names if "residual" in n] or names
+        made = curves(np.arange(rows.sum()), "coupling iterations", columns, names, True, title)
+    else:
+        made = curves(time[rows], "time [s]", columns, names, options.log, title)
+    picture = options.picture or file.with_suffix(".png")
+    made.savefig(picture)
+    plt.close(made)
+    print(picture)
+
+
+def declare(parser):
+    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE", help="a monitor, a sample-*.csv or residuals.csv, a folder with such files below it, or CASE.yaml: runs the plot.py beside it")
+    parser.add_argument("--only", nargs="+", default=[], metavar="WORD", help="only the columns whose name holds one of the words")
+    parser.add_argument("--from", dest="low", type=float, metavar="T", help="only from this time on [s]")
+    parser.add_argument("--to", dest="high", type=float, metavar="T", help="only up to this time [s]")
+    parser.add_argument("--at", type=float, metavar="T", help="of lines and planes: the output nearest to this time (the last one)")
+    parser.add_argument("--log", action="store_true", help="logarithmic values; residuals always have them")
+    parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="by default FILE.png beside FILE.csv; for one file only")
+
+
+def of_case(case, picture):
+    """Runs the case's own plot.py, a program of whoever made the case."""
+    script = case.parent / "plot.py"
+    expect(script.is_file(), f"{case}: there is no plot.py beside it; its monitors: couplet plot {case.parent / 'out'}")
+    paths = [str(places.PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])]
+    done = subprocess.run([sys.executable, script, *([picture] if picture else [])], env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)})
+    return done.returncode
+
+
+def run(options):
+    if options.files[0].suffix in (".yaml", ".yml"):
+        expect(len(options.files) == 1, "one case at a time")
+        return of_case(*options.files, options.picture)
+    files, folders = [], 0
+    for name in options.files:
+        folders += name.is_dir()
+        files += sorted(name.rglob("*.csv")) if name.is_dir() else [name]
+    expect(not options.picture or not folders and len(files) == 1, "--picture names one picture: give one file.")
+    expect(files, "There is no .csv in these folders. Run the case first.")
+    failed = 0
+    for file in files:
+        try:
+            draw(file, options)
+        except Wrong as problem:
+            print(problem, file=sys.stderr)
+            failed += 1
+    return 1 if failed == len(files) or (failed and not folders) else 0

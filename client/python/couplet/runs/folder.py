@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The output folder of a job: who is at work in it, and how it was started."""
+import json
+import os
+import pathlib
+import signal
+import time
+
+LOCK, RECORD = ".checkpoints.lock", "job.json"
+
+
+def fields_of(pid):
+    """Fields of /proc/PID/stat behind the name: state, parent, group, session, ..."""
+    return pathlib.Path(f"/proc/{pid}/stat").read_text(errors="replace").rpartition(")")[2].split()
+
+
+def processes():
+    return (int(entry) for entry in os.listdir("/proc") if entry.isdigit())
+
+
+def session(leader):
+    """Processes of a session that still live."""
+    found = []
+    for pid in processes():
+        try:
+            state, _, _, its_session = fields_of(pid)[:4]
+        except (OSError, ValueError):
+            continue
+        if int(its_session) == leader and state not in "ZX":
+            found.append(pid)
+    return found
+
+
+def driver(folder):
+    """The process that makes the steps of the job in this output folder: it holds the lock of the checkpoints; None if there is none."""
+    try:
+        lock = os.stat(pathlib.Path(folder) / LOCK)
+    except OSError:
+        return None
+    for pid in processes():
+        try:
+            for file in os.scandir(f"/proc/{pid}/fd"):
+                found = os.stat(file.path)
+                if (found.st_dev, found.st_ino) == (lock.st_dev, lock.st_ino):
+                    return pid
+        except OSError:
+            continue
+    return None
+
+
+def stop(folder):
+    """Asks the job in this folder to end after the step under way. False: nobody is at work there."""
+    pid = driver(folder)
+    if pid is None:
+        return False
+    os.kill(pid, signal.SIGTERM)
+    return True
+
+
+def wait_for_end(folder, seconds):
+    """True if nobody is at work there any more."""
+    end = time.monotonic() + seconds
+    while driver(folder) is not None:
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.05)
+    return True
+
+
+def checkpoint(folder):
+    """(time [s], name) of the complete checkpoint that has gone furthest; None if there is none."""
+    sets = sorted(file.parent.name for file in (pathlib.Path(folder) / "checkpoints").glob("step-*/set.txt"))
+    return sets[-1] if sets else None
+
+
+def write_record(folder, record):
+    part = pathlib.Path(folder) / f"{RECORD}.part"
+    part.write_text(json.dumps(record, indent=1, default=str) + "\n")
+    os.replace(part, part.with_suffix(""))
+
+
+def read_record(folder):
+    """What `couplet run` wrote: case, ranks, sets, flags; empty if the job was started by hand."""
+    try:
+        return json.loads((pathlib.Path(folder) / RECORD).read_text())
+    except (OSError, ValueError):
+        return {}

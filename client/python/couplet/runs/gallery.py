@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The cases that come along, and how one of them becomes a case of somebody's own."""
+import dataclasses
+import pathlib
+import re
+import shutil
+
+import yaml
+
+from couplet.places import ROOT
+from couplet.runs.case import Case, expect
+
+
+@dataclasses.dataclass
+class Entry:
+    name: str
+    title: str      # first words of its README
+    about: str      # what the README says first
+    programs: list
+    picture: str    # file beside README.md or below docs/, as the README names it; empty if there is none
+
+    @property
+    def folder(self):
+        return ROOT / "configs" / self.name
+
+
+def entry(folder):
+    readme = (folder / "README.md").read_text() if (folder / "README.md").exists() else ""
+    title = re.search(r"^# (.*)", readme, flags=re.M)
+    about = re.search(r"^(?![#!|`])\S.*(?:\n(?![#!|`\n]).+)*", readme, flags=re.M)
+    picture = re.search(r"!\[[^]]*\]\(([^)\s]+)", readme)
+    case = Case(folder)
+    programs = [str((p or {}).get("program", "?")) for p in case.participants.values()]
+    return Entry(folder.name, title[1] if title else folder.name, " ".join(about[0].split()) if about else "", programs, picture[1] if picture else "")
+
+
+def entries():
+    return [entry(file.parent) for file in sorted((ROOT / "configs").glob("*/case.yaml"))]
+
+
+def find(name):
+    """The case file of the gallery with this name, CASE or CASE/file.yaml."""
+    import difflib
+    there = sorted(file.parent.name for file in (ROOT / "configs").glob("*/case.yaml"))
+    file = ROOT / "configs" / name
+    file = file / "case.yaml" if file.is_dir() else file
+    near = difflib.get_close_matches(name, there, 3)
+    expect(file.is_file() and ".." not in pathlib.PurePath(name).parts, f"there is no case '{name}' in the gallery; {'near: ' + ', '.join(near) if near else 'couplet gallery lists them'}")
+    return file
+
+
+# -- a copy --------------------------------------------------------------------------------------------------------------
+def scalars(node, path=()):
+    """{path: node} of the scalars of a composed YAML document."""
+    if isinstance(node, yaml.MappingNode):
+        for key, value in node.value:
+            yield from scalars(value, (*path, key.value))
+    elif isinstance(node, yaml.SequenceNode):
+        for i, value in enumerate(node.value):
+            yield from scalars(value, (*path, str(i)))
+    else:
+        yield ".".join(path), node
+
+
+def with_values(text, values):
+    """The text with other values at these keys; comments and order stay. Keys must be there."""
+    places = dict(scalars(yaml.compose(text)))
+    for key in values:
+        expect(key in places, f"--set {key}: the case has no such value to replace; give it in the new file")
+    for key in sorted(values, key=lambda k: -places[k].start_mark.index):
+        node = places[key]
+        text = text[:node.start_mark.index] + values[key] + text[node.end_mark.index:]
+    return text
+
+
+def included(file):
+    """Files that a .geo brings along."""
+    for name in re.findall(r'^\s*(?:Include|Merge)\s*"([^"]+)"', file.read_text(errors="replace"), flags=re.M) if file.suffix == ".geo" else ():
+        if (file.parent / name).is_file():
+            yield file.parent / name
+            yield from included(file.parent / name)
+
+
+def copy(source, target, values):
+    """Copies a case with all files that it names into a folder, with other values; gives the new case file."""
+    expect(not target.exists() or not any(target.iterdir()), f"{target}: is there already and not empty; a new case wants a new folder")
+    case, text = Case(source), source.read_text()
+    moved = {key: node.value for key, node in scalars(yaml.compose(text)) if isinstance(node.value, str) and len(node.value) < 200
+             and "\n" not in node.value and (source.parent / node.value).is_file()}
+    files = {(source.parent / name).resolve() for name in moved.values()} | {f.resolve() for f in case.named([case.data])}
+    files |= {extra.resolve() for file in list(files) for extra in included(file)}
+    files |= {g.resolve() for p in case.participants if (words := case.guest(p)) for g in map(pathlib.Path, map(str, words)) if g.parent.resolve() == source.parent.resolve()}
+    files |= {extra.resolve() for extra in (source.parent / "plot.py", source.parent / "README.md") if extra.is_file()}
+    text = with_values(text, {**{key: pathlib.Path(name).name for key, name in moved.items() if "/" in name}, **values})
+    target.mkdir(parents=True, exist_ok=True)
+    for file in files:
+        shutil.copy(file, target / file.name)
+    (target / "case.yaml").write_text(text)
+    return target / "case.yaml"

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One job from its launch line to its end, as a person starts it: what its programs say is passed on as it comes, signals reach them,
+and no process is left behind."""
+import collections
+import ctypes
+import os
+import pathlib
+import selectors
+import shlex
+import signal
+import subprocess
+import sys
+import time
+
+from couplet import places
+from couplet.runs import folder as folders
+from couplet.runs.case import COUPLER, Case, expect, load
+from couplet.runs.launch import RunFailed, environment, last_words
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+PR_SET_PDEATHSIG = 1
+
+
+def output_of(case, sets):
+    """The output folder, by the case and the arguments of --set."""
+    name = ((case.data.get("simulation") or {}).get("output") or {}).get("folder", "out")
+    for key, _, value in (words.partition("=") for words in sets):
+        given = load(value) if key in ("simulation", "simulation.output") else None
+        if isinstance(given, dict):
+            given = given.get("output", {}) if key == "simulation" else given
+            name = given.get("folder", name)
+        elif key == "simulation.output.folder":
+            name = value
+    return case.file.parent / str(name)
+
+
+def surroundings():
+    """Environment of the programs: one thread a rank, no pages of the launcher about exit codes, this package for participants in Python."""
+    env = environment()
+    env.setdefault("OMPI_MCA_orte_execute_quiet", "1")
+    env["PYTHONPATH"] = os.pathsep.join([str(places.PACKAGE.parent), *filter(None, [env.get("PYTHONPATH")])])
+    return env
+
+
+def ends_with_us():
+    """In the child: should this process be killed, it gets SIGTERM and takes the job along."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+class Job:
+    """`ranks`: {participant or coupler: number}; `sets`: KEY=VALUE as on the command line; `flags`: further arguments of all programs;
+    `played_by`: {participant: words of the program of somebody else}; `alone`: this participant without the others."""
+
+    def __init__(self, case: Case, ranks=None, sets=(), flags=(), alone=None, played_by=None):
+        self.case, self.ranks, self.sets, self.flags = case, dict(ranks or {}), list(sets), list(flags)
+        self.alone, self.played_by = alone, dict(played_by or {})
+        expect(isinstance(case.participants, dict) and case.participants, f"{case.file}: there are no 'participants'.")
+        known = {*case.participants, *([COUPLER] if case.coupled else [])}
+        for name in (*self.ranks, *self.played_by, *([alone] if alone else [])):
+            expect(name in known, f"there is no participant '{name}' in {case.file}; there is: {', '.join(sorted(known))}")
+        self.command = [str(w) for w in case.command({}, alone, self.ranks, self.sets, self.flags, self.played_by)]
+        for name in [alone] if alone else known:
+            program = case.build / "bin" / COUPLER if name == COUPLER else case.program(name)
+            expect(program.exists() or case.guest(name, self.played_by),
+                   f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent}, not beside the case and not on the PATH. "
+                   f"Give its command: --with {name}='COMMAND ...'")
+        self.output = output_of(case, self.sets)
+        self.last, self.asked, self.started = collections.deque(maxlen=60), 0, None
+
+    def line(self):
+        """The launch line, to be typed into a shell."""
+        return shlex.join(self.command)
+
+    def record(self):
+        return {"case": self.case.file.absolute(), "bin": self.case.build / "bin", "ranks": self.ranks, "sets": self.sets, "flags": self.flags, "alone": self.alone,
+                "with": self.played_by, "command": self.command, "started": time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())}
+
+    # -- while it runs ------------------------------------------------------------------------------------------------
+    def on_signal(self, number, _):
+        """First: the end after the step under way, with a checkpoint. Again: at once."""
+        self.asked += 1
+        if self.asked == 1 and self.recorded and folders.stop(self.output):
+            self.say("ends after the step under way, with a checkpoint; once more: at once")
+        elif self.asked <= 2:
+            self.process.send_signal(signal.SIGTERM)
+        else:
+            self.end_all()
+
+    def say(self, text):
+        print(f"couplet: {text}", file=sys.stderr, flush=True)
+
+    def end_all(self):
+        """Nobody stays: neither programs nor what they started."""
+        for _ in range(50):
+            left = folders.session(self.process.pid)
+            for pid in left:
+                try:
+                    os.kill(pid, signal.SIGKILL)
+                except ProcessLookupError:
+                    pass
+            if not left:
+                return
+            time.sleep(0.02)
+
+    def note(self):
+        """The record of how it was started, once the job has the folder."""
+        if not self.recorded and (pid := folders.driver(self.output)) is not None:
+            try:
+                self.recorded = int(folders.fields_of(pid)[3]) == self.process.pid
+            except (OSError, ValueError):
+                return
+            if self.recorded:
+                folders.write_record(self.output, self.record())
+
+    def pass_on(self, show):
+        """Output as it comes until all who could write have ended."""
+        with selectors.DefaultSelector() as selector:
+            for pipe, to in ((self.process.stdout, sys.stdout), (self.process.stderr, sys.stderr)):
+                selector.register(pipe, selectors.EVENT_READ, to)
+            look = 0.0
+            while selector.get_map():
+                for key, _ in selector.select(0.1):
+                    data = os.read(key.fd, 65536)
+                    if not data:
+                        selector.unregister(key.fileobj)
+                        continue
+                    self.last.extend(data.decode(errors="replace").splitlines())
+                    if show:
+                        try:
+                            key.data.buffer.write(data)
+                            key.data.flush()
+                        except BrokenPipeError:
+                            show = False
+                if not self.recorded and time.monotonic() > look:
+                    self.note()
+                    look = time.monotonic() + 0.1
+                if self.process.poll() is not None and not selector.select(0):
+                    break
+
+    def run(self, show=True):
+        """Exit code of the job. `show`: its words go to the terminal."""
+        expect(folders.driver(self.output) is None, f"{self.output} is in use by another job that is still running. End it (couplet stop {self.output}), or "
+               "give this one another folder: --set simulation.output.folder=...")
+        self.recorded, self.started = False, time.monotonic()
+        self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=surroundings(),
+                                        start_new_session=True, preexec_fn=ends_with_us)
+        before = {s: signal.signal(s, self.on_signal) for s in SIGNALS}
+        try:
+            self.pass_on(show)
+            code = self.process.wait()
+        finally:
+            self.end_all()
+            for number, handler in before.items():
+                signal.signal(number, handler)
+        self.seconds = time.monotonic() - self.started
+        return code if code >= 0 else 128 - code
+
+    def last_words(self):
+        return last_words("\n".join(self.last))
+
+
+def run(case, ranks=None, changes=None, show=False, alone=None, build=None, **more):
+    """Runs a case to its end; gives its Results. `ranks`: {participant: number}; `changes`: {key: value}. Raises RunFailed with the last
+    words of the programs. Only from the main thread, which gets the signals."""
+    from couplet.runs.results import Results
+    case = case if isinstance(case, Case) else Case(pathlib.Path(case), build)
+    job = Job(case, ranks, case.assignments(changes or {}), alone=alone, **more)
+    code = job.run(show)
+    if code != 0:
+        raise RunFailed(f"exit code {code}: {job.last_words()}")
+    return Results(job.output)

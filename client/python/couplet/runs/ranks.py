@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How a number of ranks is divided among the participants: by the work that an earlier run measured, else by what the programs expect."""
+import re
+import subprocess
+
+from couplet.runs.case import COUPLER, expect
+
+
+def measured(case, folder):
+    """{participant: processor seconds at work} of the run in this folder; empty if one of them is not there."""
+    from couplet.runs.results import Results
+    results = Results(folder)
+    found = {name: float(results.report(name).get("processor-working", 0)) for name in case.participants if (folder / name / "run.json").exists()}
+    return found if len(found) == len(case.participants) else {}
+
+
+def expected(case):
+    """{participant: ms a step on one rank}, by --explain of the programs; a guest counts as nothing."""
+    found = {}
+    for name in case.participants:
+        if case.guest(name):
+            continue
+        said = subprocess.run([case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True).stdout
+        number = re.search(r"^expected: .*?([\d.e+-]+) (ms|s) a step", said, flags=re.M)
+        found[name] = float(number[1]) * (1 if number[2] == "ms" else 1000) if number else 0.0
+    return found
+
+
+def shares(work, total):
+    """Whole numbers from 1 on that sum to `total` and keep the longest work a rank as short as can be."""
+    ranks = dict.fromkeys(work, 1)
+    for _ in range(total - len(work)):
+        slowest = max(ranks, key=lambda name: work[name] / ranks[name])
+        ranks[slowest] += 1
+    return ranks
+
+
+def divide(case, total):
+    """{participant: ranks}; the coupler has one of its own, which counts."""
+    from couplet.runs.job import output_of
+    names = [n for n in case.participants if not case.guest(n)]
+    free = total - (len(case.participants) - len(names)) - (1 if case.coupled else 0)
+    expect(free >= len(names), f"-n {total}: '{case.file}' needs at least {total - free + len(names)} ranks" + (f", one of them for the {COUPLER}" if case.coupled else ""))
+    work = measured(case, output_of(case, ())) or expected(case)
+    return shares({name: work.get(name, 0.0) for name in names}, free)

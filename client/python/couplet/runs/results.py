@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run left in its output folder: series, probes, monitors, reports of steps, and the summary of each participant."""
+import csv
+import json
+import pathlib
+
+
+def read_csv(file):
+    """Columns of a CSV by their heads; text stays text, and a row that is cut off (a run that is still writing) is left out."""
+    import numpy as np  # late: who only starts runs needs none
+    with open(file, newline="") as lines:
+        rows = list(csv.reader(line for line in lines if not line.startswith("#")))
+    head, body = [h.strip() for h in rows[0]], [r for r in rows[1:] if len(r) == len(rows[0])]
+    columns = {}
+    for i, name in enumerate(head):
+        try:
+            columns[name] = np.array([float(r[i]) for r in body])
+        except ValueError:
+            columns[name] = np.array([r[i] for r in body])
+    return columns
+
+
+class Results:
+    """The output folder of a run: <folder>/<participant>/..."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+
+    def participants(self):
+        return sorted(f.name for f in self.folder.iterdir() if f.is_dir() and f.name not in ("checkpoints", "meshes")
+                      and any(f.glob("*.log")))
+
+    def table(self, participant, file):
+        """Columns of <participant>/<file>; files are read once they are asked for."""
+        path = self.folder / participant / file
+        if not path.exists():
+            raise LookupError(f"there is no {participant}/{file}")
+        return read_csv(path)
+
+    def column(self, participant, file, name):
+        table = self.table(participant, file)
+        if name not in table:
+            raise LookupError(f"{participant}/{file} has no column '{name}'; it has: {', '.join(table)}")
+        return table[name]
+
+    def fields(self, participant):
+        """The field series of a participant: times, cells, fields by name as arrays."""
+        from couplet.series import find_series
+        return find_series(self.folder / participant)
+
+    def probes(self, participant):
+        """Columns of probes.csv by their heads, such as 'tip displacement x [m]'."""
+        return self.table(participant, "probes.csv")
+
+    def findings(self):
+        """What the run doubts: [{participant, id, severity, ...}] as in run.json."""
+        return [{"participant": name, **found} for name in self.participants() for found in self.report(name).get("findings", ())]
+
+    def budget(self):
+        """{participant: {mesh, step, linear: share of the solution}}: what made the error, as far as the run could tell."""
+        told = {name: {k: v for k, v in self.report(name).get("errors", {}).items() if v is not None} for name in self.participants()}
+        return {name: parts for name, parts in told.items() if parts}
+
+    def report(self, participant):
+        """run.json, which every program writes at its end."""
+        path = self.folder / participant / "run.json"
+        return json.loads(path.read_text()) if path.exists() else {}
+
+    def steps(self, participant):
+        """steps.csv: time, dt, iterations, error, energy, seconds of each accepted step."""
+        return self.table(participant, "steps.csv")
+
+    def costs(self):
+        """Over all participants: steps, iterations, memory [MB], processor seconds at work (waiting left out), phases {name: seconds}."""
+        found = {"steps": 0, "iterations": 0, "memory": 0.0, "work": 0.0, "phases": {}}
+        for name in self.participants():
+            report = self.report(name)
+            found["steps"] = max(found["steps"], int(report.get("steps", 0)))
+            found["iterations"] += int(report.get("iterations", 0))
+            found["memory"] += float(report.get("memory-all", 0))
+            found["work"] += float(report.get("processor-working", 0))
+            for phase, seconds in report.get("phases", {}).items():
+                if phase.startswith("waiting") or ":" in phase:  # with a colon: a part of another
+                    continue
+                label = phase if len(self.participants()) == 1 else f"{name}: {phase}"
+                found["phases"][label] = found["phases"].get(label, 0) + seconds
+        return found

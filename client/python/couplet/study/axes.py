@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The runs of a study: every combination of the values of its axes.
+
+axes:
+  mesh:                                   # sizes: any number can be made, also one that the list does not hold
+    sizes: [4, 8, 16]
+    set: {mesh-parameters: "{nr: <n>, nt: <3*n/2>, nz: <3*n/4>}"}     # <...> is arithmetic on n, rounded to whole numbers
+    multiple: 4                           # sizes that --for-error makes are multiples of it; 0: any number (1)
+  gradient: {key: solution-method.face-gradient, values: [thesis, corrected]}
+  step: {key: simulation.time-step, values: [0.1 s, 0.05 s]}
+  scheme: {values: {explicit: {coupling.scheme: explicit}, implicit: {coupling.scheme: implicit}}}   # sets of keys by name
+  ranks: {ranks: fluid, values: [1, 2]}"""
+import dataclasses
+import itertools
+import math
+import re
+
+from couplet.runs import expect
+from couplet.study.expressions import evaluate
+
+def arithmetic(text, n):
+    """The value of an expression in n made of numbers, + - * / ** and brackets."""
+    try:
+        return evaluate(text, {"n": n})
+    except ValueError as error:
+        expect(False, f"study: '<{text}>' is not arithmetic in n. {error}")
+
+
+def filled(template, n):
+    """The text with every <expression in n> in it as a number: whole, unless the expression stands as <=...>."""
+    def number(match):
+        exact, text = match.group(1), match.group(2)
+        value = arithmetic(text, n)
+        return f"{value:.12g}" if exact else str(max(1, round(value)))
+    return re.sub(r"<(=?)([^<>]+)>", number, template)
+
+
+@dataclasses.dataclass
+class Axis:
+    name: str
+    values: dict          # label: {key: value}, keys as in the file
+    sizes: dict           # label: n; empty where the axis is no refinement
+    template: dict        # {key: text with <...>} of a refinement
+    ranks: dict           # label: {participant: number}
+    multiple: float = 1
+
+    def round(self, n, up=False):
+        """A size that may be run."""
+        if self.multiple == 0:
+            return float(f"{n:.3g}")
+        return self.multiple * max(1, math.ceil(n / self.multiple - 1e-9) if up else round(n / self.multiple))
+
+    def at(self, n):
+        """The settings of a size that need not be in the list."""
+        return {key: filled(str(text), n) for key, text in self.template.items()}
+
+
+def label_of(value):
+    return re.sub(r"[^A-Za-z0-9.+-]+", "_", str(value)).strip("_") or "0"
+
+
+def axis_of(name, given, where):
+    where = f"{where}: study.axes.{name}"
+    expect(isinstance(given, dict), f"{where}: expected a mapping.")
+    unknown = set(given) - {"key", "values", "sizes", "set", "ranks", "multiple"}
+    expect(not unknown, f"{where}: unknown key '{next(iter(unknown), '')}'; valid are key, values, sizes, set, multiple, ranks.")
+    if "sizes" in given:
+        expect(isinstance(given["sizes"], list) and isinstance(given.get("set"), dict) and all(
+            isinstance(n, (int, float)) and n > 0 for n in given["sizes"]),
+            f"{where}: a refinement needs 'sizes', a list of numbers, and 'set', keys with <expressions in n>.")
+        axis = Axis(name, {}, {}, given["set"], {}, given.get("multiple", 1))
+        for n in sorted(given["sizes"]):
+            axis.values[label_of(n)], axis.sizes[label_of(n)] = axis.at(n), n
+        return axis
+    values = given.get("values")
+    if "ranks" in given:
+        expect(isinstance(values, list) and all(isinstance(v, int) and v > 0 for v in values), f"{where}: values: expected whole numbers.")
+        return Axis(name, {str(v): {} for v in values}, {}, {}, {str(v): {given["ranks"]: v} for v in values})
+    if isinstance(values, dict):
+        if "key" in given:
+            return Axis(name, {label_of(k): {given["key"]: v} for k, v in values.items()}, {}, {}, {})
+        expect(all(isinstance(v, dict) or v is None for v in values.values()), f"{where}: values: expected keys and values by name.")
+        return Axis(name, {label_of(k): dict(v or {}) for k, v in values.items()}, {}, {}, {})
+    expect(isinstance(values, list) and values and "key" in given,
+           f"{where}: expected {{key: ..., values: [...]}}, {{values: {{name: {{key: value}}}}}} or {{sizes: [...], set: {{...}}}}.")
+    return Axis(name, {label_of(v): {given["key"]: v} for v in values}, {}, {}, {})
+
+
+@dataclasses.dataclass
+class Point:
+    """One combination: {axis: label}, its settings by full keys, ranks, and the size of its refinement."""
+    labels: dict
+    changes: dict
+    ranks: dict
+    size: float
+
+    @property
+    def name(self):
+        return "-".join(self.labels.values()) or "run"
+
+
+class Axes:
+    def __init__(self, case, section, participant):
+        self.case, self.participant = case, participant
+        given = section.get("axes")
+        expect(isinstance(given, dict) and given, f"{case.file}: study.axes: expected axes by name.")
+        self.all = [axis_of(name, content, case.file) for name, content in given.items()]
+        refining = [axis for axis in self.all if axis.sizes]
+        expect(len(refining) <= 1, f"{case.file}: study.axes: one axis may have 'sizes'; it may set mesh and step together.")
+        self.refining = refining[0] if refining else None
+        self.common = {case.absolute(k, participant): v for k, v in (section.get("set") or {}).items()}
+        self.refuse_covered()
+        self.leave_out = section.get("leave-out") or []
+        expect(all(isinstance(rule, dict) and set(rule) <= {a.name for a in self.all} for rule in self.leave_out),
+               f"{case.file}: study.leave-out: expected a list of {{axis: value or [values]}}.")
+
+    def refuse_covered(self):
+        """A mapping that a later axis gives whole would take away the key that an earlier one set in it."""
+        for first, later in itertools.combinations(self.all, 2):
+            for key in {k for found in first.values.values() for k in found}:
+                for above in {k for found in later.values.values() for k in found}:
+                    expect(not key.startswith(above + "."), f"{self.case.file}: study.axes: '{above}' of '{later.name}' would replace '{key}' of "
+                           f"'{first.name}': name '{later.name}' first, or give its keys one by one.")
+
+    def left_out(self, labels):
+        def fits(rule):
+            return all(labels[a] in [label_of(v) for v in (values if isinstance(values, list) else [values])] for a, values in rule.items())
+        return any(fits(rule) for rule in self.leave_out)
+
+    def point(self, labels, size=None):
+        """`size`: that of the refinement, where it is none of the list."""
+        changes, ranks = dict(self.common), {}
+        for axis in self.all:
+            found = axis.at(size) if axis is self.refining and size is not None else axis.values[labels[axis.name]]
+            changes.update({self.case.absolute(k, self.participant): v for k, v in found.items()})
+            ranks.update(axis.ranks.get(labels[axis.name], {}))
+        if size is None and self.refining:
+            size = self.refining.sizes[labels[self.refining.name]]
+        return Point(labels, changes, ranks, size if size is not None else 0)
+
+    def points(self):
+        combinations = itertools.product(*(axis.values for axis in self.all))
+        every = [dict(zip((a.name for a in self.all), c)) for c in combinations]
+        return [self.point(labels) for labels in every if not self.left_out(labels)]
+
+    def series_of(self, point):
+        """All labels but that of the refinement: the runs of one curve."""
+        return ", ".join(v for k, v in point.labels.items() if not self.refining or k != self.refining.name) or "all"

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs what the `study` section of a case asks for and says what it shows: named variants (their summaries in one table), axes
+(error against time), or the best of some variables. A study that was interrupted goes on where it stopped; two at once share
+their work. docs/studies.md shows the sections."""
+import fnmatch
+import os
+import pathlib
+import shutil
+import time
+
+from couplet.runs import Case, Wrong, expect, run_all, warnings_of
+from couplet.study import variants
+
+
+def say(line):
+    print(line, flush=True)
+
+
+def chosen(names, arguments):
+    found = [name for name in names if any(fnmatch.fnmatch(name, pattern) for pattern in arguments.only.split(","))]
+    expect(found, f"--only {arguments.only}: there is no such variant.")
+    return found
+
+
+def run_variants(cases, arguments):
+    runs, several = [], arguments.out and len(cases) > 1
+    for case in cases:
+        participant, found = variants.variants_of(case)
+        for name in found:
+            if any(fnmatch.fnmatch(name, pattern) for pattern in arguments.only.split(",")):
+                folder = (arguments.out or case.file.parent / "out" / "study") / (f"{case.file.parent.name}-{name}" if several else name)
+                runs.append(variants.Variant(case, name, folder, {**found[name], **arguments.changes}, alone=participant, timeout=86400))
+    expect(runs, f"--only {arguments.only}: there is no such variant.")
+    if arguments.list:
+        for run in runs:
+            print(run.name, *run.command()[2:])
+        return 0
+    jobs = arguments.jobs or len(os.sched_getaffinity(0))
+    start = time.monotonic()
+    records = run_all(runs, jobs, arguments.again, say)
+    for case in cases:
+        good = [run for run in runs if run.case is case and records[run].state == "done"]
+        if good:
+            folder = arguments.out or case.file.parent / "out" / "study"
+            variants.write_table(folder / (f"{case.file.parent.name}.csv" if several else "table.csv"), good)
+    for line in warnings_of(run.folder / "run.log" for run in runs):
+        say(line)
+    failed = sum(record.state != "done" for record in records.values())
+    print(f"{len(runs) - failed} of {len(runs)} variants in {time.monotonic() - start:.1f} s, {jobs} at a time; "
+          f"one after the other they take {sum(r.wall for r in records.values()):.1f} s")
+    return 1 if failed else 0
+
+
+def run_axes(case, arguments):
+    from couplet.study.study import Study
+    out = arguments.out or case.file.parent / "out" / "study"
+    study = Study(case, out, arguments.changes, arguments.repeats)
+    if arguments.for_error:
+        from couplet.study.predict import for_error
+        return for_error(study, arguments.for_error, arguments.quantity, say)
+    if arguments.parts:
+        for line in study.parts(arguments.quantity, say)[0]:
+            say(line)
+        return 0
+    points = study.axes.points()
+    names = chosen([p.name for p in points], arguments)
+    points = [p for p in points if p.name in names]
+    if arguments.list:
+        for point in points:
+            print(point.name, *map(str, study.task(point).command()[2:]))
+        return 0
+    rows = study.run(points, arguments.jobs or 1, arguments.again, say)
+    page = study.report(rows)
+    if arguments.publish:
+        arguments.publish.mkdir(parents=True, exist_ok=True)
+        for file in (*out.glob("*.png"), out / "report.md", out / "runs.csv"):
+            shutil.copy(file, arguments.publish)
+    failed = [row for row in rows if not row.good]
+    for row in failed:
+        say(f"failed: {row.point.name}: {row.record.reason or row.reason}")
+    say(f"{len(rows) - len(failed)} of {len(rows)} runs; table: {out / 'runs.csv'}, report: {page}")
+    return 1 if failed else 0
+
+
+def declare(parser):
+    parser.add_argument("cases", nargs="+", type=pathlib.Path, metavar="CASE", help="case files; several: studies of variants alone")
+    parser.add_argument("--only", default="*", metavar="NAMES", help="only these runs, with commas; a name with * stands for many (diameter-*)")
+    parser.add_argument("--jobs", type=int, metavar="N", help="so many at a time (as many as there are processors; by axes, whose times count: 1)")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a further change, the same for all runs")
+    parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="where runs and tables are written (out/study or out/optimise beside the case)")
+    parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="the folder whose bin/ holds the programs")
+    parser.add_argument("--list", action="store_true", help="lists the runs and their changes")
+    parser.add_argument("--repeats", type=int, metavar="N", help="runs of each point by axes, of which the median counts")
+    parser.add_argument("--publish", type=pathlib.Path, metavar="FOLDER", help="copies the report, its pictures and the table there")
+    parser.add_argument("--again", action="store_true", help="runs are made again although they are there")
+    parser.add_argument("--for-error", metavar="SHARE", help="predicts from few cheap runs the cheapest setting that meets this error (1%%), runs it, and says how far that was right")
+    parser.add_argument("--quantity", metavar="NAME", help="of --for-error and --parts")
+    parser.add_argument("--parts", action="store_true", help="what the error at the setting of the section `sources` is made of, and which part dominates")
+    parser.add_argument("--optimise", action="store_true", help="the best of some variables in few runs")
+
+
+def run(arguments):
+    expect(all("=" in change for change in arguments.set), "--set: expected KEY=VALUE.")
+    expect(arguments.jobs is None or arguments.jobs >= 1, "--jobs: at least one.")
+    arguments.changes = dict(change.split("=", 1) for change in arguments.set)
+    cases = [Case(file, arguments.build) for file in arguments.cases]
+    if arguments.optimise:
+        from couplet.study import optimise
+        expect(len(cases) == 1, "--optimise: one case at a time.")
+        return optimise.run(cases[0], arguments)
+    if all("axes" not in case.study for case in cases):
+        expect(not arguments.for_error, "--for-error: the study needs 'axes', of which one has 'sizes'.")
+        return run_variants(cases, arguments)
+    expect(len(cases) == 1, "a study by axes: one case at a time.")
+    return run_axes(cases[0], arguments)

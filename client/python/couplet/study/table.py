@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One row a run: its axes, what it gave, how far off that is, what it cost."""
+import csv
+import math
+import re
+import types
+
+from couplet.study import convergence
+from couplet.study.axes import Point
+
+COSTS = ("wall", "cpu", "work", "memory", "steps", "iterations", "spread")
+HEADS = {"wall": "wall [s]", "cpu": "processor [s]", "work": "work [s]", "memory": "memory [MB]", "spread": "spread of processor [1]"}
+
+
+class Row:
+    def __init__(self, point, record, series):
+        self.point, self.record, self.series = point, record, series
+        self.values, self.errors, self.reason = {}, {}, re.sub(r" \(see \S+\)$", "", record.reason)  # a log's place says nothing elsewhere
+
+    @property
+    def good(self):
+        return not self.reason
+
+
+def rows_of(axes, quantities, points, tasks, records):
+    """Reads every quantity of every run; what cannot be read is the reason of its row."""
+    rows = []
+    for point, task in zip(points, tasks):
+        row = Row(point, records[task], axes.series_of(point))
+        for quantity in quantities if row.good else ():
+            try:
+                row.values[quantity.name] = quantity.value(task.results)
+                if not math.isfinite(row.values[quantity.name]):
+                    row.reason = f"{quantity.name} is {row.values[quantity.name]}"
+            except (Exception, SystemExit) as error:  # a monitor that is not there, a series that does not oscillate
+                row.reason = f"{quantity.name}: {type(error).__name__}: {error}"
+        rows.append(row)
+    return rows
+
+
+def series_of(rows):
+    """{series: good rows by size}."""
+    found = {}
+    for row in rows:
+        if row.good:
+            found.setdefault(row.series, []).append(row)
+    return {name: sorted(some, key=lambda r: r.point.size) for name, some in found.items()}
+
+
+def limits_of(rows, quantity):
+    """{series: Limit or None} of a quantity's values over the sizes."""
+    return {name: convergence.limit_of([r.point.size for r in some], [r.values[quantity.name] for r in some])
+            for name, some in series_of(rows).items()}
+
+
+def set_errors(rows, quantities):
+    """Fills in the errors; gives {quantity: what they are measured against}."""
+    against = {}
+    for quantity in quantities:
+        name = quantity.name
+        if quantity.is_error:
+            for row in rows:
+                if row.good:
+                    row.errors[name] = abs(row.values[name])
+            against[name] = "itself an error"
+            continue
+        reference, word = quantity.reference, "the reference"
+        good = [r for r in rows if r.good]
+        if reference is None or reference == "richardson":
+            limits = [(max(r.point.size for r in some), limit) for some, limit in
+                      ((series_of(rows)[s], limit) for s, limit in limits_of(rows, quantity).items()) if limit]
+            reference, word = None, "none: the values do not approach a limit"
+            if limits:  # of the series that go farthest the one with the smallest uncertainty: coarse ones look too certain
+                best = min(limits, key=lambda pair: (-pair[0], pair[1].gci))[1]
+                reference, word = best.value, f"the extrapolated value {best.value:.6g} (observed order {best.order:.2f}, uncertain by {100 * best.gci / abs(best.value or 1):.2g} %)"
+        elif reference == "finest":
+            finest = max(good, key=lambda r: (r.point.size, r.record.cpu)) if good else None
+            reference, word = (finest.values[name], f"the finest run, {finest.point.name}") if finest else (None, "no run")
+        else:
+            word = f"{reference:g}"
+        against[name] = word
+        for row in good if reference is not None else ():
+            gap = abs(row.values[name] - reference)
+            row.errors[name] = gap if quantity.given.get("absolute") or reference == 0 else gap / abs(reference)
+    return against
+
+
+def read(file, axes, quantities):
+    """Rows of a table that write() has written, without the records of their runs."""
+    rows = []
+    with open(file, newline="") as source:
+        for cells in csv.DictReader(source):
+            labels = {a.name: cells[a.name] for a in axes.all}
+            size = float(labels[axes.refining.name]) if axes.refining else 0
+            point = Point(labels, {}, {}, size)
+            row = Row(point, types.SimpleNamespace(reason=cells["reason"]), axes.series_of(point))
+            for q in quantities:
+                error = cells[q.name] if q.is_error and q.name in cells else cells[f"error of {q.name}"]
+                value = error if q.is_error else cells[q.name]
+                if value:
+                    row.values[q.name] = float(value)
+                if error:
+                    row.errors[q.name] = float(error)
+            rows.append(row)
+    return rows
+
+
+def write(file, rows, axes, quantities):
+    heads = [*(a.name for a in axes.all), *(n for q in quantities for n in (q.name, f"error of {q.name}") if not (q.is_error and n == q.name)),
+             *(HEADS.get(c, c) for c in COSTS), "version", "reason"]
+    with open(file, "w", newline="") as out:
+        writer = csv.writer(out)
+        writer.writerow(heads)
+        for row in rows:
+            cells = [row.point.labels[a.name] for a in axes.all]
+            for q in quantities:
+                cells += [] if q.is_error else [f"{row.values[q.name]:.8g}" if q.name in row.values else ""]
+                cells += [f"{row.errors[q.name]:.4g}" if q.name in row.errors else ""]
+            cells += [f"{getattr(row.record, c):.4g}" if row.record.state == "done" else "" for c in COSTS]
+            writer.writerow([*cells, row.record.version, row.reason])

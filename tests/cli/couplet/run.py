@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, stop, wrong, kill, tell, python"""
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+from scene import call, case_in, environment, start
+from checks import check, end  # noqa: E402  (scene knows where it is)
+
+bin_, what = pathlib.Path(sys.argv[1]), sys.argv[2]
+
+
+def left_behind(folder):
+    """Processes that name the folder on their command line."""
+    found = []
+    for file in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            words = file.read_bytes().decode(errors="replace")
+        except OSError:
+            continue
+        if str(folder) in words and (words.startswith("mpirun") or words.startswith(str(bin_))):
+            found.append(words.replace("\0", " ")[:80])
+    return found
+
+
+def until(condition, seconds=60):
+    limit = time.monotonic() + seconds
+    while not condition() and time.monotonic() < limit:
+        time.sleep(0.02)
+    return condition()
+
+
+def by_hand(folder):
+    """What couplet run leaves is bit for bit what the line that it prints leaves, typed by hand."""
+    case = case_in(folder / "a", bin_)
+    printed = call(bin_, "run", case, "--print")
+    check("--print shows the launch line alone", printed.returncode == 0 and printed.stdout.startswith("mpirun ") and not (folder / "a/out").exists(), printed.stderr)
+    ran = call(bin_, "run", case)
+    lines = ran.stdout.strip().splitlines()
+    check("a run ends with one line", ran.returncode == 0 and re.match(r"done in [\d.]+ s: results in \S+out, picture: couplet plot ", lines[-1]), lines[-1:])
+    check("what the programs say is passed on", any("t=0.03/0.03 s" in line for line in lines))
+    shutil.copytree(folder / "a/out", folder / "by-couplet")
+    shutil.rmtree(folder / "a/out")
+    hand = subprocess.run(printed.stdout, shell=True, capture_output=True, text=True, cwd=folder, env={
+        **environment(bin_), "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"})
+    check("the printed line runs", hand.returncode == 0, hand.stderr)
+    same = call(bin_, "compare", folder / "by-couplet", folder / "a/out")
+    count = re.match(r"(\d+) columns and fields: equal bit for bit", same.stdout)
+    check("both leave the same, bit for bit", same.returncode == 0 and count and int(count[1]) > 50, same.stdout)
+    longer = call(bin_, "run", case, "--set", "participants.solid.material.youngs-modulus=3.9e6", "--set", f"simulation.output.folder={folder / 'other'}", "-q")
+    other = call(bin_, "compare", folder / "a/out", folder / "other")
+    check("compare tells what another setting changes", longer.returncode == 0 and other.returncode == 1 and "solid/probes.csv: tip" in other.stdout, other.stdout[-300:])
+    two = call(bin_, "run", case, "-n", "fluid=2", "--print").stdout
+    check("-n gives ranks", "-n 2 " + str(bin_ / "fluid_solver") in two and two.count("-n 1 ") == 3, two)
+    for name, seconds in (("fluid", 3), ("solid", 1), ("mover", 0.5)):
+        report = folder / f"a/out/{name}/run.json"
+        report.write_text(re.sub(r'"processor-working": [\d.e-]+', f'"processor-working": {seconds}', report.read_text()))
+    shared = call(bin_, "run", case, "-n", "6", "--print")
+    check("-n 6 is divided by the work measured", re.search(r"-n 3 \S*fluid_solver", shared.stdout) and shared.stdout.count("-n 1 ") == 3, shared.stdout + shared.stderr)
+    shutil.rmtree(folder / "a/out")
+    foreseen = call(bin_, "run", case, "-n", "5", "--print")
+    check("or by the work expected", re.search(r"-n 2 \S*fluid_solver", foreseen.stdout) and foreseen.stdout.count("-n 1 ") == 3, foreseen.stdout + foreseen.stderr)
+    batch = call(bin_, "run", case, "-n", "fluid=2", "--slurm=--time=5", "--print").stdout
+    check("--slurm makes a script", batch.startswith("#!/bin/bash\n#SBATCH") and "--ntasks=5" in batch and "#SBATCH --time=5" in batch, batch)
+
+
+def stop(folder):
+    """A run that is stopped goes on to what the undisturbed one leaves."""
+    case = case_in(folder / "a", bin_, end_time=0.6, checkpoints=0.1)
+    whole = call(bin_, "run", case, "--set", f"simulation.output.folder={folder / 'whole'}", "-q")
+    check("undisturbed", whole.returncode == 0, whole.stderr)
+    for how in ("couplet stop", "SIGINT", "SIGTERM"):
+        shutil.rmtree(folder / "a/out", ignore_errors=True)
+        job = start(bin_, "run", case)
+        check(f"{how}: it steps", until(lambda: (folder / "a/out/solid/steps.csv").exists() and len((folder / "a/out/solid/steps.csv").read_text().splitlines()) > 3))
+        if how == "couplet stop":
+            second = call(bin_, "run", case)
+            check("a second job in the same folder is refused", second.returncode == 2 and "in use by another job" in second.stderr, second.stderr)
+            watched = call(bin_, "watch", folder / "a/out", "--once")
+            check("watch shows the time", re.search(r"t=[\d.e-]+/0.6 s .* its", watched.stdout), watched.stdout)
+            stopped = call(bin_, "stop", folder / "a/out")
+            check("stop waits for the end and names the checkpoint", stopped.returncode == 0 and "saved as step-" in stopped.stdout, stopped.stdout + stopped.stderr)
+        else:
+            job.send_signal(getattr(signal, how))
+        _, said = job.communicate(timeout=60)
+        check(f"{how}: exit code 3, and how to go on", job.returncode == 3 and "go on: couplet resume" in said, f"{job.returncode} {said[-300:]}")
+        check(f"{how}: nobody is left", not left_behind(folder / "a"), left_behind(folder / "a"))
+    resumed = call(bin_, "resume", folder / "a/out")
+    check("resume goes on to the end", resumed.returncode == 0 and "done in" in resumed.stdout, resumed.stdout[-200:] + resumed.stderr)
+    same = call(bin_, "compare", folder / "whole", folder / "a/out")
+    check("to what the undisturbed run leaves, bit for bit", same.returncode == 0 and "equal bit for bit" in same.stdout, same.stdout)
+    nobody = call(bin_, "stop", folder / "a/out")
+    check("where nobody is at work, stop says so", nobody.returncode == 2 and "no job is at work" in nobody.stderr, nobody.stderr)
+    (folder / "empty").mkdir()
+    lost = call(bin_, "resume", folder / "empty")
+    check("resume names what is missing", lost.returncode == 2 and "was not started by couplet run" in lost.stderr, lost.stderr)
+
+
+def wrong(folder):
+    """A bad case ends with exit code 2 and what to do, and leaves nothing."""
+    case = case_in(folder / "a", bin_)
+    for change, said in (("participants.solid.material.density=heavy", "'heavy' is not a number"), ("participants.fluid.densty=1", "densty")):
+        for command in ("run", "check"):
+            result = call(bin_, command, case, "--set", change)
+            check(f"{command}: {change}", result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
+            if command == "run":
+                check("  says what to do, without the launcher's pages", "couplet check" in result.stderr and "mpirun detected" not in result.stderr, result.stderr)
+    text = case.read_text()
+    for edited, said in ((text.replace("participants:", "participants: ["), "case.yaml:12:12: "), ("simulation: {}\n", "there are no 'participants'"),
+                         (text.replace("program: solid_solver", "program: solid_solvr"), "the program 'solid_solvr' of 'solid'"), ("- a\n- b\n", "expected a mapping")):
+        case.write_text(edited)
+        result = call(bin_, "run", case)
+        check(said, result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
+    case.write_text(text)
+    for words, said in ((("run", folder / "none.yaml"), "does not exist"), (("run", case, "-n", "fluid=0"), "whole numbers"), (("run", case, "-n", "air=1"), "there is no participant 'air'"),
+                        (("run", case, "-n", "3"), "at least 4 ranks"), (("run", case, "--set", "a"), "a.b=value"), (("rnu", case), "did you mean 'run'"), (("run", case, "--fast"), "--fast"),
+                        (("new", folder / "a"), "is there already"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap")):
+        result = call(bin_, *words)
+        check(" ".join(map(str, words[2:] or words)), result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
+    failing = call(bin_, "run", case, "--strict=effects", "--set", "simulation.time-step=0.03", "--set", "coupling.convergence.max-iterations=1")
+    check("a run that fails passes its exit code on", failing.returncode == 1 and "failed after" in failing.stderr, f"{failing.returncode} {failing.stderr}")
+
+
+def kill(folder):
+    """However the launcher ends, no process is left."""
+    case = case_in(folder / "a", bin_, end_time=100, checkpoints=10)
+    for how, times in (("SIGKILL", 1), ("SIGTERM", 3), ("SIGHUP", 1)):
+        shutil.rmtree(folder / "a/out", ignore_errors=True)
+        job = start(bin_, "run", case)
+        check(f"{how}: it steps", until(lambda: (folder / "a/out/solid/steps.csv").exists()) and len(left_behind(folder / "a")) >= 5, left_behind(folder / "a"))
+        for _ in range(times):
+            job.send_signal(getattr(signal, how))
+            time.sleep(0.05)
+        job.communicate(timeout=60)
+        check(f"{how}: nobody is left", until(lambda: not left_behind(folder / "a"), 20), left_behind(folder / "a"))
+    shutil.rmtree(folder / "a/out")
+    job = start(bin_, "run", case)
+    until(lambda: (folder / "a/out/solid/steps.csv").exists())
+    solver = next(p.parent.name for p in pathlib.Path("/proc").glob("[0-9]*/cmdline") if p.read_bytes().startswith(str(bin_ / "solid_solver").encode()) and str(folder).encode() in p.read_bytes())
+    subprocess.run(["kill", "-KILL", solver])
+    _, said = job.communicate(timeout=60)
+    check("a program that is killed ends the run, and is named", job.returncode not in (0, 2, 3) and "failed after" in said and "solid" in said, f"{job.returncode} {said[-400:]}")
+    check("nobody is left", until(lambda: not left_behind(folder / "a"), 20), left_behind(folder / "a"))
+
+
+def tell(folder):
+    """What couplet tells without running, and of what is there."""
+    told = call(bin_)
+    check("couplet lists its commands", told.returncode == 0 and all(f"  {word} " in told.stdout for word in ("run", "resume", "watch", "doctor")), told.stdout)
+    for word in re.findall(r"^  (\w+) ", told.stdout, flags=re.M):
+        told = call(bin_, word, "--help")
+        check(f"{word} --help", told.returncode == 0 and "usage: couplet " + word in told.stdout, told.stderr)
+    case = case_in(folder / "a", bin_)
+    valid = call(bin_, "check", case)
+    check("check", valid.returncode == 0 and valid.stdout.strip().endswith("valid"), valid.stdout + valid.stderr)
+    explained = call(bin_, "explain", case)
+    check("explain", explained.returncode == 0 and explained.stdout.count(" as '") == 4 and "launch line:     mpirun" in explained.stdout and "  off" not in explained.stdout, explained.stdout)
+    check("explain --all", "  off" in call(bin_, "explain", case, "--all").stdout)
+    gallery = call(bin_, "gallery", "tank")
+    check("gallery", gallery.returncode == 0 and "thermocline-andasol" in gallery.stdout and "perpendicular-flap" not in gallery.stdout, gallery.stdout)
+    doctor = call(bin_, "doctor")
+    check("doctor", doctor.returncode == 0 and "ok  self-test" in doctor.stdout and "Open MPI" in doctor.stdout, doctor.stdout + doctor.stderr)
+    (folder / "bin").mkdir()
+    ill = call(folder / "bin", "doctor", "--quick")
+    check("doctor names programs that are missing", ill.returncode == 1 and "NO  fluid_solver" in ill.stdout, ill.stdout)
+    guest = call(bin_, "new", folder / "warm", "--from", "warm-flap", "--end-time", "0.02 s")
+    ran = call(bin_, "run", folder / "warm", "-q")
+    check("a new case runs at once, also with a program of somebody else", guest.returncode == 0 and ran.returncode == 0 and "done in" in ran.stdout,
+          guest.stderr + ran.stderr)
+    alone = call(bin_, "run", case, "--participant", "fluid", "--set", "simulation.end-time=0.01", "-q")
+    check("one participant alone", alone.returncode == 0 and not (folder / "a/out/solid").exists(), alone.stderr)
+    drawn = call(bin_, "plot", folder / "a/out/fluid/forces.csv")
+    check("plot", drawn.returncode == 0 and (folder / "a/out/fluid/forces.png").exists(), drawn.stderr)
+
+
+def python(folder):
+    """import couplet: starts a run and reads it."""
+    import couplet
+    case = case_in(folder / "a", bin_)
+    run = couplet.run(case, ranks={"fluid": 2}, changes={"simulation.end-time": 0.02}, build=bin_.parent)
+    tip = run.probes("solid")
+    check("probes are columns", len(tip["time [s]"]) == 2 and any("tip" in head for head in tip), list(tip))
+    fields = run.fields("fluid")
+    check("fields are arrays", fields.field(-1, "velocity").shape == (len(fields.cells), 3) and fields.times[-1] == 0.02, fields.times)
+    check("budget and findings", 0 < run.budget()["fluid"]["mesh"] < 1 and isinstance(run.findings(), list), run.budget())
+    try:
+        couplet.run(case, changes={"participants.solid.material.density": "x"}, build=bin_.parent)
+        check("a bad case is an exception", False)
+    except couplet.RunFailed as failure:
+        check("a bad case is an exception", "exit code 2" in str(failure) and "'x' is not a number" in str(failure), failure)
+
+
+with tempfile.TemporaryDirectory(prefix="couplet-command-") as scratch:
+    {"by_hand": by_hand, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "python": python}[what](pathlib.Path(scratch))
+end()
