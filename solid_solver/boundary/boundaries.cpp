@@ -7,6 +7,7 @@
 #include "common/base/error.hpp"
 #include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
+#include "solid_solver/boundary/point_loads.hpp"
 
 namespace couplet {
 namespace {
@@ -35,10 +36,6 @@ void check_names(const Mesh& mesh, const SolidParameters& parameters) {
           name, parameters.mesh, join(patches));
 }
 
-bool only_force(Type type) {
-  return type == Type::traction || type == Type::pressure || type == Type::free || type == Type::interface_;
-}
-
 }  // namespace
 
 SolidBoundaries::SolidBoundaries(const Mesh& mesh, const SolidParameters& parameters)
@@ -48,8 +45,8 @@ SolidBoundaries::SolidBoundaries(const Mesh& mesh, const SolidParameters& parame
     holds_.push_back(0);
     if (patch.bonded) continue;
     const SolidBoundary& boundary = parameters.boundaries.at(patch.name);
-    holds_.back() = !only_force(boundary.type);
-    for (const SolidPart& part : boundary.parts) holds_.back() |= !only_force(part.type);
+    holds_.back() = !is_load(boundary.type);
+    for (const SolidPart& part : boundary.parts) holds_.back() |= !is_load(part.type);
     if (boundary.type == Type::interface_) {
       if (!boundary.parts.empty())
         throw Error("boundaries.{}: an interface cannot have parts; make them patches of their own.",
@@ -58,6 +55,7 @@ SolidBoundaries::SolidBoundaries(const Mesh& mesh, const SolidParameters& parame
     }
     choose_faces(patch, boundary);
   }
+  make_point_loads(parameters);
 }
 
 SolidBoundaries::Condition SolidBoundaries::make_condition(const SolidCondition& from,
@@ -114,6 +112,28 @@ void SolidBoundaries::choose_faces(const Patch& patch, const SolidBoundary& boun
           "{}.parts[{}].where: '{}' selects no face of patch '{}'. It is tested at the centres of the faces; "
           "widen it, for example to abs(z - 0.5) < half the height of a face.",
           where, i, tests[i].text(), patch.name);
+  make_load(conditions_[own], boundary, where);
+  for (std::size_t i = 0; i < tests.size(); ++i)
+    make_load(conditions_[own + 1 + i], boundary.parts[i], fmt::format("{}.parts[{}]", where, i));
+}
+
+void SolidBoundaries::make_load(Condition& c, const SolidCondition& from, const std::string& where) const {
+  if (from.type == Type::force || from.type == Type::remote_load)
+    c.distributed.emplace(*mesh_, c.faces, from.load, from.type == Type::remote_load, where);
+  if (from.type == Type::bearing_load) c.bearing.emplace(*mesh_, c.faces, from.load, where);
+  if (from.type == Type::hydrostatic_pressure) c.liquid.emplace(*mesh_, from.load, where);
+}
+
+void SolidBoundaries::make_point_loads(const SolidParameters& parameters) {
+  if (parameters.point_loads.empty()) return;
+  std::vector<std::uint8_t> open(mesh_->boundary.n_owned());
+  for (std::size_t b = 0; b < open.size(); ++b)
+    open[b] = condition_of_face_[b] >= 0 && is_load(at(static_cast<Index>(b)).type);
+  for (const auto& [name, load] : parameters.point_loads) {
+    const std::string where = "point-loads." + name;
+    point_loads_.emplace_back(*mesh_, faces_of_point_load(*mesh_, load, open, where), load, load.radius > 0,
+                              where);
+  }
 }
 
 ElasticCondition SolidBoundaries::kind_of(const Condition& c) const {
@@ -172,33 +192,39 @@ ElasticBoundary SolidBoundaries::elastic() const {
   return result;
 }
 
+template <class Take>
+void SolidBoundaries::visit_pressures(const Condition& c, double t, const Take& take) const {
+  const double level = c.liquid ? c.liquid->level(t) : 0;
+  for (const Index f : c.faces)
+    take(f, c.liquid ? c.liquid->mean(f, level) : c.pressure(mesh_->reference.face_centre[f], t));
+}
+
 std::vector<double> SolidBoundaries::pressures(double t) const {
   std::vector<double> pressure(mesh_->boundary.n_owned(), 0);
-  for (const Condition& c : conditions_) {
-    if (c.type != Type::pressure) continue;
-    for (const Index f : c.faces)
-      pressure[f - mesh_->n_interior] = c.pressure(mesh_->reference.face_centre[f], t);
-  }
+  for (const Condition& c : conditions_)
+    if (c.has_pressure())
+      visit_pressures(c, t, [&](Index f, double p) { pressure[f - mesh_->n_interior] = p; });
   return pressure;
 }
 
 void SolidBoundaries::add_forces(double t, std::span<double> forces, bool with_pressure) const {
   const int dim = mesh_->dim;
+  const auto force_on = [&](Index f) { return forces.data() + std::size_t(f - mesh_->n_interior) * dim; };
   for (const Condition& c : conditions_) {
-    if (c.traction.empty() && (c.type != Type::pressure || !with_pressure)) continue;
+    if (c.distributed) c.distributed->add_forces(t, forces);
+    if (c.bearing) c.bearing->add_forces(t, forces);
+    if (c.has_pressure() && with_pressure)
+      visit_pressures(c, t, [&](Index f, double p) {
+        for (int a = 0; a < dim; ++a) force_on(f)[a] -= p * mesh_->reference.face_area[f][a];
+      });
+    if (c.traction.empty()) continue;
     for (const Index f : c.faces) {
-      const Vec3& x = mesh_->reference.face_centre[f];
-      const Vec3& area = mesh_->reference.face_area[f];
-      double* force = forces.data() + std::size_t(f - mesh_->n_interior) * dim;
-      if (c.type == Type::pressure) {
-        const double pressure = c.pressure(x, t);
-        for (int a = 0; a < dim; ++a) force[a] -= pressure * area[a];
-      } else {
-        const double size = area.norm();
-        for (int a = 0; a < dim; ++a) force[a] += c.traction[a](x, t) * size;
-      }
+      const double size = mesh_->reference.face_area[f].norm();
+      for (int a = 0; a < dim; ++a)
+        force_on(f)[a] += c.traction[a](mesh_->reference.face_centre[f], t) * size;
     }
   }
+  for (const DistributedForce& load : point_loads_) load.add_forces(t, forces);
 }
 
 PrescribedDisplacement::PrescribedDisplacement(const Mesh& mesh, const SolidBoundaries& boundaries,

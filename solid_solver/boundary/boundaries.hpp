@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "common/elasticity/elasticity.hpp"
 #include "common/fv/expression.hpp"
 #include "common/mesh/mesh.hpp"
+#include "solid_solver/boundary/bearing_load.hpp"
+#include "solid_solver/boundary/distributed_force.hpp"
+#include "solid_solver/boundary/hydrostatic_pressure.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet {
@@ -25,8 +29,8 @@ class SolidBoundaries {
   /// The patch can hold the solid: some of its faces know more than the force on them.
   bool holds(std::size_t patch) const { return holds_[patch] != 0; }
 
-  /// Adds tractions and pressures at time t as forces [N] on the boundary faces of owned cells (`dim` values
-  /// a face): thesis (2.64), reference configuration.
+  /// Adds tractions, pressures and loads by their total at time t as forces [N] on the boundary faces of owned cells (`dim`
+  /// values a face): thesis (2.64), reference configuration. Collective.
   void add_forces(double t, std::span<double> forces, bool with_pressure = true) const;
   /// Pressures at time t on the boundary faces of owned cells [Pa].
   std::vector<double> pressures(double t) const;
@@ -46,9 +50,19 @@ class SolidBoundaries {
     /// vertices.
     bool by_component = false;
     Vec3 known_components = Vec3::Zero(), plate_normal = Vec3::Zero();
+    // By their total.
+    std::optional<DistributedForce> distributed;
+    std::optional<BearingLoad> bearing;
+    std::optional<HydrostaticPressure> liquid;
+    bool has_pressure() const { return type == SolidCondition::Type::pressure || liquid; }
   };
   Condition make_condition(const SolidCondition& from, const std::string& where) const;
   void choose_faces(const Patch& patch, const SolidBoundary& boundary);
+  void make_load(Condition& condition, const SolidCondition& from, const std::string& where) const;
+  void make_point_loads(const SolidParameters& parameters);
+  /// Calls take(face, pressure [Pa]) for the faces of a condition.
+  template <class Take>
+  void visit_pressures(const Condition& condition, double t, const Take& take) const;
   ElasticCondition kind_of(const Condition& condition) const;
   ElasticSupport support_at(const Condition& condition, Index face) const;
   const Condition& at(Index entry) const { return conditions_[condition_of_face_[entry]]; }
@@ -58,6 +72,7 @@ class SolidBoundaries {
   std::vector<Index> condition_of_face_;  // per local boundary face, -1: bonded
   std::vector<std::uint8_t> holds_;       // per patch
   std::vector<std::string> interface_patches_;
+  std::vector<DistributedForce> point_loads_;
 };
 
 /// The known values of the operator in the order of its columns: displacements of vertices and faces, far

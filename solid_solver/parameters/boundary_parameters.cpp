@@ -92,11 +92,19 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
   };
   const auto plate = [&](config::Section& v) { declare_plate(v, c, dimension); };
   const auto spring = [&](config::Section& v) { declare_spring(v, c, dimension); };
+  const auto force = [&](config::Section& v) { declare_total_force(v, c.load, dimension); };
+  const auto remote = [&](config::Section& v) { declare_remote_load(v, c.load, dimension); };
+  const auto bearing = [&](config::Section& v) { declare_bearing_load(v, c.load, dimension); };
+  const auto hydrostatic = [&](config::Section& v) { declare_hydrostatic_pressure(v, c.load, dimension); };
   const auto nothing = [](config::Section&) {};
   std::vector<std::tuple<std::string, Type, config::Section::Declare>> types{
       {"fixed-displacement", Type::fixed_displacement, displacement},
       {"traction", Type::traction, traction},
       {"pressure", Type::pressure, pressure},
+      {"force", Type::force, force},
+      {"remote-load", Type::remote_load, remote},
+      {"bearing-load", Type::bearing_load, bearing},
+      {"hydrostatic-pressure", Type::hydrostatic_pressure, hydrostatic},
       {"symmetry", Type::symmetry, nothing},
       {"frictionless", Type::frictionless, nothing},
       {"soft-support", Type::soft_support, plate},
@@ -107,7 +115,8 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
   if (whole_patch) types.emplace_back("interface", Type::interface_, nothing);
   s.variant<Type>(
       "type", c.type, types,
-      "what is known there; symmetry: a plane of any orientation; frictionless: no displacement across the "
+      "what is known there; force: its total; remote-load: force and moment at a point, shared out by area; bearing-load: a "
+      "pin's pressure by the cosine on the half of a cylinder; hydrostatic-pressure: of a liquid below its level; symmetry: a plane of any orientation; frictionless: no displacement across the "
       "surface, curved or not; soft-support: no displacement along the plate's normal; hard-support: nor "
       "along the edge; zero-normal-gradient: the displacement does not change along the normal"
       "; interface (whole patches): the load comes from the coupler",

@@ -7,6 +7,7 @@
 
 #include "common/base/types.hpp"
 #include "common/config/section.hpp"
+#include "solid_solver/parameters/load_parameters.hpp"
 
 namespace couplet {
 
@@ -16,6 +17,10 @@ struct SolidCondition {
     fixed_displacement,
     traction,
     pressure,
+    force,
+    remote_load,
+    bearing_load,
+    hydrostatic_pressure,
     symmetry,
     frictionless,
     soft_support,
@@ -37,6 +42,7 @@ struct SolidCondition {
   Vec3 plate_normal = Vec3::UnitZ();  ///< soft and hard support
   config::ExpressionText stiffness;   ///< spring: [N/m^3]
   bool along_normal = false;          ///< spring: resists the normal displacement only
+  TotalLoad load;                     ///< force, remote-load, bearing-load, hydrostatic-pressure
 };
 
 /// The faces of a patch whose centre fulfils a condition.
@@ -47,6 +53,14 @@ struct SolidPart : SolidCondition {
 struct SolidBoundary : SolidCondition {
   std::vector<SolidPart> parts;  ///< the first one that selects a face counts; faces of none: the patch's own
 };
+
+/// Knows no more than the force there.
+inline bool is_load(SolidCondition::Type type) {
+  using Type = SolidCondition::Type;
+  return type == Type::traction || type == Type::pressure || type == Type::force ||
+         type == Type::remote_load || type == Type::bearing_load || type == Type::hydrostatic_pressure ||
+         type == Type::free || type == Type::interface_;
+}
 
 /// `dimension`: of the scene; read before the boundaries, so it is a reference.
 void declare(config::Section& section, SolidBoundary& boundary, const int& dimension);

@@ -27,8 +27,7 @@ bool has_interface(const SolidParameters& p) {
 bool is_held(const SolidParameters& p) {
   return any_condition(p, [](const SolidCondition& c) {
     using Type = SolidCondition::Type;
-    return c.type != Type::traction && c.type != Type::pressure && c.type != Type::free &&
-           c.type != Type::zero_normal_gradient;
+    return (!is_load(c.type) || c.type == Type::interface_) && c.type != Type::zero_normal_gradient;
   });
 }
 

@@ -137,6 +137,9 @@ void declare(config::Section& s, SolidParameters& p) {
   s.map<SolidBoundary>(
       "boundaries", p.boundaries, [&p](config::Section& b, SolidBoundary& v) { declare(b, v, p.dimension); },
       "patch", "one entry for each patch of the mesh");
+  s.map<PointLoad>(
+      "point-loads", p.point_loads, [&p](config::Section& l, PointLoad& v) { declare(l, v, p.dimension); },
+      "load", "forces and moments at points of the surface, beside what the patches there have");
   s.value("body-force", p.body_force)
       .unit("N/m^3")
       .plausible(1e-6, 1e11)

@@ -34,6 +34,7 @@ struct SolidParameters {
   std::optional<bool> material_given;  // `material` stands in the YAML
   ZoneMaterials materials;             // by zone of the mesh
   std::map<std::string, SolidBoundary> boundaries;
+  std::map<std::string, PointLoad> point_loads;
   std::vector<config::ExpressionText> body_force;        // [N/m^3]; empty: none
   std::vector<double> gravity;                           // [m/s^2]; empty: none
   std::vector<config::ExpressionText> initial_velocity;  // [m/s]; empty: at rest

@@ -83,6 +83,52 @@ TEST(SolidParameters, mistakes_are_reported_with_their_place) {
   EXPECT_THAT(errors, Contains(AllOf(HasSubstr("case.yaml:7:"), HasSubstr("Did you mean 'symmetry'?"))));
 }
 
+TEST(SolidParameters, loads_by_their_total_are_read) {
+  SolidParameters p;
+  EXPECT_THAT(
+      read("mesh: a.msh\nanalysis: static\n" + material +
+               "boundaries:\n"
+               "  root: {type: fixed-displacement, value: [0, 0, 0]}\n"
+               "  lug: {type: force, value: [1 kN, 0 N, 2*t]}\n"
+               "  head: {type: remote-load, point: [0 m, 0 m, 1.2 m], moment: [0, 3 kN m, 0]}\n"
+               "  hole: {type: free, parts: [{where: x > 0, type: bearing-load, force: [0, 0, 5 kN]}]}\n"
+               "  dam: {type: hydrostatic-pressure, density: 1 t/m^3, gravity: [0, 0, -9.81], level: 3 + t}\n"
+               "point-loads:\n  pin: {point: [1, 2, 3], force: [1, 0, 0], radius: 2 cm}\n",
+           p),
+      ::testing::IsEmpty());
+  EXPECT_EQ(p.boundaries.at("lug").load.force.at(0).text, "1000");
+  EXPECT_EQ(p.boundaries.at("head").load.moment.at(1).text, "3000");
+  EXPECT_EQ(p.boundaries.at("hole").parts.at(0).load.force.at(2).text, "5000");
+  EXPECT_EQ(p.boundaries.at("dam").load.density, 1000);
+  EXPECT_EQ(p.point_loads.at("pin").radius, 0.02);
+}
+
+TEST(SolidParameters, loads_that_cannot_be_are_told_with_their_line) {
+  const auto told = [&](const std::string& text, const std::string& wanted, const std::string& line = "7") {
+    SolidParameters p;
+    EXPECT_THAT(read("mesh: a.msh\ndimension: 3\nanalysis: static\n" + material +
+                         "boundaries:\n  root: {type: symmetry}\n" + text + "\n",
+                     p),
+                Contains(AllOf(HasSubstr("case.yaml:" + line + ":"), HasSubstr(wanted))))
+        << text;
+  };
+  told("  lug: {type: force}", "lug.value: this required key is missing");
+  told("  lug: {type: force, value: [1 Pa, 0, 0]}", "Pa");
+  told("  lug: {type: force, value: [x, 0, 0]}", "a total has no place");
+  told("  lug: {type: force, value: [1, 0]}", "2 components are given");
+  told("  lug: {type: remote-load, force: [1, 0, 0]}", "lug.point: this required key is missing");
+  told("  lug: {type: remote-load, point: [1, 0, 0]}", "give a 'force', a 'moment' or both");
+  told("  lug: {type: remote-load, point: [1, 0, 0], moment: [1]}", "1 components are given");
+  told("  lug: {type: remote-load, point: [1, 0, 0], moment: [1 N, 0, 0]}", "N m");
+  told("  lug: {type: bearing-load}", "lug.force: this required key is missing");
+  told("  dam: {type: hydrostatic-pressure, density: 1000, gravity: [0, 0, 0], level: 1}", "the zero vector");
+  told("  dam: {type: hydrostatic-pressure, density: 1000, gravity: [0, -9.81], level: 1}", "2 components");
+  told("  dam: {type: hydrostatic-pressure, density: 1000, gravity: [0, 0, 1], level: z}",
+       "a total has no place");
+  told("  dam: {type: hydrostatic-pressure, density: -1, gravity: [0, 0, 1], level: 1}", "density");
+  told("point-loads:\n  pin: {point: [1, 2, 3], moment: [1, 0, 0]}", "one face takes no moment", "8");
+}
+
 TEST(SolidParameters, rules_between_keys_are_checked) {
   const std::string start =
       "mesh: a.msh\nanalysis: static\n" + material + "boundaries:\n  all: {type: free}\n";

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "common/parallel/collective.hpp"
+#include "tests/verification/solid/linear_field.hpp"
+
+namespace couplet::testing {
+
+inline std::vector<std::string> texts(const Vec3& x, int dim) {
+  std::vector<std::string> result;
+  for (int a = 0; a < dim; ++a) result.push_back(fmt::format("{:.17g}", x[a]));
+  return result;
+}
+
+inline SolidBoundary with_force(Type type, const Vec3& force, int dim) {
+  SolidBoundary b = boundary(type);
+  for (const std::string& text : texts(force, dim)) b.load.force.push_back({text});
+  return b;
+}
+
+/// Gravity against y.
+inline SolidBoundary liquid(double density, double gravity, const std::string& level, int dim) {
+  SolidBoundary b = boundary(Type::hydrostatic_pressure);
+  b.load.density = density;
+  b.load.gravity.assign(std::size_t(dim), 0);
+  b.load.gravity[1] = -gravity;
+  b.load.level = {level};
+  return b;
+}
+
+/// Calls take(face, force [N]) for the loaded faces of this rank.
+template <class Take>
+void visit_loads(const Mesh& mesh, const SolidParameters& p, const Take& take, double t = 0) {
+  const SolidBoundaries boundaries(mesh, p);
+  std::vector<double> forces(std::size_t(mesh.boundary.n_owned()) * mesh.dim, 0);
+  boundaries.add_forces(t, forces);
+  for (Index b = 0; b < mesh.boundary.n_owned(); ++b) {
+    Vec3 push = Vec3::Zero();
+    for (int a = 0; a < mesh.dim; ++a) push[a] = forces[std::size_t(b) * mesh.dim + a];
+    if (push.norm() > 0) take(mesh.n_interior + b, push);
+  }
+}
+
+/// Of all ranks; the moment is about the origin.
+struct Resultant {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+  double loaded = 0;  ///< faces
+};
+inline Resultant resultant(const Mesh& mesh, const SolidParameters& p, double t = 0) {
+  Resultant r;
+  visit_loads(
+      mesh, p,
+      [&](Index f, const Vec3& push) {
+        r.force += push;
+        r.moment += mesh.reference.face_centre[f].cross(push);
+        ++r.loaded;
+      },
+      t);
+  for (int a = 0; a < 3; ++a) {
+    r.force[a] = sum(mesh.comm, r.force[a]);
+    r.moment[a] = sum(mesh.comm, r.moment[a]);
+  }
+  r.loaded = sum(mesh.comm, r.loaded);
+  return r;
+}
+
+/// Radii 1 to 2 above the x axis, the inner side being "ymin"; n cells around.
+inline RawMesh half_ring(BoxCells cells, int n) {
+  RawMesh raw = make_box(cells, {n, 3, 2}, Vec3::Zero(), Vec3::Ones());
+  for (Vec3& x : raw.points) {
+    const double angle = std::numbers::pi * (1 - x[0]), radius = 1 + x[1];
+    x = {radius * std::cos(angle), radius * std::sin(angle), x[2]};
+  }
+  return raw;
+}
+
+/// Mean displacement of the faces of a patch.
+inline Vec3 mean_on(const Solid& solid, const std::string& name) {
+  const Mesh& mesh = solid.body().mesh();
+  Vec3 total = Vec3::Zero();
+  double area = 0;
+  for (const Patch& patch : mesh.patches)
+    for (Index f = patch.first; patch.name == name && f < patch.first + patch.count; ++f) {
+      const double size = mesh.reference.face_area[f].norm();
+      area += size;
+      for (int a = 0; a < mesh.dim; ++a)
+        total[a] += size * solid.stepper().state().face_u[std::size_t(f - mesh.n_interior) * mesh.dim + a];
+    }
+  area = sum(mesh.comm, area);
+  for (int a = 0; a < 3; ++a) total[a] = sum(mesh.comm, total[a]) / area;
+  return total;
+}
+
+/// Of the cells [kg m/s].
+inline Vec3 momentum_of(const Solid& solid) {
+  const Mesh& mesh = solid.body().mesh();
+  Vec3 total = Vec3::Zero();
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    for (int a = 0; a < mesh.dim; ++a)
+      total[a] += solid.body().density(c) * mesh.reference.volume[c] *
+                  solid.stepper().state().cell_v[std::size_t(c) * mesh.dim + a];
+  for (int a = 0; a < 3; ++a) total[a] = sum(mesh.comm, total[a]);
+  return total;
+}
+
+}  // namespace couplet::testing
