@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "common/base/error.hpp"
+#include "common/elasticity/tied/tied_matrix.hpp"
 #include "common/log/log.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -56,6 +57,53 @@ std::vector<double> participation(const SolidProblem& problem, const EigenModes&
   return sums;
 }
 
+// Rows of the narrow matrix up to which its factors are taken unasked: in space they fill (33 000 tetrahedra have 2e5 rows).
+constexpr GlobalIndex most_rows_2d = 2000000, most_rows_3d = 400000;
+// Residual over force that factors of the right matrix leave.
+constexpr double exact = 1e-6;
+
+/// The factors are those of this operator: nothing in the scene that the narrow matrix does not know.
+void check_factors(const SolidProblem& problem, TiedMatrix& factors, double shift) {
+  const std::size_t n = problem.elastic.n_unknowns();
+  std::vector<double> x(n), force(n), back(n);
+  for (std::size_t i = 0; i < n; ++i) x[i] = std::sin(1.0 + double(i % 1000));
+  problem.kernel.apply_with_mass(x, {}, shift, true, force);
+  factors.apply(x, back);
+  for (std::size_t i = 0; i < n; ++i) back[i] -= force[i];
+  if (!(norm(problem.mesh.comm, back) <= exact * norm(problem.mesh.comm, force)))
+    throw SolveFailure("The factors are not those of the stiffness.");
+}
+
+/// Whether the search goes by factors. Collective.
+bool goes_by_factors(const SolidProblem& problem, const MethodParameters& method) {
+  using Preconditioner = MethodParameters::Preconditioner;
+  if (!TiedMatrix::suits(problem.mesh) || !problem.is_symmetric()) return false;
+  if (method.preconditioner != Preconditioner::automatic)
+    return method.preconditioner == Preconditioner::factors;
+  const Mesh& mesh = problem.mesh;
+  const auto blocks = GlobalIndex(problem.elastic.n_unknowns()) / mesh.dim + 2 * mesh.points.n_owned();
+  return sum(mesh.comm, blocks) * mesh.dim <= (mesh.dim == 2 ? most_rows_2d : most_rows_3d);
+}
+
+/// The search with factors of the shifted stiffness.
+EigenModes search_by_factors(const SolidProblem& problem, std::span<const double> cell_mass, int n,
+                             double shift) {
+  const Mesh& mesh = problem.mesh;
+  std::vector<double> density;
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    density.push_back(cell_mass[std::size_t(c)] / mesh.reference.volume[std::size_t(c)]);
+  const SlepcEnvironment slepc;
+  TiedMatrix shifted(mesh, problem.elastic, {.mass = shift, .density = density});
+  check_factors(problem, shifted, shift);
+  shifted.factorise();
+  const ModalOperators of{
+      .stiffness = [&](std::span<const double> x, std::span<double> y) { problem.kernel.apply(x, {}, y); },
+      .mass = [&](std::span<const double> x,
+                  std::span<double> y) { problem.kernel.apply_with_mass(x, {}, 1, false, y); },
+      .solve = [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); }};
+  return lowest_modes(mesh.comm, problem.elastic.n_unknowns(), of, n, -shift);
+}
+
 /// The search with one preconditioner.
 EigenModes search(const SolidProblem& problem, const MethodParameters& method,
                   std::span<const double> cell_mass, int n, double shift) {
@@ -89,14 +137,17 @@ EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
   const bool chooses = method.preconditioner == MethodParameters::Preconditioner::automatic;
   method.corrections_kept = 0;  // one right-hand side says nothing about the next
   method.relative_tolerance = std::min(method.relative_tolerance, 1e-10);
+  const bool by_factors = goes_by_factors(problem, method);
   EigenModes modes;
   try {
-    modes = search(problem, method, cell_mass, n, shift_part * scale);
+    modes = by_factors ? search_by_factors(problem, cell_mass, n, shift_part * scale)
+                       : search(problem, method, cell_mass, n, shift_part * scale);
   } catch (const SolveFailure& e) {
     if (!chooses) throw;
-    log::info(
-        "modes: multigrid does not get there (thin body, nothing that holds it); factors of the matrix do.");
-    method.preconditioner = MethodParameters::Preconditioner::factors;
+    log::info("modes: {} does not get there: {}", by_factors ? "the search by factors" : "multigrid",
+              e.what());
+    method.preconditioner =
+        by_factors ? MethodParameters::Preconditioner::multigrid : MethodParameters::Preconditioner::factors;
     modes = search(problem, method, cell_mass, n, shift_part * scale);
   }
   for (double& value : modes.eigenvalue)

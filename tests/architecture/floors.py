@@ -12,7 +12,7 @@ FLOORS = {
     "coupler": ["parameters", "exchange", "mapping", "acceleration", "judge", "output", "."],
     "thermocline": ["base", "material", "weather", "plant", "bed", "wall", "economics", "model", "judge", "."],
     "plate_modal": ["model", "motion", "."],
-    "common/elasticity": [".", "thesis", "symmetric", "finite", "solve"],
+    "common/elasticity": [".", "thesis", "symmetric", "tied", "finite", "solve"],
     "common/mesh": [".", "msh", "gmsh"],
     "common/app": ["watch", "loop", "case", "."],
     "common/io": [".", "probes"],

@@ -41,6 +41,18 @@ class SharedEdges {
   std::size_t n_edges() const { return inverse_volume_.size(); }
   double volume(Index edge) const { return 1 / inverse_volume_[edge]; }
   bool is_owned(Index edge) const { return !parallel_ || edge < map_.n_owned(); }
+  /// One number an edge over all ranks, and back: -1: of another rank.
+  GlobalIndex global(Index edge) const { return parallel_ ? map_.global(edge) : edge; }
+  Index owned_of(GlobalIndex edge) const {
+    if (!parallel_) return Index(edge);
+    const GlobalIndex i = edge - map_.first();
+    return i >= 0 && i < map_.n_owned() ? Index(i) : -1;
+  }
+  /// Edges on symmetry planes, with the normal; as often as planes.
+  const std::vector<std::pair<Index, Vec3>>& mirrors() const { return mirrors_; }
+  /// An edge's own constants: means of its faces'. The matrix of anisotropic bodies alone.
+  const LameConstants& lame(Index edge) const { return lame_[lame_.size() == 1 ? 0 : std::size_t(edge)]; }
+  const ElasticMatrix& matrix(Index edge) const { return matrix_[std::size_t(edge)]; }
   /// Strains (engineering shear halved) become stresses of the edge's own constants.
   void to_stress();
 

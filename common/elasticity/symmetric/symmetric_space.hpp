@@ -58,6 +58,9 @@ class SymmetricSpace {
   void spread_face_forces(std::span<const double> forces);
   void spread_cell_forces(std::span<const double> forces);
   void set_density(std::span<const double> of_cells);
+  /// This rank's part, after set_density(): one a local node, one a local point [kg].
+  const std::vector<double>& node_mass() const { return node_mass_; }
+  const std::vector<double>& point_mass() const { return point_mass_; }
   /// sum of force . displacement, this rank's; fill() may have changed the displacement since the forces.
   double work() const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Free vibrations found without factors of a matrix: the lowest ones of the dense eigenproblem, none missed, with the
+// Free vibrations found by factors of the shifted stiffness or by multigrid: the lowest ones of the dense eigenproblem, none missed, with the
 // shapes on the surface that plate_modal takes.
 #include <gtest/gtest.h>
 
@@ -77,6 +77,21 @@ TEST(SolidModesOfAFreeBody, carry_its_whole_mass_and_move_its_surface_rigidly) {
   const std::vector<Vec3> areas = face_areas(model), centres = face_centres(model);
   for (std::size_t f = 0; f < areas.size(); ++f) volume += areas[f].dot(centres[f]) / 3;
   EXPECT_NEAR(volume, 2, 1e-12);
+}
+
+TEST(SolidModesByFactors, are_those_by_multigrid) {
+  SolidParameters p = vibrating(3);
+  const auto solid = make_solid(make_box(BoxCells::tetrahedra, {4, 2, 2}, Vec3::Zero(), Vec3(2, 1, 1)), p);
+  const auto by = [&](MethodParameters::Preconditioner preconditioner) {
+    MethodParameters method = p.method;
+    method.preconditioner = preconditioner;
+    return solid_modes(*vibration(solid->body()), method, cell_mass(*solid), 9);
+  };
+  const EigenModes factors = by(MethodParameters::Preconditioner::factors),
+                   multigrid = by(MethodParameters::Preconditioner::multigrid);
+  for (int m = 0; m < 6; ++m) EXPECT_EQ(factors.eigenvalue[m], 0) << m;
+  for (int m = 6; m < 9; ++m)
+    EXPECT_NEAR(factors.eigenvalue[m], multigrid.eigenvalue[m], 1e-7 * multigrid.eigenvalue[m]) << m;
 }
 
 TEST(SolidModesOfABeam, are_those_of_euler_and_bernoulli_and_converge_at_second_order) {

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/linalg/symmetric_factors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+
+#include "common/linalg/petsc_check.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr PetscInt largest_whole = 60000;
+
+}  // namespace
+
+SymmetricFactors::SymmetricFactors(const SparseMatrix& matrix) {
+  Mat a = matrix.petsc();
+  petsc_check(MatSetOption(a, MAT_SYMMETRIC, PETSC_TRUE));
+  petsc_check(MatCreateVecs(a, &x_, &b_));
+  PetscInt rows = 0;
+  petsc_check(MatGetSize(a, &rows, nullptr));
+  if (comm_size(matrix.comm()) == 1 || rows > largest_whole) {
+    factorise(a);
+    return;
+  }
+  petsc_check(MatGetOwnershipRange(a, &first_, nullptr));
+  petsc_check(VecScatterCreateToAll(b_, &to_all_, &whole_b_));
+  petsc_check(VecDuplicate(whole_b_, &whole_x_));
+  Mat whole = nullptr;
+  petsc_check(
+      MatCreateRedundantMatrix(a, comm_size(matrix.comm()), MPI_COMM_NULL, MAT_INITIAL_MATRIX, &whole));
+  petsc_check(MatSetOption(whole, MAT_SYMMETRIC, PETSC_TRUE));
+  factorise(whole);
+  petsc_check(MatDestroy(&whole));
+}
+
+void SymmetricFactors::factorise(Mat a) {
+  petsc_check(MatGetFactor(a, MATSOLVERMUMPS, MAT_FACTOR_CHOLESKY, &factors_));
+  petsc_check(MatMumpsSetIcntl(factors_, 24, 1));  // the count of pivots asks for it
+  petsc_check(MatMumpsSetIcntl(factors_, 14,
+                               100));  // room in per cent: pivots of two rows need more than was foreseen
+  MatFactorInfo info;
+  petsc_check(MatFactorInfoInitialize(&info));
+  petsc_check(MatCholeskyFactorSymbolic(factors_, a, nullptr, &info));
+  petsc_check(MatCholeskyFactorNumeric(factors_, a, &info));
+  MatFactorError error = MAT_FACTOR_NOERROR;
+  petsc_check(MatFactorGetError(factors_, &error));
+  if (error != MAT_FACTOR_NOERROR)
+    throw SolveFailure(
+        "MUMPS could not factorise a symmetric matrix (PETSc's MatFactorError {}): is there room for it?",
+        int(error));
+  PetscInt negative = 0, zero = 0, positive = 0;
+  petsc_check(MatGetInertia(factors_, &negative, &zero, &positive));
+  negative_ = negative;
+}
+
+SymmetricFactors::~SymmetricFactors() {
+  if (std::uncaught_exceptions() > 0) return;
+  MatDestroy(&factors_);
+  VecScatterDestroy(&to_all_);
+  for (::Vec* v : {&b_, &x_, &whole_b_, &whole_x_}) VecDestroy(v);
+}
+
+void SymmetricFactors::solve(std::span<const double> b, std::span<double> x) const {
+  petsc_check(VecPlaceArray(b_, b.data()));
+  petsc_check(VecPlaceArray(x_, x.data()));
+  if (to_all_) {
+    petsc_check(VecScatterBegin(to_all_, b_, whole_b_, INSERT_VALUES, SCATTER_FORWARD));
+    petsc_check(VecScatterEnd(to_all_, b_, whole_b_, INSERT_VALUES, SCATTER_FORWARD));
+    petsc_check(MatSolve(factors_, whole_b_, whole_x_));
+    const double* all = nullptr;
+    petsc_check(VecGetArrayRead(whole_x_, &all));
+    std::copy_n(all + first_, x.size(), x.begin());
+    petsc_check(VecRestoreArrayRead(whole_x_, &all));
+  } else {
+    petsc_check(MatSolve(factors_, b_, x_));
+  }
+  petsc_check(VecResetArray(b_));
+  petsc_check(VecResetArray(x_));
+  double square = 0;
+  for (const double v : x) square += v * v;
+  if (!std::isfinite(sum(PetscObjectComm(reinterpret_cast<PetscObject>(b_)), square)))
+    throw SolveFailure("The factors of a symmetric matrix gave no finite solution.");
+}
+
+}  // namespace couplet
