@@ -7,7 +7,7 @@ import zlib
 import numpy as np
 
 import couplet
-from couplet.runs.launch import RunFailed
+from couplet.runs.process import RunFailed
 from validation.job import Bar
 from validation.parts.strong.flap_3d import FLAP_3D
 from validation.parts.strong.tube import ROBIN_TUBE

@@ -11,8 +11,7 @@
     job = couplet.Client("solid", "my_solver")          # in a program of a job: couplet/participant.py
 
 Names are loaded when they are first asked for: a participant needs mpi4py and numpy alone."""
-import importlib
-
+from couplet import lazy
 from couplet.transports import choose
 
 choose()  # before anybody starts MPI
@@ -22,13 +21,7 @@ _PLACES = {
     "series": ("FieldSeries", "WIDTH", "extrema", "find_series", "passes_a_step", "result_of"),
     "runs": ("Case", "Results", "RunFailed", "Wrong", "read_csv", "run"),
 }
-
-
-def __getattr__(name):
-    for module, names in _PLACES.items():
-        if name in names:
-            return getattr(importlib.import_module(f"couplet.{module}"), name)
-    raise AttributeError(f"module 'couplet' has no attribute '{name}'")
+__getattr__ = lazy.names(__name__, _PLACES)
 
 
 def __dir__():

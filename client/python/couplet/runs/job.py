@@ -15,7 +15,7 @@ import time
 from couplet import places
 from couplet.runs import folder as folders
 from couplet.runs.case import COUPLER, Case, expect, load
-from couplet.runs.launch import RunFailed, environment, last_words
+from couplet.runs.process import RunFailed, environment, last_words
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 PR_SET_PDEATHSIG = 1

@@ -13,7 +13,7 @@ import time
 
 from couplet.places import ROOT
 from couplet.runs.case import Case
-from couplet.runs.launch import RunFailed, commit, launch, machine
+from couplet.runs.process import RunFailed, commit, launch, machine
 from couplet.runs.results import Results
 
 RECORD = "record.json"

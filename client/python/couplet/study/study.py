@@ -4,7 +4,7 @@ import pathlib
 import re
 
 from couplet.runs import Task, expect, run_all
-from couplet.runs.launch import machine
+from couplet.runs.process import machine
 from couplet.study import convergence, estimates, pictures, table
 from couplet.study.axes import Axes
 from couplet.study.quantities import quantities_of

@@ -7,7 +7,7 @@ import numpy as np
 import couplet
 from couplet.atlas import strong
 from couplet.atlas.atlas import Runner
-from couplet.runs.launch import RunFailed
+from couplet.runs.process import RunFailed
 from validation.job import Bar
 
 CAVITY = [f"participants.{name}.mesh-parameters={{n: 8}}" for name in ("fluid", "lid", "mover")]

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+# What is installed beside the programs and the client (each OPTIONAL: any build can be installed), and the .deb of it (cpack).
+include(GNUInstallDirs)
+set(CMAKE_SKIP_INSTALL_ALL_DEPENDENCY ON) # what was built is installed, no more
+set(share ${CMAKE_INSTALL_DATADIR}/couplet)
+
+install(PROGRAMS scripts/couplet DESTINATION ${CMAKE_INSTALL_BINDIR})
+file(WRITE ${PROJECT_BINARY_DIR}/VERSION "${PROJECT_VERSION}\n")
+install(FILES ${PROJECT_BINARY_DIR}/VERSION DESTINATION ${share}/python/couplet)
+install(DIRECTORY configs docs DESTINATION ${share} PATTERN "out" EXCLUDE PATTERN "out-*" EXCLUDE PATTERN "*.cache.msh" EXCLUDE
+        PATTERN "*.log" EXCLUDE PATTERN "__pycache__" EXCLUDE)
+install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# Man pages and completion come from what the command and the programs declare.
+find_program(COUPLET_PYTHON python3 HINTS /usr/bin NO_DEFAULT_PATH)
+find_program(COUPLET_PYTHON python3 REQUIRED)
+install(CODE "
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${PROJECT_SOURCE_DIR}/client/python ${COUPLET_PYTHON} -B -m couplet.command.pages
+                          \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\" --bin ${PROJECT_BINARY_DIR}/bin --version ${PROJECT_VERSION}
+                  RESULT_VARIABLE failed)
+  if(failed)
+    message(WARNING \"man pages and completion were not installed (python3-yaml is needed)\")
+  endif()")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME couplet)
+set(CPACK_PACKAGE_VENDOR "Couplet")
+set(CPACK_PACKAGE_CONTACT "Couplet maintainers <couplet@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "couples fluid, structure and mesh programs into one MPI job")
+set(CPACK_PACKAGE_DESCRIPTION "Solvers of fluids, solids, plates and heat storage, a mesh mover and a coupler, each a program of its own,
+described by one YAML file and run by one command.")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "openmpi-bin, python3, python3-yaml, python3-numpy, python3-h5py")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gmsh, bubblewrap, python3-matplotlib, python3-scipy, python3-mpi4py")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "paraview, mkdocs-material")
+include(CPack)

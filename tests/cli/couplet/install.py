@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is installed works by itself. Usage: install.py BUILD [prefix | empty | deb]: from a prefix that is moved, with an empty HOME; a
+build in which nothing was built; the unpacked .deb."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from scene import ROOT
+from checks import check, end  # noqa: E402
+
+build, what = pathlib.Path(sys.argv[1]), sys.argv[2]
+
+
+def run(prefix, home, *words, shell=None):
+    env = {"HOME": str(home), "PATH": f"{prefix / 'bin'}:/usr/bin:/bin", "LANG": "C.UTF-8", "MANPATH": str(prefix / "share/man")}
+    line = [shell, "-c", words[0]] if shell else [str(w) for w in words]
+    return subprocess.run(line, capture_output=True, text=True, env=env, cwd=home)
+
+
+def works(prefix, home):
+    """The first minutes of a new user, from the installed files alone."""
+    said = run(prefix, home, "couplet", "--version")
+    check("couplet is there", said.returncode == 0 and re.match(r"couplet \d+\.\d+", said.stdout), said.stderr)
+    doctor = run(prefix, home, "couplet", "doctor")
+    check("the doctor's self-test", doctor.returncode == 0 and "ok  self-test" in doctor.stdout, doctor.stdout + doctor.stderr)
+    for words in (["gallery"], ["new", "mine", "--from", "cavity", "--end-time", "0.05 s"], ["check", "mine"], ["run", "mine", "-q"], ["plot", "mine/out"]):
+        said = run(prefix, home, "couplet", *words)
+        check("couplet " + " ".join(words), said.returncode == 0, said.stdout + said.stderr)
+    check("with its picture", any((home / "mine/out").rglob("*.png")))
+    read = run(prefix, home, "/usr/bin/python3", "-c", f"import sys; sys.path.append('{prefix}/share/couplet/python'); import couplet; print(couplet.Results('mine/out').fields('fluid').field(-1, 'velocity').shape)")
+    check("import couplet reads it", read.returncode == 0 and read.stdout.startswith("("), read.stderr)
+
+
+def pages(prefix, home):
+    there = sorted(f.name for f in (prefix / "share/man/man1").iterdir())
+    check("a man page for each program and command", {"couplet.1", "couplet-run.1", "couplet-watch.1", "fluid_solver.1", "coupler.1"} <= set(there), there)
+    for name in there:
+        said = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-z", prefix / "share/man/man1" / name], capture_output=True, text=True)
+        check(f"{name} is set without a warning", said.returncode == 0 and not [w for w in said.stderr.splitlines() if "adjust" not in w and "break" not in w], said.stderr[:300])
+    said = run(prefix, home, "man", "couplet-run") if shutil.which("man") else None
+    check("man couplet-run", said is None or "--slurm" in said.stdout, said and said.stderr)
+    script = (f"source {prefix}/share/bash-completion/completions/couplet; COMP_CWORD={{0}}; COMP_WORDS=({{1}}); _couplet; echo ${{{{COMPREPLY[*]}}}}")
+    for words, number, wanted in (("couplet re", 1, "resume"), ("couplet run --sl", 2, "--slurm"), ("couplet new x --from perpendicular-", 4, "perpendicular-flap")):
+        said = run(prefix, home, script.format(number, words), shell="bash")
+        check(f"bash completes '{words}'", said.stdout.strip() == wanted, said.stdout + said.stderr)
+    if shutil.which("zsh"):
+        said = run(prefix, home, f"autoload -Uz compinit; compinit -u -D; fpath=({prefix}/share/zsh/site-functions {prefix}/share/zsh/vendor-completions $fpath); autoload -Uz _couplet; "
+                   "whence -w _couplet; functions _couplet > /dev/null; autoload +X _couplet && echo read", shell="zsh")
+        check("zsh reads its completion", "function" in said.stdout and "read" in said.stdout, said.stdout + said.stderr)
+
+
+def prefix(folder, home):
+    subprocess.run(["cmake", "--install", build, "--prefix", folder / "first"], check=True, capture_output=True)
+    (folder / "first").rename(folder / "moved")
+    works(folder / "moved", home)
+    pages(folder / "moved", home)
+
+
+def empty(folder, home):
+    """Nothing was built: the command is installed all the same, and says what is missing."""
+    subprocess.run(["cmake", "-S", ROOT, "-B", folder / "build", "-DCOUPLET_TESTS=OFF"], check=True, capture_output=True)
+    said = subprocess.run(["cmake", "--install", folder / "build", "--prefix", folder / "prefix"], capture_output=True, text=True)
+    check("cmake --install after any build", said.returncode == 0 and "CMake Warning" not in said.stderr, said.stderr)
+    doctor = run(folder / "prefix", home, "couplet", "doctor", "--quick")
+    check("the doctor names what is missing", doctor.returncode == 1 and "NO  coupler" in doctor.stdout, doctor.stdout + doctor.stderr)
+    wrong = run(folder / "prefix", home, "couplet", "run", folder / "prefix/share/couplet/configs/cavity")
+    check("run names the program that is missing", wrong.returncode == 2 and "'fluid_solver' of 'fluid' is not in" in wrong.stderr, wrong.stderr)
+
+
+def deb(folder, home):
+    """Into an empty folder: every library is one of the system's, and no file names the place where it was built."""
+    subprocess.run(["cpack", "-B", folder / "deb"], cwd=build, check=True, capture_output=True)
+    package = next((folder / "deb").glob("couplet_*.deb"))
+    subprocess.run(["dpkg", "-x", package, folder / "root"], check=True)
+    root = folder / "root/usr"
+    for program in sorted((root / "bin").iterdir()):
+        if program.name != "couplet":
+            libraries = subprocess.run(["ldd", program], capture_output=True, text=True).stdout
+            check(f"libraries of {program.name}", "not found" not in libraries and str(build) not in libraries and "libpetsc" in libraries, libraries[:200])
+    named = [f for f in root.rglob("*") if f.is_file() and str(build).encode() in f.read_bytes()]
+    check("no file names the place where it was built", not named, named)
+    outside = [f for f in (folder / "root").rglob("*") if f.is_file() and f.relative_to(root).parts[0] not in ("bin", "share", "lib", "include")]
+    check("files lie where the conventions want them", not outside, outside)
+    works(root, home)
+    pages(root, home)
+
+
+with tempfile.TemporaryDirectory(prefix="couplet-install-") as scratch:
+    (pathlib.Path(scratch) / "home").mkdir()
+    {"prefix": prefix, "empty": empty, "deb": deb}[what](pathlib.Path(scratch), pathlib.Path(scratch) / "home")
+end()
