@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The schemas of docs/schema: what the programs print, with units as patterns, and one for a whole case file with its sections
+`simulation` and `study`."""
+import json
+import re
+
+from couplet.documents import units
+from couplet.study.schema import STUDY
+
+
+EXPRESSION = ["number", "string", "object"]
+A_QUANTITY = f"^ *{units.NUMBER} *[A-Za-zµ%/][A-Za-zµ0-9^/*· ()²³-]*$"
+PARTICIPANT = r"^(?!(coupler|checkpoints|run)$)(?!-)[^/\\ .\n\t]{1,50}$"  # problem_of_name of common/app/case/case_file.cpp
+
+
+def with_units(node, used):
+    """The schema with each text of a unit as a reference to units.json; collects the units in `used`."""
+    if isinstance(node, list):
+        return [with_units(n, used) for n in node]
+    if not isinstance(node, dict):
+        return node
+    unit, found = node.get("x-unit"), {k: with_units(v, used) for k, v in node.items()}
+    if not isinstance(unit, str):
+        return found
+    used.add(unit)
+    return with_reference(found, {"$ref": f"units.json#/$defs/{units.name_of(unit)}"}, unit in units.BARE_NOT)
+
+
+def with_reference(node, reference, bare_zero):
+    """In place of the pattern of a number with any unit; where a bare number is ambiguous, a zero is not."""
+    if isinstance(node, list):
+        return [with_reference(n, reference, bare_zero) for n in node]
+    if not isinstance(node, dict):
+        return node
+    if node.get("type") == "string" and "pattern" in node:
+        rest = {k: v for k, v in node.items() if k not in ("type", "pattern")}
+        return {**rest, **({"anyOf": [{"const": 0}, reference]} if bare_zero and reference["$ref"].rpartition("/")[2] != "K" else reference)}
+    if node.get("type") == EXPRESSION:  # what is a number with a unit must have the right one
+        rest = {k: v for k, v in node.items() if k != "type"}
+        return {**rest, "anyOf": [{"type": ["number", "object"]}, {"type": "string", "not": {"pattern": A_QUANTITY}}, reference]}
+    if any(branch.get("minimum", branch.get("exclusiveMinimum", -1)) >= 0 for branch in node.get("anyOf", ())) and "K" not in reference["$ref"]:
+        reference = {**reference, "pattern": "^ *[+]?[0-9.]"}  # nor below 0 with a unit
+    return {k: with_reference(v, reference, bare_zero) if k in ("anyOf", "items") else v for k, v in node.items()}
+
+
+# -- sections that a program describes as Markdown ---------------------------------------------------------------------
+def limits(allowed):
+    found = {}
+    for pattern, key in ((r"above (-?[\d.e+-]+)", "exclusiveMinimum"), (r"at least (-?[\d.e+-]+)", "minimum"), (r"from (-?[\d.e+-]+) to", "minimum"), (r"from \S+ to (-?[\d.e+-]+)", "maximum")):
+        if match := re.search(pattern, allowed.partition("usual")[0]):
+            found[key] = float(match[1])
+    return found
+
+
+def of_row(kind, unit, allowed):
+    text = {"type": ["string", "number", "boolean"]}
+    if kind == "word":
+        return {"enum": re.findall(r"`([^`]+)`", allowed)}
+    if kind == "true or false":
+        return {"type": "boolean"}
+    if kind.startswith("list"):
+        return {"type": "array", "items": text}
+    if kind not in ("number", "whole number"):
+        return text
+    number = {"type": "integer" if kind == "whole number" else "number", **limits(allowed)}
+    if kind == "whole number":
+        return number
+    return {**({"x-unit": unit} if unit else {}), "anyOf": [number, {"type": "string", "pattern": f"^{units.NUMBER} *[^0-9 ].*$" if unit else f"^{units.NUMBER}$"}]}
+
+
+def of_markdown(text):
+    """The schema of a section from the tables that a program prints: a heading a mapping, a row a key."""
+    root = {"type": "object", "properties": {}, "additionalProperties": False}
+    node = root
+    for line in text.splitlines():
+        if heading := re.match(r"#+ `([\w.-]+)`", line):
+            node = root
+            for part in heading[1].split("."):
+                node = node["properties"].setdefault(part, {})
+            node.update({"type": "object", "properties": {}, "additionalProperties": False})
+        row = [c.strip().replace("\\|", "|") for c in re.split(r"(?<!\\)\|", line)[1:-1]]
+        if len(row) == 6 and (key := re.match(r"`([\w-]+)`", row[0])):
+            _, kind, unit, default, allowed, meaning = row
+            node["properties"][key[1]] = {"description": meaning, **({} if kind == "mapping" else of_row(kind, unit.strip("`"), allowed))}
+            if "required" in default:
+                node.setdefault("required", []).append(key[1])
+    return root
+
+
+def case_schema(programs, simulation):
+    """One schema for a whole case file: the program named in an entry decides about its keys."""
+    choices = [{"if": {"properties": {"program": {"const": program}}, "required": ["program"]}, "then": {"$ref": f"{program}.json"}} for program in programs]
+    participants = {"type": "object", "minProperties": 1, "propertyNames": {"pattern": PARTICIPANT}, "additionalProperties": {"type": "object", "required": ["program"], "allOf": choices}}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "Couplet case",
+        "type": "object",
+        "oneOf": [{"required": ["simulation", "participants"], "not": {"required": ["case"]}}, {"required": ["case", "study"], "maxProperties": 2}],
+        "properties": {"simulation": simulation, "participants": participants, "coupling": {"$ref": "coupler.json"}, "study": STUDY,
+                       "case": {"type": "string", "description": "another case file whose study this is"}},
+        "additionalProperties": False,
+    }
+
+
+def files(ask, programs, source):
+    """{name: text} of docs/schema; `ask`(program, question) -> what it prints; `source`: text of common/base/units.cpp."""
+    used, found = set(), {}
+    for program in programs:
+        found[program] = with_units(json.loads(ask(program, "--schema")), used)
+    simulation = re.search(r"^#+ simulation$(.*)", ask("coupler", "--docs"), flags=re.M | re.S)[1]
+    found["case"] = with_units(case_schema(programs[1:], of_markdown(simulation)), used)
+    found["units"] = {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Numbers with a unit", "$defs": units.definitions(used, source)}
+    return {f"docs/schema/{name}.json": json.dumps(content, indent=1, ensure_ascii=False) + "\n" for name, content in found.items()}
