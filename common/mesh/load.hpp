@@ -39,6 +39,11 @@ using MeshParameters = std::map<std::string, double>;
 /// Reads .msh 2.2 or 4.1 (ASCII or binary) with physical names. Throws Error with file and line.
 RawMesh read_msh(const std::filesystem::path& file);
 
+/// Reads the mesh of an input deck of CalculiX or Abaqus (.inp): solid elements of two or three dimensions, those of second
+/// order by their corners; *SURFACE and NSET name patches, *SOLID SECTION and ELSET zones; boundary that nothing names is the
+/// patch "rest". Throws Error with file and line.
+RawMesh read_inp(const std::filesystem::path& file);
+
 /// Runs the gmsh program on a .geo unless a cached result (beside the file, named <stem>.<hash>.cache.msh,
 /// where the hash covers the text of the .geo, of the files it includes, `dim` and the parameters) is there;
 /// gives the path of the .msh. Several programs may ask for the same file at the same time. `parameters` take
@@ -52,7 +57,7 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim,
 /// exactly one patch; errors name the place. Collective.
 Mesh distribute(MPI_Comm comm, const RawMesh& raw);
 
-/// File (.msh, .geo, or what convert_mesh() reads) to distributed mesh, `periodic`, `materials` and `find_wide_points` as
+/// File (.msh, .inp, .geo, or what convert_mesh() reads) to distributed mesh, `periodic`, `materials` and `find_wide_points` as
 /// in RawMesh; all lengths times `scale`.
 /// Collective; an error on rank 0 is thrown on every rank.
 Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim,

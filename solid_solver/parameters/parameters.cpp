@@ -88,7 +88,9 @@ void declare_heat(config::Section& s, SolidParameters& p) {
 void declare(config::Section& s, SolidParameters& p) {
   using Analysis = SolidParameters::Analysis;
   using Plane = SolidParameters::Plane;
-  s.value("mesh", p.mesh).required().doc("mesh file, .msh or .geo, relative to the YAML");
+  s.value("mesh", p.mesh)
+      .required()
+      .doc("mesh file, .msh, .geo or .inp (others: docs/formats.md), relative to the YAML");
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(

@@ -23,7 +23,7 @@ ALLOWED = {
     "csv": ["base"],
     "parallel": ["base"],
     "linalg": ["parallel", "log", "base"],
-    "mesh": ["linalg", "parallel", "config", "log", "base"],
+    "mesh": ["linalg", "parallel", "config", "csv", "log", "base"],
     "fv": ["mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "elasticity": ["fv", "mesh", "linalg", "parallel", "config", "csv", "log", "base"],
     "time": ["config", "base"],

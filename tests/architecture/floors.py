@@ -13,7 +13,7 @@ FLOORS = {
     "thermocline": ["base", "material", "weather", "plant", "bed", "wall", "economics", "model", "judge", "."],
     "plate_modal": ["model", "motion", "."],
     "common/elasticity": [".", "thesis", "symmetric", "tied", "finite", "solve"],
-    "common/mesh": [".", "msh", "gmsh"],
+    "common/mesh": [".", "msh", "inp", "gmsh"],
     "common/app": ["watch", "loop", "case", "."],
     "common/io": [".", "probes"],
 }

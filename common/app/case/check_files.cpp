@@ -44,10 +44,12 @@ class FileCheck {
     try {
       if (file.extension() == ".msh") {
         check_patches(read_msh(file).patches);
+      } else if (file.extension() == ".inp") {
+        check_patches(read_inp(file).patches);
       } else if (file.extension() == ".geo") {
         check_geo(read_geo(file));
       } else if (const auto kind = file.extension(); kind != ".unv" && kind != ".med" && kind != ".cgns") {
-        report("mesh", fmt::format("'{}' is neither .msh nor .geo, .unv, .med or .cgns.", name));
+        report("mesh", fmt::format("'{}' is neither .msh nor .geo, .inp, .unv, .med or .cgns.", name));
       }
     } catch (const Error& error) {
       report("mesh", error.what());

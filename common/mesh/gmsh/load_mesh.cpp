@@ -36,14 +36,14 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
                   file.string());
     const std::string kind = file.extension().string();
     const bool foreign = kind == ".unv" || kind == ".med" || kind == ".cgns";
-    if (kind == ".inp" || kind == ".vtk")
+    if (kind == ".vtk")
       throw Error(
-          "The mesh file '{}' cannot be read: gmsh writes {} but {}. Convert it with meshio to .msh 4.1 with physical "
-          "names, or have it written as .unv, whose groups become patches and zones.",
-          file.string(), kind, kind == ".inp" ? "does not read it" : "its parts have no names there");
-    if (kind != ".msh" && kind != ".geo" && !foreign)
+          "The mesh file '{}' cannot be read: its parts have no names there. Convert it with meshio to .msh 4.1 with "
+          "physical names, or have it written as .unv, whose groups become patches and zones.",
+          file.string());
+    if (kind != ".msh" && kind != ".inp" && kind != ".geo" && !foreign)
       throw Error(
-          "The mesh file '{}' is neither .msh nor .geo, .unv, .med or .cgns. Convert it with gmsh or meshio to .msh 4.1 "
+          "The mesh file '{}' is neither .msh nor .geo, .inp, .unv, .med or .cgns. Convert it with gmsh or meshio to .msh 4.1 "
           "with physical names.",
           file.string());
     if (kind != ".geo" && !parameters.empty())
@@ -52,8 +52,9 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
           ".geo "
           "it was made from.",
           file.string());
-    raw =
-        kind == ".geo" ? read_geo_mesh(file, dim, parameters) : read_msh(foreign ? convert_mesh(file) : file);
+    raw = kind == ".geo"   ? read_geo_mesh(file, dim, parameters)
+          : kind == ".inp" ? read_inp(file)
+                           : read_msh(foreign ? convert_mesh(file) : file);
     for (Vec3& x : raw.points) x *= scale;
     if (raw.cell_type.empty())
       throw Error("The mesh '{}' has no cells. Put the {} into a physical group, else gmsh does not save {}.",

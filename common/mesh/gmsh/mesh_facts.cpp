@@ -37,6 +37,7 @@ MeshFacts facts_of(const RawMesh& raw) {
 namespace {
 
 RawMesh read_raw(const std::filesystem::path& file, const MeshParameters& parameters) {
+  if (file.extension() == ".inp") return read_inp(file);
   if (file.extension() != ".geo") return read_msh(file);
   const GeoScript script = read_geo(file);
   const bool is_solid =

@@ -180,10 +180,11 @@ TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
   EXPECT_EQ(error(folder / "none.msh", 3),
             "The mesh file '" + (folder / "none.msh").string() +
                 "' does not exist. The path is relative to the folder of the YAML file.");
-  EXPECT_THAT(error(write("mesh.stl", ""), 3), HasSubstr("is neither .msh nor .geo, .unv, .med or .cgns."));
+  EXPECT_THAT(error(write("mesh.stl", ""), 3),
+              HasSubstr("is neither .msh nor .geo, .inp, .unv, .med or .cgns."));
   // gmsh would take both for scripts.
   EXPECT_THAT(error(write("mesh.vtk", ""), 3), HasSubstr("its parts have no names there"));
-  EXPECT_THAT(error(write("mesh.inp", ""), 3), HasSubstr("gmsh writes .inp but does not read it"));
+  EXPECT_THAT(error(write("mesh.inp", ""), 3), HasSubstr("mesh.inp: the deck has no element of a body"));
   EXPECT_THAT(error(test::data / "plane_41_ascii.msh", 3),
               HasSubstr("is 2-dimensional, but 'dimension: 3' is asked for."));
   EXPECT_THAT(error(write("bad.msh", "hello"), 3),

@@ -2,9 +2,12 @@
 // Loads by their total: resultant force and moment to round-off on any mesh and any ranks, and what they do to a body.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 
 #include "common/base/error.hpp"
@@ -215,6 +218,45 @@ TEST(SolidLoads, give_the_same_displacement_on_any_number_of_ranks) {
     for (int i = 0; i < 3; ++i)
       EXPECT_NEAR(a[std::size_t(c) * 3 + i], b[std::size_t(alone.at(many->body().mesh().cell_id[c])) * 3 + i],
                   1e-9 * largest);
+}
+
+/// A mesh of tetrahedra or hexahedra as CalculiX writes it, its sides as surfaces, but "zmax", which is a set of nodes.
+std::string deck_of(const RawMesh& raw) {
+  std::string text = "*NODE, NSET=Nall\n";
+  for (std::size_t p = 0; p < raw.points.size(); ++p)
+    text += fmt::format("{},{:.17g},{:.17g},{:.17g}\n", 10 * p + 1, raw.points[p][0], raw.points[p][1],
+                        raw.points[p][2]);
+  for (Index c = 0; c < raw.cell_points.size(); ++c) {
+    text += fmt::format("*ELEMENT, TYPE=C3D{}, ELSET=Eall\n{}", raw.cell_points[c].size(), c + 1);
+    for (const Index p : raw.cell_points[c]) text += fmt::format(",{}", 10 * p + 1);
+    text += "\n";
+  }
+  for (std::size_t patch = 0; patch < raw.patches.size(); ++patch) {
+    text += fmt::format("*{}={}\n", raw.patches[patch] == "zmax" ? "NSET, NSET" : "SURFACE, TYPE=NODE, NAME",
+                        raw.patches[patch]);
+    for (Index f = 0; f < raw.boundary_points.size(); ++f)
+      for (const Index p : raw.boundary_points[f])
+        if (raw.boundary_patch[std::size_t(f)] == static_cast<int>(patch))
+          text += fmt::format("{}\n", 10 * p + 1);
+  }
+  return text;
+}
+
+TEST(SolidLoads, and_supports_on_a_mesh_of_calculix_reproduce_a_linear_field) {
+  for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra}) {
+    const auto file = std::filesystem::temp_directory_path() /
+                      fmt::format("couplet-deck-{}-{}.inp", ::getpid(), comm_rank(MPI_COMM_WORLD));
+    std::ofstream(file) << deck_of(distorted_box(cells));
+    const RawMesh raw = read_inp(file);
+    std::filesystem::remove(file);
+    const LinearField field = general_field(3);
+    SolidParameters p = to_round_off(box_parameters(3), FaceGradient::symmetric);
+    for (auto& [name, b] : p.boundaries) b = boundary(Type::fixed_displacement, field.text(3));
+    p.boundaries["zmax"] = boundary(Type::traction, traction_text(p, field, Vec3::UnitZ()));
+    const auto solid = make_solid(raw, p);
+    step(*solid, 1);
+    expect_exact(*solid, field);
+  }
 }
 
 std::string refusal(const RawMesh& raw, const SolidParameters& p) {

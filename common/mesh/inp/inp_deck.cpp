@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/mesh/inp/inp_deck.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/csv/cells.hpp"
+
+namespace couplet {
+namespace {
+
+/// Members of all sets together, sets within sets counted: a deck of sets of sets would grow without end.
+constexpr std::size_t most_members = 20000000;
+
+/// Keywords that make or move nodes and elements, or part the deck: what they do is not done here.
+constexpr std::pair<std::string_view, std::string_view> refused[] = {
+    {"NGEN", "it makes nodes"},          {"NFILL", "it makes nodes"},   {"NCOPY", "it makes nodes"},
+    {"NMAP", "it moves nodes"},          {"SYSTEM", "it moves nodes"},  {"ELGEN", "it makes elements"},
+    {"ELCOPY", "it makes elements"},     {"SUBMODEL", "it is no mesh"}, {"IMPORT", "it reads another file"},
+    {"MANIFEST", "it reads other files"}};
+
+class DeckReader {
+ public:
+  explicit DeckReader(InpLines& lines) : lines_(lines) {}
+
+  InpDeck read() {
+    bool more = lines_.next();
+    if (more && !lines_.is_keyword()) lines_.fail("an input deck begins with a keyword ('*NODE', ...).");
+    while (more) more = block();
+    return std::move(deck_);
+  }
+
+ private:
+  /// One keyword with its lines. False at the end.
+  bool block() {
+    const InpKeyword k = lines_.keyword();
+    for (const auto& [word, reason] : refused)
+      if (k.word == word)
+        lines_.fail(fmt::format("*{} is not read: {}. Have the mesh written with all nodes and elements.",
+                                word, reason));
+    if (k.word == "INCLUDE") {
+      const std::string* name = k.find("INPUT");
+      lines_.include(name ? *name : "");
+      return lines_.next();
+    }
+    if (k.word == "NODE") return nodes(k);
+    if (k.word == "ELEMENT") return elements(k);
+    if (k.word == "NSET") return set(k, "NSET", deck_.node_sets);
+    if (k.word == "ELSET") return set(k, "ELSET", deck_.element_sets);
+    if (k.word == "SURFACE") return surface(k);
+    if (k.word == "SOLID SECTION") return section(k);
+    if (k.word == "PART" && ++parts_ > 1)
+      lines_.fail(
+          "a deck of several parts is not read. Have it written flat (Abaqus: 'do not use parts and assemblies').");
+    if (k.word == "INSTANCE") return instance();
+    ++deck_.passed_over["*" + k.word.substr(0, 40)];
+    return skip();
+  }
+
+  bool skip() {
+    while (lines_.next())
+      if (lines_.is_keyword()) return true;
+    return false;
+  }
+
+  bool instance() {
+    if (++instances_ > 1)
+      lines_.fail(
+          "a deck of several instances is not read. Have it written flat (Abaqus: 'do not use parts and assemblies').");
+    const bool more = lines_.next();
+    if (more && !lines_.is_keyword())
+      lines_.fail("an instance that is moved is not read. Have the deck written flat.");
+    return more;
+  }
+
+  const std::string& required(const InpKeyword& k, const char* name) {
+    const std::string* value = k.find(name);
+    if (!value || value->empty()) lines_.fail(fmt::format("*{} needs {}=...", k.word, name));
+    return *value;
+  }
+
+  bool nodes(const InpKeyword& k) {
+    if (const std::string* system = k.find("SYSTEM"); system && upper(*system) != "R")
+      lines_.fail("*NODE in other than rectangular coordinates is not read.");
+    InpSet* set = k.find("NSET") ? &deck_.node_sets.at(*k.find("NSET")) : nullptr;
+    while (lines_.next() && !lines_.is_keyword()) {
+      csv::split_cells(lines_.text(), ',', cells_);
+      while (!cells_.empty() && cells_.back().empty()) cells_.pop_back();
+      const std::int64_t id = cells_.empty() ? 0 : identifier_of(cells_[0]);
+      if (id == 0 || cells_.size() < 2 || cells_.size() > 7)
+        lines_.fail("a node has a whole number above 0 and two or three coordinates: '12, 0.5, 1, 0'.");
+      Vec3 x = Vec3::Zero();
+      for (std::size_t a = 1; a < std::min<std::size_t>(cells_.size(), 4); ++a) {
+        if (cells_[a].empty()) continue;
+        const auto value = csv::number_of(fortran(cells_[a]));
+        if (!value) lines_.fail(csv::why_no_number(cells_[a]));
+        x[Index(a) - 1] = *value;
+      }
+      if (deck_.points.size() >= std::size_t(std::numeric_limits<Index>::max()))
+        lines_.fail("more nodes than a mesh can have.");
+      if (!deck_.point_of_node.emplace(id, static_cast<Index>(deck_.points.size())).second)
+        lines_.fail(fmt::format("node {} is given twice.", id));
+      deck_.points.push_back(x);
+      if (set) add(*set, {id, id, 1});
+    }
+    return lines_.is_keyword();
+  }
+
+  /// "1.5D+03" of old programs.
+  std::string_view fortran(std::string_view cell) {
+    const std::size_t d = cell.find_first_of("dD");
+    if (d == std::string_view::npos) return cell;
+    number_ = cell;
+    number_[d] = 'e';
+    return number_;
+  }
+
+  bool elements(const InpKeyword& k) {
+    const std::string name = upper(required(k, "TYPE"));
+    const InpType type = inp_type(name);
+    if (type.use == InpType::Use::unknown) lines_.fail(why_not_read(name));
+    if (type.use == InpType::Use::nothing) {
+      ++deck_.passed_over[name];
+      return skip();
+    }
+    const std::string* own_set = k.find("ELSET");
+    if (own_set) deck_.element_sets.at(*own_set);
+    deck_.elements.groups.push_back(own_set ? deck_.element_sets.find(*own_set)->name : "");
+    const std::size_t n_kept = type.shape ? std::size_t(type.shape->n_corners) : 2;
+    while (lines_.next() && !lines_.is_keyword()) {
+      const std::uint64_t mark = lines_.mark();
+      lines_.identifiers(std::size_t(type.n_nodes) + 1, numbers_);
+      if (numbers_.size() != std::size_t(type.n_nodes) + 1)
+        lines_.fail(fmt::format("a {} has its number and {} nodes, here are {} numbers.", name, type.n_nodes,
+                                numbers_.size()));
+      const auto corners = std::span(numbers_).subspan(1, n_kept);
+      for (std::size_t i = 1; i < corners.size(); ++i)
+        if (std::ranges::find(corners.first(i), corners[i]) != corners.first(i).end())
+          lines_.fail(fmt::format(
+              "element {} has node {} twice. Degenerate cells are not read; give it as a C3D6, C3D5 or C3D4.",
+              numbers_[0], corners[i]));
+      deck_.elements.all.push_back(
+          {numbers_[0], mark, type, deck_.elements.nodes.size(), deck_.elements.groups.size() - 1});
+      deck_.elements.nodes.insert(deck_.elements.nodes.end(), corners.begin(), corners.end());
+      if (type.shape && type.n_nodes > type.shape->n_corners) ++deck_.second_order;
+      if (own_set) add(deck_.element_sets.at(*own_set), {numbers_[0], numbers_[0], 1});
+    }
+    return lines_.is_keyword();
+  }
+
+  /// Consecutive numbers become one range.
+  void add(InpSet& set, const InpRange& range) {
+    if (!set.members.empty() && range.step == 1 && set.members.back().step == 1 &&
+        set.members.back().last + 1 == range.first) {
+      set.members.back().last = range.last;
+      return;
+    }
+    if (++members_ > most_members)
+      lines_.fail(fmt::format("the sets of this deck have more than {} members.", most_members));
+    set.members.push_back(range);
+  }
+
+  /// A number, or the name of a set that was given before.
+  void add_named(InpSet& set, std::string_view cell, const InpSets& sets, const char* kind) {
+    if (const std::int64_t id = identifier_of(cell); id > 0) return add(set, {id, id, 1});
+    const InpSet* other = sets.find(std::string(cell));
+    if (!other)
+      lines_.fail(fmt::format("'{}' is no number and no {} given before.", cell.substr(0, 60), kind));
+    if (other == &set) return;
+    const std::vector<InpRange> members = other->members;
+    for (const InpRange& r : members) add(set, r);
+  }
+
+  bool set(const InpKeyword& k, const char* kind, InpSets& sets) {
+    const std::string name = required(k, kind);
+    const bool generates = k.find("GENERATE") != nullptr;
+    sets.at(name).is_given = true;
+    while (lines_.next() && !lines_.is_keyword()) {
+      InpSet& here = sets.at(name);
+      if (generates) {
+        lines_.identifiers(2, numbers_);
+        const std::int64_t step = numbers_.size() > 2 ? numbers_[2] : 1;
+        if (numbers_.size() > 3 || numbers_[1] < numbers_[0])
+          lines_.fail("GENERATE takes first, last and step: '1, 100, 3'.");
+        add(here, {numbers_[0], numbers_[1] - (numbers_[1] - numbers_[0]) % step, step});
+        continue;
+      }
+      csv::split_cells(lines_.text(), ',', cells_);
+      const auto cells = cells_;
+      for (const std::string_view cell : cells)
+        if (!cell.empty()) add_named(here, cell, sets, kind);
+    }
+    std::vector<InpRange>& members = sets.at(name).members;
+    std::ranges::sort(members);
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    return lines_.is_keyword();
+  }
+
+  bool surface(const InpKeyword& k) {
+    InpSurface surface{required(k, "NAME"), {}, {}};
+    if (!surface_names_.insert(upper(surface.name)).second)
+      lines_.fail(fmt::format("the surface '{}' is given twice.", surface.name.substr(0, 60)));
+    if (k.find("COMBINE") || k.find("CROP"))
+      lines_.fail("a surface made of other surfaces is not read; name its faces.");
+    const std::string type = k.find("TYPE") ? upper(*k.find("TYPE")) : "ELEMENT";
+    if (type != "ELEMENT" && type != "NODE")
+      lines_.fail(fmt::format("a surface of TYPE={} is not read; ELEMENT and NODE are.", type.substr(0, 40)));
+    while (lines_.next() && !lines_.is_keyword()) {
+      csv::split_cells(lines_.text(), ',', cells_);
+      const auto cells = cells_;
+      InpSet members;
+      if (type == "NODE") {
+        add_named(members, cells[0], deck_.node_sets, "NSET");
+        surface.nodes.insert(surface.nodes.end(), members.members.begin(), members.members.end());
+        continue;
+      }
+      const std::string face = cells.size() > 1 ? upper(cells[1]) : "";
+      if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '6')
+        lines_.fail(
+            fmt::format("a face of an element or of an ELSET is expected, such as 'beam, S3', not '{}'.",
+                        lines_.text().substr(0, 60)));
+      add_named(members, cells[0], deck_.element_sets, "ELSET");
+      surface.parts.push_back({std::move(members.members), face[1] - '1', lines_.mark()});
+    }
+    deck_.surfaces.push_back(std::move(surface));
+    return lines_.is_keyword();
+  }
+
+  bool section(const InpKeyword& k) {
+    const std::string& name = required(k, "ELSET");
+    const InpSet* set = deck_.element_sets.find(name);
+    if (!set) lines_.fail(fmt::format("*SOLID SECTION: no ELSET '{}' is given before.", name.substr(0, 60)));
+    deck_.sections.emplace_back(set->name, set->members);
+    return skip();
+  }
+
+  InpLines& lines_;
+  InpDeck deck_;
+  std::vector<std::string_view> cells_;
+  std::vector<std::int64_t> numbers_;
+  std::string number_;
+  std::set<std::string> surface_names_;
+  std::size_t members_ = 0;
+  int parts_ = 0, instances_ = 0;
+};
+
+/// Abaqus puts the instance before the name of a set: "Part-1-1.top".
+std::string key_of(const std::string& name) { return upper(name.substr(name.rfind('.') + 1)); }
+
+}  // namespace
+
+InpSet& InpSets::at(const std::string& name) {
+  const auto [found, is_new] = number.try_emplace(key_of(name), all.size());
+  if (is_new) all.push_back({name.substr(name.rfind('.') + 1), {}, false});
+  return all[found->second];
+}
+
+const InpSet* InpSets::find(const std::string& name) const {
+  const auto found = number.find(key_of(name));
+  return found == number.end() ? nullptr : &all[found->second];
+}
+
+InpDeck read_inp_deck(InpLines& lines) { return DeckReader(lines).read(); }
+
+}  // namespace couplet
