@@ -18,6 +18,7 @@ SUBCOMMANDS = {
     "explain": ("command.explain", "tells what a case computes and leaves out, and what it needs"),
     "new": ("command.new", "makes a case of one's own from one of the gallery"),
     "gallery": ("command.gallery", "lists the cases that come along"),
+    "docs": ("command.docs", "shows the documents, searchable, with a gallery of all cases"),
     "plot": ("plot", "makes pictures of what a run wrote"),
     "compare": ("command.compare", "tells in what two runs differ"),
     "study": ("study.main", "runs the study of a case: variants, error against time, the best of some variables"),

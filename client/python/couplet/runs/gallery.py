@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """The cases that come along, and how one of them becomes a case of somebody's own."""
+import csv
 import dataclasses
 import pathlib
 import re
 import shutil
+import subprocess
 
 import yaml
 
 from couplet.places import ROOT
 from couplet.runs.case import Case, expect
+
+
+CELLS = "cells.csv"
 
 
 @dataclasses.dataclass
@@ -18,6 +23,7 @@ class Entry:
     about: str      # what the README says first
     programs: list
     picture: str    # file beside README.md or below docs/, as the README names it; empty if there is none
+    cells: str = ""  # of the largest mesh (configs/cells.csv)
 
     @property
     def folder(self):
@@ -35,7 +41,25 @@ def entry(folder):
 
 
 def entries():
-    return [entry(file.parent) for file in sorted((ROOT / "configs").glob("*/case.yaml"))]
+    found = [entry(file.parent) for file in sorted((ROOT / "configs").glob("*/case.yaml"))]
+    table = ROOT / "configs" / CELLS
+    rows = dict(csv.reader(table.read_text().splitlines())) if table.exists() else {}
+    for e in found:
+        e.cells = rows.get(e.name, "")
+    return found
+
+
+def cells_of_all(build):
+    """Text of cells.csv: of each case the most cells that one of its programs expects."""
+    text = "case,cells\n"
+    for file in sorted((ROOT / "configs").glob("*/case.yaml")):
+        case, most = Case(file, build), 0
+        for name in case.participants:
+            if not case.guest(name):
+                said = subprocess.run([case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True).stdout
+                most = max([most, *map(int, re.findall(r"^expected: +(\d+) cells", said, flags=re.M))])
+        text += f"{case.file.parent.name},{most or ''}\n"
+    return text
 
 
 def find(name):

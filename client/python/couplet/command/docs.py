@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shows the documents as a site with search and a gallery of all cases: builds it once, then serves it on the loopback address."""
+import functools
+import http.server
+import os
+import pathlib
+import sys
+
+from couplet.documents import site
+
+
+def declare(parser):
+    parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="only builds the site into this folder")
+    parser.add_argument("--port", type=int, default=0, metavar="N", help="of the loopback address (any that is free)")
+    parser.add_argument("--again", action="store_true", help="builds it anew although it is there")
+
+
+def built(again):
+    """The folder with the site of this version."""
+    from couplet.command import version
+    from couplet.places import ROOT
+    cache = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "couplet" / f"site-{version()}-{ROOT.name}"
+    newest = max(((ROOT / page).stat().st_mtime for page in site.pages()), default=0)
+    mark = cache / "index.html"
+    if again or not mark.exists() or mark.stat().st_mtime < newest:
+        print("builds the site (half a minute) ...", flush=True)
+        site.build(cache)
+    return cache
+
+
+class Quiet(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *_):
+        pass
+
+
+def run(arguments):
+    if arguments.build:
+        for line in site.build(arguments.build):
+            print(line, file=sys.stderr)
+        print(f"written: {arguments.build / 'index.html'}")
+        return 0
+    folder = built(arguments.again)
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", arguments.port), functools.partial(Quiet, directory=str(folder)))
+    print(f"http://127.0.0.1:{server.server_port}/ (Ctrl-C ends)", flush=True)
+    server.serve_forever()
+    return 0

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The site: all documents and the READMEs of cases and folders, searchable, with a gallery of all cases, by MkDocs and its Material theme. Nothing
+on it is loaded from elsewhere."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+
+from couplet.places import ROOT
+from couplet.runs.case import expect
+from couplet.runs.gallery import entries
+
+BEGIN = ("docs/quickstart.md", "docs/tutorials/first-solid.md", "docs/tutorials/first-fluid.md", "docs/tutorials/first-coupled.md", "docs/tutorials/own-mesh.md",
+         "docs/tutorials/own-participant.md", "docs/tutorials/accuracy.md", "docs/tutorials/tank-year.md", "docs/tutorial-solid.md")
+GUIDES = ("docs/coupling.md", "docs/studies.md", "docs/large-strain.md", "docs/plate.md", "docs/thermocline.md", "docs/theory.md", "docs/stability.md")
+REFERENCE = ("docs/config.md", "docs/effects.md", "docs/findings.md", "docs/quantities.md", "docs/expressions.md", "docs/formats.md", "docs/protocol.md")
+LEFT_OUT = re.compile(r"(^|/)(out|out-[^/]*|build[^/]*|__pycache__|\.[^/]*)(/|$)")
+CONFIG = """site_name: Couplet
+docs_dir: {docs}
+site_dir: {site}
+use_directory_urls: false
+theme:
+  name: material
+  font: false
+  palette: {{primary: indigo}}
+  features: [navigation.sections, navigation.indexes, navigation.top, search.highlight, toc.follow]
+plugins: [search]
+markdown_extensions: [tables, fenced_code, attr_list, md_in_html, {{toc: {{permalink: true}}}}]
+extra: {{generator: false}}
+extra_css: [site.css]
+nav:
+{nav}
+"""
+STYLE = """.md-grid { max-width: 76rem; }
+.md-typeset table:not([class]) { font-size: .68rem; }
+.gallery { display: grid; grid-template-columns: repeat(auto-fill, minmax(15rem, 1fr)); gap: 1rem; }
+.gallery > div { border: 1px solid #8884; border-radius: .3rem; padding: .6rem; }
+.gallery img { max-height: 9rem; display: block; margin: auto; }
+.gallery p { margin: .3rem 0; font-size: .7rem; }
+"""
+
+
+def pages():
+    """All Markdown files of the project, relative to it."""
+    found = []
+    for folder, below, names in os.walk(ROOT):
+        place = pathlib.Path(folder).relative_to(ROOT)
+        below[:] = sorted(d for d in below if not LEFT_OUT.search(d))
+        found += [place / name for name in sorted(names) if name.endswith(".md")]
+    return found
+
+
+def title_of(page):
+    found = re.search(r"^# (.*)", (ROOT / page).read_text(), flags=re.M)
+    return found[1].replace('"', "'") if found else page.stem
+
+
+def target_of(page, link, there):
+    """(link as it stands in the site, file to be copied) of a relative link; (None, None) where there is nothing to be led to."""
+    path, _, anchor = link.partition("#")
+    target = pathlib.Path(os.path.normpath(page.parent / path)) if path else page
+    if (ROOT / target).is_dir():
+        target /= "README.md"
+        if target not in there:
+            return ("../" * (len(page.parts) - 1) + "gallery.md", None) if target == pathlib.Path("configs/README.md") else (None, None)
+    if target.parts[0] == ".." or not (ROOT / target).is_file():
+        return None, None
+    site_link = os.path.relpath(target, page.parent) + (f"#{anchor}" if anchor else "")
+    return site_link, None if target in there else target
+
+
+def with_links(page, text, there, needed):
+    """The text with links that lead somewhere in the site; others lose their link. Files that they name are collected in `needed`."""
+    def link(match):
+        mark, words, place = match.groups()
+        if "://" in place or place.startswith("mailto:"):
+            return match[0]
+        found, file = target_of(page, place, there)
+        if found is None:
+            return words
+        if file:
+            needed.add(file)
+            # A text is shown as it is, whatever a browser thinks of its name.
+            found = found if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html") else found + ".txt"
+        return f"{mark}[{words}]({found})"
+    parts = re.split(r"(^```.*?^```|`[^`\n]+`(?!\]))", text, flags=re.M | re.S)
+    return "".join(part if i % 2 else re.sub(r"(!?)\[((?:[^][]|\[[^]]*\])*)\]\(([^)\s]+)\)", link, part) for i, part in enumerate(parts))
+
+
+def card(entry, there, needed):
+    readme = pathlib.Path("configs") / entry.name / "README.md"
+    picture = target_of(readme, entry.picture, there)[1] if entry.picture else None
+    shown = ""
+    if picture:
+        needed.add(picture)
+        shown = f"[![{entry.title}]({picture})]({readme})\n\n"
+    first = re.split(r"(?<=[.!?]) ", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", entry.about))[0]
+    return (f'<div markdown="1">\n{shown}**[{entry.title}]({readme})**\n\n{first}\n\n{", ".join(f"`{p}`" for p in dict.fromkeys(entry.programs))}'
+            f"{f'; {entry.cells} cells' if entry.cells else ''}\n\n`couplet run configs/{entry.name}`\n\n</div>\n")
+
+
+def gallery(there, needed):
+    text = "# Gallery\n\nAll cases that come along. `couplet new mine --from NAME` makes one's own of any of them.\n\n"
+    return text + '<div class="gallery" markdown="1">\n\n' + "\n".join(card(e, there, needed) for e in entries()) + "\n</div>\n"
+
+
+def nav_of(there):
+    """Lines of the nav section."""
+    def group(title, names):
+        rows = [f'    - "{title_of(p)}": {"index.md" if str(p) == "README.md" else p}' for p in map(pathlib.Path, names) if p in there]
+        return [f"  - {title}:", *rows] if rows else []
+    placed = {pathlib.Path(p) for p in (*BEGIN, *GUIDES, *REFERENCE, "README.md")}
+    cases = [p for p in there if p.parts[0] == "configs"]
+    validation = [p for p in there if p.parts[:2] == ("docs", "validation")]
+    rest = [p for p in there if p not in placed and p not in cases and p not in validation]
+    return "\n".join(["  - Couplet: index.md", *group("Begin", BEGIN), "  - Gallery:", "    - gallery.md", *group("Cases", cases)[1:], *group("Guides", GUIDES), *group("Reference", REFERENCE),
+                      *group("Validation", validation), *group("The project", rest)])
+
+
+def stage(folder):
+    """Everything that the site is made of, in a folder; gives the nav."""
+    there, needed = pages(), set()
+    known = set(there)
+    for page in there:
+        to = folder / ("index.md" if str(page) == "README.md" else page)
+        to.parent.mkdir(parents=True, exist_ok=True)
+        to.write_text(with_links(page, (ROOT / page).read_text(), known, needed).replace("](README.md", "](index.md") if str(page) == "README.md" else
+                      re.sub(r"\]\(((?:\.\./)+)README\.md(#[^)]*)?\)", lambda m: f"]({m[1]}{'index.md' if m[1].count('../') == len(page.parts) - 1 else 'README.md'}{m[2] or ''})",
+                             with_links(page, (ROOT / page).read_text(), known, needed)))
+    (folder / "gallery.md").write_text(gallery(known, needed))
+    for file in needed:
+        to = folder / file
+        to.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(ROOT / file, to if file.suffix in (".png", ".svg", ".jpg", ".json", ".csv", ".html") else to.with_name(to.name + ".txt"))
+    (folder / "site.css").write_text(STYLE)
+    return nav_of(there)
+
+
+def build(site):
+    """Builds the site into a folder."""
+    expect(shutil.which("mkdocs"), "the site is built by MkDocs: apt install mkdocs mkdocs-material")
+    site = pathlib.Path(site).absolute()
+    with tempfile.TemporaryDirectory(prefix="couplet-site-") as scratch:
+        docs = pathlib.Path(scratch) / "docs"
+        docs.mkdir()
+        nav = stage(docs)
+        config = pathlib.Path(scratch) / "mkdocs.yml"
+        config.write_text(CONFIG.format(docs=docs, site=site, nav=nav))
+        done = subprocess.run(["mkdocs", "build", "--clean", "-f", config], capture_output=True, text=True)
+        expect(done.returncode == 0, f"mkdocs failed: {(done.stderr or done.stdout).strip()[-2000:]}")
+        return [line for line in (done.stdout + done.stderr).splitlines() if "WARNING" in line or "ERROR" in line]
