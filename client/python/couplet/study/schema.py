@@ -26,7 +26,7 @@ STUDY = {"description": "runs of this case for `couplet study` (docs/studies.md)
     mapping({"participant": {"type": "string"}, "variants": named({"type": ["object", "null"]}), "optimise": OPTIMISE,
              "sweeps": named(mapping({"key": {"type": "string"}, "values": {"type": "array"}}, required=["key", "values"]))},
             anyOf=[{"required": [word]} for word in ("variants", "sweeps", "optimise")]),
-    mapping({**{name: {} for name in study.KEYS}, "participant": {"type": "string"}, "alone": {"type": "boolean"}, "axes": named(AXIS), "set": CHANGES,
+    mapping({**{name: {} for name in sorted(study.KEYS)}, "participant": {"type": "string"}, "alone": {"type": "boolean"}, "axes": named(AXIS), "set": CHANGES,
              "quantities": named({"type": "object", "propertyNames": {"enum": sorted(quantities.KEYS)}}), "clock": {"enum": list(pictures.CLOCKS)},
              "leave-out": {"type": "array", "items": {"type": "object"}}, "repeats": {"type": "integer", "minimum": 1}, "timeout": NUMBER, "title": {"type": "string"},
              "text": {"type": "string"}, "optimise": OPTIMISE, "sources": named({"type": "object", "propertyNames": {"enum": sorted(dominance.KEYS)}})},
