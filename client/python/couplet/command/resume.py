@@ -3,7 +3,7 @@
 with. A continued run equals the uninterrupted one bit for bit."""
 import pathlib
 
-from couplet.command.run import finish
+from couplet.command.run import shown_run
 from couplet.runs import folder as folders
 from couplet.runs.case import Case, expect
 from couplet.runs.job import Job
@@ -33,4 +33,4 @@ def run(arguments):
     if arguments.print:
         print(job.line())
         return 0
-    return finish(job, job.run(), False)
+    return shown_run(job)

@@ -79,7 +79,19 @@ def run(arguments):
     if arguments.print:
         print(job.line())
         return 0
-    return finish(job, job.run(), arguments.picture)
+    return shown_run(job, arguments.picture, arguments.verbose)
+
+
+def shown_run(job, picture=False, verbose=False):
+    """Runs it; on a terminal as a digest, else with the programs' own lines."""
+    from couplet.runs.terminal import Digest, Plain
+    if not sys.stdout.isatty() or verbose:
+        return finish(job, job.run(Plain()), picture)
+    digest = Digest(job)
+    digest.begin()
+    code = job.run(digest)
+    digest.end(code)
+    return finish(job, code, picture)
 
 
 def shown(path):

@@ -3,16 +3,13 @@
 come. Ends with the run; Ctrl-C ends the watching alone."""
 import pathlib
 import re
-import shutil
-import sys
 import time
 
 from couplet.runs import folder as folders
 from couplet.runs.case import expect
 from couplet.runs.results import Results
+from couplet.runs.terminal import STATUS, WORTH, Screen, short
 
-STATUS = re.compile(r"\bt ?= ?[\d.e+-]+(?:/[\d.e+-]+)? s\b.*")
-WORTH = re.compile(r"\] (warning|error):")
 
 
 def declare(parser):
@@ -44,24 +41,6 @@ def said(line):
     return re.sub(r"^\[[\d :.-]+\]\s*", "", line).strip()
 
 
-class Screen:
-    """Lines that stay above one line that renews itself; on no terminal the latter is printed when it changes."""
-
-    def __init__(self):
-        self.live, self.shown = sys.stdout.isatty(), ""
-
-    def status(self, text):
-        if text and text != self.shown:
-            width = shutil.get_terminal_size().columns
-            print(f"\r\033[K{text[:width - 1]}" if self.live else text, end="" if self.live else "\n", flush=True)
-            self.shown = text
-
-    def line(self, text):
-        print((f"\r\033[K{text}" if self.live else text), flush=True)
-        if self.live and self.shown:
-            print(self.shown[:shutil.get_terminal_size().columns - 1], end="", flush=True)
-
-
 def look(folder, logs, screen):
     """One look at all logs; the driver's is the one with the steps."""
     status = ""
@@ -69,9 +48,9 @@ def look(folder, logs, screen):
         for line in logs.setdefault(name, Log(folder / name / f"{name}.log")).lines():
             text = said(line)
             if WORTH.search(text):
-                screen.line(f"{name}: {text}" if name not in text[:len(name) + 2] else text)
-            elif (found := STATUS.search(text)) and (name == "coupler" or not (folder / "coupler").exists()):
-                status = found[0]
+                screen.line(text)
+            elif (found := STATUS.match(text)) and (name == "coupler" or not (folder / "coupler").exists()):
+                status = short(found[2])
     screen.status(status)
 
 

@@ -55,7 +55,7 @@ def cells_of_all(build):
     for file in sorted((ROOT / "configs").glob("*/case.yaml")):
         case, most = Case(file, build), 0
         for name in case.participants:
-            if not case.guest(name):
+            if case.program(name).exists():
                 said = subprocess.run([case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True).stdout
                 most = max([most, *map(int, re.findall(r"^expected: +(\d+) cells", said, flags=re.M))])
         text += f"{case.file.parent.name},{most or ''}\n"

@@ -112,8 +112,8 @@ class Job:
             if self.recorded:
                 folders.write_record(self.output, self.record())
 
-    def pass_on(self, show):
-        """Output as it comes until all who could write have ended."""
+    def pass_on(self, shown):
+        """Output as it comes until all who could write have ended. `shown`: has write(data, to); None: nothing is shown."""
         with selectors.DefaultSelector() as selector:
             for pipe, to in ((self.process.stdout, sys.stdout), (self.process.stderr, sys.stderr)):
                 selector.register(pipe, selectors.EVENT_READ, to)
@@ -125,20 +125,19 @@ class Job:
                         selector.unregister(key.fileobj)
                         continue
                     self.last.extend(data.decode(errors="replace").splitlines())
-                    if show:
-                        try:
-                            key.data.buffer.write(data)
-                            key.data.flush()
-                        except BrokenPipeError:
-                            show = False
+                    try:
+                        if shown:
+                            shown.write(data, key.data)
+                    except BrokenPipeError:
+                        shown = None
                 if not self.recorded and time.monotonic() > look:
                     self.note()
                     look = time.monotonic() + 0.1
                 if self.process.poll() is not None and not selector.select(0):
                     break
 
-    def run(self, show=True):
-        """Exit code of the job. `show`: its words go to the terminal."""
+    def run(self, shown=None):
+        """Exit code of the job; `shown` gets its words (terminal.Plain: as they are)."""
         expect(folders.driver(self.output) is None, f"{self.output} is in use by another job that is still running. End it (couplet stop {self.output}), or "
                "give this one another folder: --set simulation.output.folder=...")
         self.recorded, self.started = False, time.monotonic()
@@ -146,7 +145,7 @@ class Job:
                                         start_new_session=True, preexec_fn=ends_with_us)
         before = {s: signal.signal(s, self.on_signal) for s in SIGNALS}
         try:
-            self.pass_on(show)
+            self.pass_on(shown)
             code = self.process.wait()
         finally:
             self.end_all()
@@ -163,9 +162,10 @@ def run(case, ranks=None, changes=None, show=False, alone=None, build=None, **mo
     """Runs a case to its end; gives its Results. `ranks`: {participant: number}; `changes`: {key: value}. Raises RunFailed with the last
     words of the programs. Only from the main thread, which gets the signals."""
     from couplet.runs.results import Results
+    from couplet.runs.terminal import Plain
     case = case if isinstance(case, Case) else Case(pathlib.Path(case), build)
     job = Job(case, ranks, case.assignments(changes or {}), alone=alone, **more)
-    code = job.run(show)
+    code = job.run(Plain() if show else None)
     if code != 0:
         raise RunFailed(f"exit code {code}: {job.last_words()}")
     return Results(job.output)

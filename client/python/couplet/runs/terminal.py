@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a run shows on a terminal: who takes part, one line that renews itself, findings above it as they come, and at the end who worked how
+much, what made the error, and what the run doubts. In a file, or with --verbose, the programs' own lines stand as they are."""
+import re
+import shutil
+import sys
+import textwrap
+
+STATUS = re.compile(r"^\[(\S+) \d+\] (t ?= ?[\d.e+-]+(?:/[\d.e+-]+)? s\s+step.*)")
+WORTH = re.compile(r"\] (warning|error):|^couplet|^ +\[\S+\] ")
+WIDEST, MOST_FINDINGS = 100, 6
+
+
+def width():
+    return min(shutil.get_terminal_size().columns, WIDEST)
+
+
+def short(status):
+    """A status line of a program with the time to go before what each part took: the end may not fit."""
+    parts = re.split(r"\s{2,}", status.strip())
+    first = [p for p in parts if not re.match(r"ETA|\w+ [\d.]+ s$", p)]
+    return "  ".join([*first, *(p for p in parts if p.startswith("ETA")), *(p for p in parts if p not in first and not p.startswith("ETA"))]).replace("ETA ", "to go ")
+
+
+class Plain:
+    """The words as they come."""
+
+    def write(self, data, to):
+        to.buffer.write(data)
+        to.flush()
+
+
+class Screen:
+    """Lines that stay above one line that renews itself; where there is no terminal the latter is a line of its own each time it changes."""
+
+    def __init__(self):
+        self.live, self.shown = sys.stdout.isatty(), ""
+
+    def status(self, text):
+        if text and text != self.shown:
+            print(f"\r\033[K{text[:width() - 1]}" if self.live else text, end="" if self.live else "\n", flush=True)
+            self.shown = text
+
+    def line(self, text):
+        for part in textwrap.wrap(text, width() - 1, subsequent_indent="  ") if self.live else [text]:
+            print(f"\r\033[K{part}" if self.live else part, flush=True)
+        if self.live and self.shown:
+            print(self.shown[:width() - 1], end="", flush=True)
+
+    def clear(self):
+        if self.live and self.shown:
+            print("\r\033[K", end="", flush=True)
+        self.shown = ""
+
+
+class Digest(Screen):
+    """Of the programs' lines: the status of the one that makes the steps, and what is a warning or an error, each kind once."""
+
+    def __init__(self, job):
+        super().__init__()
+        self.job, self.rest, self.told = job, {}, set()
+
+    def begin(self):
+        simulation = dict(self.job.case.data.get("simulation") or {})
+        simulation |= {key: value for key, _, value in (s.removeprefix("simulation.").partition("=") for s in self.job.sets if s.startswith("simulation."))}
+        ranks = self.job.ranks
+        names = [self.job.alone] if self.job.alone else list(self.job.case.participants)
+        print(f"{simulation.get('name', self.job.case.file.parent.name)} to t = {simulation.get('end-time', '?')}, results in {self.job.output}"[:width()])
+        for name in names[:8]:
+            print(f"  {name:12} {self.job.case.participants[name].get('program')}, {ranks.get(name, 1)} {'rank' if ranks.get(name, 1) == 1 else 'ranks'}")
+        if len(names) > 8:
+            print(f"  and {len(names) - 8} more")
+        self.status("starts ...")
+
+    def write(self, data, to):
+        *lines, self.rest[to] = (self.rest.get(to, "") + data.decode(errors="replace")).split("\n")
+        for line in lines:
+            if found := STATUS.match(line):
+                if not self.job.case.coupled or self.job.alone or found[1] == "coupler":
+                    self.status(short(found[2]))
+            elif WORTH.search(line):
+                kind = re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", line)
+                if kind not in self.told and len(self.told) < MOST_FINDINGS:
+                    self.line(line.rstrip())
+                self.told.add(kind)
+
+    def end(self, code):
+        """Who worked how much, the budget of errors, and where all of the words are."""
+        from couplet.runs.results import Results
+        self.clear()
+        if code not in (0, 3, 4):
+            return
+        results = Results(self.job.output)
+        mine = [self.job.alone] if self.job.alone else ["coupler", *self.job.case.participants]
+        reports = [(name, results.report(name)) for name in results.participants() if name in mine]
+        print("             steps  iterations  at work [s]  memory [MB]")
+        for name, report in [r for r in reports if r[1]][:8]:
+            working = report.get("processor-working") or report.get("processor", 0)
+            print(f"{name:12} {report.get('steps', 0):5}  {report.get('iterations', 0):10}  {working:11.1f}  {report.get('memory-all', 0):11.0f}")
+        for name, parts in [item for item in results.budget().items() if item[0] in mine][:4]:
+            print(f"estimated error of {name}: " + ", ".join(f"{part} {value:.2g}" for part, value in sorted(parts.items(), key=lambda p: -p[1])))
+        hidden = len(self.told) - MOST_FINDINGS
+        if hidden > 0:
+            print(f"{hidden} more warnings in the logs")
