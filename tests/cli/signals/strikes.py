@@ -4,7 +4,7 @@
 (or the run has come to its end), none is left, one line names the one that was struck. The next run goes on from the
 last checkpoint; a run that comes to its end must leave what an undisturbed one does, bit for bit, also where it was stopped
 on request and has saved at a step at which the undisturbed one did not.
-Usage: strikes.py BIN CASE_FOLDER COUNT [SEED [END_TIME]]"""
+Usage: strikes.py BIN CASE_FOLDER COUNT [SEED [END_TIME]] [--couplet]     --couplet: the jobs are started by couplet run"""
 import os
 import pathlib
 import random
@@ -19,6 +19,9 @@ import time
 import h5py
 import numpy
 
+COUPLET = "--couplet" in sys.argv
+if COUPLET:
+    sys.argv.remove("--couplet")
 PROGRAMS = {"coupler": "coupler", "fluid": "fluid_solver", "solid": "solid_solver", "mover": "mesh_mover"}
 SIGNALS = ["KILL", "TERM", "INT", "STOP", "SEGV"]
 SLOWER = int(os.environ.get("COUPLET_SLOWER", 1))  # a step with sanitizers takes seconds
@@ -51,17 +54,33 @@ class Job:
         for i, program in enumerate(PROGRAMS.values()):
             words += [":"] * (i > 0) + ["-n", "1", str(binaries / program), "case.yaml"]
             words += [word for s in SETS for word in ("--set", s)] + (["--restart", "out/checkpoints"] if restart else [])
+        if COUPLET:
+            words = [str(pathlib.Path(__file__).resolve().parents[3] / "scripts/couplet"), "run", "case.yaml", "--bin", str(binaries)]
+            words += [word for s in SETS for word in ("--set", s)] + (["--restart", "out/checkpoints"] if restart else [])
         environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", OMP_NUM_THREADS="1",
                            OPENBLAS_NUM_THREADS="1")
         self.said = open(folder / "said", "w+", encoding="utf-8", errors="replace")
         self.start = time.monotonic()
         self.process = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=self.said,
                                         stderr=subprocess.STDOUT, start_new_session=True)
+        self.sessions = {self.process.pid}
+
+    def living(self):
+        """Processes of the job: of the session of what was started, and of those that it has begun (couplet run: mpirun's)."""
+        for entry in os.listdir("/proc") if COUPLET else ():
+            if entry.isdigit():
+                try:
+                    fields = fields_of(entry)
+                except OSError:
+                    continue
+                if int(fields[1]) == self.process.pid and fields[3] == entry:
+                    self.sessions.add(int(entry))
+        return {pid: exe for session in self.sessions for pid, exe in living_in_session(session).items()}
 
     def victims(self):
         """{participant: pid}: the processes that run the programs themselves."""
         names = {program: name for name, program in PROGRAMS.items()}
-        found = {names[exe]: pid for pid, exe in living_in_session(self.process.pid).items() if exe in names}
+        found = {names[exe]: pid for pid, exe in self.living().items() if exe in names}
         found["mpirun"] = self.process.pid
         return found
 
@@ -70,7 +89,7 @@ class Job:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.process.poll()
-            if self.process.returncode is not None and not living_in_session(self.process.pid):
+            if not self.living() and self.process.returncode is not None:
                 return True
             time.sleep(0.02)
         return False
@@ -80,7 +99,7 @@ class Job:
         return pathlib.Path(self.said.name).read_text(errors="replace").count("peak memory of '") >= len(PROGRAMS) - 1
 
     def clear(self):
-        for pid in living_in_session(self.process.pid):
+        for pid in self.living():
             os.kill(pid, signal.SIGKILL)
         self.process.wait()
         self.said.seek(0)
@@ -174,7 +193,7 @@ def main():
                     ended = job.wait(WITHIN)
             else:
                 ended, seconds = True, 0.0
-            left = {} if ended else living_in_session(job.process.pid)
+            left = {} if ended else job.living()
             said = job.clear()
             code = job.process.returncode
             if code == 0:
