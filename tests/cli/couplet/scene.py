@@ -32,4 +32,4 @@ def call(bin_, *words, **more):
 
 
 def start(bin_, *words, **more):
-    return subprocess.Popen([str(COUPLET), *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **{"env": environment(bin_), **more})
+    return subprocess.Popen([str(COUPLET), *map(str, words)], **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "env": environment(bin_), **more})

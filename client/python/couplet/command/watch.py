@@ -1,57 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shows how a run goes on, from the files that it writes anyway: time, step, iterations, residual, time to go, and findings as they
-come. Ends with the run; Ctrl-C ends the watching alone."""
+come; with --web as one page with curves of residuals, probes and step size, for a browser on this machine. Ends with the run; Ctrl-C ends
+the watching alone."""
 import pathlib
-import re
+import threading
 import time
 
 from couplet.runs import folder as folders
 from couplet.runs.case import expect
+from couplet.runs.progress import Logs, Progress
 from couplet.runs.results import Results
-from couplet.runs.terminal import STATUS, WORTH, Screen, short
-
+from couplet.runs.terminal import Screen
 
 
 def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="the output folder of the run")
     parser.add_argument("--every", type=float, default=0.5, metavar="SECONDS", help="looks so often (0.5)")
     parser.add_argument("--once", action="store_true", help="tells how it stands and ends")
-
-
-class Log:
-    """What a log has got since the last look."""
-
-    def __init__(self, file):
-        self.file, self.at, self.rest = file, 0, ""
-
-    def lines(self):
-        try:
-            with open(self.file, "rb") as file:
-                file.seek(self.at)
-                data = file.read()
-        except OSError:
-            return []
-        self.at += len(data)
-        *whole, self.rest = (self.rest + data.decode(errors="replace")).split("\n")
-        return whole
-
-
-def said(line):
-    """A line of a log without its date."""
-    return re.sub(r"^\[[\d :.-]+\]\s*", "", line).strip()
-
-
-def look(folder, logs, screen):
-    """One look at all logs; the driver's is the one with the steps."""
-    status = ""
-    for name in (p.name for p in folder.iterdir() if p.is_dir() and (p / f"{p.name}.log").exists()):
-        for line in logs.setdefault(name, Log(folder / name / f"{name}.log")).lines():
-            text = said(line)
-            if WORTH.search(text):
-                screen.line(text)
-            elif (found := STATUS.match(text)) and (name == "coupler" or not (folder / "coupler").exists()):
-                status = short(found[2])
-    screen.status(status)
+    parser.add_argument("--web", action="store_true", help="serves a page on the loopback address, to who has the token of its address")
+    parser.add_argument("--port", type=int, default=0, metavar="N", help="of the page (any that is free)")
 
 
 def ending(folder):
@@ -70,12 +37,20 @@ def ending(folder):
 def run(arguments):
     folder = arguments.folder
     expect(folder.is_dir(), f"{folder}: there is no such folder")
-    logs, screen = {}, Screen()
+    if arguments.web:
+        from couplet.command import page
+        server, address = page.server(Progress(folder), arguments.port)
+        print(f"{address} (Ctrl-C ends)", flush=True)
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+    logs, screen = Logs(folder), Screen()
     try:
         while True:
             at_work = folders.driver(folder) is not None
-            look(folder, logs, screen)
-            if arguments.once or not at_work:
+            status, worth = logs.look()
+            for text in worth:
+                screen.line(text)
+            screen.status(status)
+            if arguments.once or not (at_work or arguments.web):
                 break
             time.sleep(arguments.every)
     except KeyboardInterrupt:
