@@ -34,6 +34,8 @@ BARS = [
     Bar("bad cases and commands", "exit code 2, what is wrong and what to do, no page of the launcher", tests("^command_wrong$")),
     Bar("terminal of 80 x 24: flap, fluid, solid, tank", "start <= 12 lines, one status line, end <= 20 lines", tests("^command_terminal$")),
     Bar("watch --web during a run, in a headless browser", "values change, no error, nothing beyond loopback, a wrong token refused", tests("^command_watch_web$")),
+    Bar("couplet run --slurm, the README's sbatch and srun lines on a Slurm of one node; scancel, then resume", "the same results, bit for bit",
+        tests("^command_slurm_long$"), long=True),
     Bar("check, explain, new, gallery, doctor, plot, one participant alone", "as told", tests("^command_tell$")),
     Bar("import couplet: starts a run, reads probes, fields, findings, budget", "as told", tests("^command_python$")),
 ]
