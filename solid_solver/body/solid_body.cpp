@@ -132,16 +132,22 @@ std::vector<double> SolidBody::body_forces(double t) const {
   return forces;
 }
 
-std::vector<double> SolidBody::known_inertia(double t, double h) const {
+std::vector<double> SolidBody::known_acceleration(double start, double dt) const {
   if (!prescribed_.uses_time()) return {};
-  const double damping = parameters_.damping ? parameters_.damping->mass : 0;
-  std::vector<double> before(prescribed_.size() * mesh_.dim), now(before), after(before);
-  prescribed_.evaluate(t - h, before);
-  prescribed_.evaluate(t, now);
-  prescribed_.evaluate(t + h, after);
-  for (std::size_t i = 0; i < now.size(); ++i)
-    now[i] = (after[i] - 2 * now[i] + before[i]) / (h * h) + damping * (after[i] - before[i]) / (2 * h);
-  return now;
+  std::vector<double> before(prescribed_.size() * mesh_.dim), after(before);
+  prescribed_.evaluate_rate(start, dt, before);
+  prescribed_.evaluate_rate(start + dt, dt, after);
+  for (std::size_t i = 0; i < after.size(); ++i) after[i] = (after[i] - before[i]) / dt;
+  return after;
+}
+
+std::vector<double> SolidBody::known_velocity(double start, double dt) const {
+  if (!prescribed_.uses_time()) return {};
+  std::vector<double> before(prescribed_.size() * mesh_.dim), after(before);
+  prescribed_.evaluate(start, before);
+  prescribed_.evaluate(start + dt, after);
+  for (std::size_t i = 0; i < after.size(); ++i) after[i] = (after[i] - before[i]) / dt;
+  return after;
 }
 
 bool SolidBody::wants_acceleration() const {

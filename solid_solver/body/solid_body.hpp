@@ -60,9 +60,11 @@ class SolidBody final {
   bool has_body_forces() const { return !body_force_.empty() || !parameters_.gravity.empty(); }
   /// Body forces and weight of the owned cells at time t [N], `dim` values each; empty: none.
   std::vector<double> body_forces(double t) const;
-  /// Acceleration of the known columns at time t from differences over h, with mass damping of their velocity;
-  /// empty: they rest.
-  std::vector<double> known_inertia(double t, double h) const;
+  /// Of the known columns over [start, start + dt], one a component; empty: they rest. The change of the velocity,
+  /// and not second differences of the displacement: the kinetic energy of the ends then grows by its work.
+  std::vector<double> known_acceleration(double start, double dt) const;
+  /// The change of the displacement by dt; empty: they rest.
+  std::vector<double> known_velocity(double start, double dt) const;
 
   /// The unknowns of elastic() in these fields.
   std::vector<double> unknowns_of(std::span<const double> cells, std::span<const double> faces) const;

@@ -210,21 +210,32 @@ std::vector<double> SolidLedger::mean_of_ends(const StageWork& work,
   return rows;
 }
 
-/// What holds the known nodes does on their change: against stress and inertia.
+/// What holds the known nodes does: against stress, springs and damping on their change, against inertia on the mean of
+/// their velocities, so that the kinetic energy of both ends balances to rounding.
 double SolidLedger::known_work(const SolvedStage& stage) const {
   const auto& [work, last, before, trial] = stage;
+  const double dt = work.stage.dt;
   const std::vector<double> still(last.unknowns.size(), 0);
+  const ElasticField w{last.unknowns, work.known}, known{still, work.known_change};
   double sum =
-      kernel_.product(ElasticPart::stiffness, {last.unknowns, work.known}, {still, work.known_change});
-  const std::vector<double> of_known = body_.known_inertia(work.place_time, 0.5 * work.stage.dt);
+      kernel_.product(ElasticPart::stiffness, w, known) + kernel_.product(ElasticPart::springs, w, known);
   if (!body_.prescribed().uses_time()) return sum;  // not by the size: a rank may hold nothing
   // The mean over the stage, which the trapezoidal rule has at its place.
   const std::vector<double> after = body_.unknowns_of(trial.cell_v, trial.face_v);
-  std::vector<double> rate = body_.unknowns_of(before.cell_v, before.face_v);
-  const double alpha = parameters_.damping ? parameters_.damping->mass : 0;
-  for (std::size_t i = 0; i < rate.size(); ++i)
-    rate[i] = (after[i] - rate[i]) / work.stage.dt + alpha * 0.5 * (after[i] + rate[i]);
-  return sum + kernel_.product(ElasticPart::mass, {rate, of_known}, {still, work.known_change});
+  std::vector<double> rate = body_.unknowns_of(before.cell_v, before.face_v), velocity = rate;
+  for (std::size_t i = 0; i < rate.size(); ++i) {
+    velocity[i] = 0.5 * (after[i] + rate[i]);
+    rate[i] = (after[i] - rate[i]) / dt;
+  }
+  const double start = work.place_time - 0.5 * dt;
+  std::vector<double> way(before.known_rate);
+  for (std::size_t i = 0; i < way.size(); ++i) way[i] = 0.5 * dt * (way[i] + trial.known_rate[i]);
+  sum += kernel_.product(ElasticPart::mass, {rate, body_.known_acceleration(start, dt)}, {still, way});
+  if (parameters_.damping && parameters_.damping->mass > 0)
+    sum += parameters_.damping->mass * kernel_.product(ElasticPart::mass,
+                                                       {velocity, body_.known_velocity(start, dt)},
+                                                       {still, work.known_change});
+  return sum;
 }
 
 void SolidLedger::add_load_work(const StageWork& work, const LastSolve& last, const BodyField& before,

@@ -195,7 +195,12 @@ void SolidStepper::add_kernel_inertia(const StageWork& work, const SolidState& n
   for (std::size_t i = 0; i < open.size(); ++i)
     for (int a = 0; a < dim; ++a)
       levels[n_cells + i * dim + a] = faces(known, std::size_t(open[i] - mesh_.n_interior) * dim + a);
-  const std::vector<double> of_known = body_.known_inertia(work.place_time, 0.5 * work.stage.dt);
+  const double start = work.place_time - 0.5 * work.stage.dt;  // over a step's length around the place
+  std::vector<double> of_known = body_.known_acceleration(start, work.stage.dt);
+  if (parameters_.damping && parameters_.damping->mass > 0) {
+    const std::vector<double> velocity = body_.known_velocity(start, work.stage.dt);
+    for (std::size_t i = 0; i < velocity.size(); ++i) of_known[i] += parameters_.damping->mass * velocity[i];
+  }
   kernel_.apply_with_mass(levels, of_known, 1, false, force);
   for (std::size_t i = 0; i < force.size(); ++i) last_.rhs[i] -= force[i];
 }
