@@ -29,6 +29,8 @@ class ResidualProjection {
   /// Keeps the correction of the last solve in place of the oldest. Collective.
   void accept();
 
+  /// Nothing is kept; the same on all ranks.
+  bool is_empty() const { return kept_.empty(); }
   /// All that is kept, rows of this rank: for checkpoints.
   std::vector<double> values() const;
   /// `apply`: A. Forgets all if they were made by another operator or there are more than are kept.

@@ -154,10 +154,9 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
                                             : ", thesis's face gradient";
   if (asked.face_gradient == MethodParameters::FaceGradient::automatic)
     method->name_ += problem.elastic.is_anisotropic() ? " (auto: orthotropic)"
-                     : problem.is_symmetric() ? " (auto: static, nu from 0.4 up, or as 'volume-strain' asks)"
-                     : problem.is_static()
-                         ? " (auto: the symmetric one cannot have the boundaries or the solver)"
-                         : " (auto: dynamic)";
+                     : problem.is_symmetric()
+                         ? " (auto)"
+                         : " (auto: the symmetric one cannot have the boundaries or the solver)";
   return method;
 }
 
@@ -175,12 +174,7 @@ FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters) {
     default:
       break;
   }
-  using VolumeStrain = MethodParameters::VolumeStrain;
-  const bool asks_for_cells = parameters.method.volume_strain == VolumeStrain::cells ||
-                              parameters.method.volume_strain == VolumeStrain::shared;
-  const bool wanted = parameters.analysis == SolidParameters::Analysis::static_ || asks_for_cells ||
-                      largest_poissons_ratio(parameters) >= nearly_incompressible;
-  return wanted && symmetric_suits(parameters) ? FaceGradientScheme::symmetric : FaceGradientScheme::thesis;
+  return symmetric_suits(parameters) ? FaceGradientScheme::symmetric : FaceGradientScheme::thesis;
 }
 
 double norm(MPI_Comm comm, std::span<const double> values) {

@@ -55,9 +55,8 @@ class SolutionMethod {
 std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem,
                                                      const MethodParameters& parameters);
 
-/// The face gradient that the parameters ask for; `automatic`: the symmetric one, which does not lock, in static runs and,
-/// in dynamic ones, from nu = 0.4 up (nearly_incompressible), where the others pass through a pole; else the thesis's,
-/// as where the symmetric one cannot be (symmetric_suits()).
+/// The face gradient that the parameters ask for; `automatic`: the symmetric one, which neither locks nor lets motion grow,
+/// or the thesis's where the symmetric one cannot be (symmetric_suits()).
 FaceGradientScheme face_gradient_scheme(const SolidParameters& parameters);
 
 /// Euclidean norm over all ranks.

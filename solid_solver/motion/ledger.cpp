@@ -73,11 +73,19 @@ double SolidLedger::stress_work(const BodyField& stressed, const BodyField& chan
   return work;
 }
 
-double SolidLedger::kinetic(const SolidState& state) const {
+double SolidLedger::kinetic(const SolidState& state) const { return kinetic(state, state.known_rate); }
+
+double SolidLedger::initial_kinetic(const SolidState& start, double dt) const {
+  std::vector<double> rate(start.known_rate.size());
+  body_.prescribed().evaluate_rate(start.time, dt, rate);
+  return kinetic(start, rate);
+}
+
+double SolidLedger::kinetic(const SolidState& state, std::span<const double> known_rate) const {
   const int dim = mesh_.dim;
   if (body_.has_mass()) {
     const std::vector<double> rates = body_.unknowns_of(state.cell_v, state.face_v);
-    return 0.5 * kernel_.product(ElasticPart::mass, {rates, state.known_rate}, {rates, state.known_rate});
+    return 0.5 * kernel_.product(ElasticPart::mass, {rates, known_rate}, {rates, known_rate});
   }
   double energy = 0;
   for (Index c = 0; c < mesh_.cells.n_owned(); ++c)
@@ -228,7 +236,8 @@ double SolidLedger::known_work(const SolvedStage& stage) const {
     rate[i] = (after[i] - rate[i]) / dt;
   }
   const double start = work.place_time - 0.5 * dt;
-  std::vector<double> way(before.known_rate);
+  std::vector<double> way(before.known_rate.size());  // whose rate at the start of the run nobody has set
+  body_.prescribed().evaluate_rate(start, dt, way);
   for (std::size_t i = 0; i < way.size(); ++i) way[i] = 0.5 * dt * (way[i] + trial.known_rate[i]);
   sum += kernel_.product(ElasticPart::mass, {rate, body_.known_acceleration(start, dt)}, {still, way});
   if (parameters_.damping && parameters_.damping->mass > 0)

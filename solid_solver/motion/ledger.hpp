@@ -26,6 +26,8 @@ class SolidLedger final {
 
   /// [J]
   double kinetic(const SolidState& state) const;
+  /// Of the state that a run starts from, its supports moving from then on: their rate from the first step's length. [J]
+  double initial_kinetic(const SolidState& start, double dt) const;
   /// Energies over all ranks; needs output.energies. `points`: its displacement there. Collective.
   SolidEnergies total(const SolidState& state, std::span<const double> points) const;
   /// Work of a stage, damping and kinetic energy at its end. Collective.
@@ -37,6 +39,7 @@ class SolidLedger final {
                      SolidState& after) const;
 
  private:
+  double kinetic(const SolidState& state, std::span<const double> known_rate) const;
   double stress_work(const BodyField& stressed, const BodyField& change, double* on_boundary) const;
   void add_face_work(const SolvedStage& stage) const;
   void add_symmetric_work(const SolvedStage& stage) const;

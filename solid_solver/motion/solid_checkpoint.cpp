@@ -96,7 +96,7 @@ void SolidStepper::save_guesses(CheckpointWriter& file) const {
   std::vector<double> factors;
   for (const auto& system : systems_) {
     const ResidualProjection* projection = system->projection();
-    if (!projection) continue;
+    if (!projection || projection->is_empty()) continue;  // made for a step that was not accepted
     file.write(fmt::format("projection-{}", factors.size()), projection->values());
     factors.push_back(system->mass_factor);
   }

@@ -70,10 +70,6 @@ void SolidStepper::begin_step(const Step& step, bool has_loads) {
   const double end = step.time + step.dt;
   body_.prescribed().evaluate(end, trial_.known);
   if (body_.is_dynamic()) {
-    if (state_.steps == 0 && body_.prescribed().uses_time()) {  // supports may move from the start
-      body_.prescribed().evaluate_rate(step.time, step.dt, state_.known_rate);
-      state_.energies.kinetic = state_.energies.initial_kinetic = ledger_.kinetic(state_);
-    }
     body_.prescribed().evaluate_rate(end, step.dt, trial_.known_rate);
   } else {
     for (std::size_t i = 0; i < trial_.known.size(); ++i)

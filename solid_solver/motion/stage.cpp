@@ -138,6 +138,8 @@ void SolidStepper::solve_stage(const StageWork& work, bool first) {
                effort_.inner_iterations + statistics.inner_iterations, statistics.residual};
   }
   if (first) trial_.energies = state_.energies, trial_.load_work = state_.load_work;
+  if (first && state_.steps == 0 && body_.prescribed().uses_time())
+    trial_.energies.initial_kinetic = ledger_.initial_kinetic(state_, step_.dt);
   // A second stage starts from the trial state, which is about to change.
   const bool keeps = body_.is_dynamic() && !first;
   const std::vector<double> cells = keeps ? now.cell_u : std::vector<double>();

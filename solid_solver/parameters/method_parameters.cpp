@@ -32,8 +32,7 @@ void declare(config::Section& s, MethodParameters& m) {
           "displacement gradient at the faces; symmetric: from an energy, so that it neither locks in bending nor lets motion "
           "grow on any mesh, by conjugate gradients; thesis: the source's, which locks in bending with few or long cells; "
           "corrected: the thesis's with second-order corrections, which does not, but undamped motion grows sooner with short "
-          "steps; auto: symmetric in static analyses, with 'volume-strain: cells' or 'shared' and from nu = 0.4 up, thesis in other "
-          "dynamic ones and with 'zero-normal-gradient', 'type: segregated' or 'block-coupled'");
+          "steps; auto: symmetric, and thesis with 'zero-normal-gradient', 'type: segregated' or 'block-coupled'");
   using VolumeStrain = MethodParameters::VolumeStrain;
   s.choice("volume-strain", m.volume_strain,
            {{"auto", VolumeStrain::automatic},
