@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Beam 20 m x 2 m x 2 m along x, hexahedra.
+// Beam 20 m x 2 m x 2 m along x; shape 0: hexahedra, 1: tetrahedra.
 DefineConstant[ n_length = 80 ]; // cells along the beam
 DefineConstant[ n_side = 8 ];    // cells along each side of the section
+DefineConstant[ shape = 0 ];
 
 length = 20; side = 2; // m
 
@@ -17,12 +18,12 @@ Transfinite Curve {1 : 4} = n_side + 1;
 Curve Loop(1) = {1, 2, 3, 4};
 Plane Surface(1) = {1};
 Transfinite Surface {1};
-Recombine Surface {1};
-out() = Extrude {length, 0, 0} {
-  Surface {1};
-  Layers {n_length};
-  Recombine;
-};
+If (shape == 0)
+  Recombine Surface {1};
+  out() = Extrude {length, 0, 0} { Surface {1}; Layers {n_length}; Recombine; };
+Else
+  out() = Extrude {length, 0, 0} { Surface {1}; Layers {n_length}; };
+EndIf
 Physical Surface("root") = {1};
 Physical Surface("tip") = {out(0)};
 Physical Surface("sides") = {out(2) : out(5)};
