@@ -7,6 +7,7 @@
 
 #include "common/elasticity/vector_at.hpp"
 #include "common/mesh/transpose.hpp"
+#include "solid_solver/body/cell_shapes.hpp"
 
 namespace couplet {
 namespace {
@@ -17,31 +18,7 @@ constexpr double of_traction = 1;           // weight of a traction over a sampl
 constexpr double of_scaled_traction = 0.1;  // ... and of displacement, as h t / (2 mu + lambda)
 constexpr double of_face = 3;               // weight of a face's displacement over a cell's
 
-/// Of the mean over the vertices, in that over the volume: exact for simplices and boxes.
-double share_of_vertices(CellType type) {
-  switch (type) {
-    case CellType::triangle:
-      return 1. / 4;
-    case CellType::tetrahedron:
-      return 1. / 5;
-    case CellType::prism:
-    case CellType::pyramid:
-      return 7. / 24;
-    default:
-      return 1. / 3;
-  }
-}
-
 bool is_simplex(CellType type) { return type == CellType::triangle || type == CellType::tetrahedron; }
-
-/// Boundary faces of each local cell.
-Csr boundary_faces_of_cells(const Mesh& mesh) {
-  Csr owners;
-  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) owners.push_row({&mesh.owner[f], 1});
-  Csr faces = transpose(owners, 0, mesh.cells.n_local());
-  for (Index& f : faces.index) f += mesh.n_interior;
-  return faces;
-}
 
 std::vector<Tensor3> with_ghosts(const IndexMap& map, const std::vector<Tensor3>& owned) {
   std::vector<Tensor3> all(std::size_t(map.n_local()), Tensor3::Zero());
@@ -90,14 +67,7 @@ StressRecovery::StressRecovery(const Mesh& mesh, const ElasticOperator& rows)
       cells_of_point_(transpose(mesh.cell_points, 0, mesh.points.n_local())),
       faces_of_cell_(boundary_faces_of_cells(mesh)),
       moment_(std::size_t(mesh.cells.n_local()), Tensor3::Zero()) {
-  for (Index c = 0; c < mesh.cells.n_local(); ++c) {
-    Tensor3& moment = moment_[std::size_t(c)];
-    for (const Index v : mesh.cell_points[c]) {
-      const Vec3 arm = mesh.reference_points[v] - mesh.reference.cell_centre[c];
-      moment += arm * arm.transpose();
-    }
-    moment *= share_of_vertices(mesh.cell_type[c]) / double(mesh.cell_points[c].size());
-  }
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) moment_[std::size_t(c)] = cell_moment(mesh, c);
 }
 
 StressRecovery::Local StressRecovery::localise(const DiscreteStress& found) const {

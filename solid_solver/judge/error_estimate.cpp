@@ -182,7 +182,7 @@ ErrorParts SolidErrorEstimate::parts() const {
     return parts;
   }
   const StrainAudit audit = judge_.compared();
-  parts.mesh = std::max(audit.mismatch(), audit.gradient_difference * audit.gradient_difference);
+  parts.mesh = std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
   parts.mesh = std::max(parts.mesh, audit.inner_variation);
   if (!(audit.strain_energy > 0)) parts.mesh = ErrorParts::unknown;
   if (body_.is_dynamic()) parts.mesh += drift_.over_size(parts.mesh);

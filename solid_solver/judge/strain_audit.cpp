@@ -13,6 +13,7 @@
 #include "common/parallel/collective.hpp"
 #include "solid_solver/judge/inner_variation.hpp"
 #include "solid_solver/judge/judge.hpp"
+#include "solid_solver/judge/smooth_energy.hpp"
 
 namespace couplet {
 namespace {
@@ -30,6 +31,12 @@ FaceGradientScheme other_scheme(FaceGradientScheme scheme) {
 }
 
 }  // namespace
+
+double StrainAudit::missed_by_mesh(int dim) const {
+  const double of_gradients = gradient_difference * gradient_difference;
+  if (!smooth_difference) return of_gradients;
+  return dim == 2 ? std::max(of_gradients, *smooth_difference) : std::min(of_gradients, *smooth_difference);
+}
 
 double StrainAudit::mismatch() const {
   return strain_energy > 0 ? std::abs(stress_work - strain_energy) / strain_energy : 0;
@@ -78,6 +85,10 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   if (compare && body_.kernel().is_symmetric() && body_.effects().empty() &&
       InnerVariation::is_needed(mesh_, rows))
     variation.emplace(mesh_, rows);
+  std::optional<SmoothEnergy> smooth;
+  if (compare && body_.kernel().is_symmetric() && body_.effects().empty() && !body_.is_dynamic() &&
+      SmoothEnergy::is_of_use(mesh_))
+    smooth.emplace(mesh_, rows);
   const auto is_mine = [&](Index f) { return mesh_.owner[f] < mesh_.cells.n_owned(); };
   const auto volume = [&](Index f) {
     return std::abs(mesh_.reference.face_area[f].dot(line_of(mesh_, f))) / dim;
@@ -85,6 +96,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   double energy = 0, work = 0, difference = 0, size = 0;
   const auto own = [&](Index f, const Tensor3& gradient) {
     if (variation) variation->add(f, 0.5 * (gradient + gradient.transpose()));
+    if (smooth) smooth->add(f, gradient);
     if (!is_mine(f)) return;  // another rank's
     const Index owner = mesh_.owner[f];
     const Tensor3 stress = rows.stress(owner, gradient);
@@ -130,6 +142,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   audit.strain_energy = sum(mesh_.comm, energy);
   audit.stress_work = sum(mesh_.comm, work);
   if (variation) audit.inner_variation = variation->missed();
+  if (smooth) audit.smooth_difference = smooth->missed(state.cell_u, state.face_u);
   if (size > 0) audit.gradient_difference = std::sqrt(difference / size);
   return audit;
 }

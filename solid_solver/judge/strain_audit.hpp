@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/base/severity.hpp"
@@ -21,7 +22,12 @@ struct StrainAudit {
   bool compares_gradients = false;
   /// InnerVariation::missed() of the symmetric gradient in the plane, else 0.
   double inner_variation = 0;
+  /// SmoothEnergy::missed() of static bodies of triangles or tetrahedra.
+  std::optional<double> smooth_difference;
 
+  /// Share of the stiffness, and so of the displacement, that the mesh errs by: the square of the difference of gradients, which is too
+  /// small on triangles by up to a hundred times and too large on tetrahedra that bend; there the smooth energy bounds it.
+  double missed_by_mesh(int dim) const;
   /// Part of the strain energy by which it misses the work; a symmetric operator has none.
   double mismatch() const;
   /// Above these the answer is not to be trusted (docs/theory.md, "Does the answer fit itself?").

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a static run says of the error of its displacement, beside the error: committed bodies, several meshes each, default settings, against
+a mesh several times as fine."""
+import csv
+import re
+
+from validation.job import Bar
+
+NONE = ()
+
+
+def beam(length):
+    return (f"participants.solid.probes.tip.point=[{length}, 0.5, 0.5]",)
+
+
+def beam_meshes(length, shape):
+    return [f"n: {n}, nl: {nl}, L: {length}, shape: {shape}" for n, nl in ((1, 10), (2, 20), (2, 40), (3, 30), (4, 40))]
+
+
+def rings(text, sizes):
+    return [text.format(r=r, t=3 * r // 2, z=3 * r // 4) for r in sizes]
+
+
+# (case, displacement, meshes, the fine one, further keys)
+BODIES = (
+    ("cook", "corner y", [f"n: {n}, shape: 0" for n in (4, 8, 16, 32)], "n: 128, shape: 0", NONE),
+    ("cook", "corner y", [f"n: {n}, shape: 1" for n in (4, 8, 16, 32)], "n: 128, shape: 0", NONE),
+    ("le1", "D x", rings("nr: {r}, nt: {t}", (4, 8, 16, 32)), "nr: 128, nt: 192", NONE),
+    ("lame-cylinder", "inside x", rings("nr: {r}, nt: {t}, shape: 0", (4, 8, 16)), "nr: 96, nt: 144, shape: 0", NONE),
+    ("lame-cylinder", "inside x", rings("nr: {r}, nt: {t}, shape: 1", (4, 8, 16)), "nr: 96, nt: 144, shape: 0", NONE),
+    ("off-axis-bar", "tip y", [f"n: {n}, shape: 0" for n in (4, 8, 16)], "n: 64, shape: 0", NONE),
+    ("off-axis-bar", "tip y", [f"n: {n}, shape: 1" for n in (4, 8, 16)], "n: 64, shape: 0", NONE),
+    ("slender-beam", "tip y", beam_meshes(10, 0), "n: 6, nl: 80, L: 10, shape: 0", beam(10)),
+    ("slender-beam", "tip y", beam_meshes(10, 1), "n: 6, nl: 80, L: 10, shape: 0", beam(10)),
+    ("slender-beam", "tip y", beam_meshes(40, 0), "n: 6, nl: 80, L: 40, shape: 0", beam(40)),
+    ("slender-beam", "tip y", beam_meshes(40, 1), "n: 6, nl: 80, L: 40, shape: 0", beam(40)),
+    ("filleted-bracket", "tip y", [f"h: {h}" for h in (0.01, 0.006, 0.004)], "h: 0.002", NONE),
+    ("elliptic-plate", "hole-top z", rings("nr: {r}, nt: {t}, nz: {z}, shape: 0", (4, 8, 12)), "nr: 32, nt: 48, nz: 24, shape: 0", NONE),
+    ("elliptic-plate", "hole-top z", rings("nr: {r}, nt: {t}, nz: {z}, shape: 1", (4, 8, 12)), "nr: 32, nt: 48, nz: 24, shape: 0", NONE),
+)
+
+
+def look(job, case, column, mesh, keys):
+    """(displacement at the probe, estimate of its error)"""
+    run = job.solve_run("solid_solver", case, (f"participants.solid.mesh-parameters={{{mesh}}}", *keys))
+    with open(run.folder / "solid" / "probes.csv", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
+    at = next(i for i, name in enumerate(rows[0]) if name.startswith(column))
+    return float(rows[-1][at]), float(re.search(r"estimated error ([\d.e+-]+) of the solution:", run.log)[1])
+
+
+def ratios(job):
+    def make():
+        found = []
+        for case, column, meshes, fine, keys in BODIES:
+            right = look(job, case, column, fine, keys)[0]
+            for mesh in meshes:
+                value, told = look(job, case, column, mesh, keys)
+                found.append((told / abs(value / right - 1), f"{case} {{{mesh}}}"))
+        return found
+    return job.once("estimates beside errors", make)
+
+
+def within(factor, wanted):
+    def measure(job):
+        found = ratios(job)
+        inside = sum(1 / factor <= r <= factor for r, _ in found)
+        return f"{inside} of {len(found)}, {100 * inside / len(found):.0f} %", inside >= wanted * len(found)
+    return measure
+
+
+def least(job):
+    ratio, where = min(ratios(job))
+    return f"least {ratio:.2f} ({where}), largest {max(ratios(job))[0]:.0f}", ratio >= 1 / 3
+
+
+BUT = "static studies of 14 bodies, by the displacement at a probe"
+BARS = [
+    Bar("estimated error of the displacement over the true one, within a factor of 2", "80 %", within(2, 0.8), long=True, but=BUT),
+    Bar("... none below a third", "none", least, long=True, but=BUT),
+]

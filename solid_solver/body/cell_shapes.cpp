@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/body/cell_shapes.hpp"
+
+#include "common/mesh/transpose.hpp"
+
+namespace couplet {
+namespace {
+
+/// Of the mean over the vertices, in that over the volume: exact for simplices and boxes.
+double share_of_vertices(CellType type) {
+  switch (type) {
+    case CellType::triangle:
+      return 1. / 4;
+    case CellType::tetrahedron:
+      return 1. / 5;
+    case CellType::prism:
+    case CellType::pyramid:
+      return 7. / 24;
+    default:
+      return 1. / 3;
+  }
+}
+
+}  // namespace
+
+Tensor3 cell_moment(const Mesh& mesh, Index cell) {
+  Tensor3 moment = Tensor3::Zero();
+  for (const Index v : mesh.cell_points[cell]) {
+    const Vec3 arm = mesh.reference_points[v] - mesh.reference.cell_centre[cell];
+    moment += arm * arm.transpose();
+  }
+  return moment * (share_of_vertices(mesh.cell_type[cell]) / double(mesh.cell_points[cell].size()));
+}
+
+Csr boundary_faces_of_cells(const Mesh& mesh) {
+  Csr owners;
+  for (Index f = mesh.n_interior; f < mesh.n_faces(); ++f) owners.push_row({&mesh.owner[f], 1});
+  Csr faces = transpose(owners, 0, mesh.cells.n_local());
+  for (Index& f : faces.index) f += mesh.n_interior;
+  return faces;
+}
+
+}  // namespace couplet

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "common/base/types.hpp"
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// Mean of (x - x_c) (x - x_c)^T over a local cell [m^2], from its vertices: exact for simplices and boxes.
+Tensor3 cell_moment(const Mesh& mesh, Index cell);
+/// Boundary faces of each local cell, counted among all faces.
+Csr boundary_faces_of_cells(const Mesh& mesh);
+
+}  // namespace couplet

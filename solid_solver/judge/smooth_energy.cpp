@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/judge/smooth_energy.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "common/elasticity/symmetric/symmetric_faces.hpp"
+#include "common/elasticity/vector_at.hpp"
+#include "common/mesh/transpose.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/body/cell_shapes.hpp"
+
+namespace couplet {
+namespace {
+
+constexpr double of_far = 1. / 9;         // weight of a sample at the patch's rim over one in its centre
+constexpr Index cells_looked_at = 20000;  // of a rank: some 0.2 s
+
+}  // namespace
+
+/// Of one cell after the other.
+struct SmoothEnergy::Patch {
+  Csr cells_of_point, faces_of_cell;
+  std::vector<Index> mark;  // per local cell: for which cell it was last gathered
+  std::vector<Index> cells, faces;
+  std::vector<std::pair<Vec3, Vec3>> mirrors;  // normal and a place of the planes of symmetry
+  double reach = 0;
+};
+
+SmoothEnergy::SmoothEnergy(const Mesh& mesh, const ElasticOperator& rows)
+    : mesh_(mesh), rows_(rows), counted_(std::size_t(mesh.cells.n_owned()), 0) {}
+
+bool SmoothEnergy::is_of_use(const Mesh& mesh) {
+  const auto is_other = [](CellType t) { return t != CellType::triangle && t != CellType::tetrahedron; };
+  return !any(mesh.comm, std::ranges::any_of(mesh.cell_type, is_other));
+}
+
+void SmoothEnergy::add(Index face, const Tensor3& gradient) {
+  const auto [here, there] = pyramids(mesh_, face);
+  const auto add_to = [&](Index cell, double volume) {
+    if (cell < mesh_.cells.n_owned())
+      counted_[std::size_t(cell)] += volume * contraction(rows_.stress(cell, gradient), gradient);
+  };
+  add_to(mesh_.owner[face], here);
+  if (face < mesh_.n_interior) add_to(mesh_.neighbour[face], there);
+}
+
+void SmoothEnergy::gather(Index cell, Patch& patch) const {
+  const Geometry& g = mesh_.reference;
+  const Vec3 centre = g.cell_centre[cell];
+  patch.cells.clear(), patch.faces.clear(), patch.mirrors.clear();
+  patch.reach = 0;
+  for (const Index v : mesh_.cell_points[cell])
+    for (const Index c : patch.cells_of_point[v]) {
+      if (patch.mark[std::size_t(c)] == cell || mesh_.material_of(c) != mesh_.material_of(cell)) continue;
+      patch.mark[std::size_t(c)] = cell;
+      patch.cells.push_back(c);
+      patch.reach = std::max(patch.reach, (g.cell_centre[c] - centre).norm());
+    }
+  for (const Index c : patch.cells)
+    for (const Index f : patch.faces_of_cell[c]) {
+      patch.reach = std::max(patch.reach, (g.face_centre[f] - centre).norm());
+      if (rows_.condition(f) != ElasticCondition::symmetry) {
+        patch.faces.push_back(f);
+        continue;
+      }
+      const Vec3 normal = g.face_area[f].normalized();
+      if (std::ranges::none_of(patch.mirrors, [&](const auto& m) { return m.first.dot(normal) > 0.99; }))
+        patch.mirrors.emplace_back(normal, g.face_centre[f]);
+    }
+}
+
+/// Twice its energy [J]: of a strain that is linear in the cell.
+double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<const double> cell_u,
+                                   std::span<const double> face_u) const {
+  const Geometry& g = mesh_.reference;
+  const int dim = mesh_.dim;
+  const Vec3 centre = g.cell_centre[cell];
+  QuadraticFit fit;
+  fit.start(dim, dim, centre, patch.reach);
+  const auto add = [&](const Vec3& place, const Vec3& value) {
+    const double far = (place - centre).squaredNorm() / (patch.reach * patch.reach);
+    const double weight = 1 / (1 + (1 / of_far - 1) * far);
+    fit.add_sample(place, Tensor3::Zero(), {value.data(), 3}, weight);
+    for (const auto& [normal, origin] : patch.mirrors) {
+      const Vec3 image = value - 2 * normal.dot(value) * normal;
+      fit.add_sample(place - 2 * normal.dot(place - origin) * normal, Tensor3::Zero(), {image.data(), 3},
+                     weight);
+    }
+  };
+  for (const Index c : patch.cells) add(g.cell_centre[c], vector_at(cell_u, c, dim));
+  for (const Index f : patch.faces) add(g.face_centre[f], vector_at(face_u, f - mesh_.n_interior, dim));
+  fit.solve();
+  const auto strain_at = [&](const Vec3& place) {
+    Tensor3 gradient = Tensor3::Zero();
+    gradient.leftCols(dim) = fit.slopes(place).transpose() * fit.coefficients();
+    return Tensor3(0.5 * (gradient + gradient.transpose()));
+  };
+  const Tensor3 mean = strain_at(centre), moment = cell_moment(mesh_, cell);
+  double density = contraction(rows_.stress(cell, mean), mean);
+  std::array<Tensor3, 3> slope;
+  for (int a = 0; a < dim; ++a)
+    slope[std::size_t(a)] = (strain_at(centre + patch.reach * Vec3::Unit(a)) - mean) / patch.reach;
+  for (int a = 0; a < dim; ++a)
+    for (int b = 0; b < dim; ++b)
+      density += moment(a, b) * contraction(rows_.stress(cell, slope[std::size_t(a)]), slope[std::size_t(b)]);
+  return g.volume[cell] * density;
+}
+
+double SmoothEnergy::missed(std::span<const double> cell_u, std::span<const double> face_u) const {
+  const Index n = mesh_.cells.n_owned(), stride = 1 + n / cells_looked_at;
+  Patch patch{.cells_of_point = transpose(mesh_.cell_points, 0, mesh_.points.n_local()),
+              .faces_of_cell = boundary_faces_of_cells(mesh_),
+              .mark = std::vector<Index>(std::size_t(mesh_.cells.n_local()), -1)};
+  double smooth = 0, counted = 0;
+  for (Index cell = 0; cell < n; cell += stride) {
+    gather(cell, patch);
+    if (patch.reach == 0) continue;
+    smooth += smooth_energy(cell, patch, cell_u, face_u);
+    counted += counted_[std::size_t(cell)];
+  }
+  smooth = sum(mesh_.comm, smooth), counted = sum(mesh_.comm, counted);
+  return smooth > 0 ? std::abs(counted / smooth - 1) : 0;
+}
+
+}  // namespace couplet
