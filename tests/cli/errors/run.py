@@ -23,7 +23,7 @@ def run(program, case, sets, folder, ranks=1, more=(), code=0):
     command = [*start, str(programs / program), str(configs / case / "case.yaml"), *(f"--set={s}" for s in sets),
                f"--set=simulation.output.folder={folder}", *more]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
-    if done.returncode != 0:
+    if done.returncode != code:
         print(done.stdout[-1500:], done.stderr[-1500:])
         sys.exit(f"FAILED: {case} ended with exit code {done.returncode}")
     return done.stdout + done.stderr
