@@ -8,6 +8,11 @@
 #include "solid_solver/output/output.hpp"
 
 namespace couplet {
+namespace {
+
+constexpr int steps_between_looks = 50;  // of a motion at its energy; a look costs less than a step
+
+}  // namespace
 
 Solid::Solid(Mesh mesh, SolidParameters parameters, SolidContext context)
     : context_(std::move(context)),
@@ -42,7 +47,8 @@ StepReport Solid::accept_step() {
   if (body_.parameters().output.large_strain_estimate) judge_.estimate_large_strain();
   if (errors_) errors_->see_step();
   stepper_.accept_step();
-  if (!body_.is_dynamic()) judge_.look();
+  // Growth out of nothing doubles in some steps: it is seen between outputs, too.
+  if (!body_.is_dynamic() || stepper_.state().steps % steps_between_looks == 0) judge_.look();
   for (const auto& effect : body_.effects())
     if (effect->wants_stress()) effect->take_stress(fields_.cell_stress(fields_.point_displacement()));
   return {.dt = stepper_.state().dt, .iterations = stepper_.effort().iterations};

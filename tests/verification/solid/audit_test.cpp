@@ -122,7 +122,8 @@ struct Swing {
   std::string cause;
 };
 
-Swing swing(FaceGradient gradient, double until) {
+/// `outputs`: written every twentieth step.
+Swing swing(FaceGradient gradient, double until, bool outputs = true) {
   SolidParameters p = box_parameters(2);
   p.analysis = SolidParameters::Analysis::dynamic;
   p.material = {2600, 1e7, 0.3};
@@ -138,7 +139,7 @@ Swing swing(FaceGradient gradient, double until) {
   try {
     for (int i = 1; solid->stepper().state().time < until; ++i) {
       step(*solid, 0.01);
-      if (i % 20 == 0) solid->write_output(solid->stepper().state().time, 0);
+      if (outputs && i % 20 == 0) solid->write_output(solid->stepper().state().time, 0);
       if (log::doubts() > before && result.first_told == 0)
         result.first_told = solid->judge().energy_audit().created();
     }
@@ -148,6 +149,14 @@ Swing swing(FaceGradient gradient, double until) {
   }
   result.created = solid->judge().energy_audit().created();
   return result;
+}
+
+// It ran to 1e75 J when nothing was written.
+TEST(Audit, ends_a_motion_that_grows_between_outputs) {
+  const Swing grows = swing(FaceGradient::corrected, 30, false);
+  EXPECT_NE(grows.cause.find("grown out of nothing"), std::string::npos);
+  EXPECT_LT(grows.created, 1e4);
+  EXPECT_TRUE(swing(FaceGradient::symmetric, 30, false).cause.empty());
 }
 
 TEST(Audit, fires_on_undamped_motion_that_grows_out_of_nothing_and_ends_the_run) {
