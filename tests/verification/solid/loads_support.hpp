@@ -95,15 +95,26 @@ inline Vec3 mean_on(const Solid& solid, const std::string& name) {
   return total;
 }
 
-/// Of the cells [kg m/s].
+/// Of cells and of faces that have mass [kg m/s].
 inline Vec3 momentum_of(const Solid& solid) {
-  const Mesh& mesh = solid.body().mesh();
+  const SolidBody& body = solid.body();
+  const Mesh& mesh = body.mesh();
+  const SolidState& state = solid.stepper().state();
   Vec3 total = Vec3::Zero();
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    for (int a = 0; a < mesh.dim; ++a)
-      total[a] += solid.body().density(c) * mesh.reference.volume[c] *
-                  solid.stepper().state().cell_v[std::size_t(c) * mesh.dim + a];
-  for (int a = 0; a < 3; ++a) total[a] = sum(mesh.comm, total[a]);
+  for (int a = 0; a < mesh.dim; ++a) {
+    if (body.has_mass()) {
+      std::vector<double> one(state.cell_v.size(), 0), on_faces(state.face_v.size(), 0);
+      for (std::size_t i = std::size_t(a); i < one.size(); i += std::size_t(mesh.dim)) one[i] = 1;
+      for (std::size_t i = std::size_t(a); i < on_faces.size(); i += std::size_t(mesh.dim)) on_faces[i] = 1;
+      const std::vector<double> v = body.unknowns_of(state.cell_v, state.face_v),
+                                e = body.unknowns_of(one, on_faces);
+      total[a] = body.kernel().product(ElasticPart::mass, {v, state.known_rate}, {e, {}});
+    } else {
+      for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+        total[a] += body.density(c) * mesh.reference.volume[c] * state.cell_v[std::size_t(c) * mesh.dim + a];
+    }
+    total[a] = sum(mesh.comm, total[a]);
+  }
   return total;
 }
 
