@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """A rigid cylinder on a spring, m y'' + c y' + k y = F_y (trapezoidal rule), as a participant of a job.
-Usage: spring_cylinder.py PARTICIPANT MASS DAMPING STIFFNESS START   (a metre of depth; START: y at rest at t = 0)"""
+Usage: spring_cylinder.py PARTICIPANT [MASS DAMPING STIFFNESS START]   (a metre of depth; START: y at rest at t = 0; by default 2 0 4 0.01)"""
 import sys
 
 import couplet
 import numpy as np
 
-name, m, c, k, y0 = sys.argv[1], *(float(a) for a in sys.argv[2:6])
+name, m, c, k, y0 = sys.argv[1], *(float(a) for a in sys.argv[2:6] or (2, 0, 4, 0.01))
 n, r = 64, 0.5
 angle = 2 * np.pi * np.arange(n) / n
 middle = angle + np.pi / n

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, stop, wrong, kill, tell, terminal, python"""
+"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, stop, wrong, kill, tell, gallery, terminal, python"""
 import pathlib
 import re
 import shutil
@@ -175,7 +175,23 @@ def tell(folder):
     alone = call(bin_, "run", case, "--participant", "fluid", "--set", "simulation.end-time=0.01", "-q")
     check("one participant alone", alone.returncode == 0 and not (folder / "a/out/solid").exists(), alone.stderr)
     drawn = call(bin_, "plot", folder / "a/out/fluid/forces.csv")
+    for name, field, more in (("fluid", "velocity", ("--component", "x")),):
+        picture = folder / f"{field}.png"
+        told = call(bin_, "plot", folder / "a/out" / name, "--field", field, "--picture", picture, *more)
+        check(f"plot --field {field}", told.returncode == 0 and picture.stat().st_size > 5000, told.stderr)
+    wrong_field = call(bin_, "plot", folder / "a/out/fluid", "--field", "speed")
+    check("a field that is not there", wrong_field.returncode == 2 and "there is: pressure, velocity" in wrong_field.stderr, wrong_field.stderr)
     check("plot", drawn.returncode == 0 and (folder / "a/out/fluid/forces.png").exists(), drawn.stderr)
+
+
+def gallery(folder):
+    """Every case of the gallery, copied into an empty folder, is a valid case."""
+    names = [line.split()[0] for line in call(bin_, "gallery").stdout.splitlines()]
+    check("all cases of configs/ are listed", sorted(names) == sorted(f.parent.name for f in ROOT.glob("configs/*/case.yaml")), names)
+    for name in names:
+        made = call(bin_, "new", folder / name, "--from", name)
+        valid = call(bin_, "check", folder / name)
+        check(name, made.returncode == 0 and valid.returncode == 0 and valid.stdout.endswith("valid\n"), made.stderr + valid.stderr)
 
 
 def terminal(folder):
@@ -227,5 +243,5 @@ def python(folder):
 
 
 with tempfile.TemporaryDirectory(prefix="couplet-command-") as scratch:
-    {"by_hand": by_hand, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "terminal": terminal, "python": python}[what](pathlib.Path(scratch))
+    {"by_hand": by_hand, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "gallery": gallery, "terminal": terminal, "python": python}[what](pathlib.Path(scratch))
 end()

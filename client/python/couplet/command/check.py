@@ -6,8 +6,8 @@ import subprocess
 import sys
 
 from couplet.command.run import build_of
-from couplet.runs.case import COUPLER, Case
-from couplet.runs.job import Job, surroundings
+from couplet.runs.case import COUPLER, OURS, Case, expect
+from couplet.runs.job import surroundings
 
 
 def declare(parser):
@@ -19,12 +19,13 @@ def declare(parser):
 def ask(arguments, question):
     """Yields (participant, exit code, answer, complaint) of all our programs of the case, asked at the same time."""
     case = Case(arguments.case, build_of(arguments.bin))
-    Job(case, sets=arguments.set)  # who takes part
+    expect(isinstance(case.participants, dict) and case.participants, f"{case.file}: there are no 'participants'.")
     sets = [word for s in arguments.set for word in ("--set", s)]
     asked = {}
     for name in [*([COUPLER] if case.coupled else []), *case.participants]:
         program = case.build / "bin" / COUPLER if name == COUPLER else case.program(name)
-        if name == COUPLER or not case.guest(name):
+        if name == COUPLER or case.program(name).exists() or case.program(name).name in OURS:
+            expect(program.exists(), f"{case.file}: the program '{program.name}' of '{name}' is not in {program.parent}")
             line = [program, case.file, question, *(["--participant", name] if name != COUPLER else []), *sets]
             asked[name] = subprocess.Popen(list(map(str, line)), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=surroundings())
     for name, process in asked.items():

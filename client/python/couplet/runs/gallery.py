@@ -91,9 +91,9 @@ def with_values(text, values):
     places = dict(scalars(yaml.compose(text)))
     for key in values:
         expect(key in places, f"--set {key}: the case has no such value to replace; give it in the new file")
-    for key in sorted(values, key=lambda k: -places[k].start_mark.index):
-        node = places[key]
-        text = text[:node.start_mark.index] + values[key] + text[node.end_mark.index:]
+    spots = {(places[key].start_mark.index, places[key].end_mark.index): value for key, value in values.items()}  # an anchor has several keys
+    for (start, end), value in sorted(spots.items(), reverse=True):
+        text = text[:start] + value + text[end:]
     return text
 
 
@@ -113,11 +113,11 @@ def copy(source, target, values):
              and "\n" not in node.value and (source.parent / node.value).is_file()}
     files = {(source.parent / name).resolve() for name in moved.values()} | {f.resolve() for f in case.named([case.data])}
     files |= {extra.resolve() for file in list(files) for extra in included(file)}
-    files |= {g.resolve() for p in case.participants if (words := case.guest(p)) for g in map(pathlib.Path, map(str, words)) if g.parent.resolve() == source.parent.resolve()}
+    guests = {g for p in case.participants if (words := case.guest(p)) for g in map(pathlib.Path, map(str, words)) if g.parent == source.parent}
     files |= {extra.resolve() for extra in (source.parent / "plot.py", source.parent / "README.md") if extra.is_file()}
     text = with_values(text, {**{key: pathlib.Path(name).name for key, name in moved.items() if "/" in name}, **values})
     target.mkdir(parents=True, exist_ok=True)
-    for file in files:
+    for file in (*files, *guests):  # a guest may be a link: by its own name
         shutil.copy(file, target / file.name)
     (target / "case.yaml").write_text(text)
     return target / "case.yaml"

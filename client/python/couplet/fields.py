@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Pictures of fields by matplotlib: cells of the plane at their moved places, in space the outer faces."""
+import pathlib
+
+import numpy as np
+
+from couplet.runs.case import Wrong, expect
+from couplet.series import find_series
+
+# Faces of a cell by its number of points, as positions in the cell (VTK order).
+FACES = {4: ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)), 5: ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+         6: ((0, 1, 2), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+         8: ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))}
+MOST_FACES = 60000
+
+
+def series_of(folder):
+    """Of a participant's folder, or of the first participant below an output folder that has fields."""
+    for place in (folder, *sorted(p for p in folder.iterdir() if p.is_dir())):
+        try:
+            return find_series(place)
+        except FileNotFoundError:
+            continue
+    raise Wrong(f"{folder}: there is no field series (.h5) in it")
+
+
+def values_of(series, i, name, component):
+    """One number a cell: a component, or the magnitude of a vector; of points the mean over the cell."""
+    expect(name in series.names(i), f"there is no field '{name}'; there is: {', '.join(series.names(i))}")
+    field = np.asarray(series.field(i, name), float)
+    field = field[:, None] if field.ndim == 1 else field
+    if component is None:
+        field = field[:, 0] if field.shape[1] == 1 else np.linalg.norm(field[:, :3], axis=1)
+    else:
+        expect(component in "xyz" and "xyz".index(component) < field.shape[1], f"'{name}' has no component {component}")
+        field = field[:, "xyz".index(component)]
+    return np.array([field[cell].mean() for cell in series.cells]) if series.is_at_points(i, name) else field
+
+
+def places_of(series, i, warp):
+    """Points where they are: of a moving mesh as it was written, of a body with the displacement times `warp`."""
+    points = np.array(series.coordinates(i), float)
+    if warp and "displacement" in series.names(i) and series.is_at_points(i, "displacement"):
+        move = np.asarray(series.field(i, "displacement"), float)
+        points[:, :move.shape[1]] += warp * move[:, :points.shape[1]]
+    return points
+
+
+def outer_faces(series):
+    """[(points, cell)] of the faces that one cell alone has."""
+    seen = {}
+    for number, cell in enumerate(series.cells):
+        for face in FACES[len(cell)]:
+            points = [int(cell[k]) for k in face]
+            key = tuple(sorted(points))
+            seen[key] = None if key in seen else (points, number)
+    return [face for face in seen.values() if face]
+
+
+def in_plane(figure, points, series, values):
+    from matplotlib.collections import PolyCollection
+    axes = figure.add_subplot()
+    drawn = PolyCollection([points[cell][:, :2] for cell in series.cells], array=values, cmap="viridis", edgecolors="face", linewidths=0.2)
+    axes.add_collection(drawn)
+    axes.autoscale()
+    axes.set_aspect("equal")
+    axes.set(xlabel="x [m]", ylabel="y [m]")
+    return drawn
+
+
+def in_space(figure, points, series, values):
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+    faces = outer_faces(series)
+    expect(len(faces) <= MOST_FACES, f"{len(faces)} outer faces are too many for matplotlib: open the .xdmf in ParaView")
+    import matplotlib
+    shown = np.array([values[cell] for _, cell in faces])
+    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(np.nanmin(values), np.nanmax(values)), "viridis")
+    axes = figure.add_subplot(projection="3d")
+    axes.add_collection3d(Poly3DCollection([points[face] for face, _ in faces], facecolors=scale.to_rgba(shown), edgecolors=(0, 0, 0, 0.15), linewidths=0.2))
+    low, high = points.min(axis=0), points.max(axis=0)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]), xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+    axes.set_box_aspect(np.maximum(high - low, 0.05 * (high - low).max()))
+    return scale
+
+
+def draw(folder, name, picture=None, at=None, component=None, warp=1.0):
+    """Draws a field of one output (the last, or the nearest to the time `at`); gives the picture's name."""
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    series = series_of(pathlib.Path(folder))
+    i = len(series.times) - 1 if at is None else series.nearest(at)
+    values, points = values_of(series, i, name, component), places_of(series, i, warp)
+    flat = points.shape[1] == 2 or np.ptp(series.reference()[:, 2]) == 0
+    size = np.ptp(points, axis=0)
+    figure = plt.figure(figsize=(8, min(8, max(2.4, 1.2 + 7 * size[1] / size[0])) if flat else 6), dpi=110, constrained_layout=True)
+    drawn = (in_plane if flat else in_space)(figure, points, series, values)
+    place = "cells" if not series.is_at_points(i, name) else "points"
+    unit = series.file["steps"][series.steps[i]][place][name].attrs.get("unit", "")
+    unit = unit.decode() if isinstance(unit, bytes) else unit
+    figure.colorbar(drawn, ax=figure.axes[0], shrink=0.8, label=f"{name}{f' {component}' if component else ''} [{unit or '-'}]")
+    figure.axes[0].set_title(f"t = {series.times[i]:.4g} s", fontsize=10)
+    picture = pathlib.Path(picture or pathlib.Path(series.file.filename).with_name(f"{name}.png"))
+    figure.savefig(picture)
+    plt.close(figure)
+    return picture

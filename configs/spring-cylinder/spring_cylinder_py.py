@@ -1,0 +1,1 @@
+../../client/examples/spring_cylinder.py

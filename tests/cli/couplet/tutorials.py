@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every command of a tutorial, in its order, in an empty folder with an empty HOME: each ends well, and pictures are there. Usage: tutorials.py BIN NAME"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+from scene import ROOT, environment
+from checks import check, end  # noqa: E402
+
+bin_, name = pathlib.Path(sys.argv[1]), sys.argv[2]
+PICTURES = {"accuracy": 2}  # at least; one in the others
+
+text = (ROOT / f"docs/tutorials/{name}.md").read_text()
+blocks = re.findall(r"^```sh\n(.*?)^```", text, flags=re.M | re.S)
+with tempfile.TemporaryDirectory(prefix="couplet-tutorial-") as scratch:
+    home = pathlib.Path(scratch) / "home"
+    home.mkdir()
+    env = {**environment(bin_), "HOME": str(home), "PATH": f"{ROOT / 'scripts'}:/usr/bin:/bin", "PYTHONPATH": str(ROOT / "client/python")}
+    start = time.monotonic()
+    for block in blocks:
+        said = subprocess.run(["bash", "-ec", block], capture_output=True, text=True, env=env, cwd=home, timeout=600)
+        first = block.strip().splitlines()[0]
+        check(first, said.returncode == 0 and "Traceback" not in said.stderr, (said.stdout[-1500:] + said.stderr[-1500:]) if said.returncode else "")
+    pictures = [p for p in home.rglob("*.png") if p.stat().st_size > 3000]
+    check(f"{len(blocks)} blocks in {time.monotonic() - start:.0f} s, {len(pictures)} pictures", len(blocks) >= 2 and len(pictures) >= PICTURES.get(name, 1), pictures)
+end()
