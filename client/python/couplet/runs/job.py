@@ -152,6 +152,8 @@ class Job:
             for number, handler in before.items():
                 signal.signal(number, handler)
         self.seconds = time.monotonic() - self.started
+        if not self.recorded and code == 0 and (self.output / folders.LOCK).exists():  # quicker than a look
+            folders.write_record(self.output, self.record())
         return code if code >= 0 else 128 - code
 
     def last_words(self):

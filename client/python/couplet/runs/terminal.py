@@ -58,7 +58,7 @@ class Digest(Screen):
 
     def __init__(self, job):
         super().__init__()
-        self.job, self.rest, self.told = job, {}, set()
+        self.job, self.rest, self.told, self.unsaid = job, {}, set(), []
 
     def begin(self):
         simulation = dict(self.job.case.data.get("simulation") or {})
@@ -83,12 +83,15 @@ class Digest(Screen):
                 if kind not in self.told and len(self.told) < MOST_FINDINGS:
                     self.line(line.rstrip())
                 self.told.add(kind)
+            elif to is sys.stderr:
+                self.unsaid.append(line)
 
     def end(self, code):
         """Who worked how much, the budget of errors, and where all of the words are."""
         from couplet.runs.results import Results
         self.clear()
         if code not in (0, 3, 4):
+            print(*self.unsaid[-30:] if code == 2 else (), sep="\n", end="\n" if code == 2 and self.unsaid else "", file=sys.stderr)
             return
         results = Results(self.job.output)
         mine = [self.job.alone] if self.job.alone else ["coupler", *self.job.case.participants]

@@ -26,7 +26,7 @@ def readmes(job):
     folders = [f.parent for f in sorted((job.root / "configs").glob("*/case.yaml"))]
     texts = {f.name: (f / "README.md").read_text() if (f / "README.md").exists() else "" for f in folders}
     pictures = sum(bool(re.search(r"!\[[^]]*\]\(", t)) for t in texts.values())
-    commands = sum("```sh" in t or re.search(r"```\n\s*(mpirun|build/bin|couplet)", t) is not None for t in texts.values())
+    commands = sum(re.search(r"^\s*(?:mpirun|build/bin/|couplet |scripts/|fluid_solver |configs/\S+/run)", t, flags=re.M) is not None for t in texts.values())
     return f"{len(texts)} cases, {pictures} with a picture, {commands} with a command", pictures == commands == len(texts)
 
 
