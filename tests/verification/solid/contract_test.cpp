@@ -26,6 +26,7 @@ SolidParameters flap_parameters(int dim) {
   SolidParameters p = box_parameters(dim);
   p.analysis = SolidParameters::Analysis::dynamic;
   p.material = {3000, 4e6, 0.3};
+  p.method.relative_tolerance = 1e-12;
   p.boundaries["ymin"] = boundary(Type::fixed_displacement, std::vector<std::string>(dim, "0"));
   for (const char* name : {"xmin", "xmax", "ymax"}) p.boundaries[name] = boundary(Type::interface_);
   return p;
