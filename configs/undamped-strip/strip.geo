@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A strip of 1 m x 0.15 m along x, triangles; n cells across.
-DefineConstant [ n = 3 ];
+DefineConstant [ n = 4 ];
 length = 1; height = 0.15; // m
 h = height / n;
 Point(1) = {0, 0, 0, h}; Point(2) = {length, 0, 0, h}; Point(3) = {length, height, 0, h}; Point(4) = {0, height, 0, h};

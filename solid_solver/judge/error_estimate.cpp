@@ -14,6 +14,11 @@
 #include "solid_solver/judge/weighted_estimate.hpp"
 
 namespace couplet {
+namespace {
+
+constexpr double most_bound = 0.5;
+
+}  // namespace
 
 SolidErrorEstimate::SolidErrorEstimate(const SolidBody& body, const SolidStepper& stepper,
                                        const SolidFields& fields, const SolidJudge& judge)
@@ -185,7 +190,12 @@ ErrorParts SolidErrorEstimate::parts() const {
   parts.mesh = std::max(audit.mismatch(), audit.missed_by_mesh(body_.mesh().dim));
   parts.mesh = std::max(parts.mesh, audit.inner_variation);
   if (!(audit.strain_energy > 0)) parts.mesh = ErrorParts::unknown;
-  if (body_.is_dynamic()) parts.mesh += drift_.over_size(parts.mesh);
+  if (body_.is_dynamic()) {
+    parts.mesh += drift_.over_size(parts.mesh);
+    // Of tetrahedra a bound, up to 25 times too large: a large one says nothing.
+    if (body_.mesh().dim == 3 && audit.smooth_difference && parts.mesh > most_bound)
+      parts.mesh = ErrorParts::unknown;
+  }
   add_loads(parts);
   if (body_.parameters().expansion) parts.mesh = thermal_mesh_error(parts.mesh);
   return parts;

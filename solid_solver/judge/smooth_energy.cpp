@@ -23,7 +23,7 @@ constexpr Index cells_looked_at = 20000;  // of a rank: some 0.2 s
 struct SmoothEnergy::Patch {
   Csr cells_of_point, faces_of_cell;
   std::vector<Index> mark;  // per local cell: for which cell it was last gathered
-  std::vector<Index> cells, faces;
+  std::vector<Index> cells, points;
   std::vector<std::pair<Vec3, Vec3>> mirrors;  // normal and a place of the planes of symmetry
   double reach = 0;
 };
@@ -49,22 +49,22 @@ void SmoothEnergy::add(Index face, const Tensor3& gradient) {
 void SmoothEnergy::gather(Index cell, Patch& patch) const {
   const Geometry& g = mesh_.reference;
   const Vec3 centre = g.cell_centre[cell];
-  patch.cells.clear(), patch.faces.clear(), patch.mirrors.clear();
+  patch.cells.clear(), patch.points.clear(), patch.mirrors.clear();
   patch.reach = 0;
   for (const Index v : mesh_.cell_points[cell])
     for (const Index c : patch.cells_of_point[v]) {
       if (patch.mark[std::size_t(c)] == cell || mesh_.material_of(c) != mesh_.material_of(cell)) continue;
       patch.mark[std::size_t(c)] = cell;
       patch.cells.push_back(c);
-      patch.reach = std::max(patch.reach, (g.cell_centre[c] - centre).norm());
+      patch.points.insert(patch.points.end(), mesh_.cell_points[c].begin(), mesh_.cell_points[c].end());
     }
+  std::ranges::sort(patch.points);
+  patch.points.erase(std::unique(patch.points.begin(), patch.points.end()), patch.points.end());
+  for (const Index v : patch.points)
+    patch.reach = std::max(patch.reach, (mesh_.reference_points[v] - centre).norm());
   for (const Index c : patch.cells)
     for (const Index f : patch.faces_of_cell[c]) {
-      patch.reach = std::max(patch.reach, (g.face_centre[f] - centre).norm());
-      if (rows_.condition(f) != ElasticCondition::symmetry) {
-        patch.faces.push_back(f);
-        continue;
-      }
+      if (rows_.condition(f) != ElasticCondition::symmetry) continue;
       const Vec3 normal = g.face_area[f].normalized();
       if (std::ranges::none_of(patch.mirrors, [&](const auto& m) { return m.first.dot(normal) > 0.99; }))
         patch.mirrors.emplace_back(normal, g.face_centre[f]);
@@ -72,8 +72,7 @@ void SmoothEnergy::gather(Index cell, Patch& patch) const {
 }
 
 /// Twice its energy [J]: of a strain that is linear in the cell.
-double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<const double> cell_u,
-                                   std::span<const double> face_u) const {
+double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<const double> point_u) const {
   const Geometry& g = mesh_.reference;
   const int dim = mesh_.dim;
   const Vec3 centre = g.cell_centre[cell];
@@ -89,8 +88,7 @@ double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<con
                      weight);
     }
   };
-  for (const Index c : patch.cells) add(g.cell_centre[c], vector_at(cell_u, c, dim));
-  for (const Index f : patch.faces) add(g.face_centre[f], vector_at(face_u, f - mesh_.n_interior, dim));
+  for (const Index v : patch.points) add(mesh_.reference_points[v], vector_at(point_u, v, dim));
   fit.solve();
   const auto strain_at = [&](const Vec3& place) {
     Tensor3 gradient = Tensor3::Zero();
@@ -108,7 +106,7 @@ double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<con
   return g.volume[cell] * density;
 }
 
-double SmoothEnergy::missed(std::span<const double> cell_u, std::span<const double> face_u) const {
+double SmoothEnergy::missed(std::span<const double> point_u) const {
   const Index n = mesh_.cells.n_owned(), stride = 1 + n / cells_looked_at;
   Patch patch{.cells_of_point = transpose(mesh_.cell_points, 0, mesh_.points.n_local()),
               .faces_of_cell = boundary_faces_of_cells(mesh_),
@@ -117,7 +115,7 @@ double SmoothEnergy::missed(std::span<const double> cell_u, std::span<const doub
   for (Index cell = 0; cell < n; cell += stride) {
     gather(cell, patch);
     if (patch.reach == 0) continue;
-    smooth += smooth_energy(cell, patch, cell_u, face_u);
+    smooth += smooth_energy(cell, patch, point_u);
     counted += counted_[std::size_t(cell)];
   }
   smooth = sum(mesh_.comm, smooth), counted = sum(mesh_.comm, counted);

@@ -86,8 +86,9 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
       InnerVariation::is_needed(mesh_, rows))
     variation.emplace(mesh_, rows);
   std::optional<SmoothEnergy> smooth;
-  if (compare && body_.kernel().is_symmetric() && body_.effects().empty() && !body_.is_dynamic() &&
-      SmoothEnergy::is_of_use(mesh_))
+  if (compare && body_.kernel().is_symmetric() && body_.effects().empty() &&
+      (dim == 3 || !body_.is_dynamic()) &&
+      SmoothEnergy::is_of_use(mesh_))  // in the plane high modes would decide
     smooth.emplace(mesh_, rows);
   const auto is_mine = [&](Index f) { return mesh_.owner[f] < mesh_.cells.n_owned(); };
   const auto volume = [&](Index f) {
@@ -142,7 +143,7 @@ StrainAudit SolidJudge::audit_strain(std::span<const double> points, bool compar
   audit.strain_energy = sum(mesh_.comm, energy);
   audit.stress_work = sum(mesh_.comm, work);
   if (variation) audit.inner_variation = variation->missed();
-  if (smooth) audit.smooth_difference = smooth->missed(state.cell_u, state.face_u);
+  if (smooth) audit.smooth_difference = smooth->missed(points);
   if (size > 0) audit.gradient_difference = std::sqrt(difference / size);
   return audit;
 }

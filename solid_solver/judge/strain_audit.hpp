@@ -22,7 +22,7 @@ struct StrainAudit {
   bool compares_gradients = false;
   /// InnerVariation::missed() of the symmetric gradient in the plane, else 0.
   double inner_variation = 0;
-  /// SmoothEnergy::missed() of static bodies of triangles or tetrahedra.
+  /// SmoothEnergy::missed() of bodies of tetrahedra, or of triangles at rest.
   std::optional<double> smooth_difference;
 
   /// Share of the stiffness, and so of the displacement, that the mesh errs by: the square of the difference of gradients, which is too
