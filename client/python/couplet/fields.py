@@ -83,7 +83,7 @@ def in_space(figure, points, series, values):
     return scale
 
 
-def draw(folder, name, picture=None, at=None, component=None, warp=1.0):
+def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110):
     """Draws a field of one output (the last, or the nearest to the time `at`); gives the picture's name."""
     import matplotlib
     matplotlib.use("Agg")
@@ -93,7 +93,7 @@ def draw(folder, name, picture=None, at=None, component=None, warp=1.0):
     values, points = values_of(series, i, name, component), places_of(series, i, warp)
     flat = points.shape[1] == 2 or np.ptp(series.reference()[:, 2]) == 0
     size = np.ptp(points, axis=0)
-    figure = plt.figure(figsize=(8, min(8, max(2.4, 1.2 + 7 * size[1] / size[0])) if flat else 6), dpi=110, constrained_layout=True)
+    figure = plt.figure(figsize=(8, min(8, max(2.4, 1.2 + 7 * size[1] / size[0])) if flat else 6), dpi=dpi, constrained_layout=True)
     drawn = (in_plane if flat else in_space)(figure, points, series, values)
     place = "cells" if not series.is_at_points(i, name) else "points"
     unit = series.file["steps"][series.steps[i]][place][name].attrs.get("unit", "")

@@ -92,6 +92,23 @@ def maps(columns, names, title):
     return made
 
 
+def profiles(columns, names, title):
+    """Over the height (or the depth), a line an output, of which at most MOST_LINES are drawn."""
+    time, place = columns[next(iter(columns))], list(columns)[1]
+    times = np.unique(time)
+    times = times[np.linspace(0, len(times) - 1, min(MOST_LINES, len(times))).astype(int)]
+    made, axes = plt.subplots(1, len(names), figsize=(1 + 3.2 * len(names), 4.2), dpi=120, sharey=True, squeeze=False, constrained_layout=True)
+    for ax, name in zip(axes[0], names):
+        for i, t in enumerate(times):
+            ax.plot(columns[name][time == t], columns[place][time == t], lw=1, color=plt.get_cmap("viridis")(i / max(1, len(times) - 1)), label=f"{t / 3600:.4g} h")
+        ax.set_xlabel(name)
+        ax.grid(alpha=0.3)
+    axes[0, 0].set_ylabel(place)
+    axes[0, -1].legend(fontsize=7)
+    made.suptitle(title, fontsize=10)
+    return made
+
+
 def draw(file, options):
     columns = read(file)
     time = columns[next(iter(columns))]
@@ -107,7 +124,9 @@ def draw(file, options):
     if not rows.any():
         raise Wrong(f"{file}: no row between these times; it goes from {time.min():g} s to {time.max():g} s.")
     columns = {n: v[rows] for n, v in columns.items()}
-    if is_sample and np.ptp(columns["up [-]"]) > 0:
+    if list(columns)[1] in ("z [m]", "depth [m]"):
+        made = profiles(columns, [n for n in names if n != list(columns)[1]], title)
+    elif is_sample and np.ptp(columns["up [-]"]) > 0:
         made = maps(columns, names, title)
     elif is_sample:
         made = curves(columns["along [-]"], "along the line [-]", columns, names, options.log, title)

@@ -21,6 +21,8 @@ with tempfile.TemporaryDirectory() as name:
     (folder / "residuals.csv").write_text("time [s],iteration [-],relative residual [-]\n0.1,1,1e-2\n0.1,2,1e-5\n")
     all_of_it = run(folder)
     assert all_of_it.returncode == 0, all_of_it.stderr
+    (folder / "bed.csv").write_text("time [s],z [m],fluid [degC]\n" + "".join(f"{t},{z},{20 + t * z}\n" for t in (0, 1) for z in range(5)))
+    assert run(folder / "bed.csv").returncode == 0 and (folder / "bed.png").stat().st_size > 2000
     for stem in ("forces", "sample-a", "sample-b", "residuals"):
         picture = folder / f"{stem}.png"
         assert str(picture) in all_of_it.stdout and picture.stat().st_size > 2000, (stem, all_of_it)

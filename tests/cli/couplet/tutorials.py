@@ -2,7 +2,6 @@
 """Every command of a tutorial, in its order, in an empty folder with an empty HOME: each ends well, and pictures are there. Usage: tutorials.py BIN NAME"""
 import pathlib
 import re
-import shutil
 import subprocess
 import sys
 import tempfile

@@ -58,7 +58,8 @@ def overview():
 
 
 def dispatch(name, words, prog):
-    arguments = parser_of(name, prog).parse_args(words)
+    raw = name == "validate" and words[:1] not in (["-h"], ["--help"])  # its words are those of scripts/validate
+    arguments = argparse.Namespace(words=words) if raw else parser_of(name, prog).parse_args(words)
     from couplet.runs.case import Wrong, yaml
     try:
         return module_of(name).run(arguments)

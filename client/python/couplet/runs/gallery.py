@@ -114,7 +114,7 @@ def copy(source, target, values):
     files = {(source.parent / name).resolve() for name in moved.values()} | {f.resolve() for f in case.named([case.data])}
     files |= {extra.resolve() for file in list(files) for extra in included(file)}
     guests = {g for p in case.participants if (words := case.guest(p)) for g in map(pathlib.Path, map(str, words)) if g.parent == source.parent}
-    files |= {extra.resolve() for extra in (source.parent / "plot.py", source.parent / "README.md") if extra.is_file()}
+    files |= {extra.resolve() for extra in (*source.parent.glob("*.py"), source.parent / "README.md") if extra.is_file() and not extra.is_symlink()}
     text = with_values(text, {**{key: pathlib.Path(name).name for key, name in moved.items() if "/" in name}, **values})
     target.mkdir(parents=True, exist_ok=True)
     for file in (*files, *guests):  # a guest may be a link: by its own name

@@ -8,7 +8,7 @@ import pathlib
 import shutil
 import time
 
-from couplet.runs import Case, Wrong, expect, run_all, warnings_of
+from couplet.runs import Case, expect, run_all, warnings_of
 from couplet.study import variants
 
 
