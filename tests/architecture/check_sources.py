@@ -242,7 +242,7 @@ def check_findings(ids, docs, cards):
 
 def committed_output(paths):
     """What runs write and nobody commits."""
-    return [f"{path}: output of a run" for path in paths if re.search(r"(^|/)out(-[^/]*)?/|\.(log|lock|xdmf)$|\.cache\.msh$", path)]
+    return [f"{path}: output of a run" for path in paths if re.search(r"(^|/)out(-[^/]*)?/|\.(log|lock|xdmf)$|\.cache\.msh$|^[^/]+\.(csv|png|npy)$", path)]
 
 
 def main(root):

@@ -56,7 +56,7 @@ RIGHT = [
     ("common/base/a.hpp", HEAD + class_of(40).replace("class A", "struct B {};\nstruct A")),
 ]
 
-OUTPUT = ["configs/a/a.0f.vm.7.log", "configs/a/out/run.json", "configs/a/out-modal/a.h5", "configs/a/.checkpoints.lock", "configs/a/m.cache.msh"]
+OUTPUT = ["body.csv", "configs/a/a.0f.vm.7.log", "configs/a/out/run.json", "configs/a/out-modal/a.h5", "configs/a/.checkpoints.lock", "configs/a/m.cache.msh"]
 NO_OUTPUT = ["coupler/output/monitor.cpp", "docs/output.md", "configs/a/layout/a.geo", "common/log/log.cpp"]
 
 failed = int(len(committed_output(OUTPUT)) != len(OUTPUT) or committed_output(NO_OUTPUT) != [])
