@@ -8,6 +8,7 @@
 #include "common/base/text.hpp"
 #include "common/config/leaves.hpp"
 #include "common/mesh/gmsh/geo_script.hpp"
+#include "common/mesh/gmsh/meshio.hpp"
 #include "common/mesh/load.hpp"
 
 namespace couplet {
@@ -48,8 +49,9 @@ class FileCheck {
         check_patches(read_inp(file).patches);
       } else if (file.extension() == ".geo") {
         check_geo(read_geo(file));
-      } else if (const auto kind = file.extension(); kind != ".unv" && kind != ".med" && kind != ".cgns") {
-        report("mesh", fmt::format("'{}' is neither .msh nor .geo, .inp, .unv, .med or .cgns.", name));
+      } else if (const std::string kind = file.extension().string();
+                 kind != ".unv" && kind != ".cgns" && !is_read_by_meshio(kind)) {
+        report("mesh", fmt::format("'{}' is neither .msh nor .geo, .inp, .unv, .med, .exo or .cgns.", name));
       }
     } catch (const Error& error) {
       report("mesh", error.what());

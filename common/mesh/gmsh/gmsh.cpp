@@ -55,16 +55,6 @@ std::string complaints(const std::string& output, const GmshInput& input, const 
   return found;
 }
 
-/// Whether the gmsh at hand was built with a library, "Med" or "Cgns": what it does not know it would take for a script.
-bool gmsh_has(const std::string& library) {
-  const OwnFolder folder;
-  run_in_sandbox({"gmsh", "-info"}, folder.path(), folder.path() / "info.log");
-  std::istringstream words(read_log(folder.path() / "info.log"));
-  for (std::string word; words >> word;)
-    if (word == library || word.starts_with(library + "[")) return true;
-  return false;
-}
-
 void write_files(const GmshInput& input, const fs::path& folder) {
   for (const GmshInput::File& file : input.files) {
     std::ofstream out(folder / file.name, std::ios::binary);
@@ -132,6 +122,20 @@ void run_gmsh(const std::vector<std::string>& options, const GmshInput& input, c
     throw Error("gmsh could not {} '{}' ({}).{}", verb, input.source.string(), reason(end), errors);
   seal_cache(mesh, result.filename().string());
   put(mesh, result, input.source);
+}
+
+// What gmsh does not know it would take for a script.
+bool gmsh_has(const std::string& library) {
+  const OwnFolder folder;
+  try {
+    run_in_sandbox({"gmsh", "-info"}, folder.path(), folder.path() / "info.log");
+  } catch (const Error&) {
+    return false;  // not installed
+  }
+  std::istringstream words(read_log(folder.path() / "info.log"));
+  for (std::string word; words >> word;)
+    if (word == library || word.starts_with(library + "[")) return true;
+  return false;
 }
 
 fs::path convert_mesh(const fs::path& file) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/mesh/load.hpp"
+
 namespace couplet {
 
 /// What gmsh is to read.
@@ -27,5 +29,10 @@ void run_gmsh(const std::vector<std::string>& options, const GmshInput& input,
 /// A mesh of another program (.unv; .med and .cgns where the gmsh at hand was built with them) as .msh, kept beside it as
 /// <stem>.<hash>.cache.msh; groups become patches and zones. Throws Error for a format that gmsh does not read.
 std::filesystem::path convert_mesh(const std::filesystem::path& file);
+/// Whether the gmsh at hand was built with a library, "Med" or "Cgns". False where there is none.
+bool gmsh_has(const std::string& library);
+
+/// A mesh that is finished: .msh, .inp, or of another program. Throws Error.
+RawMesh read_finished_mesh(const std::filesystem::path& file);
 
 }  // namespace couplet

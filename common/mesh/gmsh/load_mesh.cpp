@@ -4,6 +4,7 @@
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
 #include "common/mesh/gmsh/gmsh.hpp"
+#include "common/mesh/gmsh/meshio.hpp"
 #include "common/mesh/load.hpp"
 #include "common/mesh/on_root.hpp"
 #include "common/mesh/quality.hpp"
@@ -26,6 +27,14 @@ RawMesh read_geo_mesh(const std::filesystem::path& geo, int dim, const MeshParam
 
 }  // namespace
 
+RawMesh read_finished_mesh(const std::filesystem::path& file) {
+  const std::string kind = file.extension().string();
+  if (kind == ".msh") return read_msh(file);
+  if (kind == ".inp") return read_inp(file);
+  if (is_read_by_meshio(kind) && !(kind == ".med" && gmsh_has("Med"))) return read_by_meshio(file);
+  return read_msh(convert_mesh(file));
+}
+
 Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const MeshParameters& parameters,
                const std::vector<std::array<std::string, 2>>& periodic,
                const std::vector<std::vector<std::string>>& materials, bool find_wide_points, double scale) {
@@ -35,7 +44,7 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
       throw Error("The mesh file '{}' does not exist. The path is relative to the folder of the YAML file.",
                   file.string());
     const std::string kind = file.extension().string();
-    const bool foreign = kind == ".unv" || kind == ".med" || kind == ".cgns";
+    const bool foreign = kind == ".unv" || kind == ".cgns" || is_read_by_meshio(kind);
     if (kind == ".vtk")
       throw Error(
           "The mesh file '{}' cannot be read: its parts have no names there. Convert it with meshio to .msh 4.1 with "
@@ -43,7 +52,7 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
           file.string());
     if (kind != ".msh" && kind != ".inp" && kind != ".geo" && !foreign)
       throw Error(
-          "The mesh file '{}' is neither .msh nor .geo, .inp, .unv, .med or .cgns. Convert it with gmsh or meshio to .msh 4.1 "
+          "The mesh file '{}' is neither .msh nor .geo, .inp, .unv, .med, .exo or .cgns. Convert it with gmsh or meshio to .msh 4.1 "
           "with physical names.",
           file.string());
     if (kind != ".geo" && !parameters.empty())
@@ -52,9 +61,7 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
           ".geo "
           "it was made from.",
           file.string());
-    raw = kind == ".geo"   ? read_geo_mesh(file, dim, parameters)
-          : kind == ".inp" ? read_inp(file)
-                           : read_msh(foreign ? convert_mesh(file) : file);
+    raw = kind == ".geo" ? read_geo_mesh(file, dim, parameters) : read_finished_mesh(file);
     for (Vec3& x : raw.points) x *= scale;
     if (raw.cell_type.empty())
       throw Error("The mesh '{}' has no cells. Put the {} into a physical group, else gmsh does not save {}.",

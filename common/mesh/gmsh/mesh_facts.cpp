@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "common/mesh/gmsh/geo_script.hpp"
+#include "common/mesh/gmsh/gmsh.hpp"
 
 namespace couplet {
 
@@ -37,8 +38,7 @@ MeshFacts facts_of(const RawMesh& raw) {
 namespace {
 
 RawMesh read_raw(const std::filesystem::path& file, const MeshParameters& parameters) {
-  if (file.extension() == ".inp") return read_inp(file);
-  if (file.extension() != ".geo") return read_msh(file);
+  if (file.extension() != ".geo") return read_finished_mesh(file);
   const GeoScript script = read_geo(file);
   const bool is_solid =
       !script.groups.at(3) || !script.groups.at(3)->empty();  // nothing: some name is computed

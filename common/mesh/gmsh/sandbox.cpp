@@ -36,9 +36,9 @@ std::optional<std::string> on_path(const std::string& program) {
 std::string program_of(const Words& command) {
   if (const auto file = on_path(command[0])) return *file;
   throw Error(
-      "A mesh that is no .msh is read by the program '{}', which is not on the PATH. Install it (Debian: apt install gmsh) "
+      "A mesh that is no .msh is read by the program '{}', which is not on the PATH. Install it (Debian: apt install {}) "
       "or give a .msh file instead.",
-      command[0]);
+      command[0], command[0]);
 }
 
 bool begins_with_any(std::string_view entry, std::initializer_list<std::string_view> prefixes) {

@@ -408,7 +408,7 @@ MESH = [
 [solid 0] error: The mesh file 'squares.msh' does not exist. The path is relative to the folder of the YAML file.
 """, ("square.msh", "squares.msh"), **RUN),
     solid("mesh of an unknown kind", """
-[solid 0] error: The mesh file 'case.yaml' is neither .msh nor .geo, .inp, .unv, .med or .cgns. Convert it with gmsh or meshio to .msh 4.1 with physical names.
+[solid 0] error: The mesh file 'case.yaml' is neither .msh nor .geo, .inp, .unv, .med, .exo or .cgns. Convert it with gmsh or meshio to .msh 4.1 with physical names.
 """, ("square.msh", "case.yaml"), **RUN),
     solid("mesh that is not one", """
 [solid 0] error: text.msh:1: Expected a section such as $Nodes here, found 'hello'.

@@ -181,7 +181,7 @@ TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
             "The mesh file '" + (folder / "none.msh").string() +
                 "' does not exist. The path is relative to the folder of the YAML file.");
   EXPECT_THAT(error(write("mesh.stl", ""), 3),
-              HasSubstr("is neither .msh nor .geo, .inp, .unv, .med or .cgns."));
+              HasSubstr("is neither .msh nor .geo, .inp, .unv, .med, .exo or .cgns."));
   // gmsh would take both for scripts.
   EXPECT_THAT(error(write("mesh.vtk", ""), 3), HasSubstr("its parts have no names there"));
   EXPECT_THAT(error(write("mesh.inp", ""), 3), HasSubstr("mesh.inp: the deck has no element of a body"));
