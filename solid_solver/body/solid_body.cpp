@@ -35,7 +35,7 @@ FaceGradientScheme scheme_for(const Mesh& mesh, const SolidParameters& parameter
   const FaceGradientScheme scheme = face_gradient_scheme(parameters);
   const bool free_to_choose = parameters.method.face_gradient == MethodParameters::FaceGradient::automatic &&
                               !has_finite_strain(parameters) && !has_orthotropic(parameters) &&
-                              !elastic.volume_by_cells();
+                              !elastic.volume_by_cells() && !has_rigid_patch(parameters);
   if (free_to_choose && scheme == FaceGradientScheme::symmetric &&
       any(mesh.comm, has_loose_vertex(mesh, elastic)))
     return FaceGradientScheme::thesis;
@@ -51,7 +51,8 @@ SolidBody::SolidBody(Mesh mesh, SolidParameters parameters)
       boundaries_(mesh_, parameters_),
       elastic_(mesh_, boundaries_.elastic(), elastic_body(parameters_, mesh_)),
       kernel_(mesh_, elastic_, scheme_for(mesh_, parameters_, elastic_)),
-      prescribed_(mesh_, boundaries_, elastic_) {
+      prescribed_(mesh_, boundaries_, elastic_),
+      rigid_(mesh_, elastic_, boundaries_.rigid_faces()) {
   check_supports();
   if (has_finite_strain(parameters_)) make_finite();
   find_mass();

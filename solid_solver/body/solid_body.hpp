@@ -10,6 +10,7 @@
 #include "common/fv/expression.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/boundary/boundaries.hpp"
+#include "solid_solver/boundary/rigid_patches.hpp"
 #include "solid_solver/large_strain/finite_strain.hpp"
 #include "solid_solver/large_strain/large_strain.hpp"
 #include "solid_solver/parameters/parameters.hpp"
@@ -42,6 +43,8 @@ class SolidBody final {
   LargeStrain* finite() const { return finite_.get(); }
   /// The same if Newton's method solves for it, else null.
   FiniteStrain* newton() const { return newton_; }
+  /// Patches that move as rigid bodies.
+  const RigidPatches& rigid() const { return rigid_; }
   const PrescribedDisplacement& prescribed() const { return prescribed_; }
   /// Those that the scene has.
   const std::vector<std::unique_ptr<SolidEffect>>& effects() const { return effects_; }
@@ -96,6 +99,7 @@ class SolidBody final {
   FiniteStrain* newton_ = nullptr;
   bool has_mass_ = false;
   PrescribedDisplacement prescribed_;
+  RigidPatches rigid_;
   std::vector<Expression> body_force_;
   std::vector<std::unique_ptr<SolidEffect>> effects_;
 };

@@ -100,6 +100,7 @@ std::vector<SurfaceTraction> SolidFields::known_tractions() const {
     SurfaceTraction& known = result[b];
     switch (elastic_.condition(f)) {
       case ElasticCondition::traction:
+        if (!body_.boundaries().knows_traction(f)) continue;
         known.projector = Tensor3::Identity();
         break;
       case ElasticCondition::symmetry: {

@@ -120,6 +120,7 @@ void SolidBoundaries::choose_faces(const Patch& patch, const SolidBoundary& boun
 void SolidBoundaries::make_load(Condition& c, const SolidCondition& from, const std::string& where) const {
   if (from.type == Type::force || from.type == Type::remote_load)
     c.distributed.emplace(*mesh_, c.faces, from.load, from.type == Type::remote_load, where);
+  c.is_rigid = from.type == Type::remote_load && from.load.is_rigid;
   if (from.type == Type::bearing_load) c.bearing.emplace(*mesh_, c.faces, from.load, where);
   if (from.type == Type::hydrostatic_pressure) c.liquid.emplace(*mesh_, from.load, where);
 }
@@ -197,6 +198,13 @@ void SolidBoundaries::visit_pressures(const Condition& c, double t, const Take& 
   const double level = c.liquid ? c.liquid->level(t) : 0;
   for (const Index f : c.faces)
     take(f, c.liquid ? c.liquid->mean(f, level) : c.pressure(mesh_->reference.face_centre[f], t));
+}
+
+std::vector<std::vector<Index>> SolidBoundaries::rigid_faces() const {
+  std::vector<std::vector<Index>> faces;
+  for (const Condition& c : conditions_)
+    if (c.is_rigid) faces.push_back(c.faces);
+  return faces;
 }
 
 std::vector<double> SolidBoundaries::pressures(double t) const {

@@ -25,6 +25,10 @@ class SolidBoundaries {
 
   /// For the operator.
   ElasticBoundary elastic() const;
+  /// Faces of owned cells of each condition that moves as a rigid body.
+  std::vector<std::vector<Index>> rigid_faces() const;
+  /// The force on a boundary face of an owned cell is known, if its condition is one of forces.
+  bool knows_traction(Index face) const { return !at(face - mesh_->n_interior).is_rigid; }
   const std::vector<std::string>& interface_patches() const { return interface_patches_; }
   /// The patch can hold the solid: some of its faces know more than the force on them.
   bool holds(std::size_t patch) const { return holds_[patch] != 0; }
@@ -54,6 +58,7 @@ class SolidBoundaries {
     std::optional<DistributedForce> distributed;
     std::optional<BearingLoad> bearing;
     std::optional<HydrostaticPressure> liquid;
+    bool is_rigid = false;
     bool has_pressure() const { return type == SolidCondition::Type::pressure || liquid; }
   };
   Condition make_condition(const SolidCondition& from, const std::string& where) const;

@@ -54,7 +54,8 @@ Values weight_of(const Mesh& mesh, std::span<const double> unknowns) {
 }
 
 Values sensitivity(const SolidBody& body, std::span<const double> weight) {
-  const SolidProblem problem{body.mesh(), body.elastic(), {}, body.kernel(), 0};
+  const SolidProblem problem{
+      body.mesh(), body.elastic(), {}, body.kernel(), 0, body.rigid().empty() ? nullptr : &body.rigid()};
   MethodParameters method = body.parameters().method;
   method.relative_tolerance = std::max(method.relative_tolerance, tolerance);
   Values z(weight.size(), 0);

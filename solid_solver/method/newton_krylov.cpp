@@ -91,14 +91,15 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
   const LinearMap apply = [this](std::span<const double> x, std::span<double> y) {
     const log::ScopedTimer timer(log::timers(), "solid: products");
     problem_.apply(x, y);
+    project(y);
   };
   const LinearMap precondition = [this](std::span<const double> r, std::span<double> z) {
-    if (modes_) {
+    if (multigrid_)
       multigrid_->apply(r, z);
-      return modes_->add_correction(r, z);
-    }
-    if (multigrid_) return multigrid_->apply(r, z);
-    factors_->solve(r, z);
+    else
+      factors_->solve(r, z);
+    if (modes_) modes_->add_correction(r, z);
+    project(z);
   };
   krylov_ = std::make_unique<KrylovSolver>("displacement", problem.mesh.comm, n, apply, precondition);
   if (!problem.is_static() && parameters.corrections_kept > 0)
@@ -180,8 +181,19 @@ void NewtonKrylov::choose_factors() {
   name_ = "newton-krylov (BiCGStab, factors of the thesis's operator)";
 }
 
+void NewtonKrylov::project(std::span<double> unknowns) const {
+  if (problem_.rigid) problem_.rigid->project(unknowns);
+}
+
 SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double> u) {
   try {
+    std::vector<double> rows;
+    if (problem_.rigid) {
+      rows.assign(b.begin(), b.end());
+      project(rows);
+      project(u);
+      b = rows;
+    }
     const SolveStatistics statistics = krylov_->solve(b, u, options_, projection_.get());
     if (problem_.inertia.empty()) krylov_->forget_vectors();  // static: what is written next needs room
     return statistics;

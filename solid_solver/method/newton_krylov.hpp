@@ -26,6 +26,7 @@ class NewtonKrylov final : public SolutionMethod {
   void choose_multigrid(const MethodParameters& parameters);
   void add_rigid_motions(const std::vector<double>& inertia, double length);
   void choose_factors();
+  void project(std::span<double> unknowns) const;
 
   SolidProblem problem_;
   KrylovOptions options_;

@@ -36,7 +36,7 @@ constexpr GlobalIndex factors_beside_inertia = 5000;
 constexpr double bulk_of_mixed_form = 49;
 
 bool wants_mixed_form(const SolidProblem& problem) {
-  if (!problem.elastic.volume_by_cells()) return false;
+  if (!problem.elastic.volume_by_cells() || problem.rigid) return false;
   double ratio = 0;
   for (Index c = 0; c < problem.mesh.cells.n_owned(); ++c) {
     const LameConstants lame = problem.elastic.lame(c);

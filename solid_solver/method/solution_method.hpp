@@ -10,6 +10,7 @@
 #include "common/linalg/linear_solver.hpp"
 #include "common/linalg/residual_projection.hpp"
 #include "common/mesh/mesh.hpp"
+#include "solid_solver/boundary/rigid_patches.hpp"
 #include "solid_solver/parameters/parameters.hpp"
 
 namespace couplet {
@@ -19,9 +20,10 @@ namespace couplet {
 struct SolidProblem {
   const Mesh& mesh;
   const ElasticOperator& elastic;
-  std::span<const double> inertia;  ///< per owned cell [N/m]; empty: static
-  const ElasticKernel& kernel;      ///< A, with the face gradient that was chosen
-  double mass_factor = 0;           ///< of the kernel's own mass [1/s^2], where it has one
+  std::span<const double> inertia;      ///< per owned cell [N/m]; empty: static
+  const ElasticKernel& kernel;          ///< A, with the face gradient that was chosen
+  double mass_factor = 0;               ///< of the kernel's own mass [1/s^2], where it has one
+  const RigidPatches* rigid = nullptr;  ///< null: no patch moves as a rigid body
   bool is_static() const { return inertia.empty(); }
   bool is_symmetric() const { return kernel.is_symmetric(); }
   bool is_corrected() const { return kernel.scheme() == FaceGradientScheme::corrected; }

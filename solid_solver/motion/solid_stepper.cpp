@@ -50,6 +50,16 @@ void SolidStepper::start_from_rest() {
       velocity[c].evaluate(faces, 0, state_.face_v, dim, c);
     }
   }
+  if (!body_.rigid().empty()) {
+    std::vector<double> velocity = body_.unknowns_of(state_.cell_v, state_.face_v);
+    body_.rigid().project(velocity);
+    const std::size_t n_cells = std::size_t(mesh_.cells.n_owned()) * dim;
+    const auto& open = elastic_.unknown_faces();
+    for (std::size_t i = 0; i < open.size(); ++i)
+      std::copy_n(&velocity[n_cells + i * dim], dim,
+                  &state_.face_v[std::size_t(open[i] - mesh_.n_interior) * dim]);
+    mesh_.boundary.update_ghosts(state_.face_v, dim);
+  }
   state_.energies.kinetic = state_.energies.initial_kinetic = ledger_.kinetic(state_);
   trial_ = state_;
 }

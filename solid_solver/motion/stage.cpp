@@ -54,7 +54,12 @@ SolidSystem& SolidStepper::system_for(double mass_factor) {
 }
 
 SolidProblem SolidStepper::problem_of(const SolidSystem& system) const {
-  return {mesh_, elastic_, system.inertia, kernel_, body_.has_mass() ? system.mass_factor : 0};
+  return {mesh_,
+          elastic_,
+          system.inertia,
+          kernel_,
+          body_.has_mass() ? system.mass_factor : 0,
+          body_.rigid().empty() ? nullptr : &body_.rigid()};
 }
 
 void SolidStepper::announce(const SolidSystem& system) {

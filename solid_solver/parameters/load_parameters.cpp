@@ -69,7 +69,11 @@ void declare_remote_load(config::Section& s, TotalLoad& load, const int& dimensi
   declare_force(s, "force", load.force, dimension, false,
                 "force at 'point', one expression of t a component; in 2-D per metre of depth");
   declare_moment(s, load.moment, dimension);
-  s.check([&] { return problem_of_nothing(load); }, "point");
+  s.choice("coupling", load.is_rigid, {{"distributing", false}, {"rigid", true}})
+      .doc(
+          "distributing: the faces share the load by their areas and stay free to deform; rigid: their centres move as one rigid "
+          "body (small strain, symmetric face gradient)");
+  s.check([&] { return load.is_rigid ? std::string() : problem_of_nothing(load); }, "point");
 }
 
 void declare_bearing_load(config::Section& s, TotalLoad& load, const int& dimension) {

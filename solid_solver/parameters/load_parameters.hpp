@@ -16,6 +16,7 @@ struct TotalLoad {
   std::vector<config::ExpressionText>
       moment;                    ///< about `point` [N m], of t: 3 components, in 2-D 1; empty: none
   Vec3 point = Vec3::Zero();     ///< remote-load: where the force acts [m]
+  bool is_rigid = false;         ///< remote-load: the faces move as a rigid body
   double density = 0;            ///< hydrostatic-pressure: of the liquid [kg/m^3]
   std::vector<double> gravity;   ///< hydrostatic-pressure: [m/s^2]
   config::ExpressionText level;  ///< hydrostatic-pressure: height of the free surface [m], of t

@@ -181,6 +181,36 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
          "'spectrum' and 'modes' are those of the linear solid; use small-strain");
 }
 
+bool has_rigid_patch(const SolidParameters& p) {
+  return any_condition(p, [](const SolidCondition& c) {
+    return c.type == SolidCondition::Type::remote_load && c.load.is_rigid;
+  });
+}
+
+/// What a patch that moves as a rigid body cannot have, each with the key to change.
+void check_rigid_patches(config::Section& s, SolidParameters& p) {
+  using Method = MethodParameters;
+  const auto refuse = [&](const char* key, bool is_wrong, const char* why) {
+    s.check([&p, is_wrong, why] { return has_rigid_patch(p) && is_wrong ? std::string(why) : std::string(); },
+            key);
+  };
+  refuse(
+      "kinematics", has_finite_strain(p),
+      "a remote-load with 'coupling: rigid' turns by small angles; take 'coupling: distributing' at finite strain");
+  const bool is_gradient = p.method.face_gradient == Method::FaceGradient::symmetric ||
+                           p.method.face_gradient == Method::FaceGradient::automatic;
+  const bool is_method =
+      p.method.type == Method::Type::newton_krylov || p.method.type == Method::Type::automatic;
+  refuse(
+      "solution-method",
+      !is_gradient || !is_method || p.method.preconditioner == Method::Preconditioner::mixed ||
+          !symmetric_suits(p),
+      "a remote-load with 'coupling: rigid' goes with 'face-gradient: symmetric' and 'type: newton-krylov' (or 'auto') without "
+      "'preconditioner: mixed' and 'zero-normal-gradient'");
+  refuse("output", p.output.spectrum || p.output.modes > 0 || p.output.large_strain_estimate,
+         "'spectrum', 'modes' and 'large-strain-estimate' know no remote-load with 'coupling: rigid'");
+}
+
 void check_large_strain_estimate(config::Section& s, SolidParameters& p) {
   s.check(
       [&p]() -> std::string {

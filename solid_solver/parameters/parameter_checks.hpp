@@ -9,6 +9,8 @@ namespace couplet {
 void check_together(config::Section& section, SolidParameters& parameters);
 /// What finite strain cannot have.
 void check_finite_strain(config::Section& section, SolidParameters& parameters);
+/// What patches that move as rigid bodies cannot have.
+void check_rigid_patches(config::Section& section, SolidParameters& parameters);
 /// What the estimate of large strain cannot have.
 void check_large_strain_estimate(config::Section& section, SolidParameters& parameters);
 /// What an orthotropic material cannot have.

@@ -177,6 +177,7 @@ void declare(config::Section& s, SolidParameters& p) {
   check_together(s, p);
   check_finite_strain(s, p);
   check_orthotropic(s, p);
+  check_rigid_patches(s, p);
   check_large_strain_estimate(s, p);
 }
 

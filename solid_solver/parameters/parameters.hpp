@@ -76,6 +76,8 @@ inline bool has_finite_strain(const SolidParameters& p) {
   return p.kinematics == SolidParameters::Kinematics::finite_strain &&
          p.analysis != SolidParameters::Analysis::thermal;
 }
+/// Some patch moves as a rigid body (remote-load with coupling: rigid).
+bool has_rigid_patch(const SolidParameters& parameters);
 /// Some material is orthotropic: all cells have an elastic matrix.
 bool has_orthotropic(const SolidParameters& parameters);
 /// From here up the volume strain of faces locks.

@@ -54,6 +54,17 @@ def beyond(arm):
     return measure
 
 
+def rigid_end(job):
+    """The same where the tip moves as a rigid body; its centre moves with the load by the same theory."""
+    arm = 5
+    right = beam_theory(10) + 100 * arm * 10**2 / (2 * 210e9 / 12)
+    tip = "%stip={type: remote-load, point: [%g, 0.5, 0.5], force: [0, 100, 0], coupling: rigid}" % (B, 10 + arm)
+    run = job.solve_run("solid_solver", "slender-beam", (*BEAM, tip))
+    r = last(run, "reactions.csv")
+    error, held = probe(run, "tip y [m]") / right - 1, abs(r["root y [N]"] / 100 + 1)
+    return f"{100 * error:+.2f} %, reaction {held:.1e}, {len(warnings(run))} warnings", abs(error) <= 0.03 and held <= 1e-6 and not warnings(run)
+
+
 def pure_moment(job):
     """M L^2 / (2 E I) under a moment about z."""
     run = job.solve_run("solid_solver", "slender-beam", (*BEAM, remote((0, 0, 0), (0, 0, 0), (0, 0, 500))))
@@ -156,6 +167,7 @@ BARS = [
     Bar("pin and weight on an eye bar: 1, 2 and 3 ranks", "the same to 1e-8", eye_ranks),
     Bar("remote force at the tip of a bar 10:1, tetrahedra", "within 3 % of beam theory, no warning", beyond(0)),
     Bar("remote force 5 m beyond the tip of a bar 10:1, tetrahedra", "within 3 % of beam theory, no warning", beyond(5)),
+    Bar("remote force 5 m beyond a rigid tip of a bar 10:1, tetrahedra", "within 3 % of beam theory, reaction to 1e-6, no warning", rigid_end),
     Bar("remote moment on a bar 10:1, tetrahedra", "within 3 % of beam theory", pure_moment),
     Bar("liquid against a wall, its surface cutting triangles: force", "rho g h^2 / 2 to 1e-12", dam),
     Bar("liquid against a wall: deflection of its top", "within 3 % of beam theory", liquid_bends),
