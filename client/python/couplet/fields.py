@@ -104,3 +104,34 @@ def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110)
     figure.savefig(picture)
     plt.close(figure)
     return picture
+
+
+def draw_mode(folder, number, picture=None, dpi=110):
+    """Draws a mode of modes.h5 (docs/formats.md) on the surface, its largest displacement a tenth of the size; gives the picture's name."""
+    import h5py
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+    file = next((f for f in (pathlib.Path(folder) / "modes.h5", *sorted(pathlib.Path(folder).glob("*/modes.h5"))) if f.exists()), None)
+    expect(file, f"{folder}: there is no modes.h5 in it")
+    with h5py.File(file) as modes:
+        frequency = modes["frequency"][...]
+        expect(1 <= number <= len(frequency), f"--mode {number}: there are {len(frequency)}")
+        points, ends, corners = (modes[f"surface/{name}"][...] for name in ("vertices", "face-offset", "face-vertex"))
+        shape = modes["shape/vertices"][...][:, number - 1].reshape(-1, 3)
+    size, length = np.ptp(points, axis=0).max(), np.linalg.norm(shape, axis=1)
+    moved = points + 0.1 * size / length.max() * shape
+    faces = [corners[a:b].astype(int) for a, b in zip(ends[:-1].astype(int), ends[1:].astype(int))]
+    colours = plt.get_cmap("viridis")(np.array([length[f].mean() for f in faces]) / length.max())
+    figure = plt.figure(figsize=(8, 6), dpi=dpi, constrained_layout=True)
+    axes = figure.add_subplot(projection="3d")
+    axes.add_collection3d(Poly3DCollection([moved[f] for f in faces], facecolors=colours, edgecolors=(0, 0, 0, 0.15), linewidths=0.2))
+    low, high = moved.min(axis=0), moved.max(axis=0)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]), xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
+    axes.set_box_aspect(np.maximum(high - low, 0.05 * size))
+    axes.set_title(f"mode {number}: {frequency[number - 1]:.4g} Hz", fontsize=10)
+    picture = pathlib.Path(picture or file.with_name(f"mode-{number}.png"))
+    figure.savefig(picture)
+    plt.close(figure)
+    return picture

@@ -149,6 +149,7 @@ def declare(parser):
     parser.add_argument("--at", type=float, metavar="T", help="of lines and planes: the output nearest to this time (the last one)")
     parser.add_argument("--log", action="store_true", help="logarithmic values; residuals always have them")
     parser.add_argument("--field", metavar="NAME", help="draws this field of the run in FOLDER (or FOLDER/PARTICIPANT): in the plane its cells, in space the outer faces")
+    parser.add_argument("--mode", type=int, metavar="N", help="draws this mode of modes.h5 in FOLDER")
     parser.add_argument("--component", choices=("x", "y", "z"), help="of --field: a component in place of the magnitude")
     parser.add_argument("--warp", type=float, default=1.0, metavar="F", help="of --field: a body is drawn with its displacement times F (1)")
     parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="by default FILE.png beside FILE.csv; for one file only")
@@ -164,6 +165,11 @@ def of_case(case, picture):
 
 
 def run(options):
+    if options.mode is not None:
+        expect(len(options.files) == 1 and options.files[0].is_dir(), "--mode: give one folder of a run")
+        from couplet import fields
+        print(fields.draw_mode(options.files[0], options.mode, options.picture))
+        return 0
     if options.field:
         expect(len(options.files) == 1 and options.files[0].is_dir(), "--field: give one folder of a run")
         from couplet import fields

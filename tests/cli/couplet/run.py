@@ -179,6 +179,9 @@ def tell(folder):
         picture = folder / f"{field}.png"
         told = call(bin_, "plot", folder / "a/out" / name, "--field", field, "--picture", picture, *more)
         check(f"plot --field {field}", told.returncode == 0 and picture.stat().st_size > 5000, told.stderr)
+    plate = call(bin_, "run", ROOT / "configs/free-plate", "-q", "--set", f"simulation.output.folder={folder / 'plate'}")
+    mode = call(bin_, "plot", folder / "plate", "--mode", "7", "--picture", folder / "mode.png")
+    check("plot --mode", plate.returncode == 0 and mode.returncode == 0 and (folder / "mode.png").stat().st_size > 5000, plate.stderr + mode.stderr)
     wrong_field = call(bin_, "plot", folder / "a/out/fluid", "--field", "speed")
     check("a field that is not there", wrong_field.returncode == 2 and "there is: pressure, velocity" in wrong_field.stderr, wrong_field.stderr)
     check("plot", drawn.returncode == 0 and (folder / "a/out/fluid/forces.png").exists(), drawn.stderr)
