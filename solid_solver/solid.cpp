@@ -30,7 +30,7 @@ void Solid::begin_step(const Step& step) {
   dt_ = step.dt;
   stepper_.begin_step(step, !interface_.takes_temperature());
   if (chosen.spectrum && body_.is_dynamic() && step.number == 0) output_->write_spectrum(step.dt);
-  if (chosen.modes > 0 && step.number == 0) output_->write_modes(errors_.has_value());
+  if (chosen.modes > 0 && body_.is_dynamic() && step.number == 0) output_->write_modes(errors_.has_value());
 }
 
 Exchange Solid::solve(const Exchange& in) {
@@ -44,11 +44,13 @@ Exchange Solid::solve(const Exchange& in) {
 
 StepReport Solid::accept_step() {
   if (!body_.is_dynamic()) judge_.see_inertia();
+  judge_.see_equilibrium();
   if (body_.parameters().output.large_strain_estimate) judge_.estimate_large_strain();
   if (errors_) errors_->see_step();
   stepper_.accept_step();
   // Growth out of nothing doubles in some steps: it is seen between outputs, too.
   if (!body_.is_dynamic() || stepper_.state().steps % steps_between_looks == 0) judge_.look();
+  if (!body_.is_dynamic()) judge_.see_buckling();
   for (const auto& effect : body_.effects())
     if (effect->wants_stress()) effect->take_stress(fields_.cell_stress(fields_.point_displacement()));
   return {.dt = stepper_.state().dt, .iterations = stepper_.effort().iterations};
@@ -65,6 +67,9 @@ std::vector<EffectVerdict> Solid::audit() const {
 
 std::vector<std::string> Solid::finish() {
   if (body_.is_dynamic()) judge_.look();
+  const SolidOutputParameters& chosen = body_.parameters().output;
+  if (chosen.buckling > 0) output_->write_buckling();
+  if (chosen.modes > 0 && !body_.is_dynamic()) output_->write_preloaded_modes();
   std::vector<std::string> sentences = judge_.sentences();
   for (const auto& effect : body_.effects()) effect->judge(sentences);
   return sentences;

@@ -10,6 +10,7 @@
 #include "common/base/error.hpp"
 #include "common/linalg/petsc_check.hpp"
 #include "common/modes/lowest_modes.hpp"
+#include "common/modes/shell_operator.hpp"
 
 namespace couplet {
 namespace {
@@ -20,57 +21,16 @@ constexpr double solver_tolerance =
 constexpr double hidden_below = 1e-6;
 
 using Apply = ModalOperators::Apply;
-
-/// An operator for PETSc, and the first exception that came out of it: none may pass through PETSc's frames.
-struct Operator {
-  const Apply* apply = nullptr;
-  std::exception_ptr* failure = nullptr;
-
-  PetscErrorCode operator()(::Vec x, ::Vec y) const {
-    const double* in = nullptr;
-    double* out = nullptr;
-    PetscInt n = 0;
-    VecGetLocalSize(x, &n);
-    VecGetArrayRead(x, &in);
-    VecGetArray(y, &out);
-    try {
-      if (!*failure) (*apply)({in, std::size_t(n)}, {out, std::size_t(n)});
-    } catch (...) {
-      *failure = std::current_exception();
-    }
-    // After a failure the search goes on with something finite until it ends; its result is thrown away.
-    if (*failure) std::copy_n(in, n, out);
-    VecRestoreArray(y, &out);
-    VecRestoreArrayRead(x, &in);
-    return 0;
-  }
-};
-
-PetscErrorCode multiply(Mat a, ::Vec x, ::Vec y) {
-  Operator* op = nullptr;
-  MatShellGetContext(a, &op);
-  return (*op)(x, y);
-}
-
-PetscErrorCode precondition(PC pc, ::Vec x, ::Vec y) {
-  Operator* op = nullptr;
-  PCShellGetContext(pc, &op);
-  return (*op)(x, y);
-}
+using Operator = ShellOperator;
 
 /// One search; what it needs lives as long as it.
 class Search {
  public:
   Search(MPI_Comm comm, std::size_t n_owned, const ModalOperators& of, double shift) : shift_(shift) {
-    const auto shell = [&](Mat& mat, Operator& op, const Apply& apply) {
-      op = {&apply, &failure_};
-      const auto n = static_cast<PetscInt>(n_owned);
-      petsc_check(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, &op, &mat));
-      petsc_check(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
-      petsc_check(MatSetOption(mat, MAT_SYMMETRIC, PETSC_TRUE));
-    };
-    shell(k_, stiffness_, of.stiffness);
-    shell(m_, mass_, of.mass);
+    stiffness_ = {&of.stiffness, &failure_};
+    mass_ = {&of.mass, &failure_};
+    k_ = symmetric_shell(comm, n_owned, stiffness_);
+    m_ = symmetric_shell(comm, n_owned, mass_);
     inverse_ = {&of.solve, &failure_};
     petsc_check(EPSCreate(comm, &eps_));
     petsc_check(EPSSetOperators(eps_, k_, m_));
@@ -89,7 +49,7 @@ class Search {
     petsc_check(KSPGetPC(ksp, &pc));
     petsc_check(PCSetType(pc, PCSHELL));
     petsc_check(PCShellSetContext(pc, &inverse_));
-    petsc_check(PCShellSetApply(pc, precondition));
+    petsc_check(PCShellSetApply(pc, precondition_shell));
   }
   Search(const Search&) = delete;
   ~Search() {

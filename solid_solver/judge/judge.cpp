@@ -120,6 +120,18 @@ void SolidJudge::estimate_large_strain() {
   }
 }
 
+void SolidJudge::see_buckling() {
+  SolutionMethod* method = stepper_.method();
+  if (body_.finite() || !method || !body_.kernel().is_symmetric() || body_.parameters().output.buckling > 0)
+    return;
+  const BucklingEstimate found =
+      estimate_buckling(body_, fields_, stepper_.state().time, *method, compression_seen_);
+  if (found.factor > 0 && found.factor < buckling_told_) {
+    buckling_told_ = found.factor >= 1 ? std::min(1.0, found.factor) : 0;
+    tell_buckling(mesh_.comm, found.factor, "at most ");
+  }
+}
+
 SolidEvidence SolidJudge::evidence() const {
   const std::vector<double> points = fields_.point_displacement();
   SolidEvidence evidence = fields_.deformation(points);
@@ -156,6 +168,7 @@ void SolidJudge::save(CheckpointWriter& file) const {
 
 void SolidJudge::load(CheckpointReader& file) {
   latest_.reset();
+  equilibrium_.forget();
   energy_audit_.scale = file.read_scalar("audit-scale");
   largest_gradient_ = file.read_scalar("largest-gradient");
   inertia_over_load_ = file.read_scalar("inertia-over-load");

@@ -11,6 +11,8 @@
 #include "solid_solver/judge/large_strain_estimate.hpp"
 #include "solid_solver/judge/strain_audit.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
+#include "solid_solver/stability/buckling_estimate.hpp"
+#include "solid_solver/stability/equilibrium.hpp"
 
 namespace couplet {
 
@@ -34,6 +36,10 @@ class SolidJudge final {
   void see_gradient(std::span<const double> points);
   /// Of a static run, between solve and acceptance: what inertia would have been beside the load.
   void see_inertia();
+  /// Of a static run at large strain, between solve and acceptance: whether its equilibrium holds.
+  void see_equilibrium() { equilibrium_.see(body_, stepper_, fields_); }
+  /// Of a linear static run in compression, after acceptance: how far its loads are from those that buckle it.
+  void see_buckling();
   /// Of a linear static run, between solve and acceptance, where it is asked for.
   void estimate_large_strain();
   const std::optional<LargeStrainEstimate>& large_strain() const { return large_strain_; }
@@ -58,6 +64,9 @@ class SolidJudge final {
   int steps_of_latest_ = -1;
   EnergyAudit energy_audit_;
   std::optional<LargeStrainEstimate> large_strain_;  // of the last step
+  EquilibriumWatch equilibrium_;
+  double buckling_told_ = BucklingEstimate::low;  // a factor below this is told
+  double compression_seen_ = 0;                   // of the last look at buckling
   Severity strain_told_ = Severity::note, energy_told_ = Severity::note;
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/elasticity/finite/finite_kernel.hpp"
+#include "common/linalg/linear_map.hpp"
 #include "solid_solver/large_strain/large_strain.hpp"
 #include "solid_solver/method/tangent_solver.hpp"
 #include "solid_solver/parameters/parameters.hpp"
@@ -44,6 +45,11 @@ class FiniteStrain final : public LargeStrain {
   /// share, over that share; of a linear body under loads 1, near a buckling load large. What is moved by prescribed
   /// displacements gives way to nothing and counts as 1. Throws SolveFailure. Collective.
   double softness(std::span<const double> unknowns, std::span<const double> known);
+  /// The least x . K x over that of `elastic`, K being the tangent at a state of equilibrium: 1 of a body without load, negative where the
+  /// equilibrium does not hold (an upper bound, hence a proof). Of pressures that follow a surface with a free rim, which
+  /// have no energy, nothing can be said so: 1. `start`: forces without the symmetry of the body. Collective.
+  double lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
+                          const LinearMap& elastic, std::vector<double> start);
   Vec3 pressure_force() override { return kernel_->pressure_force(); }
   std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
                                    const ElasticLoads& loads) override {
@@ -66,6 +72,7 @@ class FiniteStrain final : public LargeStrain {
   double judge_rounding(const Load& load, double scale, double left);
   TangentSolver& solver_for(double mass_factor, std::span<const double> node_inertia);
   std::string where_worst() const;
+  bool is_symmetric(std::span<const double> x, std::span<const double> y);
 
   const Mesh& mesh_;
   const ElasticOperator& rows_;

@@ -93,17 +93,21 @@ NewtonKrylov::NewtonKrylov(const SolidProblem& problem, const MethodParameters& 
     problem_.apply(x, y);
     project(y);
   };
-  const LinearMap precondition = [this](std::span<const double> r, std::span<double> z) {
-    if (multigrid_)
-      multigrid_->apply(r, z);
-    else
-      factors_->solve(r, z);
-    if (modes_) modes_->add_correction(r, z);
-    project(z);
-  };
-  krylov_ = std::make_unique<KrylovSolver>("displacement", problem.mesh.comm, n, apply, precondition);
+  krylov_ = std::make_unique<KrylovSolver>(
+      "displacement", problem.mesh.comm, n, apply,
+      [this](std::span<const double> r, std::span<double> z) { approximate_inverse(r, z); });
   if (!problem.is_static() && parameters.corrections_kept > 0)
     projection_ = std::make_unique<ResidualProjection>(problem.mesh.comm, parameters.corrections_kept);
+}
+
+bool NewtonKrylov::approximate_inverse(std::span<const double> r, std::span<double> z) {
+  if (multigrid_)
+    multigrid_->apply(r, z);
+  else
+    factors_->solve(r, z);
+  if (modes_) modes_->add_correction(r, z);
+  project(z);
+  return problem_.rigid == nullptr;
 }
 
 void NewtonKrylov::choose_multigrid(const MethodParameters&) {

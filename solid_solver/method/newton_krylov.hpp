@@ -21,6 +21,7 @@ class NewtonKrylov final : public SolutionMethod {
  public:
   NewtonKrylov(const SolidProblem& problem, const MethodParameters& parameters);
   SolveStatistics solve(std::span<const double> b, std::span<double> u) override;
+  bool approximate_inverse(std::span<const double> r, std::span<double> z) override;
 
  private:
   void choose_multigrid(const MethodParameters& parameters);

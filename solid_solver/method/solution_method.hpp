@@ -40,6 +40,8 @@ class SolutionMethod {
   /// `b`, `u`: packed rows of this rank (owned cells, then unknown faces); `u` holds the guess. Throws
   /// SolveFailure if the tolerance was not reached.
   virtual SolveStatistics solve(std::span<const double> b, std::span<double> u) = 0;
+  /// z near A^-1 r, symmetric and positive, by what the iteration has at hand; false: there is nothing. Collective.
+  virtual bool approximate_inverse(std::span<const double> /*r*/, std::span<double> /*z*/) { return false; }
   /// What the next first guess learns from accepted steps; none: nothing.
   ResidualProjection* projection() const { return projection_.get(); }
   /// "block-coupled (direct), thesis's face gradient": for the log, with the reason if the program chose.

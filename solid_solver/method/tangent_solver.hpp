@@ -35,9 +35,10 @@ class TangentSolver {
   /// du holds the correction. Throws SolveFailure. Collective.
   SolveStatistics solve(std::span<const double> r, std::span<double> du, double relative_tolerance,
                         int max_iterations);
+  /// z near K^-1 r, after follow().
+  void precondition(std::span<const double> r, std::span<double> z);
 
  private:
-  void precondition(std::span<const double> r, std::span<double> z);
   SolveStatistics solve_by_own_factors(std::span<const double> r, std::span<double> du,
                                        const KrylovOptions& options);
   SolveStatistics counted(std::span<const double> r, std::span<double> du, const KrylovOptions& options);

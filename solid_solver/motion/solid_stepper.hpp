@@ -35,6 +35,8 @@ class SolidStepper final {
   const SolidLedger& ledger() const { return ledger_; }
   const LastSolve& last_solve() const { return last_; }
   const SolverEffort& effort() const { return effort_; }
+  /// What solved last; null: nothing has, or large strain by itself.
+  SolutionMethod* method() const { return systems_.empty() ? nullptr : systems_.front()->method.get(); }
   /// Largest step that the estimated error allows [s]; infinity if it is not controlled.
   double suggest_dt() const;
 

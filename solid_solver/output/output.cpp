@@ -13,12 +13,9 @@
 #include "common/base/constants.hpp"
 #include "common/base/error.hpp"
 #include "common/log/log.hpp"
-#include "common/modes/modes_file.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/time/amplification.hpp"
-#include "solid_solver/judge/weighted_estimate.hpp"
 #include "solid_solver/material/stress.hpp"
-#include "solid_solver/output/modal_analysis.hpp"
 #include "solid_solver/output/spectrum.hpp"
 
 namespace couplet {
@@ -146,55 +143,6 @@ void SolidOutput::write_spectrum(double dt) {
       "{:.3g} 1/s, "
       "with {} and dt = {:g} s{} by up to {:.3g} 1/s",
       values.size(), n_complex, growth, name(p.time_scheme.type), dt, p.damping ? ", damped," : "", discrete);
-}
-
-void SolidOutput::write_modes(bool estimates) {
-  if (context_.output_folder.empty() || modes_written_) return;
-  modes_written_ = true;
-  const Mesh& mesh = body_.mesh();
-  const std::optional<SolidProblem> problem = vibration(body_);
-  if (!problem)
-    throw Error(
-        "output.modes: free vibrations want 'analysis: dynamic' and 'solution-method: {face-gradient: symmetric}': the "
-        "stiffness of the other face gradients is not symmetric.");
-  std::vector<double> mass;
-  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
-    mass.push_back(body_.density(c) * mesh.reference.volume[c]);
-  const int n = body_.parameters().output.modes;
-  EigenModes found;
-  try {
-    found = solid_modes(*problem, body_.parameters().method, mass, n);
-  } catch (const SolveFailure& e) {
-    throw Error("output.modes: {}", e.what());  // no shorter step would help
-  }
-  std::string errs;
-  if (estimates) {
-    std::vector<std::span<const double>> swinging;
-    for (std::size_t m = 0; m < found.shape.size(); ++m)
-      if (found.eigenvalue[m] > 0) swinging.push_back(found.shape[m]);
-    if (!swinging.empty())
-      errs = fmt::format("; the mesh leaves an estimated {:.2g} % in the worst of them",
-                         100 * 0.5 * energy_mesh_error(body_, swinging));
-  }
-  ModalModel model = modal_model(*problem, found);
-  model.mass = 0;
-  for (const double m : mass) model.mass += m;
-  model.mass = sum(mesh.comm, model.mass);
-  if (comm_rank(mesh.comm) != 0) return;
-  Series series(context_.output_folder / "modes.csv", {"number", "frequency [Hz]", "effective mass x [kg]",
-                                                       "effective mass y [kg]", "effective mass z [kg]"});
-  for (std::size_t m = 0; m < model.n_modes(); ++m) {
-    std::vector<double> row{double(m + 1), model.frequency[m]};
-    for (std::size_t a = 0; a < 3; ++a)
-      row.push_back(std::pow(model.participation[a * model.n_modes() + m], 2));
-    series.row(row);
-  }
-  if (mesh.dim == 3) couplet::write_modes(context_.output_folder / "modes.h5", model, "");
-  log::info(
-      "modes: {} free vibrations from {:.6g} to {:.6g} Hz in modes.csv{}; largest residual {:.1e}{}", n,
-      model.frequency.front(), model.frequency.back(),
-      mesh.dim == 3 ? ", their shapes on the surface in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
-      found.worst_residual, errs);
 }
 
 void SolidOutput::write_probes(double time, std::span<const double> points) {

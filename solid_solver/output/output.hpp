@@ -8,6 +8,7 @@
 
 #include "common/io/field_writer.hpp"
 #include "common/io/series.hpp"
+#include "common/modes/lowest_modes.hpp"
 #include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
@@ -30,8 +31,14 @@ class SolidOutput {
   void write_spectrum(double dt);
   /// modes.csv and, of a body in space, modes.h5; `estimates`: what the mesh leaves in the frequencies is told. Collective.
   void write_modes(bool estimates);
+  /// modes.csv and modes.h5 of the accepted state of a linear static run. Collective.
+  void write_preloaded_modes();
+  /// buckling.csv, buckling.xdmf and a sentence in the log of its loads. Collective.
+  void write_buckling();
 
  private:
+  void write_vibrations(const SolidProblem& problem, const EigenModes& found, const char* of,
+                        const std::string& errs);
   void write_probes(double time, std::span<const double> points);
   void write_reactions(double time, std::span<const double> points);
   void write_effort(double time);

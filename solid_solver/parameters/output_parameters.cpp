@@ -52,8 +52,15 @@ void declare(config::Section& s, SolidOutputParameters& o) {
   s.value("modes", o.modes)
       .range(0, 1000)
       .doc(
-          "so many of the lowest free vibrations of a dynamic analysis (face-gradient: symmetric) are found at the start: "
-          "modes.csv, and in 3-D modes.h5, which plate_modal reads; 0: none");
+          "so many of the lowest free vibrations (face-gradient: symmetric) are found: of a dynamic analysis at the start and "
+          "without loads, of a linear static one at the end and about the loaded equilibrium, whose stress stiffens or softens "
+          "the body; modes.csv, and in 3-D modes.h5, which plate_modal reads; 0: none");
+  s.value("buckling", o.buckling)
+      .range(0, 1000)
+      .doc(
+          "so many of the lowest factors of the loads of a linear static analysis at which its equilibrium buckles "
+          "(face-gradient: symmetric), found at the end: buckling.csv and the shapes in buckling.xdmf; pressures follow the "
+          "surface, other loads keep their direction; 0: none; with 'analysis: buckling' 4");
 }
 
 }  // namespace couplet

@@ -25,7 +25,8 @@ struct SolidOutputParameters {
   bool energies = false;
   bool large_strain_estimate = false;
   bool spectrum = false;
-  int modes = 0;  // frequencies and shapes that are asked for
+  int modes = 0;     // frequencies and shapes that are asked for
+  int buckling = 0;  // load factors and shapes
 };
 
 void declare(config::Section& section, SolidProbe& probe);

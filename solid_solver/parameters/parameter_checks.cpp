@@ -177,8 +177,24 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
       p.materials.empty() ? "material" : "materials");
   refuse("material", has_tables,
          "finite strain takes no tables of the elastic constants over the temperature");
-  refuse("output", p.output.spectrum || p.output.modes > 0,
-         "'spectrum' and 'modes' are those of the linear solid; use small-strain");
+  refuse("output", p.output.spectrum || p.output.modes > 0 || p.output.buckling > 0,
+         "'spectrum', 'modes' and 'buckling' are those of the linear solid; use small-strain");
+}
+
+void check_buckling(config::Section& s, SolidParameters& p) {
+  s.check(
+      [&p]() -> std::string {
+        if (p.output.buckling == 0) return "";
+        if (p.analysis != SolidParameters::Analysis::static_)
+          return "'buckling' is of a static analysis: 'analysis: buckling' or 'static'";
+        using FaceGradient = MethodParameters::FaceGradient;
+        const FaceGradient chosen = p.method.face_gradient;
+        return chosen == FaceGradient::automatic || chosen == FaceGradient::symmetric
+                   ? ""
+                   : "'buckling' wants 'solution-method: {face-gradient: symmetric}' (or 'auto'): the stiffness of the other "
+                     "face gradients is not symmetric";
+      },
+      "output");
 }
 
 bool has_rigid_patch(const SolidParameters& p) {

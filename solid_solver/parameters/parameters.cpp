@@ -108,8 +108,17 @@ void declare(config::Section& s, SolidParameters& p) {
       },
       "plane");
   s.choice("analysis", p.analysis,
-           {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}, {"thermal", Analysis::thermal}})
-      .doc("static leaves out inertia; thermal conducts heat only");
+           {{"dynamic", Analysis::dynamic},
+            {"static", Analysis::static_},
+            {"thermal", Analysis::thermal},
+            {"buckling", Analysis::buckling}})
+      .doc(
+          "static leaves out inertia; thermal conducts heat only; buckling is static with 'output: {buckling: 4}', or as many as "
+          "are asked for there");
+  if (p.analysis == Analysis::buckling) {
+    p.analysis = Analysis::static_;
+    p.output.buckling = 4;
+  }
   using Kinematics = SolidParameters::Kinematics;
   s.choice("kinematics", p.kinematics,
            {{"small-strain", Kinematics::small_strain}, {"finite-strain", Kinematics::finite_strain}})
@@ -178,6 +187,7 @@ void declare(config::Section& s, SolidParameters& p) {
   check_finite_strain(s, p);
   check_orthotropic(s, p);
   check_rigid_patches(s, p);
+  check_buckling(s, p);
   check_large_strain_estimate(s, p);
 }
 

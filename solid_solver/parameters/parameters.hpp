@@ -19,7 +19,7 @@
 namespace couplet {
 
 struct SolidParameters {
-  enum class Analysis { static_, dynamic, thermal };
+  enum class Analysis { static_, dynamic, thermal, buckling };  // buckling: static_ once it is read
   enum class Plane { strain, stress };
   enum class Kinematics { small_strain, finite_strain };
   std::string mesh;

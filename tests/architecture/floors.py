@@ -6,13 +6,13 @@ folders may include stands in check_sources.py."""
 MOST_FILES = 25  # .cpp and .hpp of one folder, tests apart
 
 FLOORS = {
-    "solid_solver": ["laws", "material", "parameters", "boundary", "method", "large_strain", "effects", "thermal", "body", "motion", "judge",
+    "solid_solver": ["laws", "material", "parameters", "boundary", "method", "large_strain", "effects", "thermal", "body", "motion", "stability", "judge",
                      "output", "."],
     "fluid_solver": ["parameters", "state", "boundary", "turbulence", "motion", "pressure", "step", "judge", "output", "."],
     "coupler": ["parameters", "exchange", "mapping", "acceleration", "judge", "output", "."],
     "thermocline": ["base", "material", "weather", "plant", "bed", "wall", "economics", "model", "judge", "."],
     "plate_modal": ["model", "motion", "."],
-    "common/elasticity": [".", "thesis", "symmetric", "tied", "finite", "solve"],
+    "common/elasticity": [".", "thesis", "symmetric", "prestress", "tied", "finite", "solve"],
     "common/mesh": [".", "msh", "inp", "gmsh"],
     "common/app": ["watch", "loop", "case", "."],
     "common/io": [".", "probes"],

@@ -110,6 +110,23 @@ void TiedAssembly::add_mass(double factor, std::span<const double> of_nodes,
                 factor * of_points[std::size_t(v)] * Tensor3::Identity());
 }
 
+void TiedAssembly::add_places(double factor, std::span<const PlaceBlock> blocks) {
+  const Index n_cells = mesh_.cells.n_local(), n_nodes = n_cells + mesh_.boundary.n_local();
+  const auto number = [&](Index place) {
+    return place < n_nodes ? unknowns_.node(place) : unknowns_.point(place - n_nodes);
+  };
+  const auto open = [&](Index place) {
+    Tensor3 part = Tensor3::Identity();
+    const Index f = place - n_cells + mesh_.n_interior;
+    if (place >= n_cells && place < n_nodes && rows_.condition(f) == ElasticCondition::support)
+      part -= rows_.support(f).known;
+    return part;
+  };
+  for (const PlaceBlock& b : blocks)
+    if (number(b.i) >= 0 && number(b.j) >= 0)
+      add_block(number(b.i), number(b.j), factor * (open(b.i) * b.block * open(b.j)));
+}
+
 double TiedAssembly::mean_diagonal() const {
   double total = 0, count = 0;
   for (std::size_t k = 0; k < pairs_.size(); ++k)

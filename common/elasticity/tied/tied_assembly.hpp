@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/elasticity/prestress/pressure_stiffness.hpp"
 #include "common/elasticity/tied/tied_terms.hpp"
 #include "common/linalg/matrix.hpp"
 
@@ -45,6 +46,8 @@ class TiedAssembly {
   void add_supports();
   /// A lumped mass times `factor`, one value a local node and a local vertex, this rank's part [kg].
   void add_mass(double factor, std::span<const double> of_nodes, std::span<const double> of_points);
+  /// Blocks between places times `factor`.
+  void add_places(double factor, std::span<const PlaceBlock> blocks);
   /// With the ties times `tie`; 0: the mean of the diagonal. Collective.
   SparseMatrix matrix(double& tie);
 

@@ -11,26 +11,6 @@
 namespace couplet {
 namespace {
 
-/// Stress of the edges: the mean of their faces' by the same weights as their strain. Entries of SharedEdges::at().
-void find_edge_stresses(const SharedFaces& shared, std::span<const Tensor3> stresses, SharedEdges& edges) {
-  edges.clear();
-  for (std::size_t i = 0; i < shared.n_mine; ++i) {
-    const Tensor3& s = stresses[std::size_t(shared.faces[i])];
-    const double part = SharedEdges::share * shared.volume[i] / 3;
-    const double entries[6] = {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2)};
-    for (const Index e : edges.edges_of(i))
-      for (int k = 0; k < 6; ++k) edges.at(e)[k] += part * entries[k];
-  }
-  edges.finish_means();
-}
-
-Tensor3 stress_at(SharedEdges& edges, Index e) {
-  const double* v = edges.at(e);
-  Tensor3 s;
-  s << v[0], v[3], v[5], v[3], v[1], v[4], v[5], v[4], v[2];
-  return s;
-}
-
 class Parts {
  public:
   Parts(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns, const TiedParts& parts,
@@ -55,7 +35,8 @@ class Parts {
           (rows_.is_anisotropic()
                ? stiffness_of(face_matrix(mesh_, rows_, f))
                : stiffness_of(part_of_faces(face_lame(mesh_, rows_, f), rows_.volume_strain())));
-    if (parts_.stress != 0) c += parts_.stress * stiffness_of_stress(parts_.stresses[std::size_t(f)]);
+    if (parts_.stress != 0)
+      c += parts_.stress * stiffness_of_stress(parts_.prestress->stress[std::size_t(f)]);
     return c;
   }
 
@@ -81,7 +62,7 @@ void Parts::add_edges() {
   const SharedFaces shared = shared_faces(mesh_, rows_);
   if (!any(mesh_.comm, shared.n_mine > 0)) return;
   SharedEdges edges(mesh_, rows_, shared.faces, shared.volume);
-  if (parts_.stress != 0) find_edge_stresses(shared, parts_.stresses, edges);
+  if (parts_.stress != 0) find_edge_stresses(shared, parts_.prestress->stress, edges);
   const std::vector<std::vector<TiedTerm>> terms = edge_terms(mesh_, rows_, unknowns_, shared, edges);
   for (Index e = 0; e < Index(edges.n_edges()); ++e) {
     if (terms[std::size_t(e)].empty()) continue;
@@ -89,7 +70,7 @@ void Parts::add_edges() {
     if (parts_.stiffness != 0)
       c = parts_.stiffness *
           (rows_.is_anisotropic() ? stiffness_of(edges.matrix(e)) : stiffness_of(edges.lame(e)));
-    if (parts_.stress != 0) c += parts_.stress * stiffness_of_stress(stress_at(edges, e));
+    if (parts_.stress != 0) c += parts_.stress * stiffness_of_stress(edge_tensor(edges, e));
     to_.add(terms[std::size_t(e)], edges.volume(e) * c);
   }
 }
@@ -132,6 +113,7 @@ SparseMatrix TiedMatrix::assemble(const TiedParts& parts) {
   all.add_edges();
   all.add_volumes();
   if (parts.stiffness != 0) assembly.add_supports();
+  if (parts.stress != 0) assembly.add_places(parts.stress, parts.prestress->pressure);
   if (parts.mass != 0) mesh_.dim == 2 ? all.add_mass<2>() : all.add_mass<3>();
   return assembly.matrix(tie_);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/elasticity/elasticity.hpp"
+#include "common/elasticity/prestress/stress_stiffness.hpp"
 #include "common/elasticity/tied/tied_unknowns.hpp"
 #include "common/linalg/matrix.hpp"
 #include "common/linalg/symmetric_factors.hpp"
@@ -15,11 +16,10 @@ namespace couplet {
 /// stiffness K + mass M + stress K_sigma of the symmetric gradient.
 struct TiedParts {
   double stiffness = 1;
-  double mass = 0;                    ///< [1/s^2]
-  std::span<const double> density{};  ///< of the owned cells [kg/m^3]; for `mass`
-  double stress = 0;  ///< of K_sigma, v . K_sigma v = sum over faces V sigma : grad v^T grad v (edges
-                      ///< alike, where faces share with them)
-  std::span<const Tensor3> stresses{};  ///< sigma per flux face [Pa]; for `stress`
+  double mass = 0;                       ///< [1/s^2]
+  std::span<const double> density{};     ///< of the owned cells [kg/m^3]; for `mass`
+  double stress = 0;                     ///< of K_sigma, see StressStiffness
+  const Prestress* prestress = nullptr;  ///< for `stress`
 };
 
 /// A symmetric operator with the rows of ElasticOperator, held with the vertices as unknowns of their own: exact where

@@ -78,25 +78,6 @@ std::vector<TiedTerm> mean_terms(const Mesh& mesh, const ElasticOperator& rows, 
   return terms;
 }
 
-SharedFaces shared_faces(const Mesh& mesh, const ElasticOperator& rows) {
-  SharedFaces result;
-  if (mesh.dim == 2) return result;
-  std::vector<Index> elsewhere;
-  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
-    if (mesh.face_points[f].size() != 3) continue;
-    if (mesh.owner[f] >= mesh.cells.n_owned()) {
-      elsewhere.push_back(f);
-      continue;
-    }
-    result.faces.push_back(f);
-    result.volume.push_back(symmetric_face<3>(mesh, rows, f).volume);
-  }
-  result.n_mine = result.faces.size();
-  result.faces.insert(result.faces.end(), elsewhere.begin(), elsewhere.end());
-  result.volume.resize(result.faces.size(), 0);
-  return result;
-}
-
 std::vector<std::vector<TiedTerm>> edge_terms(const Mesh& mesh, const ElasticOperator& rows,
                                               const TiedUnknowns& unknowns, const SharedFaces& shared,
                                               const SharedEdges& edges) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/elasticity/symmetric/shared_edges.hpp"
+#include "common/elasticity/symmetric/shared_faces.hpp"
 #include "common/elasticity/symmetric/symmetric_faces.hpp"
 #include "common/elasticity/tied/tied_unknowns.hpp"
 
@@ -23,15 +24,6 @@ std::vector<TiedTerm> face_terms(const Mesh& mesh, const ElasticOperator& rows, 
 /// Of the mean displacement on a boundary face by the trial functions: u = sum_i b_x T_i u_i.
 std::vector<TiedTerm> mean_terms(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns,
                                  Index f);
-
-/// The three-cornered flux faces in the order of SharedEdges: `n_mine` of this rank, then others'; `volume` [m^3] of
-/// this rank's, 0 of the others. Empty in the plane.
-struct SharedFaces {
-  std::vector<Index> faces;
-  std::vector<double> volume;
-  std::size_t n_mine = 0;
-};
-SharedFaces shared_faces(const Mesh& mesh, const ElasticOperator& rows);
 
 /// The mean gradients of the owned edges, one list an edge (empty: of another rank). Collective.
 std::vector<std::vector<TiedTerm>> edge_terms(const Mesh& mesh, const ElasticOperator& rows,

@@ -136,8 +136,8 @@ TEST(TiedStress, does_the_work_of_the_stress_on_the_square_of_the_gradient) {
     };
     for (Index c = 0; c < mesh.cells.n_owned(); ++c) add(mesh.reference.cell_centre[c]);
     for (const Index f : body.elastic().unknown_faces()) add(mesh.reference.face_centre[f]);
-    const std::vector<Tensor3> stresses(std::size_t(mesh.n_flux_faces()), stress);
-    TiedMatrix tied(mesh, body.elastic(), {.stiffness = 0, .stress = 1, .stresses = stresses});
+    const Prestress prestress{std::vector<Tensor3>(std::size_t(mesh.n_flux_faces()), stress), {}};
+    TiedMatrix tied(mesh, body.elastic(), {.stiffness = 0, .stress = 1, .prestress = &prestress});
     std::vector<double> force(u.size());
     tied.apply(u, force);
     double work = 0, volume = 0;
@@ -148,6 +148,32 @@ TEST(TiedStress, does_the_work_of_the_stress_on_the_square_of_the_gradient) {
     const double wanted = volume * (stress * gradient.transpose() * gradient).trace();
     EXPECT_NEAR(work, wanted, 2e-3 * std::abs(wanted));  // warped faces fill a cell only nearly
   }
+}
+
+/// Any stress, and pressure that follows, on faces: with and without a matrix.
+TEST_P(Tied, has_the_stress_stiffness_of_the_faces_loops) {
+  const auto solid = make_solid(distorted_box(GetParam().cells), parameters(GetParam()));
+  const SolidBody& body = solid->body();
+  const Mesh& mesh = body.mesh();
+  Prestress prestress;
+  for (Index f = 0; f < mesh.n_flux_faces(); ++f) {
+    const Vec3& x = mesh.reference.face_centre[f];
+    Tensor3 s;
+    s << std::sin(x[0]), x[1], x[2], x[1], 2 - x[0], 0.3, x[2], 0.3, std::cos(x[1]);
+    if (mesh.dim == 2) s.row(2).setZero(), s.col(2).setZero();
+    prestress.stress.push_back(s);
+  }
+  std::vector<double> pressure;
+  for (Index f = mesh.n_interior; f < mesh.n_flux_faces(); ++f)
+    pressure.push_back(
+        body.elastic().condition(f) == ElasticCondition::traction ? mesh.reference.face_centre[f][0] : 0);
+  prestress.pressure = pressure_stiffness(mesh, pressure);
+  const std::size_t n = body.elastic().n_unknowns();
+  const std::vector<double> u = any_motion(n, comm_rank(mesh.comm));
+  std::vector<double> wanted(n), found(n);
+  make_stress_stiffness(mesh, body.elastic(), prestress)->apply(u, wanted);
+  TiedMatrix(mesh, body.elastic(), {.stiffness = 0, .stress = 1, .prestress = &prestress}).apply(u, found);
+  EXPECT_LT(gap(mesh.comm, found, wanted), 1e-12);
 }
 
 }  // namespace

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// A block between two places: local nodes (cells, then boundary faces), then local vertices.
+struct PlaceBlock {
+  Index i, j;
+  Tensor3 block;
+};
+
+/// What a pressure that follows the surface adds to the stiffness of an undeformed body: on the triangles (in the plane: lines)
+/// between a face's node and its edges the force on each corner is -p a / 3 (1/2) with the area vector a, hence
+///   K_rs = p / 6 [e_s]x,   e_s the side opposite to corner s;   in the plane K_rs = p / 2 da/du_s.
+/// The symmetric part: all of it where the loaded surface is closed or its rim is held. `pressure` [Pa]: one a boundary
+/// face of owned cells.
+std::vector<PlaceBlock> pressure_stiffness(const Mesh& mesh, std::span<const double> pressure);
+
+}  // namespace couplet

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <petscksp.h>
+
+#include <algorithm>
+#include <exception>
+#include <functional>
+#include <span>
+
+#include "common/linalg/petsc_check.hpp"
+
+namespace couplet {
+
+/// An operator for PETSc, and the first exception that came out of it: none may pass through PETSc's frames.
+struct ShellOperator {
+  const std::function<void(std::span<const double>, std::span<double>)>* apply = nullptr;
+  std::exception_ptr* failure = nullptr;
+
+  PetscErrorCode operator()(::Vec x, ::Vec y) const {
+    const double* in = nullptr;
+    double* out = nullptr;
+    PetscInt n = 0;
+    VecGetLocalSize(x, &n);
+    VecGetArrayRead(x, &in);
+    VecGetArray(y, &out);
+    try {
+      if (!*failure) (*apply)({in, std::size_t(n)}, {out, std::size_t(n)});
+    } catch (...) {
+      *failure = std::current_exception();
+    }
+    // After a failure the search goes on with something finite until it ends; its result is thrown away.
+    if (*failure) std::copy_n(in, n, out);
+    VecRestoreArray(y, &out);
+    VecRestoreArrayRead(x, &in);
+    return 0;
+  }
+};
+
+inline PetscErrorCode multiply_shell(Mat a, ::Vec x, ::Vec y) {
+  ShellOperator* op = nullptr;
+  MatShellGetContext(a, &op);
+  return (*op)(x, y);
+}
+
+inline PetscErrorCode precondition_shell(PC pc, ::Vec x, ::Vec y) {
+  ShellOperator* op = nullptr;
+  PCShellGetContext(pc, &op);
+  return (*op)(x, y);
+}
+
+/// `op` by reference.
+inline Mat symmetric_shell(MPI_Comm comm, std::size_t n_owned, ShellOperator& op) {
+  Mat mat = nullptr;
+  const auto n = static_cast<PetscInt>(n_owned);
+  petsc_check(MatCreateShell(comm, n, n, PETSC_DETERMINE, PETSC_DETERMINE, &op, &mat));
+  petsc_check(MatShellSetOperation(mat, MATOP_MULT, reinterpret_cast<void (*)()>(multiply_shell)));
+  petsc_check(MatSetOption(mat, MAT_SYMMETRIC, PETSC_TRUE));
+  return mat;
+}
+
+}  // namespace couplet

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Buckling against closed forms, and equilibria that do not hold."""
+import csv
+import math
+
+from validation.job import Bar
+
+E = 210e9
+COLUMN = math.pi**2 / 48 * 0.01**2 * E / 1e6
+RING = E / (1 - 0.3**2) * 0.005**3 / 12 / 1.0025 / 1e3  # at the outer radius
+PLATE = 10.07 * math.pi**2 / 12 * 0.01**2 / 1e-5
+DEAD = ('participants.solid.boundaries.outside={type: traction, value: '
+        '["-1e3*x/sqrt(x*x+y*y)", "-1e3*y/sqrt(x*x+y*y)"]}',)
+
+
+def factor(case, right, sets=(), within=0.01):
+    def measure(job):
+        run = job.solve_run("solid_solver", case, sets)
+        with open(run.folder / "solid" / "buckling.csv", encoding="utf-8") as file:
+            found = float(list(csv.reader(file))[1][1])
+        error = found / right - 1
+        return f"{found:.4g} ({100 * error:+.2f} %)", abs(error) <= within
+    return measure
+
+
+def holds(job):
+    tests, _ = job.gtest("verification_solid_buckling", "Equilibrium.*")
+    return ", ".join("passed" if t["passed"] else "failed" for t in tests.values()), all(t["passed"] for t in tests.values())
+
+
+BARS = [
+    Bar("buckling, clamped column 100:1: pi^2 E I / (4 L^2)", "within 1 %", factor("buckling-column", COLUMN)),
+    Bar("buckling, ring in plane strain, pressure that follows: 3 E I / ((1 - nu^2) R^3)", "within 1 %",
+        factor("buckling-ring", 3 * RING)),
+    Bar("buckling, ring in plane strain, radial load that keeps its direction: 4 E I / ((1 - nu^2) R^3)", "within 1 %",
+        factor("buckling-ring", 4 * RING, DEAD)),
+    Bar("buckling, square plate b/t = 100, clamped, compressed one way: k = 10.07", "within 1 %",
+        factor("buckling-plate", PLATE, ("participants.solid.mesh-parameters={n: 64, nt: 1, t: 0.01}",)), long=True),
+    Bar("column at large strain: 2.6 times Euler's load is flagged as unstable from 1/2.6 of it on; 0.85 times, in tension and with a "
+        "lateral load it is not", "passed", holds),
+]

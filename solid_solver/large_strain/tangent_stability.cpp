@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether the equilibrium that was found holds.
+#include <cmath>
+#include <utility>
+
+#include "common/modes/lowest_quotient.hpp"
+#include "common/modes/negative_curvature.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/large_strain/finite_strain.hpp"
+
+namespace couplet {
+namespace {
+
+// Of the solution in which a negative curvature would show, and of the least stiffness once there is one, or nearly.
+constexpr double looked_for = 1e-3;
+constexpr int most_looks = 2000, most_refined = 12;
+// A stiffness below this is looked at more closely, by one more inverse iteration.
+constexpr double nearly_lost = 0.5;
+// Below it the tangent has a negative eigenvalue, and not one that is zero up to rounding.
+constexpr double surely_negative = -1e-4;
+// Of x . K y against y . K x.
+constexpr double symmetric_part = 1e-7;
+
+}  // namespace
+
+double FiniteStrain::lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
+                                      const LinearMap& elastic, std::vector<double> start) {
+  kernel_->forget_start();
+  kernel_->set_own_pressures(false);
+  kernel_->linearise(unknowns, known, 0, trial_);
+  TangentSolver& solver = solver_for(0, {});
+  solver.forget_factors();
+  solver.follow(true);
+  const QuotientOperators of{
+      .a = [&](std::span<const double> x, std::span<double> y) { kernel_->apply_tangent(x, {}, 0, y); },
+      .b = elastic,
+      .precondition = [&](std::span<const double> r, std::span<double> z) { solver.precondition(r, z); }};
+  std::vector<double> force = std::move(start), smooth(force.size());  // which soft motions answer to
+  solver.precondition(force, smooth);
+  if (any(mesh_.comm, kernel_->has_pressure()) && !is_symmetric(force, smooth)) {
+    solver.forget_factors();
+    return 1;
+  }
+  const auto refined = [&](std::vector<double> x, int most) {
+    return lowest_quotient(mesh_.comm, of, std::move(x), most,
+                           [](const std::vector<double>&) { return false; })
+        .value;
+  };
+  double least = 1;
+  for (int look = 0; look < 2; ++look) {
+    Curvature found =
+        look_for_negative_curvature(mesh_.comm, of.a, of.precondition, force, looked_for, most_looks);
+    if (!found.is_negative) elastic(found.x, force);
+    least = refined(std::move(found.x), found.is_negative ? most_refined : 1);
+    if (found.is_negative || least > nearly_lost) break;
+  }
+  solver.forget_factors();
+  return least < 0 && least > surely_negative ? 0 : least;
+}
+
+bool FiniteStrain::is_symmetric(std::span<const double> x, std::span<const double> y) {
+  std::vector<double> force(x.size());
+  const auto work = [&](std::span<const double> a, std::span<const double> b) {
+    kernel_->apply_tangent(a, {}, 0, force);
+    double local = 0;
+    for (std::size_t i = 0; i < b.size(); ++i) local += b[i] * force[i];
+    return sum(mesh_.comm, local);
+  };
+  const double one = work(x, y), other = work(y, x);
+  return std::abs(one - other) <= symmetric_part * (std::abs(one) + std::abs(other));
+}
+
+}  // namespace couplet

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Free vibrations and buckling of SolidOutput.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "common/base/error.hpp"
+#include "common/log/finding.hpp"
+#include "common/log/log.hpp"
+#include "common/modes/modes_file.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/judge/weighted_estimate.hpp"
+#include "solid_solver/output/modal_analysis.hpp"
+#include "solid_solver/output/output.hpp"
+#include "solid_solver/stability/buckling.hpp"
+#include "solid_solver/stability/buckling_estimate.hpp"
+
+namespace couplet {
+namespace {
+
+/// [kg]
+std::vector<double> cell_masses(const SolidBody& body) {
+  std::vector<double> mass;
+  for (Index c = 0; c < body.mesh().cells.n_owned(); ++c)
+    mass.push_back(body.density(c) * body.mesh().reference.volume[c]);
+  return mass;
+}
+
+}  // namespace
+
+void SolidOutput::write_modes(bool estimates) {
+  if (context_.output_folder.empty() || modes_written_) return;
+  modes_written_ = true;
+  const Mesh& mesh = body_.mesh();
+  const std::optional<SolidProblem> problem = vibration(body_);
+  if (!problem)
+    throw Error(
+        "output.modes: free vibrations want 'analysis: dynamic' and 'solution-method: {face-gradient: symmetric}': the "
+        "stiffness of the other face gradients is not symmetric.");
+  const std::vector<double> mass = cell_masses(body_);
+  const int n = body_.parameters().output.modes;
+  EigenModes found;
+  try {
+    found = solid_modes(*problem, body_.parameters().method, mass, n);
+  } catch (const SolveFailure& e) {
+    throw Error("output.modes: {}", e.what());  // no shorter step would help
+  }
+  std::string errs;
+  if (estimates) {
+    std::vector<std::span<const double>> swinging;
+    for (std::size_t m = 0; m < found.shape.size(); ++m)
+      if (found.eigenvalue[m] > 0) swinging.push_back(found.shape[m]);
+    if (!swinging.empty())
+      errs = fmt::format("; the mesh leaves an estimated {:.2g} % in the worst of them",
+                         100 * 0.5 * energy_mesh_error(body_, swinging));
+  }
+  write_vibrations(*problem, found, "", errs);
+}
+
+/// `of`: of what, for the log; `errs`: what the mesh leaves.
+void SolidOutput::write_vibrations(const SolidProblem& problem, const EigenModes& found, const char* of,
+                                   const std::string& errs) {
+  const Mesh& mesh = body_.mesh();
+  ModalModel model = modal_model(problem, found);
+  model.mass = 0;
+  for (const double m : cell_masses(body_)) model.mass += m;
+  model.mass = sum(mesh.comm, model.mass);
+  if (comm_rank(mesh.comm) != 0) return;
+  Series series(context_.output_folder / "modes.csv", {"number", "frequency [Hz]", "effective mass x [kg]",
+                                                       "effective mass y [kg]", "effective mass z [kg]"});
+  for (std::size_t m = 0; m < model.n_modes(); ++m) {
+    std::vector<double> row{double(m + 1), model.frequency[m]};
+    for (std::size_t a = 0; a < 3; ++a)
+      row.push_back(std::pow(model.participation[a * model.n_modes() + m], 2));
+    series.row(row);
+  }
+  if (mesh.dim == 3) couplet::write_modes(context_.output_folder / "modes.h5", model, "");
+  log::info(
+      "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv{}; largest residual {:.1e}{}",
+      model.n_modes(), of, model.frequency.front(), model.frequency.back(),
+      mesh.dim == 3 ? ", their shapes on the surface in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
+      found.worst_residual, errs);
+}
+
+void SolidOutput::write_preloaded_modes() {
+  if (context_.output_folder.empty()) return;
+  const Prestress prestress = prestress_of(body_, derived_, stepper_.state().time);
+  try {
+    const EigenModes found = preloaded_modes(body_, prestress, body_.parameters().output.modes);
+    write_vibrations({body_.mesh(), body_.elastic(), {}, body_.kernel(), 0}, found,
+                     " about the loaded equilibrium", "");
+  } catch (const SolveFailure& e) {
+    throw Error("output.modes: {}", e.what());
+  }
+}
+
+void SolidOutput::write_buckling() {
+  if (context_.output_folder.empty()) return;
+  const Mesh& mesh = body_.mesh();
+  const int asked = body_.parameters().output.buckling;
+  Buckling found;
+  try {
+    found = find_buckling(body_, prestress_of(body_, derived_, stepper_.state().time), asked);
+  } catch (const SolveFailure& e) {
+    throw Error("output.buckling: {}", e.what());
+  }
+  std::vector<std::vector<double>> points;
+  std::vector<OutputField> fields;
+  for (const std::vector<double>& shape : found.shape) {
+    std::vector<double>& values =
+        points.emplace_back(std::size_t(mesh.points.n_local()) * std::size_t(mesh.dim));
+    body_.kernel().point_values(shape, {}, values);
+    mesh.points.update_ghosts(values, mesh.dim);
+  }
+  for (std::size_t m = 0; m < points.size(); ++m)
+    fields.push_back(
+        {fmt::format("buckling-{}", m + 1), "-", OutputField::Place::points, mesh.dim, points[m]});
+  if (!fields.empty())
+    FieldWriter(mesh, context_.output_folder, "buckling", false, std::numeric_limits<double>::quiet_NaN())
+        .write(stepper_.state().time, mesh.reference_points, fields);
+  if (comm_rank(mesh.comm) == 0) {
+    Series series(context_.output_folder / "buckling.csv", {"number", "load factor [-]"});
+    for (std::size_t m = 0; m < found.factor.size(); ++m)
+      series.row(std::vector<double>{double(m + 1), found.factor[m]});
+    if (found.factor.empty())
+      log::info("buckling: these loads, however large, buckle nothing");
+    else
+      log::info(
+          "buckling: the loads at the end times {:.6g} buckle the body; {} factors in buckling.csv, shapes in buckling.xdmf",
+          found.factor.front(), found.factor.size());
+  }
+  if (!found.factor.empty()) tell_buckling(mesh.comm, found.factor.front(), "");
+}
+
+}  // namespace couplet

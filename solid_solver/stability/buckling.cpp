@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/stability/buckling.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.hpp"
+#include "common/elasticity/tied/tied_matrix.hpp"
+#include "common/modes/largest_ratios.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+// Ratios sought beyond those wanted, for a gap in which the pivots are counted.
+constexpr int extra = 3;
+// A ratio 1/lambda below this part of the largest one is rounding of a load that buckles nothing.
+constexpr double ratio_rounding = 1e-9;
+// Of the lowest frequency's square of the body's own size, see modal_analysis: where the shift lies.
+constexpr double loaded_shift_part = 1e-4;
+
+void check_buckling_of(const SolidBody& body) {
+  if (!body.kernel().is_symmetric())
+    throw SolveFailure("It wants 'solution-method: {face-gradient: symmetric}'.");
+  if (!TiedMatrix::suits(body.mesh())) throw SolveFailure("It knows no periodic patches.");
+  if (!body.rigid().empty()) throw SolveFailure("It knows no patches that move as rigid bodies.");
+}
+
+void make_largest_one(MPI_Comm comm, std::vector<double>& shape) {
+  double largest = 0;
+  for (const double v : shape) largest = std::max(largest, std::abs(v));
+  largest = max(comm, largest);
+  if (largest > 0)
+    for (double& v : shape) v /= largest;
+}
+
+/// Whether exactly `n` factors lie below `s`.
+bool counts(const SolidBody& body, const Prestress& prestress, double s, std::size_t n) {
+  TiedMatrix loaded(body.mesh(), body.elastic(), {.stress = s, .prestress = &prestress});
+  loaded.factorise();
+  return loaded.negative() == GlobalIndex(n);
+}
+
+/// The factor at which the stress is as large as Young's modulus: what does not buckle below buckles nowhere.
+double overload(const SolidBody& body, const Prestress& prestress) {
+  double largest = 0, stiffest = 0;
+  for (const Tensor3& s : prestress.stress) largest = std::max(largest, s.norm());
+  for (Index c = 0; c < body.mesh().cells.n_owned(); ++c)
+    stiffest = std::max(stiffest, body.elastic().lame(c).mu);
+  largest = max(body.mesh().comm, largest);
+  return largest > 0 ? 2.5 * max(body.mesh().comm, stiffest) / largest : 1;
+}
+
+}  // namespace
+
+Buckling find_buckling(const SolidBody& body, const Prestress& prestress, int n) {
+  check_buckling_of(body);
+  const Mesh& mesh = body.mesh();
+  const auto stress = make_stress_stiffness(mesh, body.elastic(), prestress);
+  TiedMatrix stiffness(mesh, body.elastic(), {});
+  stiffness.factorise();
+  const RatioOperators of{
+      .a =
+          [&](std::span<const double> x, std::span<double> y) {
+            stress->apply(x, y);
+            for (double& v : y) v = -v;
+          },
+      .b = [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
+      .solve_b = [&](std::span<const double> x, std::span<double> y) { stiffness.solve(x, y); }};
+  const SlepcEnvironment slepc;
+  for (int more = extra; more <= 8 * extra; more *= 2) {
+    Ratios found = largest_ratios(mesh.comm, body.elastic().n_unknowns(), of, n + more);
+    Buckling result;
+    if (found.value.empty()) {
+      if (counts(body, prestress, overload(body, prestress), 0)) return result;
+      continue;
+    }
+    const double least = ratio_rounding * std::abs(found.value.front());
+    for (std::size_t i = 0; i < found.value.size() && found.value[i] > least; ++i) {
+      result.factor.push_back(1 / found.value[i]);
+      result.shape.push_back(std::move(found.shape[i]));
+      make_largest_one(mesh.comm, result.shape.back());
+    }
+    if (result.factor.size() < 2) return result;
+    // In the widest gap beyond the wanted ones.
+    std::size_t end = std::min(std::size_t(n), result.factor.size() - 1);
+    double widest = 0;
+    for (std::size_t i = end; i < result.factor.size(); ++i)
+      if (result.factor[i] / result.factor[i - 1] > widest)
+        widest = result.factor[i] / result.factor[i - 1], end = i;
+    if (!counts(body, prestress, 0.5 * (result.factor[end - 1] + result.factor[end]), end)) continue;
+    const std::size_t kept = std::min(std::size_t(n), result.factor.size());
+    result.factor.resize(kept);
+    result.shape.resize(kept);
+    return result;
+  }
+  throw SolveFailure("The {} lowest load factors could not be found with certainty; ask for fewer.", n);
+}
+
+EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, int n) {
+  check_buckling_of(body);
+  const Mesh& mesh = body.mesh();
+  const ElasticKernel& kernel = body.kernel();
+  std::vector<double> density;
+  double slowest = 1e300;
+  for (Index c = 0; c < mesh.cells.n_local(); ++c) density.push_back(body.density(c));
+  for (Index c = 0; c < mesh.cells.n_owned(); ++c)
+    slowest = std::min(slowest, body.elastic().lame(c).mu / density[std::size_t(c)]);
+  kernel.set_density(density);
+  Vec3 lower = Vec3::Constant(1e300), upper = -lower;
+  for (const Vec3& x : mesh.reference_points) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
+  for (int a = 0; a < 3; ++a) lower[a] = min(mesh.comm, lower[a]), upper[a] = max(mesh.comm, upper[a]);
+  const double shift = loaded_shift_part * min(mesh.comm, slowest) / (upper - lower).squaredNorm();
+  TiedMatrix loaded(mesh, body.elastic(), {.stress = 1, .prestress = &prestress});
+  loaded.factorise();
+  if (loaded.negative() > 0)
+    throw SolveFailure("The loaded equilibrium is not stable: {} motions have a negative stiffness.",
+                       loaded.negative());
+  TiedMatrix shifted(mesh, body.elastic(),
+                     {.mass = shift, .density = density, .stress = 1, .prestress = &prestress});
+  shifted.factorise();
+  const auto stress = make_stress_stiffness(mesh, body.elastic(), prestress);
+  std::vector<double> of_stress(body.elastic().n_unknowns());
+  const ModalOperators of{
+      .stiffness =
+          [&](std::span<const double> x, std::span<double> y) {
+            kernel.apply(x, {}, y);
+            stress->apply(x, of_stress);
+            for (std::size_t i = 0; i < y.size(); ++i) y[i] += of_stress[i];
+          },
+      .mass = [&](std::span<const double> x,
+                  std::span<double> y) { kernel.apply_with_mass(x, {}, 1, false, y); },
+      .solve = [&](std::span<const double> x, std::span<double> y) { shifted.solve(x, y); }};
+  const SlepcEnvironment slepc;
+  return lowest_modes(mesh.comm, body.elastic().n_unknowns(), of, n, -shift);
+}
+
+}  // namespace couplet

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solid_solver/stability/equilibrium.hpp"
+
+#include <fmt/format.h>
+
+#include "common/log/finding.hpp"
+#include "common/parallel/collective.hpp"
+#include "solid_solver/stability/prestress.hpp"
+
+namespace couplet {
+
+void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields) {
+  if (body.is_dynamic() || !body.newton() || !body.rigid().empty() || is_told_) return;
+  const SolidState& now = stepper.trial();
+  const double stiffness = body.newton()->lowest_stiffness(
+      stepper.last_solve().unknowns, now.known,
+      [&](std::span<const double> x, std::span<double> y) { body.kernel().apply(x, {}, y); },
+      any_start(body));
+  const Vec3 load = fields.total_load();
+  if (stiffness >= 0) {
+    time_ = now.time, stiffness_ = stiffness, load_ = load;
+    return;
+  }
+  is_told_ = true;
+  std::string where = fmt::format("it was lost before t = {:g} s", now.time);
+  if (stiffness_ > 0) {
+    const double part = stiffness_ / (stiffness_ - stiffness);
+    const double lost = time_ + part * (now.time - time_);
+    const Vec3 then = load_ + part * (load - load_);
+    where = fmt::format("it was lost near t = {:.4g} s, between {:g} and {:g} s", lost, time_, now.time);
+    if (load.norm() > 0)
+      where += fmt::format(", at a total load of about {:.4g} N, {:.3g} of that of this step", then.norm(),
+                           then.norm() / load.norm());
+  }
+  log::finding(
+      comm_rank(body.mesh().comm),
+      {.id = "unstable-equilibrium",
+       .severity = Severity::wrong,
+       .number = stiffness,
+       .limit = 0,
+       .sentence = fmt::format(
+           "t = {:g} s: stability of the equilibrium: the least stiffness of the loaded body is {:.2g} of that of the "
+           "unloaded one (limit 0): this equilibrium does not hold; {}",
+           now.time, stiffness, where),
+       .advice =
+           "a small lateral load or imperfection leads to the equilibrium that holds; 'analysis: buckling' of the "
+           "linear body gives load factors and shapes"});
+}
+
+}  // namespace couplet

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "solid_solver/body/solid_fields.hpp"
+#include "solid_solver/motion/solid_stepper.hpp"
+
+namespace couplet {
+
+/// Whether the equilibria that a static run at large strain finds hold: the least x . K x of the tangent K over that of the
+/// undeformed elastic body is 1 without load, passes through zero where stability is lost, and is negative beyond.
+class EquilibriumWatch {
+ public:
+  /// Of the step between solve and acceptance. Tells an equilibrium that does not hold once, with the load at which stability was
+  /// lost. Collective.
+  void see(const SolidBody& body, const SolidStepper& stepper, const SolidFields& fields);
+  /// A restart: what was before is not known.
+  void forget() { stiffness_ = 0; }
+
+ private:
+  double time_ = 0, stiffness_ = 1;  // of the last equilibrium that held; 0: not known
+  Vec3 load_ = Vec3::Zero();
+  bool is_told_ = false;
+};
+
+}  // namespace couplet

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Linear buckling against closed forms, free vibrations of loaded bodies, the cheap estimate, and equilibria that do not hold.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "common/base/error.hpp"
+#include "common/log/finding.hpp"
+#include "solid_solver/stability/buckling.hpp"
+#include "solid_solver/stability/buckling_estimate.hpp"
+#include "tests/verification/solid/support.hpp"
+
+namespace couplet::testing {
+namespace {
+
+constexpr double pi = std::numbers::pi, modulus = 210e9;
+
+/// Clamped at x = 0, `slender` times as long as thick, 1 m long; compressed by `stress` (plane stress or 3-D).
+SolidParameters column(int dim, double stress) {
+  SolidParameters p = box_parameters(dim);
+  p.plane = dim == 2 ? SolidParameters::Plane::stress : SolidParameters::Plane::strain;
+  p.method.face_gradient = FaceGradient::symmetric;
+  p.material = {7800, modulus, 0.3};
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, std::vector<std::string>(std::size_t(dim), "0"));
+  std::vector<std::string> load(std::size_t(dim), "0");
+  load[0] = fmt::format("{}*t", -stress);
+  p.boundaries["xmax"] = boundary(Type::traction, load);
+  return p;
+}
+
+RawMesh bar(BoxCells cells, int along, int across, double thickness) {
+  const int dim = dimension_of(cells);
+  return make_box(cells, {along, across, dim == 3 ? across : 1}, Vec3::Zero(),
+                  Vec3(1, thickness, dim == 3 ? thickness : 0));
+}
+
+double euler(double thickness) { return pi * pi / 48 * thickness * thickness * modulus; }
+
+std::vector<double> factors(const Solid& solid, int n, double time = 1) {
+  return find_buckling(solid.body(), prestress_of(solid.body(), solid.fields(), time), n).factor;
+}
+
+/// Of the findings from number `from` on; -1: none has this id.
+int severity_of(const char* id, std::size_t from) {
+  int worst = -1;
+  for (std::size_t i = from; i < log::findings().size(); ++i)
+    if (log::findings()[i].id == id) worst = std::max(worst, int(log::findings()[i].severity));
+  return worst;
+}
+
+class Column : public ::testing::TestWithParam<BoxCells> {};
+
+TEST_P(Column, buckles_at_eulers_loads) {
+  const int dim = dimension_of(GetParam());
+  const auto solid = make_solid(
+      bar(GetParam(), dim == 2 ? 100 : 40, dim == 2 ? 8 : 2, dim == 2 ? 0.02 : 0.05), column(dim, 1e5));
+  step(*solid, 1);
+  const double right = euler(dim == 2 ? 0.02 : 0.05) / 1e5;
+  const std::vector<double> found = factors(*solid, dim == 2 ? 2 : 1);
+  ASSERT_FALSE(found.empty());
+  RecordProperty("gap", fmt::format("{:.4f}", found[0] / right - 1));
+  EXPECT_NEAR(found[0], right, (dim == 2 ? 0.01 : 0.03) * right);
+  if (dim == 2) {
+    EXPECT_NEAR(found[1], 9 * right, 0.02 * 9 * right);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Solid, Column,
+                         ::testing::Values(BoxCells::quadrilaterals, BoxCells::hexahedra,
+                                           BoxCells::tetrahedra),
+                         [](const auto& test) { return name(test.param); });
+
+TEST(ColumnInTension, buckles_at_no_load) {
+  const auto solid = make_solid(bar(BoxCells::quadrilaterals, 40, 4, 0.05), column(2, -1e5));
+  step(*solid, 1);
+  EXPECT_TRUE(factors(*solid, 2).empty());
+}
+
+/// omega^2 of a loaded column goes as 1 - P/P_E, nearly exactly for one mode.
+TEST(LoadedColumn, swings_more_slowly_and_in_tension_faster) {
+  const double critical = euler(0.05);
+  const auto first = [&](double part) {
+    const auto solid = make_solid(bar(BoxCells::quadrilaterals, 40, 8, 0.05), column(2, part * critical));
+    step(*solid, 1);
+    return preloaded_modes(solid->body(), prestress_of(solid->body(), solid->fields(), 1), 1).eigenvalue[0];
+  };
+  const double without = first(0);
+  EXPECT_NEAR(first(0.5) / without, 0.5, 0.02);
+  EXPECT_NEAR(first(-0.5) / without, 1.5, 0.03);
+  EXPECT_THROW(first(1.2), SolveFailure);
+}
+
+/// Ring of mean radius 1 m, t thick, in plane strain; a quarter of it. [timoshenko1961]: 3 E I / ((1 - nu^2) R^3) under a pressure
+/// that follows, 4 E I / ((1 - nu^2) R^3) under a radial load that keeps its direction.
+double ring(bool follows) {
+  constexpr double t = 0.01;
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {8, 60, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+  for (Vec3& x : raw.points) {
+    const double r = 1 + t * (x[0] - 0.5), angle = 0.5 * pi * x[1];
+    x = Vec3(r * std::cos(angle), r * std::sin(angle), 0);
+  }
+  SolidParameters p = box_parameters(2);
+  p.material = {7800, modulus, 0.3};
+  p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(Type::symmetry);
+  if (follows) {
+    p.boundaries["xmax"] = boundary(Type::pressure);
+    p.boundaries["xmax"].pressure = {"1e3"};
+  } else {
+    p.boundaries["xmax"] = boundary(Type::traction, {"-1e3*x/sqrt(x*x+y*y)", "-1e3*y/sqrt(x*x+y*y)"});
+  }
+  const auto solid = make_solid(raw, p);
+  step(*solid, 1);
+  const std::vector<double> found = factors(*solid, 1);
+  const double bending = modulus / (1 - 0.09) * t * t * t / 12;
+  return found.empty() ? 0 : found[0] * 1e3 * (1 + t / 2) / bending;
+}
+
+TEST(Ring, buckles_at_three_under_pressure_and_at_four_under_a_dead_load) {
+  EXPECT_NEAR(ring(true), 3, 0.04);
+  EXPECT_NEAR(ring(false), 4, 0.05);
+}
+
+TEST(BucklingEstimate, finds_low_factors_and_leaves_others_alone) {
+  const double critical = euler(0.05);
+  for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::tetrahedra})
+    for (const double part : {0.2, 0.5, 1.3, -1.0}) {
+      SCOPED_TRACE(fmt::format("{} {}", name(cells), part));
+      const auto solid = make_solid(bar(cells, 40, 2, 0.05), column(dimension_of(cells), part * critical));
+      step(*solid, 1);
+      double seen = 0;
+      const BucklingEstimate found =
+          estimate_buckling(solid->body(), solid->fields(), 1, *solid->stepper().method(), seen);
+      RecordProperty(fmt::format("factor_{}", part), fmt::format("{:.4f}", found.factor));
+      if (part == 0.2 || part < 0)
+        EXPECT_EQ(found.factor, 0);
+      else
+        EXPECT_NEAR(found.factor, 1 / part, 0.1 / part);
+    }
+}
+
+TEST(BucklingFinding, is_told_of_linear_runs_near_and_above_the_load) {
+  const double critical = euler(0.05);
+  const auto run = [&](double part) {
+    const auto solid = make_solid(bar(BoxCells::quadrilaterals, 40, 4, 0.05), column(2, part * critical));
+    step(*solid, 1);
+  };
+  for (const auto& [part, severity] :
+       {std::pair(0.1, -1), {0.5, int(Severity::warning)}, {1.2, int(Severity::wrong)}}) {
+    const std::size_t before = log::findings().size();
+    run(part);
+    EXPECT_EQ(severity_of("buckling", before), severity) << part;
+  }
+}
+
+/// A column of rubber under a growing load, t from 0 to 1 s in five steps: `part` of Euler's load at the end.
+void compress(double part, double lateral, BoxCells cells) {
+  const int dim = dimension_of(cells);
+  SolidParameters p = column(dim, part * pi * pi / 48 * 0.01 * 1e7);
+  p.plane = SolidParameters::Plane::strain;
+  p.kinematics = SolidParameters::Kinematics::finite_strain;
+  p.material = {1100, 1e7, 0};
+  p.material.law = "neo-hookean";
+  p.boundaries["xmax"].value[1] = {fmt::format("{}*t", lateral)};
+  const auto solid = make_solid(bar(cells, dim == 2 ? 40 : 20, dim == 2 ? 4 : 2, 0.1), p);
+  for (int i = 0; i < 5; ++i) step(*solid, 0.2);
+}
+
+TEST(Equilibrium, that_does_not_hold_is_told_with_the_load_where_it_was_lost) {
+  const std::size_t before = log::findings().size();
+  compress(0.85, 0, BoxCells::quadrilaterals);
+  compress(0.85, 0, BoxCells::tetrahedra);
+  compress(-3, 0, BoxCells::quadrilaterals);
+  compress(0.85, 100, BoxCells::quadrilaterals);
+  EXPECT_EQ(severity_of("unstable-equilibrium", before), -1);
+  compress(2.6, 0, BoxCells::quadrilaterals);
+  ASSERT_EQ(severity_of("unstable-equilibrium", before), int(Severity::wrong));
+  const log::Finding& last = log::findings().back();
+  EXPECT_LT(last.number, 0);
+  EXPECT_NE(last.sentence.find("lost near t = 0.3"), std::string::npos) << last.sentence;  // 1 / 2.6
+}
+
+}  // namespace
+}  // namespace couplet::testing
