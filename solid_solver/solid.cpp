@@ -51,6 +51,7 @@ StepReport Solid::accept_step() {
   // Growth out of nothing doubles in some steps: it is seen between outputs, too.
   if (!body_.is_dynamic() || stepper_.state().steps % steps_between_looks == 0) judge_.look();
   if (!body_.is_dynamic()) judge_.see_buckling();
+  stepper_.release_solver();
   for (const auto& effect : body_.effects())
     if (effect->wants_stress()) effect->take_stress(fields_.cell_stress(fields_.point_displacement()));
   return {.dt = stepper_.state().dt, .iterations = stepper_.effort().iterations};

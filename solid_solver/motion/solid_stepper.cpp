@@ -139,6 +139,9 @@ void SolidStepper::accept_step() {
     if (ResidualProjection* projection = work.system->projection()) projection->accept();
   if (body_.finite()) body_.finite()->accept();
   std::swap(state_, trial_);
+}
+
+void SolidStepper::release_solver() {
   // What is written next needs room; a dynamic run may be continued from it, with the same first guesses.
   if (step_.is_last && !body_.is_dynamic()) {
     systems_.clear();

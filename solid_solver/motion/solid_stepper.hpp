@@ -48,6 +48,8 @@ class SolidStepper final {
   void solve(std::vector<double> interface_load);
   /// What was tried is the state now. Cannot fail.
   void accept_step();
+  /// After it: at the end of a static run nothing is solved any more.
+  void release_solver();
 
   void save_state(CheckpointWriter& file) const;
   void load_state(CheckpointReader& file);

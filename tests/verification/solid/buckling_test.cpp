@@ -77,7 +77,8 @@ TEST(ColumnInTension, buckles_at_no_load) {
   EXPECT_TRUE(factors(*solid, 2).empty());
 }
 
-/// omega^2 of a loaded column goes as 1 - P/P_E, nearly exactly for one mode.
+/// omega^2 of a clamped-free beam under a dead axial load, from EI w'''' + P w'' = m omega^2 w:
+/// 0.5196 and 1.4497 of that without at half of Euler's load and at as much tension.
 TEST(LoadedColumn, swings_more_slowly_and_in_tension_faster) {
   const double critical = euler(0.05);
   const auto first = [&](double part) {
@@ -86,8 +87,8 @@ TEST(LoadedColumn, swings_more_slowly_and_in_tension_faster) {
     return preloaded_modes(solid->body(), prestress_of(solid->body(), solid->fields(), 1), 1).eigenvalue[0];
   };
   const double without = first(0);
-  EXPECT_NEAR(first(0.5) / without, 0.5, 0.02);
-  EXPECT_NEAR(first(-0.5) / without, 1.5, 0.03);
+  EXPECT_NEAR(first(0.5) / without, 0.5196, 0.006);
+  EXPECT_NEAR(first(-0.5) / without, 1.4497, 0.006);
   EXPECT_THROW(first(1.2), SolveFailure);
 }
 
@@ -95,7 +96,7 @@ TEST(LoadedColumn, swings_more_slowly_and_in_tension_faster) {
 /// that follows, 4 E I / ((1 - nu^2) R^3) under a radial load that keeps its direction.
 double ring(bool follows) {
   constexpr double t = 0.01;
-  RawMesh raw = make_box(BoxCells::quadrilaterals, {8, 60, 1}, Vec3::Zero(), Vec3(1, 1, 0));
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {8, 120, 1}, Vec3::Zero(), Vec3(1, 1, 0));
   for (Vec3& x : raw.points) {
     const double r = 1 + t * (x[0] - 0.5), angle = 0.5 * pi * x[1];
     x = Vec3(r * std::cos(angle), r * std::sin(angle), 0);
@@ -126,7 +127,8 @@ TEST(BucklingEstimate, finds_low_factors_and_leaves_others_alone) {
   for (const BoxCells cells : {BoxCells::quadrilaterals, BoxCells::tetrahedra})
     for (const double part : {0.2, 0.5, 1.3, -1.0}) {
       SCOPED_TRACE(fmt::format("{} {}", name(cells), part));
-      const auto solid = make_solid(bar(cells, 40, 2, 0.05), column(dimension_of(cells), part * critical));
+      const auto solid = make_solid(bar(cells, 40, dimension_of(cells) == 2 ? 4 : 2, 0.05),
+                                    column(dimension_of(cells), part * critical));
       step(*solid, 1);
       double seen = 0;
       const BucklingEstimate found =
@@ -135,7 +137,7 @@ TEST(BucklingEstimate, finds_low_factors_and_leaves_others_alone) {
       if (part == 0.2 || part < 0)
         EXPECT_EQ(found.factor, 0);
       else
-        EXPECT_NEAR(found.factor, 1 / part, 0.1 / part);
+        EXPECT_NEAR(found.factor, 1 / part, 0.15 / part);  // a bound from above, on a mesh that is too stiff
     }
 }
 
