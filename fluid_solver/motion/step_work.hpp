@@ -64,7 +64,7 @@ struct StepWork {
   std::vector<double> phi_orthogonal{}, phi_p{};  ///< phi^p without and with -(dt/rho) grad p~ . k [m^3/s]
   std::vector<double> p{}, p_boundary{};          ///< p^{n+1/2} per local cell, boundary face [Pa]
   Vectors<D> gradient_start{}, gradient_guess{};  ///< of p for the non-orthogonal part: first, of this pass
-  Vectors<D> viscous_force{};                     ///< per boundary face, on what is outside [N]
+  Vectors<D> viscous_flux{};                      ///< of momentum, per boundary face, on what is outside [N]
   std::vector<Tensor<D>> velocity_gradient{};     ///< skewed meshes only
   std::uint64_t gradient_of = 0;                  ///< State::number whose gradient that is; 0: none's
   StepStatistics statistics{};

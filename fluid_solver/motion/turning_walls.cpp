@@ -35,12 +35,6 @@ void set_turn(const Mesh& mesh, const Patch& patch, std::span<const Vec3> points
   }
 }
 
-template <int D>
-Vec<D> turning_force(double viscosity, const Vec<D>& turn, const Vec<D>& area) {
-  const Vec<D> n = area.normalized();
-  return -viscosity * (turn + turn.dot(n) * n);
-}
-
 /// Of the walls whose velocity the case gives; the others' was given before.
 template <int D>
 void Boundary<D>::add_turn(const Mesh& mesh, std::span<const Vec3> points, double t, Vectors<D>& turn) const {
@@ -69,8 +63,7 @@ void Fluid<D>::add_turning() {
   for (std::size_t b = 0; b < turn_.size(); ++b) {
     Vec<D> mean = 0.5 * turn_[b];
     if (!accepted_.turn.empty()) mean += 0.5 * accepted_.turn[b];
-    viscous_force_[b] += turning_force<D>(parameters_.viscosity, mean,
-                                          step_.to().area[mesh_.n_interior + static_cast<Index>(b)]);
+    viscous_force_[b] += turning_force<D>(parameters_.viscosity, mean);
   }
 }
 
@@ -80,8 +73,6 @@ template void set_turn<2>(const Mesh&, const Patch&, std::span<const Vec3>, std:
                           Vectors<2>&);
 template void set_turn<3>(const Mesh&, const Patch&, std::span<const Vec3>, std::span<const Vec3>,
                           Vectors<3>&);
-template Vec<2> turning_force<2>(double, const Vec<2>&, const Vec<2>&);
-template Vec<3> turning_force<3>(double, const Vec<3>&, const Vec<3>&);
 template void Boundary<2>::add_turn(const Mesh&, std::span<const Vec3>, double, Vectors<2>&) const;
 template void Boundary<3>::add_turn(const Mesh&, std::span<const Vec3>, double, Vectors<3>&) const;
 template void Fluid<2>::add_turning();

@@ -20,9 +20,10 @@ template <int D>
 void set_turn(const Mesh& mesh, const Patch& patch, std::span<const Vec3> points,
               std::span<const Vec3> velocities, Vectors<D>& turn);
 
-/// Force of that on what is outside, -mu [T + (T.n) n]: T of the transposed gradient, and T.n = du_n/dn, which the
-/// friction of Loads leaves out. `area`: out of the fluid.
+/// Force on what is outside by the transposed gradient, -mu T; that by du/dn is the flux of Loads.
 template <int D>
-Vec<D> turning_force(double viscosity, const Vec<D>& turn, const Vec<D>& area);
+Vec<D> turning_force(double viscosity, const Vec<D>& turn) {
+  return -viscosity * turn;
+}
 
 }  // namespace couplet::fluid

@@ -46,7 +46,7 @@ void FractionalStep<D>::predict(const State<D>& from, const History<D>& by, SubS
     k_.gaps->follow(*from.placement, *k_.step.to, k_.step.dt);
   }
   predictor_.predict(from);
-  loads_.remember_prediction(k_.by.implicit);
+  loads_.remember_prediction(predictor_.weight());
   k_.mesh.cells.update_ghosts(flat<D>(k_.u_p), D);
   if (k_.bodies) k_.bodies->force(*k_.step.to, k_.u_p);
   if (k_.gap_closed()) k_.gaps->hold(k_.u_p);
@@ -68,7 +68,6 @@ void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w) {
   level_.reset();
   projection_.project(from, w);
   loads_.set_forces(from);
-  loads_.correct_shear();
 }
 
 template <int D>

@@ -55,9 +55,9 @@ class FractionalStep {
   void set_gradient(const Placement<D>& at, PressureLevel<D>& level) const {
     projection_.set_gradient(at, level);
   }
-  /// Of the last project(), acting on what is outside the fluid [N]: +p_b S^{n+1/2} and the wall shear.
+  /// Of the last project(), acting on what is outside the fluid [N]: Loads.
   const Vectors<D>& pressure_force() const { return loads_.pressure_force(); }
-  const Vectors<D>& viscous_force() const { return k_.viscous_force; }
+  const Vectors<D>& viscous_force() const { return loads_.viscous_force(); }
   /// state.eddy, if there is a turbulence model. Collective.
   void set_eddy_viscosity(State<D>& state);
   /// Null: none.

@@ -7,37 +7,30 @@
 
 namespace couplet::fluid {
 
-/// Forces on what is outside the fluid: +p_b S^{n+1/2}, p extrapolated linearly to the wall, and the wall
-/// shear, which follows the wall velocity of each projection.
+/// Forces on what is outside the fluid: the momentum that the fluid's own equation lets through the wall, +p_b S^{n+1/2} with the
+/// scheme's wall pressure and the whole viscous flux mu g (u_P - w) with its weights in time. A pressure extrapolated from the
+/// cells and the tangential flux alone differ from it by a layer of the splitting, of first order in the step and the mesh.
 template <int D>
 class Loads {
  public:
   explicit Loads(StepWork<D>& work);
 
-  /// Of the prediction: what correct_shear() starts from.
-  void remember_prediction(bool implicit);
-  void correct_shear();
+  /// Of the prediction; `weight`: that of t^{n+1} in its viscous flux, 0 with an explicit predictor.
+  void remember_prediction(double weight);
+  /// After a projection.
   void set_forces(const State<D>& from);
-  /// Of the last set_forces() [N].
+  /// Of the last set_forces() [N]: along the normal with the viscous flux along it, and across it.
   const Vectors<D>& pressure_force() const { return pressure_force_; }
+  const Vectors<D>& viscous_force() const { return viscous_force_; }
 
  private:
-  void extrapolate_to_walls();
-  struct Fit {
-    Tensor<D> matrix = Tensor<D>::Zero();
-    Vec<D> side = Vec<D>::Zero();
-    bool usable = false;
-  };
+  void correct_shear();
 
   StepWork<D>& k_;
-  std::vector<Fit> fits_;          // of the cells at walls
-  std::vector<Index> slot_;        // per local cell: which of the fits; -1: none
-  std::vector<Index> near_walls_;  // interior faces of those cells
-  std::vector<double> p_wall_;     // per boundary face, for the load [Pa]
-  Vectors<D> pressure_force_;
-  std::vector<Index> interface_faces_;        // boundary faces
-  Vectors<D> w_predicted_, shear_predicted_;  // what the predictor took and gave there
-  double shear_weight_ = 0;                   // of t^{n+1} in the mean shear
+  Vectors<D> pressure_force_, viscous_force_;
+  std::vector<Index> interface_faces_;          // boundary faces
+  Vectors<D> w_predicted_, viscous_predicted_;  // what the predictor took and gave there
+  double weight_ = 0;
 };
 
 }  // namespace couplet::fluid

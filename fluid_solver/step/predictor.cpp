@@ -42,7 +42,7 @@ void Predictor<D>::predict(const State<D>& from) {
   if (moving) add_swept(from, e0, e1);
   if (moving || implicit) add_old_pressure(from, implicit);
   k_.u_p.resize(from.u.size());
-  k_.viscous_force.resize(k_.w.size());
+  k_.viscous_flux.resize(k_.w.size());
   if (implicit) {
     const double c = ratio > 0 ? c_modified : 0, a = ratio > 0 ? 0.5 + c / ratio : 1, b = 1 - a - c;
     for (Index i = 0; i < k_.mesh.cells.n_owned(); ++i) k_.right_side[i] += dt * b * rates_.viscous[i];
@@ -50,11 +50,17 @@ void Predictor<D>::predict(const State<D>& from) {
       for (Index i = 0; i < k_.mesh.cells.n_owned(); ++i)
         k_.right_side[i] += dt * c * from.rates_old.viscous[i];
     solve_viscous(from, k_.w, a);
+    weight_ = a;
+    for (std::size_t i = 0; i < shear_.size(); ++i) {
+      k_.viscous_flux[i] = a * k_.viscous_flux[i] + b * shear_[i];
+      if (ratio > 0) k_.viscous_flux[i] += c * from.shear_old[i];
+    }
   } else {
+    weight_ = 0;
     for (Index c = 0; c < k_.mesh.cells.n_owned(); ++c) k_.u_p[c] = k_.right_side[c] / k_.step.to->volume[c];
-    if (given) k_.viscous_force = k_.step.shear;
+    if (given) k_.viscous_flux = k_.step.shear;
     for (std::size_t b = 0; b < shear_.size() && !given; ++b)
-      k_.viscous_force[b] = ratio > 0 ? Vec<D>(e0 * shear_[b] + e1 * from.shear_old[b]) : shear_[b];
+      k_.viscous_flux[b] = ratio > 0 ? Vec<D>(e0 * shear_[b] + e1 * from.shear_old[b]) : shear_[b];
   }
 }
 
@@ -62,7 +68,7 @@ template <int D>
 void Predictor<D>::set_rates(const State<D>& from, bool implicit) {
   const bool at_hand = k_.gradient_of != 0 && k_.gradient_of == from.number;
   rate_operator_.apply(from, implicit, k_.oblique, rates_, at_hand ? &k_.velocity_gradient : nullptr);
-  wall_shear<D>(k_.mesh, *from.placement, k_.parameters.viscosity, from.u, from.u_boundary, shear_);
+  wall_flux<D>(k_.mesh, *from.placement, k_.parameters.viscosity, from.u, from.u_boundary, shear_);
   if (k_.bodies)
     for (Index c = 0; c < k_.mesh.cells.n_local(); ++c)
       if (k_.bodies->is_solid(c)) rates_.rate[c].setZero();
@@ -198,9 +204,7 @@ void Predictor<D>::solve_viscous(const State<D>& from, const Vectors<D>& w, doub
   else
     k_.statistics.viscous_iterations += viscous_solver_.solve(w, viscous_tolerance(), k_.right_side, k_.u_p);
   k_.boundary.close(k_.mesh, *k_.step.to, k_.u_p, w, k_.u_boundary);
-  wall_shear<D>(k_.mesh, *k_.step.to, k_.parameters.viscosity, k_.u_p, k_.u_boundary, k_.viscous_force);
-  for (std::size_t b = 0; b < shear_.size(); ++b)
-    k_.viscous_force[b] = 0.5 * (k_.viscous_force[b] + shear_[b]);
+  wall_flux<D>(k_.mesh, *k_.step.to, k_.parameters.viscosity, k_.u_p, k_.u_boundary, k_.viscous_flux);
   add_back_old_pressure();
 }
 

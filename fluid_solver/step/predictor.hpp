@@ -25,6 +25,8 @@ class Predictor {
   /// Of the last set_rates().
   Rates<D>& rates() { return rates_; }
   Vectors<D>& shear() { return shear_; }
+  /// Of t^{n+1} in the viscous flux of the last predict().
+  double weight() const { return weight_; }
   RateOperator<D>& rate_operator() { return rate_operator_; }
 
  private:
@@ -43,7 +45,8 @@ class Predictor {
   ViscousSolver<D> viscous_solver_;
   std::vector<Expression> body_force_;
   Rates<D> rates_;
-  Vectors<D> shear_;         // of level n
+  Vectors<D> shear_;  // viscous flux through the boundary, of level n
+  double weight_ = 0;
   Vectors<D> old_pressure_;  // dt/rho sum p^{n-1/2} S^{n+1}, of an implicit predictor on a moving mesh
   Vectors<D> oblique_rate_, viscous_side_, u_before_;
 };

@@ -125,14 +125,12 @@ void RateOperator<D>::apply(const State<D>& state, bool split, bool correct_obli
 }
 
 template <int D>
-void wall_shear(const Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
-                const Vectors<D>& u_boundary, Vectors<D>& force) {
+void wall_flux(const Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
+               const Vectors<D>& u_boundary, Vectors<D>& force) {
   force.resize(u_boundary.size());
   for (std::size_t b = 0; b < u_boundary.size(); ++b) {
     const Index f = mesh.n_interior + static_cast<Index>(b);
-    const Vec<D> n = at.area[f].normalized();
-    const Vec<D> slip = u[mesh.owner[f]] - u_boundary[b];
-    force[b] = viscosity * at.conductance[f] * (slip - slip.dot(n) * n);
+    force[b] = viscosity * at.conductance[f] * (u[mesh.owner[f]] - u_boundary[b]);
   }
 }
 
@@ -146,9 +144,9 @@ template void mean_flux<3>(const Mesh&, const Placement<3>&, const Vectors<3>&, 
                            std::vector<Tensor<3>>&, std::span<double>);
 template class RateOperator<2>;
 template class RateOperator<3>;
-template void wall_shear<2>(const Mesh&, const Placement<2>&, double, const Vectors<2>&, const Vectors<2>&,
-                            Vectors<2>&);
-template void wall_shear<3>(const Mesh&, const Placement<3>&, double, const Vectors<3>&, const Vectors<3>&,
-                            Vectors<3>&);
+template void wall_flux<2>(const Mesh&, const Placement<2>&, double, const Vectors<2>&, const Vectors<2>&,
+                           Vectors<2>&);
+template void wall_flux<3>(const Mesh&, const Placement<3>&, double, const Vectors<3>&, const Vectors<3>&,
+                           Vectors<3>&);
 
 }  // namespace couplet::fluid

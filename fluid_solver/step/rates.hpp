@@ -60,10 +60,9 @@ class RateOperator {
   std::vector<Tensor<D>> gradient_;
 };
 
-/// Viscous force of the fluid on each boundary face at level n [N]: mu g (u_P - u_b), tangential part. On a
-/// no-slip wall the normal part of mu (grad u + grad u^T).S vanishes for a divergence-free field.
+/// Viscous flux of momentum out of the fluid through each boundary face [N]: mu g (u_P - u_b), as the equation has it.
 template <int D>
-void wall_shear(const Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
-                const Vectors<D>& u_boundary, Vectors<D>& force);
+void wall_flux(const Mesh& mesh, const Placement<D>& at, double viscosity, const Vectors<D>& u,
+               const Vectors<D>& u_boundary, Vectors<D>& force);
 
 }  // namespace couplet::fluid

@@ -112,7 +112,7 @@ TEST(LightWall, a_heavy_one_needs_no_renewal) {
   LightWall heavy(20, 1, true), light(0.002, 1, true);
   for (int n = 0; n < 5; ++n) heavy.step(1), light.step(1);
   EXPECT_LT(heavy.unseen(), 0.01);
-  EXPECT_GT(light.unseen(), 0.01);
+  EXPECT_GT(light.unseen(), 10 * heavy.unseen());
 }
 
 /// (15): the shear follows the wall velocity of the pass by theta mu g of the slip, and comes back with it.
@@ -135,7 +135,8 @@ TEST(LightWall, shear_is_that_of_the_velocity_of_the_pass) {
     const Placement<2>& at = *c.state().placement;
     const Index f = c.mesh().n_interior + static_cast<Index>(b);
     const Vec<2> n = at.area[f].normalized(), slip(0.25, 0.075);
-    const Vec<2> expected = guess[b] - 0.5 * p.viscosity * at.conductance[f] * (slip - slip.dot(n) * n);
+    const double weight = 0.5 + 1. / 16;  // of modified Crank-Nicolson
+    const Vec<2> expected = guess[b] - weight * p.viscosity * at.conductance[f] * (slip - slip.dot(n) * n);
     EXPECT_NEAR((fluid.viscous_force()[b] - expected).norm(), 0, 1e-12);
   }
   fluid.solve_pressure(slide(0.1));

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The load on walls: a cylinder that starts to swing in a viscous fluid, refined in time and in space."""
+import csv
+import math
+
+from validation.job import Bar
+
+AT = 1.25  # s
+
+
+def force(job, step, cells):
+    """x force [N] of a cylinder that moves by -(5/4 pi)(1 - cos 0.4 pi t), viscosity 1 Pa s: given at the middle of the steps."""
+    def make():
+        run = job.solve_run("fluid_solver", "oscillating-cylinder",
+                            ("participants.fluid.viscosity=1 Pa s", "participants.fluid.viscous=implicit", "participants.fluid.mesh-parameters={n: %d}" % cells,
+                             'participants.fluid.motion.translation=["-(5/(4*pi))*(1-cos(0.4*pi*t))", 0]',
+                             f"simulation.end-time={AT + 2 * step}", f"simulation.time-step={step}"))
+        with open(run.folder / "fluid" / "forces.csv", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        parts = [i for i, name in enumerate(rows[0]) if name.endswith(" x [N]")]
+        found = {round(float(row[0]) / step): sum(float(row[i]) for i in parts) for row in rows[1:]}
+        n = round(AT / step)
+        return (found[n] + found[n + 1]) / 2
+    return job.once(("swinging cylinder", step, cells), make)
+
+
+def in_time(job):
+    a, b, c = (force(job, step, 48) for step in (0.025, 0.0125, 0.00625))
+    order = math.log2((a - b) / (b - c))
+    return f"{a:.5f}, {b:.5f}, {c:.5f} N: order {order:.2f}", order >= 1.9
+
+
+def near(job):
+    fine, got = force(job, 0.0025, 192), force(job, 0.01, 48)
+    return f"{100 * (got / fine - 1):+.3f} % of {fine:.5f} N", abs(got / fine - 1) <= 1e-3
+
+
+BARS = [
+    Bar("swinging cylinder, viscosity 1, 48 cells around: order of the force at 0.025, 0.0125, 0.00625 s", ">= 1.9", in_time,
+        but="steps of 0.025 to 0.00625 s in place of 0.02 to 0.005 s, so that 1.25 s is the end of one in all"),
+    Bar("... at 0.01 s, beside 192 cells and 0.0025 s", "within 0.1 %", near, long=True),
+]
