@@ -48,9 +48,10 @@ StepReport Solid::accept_step() {
   if (body_.parameters().output.large_strain_estimate) judge_.estimate_large_strain();
   if (errors_) errors_->see_step();
   stepper_.accept_step();
-  // Growth out of nothing doubles in some steps: it is seen between outputs, too.
-  if (!body_.is_dynamic() || stepper_.state().steps % steps_between_looks == 0) judge_.look();
-  if (!body_.is_dynamic()) judge_.see_buckling();
+  if (!body_.is_dynamic()) {
+    judge_.look();
+    judge_.see_buckling();
+  }
   stepper_.release_solver();
   for (const auto& effect : body_.effects())
     if (effect->wants_stress()) effect->take_stress(fields_.cell_stress(fields_.point_displacement()));
@@ -84,8 +85,10 @@ void Solid::write_output(double time, int) {
 }
 
 void Solid::write_monitors(double time) {
-  if (body_.is_dynamic() && body_.parameters().output.energies)
-    judge_.look();  // growth may come and go between two outputs
+  // Growth out of nothing may come, or come and go, between two outputs.
+  if (body_.is_dynamic() &&
+      (body_.parameters().output.energies || stepper_.state().steps % steps_between_looks == 0))
+    judge_.look();
   output_->write_series(time, fields_.point_displacement());
 }
 

@@ -139,6 +139,7 @@ Swing swing(FaceGradient gradient, double until, bool outputs = true) {
   try {
     for (int i = 1; solid->stepper().state().time < until; ++i) {
       step(*solid, 0.01);
+      solid->write_monitors(solid->stepper().state().time);
       if (outputs && i % 20 == 0) solid->write_output(solid->stepper().state().time, 0);
       if (log::doubts() > before && result.first_told == 0)
         result.first_told = solid->judge().energy_audit().created();

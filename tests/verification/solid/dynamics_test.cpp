@@ -226,7 +226,7 @@ TEST(SolidDynamics, a_little_stiffness_damping_keeps_a_distorted_mesh_stable) {
     for (const double v : solid->stepper().state().cell_v) largest = std::max(largest, std::abs(v));
     return largest;
   };
-  EXPECT_THROW(largest_velocity_after(0), Error);  // it grows until the run ends itself
+  EXPECT_GT(largest_velocity_after(0), 0.2);  // ten times what it started with, and growing
   EXPECT_LT(largest_velocity_after(2e-5), 0.021);
 }
 
