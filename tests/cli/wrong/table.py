@@ -191,7 +191,7 @@ case.yaml:12:7: participants.solid.material.poisson-ratio: unknown key. Did you 
 case.yaml:12:7: participants.solid.material.poissons-ratio: '0.3 m' has more than a number in it ('m'); expected a plain number.
 """, ("poissons-ratio: 0.3", "poissons-ratio: 0.3 m")),
     solid("unknown word", """
-case.yaml:8:5: participants.solid.analysis: 'dynamics' is not one of: dynamic, static, thermal. Did you mean 'dynamic'?
+case.yaml:8:5: participants.solid.analysis: 'dynamics' is not one of: dynamic, static, thermal, buckling. Did you mean 'dynamic'?
 """, ("analysis: dynamic", "analysis: dynamics")),
     solid("four dimensions", """
 case.yaml:7:5: participants.solid.dimension: 4 is out of range; expected a value from 2 to 3.

@@ -9,7 +9,7 @@ from couplet.study.schema import STUDY
 
 
 EXPRESSION = ["number", "string", "object"]
-A_QUANTITY = f"^ *{units.NUMBER} *[A-Za-zµ%/][A-Za-zµ0-9^/*· ()²³-]*$"
+A_QUANTITY = f"^ *{units.NUMBER} *(?![eE][+-]?[0-9])[A-Za-zµ%/][A-Za-zµ0-9^/*· ()²³-]*$"
 PARTICIPANT = r"^(?!(coupler|checkpoints|run)$)(?!-)[^/\\ .\n\t]{1,50}$"  # problem_of_name of common/app/case/case_file.cpp
 
 
