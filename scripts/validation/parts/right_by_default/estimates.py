@@ -7,6 +7,7 @@ import re
 from validation.job import Bar
 
 NONE = ()
+SOFT = ("simulation.accept=[buckling]",)  # Cook's load is near the one that buckles the panel
 
 
 def beam(length):
@@ -23,8 +24,8 @@ def rings(text, sizes):
 
 # (case, displacement, meshes, the fine one, further keys)
 BODIES = (
-    ("cook", "corner y", [f"n: {n}, shape: 0" for n in (4, 8, 16, 32)], "n: 128, shape: 0", NONE),
-    ("cook", "corner y", [f"n: {n}, shape: 1" for n in (4, 8, 16, 32)], "n: 128, shape: 0", NONE),
+    ("cook", "corner y", [f"n: {n}, shape: 0" for n in (4, 8, 16, 32)], "n: 128, shape: 0", SOFT),
+    ("cook", "corner y", [f"n: {n}, shape: 1" for n in (4, 8, 16, 32)], "n: 128, shape: 0", SOFT),
     ("le1", "D x", rings("nr: {r}, nt: {t}", (4, 8, 16, 32)), "nr: 128, nt: 192", NONE),
     ("lame-cylinder", "inside x", rings("nr: {r}, nt: {t}, shape: 0", (4, 8, 16)), "nr: 96, nt: 144, shape: 0", NONE),
     ("lame-cylinder", "inside x", rings("nr: {r}, nt: {t}, shape: 1", (4, 8, 16)), "nr: 96, nt: 144, shape: 0", NONE),
