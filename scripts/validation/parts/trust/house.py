@@ -102,10 +102,11 @@ def reports(folder):
 
 def watched(job, folder, command, seconds, **more):
     """Runs a command of the sanitizers' build. They write to files: a test that passes shows no output, and one that expects a program
-    to fail would take a report for that. Signals are left to the tests' strikes; limits of the fuzzers' clock are ten times as wide."""
+    to fail would take a report for that. Signals are left to the tests' strikes; limits of the fuzzers' clock are ten times as wide, and
+    what is freed is kept for 16 MB only: it counts as memory."""
     folder.mkdir(parents=True, exist_ok=True)
     to = f"log_path={folder}/report"
-    return job.run(["env", f"ASAN_OPTIONS=detect_leaks=0:handle_segv=0:{to}", f"UBSAN_OPTIONS=print_stacktrace=1:{to}", "COUPLET_FUZZ_SECONDS=100",
+    return job.run(["env", f"ASAN_OPTIONS=detect_leaks=0:handle_segv=0:quarantine_size_mb=16:{to}", f"UBSAN_OPTIONS=print_stacktrace=1:{to}", "COUPLET_FUZZ_SECONDS=100",
                     *command], seconds, **more)
 
 
