@@ -174,8 +174,8 @@ const std::array cards{
         "free vibrations",
         "`output.modes` above 0",
         [](const P& p) { return when(p.output.modes > 0, "output.modes"); },
-        {"modes.csv and modes.h5, found once at the start: a preconditioner for K + M/t^2 and some forty solutions with "
-         "it",
+        {"modes.csv and modes.h5, found once at the start: factors of the shifted stiffness with the vertices as unknowns, and some "
+         "forty solutions with them",
          0, 0}},
 };
 
