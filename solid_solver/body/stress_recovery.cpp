@@ -7,7 +7,7 @@
 
 #include "common/elasticity/vector_at.hpp"
 #include "common/mesh/transpose.hpp"
-#include "solid_solver/body/cell_shapes.hpp"
+#include "solid_solver/body/cell_moment.hpp"
 
 namespace couplet {
 namespace {

@@ -9,13 +9,13 @@
 #include "common/elasticity/vector_at.hpp"
 #include "common/mesh/transpose.hpp"
 #include "common/parallel/collective.hpp"
-#include "solid_solver/body/cell_shapes.hpp"
+#include "solid_solver/body/cell_moment.hpp"
 
 namespace couplet {
 namespace {
 
-constexpr double of_far = 1. / 9;         // weight of a sample at the patch's rim over one in its centre
-constexpr Index cells_looked_at = 20000;  // of a rank: some 0.2 s
+constexpr double of_far = 1. / 9;  // weight of a sample at the patch's rim over one in its centre
+constexpr GlobalIndex cells_looked_at = 20000;  // of all ranks
 
 }  // namespace
 
@@ -107,12 +107,13 @@ double SmoothEnergy::smooth_energy(Index cell, const Patch& patch, std::span<con
 }
 
 double SmoothEnergy::missed(std::span<const double> point_u) const {
-  const Index n = mesh_.cells.n_owned(), stride = 1 + n / cells_looked_at;
+  const GlobalIndex stride = 1 + mesh_.cells.n_global() / cells_looked_at;
   Patch patch{.cells_of_point = transpose(mesh_.cell_points, 0, mesh_.points.n_local()),
               .faces_of_cell = boundary_faces_of_cells(mesh_),
               .mark = std::vector<Index>(std::size_t(mesh_.cells.n_local()), -1)};
   double smooth = 0, counted = 0;
-  for (Index cell = 0; cell < n; cell += stride) {
+  for (Index cell = 0; cell < mesh_.cells.n_owned(); ++cell) {
+    if (mesh_.cell_id[cell] % stride != 0) continue;  // the same ones on any number of ranks
     gather(cell, patch);
     if (patch.reach == 0) continue;
     smooth += smooth_energy(cell, patch, point_u);

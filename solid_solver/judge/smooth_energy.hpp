@@ -16,8 +16,9 @@ namespace couplet {
 /// differ says how wrong the operator's stiffness is for this displacement (recovered displacements: Naga and Zhang, SIAM J.
 /// Numer. Anal. 42 (2004) 1780).
 ///
-/// Against the true error of the displacement (right-by-default's bodies): on triangles 0.3 to 1.0 of it, where the difference of
-/// two face gradients is 0.01 to 1.6; on tetrahedra that bend 0.4 to 25, mostly a half to a tenth of that difference. On
+/// Beside the true error of the displacement (scripts/validate right-by-default): on triangles 0.3 to 1.0 of it on Cook's panel, a ring and
+/// an orthotropic bar, where the difference of two face gradients is 0.01 to 1.6; far above it where structured triangles are
+/// sheared and their errors cancel. On tetrahedra that bend 0.3 to 40, mostly a half to a tenth of that difference. On
 /// quadrilaterals and hexahedra it knows no more than the difference does.
 class SmoothEnergy {
  public:
@@ -29,8 +30,8 @@ class SmoothEnergy {
   /// Displacement gradient of a flux face; those of partition faces on both ranks.
   void add(Index face, const Tensor3& gradient);
   /// Share of the smooth energy by which the counted one differs; 0 where there is none. `point_u`: the displacement of
-  /// all local points, `dim` values each [m]. Looks at so many cells of a rank at most, evenly taken.
-  /// Collective.
+  /// all local points, `dim` values each [m]. Looks at some 20 000 cells at most, evenly
+  /// taken. Collective.
   double missed(std::span<const double> point_u) const;
 
  private:

@@ -9,6 +9,7 @@
 #include "common/base/error.hpp"
 #include "common/elasticity/tied/tied_matrix.hpp"
 #include "common/log/log.hpp"
+#include "common/mesh/extent.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -23,16 +24,11 @@ constexpr double rigid_part = 1e-8;
 /// mu / (rho L^2) of the slowest cell, with L the diagonal of the body's box [1/s^2].
 double slowest_scale(const SolidProblem& problem, std::span<const double> cell_mass) {
   const Mesh& mesh = problem.mesh;
-  Vec3 lower = Vec3::Constant(1e300), upper = -lower;
-  for (const Vec3& x : mesh.reference_points) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
-  for (int a = 0; a < 3; ++a) {
-    lower[a] = min(mesh.comm, lower[a]);
-    upper[a] = max(mesh.comm, upper[a]);
-  }
   double slowest = 1e300;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     slowest = std::min(slowest, problem.elastic.lame(c).mu * mesh.reference.volume[c] / cell_mass[c]);
-  return min(mesh.comm, slowest) / (upper - lower).squaredNorm();
+  const double length = extent_of(mesh).diagonal();
+  return min(mesh.comm, slowest) / (length * length);
 }
 
 /// A vertex of the surface as it travels to rank 0; its shapes go beside it.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/mesh/extent.hpp"
 #include "common/parallel/collective.hpp"
 
 namespace couplet {
@@ -29,13 +30,11 @@ double compression(const Mesh& mesh, const Prestress& prestress) {
 
 std::vector<double> any_start(const SolidBody& body) {
   const Mesh& mesh = body.mesh();
-  Vec3 lower = Vec3::Constant(1e300), upper = -lower;
-  for (const Vec3& x : mesh.reference_points) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
-  for (int a = 0; a < 3; ++a) lower[a] = min(mesh.comm, lower[a]), upper[a] = max(mesh.comm, upper[a]);
-  const double size = (upper - lower).norm();
+  const Extent box = extent_of(mesh);
+  const double size = box.diagonal();
   std::vector<double> start;
   const auto add = [&](const Vec3& x) {
-    const Vec3 s = (x - lower) / size;
+    const Vec3 s = (x - box.lower) / size;
     for (int a = 0; a < mesh.dim; ++a) {
       double value = 0;
       for (int k = 1; k <= 4; ++k)

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "common/elasticity/block_pairs.hpp"
 #include "common/elasticity/symmetric/face_stencil.hpp"
-#include "common/linalg/matrix.hpp"
 
 namespace couplet {
 
@@ -21,7 +19,7 @@ class NodeAssembly {
   NodeAssembly(const Mesh& mesh, const ElasticOperator& rows);
 
   FaceStencil& stencil() { return stencil_; }
-  void add_block(Index i, Index j, const Tensor3& block);
+  void add_block(Index i, Index j, const Tensor3& block) { pairs_.add(i, j, block); }
   /// V_P theta_P of a cell changes by g . u of this node. Of owned cells, from all their faces: those of other ranks, too.
   void add_volume_term(Index cell, Index node, const Vec3& g) {
     if (cell < mesh_.cells.n_owned()) volume_of_[cell].push_back({node, g});
@@ -43,9 +41,7 @@ class NodeAssembly {
   const ElasticOperator& rows_;
   std::vector<GlobalIndex> number_;
   FaceStencil stencil_;
-  std::unordered_map<std::uint64_t, std::size_t> slot_of_;  // of a pair of nodes
-  std::vector<std::pair<Index, Index>> pairs_;
-  std::vector<Tensor3> blocks_;
+  BlockPairs<Index> pairs_;
   std::map<Index, std::vector<std::pair<Index, Vec3>>> volume_of_;  // of cells, by nodes
 };
 

@@ -36,17 +36,7 @@ GradientStiffness stiffness_of_stress(const Tensor3& stress) {
 
 TiedAssembly::TiedAssembly(const Mesh& mesh, const ElasticOperator& rows, const TiedUnknowns& unknowns)
     : mesh_(mesh), rows_(rows), unknowns_(unknowns) {
-  slot_of_.reserve(std::size_t(mesh.n_flux_faces()) * (mesh.dim == 2 ? 8 : 40));
-}
-
-void TiedAssembly::add_block(GlobalIndex i, GlobalIndex j, const Tensor3& block) {
-  const auto [at, is_new] = slot_of_.try_emplace(std::uint64_t(i) << 32 | std::uint32_t(j), pairs_.size());
-  if (is_new) {
-    pairs_.push_back({i, j});
-    blocks_.push_back(block);
-  } else {
-    blocks_[at->second] += block;
-  }
+  pairs_.reserve(std::size_t(mesh.n_flux_faces()) * (mesh.dim == 2 ? 8 : 40));
 }
 
 void TiedAssembly::add(std::span<const TiedTerm> terms, const GradientStiffness& stiffness) {
@@ -60,18 +50,6 @@ void TiedAssembly::add(std::span<const TiedTerm> terms, const GradientStiffness&
       add_block(i.block, j.block, block * j.turn);
     }
   }
-}
-
-void TiedAssembly::add_volume(std::vector<std::pair<GlobalIndex, Vec3>>& terms, double modulus) {
-  std::ranges::sort(terms, {}, &std::pair<GlobalIndex, Vec3>::first);
-  std::vector<std::pair<GlobalIndex, Vec3>> merged;
-  for (const auto& t : terms)
-    if (!merged.empty() && merged.back().first == t.first)
-      merged.back().second += t.second;
-    else
-      merged.push_back(t);
-  for (const auto& [i, g] : merged)
-    for (const auto& [j, h] : merged) add_block(i, j, modulus * g * h.transpose());
 }
 
 /// Springs act on the mean displacement of a face.
@@ -130,7 +108,7 @@ void TiedAssembly::add_places(double factor, std::span<const PlaceBlock> blocks)
 double TiedAssembly::mean_diagonal() const {
   double total = 0, count = 0;
   for (std::size_t k = 0; k < pairs_.size(); ++k)
-    if (pairs_[k].first == pairs_[k].second) total += std::abs(blocks_[k](0, 0)), count += 1;
+    if (pairs_.pair(k).first == pairs_.pair(k).second) total += std::abs(pairs_.block(k)(0, 0)), count += 1;
   return sum(mesh_.comm, total) / std::max(1.0, sum(mesh_.comm, count));
 }
 
@@ -160,22 +138,8 @@ void TiedAssembly::add_ties(double tie) {
 SparseMatrix TiedAssembly::matrix(double& tie) {
   if (tie == 0) tie = mean_diagonal();
   add_ties(tie);
-  const int dim = mesh_.dim;
-  std::vector<GlobalIndex> row, column;
-  std::vector<double> value;
-  for (auto* list : {&row, &column}) list->reserve(pairs_.size() * std::size_t(dim * dim));
-  value.reserve(pairs_.size() * std::size_t(dim * dim));
-  for (std::size_t k = 0; k < pairs_.size(); ++k)
-    for (int a = 0; a < dim; ++a)
-      for (int b = 0; b < dim; ++b) {
-        row.push_back(pairs_[k].first * dim + a);
-        column.push_back(pairs_[k].second * dim + b);
-        value.push_back(blocks_[k](a, b));
-      }
-  SparseMatrix result(mesh_.comm, GlobalIndex(unknowns_.n_blocks()) * dim, std::move(row), std::move(column),
-                      dim);
-  result.fill(value);
-  return result;
+  return pairs_.matrix(mesh_.comm, GlobalIndex(unknowns_.n_blocks()) * mesh_.dim, mesh_.dim,
+                       [](GlobalIndex block) { return block; });
 }
 
 }  // namespace couplet

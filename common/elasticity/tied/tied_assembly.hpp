@@ -2,16 +2,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <map>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "common/elasticity/block_pairs.hpp"
 #include "common/elasticity/prestress/pressure_stiffness.hpp"
 #include "common/elasticity/tied/tied_terms.hpp"
-#include "common/linalg/matrix.hpp"
 
 namespace couplet {
 
@@ -39,7 +37,7 @@ class TiedAssembly {
   /// modulus(cell) g g^T of what was added.
   template <class Modulus>
   void finish_volumes(const Modulus& modulus) {
-    for (auto& [cell, terms] : volume_of_) add_volume(terms, modulus(cell));
+    for (auto& [cell, terms] : volume_of_) pairs_.add_squares(terms, modulus(cell));
     volume_of_.clear();
   }
   /// The rows of supports and their springs.
@@ -52,17 +50,14 @@ class TiedAssembly {
   SparseMatrix matrix(double& tie);
 
  private:
-  void add_block(GlobalIndex i, GlobalIndex j, const Tensor3& block);
-  void add_volume(std::vector<std::pair<GlobalIndex, Vec3>>& terms, double modulus);
+  void add_block(GlobalIndex i, GlobalIndex j, const Tensor3& block) { pairs_.add(i, j, block); }
   void add_ties(double tie);
   double mean_diagonal() const;
 
   const Mesh& mesh_;
   const ElasticOperator& rows_;
   const TiedUnknowns& unknowns_;
-  std::unordered_map<std::uint64_t, std::size_t> slot_of_;  // of a pair of blocks
-  std::vector<std::pair<GlobalIndex, GlobalIndex>> pairs_;
-  std::vector<Tensor3> blocks_;
+  BlockPairs<GlobalIndex> pairs_;
   std::map<Index, std::vector<std::pair<GlobalIndex, Vec3>>> volume_of_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solid_solver/body/cell_shapes.hpp"
+#include "solid_solver/body/cell_moment.hpp"
 
 #include "common/mesh/transpose.hpp"
 
