@@ -114,6 +114,7 @@ void SolidStepper::load_guesses(CheckpointReader& file) {
       if (x.size() != body_.unknowns_of(state_.cell_u, state_.face_u).size())
         throw Error("The checkpoint's corrections of solves are those of another mesh. Use an earlier one.");
       problem.apply(x, y);
+      if (problem.rigid) problem.rigid->project(y);  // as the solves that kept them did
     };
     if (ResidualProjection* projection = system.projection())
       projection->set_values(file.read(fmt::format("projection-{}", i)), apply);

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "common/config/load.hpp"
+#include "tests/support/saved_state.hpp"
 #include "tests/verification/solid/loads_support.hpp"
 
 namespace couplet::testing {
@@ -132,6 +133,22 @@ TEST(RigidPatches, stay_rigid_in_motion_and_take_the_momentum_of_their_load) {
       EXPECT_LT(motion.deviation, 1e-10 * motion.shift.norm());
     }
   }
+}
+
+TEST(RigidPatches, continue_bit_for_bit_from_a_checkpoint) {
+  SolidParameters p = box_parameters(2);
+  p.analysis = SolidParameters::Analysis::dynamic;
+  p.boundaries["xmin"] = boundary(Type::fixed_displacement, {"0", "0"});
+  p.boundaries["xmax"] = rigid(Vec3(0, 7e4, 0), Vec3(2, 0.5, 0), 2);
+  const auto make = [&p] {
+    return make_solid(make_box(BoxCells::triangles, {6, 6, 1}, Vec3::Zero(), Vec3::Ones()), p);
+  };
+  const auto whole = make(), begun = make(), continued = make();
+  for (int n = 0; n < 6; ++n) step(*whole, 1e-4);
+  for (int n = 0; n < 3; ++n) step(*begun, 1e-4);
+  support::SavedState(*begun).load_into(*continued);
+  for (int n = 0; n < 3; ++n) step(*continued, 1e-4);
+  EXPECT_EQ(whole->stepper().state().cell_v, continued->stepper().state().cell_v);
 }
 
 TEST(RigidPatches, give_the_same_displacement_on_any_number_of_ranks) {
