@@ -6,6 +6,7 @@
 
 #include "common/base/error.hpp"
 #include "common/elasticity/tied/tied_matrix.hpp"
+#include "common/mesh/extent.hpp"
 #include "common/modes/largest_ratios.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -41,20 +42,26 @@ bool counts(const SolidBody& body, const Prestress& prestress, double s, std::si
   return loaded.negative() == GlobalIndex(n);
 }
 
+double largest_stress(const SolidBody& body, const Prestress& prestress) {
+  double largest = 0;
+  for (const Tensor3& s : prestress.stress) largest = std::max(largest, s.norm());
+  return max(body.mesh().comm, largest);
+}
+
 /// The factor at which the stress is as large as Young's modulus: what does not buckle below buckles nowhere.
 double overload(const SolidBody& body, const Prestress& prestress) {
-  double largest = 0, stiffest = 0;
-  for (const Tensor3& s : prestress.stress) largest = std::max(largest, s.norm());
+  double stiffest = 0;
   for (Index c = 0; c < body.mesh().cells.n_owned(); ++c)
     stiffest = std::max(stiffest, body.elastic().lame(c).mu);
-  largest = max(body.mesh().comm, largest);
-  return largest > 0 ? 2.5 * max(body.mesh().comm, stiffest) / largest : 1;
+  return 2.5 * max(body.mesh().comm, stiffest) / largest_stress(body, prestress);
 }
 
 }  // namespace
 
 Buckling find_buckling(const SolidBody& body, const Prestress& prestress, int n) {
   check_buckling_of(body);
+  if (!(largest_stress(body, prestress) > 0))
+    throw SolveFailure("The loads leave no stress in the body; give it a load or a support that moves.");
   const Mesh& mesh = body.mesh();
   const auto stress = make_stress_stiffness(mesh, body.elastic(), prestress);
   TiedMatrix stiffness(mesh, body.elastic(), {});
@@ -107,10 +114,8 @@ EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, in
   for (Index c = 0; c < mesh.cells.n_owned(); ++c)
     slowest = std::min(slowest, body.elastic().lame(c).mu / density[std::size_t(c)]);
   kernel.set_density(density);
-  Vec3 lower = Vec3::Constant(1e300), upper = -lower;
-  for (const Vec3& x : mesh.reference_points) lower = lower.cwiseMin(x), upper = upper.cwiseMax(x);
-  for (int a = 0; a < 3; ++a) lower[a] = min(mesh.comm, lower[a]), upper[a] = max(mesh.comm, upper[a]);
-  const double shift = loaded_shift_part * min(mesh.comm, slowest) / (upper - lower).squaredNorm();
+  const double length = extent_of(mesh).diagonal();
+  const double shift = loaded_shift_part * min(mesh.comm, slowest) / (length * length);
   TiedMatrix loaded(mesh, body.elastic(), {.stress = 1, .prestress = &prestress});
   loaded.factorise();
   if (loaded.negative() > 0)

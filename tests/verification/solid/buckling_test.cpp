@@ -77,6 +77,12 @@ TEST(ColumnInTension, buckles_at_no_load) {
   EXPECT_TRUE(factors(*solid, 2).empty());
 }
 
+TEST(UnloadedColumn, is_refused) {
+  const auto solid = make_solid(bar(BoxCells::quadrilaterals, 10, 2, 0.05), column(2, 0));
+  step(*solid, 1);
+  EXPECT_THROW(factors(*solid, 2), SolveFailure);
+}
+
 /// omega^2 of a clamped-free beam under a dead axial load, from EI w'''' + P w'' = m omega^2 w:
 /// 0.5196 and 1.4497 of that without at half of Euler's load and at as much tension.
 TEST(LoadedColumn, swings_more_slowly_and_in_tension_faster) {
