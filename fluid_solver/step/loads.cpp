@@ -23,11 +23,11 @@ void Loads<D>::remember_prediction(double weight) {
   }
 }
 
-/// Viscous flux of the current wall velocity, F - a mu g (c_t + 4 c_n), c = w - w*: left at the guess w* the slip c
-/// would come as a force one step late, at a two-step oscillation a mass of -mu g dt. Along the wall the slip is c. Across it
-/// the pressure moves the cell, too, and what remains comes through the level n of the next step: a wall of a fortieth of its
-/// added mass (nu dt/h^2 = 100) diverges without c_n, zigzags by 0.32 with it once, 0.16 twice and 0.08 with four times it. c
-/// vanishes with the square of the step. The explicit branch takes the flux of level n, which knows its wall velocity.
+/// Viscous flux of the current wall velocity, F - a mu g (c_t + 4 c_n) with the tangential and the normal part of c = w - w*:
+/// left at the guess w* the slip c would come as a force one step late, at a two-step oscillation a mass of -mu g dt. The
+/// factor of c_n is found by trial: a wall of a fortieth of its added mass (nu dt/h^2 = 100) diverges with a half and less,
+/// zigzags by 0.32 with one, 0.16 with two and 0.08 with four; 0.15 is smooth. c vanishes with the square of the step. The
+/// explicit branch takes the flux of level n, which knows its wall velocity.
 template <int D>
 void Loads<D>::correct_shear() {
   if (weight_ == 0) return;
@@ -49,9 +49,9 @@ void Loads<D>::set_forces(const State<D>& from) {
     double p = k_.p_boundary[b];
     if (k_.frame)
       p += k_.rho * k_.frame->potential(k_.by.time + k_.step.dt / 2, k_.step.to->boundary_centre[b]);
-    const Vec<D> n = k_.step.to->area[f].normalized(), across = k_.viscous_flux[b].dot(n) * n;
-    pressure_force_[b] = 0.5 * p * (from.placement->area[f] + k_.step.to->area[f]) + across;
-    viscous_force_[b] = k_.viscous_flux[b] - across;
+    const Vec<D> n = k_.step.to->area[f].normalized(), normal = k_.viscous_flux[b].dot(n) * n;
+    pressure_force_[b] = 0.5 * p * (from.placement->area[f] + k_.step.to->area[f]) + normal;
+    viscous_force_[b] = k_.viscous_flux[b] - normal;
   }
 }
 

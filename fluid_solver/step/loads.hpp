@@ -19,7 +19,7 @@ class Loads {
   void remember_prediction(double weight);
   /// After a projection.
   void set_forces(const State<D>& from);
-  /// Of the last set_forces() [N]: along the normal with the viscous flux along it, and across it.
+  /// Of the last set_forces() [N]: pressure and the normal part of the viscous flux; its tangential part.
   const Vectors<D>& pressure_force() const { return pressure_force_; }
   const Vectors<D>& viscous_force() const { return viscous_force_; }
 

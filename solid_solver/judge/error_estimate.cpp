@@ -192,7 +192,7 @@ ErrorParts SolidErrorEstimate::parts() const {
   if (!(audit.strain_energy > 0)) parts.mesh = ErrorParts::unknown;
   if (body_.is_dynamic()) {
     parts.mesh += drift_.over_size(parts.mesh);
-    // Of tetrahedra a bound, up to 25 times too large: a large one says nothing.
+    // Of tetrahedra a bound, up to 40 times too large: a large one says nothing.
     if (body_.mesh().dim == 3 && audit.smooth_difference && parts.mesh > most_bound)
       parts.mesh = ErrorParts::unknown;
   }
