@@ -5,7 +5,7 @@ import pathlib
 import numpy as np
 
 from couplet.runs.case import Wrong, expect
-from couplet.series import find_series
+from couplet.series import SHAPES, find_series
 
 # Faces of a cell by its number of points, as positions in the cell (VTK order).
 FACES = {4: ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)), 5: ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
@@ -14,11 +14,16 @@ FACES = {4: ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)), 5: ((0, 1, 2, 3), (0, 
 MOST_FACES = 60000
 
 
-def series_of(folder):
-    """Of a participant's folder, or of the first participant below an output folder that has fields."""
+def is_shape(name):
+    """A field of largest length 1 without a scale: how a body buckles."""
+    return name.startswith("buckling-")
+
+
+def series_of(folder, name):
+    """With this field, of a participant's folder or of the first participant below an output folder that has fields."""
     for place in (folder, *sorted(p for p in folder.iterdir() if p.is_dir())):
         try:
-            return find_series(place)
+            return find_series(place, SHAPES if is_shape(name) else "*.h5")
         except FileNotFoundError:
             continue
     raise Wrong(f"{folder}: there is no field series (.h5) in it")
@@ -37,10 +42,14 @@ def values_of(series, i, name, component):
     return np.array([field[cell].mean() for cell in series.cells]) if series.is_at_points(i, name) else field
 
 
-def places_of(series, i, warp):
-    """Points where they are: of a moving mesh as it was written, of a body with the displacement times `warp`."""
+def places_of(series, i, warp, name):
+    """Points where they are: of a moving mesh as it was written, of a body with the displacement times `warp`, of a shape a tenth of the
+    body's size away."""
     points = np.array(series.coordinates(i), float)
-    if warp and "displacement" in series.names(i) and series.is_at_points(i, "displacement"):
+    if is_shape(name):
+        move = np.asarray(series.field(i, name), float)[:, :points.shape[1]]
+        points[:, :move.shape[1]] += 0.1 * warp * np.ptp(points, axis=0).max() / np.linalg.norm(move, axis=1).max() * move
+    elif warp and "displacement" in series.names(i) and series.is_at_points(i, "displacement"):
         move = np.asarray(series.field(i, "displacement"), float)
         points[:, :move.shape[1]] += warp * move[:, :points.shape[1]]
     return points
@@ -88,9 +97,9 @@ def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110)
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
-    series = series_of(pathlib.Path(folder))
+    series = series_of(pathlib.Path(folder), name)
     i = len(series.times) - 1 if at is None else series.nearest(at)
-    values, points = values_of(series, i, name, component), places_of(series, i, warp)
+    values, points = values_of(series, i, name, component), places_of(series, i, warp, name)
     flat = points.shape[1] == 2 or np.ptp(series.reference()[:, 2]) == 0
     size = np.ptp(points, axis=0)
     figure = plt.figure(figsize=(8, min(8, max(2.4, 1.2 + 7 * size[1] / size[0])) if flat else 6), dpi=dpi, constrained_layout=True)

@@ -89,9 +89,14 @@ class FieldSeries:
         return np.array([pair[0] for pair in count.values() if len(pair) == 1])
 
 
-def find_series(folder):
-    """The one .h5 field series in a participant's output folder."""
-    for file in sorted(pathlib.Path(folder).glob("*.h5")):
+SHAPES = "buckling.h5"  # of load factors, beside the fields of a run
+
+
+def find_series(folder, name="*.h5"):
+    """The .h5 field series in a participant's output folder: that of the run, not of its shapes, unless they are named."""
+    for file in sorted(pathlib.Path(folder).glob(name)):
+        if file.name == SHAPES != name:
+            continue
         with h5py.File(file, "r") as f:
             if f.attrs.get("format") in (b"couplet fields", "couplet fields"):
                 return FieldSeries(file)
