@@ -79,6 +79,8 @@ class Job:
     def on_signal(self, number, _):
         """First: the end after the step under way, with a checkpoint. Again: at once."""
         self.asked += 1
+        if not self.recorded:
+            self.note()  # quicker than a look: the launcher itself would end the job in the middle of a step
         if self.asked == 1 and self.recorded and folders.stop(self.output):
             self.say("ends after the step under way, with a checkpoint; once more: at once")
         elif self.asked <= 2:
