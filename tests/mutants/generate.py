@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Mutants made from the source text. Which ones are drawn depends on the seed and on the statements alone: what is written
 elsewhere in a file changes nothing, and a part of a longer list is the beginning of it.
-Usage: generate.py ROOT [--sample N] [--seed S]   (prints the mutants drawn)"""
+Usage: generate.py ROOT [--sample N] [--seed S] [--files]   (prints the mutants drawn, or the files they are made of as CMake lists them)"""
 import argparse
 import dataclasses
 import hashlib
@@ -93,8 +93,12 @@ def main():
     reader.add_argument("root", type=pathlib.Path)
     reader.add_argument("--sample", type=int, default=SAMPLE)
     reader.add_argument("--seed", type=int, default=SEED)
+    reader.add_argument("--files", action="store_true", help="only the files, as the value of COUPLET_ALONE")
     asked = reader.parse_args()
     drawn = sample(asked.root, asked.sample, asked.seed)
+    if asked.files:
+        print(";".join(sorted({m.file for m in drawn})))
+        return
     for m in drawn:
         print(f"{m.name} {m.file}:{m.line} {m.kind}, {m.rule}: {m.shown}")
     print(f"{len(drawn)} of {len(everything(asked.root))} mutants over {len({m.file for m in drawn})} files")

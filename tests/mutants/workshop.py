@@ -40,7 +40,7 @@ class Workshop:
         command = self._compiling.get(str(self.root / file))
         if command is None:
             raise SystemExit(f"{self.build} compiles {file} in a batch with others; mutants need a build of single objects: "
-                             "cmake --preset single && cmake --build --preset single, then name build-single")
+                             "see README.md for how one is made (COUPLET_ALONE, or the preset single)")
         return shlex.split(command)
 
     @functools.cached_property
