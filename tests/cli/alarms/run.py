@@ -52,7 +52,7 @@ def launch_line(programs, case, folder):
 def run(line, folder, seconds):
     """Exit code, whether it was stopped, all text."""
     with open(folder / "log.txt", "w+", encoding="utf-8") as log:
-        process = subprocess.Popen(["nice", "-n", "15", *line], stdout=log, stderr=subprocess.STDOUT)
+        process = subprocess.Popen(line, stdout=log, stderr=subprocess.STDOUT)
         stopped = False
         try:
             process.wait(seconds)
