@@ -16,6 +16,7 @@
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "common/log/progress.hpp"
+#include "common/log/terminal.hpp"
 #include "common/log/timer.hpp"
 #include "common/parallel/collective.hpp"
 
@@ -235,6 +236,7 @@ int run_alone(const Job& job, Participant& participant) {
   job.enter(Phase::finalise);
   closing_words(job, participant, audit, errors, {.has_failed = !problem.empty()}, console.seconds());
   run.finish(console.seconds(), problem, errors.parts());
+  if (job.rank == 0) log::tell_where(job.output_folder.string(), job.name + ".log");
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
   return 1;

@@ -10,6 +10,7 @@
 
 #include "common/base/error.hpp"
 #include "common/base/own_file.hpp"
+#include "common/log/terminal.hpp"
 
 namespace couplet::log {
 namespace {
@@ -43,7 +44,11 @@ std::string pattern(const std::string& participant, int rank) {
 }  // namespace
 
 void setup(const std::string& participant, int rank, Verbosity verbosity, const std::string& file) {
-  std::vector<spdlog::sink_ptr> sinks{std::make_shared<BelowError>()};
+  std::vector<spdlog::sink_ptr> sinks;
+  if (verbosity == Verbosity::normal && on_terminal())
+    sinks.push_back(terminal_sink());
+  else
+    sinks.push_back(std::make_shared<BelowError>());
   sinks.push_back(std::make_shared<spdlog::sinks::stderr_sink_mt>());
   sinks.back()->set_level(spdlog::level::err);
   if (!file.empty() && rank == 0) {

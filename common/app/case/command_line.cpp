@@ -15,7 +15,7 @@ namespace couplet {
 namespace {
 
 // Equal to the project's version in CMakeLists.txt; a test compares them.
-constexpr const char* version = "0.1.0";
+constexpr const char* version = "1.0.0";
 
 using Items = std::vector<config::Item>;
 

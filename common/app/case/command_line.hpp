@@ -43,7 +43,7 @@ struct ParsedCommandLine {
 };
 ParsedCommandLine parse_command_line(int argc, const char* const* argv, const ProgramText& program);
 
-/// "couplet 0.1.0".
+/// "couplet 1.0.0".
 std::string version_text();
 
 }  // namespace couplet

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, stop, wrong, kill, tell, gallery, terminal, python"""
+"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, stop, wrong, kill, tell, gallery, python"""
 import pathlib
 import re
 import shutil
@@ -197,42 +197,6 @@ def gallery(folder):
         check(name, made.returncode == 0 and valid.returncode == 0 and valid.stdout.endswith("valid\n"), made.stderr + valid.stderr)
 
 
-def terminal(folder):
-    """On a terminal of 80 by 24: at most 12 lines at the start, one status line that renews itself, at most 20 lines at the end."""
-    import fcntl
-    import os
-    import pty
-    import struct
-    import termios
-    case = case_in(folder / "a", bin_, end_time=0.3)
-    for name, words in (("flap", (case,)), ("fluid alone", (case, "--participant", "fluid")), ("tank", (ROOT / "configs/thermocline-solar-one", "--set", f"simulation.output.folder={folder / 'tank'}")),
-                        ("solid", (ROOT / "configs/cantilever", "--set", f"simulation.output.folder={folder / 'solid'}")),
-                        ("wrong", (ROOT / "configs/cantilever", "--set", "participants.solid.material.density=heavy"))):
-        ours, theirs = pty.openpty()
-        fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 80, 0, 0))
-        env = {k: v for k, v in environment(bin_).items() if k not in ("COLUMNS", "LINES")}
-        job = subprocess.Popen([str(ROOT / "scripts/couplet"), "run", *map(str, words)], stdout=theirs, stderr=subprocess.PIPE, env={**env, "TERM": "xterm"})
-        os.close(theirs)
-        said = b""
-        try:
-            while data := os.read(ours, 65536):
-                said += data
-        except OSError:  # the other side has closed
-            pass
-        code, text = job.wait(), said.decode().replace("\r\n", "\n")
-        statuses = re.findall(r"\r\x1b\[K(t=[^\n\r]*)", text)
-        start, end_ = text.partition("\r\x1b[K")[0], text.rpartition("\r\x1b[K")[2]
-        lines = [part for line in text.split("\n") for part in line.split("\r\x1b[K")]
-        if name == "wrong":
-            check("what is wrong with a case is shown", code == 2 and "'heavy' is not a number" in text + job.stderr.read().decode(), text)
-            continue
-        check(f"{name}: it ends well", code == 0 and "done in" in end_, text[-400:])
-        check(f"{name}: start of at most 12 lines, end of at most 20", start.count("\n") <= 12 and 2 <= end_.count("\n") <= 20, (start, end_))
-        check(f"{name}: a status line that renews itself", name != "flap" or len(statuses) >= 3 and all("to go" in s for s in statuses), statuses[:3])
-        check(f"{name}: it can be resumed", call(bin_, "resume", folder / {"tank": "tank", "solid": "solid"}.get(name, "a/out"), "--print").stdout.startswith(("mpirun ", str(bin_))))
-        check(f"{name}: no line is wider than the terminal", all(len(line) <= 80 for line in lines if not line.startswith("done in")), max(lines, key=len))
-
-
 def python(folder):
     """import couplet: starts a run and reads it."""
     import couplet
@@ -251,5 +215,5 @@ def python(folder):
 
 
 with tempfile.TemporaryDirectory(prefix="couplet-command-") as scratch:
-    {"by_hand": by_hand, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "gallery": gallery, "terminal": terminal, "python": python}[what](pathlib.Path(scratch))
+    {"by_hand": by_hand, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "gallery": gallery, "python": python}[what](pathlib.Path(scratch))
 end()

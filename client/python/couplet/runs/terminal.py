@@ -5,6 +5,7 @@ import re
 import shutil
 import sys
 import textwrap
+import time
 
 STATUS = re.compile(r"^\[(\S+) \d+\] (t ?= ?[\d.e+-]+(?:/[\d.e+-]+)? s\s+step.*)")
 WORTH = re.compile(r"\] (warning|error):|^couplet|^ +\[\S+\] ")
@@ -58,7 +59,15 @@ class Digest(Screen):
 
     def __init__(self, job):
         super().__init__()
-        self.job, self.rest, self.told, self.unsaid = job, {}, set(), []
+        self.job, self.rest, self.told, self.unsaid, self.first = job, {}, set(), [], None
+
+    def with_rate(self, status):
+        """The status with the steps a second since the first one."""
+        found, now = re.search(r"step +(\d+)\S*", status), time.monotonic()
+        step = int(found[1]) if found else 0
+        self.first = self.first or (step, now)
+        rate = (step - self.first[0]) / max(now - self.first[1], 1e-9)
+        return f"{status[:found.end()]}  {rate:.3g} steps/s{status[found.end():]}" if found and rate > 0 else status
 
     def begin(self):
         simulation = dict(self.job.case.data.get("simulation") or {})
@@ -77,7 +86,7 @@ class Digest(Screen):
         for line in lines:
             if found := STATUS.match(line):
                 if not self.job.case.coupled or self.job.alone or found[1] == "coupler":
-                    self.status(short(found[2]))
+                    self.status(self.with_rate(short(found[2])))
             elif WORTH.search(line):
                 kind = re.sub(r"[-+]?\d+(\.\d+)?(e[-+]?\d+)?", "#", line)
                 if kind not in self.told and len(self.told) < MOST_FINDINGS:
