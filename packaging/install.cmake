@@ -10,7 +10,12 @@ install(FILES ${PROJECT_BINARY_DIR}/VERSION DESTINATION ${share}/python/couplet)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${share}) # pages of the site
 install(DIRECTORY configs docs DESTINATION ${share} PATTERN "out" EXCLUDE PATTERN "out-*" EXCLUDE PATTERN "*.cache.msh" EXCLUDE
         PATTERN "*.log" EXCLUDE PATTERN "__pycache__" EXCLUDE)
-install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES README.md CHANGELOG.md CITATION.cff LICENSE packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# Where Debian's Python looks (below /usr), and where it can be told to look: the same files.
+install(CODE "
+  set(python \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib/python3/dist-packages\")
+  file(MAKE_DIRECTORY \"\${python}\")
+  file(CREATE_LINK ../../../share/couplet/python/couplet \"\${python}/couplet\" SYMBOLIC)")
 
 # Man pages and completion come from what the command and the programs declare.
 find_program(COUPLET_PYTHON python3 HINTS /usr/bin NO_DEFAULT_PATH)
@@ -32,6 +37,8 @@ set(CPACK_PACKAGE_DESCRIPTION "Solvers of fluids, solids, plates and heat storag
 described by one YAML file and run by one command.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_SOURCE_DIR}/packaging/prerm)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)

@@ -2,6 +2,7 @@
 """What is installed works by itself. Usage: install.py BUILD [prefix | empty | deb]: from a prefix that is moved, with an empty HOME; a
 build in which nothing was built; the unpacked .deb."""
 
+import gzip
 import pathlib
 import re
 import shutil
@@ -25,21 +26,27 @@ def works(prefix, home):
     """The first minutes of a new user, from the installed files alone."""
     said = run(prefix, home, "couplet", "--version")
     check("couplet is there", said.returncode == 0 and re.match(r"couplet \d+\.\d+", said.stdout), said.stderr)
+    cited = re.search(r"^version: (\S+)", (prefix / "share/doc/couplet/CITATION.cff").read_text(), flags=re.M)[1]
+    told = {said.stdout.strip(), run(prefix, home, "fluid_solver", "--version").stdout.strip(), f"couplet {cited}"}
+    newest = re.search(r"^## (\d+\.\d+\.\d+)", (prefix / "share/couplet/CHANGELOG.md").read_text(), flags=re.M)[1]
+    check("one version: command, programs, citation, release notes", told == {f"couplet {newest}"}, (told, newest))
     doctor = run(prefix, home, "couplet", "doctor")
     check("the doctor's self-test", doctor.returncode == 0 and "ok  self-test" in doctor.stdout, doctor.stdout + doctor.stderr)
     for words in (["gallery"], ["new", "mine", "--from", "cavity", "--end-time", "0.05 s"], ["check", "mine"], ["run", "mine", "-q"], ["plot", "mine/out"]):
         said = run(prefix, home, "couplet", *words)
         check("couplet " + " ".join(words), said.returncode == 0, said.stdout + said.stderr)
     check("with its picture", any((home / "mine/out").rglob("*.png")))
-    read = run(prefix, home, "/usr/bin/python3", "-c", f"import sys; sys.path.append('{prefix}/share/couplet/python'); import couplet; print(couplet.Results('mine/out').fields('fluid').field(-1, 'velocity').shape)")
+    read = run(prefix, home, "/usr/bin/python3", "-c", f"import sys; sys.path.append('{prefix}/lib/python3/dist-packages'); import couplet; print(couplet.Results('mine/out').fields('fluid').field(-1, 'velocity').shape)")
     check("import couplet reads it", read.returncode == 0 and read.stdout.startswith("("), read.stderr)
 
 
 def pages(prefix, home):
-    there = sorted(f.name for f in (prefix / "share/man/man1").iterdir())
-    check("a man page for each program and command", {"couplet.1", "couplet-run.1", "couplet-watch.1", "fluid_solver.1", "coupler.1"} <= set(there), there)
-    for name in there:
-        said = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-z", prefix / "share/man/man1" / name], capture_output=True, text=True)
+    files = {f.name.removesuffix(".gz"): f for f in sorted((prefix / "share/man/man1").iterdir())}
+    check("a man page for each program and command", {"couplet.1", "couplet-run.1", "couplet-watch.1", "fluid_solver.1", "coupler.1"} <= set(files), files)
+    for name, file in files.items():
+        text = gzip.decompress(file.read_bytes()) if file.suffix == ".gz" else file.read_bytes()
+        said = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-z"], input=text, capture_output=True)
+        said.stderr = said.stderr.decode()
         check(f"{name} is set without a warning", said.returncode == 0 and not [w for w in said.stderr.splitlines() if "adjust" not in w and "break" not in w], said.stderr[:300])
     said = run(prefix, home, "man", "couplet-run") if shutil.which("man") else None
     check("man couplet-run", said is None or "--slurm" in said.stdout, said and said.stderr)

@@ -2,6 +2,7 @@
 """Man pages and completion, made from what the command and the programs declare.
 Usage: python3 -m couplet.command.pages SHARE [--bin BIN] [--version V]: writes SHARE/man, SHARE/bash-completion, SHARE/zsh"""
 import argparse
+import gzip
 import pathlib
 import re
 import subprocess
@@ -126,14 +127,18 @@ def main():
     parser.add_argument("--version", default=None)
     arguments = parser.parse_args()
     version = arguments.version or command.version()
-    zsh_folder = "vendor-completions" if arguments.share.parts[-2:] == ("usr", "share") else "site-functions"  # as Debian has it
+    debian = arguments.share.parts[-2:] == ("usr", "share")
+    zsh_folder = "vendor-completions" if debian else "site-functions"
     files = {"man/man1/couplet.1": of_command(version), "bash-completion/completions/couplet": bash(), f"zsh/{zsh_folder}/_couplet": zsh()}
     files |= {f"man/man1/couplet-{name}.1": of_subcommand(name, version) for name in command.SUBCOMMANDS}
     files |= {f"man/man1/{name}.1": of_program(arguments.bin, name, version) for name in OURS if arguments.bin and (arguments.bin / name).exists()}
     for name, text in files.items():
         file = arguments.share / name
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text)
+        if debian and file.suffix == ".1":
+            file.with_suffix(".1.gz").write_bytes(gzip.compress(text.encode(), 9, mtime=0))
+        else:
+            file.write_text(text)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A minimal Debian of its own (debootstrap, as root, from the mirror of this machine's apt; COUPLET_CHROOT names one that is there), and in it the
+statements of packaging/Containerfile, one by one. Usage: chroot.py BUILD [package | container]. package: the second image with cpack's .deb of BUILD:
+installed by apt, used by a new user, removed. container: the first image's statements, too, which compile everything; its .deb is the one used."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from scene import ROOT
+from checks import check, end  # noqa: E402
+
+build, what = pathlib.Path(sys.argv[1]), (sys.argv[2:] or ["package"])[0]
+SUITE, MIRROR = "bookworm", "http://deb.debian.org/debian"
+IGNORED = shutil.ignore_patterns(*(line.removeprefix("**/") for line in (ROOT / ".dockerignore").read_text().split()))
+if os.geteuid() != 0 or not shutil.which("debootstrap", path=os.environ["PATH"] + ":/usr/sbin"):
+    print("skipped: no debootstrap here, or not root")
+    sys.exit(77)
+
+
+class System:
+    """A Debian in a folder; /proc and /dev are those of a namespace that ends with each command."""
+
+    def __init__(self, folder, base):
+        self.folder = folder
+        subprocess.run(["cp", "-a", base, folder], check=True)
+        shutil.copy("/etc/resolv.conf", folder / "etc/resolv.conf")
+
+    def run(self, words, user="root", folder="/"):
+        home = "/root" if user == "root" else f"/home/{user}"
+        enter = ('mount --make-rprivate / && mount -t proc proc "$0/proc" && mount --rbind /dev "$0/dev" && mount -t sysfs sys "$0/sys" && '
+                 'exec chroot --userspec="$1" "$0" /usr/bin/env -i HOME="$2" LANG=C.UTF-8 PATH=/usr/sbin:/usr/bin:/sbin:/bin sh -c "cd $3 && $4"')
+        return subprocess.run(["unshare", "--mount", "--pid", "--fork", "sh", "-c", enter, self.folder, user, home, folder, words], capture_output=True, text=True)
+
+    def must(self, words, **more):
+        done = self.run(words, **more)
+        check(" ".join(words.split())[:150], done.returncode == 0, (done.stdout[-1500:] + done.stderr[-1500:]) if done.returncode else "")
+        return done.stdout
+
+    def named(self):
+        """Files that bear the project's name, outside homes and apt's own books."""
+        return self.run("find / -xdev \\( -path /proc -o -path /dev -o -path /sys -o -path /home -o -path /tmp -o -path /var/cache/apt -o -path /var/log \\) -prune -o "
+                        "-iname '*couplet*' -print -o -path '/usr/share/*couplet/*' -print").stdout.split()
+
+
+def images():
+    """[[(word, arguments)] of each image] of the Containerfile, continued lines joined."""
+    text = (ROOT / "packaging/Containerfile").read_text().replace("\\\n", " ")
+    found = []
+    for word, rest in re.findall(r"^([A-Z]+) (.*)$", text, flags=re.M):
+        if word == "FROM":
+            found.append([])
+        found[-1].append((word, rest))
+    return found
+
+
+def make(system, statements, package):
+    """Carries out the statements; (user, entry point)."""
+    folder, user, entry = "/", "root", ""
+    for word, rest in statements:
+        if word == "RUN":
+            system.must(rest, user=user, folder=folder)
+        elif word == "WORKDIR":
+            (system.folder / rest[1:]).mkdir(parents=True, exist_ok=True)
+            folder = rest
+        elif word == "COPY" and rest.startswith("--from="):
+            shutil.copy(package, system.folder / rest.split()[-1][1:])
+        elif word == "COPY":
+            shutil.copytree(ROOT, system.folder / rest.split()[-1][1:], symlinks=True, ignore=IGNORED)
+        elif word == "USER":
+            user = rest
+        elif word == "ENTRYPOINT":
+            entry = " ".join(eval(rest))
+        else:
+            check(f"{word} {rest}: a statement that this test knows", word == "CMD" or word == "FROM" and SUITE in rest)
+    return user, entry
+
+
+def used(system, user, entry):
+    """The first minutes of a new user, with an empty home."""
+    home = f"/home/{user}"
+    check("no path leads to where it was built", str(build) not in system.run("grep -rlIF " + str(build) + " /usr/share/couplet /usr/lib/cmake/couplet_client | head").stdout)
+    check("--version", re.match(r"couplet \d+\.\d+\.\d+$", system.must(f"{entry} --version", user=user).strip()))
+    said = system.must(f"{entry} doctor", user=user, folder=home)
+    check("doctor: self-test of a coupled case", "ok  self-test" in said, said)
+    for words in ("gallery", "new mine --from perpendicular-flap --end-time '0.1 s'", "check mine", "explain mine", "run mine -q -n fluid=2", "plot mine/out", "plot mine/out/fluid --field velocity"):
+        system.must(f"{entry} {words}", user=user, folder=home)
+    pictures = [f for f in (system.folder / home[1:] / "mine/out").rglob("*.png") if f.stat().st_size > 3000]
+    check("pictures", len(pictures) > 3, pictures)
+    said = system.must("python3 -c \"import couplet; print(couplet.Results('mine/out').fields('fluid').field(-1, 'velocity').shape)\"", user=user, folder=home)
+    check("import couplet", said.startswith("("), said)
+    said = system.must("bash -c 'source /usr/share/bash-completion/completions/couplet; COMP_CWORD=1; COMP_WORDS=(couplet re); _couplet; echo ${COMPREPLY[*]}'", user=user)
+    check("completion", said.strip() == "resume", said)
+    system.must("apt-get update -q && DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends man-db")
+    for page in ("couplet", "couplet-run", "fluid_solver"):
+        check(f"man {page}", page in system.must(f"man {page}", user=user).lower())
+
+
+def removed(system):
+    system.must("couplet --version && couplet gallery && python3 -c 'import couplet'")  # as root: Python compiles into the package's folders
+    check("installed files bear its name", len(system.named()) > 100)
+    system.must("DEBIAN_FRONTEND=noninteractive apt-get purge -q -y couplet")
+    left = system.named()
+    check("nothing is left", not left, left[:10])
+
+
+with tempfile.TemporaryDirectory(prefix="couplet-chroot-") as scratch:
+    folder = pathlib.Path(scratch)
+    base = pathlib.Path(os.environ.get("COUPLET_CHROOT", folder / "base"))
+    if not base.exists():
+        done = subprocess.run(["debootstrap", "--variant=minbase", SUITE, base, MIRROR], capture_output=True, text=True, env={**os.environ, "PATH": os.environ["PATH"] + ":/usr/sbin:/sbin"})
+        check("debootstrap", done.returncode == 0, done.stdout[-800:] + done.stderr[-800:] if done.returncode else "")
+    first, second = images()
+    if what == "container":
+        maker = System(folder / "maker", base)
+        make(maker, first, None)
+        package = next((maker.folder / "couplet/build").glob("*.deb"))
+    else:
+        subprocess.run(["cpack", "-B", folder / "deb"], cwd=build, check=True, capture_output=True)
+        package = next((folder / "deb").glob("*.deb"))
+    depends = subprocess.run(["dpkg", "-f", package, "Depends"], capture_output=True, text=True).stdout
+    check("the package names the libraries that it needs", all(name in depends for name in ("libpetsc", "libopenmpi", "libhdf5", "python3-yaml")), depends)
+    system = System(folder / "system", base)
+    used(system, *make(system, second, package))
+    removed(system)
+end()
