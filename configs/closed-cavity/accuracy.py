@@ -31,4 +31,4 @@ SERIES = {
 
 def errors(folder):
     lid = couplet.read_csv(folder / "lid" / "probes.csv")["middle y [m]"][-1]
-    return {"relative error of the lid's middle": abs(lid / LID - 1), "passes a step": couplet.passes_a_step(folder), "lid [m]": lid}
+    return {"relative error of the lid's middle": abs(lid / LID - 1), "passes per step": couplet.passes_a_step(folder), "lid [m]": lid}

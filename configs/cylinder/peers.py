@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenFOAM's icoFoam on the same mesh for the pictures of scripts/study: (processor seconds, error); left out where it is not
+"""OpenFOAM's icoFoam on the same mesh for the pictures of scripts/study: (processor seconds, error); omitted where it is not
 installed. Its step keeps the largest Courant number below 0.7, as fluid_solver's sub-steps do by themselves."""
 import pathlib
 import re

@@ -47,7 +47,7 @@ def grid(centres, shape):
 
 
 def means(values, place, share, shape):
-    """Of the cells at each place of the grid."""
+    """Of the cells at each point of the grid."""
     columns = values.reshape(len(values), -1).T
     return np.stack([np.bincount(place, column) for column in columns], axis=-1).reshape(*shape, len(columns)) / share
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """CalculiX and OpenFOAM on the same plate for the picture of scripts/study: (processor seconds, error of the displacement);
-what is not installed is left out."""
+programs that are not installed are omitted."""
 import pathlib
 import sys
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """CalculiX (bricks) and OpenFOAM's solidDisplacementFoam on the same mesh for the picture of scripts/study:
-(processor seconds, error of the stress at D); what is not installed is left out."""
+(processor seconds, error of the stress at D); programs that are not installed are omitted."""
 import pathlib
 import re
 import shutil

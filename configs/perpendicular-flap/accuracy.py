@@ -45,4 +45,4 @@ def motion(folder):
 def errors(folder):
     tip = motion(folder)
     return {"largest error of the tip over its maximum": np.abs(tip - REFERENCE).max() / np.abs(REFERENCE).max(),
-            "passes a step": couplet.passes_a_step(folder), "tip at 0.2 s [m]": tip[-1]}
+            "passes per step": couplet.passes_a_step(folder), "tip at 0.2 s [m]": tip[-1]}

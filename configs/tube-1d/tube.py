@@ -5,7 +5,7 @@ Usage: tube.py fluid|wall   (in a job)  |  tube.py monolithic [STEPS [DT [CELLS]
 
 Mass and momentum of a tube of area a, a_t + (a v)_x = 0, (a v)_t + (a v^2)_x + a p_x = 0 (a unit of density), backward Euler,
 central differences with a pressure term that keeps neighbours together; the wall answers at once,
-a = a_0 ((2 c^2 - p_0) / (2 c^2 - p))^2. The velocity of the inlet swings, the outlet lets waves out."""
+a = a_0 ((2 c^2 - p_0) / (2 c^2 - p))^2. The velocity of the inlet oscillates, the outlet is non-reflecting."""
 import pathlib
 import sys
 

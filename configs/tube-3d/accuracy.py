@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs for scripts/accuracy: schemes, accelerations and tolerances of the elastic tube, 20 steps of 0.2 ms on a coarse mesh. What is
-left out by stopping early is all that differs within a series; implicit and semi-implicit differ by their splitting, too."""
+"""Runs for scripts/accuracy: schemes, accelerations and tolerances of the elastic tube, 20 steps of 0.2 ms on a coarse mesh. Within a
+series only the error of early stopping differs; implicit and semi-implicit differ by their splitting, too."""
 import pathlib
 import sys
 
@@ -43,4 +43,4 @@ def motion(folder):
 def errors(folder):
     y = motion(folder)
     return {"largest error of A's radial motion over its maximum": np.abs(y - REFERENCE).max() / np.abs(REFERENCE).max(),
-            "passes a step": couplet.passes_a_step(folder), "A at 4 ms [m]": y[-1]}
+            "passes per step": couplet.passes_a_step(folder), "A at 4 ms [m]": y[-1]}

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tokenize
 
-SOURCES = ("common/", "coupler/", "fluid_solver/", "solid_solver/", "mesh_mover/", "thermocline/", "plate_modal/", "client/", "scripts/")
+SOURCES = ("common/", "coupler/", "fluid_solver/", "solid_solver/", "mesh_mover/", "thermocline/", "plate_modal/", "client/", "scripts/", "configs/")
 GENERATED = r"docs/(?:config|effects|command|stability)\.md|docs/validation/(?!studies/README).*"  # from literals, which are searched themselves
 NOT_YET = r"CHANGELOG\.md|docs/precice\.md"
 MESSAGES_ENFORCED = False
