@@ -15,9 +15,12 @@ For i In {0 : nt}
   Point(1 + i) = {2 * Cos(phi), Sin(phi), 0};
   Point(1001 + i) = {3.25 * Cos(phi), 2.75 * Sin(phi), 0};
 EndFor
+Point(3001) = {0, 0, 0};
+Point(3002) = {2, 0, 0};    // on the longer axis of the hole
+Point(3003) = {3.25, 0, 0}; // of the outer edge
 For i In {1 : nt}
-  Line(i) = {i, i + 1};
-  Line(1000 + i) = {1000 + i, 1001 + i};
+  Ellipse(i) = {i, 3001, 3002, i + 1};
+  Ellipse(1000 + i) = {1000 + i, 3001, 3003, 1001 + i};
 EndFor
 Line(2001) = {1, 1001};       // y = 0
 Line(2002) = {1 + nt, 1001 + nt}; // x = 0

@@ -22,6 +22,7 @@ SUBCOMMANDS = {
     "plot": ("plot", "makes pictures of what a run wrote"),
     "compare": ("command.compare", "tells in what two runs differ"),
     "study": ("study.main", "runs the study of a case: variants, error against time, the best of some variables"),
+    "export": ("command.export", "writes a case as input of CalculiX or OpenFOAM"),
     "accuracy": ("study.accuracy", "measures error against time of a case of the gallery"),
     "atlas": ("atlas.main", "maps where each scheme holds"),
     "validate": ("command.validate", "measures the project's bars (in a checkout)"),

@@ -70,10 +70,17 @@ def run_axes(case, arguments):
             print(point.name, *map(str, study.task(point).command()[2:]))
         return 0
     rows = study.run(points, arguments.jobs or 1, arguments.again, say)
-    page = study.report(rows)
+    peers, why = [], {}
+    if arguments.peers or study.section.get("peers") == "case":
+        from couplet.peers.race import Race
+        race = Race(study, say, arguments.allow_commands)
+        peers, why = race.rows(rows), race.why
+        for name, reason in why.items():
+            say(f"{name}: not beside ours: {reason}")
+    page = study.report(rows, peers, why)
     if arguments.publish:
         arguments.publish.mkdir(parents=True, exist_ok=True)
-        for file in (*out.glob("*.png"), out / "report.md", out / "runs.csv"):
+        for file in (*out.glob("*.png"), *out.glob("peers.csv"), out / "report.md", out / "runs.csv"):
             shutil.copy(file, arguments.publish)
     failed = [row for row in rows if not row.good]
     for row in failed:
@@ -93,6 +100,8 @@ def declare(parser):
     parser.add_argument("--repeats", type=int, metavar="N", help="runs of each point by axes, of which the median counts")
     parser.add_argument("--publish", type=pathlib.Path, metavar="FOLDER", help="copies the report, its pictures and the table there")
     parser.add_argument("--again", action="store_true", help="runs are made again although they are there")
+    parser.add_argument("--peers", action="store_true", help="writes the case for CalculiX or OpenFOAM, runs those that are installed, and puts them on the same pictures and fronts; reports why where it cannot")
+    parser.add_argument("--allow-commands", action="store_true", help="of --peers: lets a .geo run commands and write files: it does so with your rights")
     parser.add_argument("--for-error", metavar="SHARE", help="predicts from few cheap runs the cheapest setting that meets this error (1%%), runs it, and says how far that was right")
     parser.add_argument("--quantity", metavar="NAME", help="of --for-error and --parts")
     parser.add_argument("--parts", action="store_true", help="what the error at the setting of the section `sources` is made of, and which part dominates")

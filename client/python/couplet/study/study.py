@@ -49,23 +49,29 @@ class Study:
         rows = table.rows_of(self.axes, self.quantities, points, tasks, records)
         return rows
 
-    def others(self):
-        """Peers' points beside ours: {quantity: [(name, [(seconds, error)])]}, from a function of a file beside the case."""
-        found = {}
-        for quantity, word in (self.section.get("peers") or {}).items():
+    def others(self, peers):
+        """Points of other programs beside ours, by processor time: {quantity: [(name, [(seconds, error)])]}, from the rows `peers` and from
+        functions of a file beside the case."""
+        found = {q.name: [(name, [(r.record.cpu, r.errors[q.name]) for r in some if r.errors.get(q.name, 0) > 0]) for name, some in table.series_of(peers).items()]
+                 for q in self.quantities}
+        given = self.section.get("peers")
+        for quantity, word in (given if isinstance(given, dict) else {}).items():
             from couplet.study.quantities import module
             file, function = (part.strip() for part in word.split(":"))
             try:
-                found[quantity] = getattr(module(str(self.case.file.parent / file)), function)(self.out / "peers")
+                found.setdefault(quantity, []).extend(getattr(module(str(self.case.file.parent / file)), function)(self.out / "peers"))
             except ImportError as error:  # an installation has no benchmarks/
                 print(f"peers of '{quantity}' are left out: {error}")
-        return found
+        return {quantity: [(name, points) for name, points in some if points] for quantity, some in found.items()}
 
-    def report(self, rows):
-        """Writes runs.csv, the pictures, report.md and report.html; gives the page."""
+    def report(self, rows, peers=(), why=None):
+        """Writes runs.csv, the pictures, report.md and report.html; gives the page. `peers`: rows of other programs on the same case;
+        `why`: {program: why it did not run}."""
         self.out.mkdir(parents=True, exist_ok=True)
-        against = table.set_errors(rows, self.quantities)
+        against = table.set_errors(rows, self.quantities, peers)
         table.write(self.out / "runs.csv", rows, self.axes, self.quantities)
+        if peers:
+            table.write(self.out / "peers.csv", peers, self.axes, self.quantities)
         report = Report(f"Study: {self.title}")
         if self.section.get("text"):
             report.text(str(self.section["text"]).strip())
@@ -73,7 +79,9 @@ class Study:
         versions = sorted({r.record.version for r in rows})
         report.text(f"{len(rows)} runs, {sum(not r.good for r in rows)} of them failed. Measured at {', '.join(versions)} on {where['processor']}, "
                     f"{where['cores']} cores; times are {pictures.CLOCKS[self.clock]}. Table: `runs.csv`. Repeat with `scripts/study`.")
-        others = self.others()
+        others = self.others(peers)
+        for name, reason in (why or {}).items():
+            report.text(f"Not beside ours: {name}. {reason}.")
         for quantity in self.quantities:
             self.about(report, rows, quantity, against[quantity.name], others.get(quantity.name, ()))
         if self.axes.refining:
@@ -98,9 +106,9 @@ class Study:
         report.text(f"Errors are measured against: {against}.")
         costs = [(getattr(r.record, self.clock), r.errors[name], r) for r in rows if name in r.errors]
         if costs:
-            front = convergence.pareto([c[:2] for c in costs])
-            named = {c[:2]: c[2].point.name for c in costs}
-            report.text("Cheapest for their error (Pareto front):")
+            named = {**{point: who for who, points in others for point in map(tuple, points)}, **{c[:2]: c[2].point.name for c in costs}}
+            front = convergence.pareto(list(named))
+            report.text("Cheapest for their error (Pareto front" + (", other programs among them):" if others else "):"))
             report.table(("run", "seconds", "error"), [(named[p], p[0], p[1]) for p in front])
         report.picture(pictures.error_against_time(f"{self.title}: {name}", rows, quantity, self.clock, self.out / f"error-{safe}.png", others),
                        f"Error of {name} against time.")

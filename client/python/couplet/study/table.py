@@ -26,16 +26,20 @@ def rows_of(axes, quantities, points, tasks, records):
     """Reads every quantity of every run; what cannot be read is the reason of its row."""
     rows = []
     for point, task in zip(points, tasks):
-        row = Row(point, records[task], axes.series_of(point))
-        for quantity in quantities if row.good else ():
-            try:
-                row.values[quantity.name] = quantity.value(task.results)
-                if not math.isfinite(row.values[quantity.name]):
-                    row.reason = f"{quantity.name} is {row.values[quantity.name]}"
-            except (Exception, SystemExit) as error:  # a monitor that is not there, a series that does not oscillate
-                row.reason = f"{quantity.name}: {type(error).__name__}: {error}"
-        rows.append(row)
+        rows.append(value_row(Row(point, records[task], axes.series_of(point)), quantities, task.results))
     return rows
+
+
+def value_row(row, quantities, results):
+    """The row with every quantity read from its results, or with the reason why one cannot be."""
+    for quantity in quantities if row.good else ():
+        try:
+            row.values[quantity.name] = quantity.value(results)
+            if not math.isfinite(row.values[quantity.name]):
+                row.reason = f"{quantity.name} is {row.values[quantity.name]}"
+        except (Exception, SystemExit) as error:  # a monitor that is not there, a series that does not oscillate
+            row.reason = f"{quantity.name}: {type(error).__name__}: {error}"
+    return row
 
 
 def series_of(rows):
@@ -53,13 +57,13 @@ def limits_of(rows, quantity):
             for name, some in series_of(rows).items()}
 
 
-def set_errors(rows, quantities):
-    """Fills in the errors; gives {quantity: what they are measured against}."""
+def set_errors(rows, quantities, others=()):
+    """Fills in the errors; gives {quantity: what they are measured against}. `others`: rows of other programs, which have no say in it."""
     against = {}
     for quantity in quantities:
         name = quantity.name
         if quantity.is_error:
-            for row in rows:
+            for row in (*rows, *others):
                 if row.good:
                     row.errors[name] = abs(row.values[name])
             against[name] = "itself an error"
@@ -79,7 +83,7 @@ def set_errors(rows, quantities):
         else:
             word = f"{reference:g}"
         against[name] = word
-        for row in good if reference is not None else ():
+        for row in (*good, *(r for r in others if r.good)) if reference is not None else ():
             gap = abs(row.values[name] - reference)
             row.errors[name] = gap if quantity.given.get("absolute") or reference == 0 else gap / abs(reference)
     return against

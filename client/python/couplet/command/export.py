@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes a case as input of another program into a folder: CalculiX (static, linear elastic solids) or OpenFOAM (incompressible, laminar
+flow for icoFoam and pimpleFoam; static solids for solidDisplacementFoam). What has no counterpart there is refused by the name of its
+key. `couplet study --peers` runs them beside ours."""
+import pathlib
+import shutil
+import tempfile
+
+from couplet.runs.case import Case, expect, load
+
+TO = ("calculix", "openfoam")
+
+
+def declare(parser):
+    parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
+    parser.add_argument("--to", required=True, choices=TO, help="the program that is to read it")
+    parser.add_argument("--folder", type=pathlib.Path, metavar="FOLDER", help="where it is written (PROGRAM beside the case)")
+    parser.add_argument("--participant", metavar="NAME", help="which one, where the case has several")
+    parser.add_argument("--element", metavar="KIND", help="of CalculiX, such as C3D20R (the one that fits the cells of the mesh; of second order)")
+    parser.add_argument("--solver", choices=("icoFoam", "pimpleFoam"), default="icoFoam", help="of OpenFOAM and a flow (icoFoam)")
+    parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets one value; repeatable")
+    parser.add_argument("--allow-commands", action="store_true", help="lets a .geo run commands and write files: it does so with your rights")
+
+
+def made(case, arguments, work):
+    """What writes the case."""
+    from couplet.peers.values import refuse, with_changes
+    names = [arguments.participant] if arguments.participant else list(case.participants)
+    expect(len(names) == 1, f"{case.file}: --participant: which one of {', '.join(names)}?")
+    expect(names[0] in case.participants, f"{case.file}: there is no participant '{names[0]}'")
+    data = with_changes(case, {key: load(value) for key, value in (s.split("=", 1) for s in arguments.set)})
+    program, common = str(data["participants"][names[0]].get("program")), (data, names[0], case.file.parent, work)
+    if program == "fluid_solver" and arguments.to == "openfoam":
+        from couplet.peers.flow import Flow, FlowCase
+        return FlowCase(Flow(*common, arguments.allow_commands), arguments.solver)
+    if program != "solid_solver":
+        refuse(f"participants.{names[0]}.program", f"'{program}' has no counterpart in {arguments.to}")
+    from couplet.peers.solid import Solid
+    if arguments.to == "openfoam":
+        from couplet.peers.solid_foam import SolidFoam
+        return SolidFoam(Solid(*common, "solidDisplacementFoam", arguments.allow_commands))
+    from couplet.peers.calculix import Input, kinds
+    solid = Solid(*common, "CalculiX", arguments.allow_commands)
+    return Input(solid, arguments.element or kinds(solid)[-1][0])
+
+
+def run(arguments):
+    expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
+    expect(arguments.element is None or arguments.to == "calculix", "--element: is of --to calculix")
+    case = Case(arguments.case)
+    folder = arguments.folder or case.file.parent / arguments.to
+    expect(not folder.exists() or folder.is_dir() and not any(folder.iterdir()), f"--folder {folder}: is there already and not empty")
+    with tempfile.TemporaryDirectory(prefix="couplet-export-") as work:
+        try:
+            command = made(case, arguments, pathlib.Path(work)).write(folder)
+        except BaseException:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+    print(f"written to {folder}; run it there: {' '.join(command)}")
+    return 0
