@@ -17,6 +17,11 @@ LOWEST, HIGHEST = 0.5, 3  # observed orders that are believed: even cells may do
 CLEAR = 4  # times its own uncertainty a true error must be where the truth is the study's own best value
 
 
+def order_of(name, orders=None):
+    """The order of the schemes of a series."""
+    return next((float(p) for word, p in (orders or {}).items() if word in name.split(", ")), ORDER)
+
+
 def of_series(sizes, values, i, order):
     """From run i and the one or two next coarser."""
     ratio, change = sizes[i] / sizes[i - 1], abs(values[i] - values[i - 1])
@@ -33,9 +38,7 @@ def of_series(sizes, values, i, order):
 
 def guesses(series, orders=None):
     """{(name, i): estimated error} of {name: (sizes, values)}, sizes ascending; the coarsest of each has none."""
-    def order_of(name):
-        return next((float(p) for word, p in (orders or {}).items() if word in name.split(", ")), ORDER)
-    own = {(name, i): of_series(*series[name], i, order_of(name)) for name in series for i in range(1, len(series[name][0]))}
+    own = {(name, i): of_series(*series[name], i, order_of(name, orders)) for name in series for i in range(1, len(series[name][0]))}
     found = {}
     for (name, i), guess in own.items():
         size, value = series[name][0][i], series[name][1][i]

@@ -1,29 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
 """The cheapest setting for an error that is asked for, predicted from few cheap runs, then run.
 
-Of each series (combination of all axes but the refinement) the smallest sizes are run; value(n) = limit + C n^-p gives the size
-that meets the target (for quantities that are errors themselves: error(n) = C n^-p), seconds(n) = a + b n^q its cost. The
-series of the least predicted cost goes on with larger sizes until the answer is near enough to be trusted."""
+Of each series (combination of all axes but the refinement) up to three of the smallest sizes are run. A fit of its values over the
+sizes (fits.py) gives the size that meets the target with a bound of the error, seconds(n) = a + b n^q its cost. The series of the
+least predicted cost goes on with larger sizes until a run meets the target. Series without a fit go on, too, where that costs less than
+what is predicted for the best. Of each series that is not chosen the reason is reported."""
 import json
 import math
 import re
 
-import numpy as np
-
 from couplet.runs import expect
 from couplet.study import table
-from couplet.study.convergence import Limit, limit_of
+from couplet.study.series import ENOUGH, GROWTH, ROUNDS, Prediction, Refusal, Series
 
-AIM = 0.75      # of the target: the prediction may be off both ways
-NEAR = 1.6      # the final size over the largest that was tried, at most, before it is run ...
-NEAR_CHEAP = 1.3  # ... where it takes less than CHEAP: a run more costs nothing, and start-up hides the work of small runs
-TOO_GOOD = 0.4  # of the target: a run that is there and leaves less is no answer where a smaller size would do
-GROWTH = 1.4    # of the sizes tried
-DOWN = 2        # a size below all that were tried is at most so much smaller: errors of coarse runs follow no power
-APART = 1.25    # ratio of two sizes that an order is read from, at least
-PATIENCE = 9    # runs of one series
-BUDGET = 1.3    # seconds spent before the final run over its own, where that takes longer than CHEAP
-CHEAP = 10.0    # [s]
+NEAR = 1.5       # the final size over the largest that was tried, at most, before it is run
+AT_ONCE = 1.15   # no run between for less
+SHORT = 1.0      # [s]; finals that take less may cost many runs before them
+BEFORE = 3.0     # seconds spent before the final run over its own, where that is over SHORT ...
+RESERVE = 1.6    # ... of which pilots and runs between may take so much: the rest is for a final run that leaves too much
+TRY = 0.7        # of the best predicted cost: a series without a fit that has a larger run for less goes on
+TOO_GOOD = 0.4   # of the target: a run that leaves less is no answer where a smaller size would do ...
+TOO_MUCH = 1.4   # ... nor one that takes so much longer than that
+FREE = 10.0      # [s] that are spent in any case before a search without any prediction ends
 
 
 def target_of(text):
@@ -34,140 +32,187 @@ def target_of(text):
     return value
 
 
-def telling(seconds):
-    """Which runs tell of larger ones: not those that cost more than a larger one, with another solver or on a busy machine."""
-    return [i for i, t in enumerate(seconds) if all(t <= 1.05 * later for later in seconds[i + 1:])]
+class Search:
+    def __init__(self, study, quantity, target, say):
+        self.study, self.quantity, self.target, self.say = study, quantity, target, say
+        self.refining = study.axes.refining
+        self.every, self.rounds = [], 0
 
+    # -- state
+    def spent(self):
+        return sum(s.spent() for s in self.every)
 
-def power_cost(sizes, seconds):
-    """(a, b, q) of a + b n^q, start-up and work, neither negative, least squares of the relative misfit; the latest runs say most."""
-    keep = telling(seconds)
-    n, t = np.array(sizes, float)[keep], np.array(seconds, float)[keep]
-    best = None
-    for q in np.arange(0.5, 5.01, 0.05):
-        basis = np.column_stack([np.ones_like(n), (n / n[-1])**q]) / t[:, None]
-        weight = np.sqrt(n / n[-1])[:, None]
-        ab = np.linalg.lstsq(basis * weight, weight[:, 0], rcond=None)[0]
-        if ab[0] < 0:  # no start-up to be seen
-            ab = np.array([0, 1 / basis[:, 1].mean()])
-        if len(n) < 2 or ab[1] <= 0:
-            continue
-        misfit = float((((basis @ ab - 1) * weight[:, 0]) ** 2).sum()) + 1e-3 * (q - 3) ** 2  # undecided: as a solver in space
-        if best is None or misfit < best[0]:
-            best = (misfit, ab[0], ab[1] / n[-1]**q, q)
-    return best[1:] if best else (float(t[-1]), 0.0, 1.0)
+    def predictions(self):
+        """[(series, Prediction)] by cost."""
+        found = [(s, p) for s in self.every if s.rows and isinstance(p := s.predict(self.target), Prediction)]
+        return sorted(found, key=lambda pair: pair[1].seconds)
 
+    def affords(self, seconds, final):
+        """Whether a run before the final one may take so long."""
+        return self.spent() + seconds <= RESERVE * max(final, SHORT)
 
-def apart(rows):
-    """Of runs by size the largest and those that are far enough below each other to show an order: between sizes that nearly agree
-    the values' noise would decide."""
-    chosen = rows[-1:]
-    for row in reversed(rows[:-1]):
-        if row.point.size * APART <= chosen[0].point.size:
-            chosen.insert(0, row)
-    return chosen
+    def following(self, series):
+        return self.refining.round(GROWTH * series.sizes()[-1], up=True)
 
+    # -- the first runs
+    def pilots(self):
+        """The three smallest sizes of each series; the third, of the costlier ones, only where the best prediction so far affords it."""
+        found = {}
+        for point in self.study.axes.points():
+            labels = {k: v for k, v in point.labels.items() if k != self.refining.name}
+            found.setdefault(tuple(labels.items()), Series(self.study, self.quantity, labels))
+        self.every, sizes = list(found.values()), sorted(self.refining.sizes.values())[:3]
+        for series in self.every:
+            for size in sizes[:2]:
+                if not series.failed:
+                    self.run(series, size)
+        for series in sorted((s for s in self.every if not s.failed), key=lambda s: s.cost(s.rows[-1])):
+            best = next(iter(self.predictions()), None)
+            if len(sizes) > 2 and (best is None or self.affords(series.seconds(sizes[2]), best[1].seconds)):
+                self.run(series, sizes[2])
+            elif len(sizes) > 2:
+                series.short = (f"size {sizes[2]:g} was not run, which would take {series.seconds(sizes[2]):.2g} s: "
+                                f"{best[0].name} should do in {best[1].seconds:.2g} s, after {self.spent():.2g} s of runs before it")
 
-class Series:
-    """One curve: the runs of growing size of one combination."""
-
-    def __init__(self, study, quantity, labels):
-        self.study, self.quantity, self.labels, self.rows = study, quantity, labels, []
-        self.coarse = 0  # the largest size that was seen to leave too much
-        self.name = ", ".join(v for k, v in labels.items() if k != study.axes.refining.name) or "the case"
-
-    def sizes(self):
-        return [r.point.size for r in self.rows]
-
-    def add(self, size, say):
-        label = f"{size:g}"
-        point = self.study.axes.point({**self.labels, self.study.axes.refining.name: label}, size)
-        row, = self.study.run([point], 1, False, say)
-        if row.good:
-            self.rows = sorted([*self.rows, row], key=lambda r: r.point.size)
+    def run(self, series, size):
+        row = series.add(size, self.say)
+        if not row.good:
+            self.say(f"{series.name}: not continued, {series.failed}")
         return row
 
-    def model(self):
-        """Limit by which errors fall; None while there is none. Relative errors have a limit of size 1."""
-        rows = apart(self.rows)
-        sizes, values = [r.point.size for r in rows], [r.values[self.quantity.name] for r in rows]
-        if not self.quantity.is_error:
-            found = limit_of(sizes, values)
-            if found is None:
-                return None
-            scale = 1 if self.quantity.given.get("absolute") else abs(found.value)
-            return Limit(found.value, found.order, found.constant / scale, found.gci / scale) if scale else None
-        (n1, n2), (e1, e2) = sizes[-2:], values[-2:]
-        if not 0 < abs(e2) < abs(e1):
+    # -- larger ones
+    def candidates(self, best):
+        """Series without a prediction that may still show to be cheaper."""
+        open_ = [s for s in self.every if s.rows and len(s.rows) < ROUNDS and isinstance(p := s.predict(self.target), Refusal) and p.hopeful]
+        priced = sorted((s.seconds(self.following(s)), i, s) for i, s in enumerate(open_))
+        if best is None:
+            return [(t, s) for t, _, s in priced if t <= max(FREE, self.spent())]
+        return [(t, s) for t, _, s in priced if t < TRY * best.seconds and self.affords(t, best.seconds)]
+
+    def step(self):
+        """One run more. True: the search has ended, with (series, row, prediction) in `found`."""
+        series, best = next(iter(self.predictions()), (None, None))
+        others = self.candidates(best)
+        if others:
+            seconds, other = others[0]
+            self.say(f"{other.name}: {other.predict(self.target).reason}; a larger size may show more, in about {seconds:.2g} s")
+            self.run(other, self.following(other))
+            return False
+        if series is None:
+            return True
+        there = next((r for r in series.rows if r.point.size >= best.size and series.meets(r, self.target)), None)
+        if there:
+            return self.settle(series, best, there)
+        self.say(f"{series.name}: size {best.size:g} should leave an error of {best.error:.2g} (at most {best.bound:.2g}) and take {best.seconds:.3g} s")
+        size = self.next_size(series, best)
+        row = self.run(series, size)
+        if size == best.size and row.good and series.meets(row, self.target) and not self.smaller(series, row):
+            self.found = series, row, best
+            return True
+        series.misses += size == best.size and row.good and not series.meets(row, self.target)
+        return False
+
+    def next_size(self, series, best):
+        """The size predicted, or one on the way there that makes the prediction surer."""
+        largest = series.sizes()[-1]
+        if best.size <= NEAR * largest:
+            return best.size
+        between = self.refining.round(min(best.size / NEAR, 2 * largest), up=True)
+        if between <= largest or between * AT_ONCE >= best.size or best.seconds > SHORT and not self.affords(series.seconds(between), best.seconds):
+            return best.size
+        return between
+
+    def smaller(self, series, row):
+        """The prediction of a smaller size where the row is far better, or costlier, than asked and the runs before may cost one more."""
+        if series.failed:
             return None
-        order = math.log(abs(e1 / e2)) / math.log(n2 / n1)
-        return Limit(0.0, order, abs(e2) * n2**order, 0.0)
-
-    def left(self, row):
-        """Error of a run: its distance from the limit of the finest ones (of those it is the model's); None without a model."""
-        value, model = row.values[self.quantity.name], self.model()
-        if self.quantity.is_error or model is None:
-            return abs(value) if self.quantity.is_error else None
-        return abs(value - model.value) / (1 if self.quantity.given.get("absolute") else abs(model.value))
-
-    def scatter(self):
-        """What noise may make of the limit, over its size: by how much the larger half of the sizes turn back against the way that all values
-        go, times what an extrapolation over APART makes of it."""
-        model, rows = self.model(), [r for r in self.rows if 2 * r.point.size >= self.rows[-1].point.size]
-        if self.quantity.is_error or model is None or len(rows) < 3:
-            return 0.0
-        values = [r.values[self.quantity.name] for r in rows]
-        way = math.copysign(1, self.rows[-1].values[self.quantity.name] - self.rows[0].values[self.quantity.name])
-        back = max(way * (a - b) for i, a in enumerate(values) for b in values[i:])
-        scale = 1 if self.quantity.given.get("absolute") else abs(model.value)
-        return back * (1 + 1 / (APART**min(max(model.order, 1), 2) - 1)) / scale
-
-    def seconds(self, size):
-        a, b, q = power_cost(self.sizes(), [getattr(r.record, self.study.clock) for r in self.rows])
-        nearest = min(self.rows, key=lambda r: abs(math.log(r.point.size / size)))
-        # through the nearest run: its misfit is that of this one, too
-        scale = getattr(nearest.record, self.study.clock) / (a + b * nearest.point.size**q)
-        return scale * (a + b * size**q)
-
-    def spent(self):
-        return sum(getattr(r.record, self.study.clock) for r in self.rows)
-
-    def predict(self, target):
-        """(size, error, seconds) that meets the target; None while there is no model."""
-        model = self.model()
-        if model is None:
+        found, left = series.predict(self.target), series.left(row)
+        if not isinstance(found, Prediction) or found.size >= row.point.size or any(r.point.size == found.size for r in series.rows):
             return None
-        size = self.size_between(max(model.size_for(AIM * target), self.least(target)))
-        return size, model.error(size), self.seconds(size)
+        much = left[0] < TOO_GOOD * self.target or series.cost(row) > TOO_MUCH * found.seconds
+        return found if much and (found.seconds <= SHORT or self.spent() <= BEFORE * found.seconds) else None
 
-    def least(self, target):
-        """The smallest size that may be tried: below all that were run only where the smallest of them is far better than asked."""
-        smallest = self.rows[0]
-        return smallest.point.size / (DOWN if self.left(smallest) < TOO_GOOD * target else 1)
+    def settle(self, series, best, row):
+        """A run that is there meets the target: it is the answer, unless a smaller size would do."""
+        less = self.smaller(series, row)
+        if less:
+            self.say(f"{series.name}: size {row.point.size:g} is better than asked; size {less.size:g} should do in {less.seconds:.3g} s")
+            made = self.run(series, less.size)
+            if made.good and series.meets(made, self.target) and not self.smaller(series, made):
+                self.found = series, made, less
+                return True
+            return False
+        error, bound = series.left(row)
+        seconds = series.cost(row)
+        self.found = series, row, Prediction(row.point.size, error, bound, seconds, seconds, seconds)
+        return True
 
-    def size_between(self, size):
-        """A size that may be run; above those that were seen to leave too much, half-way to the next run."""
-        rounded = self.study.axes.refining.round
-        if size > self.coarse or not self.coarse:
-            return rounded(size, up=True)
-        above = next((n for n in self.sizes() if n > self.coarse), GROWTH * self.coarse)
-        between = rounded(math.sqrt(self.coarse * above), up=True)
-        return min(between, above) if between > self.coarse else above
-
-
-def started(study, quantity, say):
-    """All series with the three smallest sizes each."""
-    refining, found = study.axes.refining, {}
-    for point in study.axes.points():
-        labels = {k: v for k, v in point.labels.items() if k != refining.name}
-        found.setdefault(tuple(labels.items()), Series(study, quantity, labels))
-    for series in found.values():
-        for size in sorted(refining.sizes.values())[:3]:
-            row = series.add(size, say)
-            if not row.good:
-                say(f"{series.name}: left out, as its run of size {size:g} failed: {row.reason}")
+    def go(self):
+        self.found = None, None, None
+        self.pilots()
+        expect(any(s.rows for s in self.every), "no series could be run: " + "; ".join(f"{s.name}: {s.failed}" for s in self.every))
+        for _ in range(ROUNDS + 3 * len(self.every)):
+            if self.step():
                 break
-    return [s for s in found.values() if len(s.rows) >= 3]
+        return self.found
+
+
+def others(search, chosen, row):
+    """Of each other series why it was not chosen."""
+    lines, reference = [], chosen.cost(row) if row is not None else None
+    for series in search.every:
+        if series is chosen:
+            continue
+        found = series.predict(search.target) if series.rows else Refusal(series.failed, False)
+        if isinstance(found, Prediction):
+            most = f"{found.costly:.2g}" if found.costly < math.inf else "far more"
+            why = f"size {found.size:g} should do in {found.seconds:.2g} s ({found.cheap:.2g} to {most} s)"
+            if reference is not None and found.seconds < reference:
+                why += ", no clear gain"
+        else:
+            why = found.reason
+        lines.append({"series": series.name, "reason": why, "sizes": series.sizes()})
+    return lines
+
+
+def seen_from_others(search, chosen, row):
+    """What other series say at least of the error of a run: the distance to the limit of one that is surer, less its bound."""
+    least, who = 0.0, ""
+    for series in search.every:
+        if series is chosen or series.known or not series.rows:
+            continue
+        fit, _ = series.fit()
+        if fit is None:
+            continue
+        bound = series.left(series.rows[-1])[1]
+        gap = abs(row.values[search.quantity.name] / fit.scale - fit.limit) - bound
+        if gap > least:
+            least, who = gap, series.name
+    return least, who
+
+
+def said(search, series, row, predicted):
+    """The result as numbers and as lines."""
+    target, quantity = search.target, search.quantity
+    rest = others(search, series, row)
+    lines = [f"  {o['series']}: not chosen: {o['reason']}" for o in rest]
+    if row is None:
+        return {"met": False, "target": target, "quantity": quantity.name, "others": rest, "before": search.spent(),
+                "lines": [f"No setting was found for an error of {target:.3g}, after {sum(len(s.rows) for s in search.every)} runs:", *lines]}
+    if series.known:
+        table.set_errors([row], [quantity])
+    true, (error, bound) = row.errors.get(quantity.name), series.left(row)
+    elsewhere, who = (0.0, "") if true is not None else seen_from_others(search, series, row)
+    reached = true if true is not None else max(error, elsewhere)
+    seconds, spent = series.cost(row), search.spent()
+    settings = ", ".join(f"{k}={v}" for k, v in row.point.changes.items())
+    how = "against the reference" if true is not None else f"by extrapolation, at most {max(bound, elsewhere):.3g}"
+    first = [f"Cheapest for {quantity.name} to {target:.3g}: {series.name}, size {row.point.size:g} ({settings})",
+             f"error: {reached:.3g} {how} (predicted {predicted.error:.3g})" + (f"; seen from {who}" if elsewhere > error else ""),
+             f"time: {seconds:.3g} s (predicted {predicted.seconds:.3g} s); the runs before it took {spent - seconds:.3g} s"]
+    return {"met": reached <= ENOUGH * target, "target": target, "quantity": quantity.name, "series": series.name, "size": row.point.size,
+            "predicted error": predicted.error, "predicted seconds": predicted.seconds, "error": reached, "bound": bound, "estimate": error,
+            "seconds": seconds, "before": spent - seconds, "others": rest, "lines": first + lines}
 
 
 def for_error(study, text, name, say):
@@ -176,103 +221,10 @@ def for_error(study, text, name, say):
     names = [q.name for q in study.quantities]
     quantity = next((q for q in study.quantities if q.name == (name or names[0])), None)
     expect(quantity, f"--quantity {name}: there is no such quantity; there are: {', '.join(names)}.")
-    every = started(study, quantity, say)
-    expect(every, "no series could be run on its three smallest sizes.")
-    best, final, predicted = approach(every, target, say)
-    result = said(study, quantity, best, every, target, final, predicted)
-    (study.out / f"for-error-{quantity.name.replace(' ', '-')}-{text.strip().replace('%', 'pc')}.json").write_text(json.dumps(result, indent=1, default=lambda v: v.item()))
+    search = Search(study, quantity, target, say)
+    result = said(search, *search.go())
+    file = study.out / f"for-error-{quantity.name.replace(' ', '-')}-{text.strip().replace('%', 'pc')}.json"
+    file.write_text(json.dumps(result, indent=1, default=lambda v: v.item()))
     for line in result["lines"]:
         say(line)
     return 0 if result["met"] else 1
-
-
-def cheapest(every, target):
-    """The series of the least predicted seconds, with its prediction; (first series, None) while none has a model."""
-    priced = [(p[2], i, p) for i, s in enumerate(every) if (p := s.predict(target))]
-    return (every[min(priced)[1]], min(priced)[2]) if priced else (every[0], None)
-
-
-def known(series, row):
-    """Of a run that is there: (size, error, seconds)."""
-    return row.point.size, series.left(row), getattr(row.record, series.study.clock)
-
-
-def fitting(series, predicted, target, say):
-    """A run of the very size between those that are there, where the next larger one would be far better than asked; None where
-    it would not, or the run fails."""
-    there = next(r for r in series.rows if r.point.size >= predicted[0])
-    if there.point.size == predicted[0] or series.left(there) >= TOO_GOOD * target:
-        return None
-    say(f"{series.name}: size {there.point.size:g} would be better than asked; size {predicted[0]:g} should do in {predicted[2]:.3g} s")
-    row = series.add(predicted[0], say)
-    return row if row.good else None
-
-
-def approach(every, target, say):
-    """Larger and larger runs of whichever series looks cheapest, until one meets the target; (series, row or None, what was
-    predicted for it)."""
-    for _ in range(PATIENCE + 2 * len(every)):
-        series, predicted = cheapest(every, target)
-        largest, refining = series.sizes()[-1], series.study.axes.refining
-        if predicted and predicted[0] <= largest:  # a run that is there meets it
-            row = fitting(series, predicted, target, say)
-            if row and series.left(row) is None:  # it has shown that there is no limit to go by
-                return series, row, predicted
-            if row and series.left(row) > 1.1 * target:
-                say(f"it leaves {series.left(row):.2g}, more than asked: back")
-                series.coarse = max(series.coarse, row.point.size)
-                continue
-            if row and series.left(row) < TOO_GOOD * target and series.predict(target)[0] < row.point.size:
-                continue
-            if row:
-                return series, row, predicted if row.point.size == predicted[0] else known(series, row)
-            row = next(r for r in series.rows if r.point.size >= predicted[0])
-            return series, row, known(series, row)
-        following = refining.round(GROWTH * largest, up=True)
-        spent = sum(s.spent() for s in every)
-        dear = predicted and predicted[2] > CHEAP and spent + series.seconds(following) > BUDGET * predicted[2]
-        near = NEAR if predicted and predicted[2] > CHEAP else NEAR_CHEAP
-        last = predicted and (predicted[0] <= near * largest or following >= predicted[0] or dear)
-        if predicted:
-            say(f"{series.name}: size {predicted[0]:g} should leave an error of {predicted[1]:.2g} and take {predicted[2]:.3g} s")
-        row = series.add(predicted[0] if last else following, say)
-        if not row.good:
-            say(f"the run failed, its series is left out: {row.reason}")
-            every = [s for s in every if s is not series]
-            if not every:
-                return series, None, predicted
-            continue
-        if last:
-            after = series.model()
-            if after and after.error(row.point.size) < TOO_GOOD * target and series.predict(target)[0] < row.point.size:
-                continue  # what it has shown says that a smaller size does
-            if after is None or after.error(row.point.size) <= 1.1 * target:
-                return series, row, predicted
-            say(f"it leaves {after.error(row.point.size):.2g}, more than predicted: on")
-    return series, None, predicted
-
-
-def said(study, quantity, best, every, target, final, predicted):
-    """The result as numbers and as lines."""
-    spent = sum(s.spent() for s in every)
-    if final is None:
-        return {"met": False, "target": target, "lines": [f"No setting was found for an error of {target:.3g}: after {len(best.rows)} runs the values "
-                                                          "do not approach a limit, or a run failed. A finer start may help."]}
-    table.set_errors([final], [quantity]) if quantity.is_error or isinstance(quantity.reference, (int, float)) else None
-    true, model = final.errors.get(quantity.name), best.model()
-    seconds = getattr(final.record, study.clock)
-    estimate = best.left(final) if model else None
-    noise = best.scatter() if true is None else 0
-    reached = true if true is not None else estimate if estimate is None else max(estimate, noise)
-    settings = ", ".join(f"{k}={v}" for k, v in final.point.changes.items())
-    if reached is None:  # the last run has shown that there is no limit yet
-        return {"met": False, "target": target, "lines": [f"No setting was found for an error of {target:.3g}: with the last run, {best.name}, size {final.point.size:g}, which "
-                                                          "should have met it, the values approach no limit any more. A finer start may help."]}
-    lines = [f"Cheapest for {quantity.name} to {target:.3g}: {best.name}, size {final.point.size:g} ({settings})",
-             f"error: {reached:.3g} {'against the reference' if true is not None else 'by extrapolation'} (predicted {predicted[1]:.3g}"
-             + (f", estimated afterwards {estimate:.3g})" if estimate is not None else ")")
-             + ("; by as much the values of nearby sizes scatter, which an extrapolation cannot see through" if estimate is not None and noise > estimate else ""),
-             f"time: {seconds:.3g} s (predicted {predicted[2]:.3g} s); the runs before it took {spent - seconds:.3g} s"]
-    return {"met": reached <= 1.1 * target, "target": target, "quantity": quantity.name, "series": best.name,
-            "size": final.point.size, "predicted error": predicted[1], "predicted seconds": predicted[2], "error": reached, "estimate": estimate,
-            "seconds": seconds, "before": spent - seconds, "lines": lines}

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One curve of --for-error: the runs of growing size of one combination, what they leave and what a size would leave and cost."""
+import dataclasses
+import math
+
+import numpy as np
+
+from couplet.study import estimates, fits
+
+AIM, AIM_BOUND = 0.9, 1.2  # of the target: error and bound that a size is chosen by
+ENOUGH, SURE = 1.1, 1.35   # of the target: error and bound of a run that is taken
+DOWN = 2         # a size below all that were run is at most so much smaller: errors of coarse runs follow no power
+FARTHEST = 64    # times the largest size that was run: beyond it there is no prediction
+GROWTH = 1.4     # of the sizes tried
+NOISE = 0.5      # of the target: the standard deviation of values from their fit, at most
+STRIDE = 1.25    # of the size after two predictions that left too much
+ROUNDS = 12      # runs of one series
+
+
+@dataclasses.dataclass
+class Prediction:
+    """What meets a target."""
+    size: float
+    error: float    # expected
+    bound: float
+    seconds: float
+    cheap: float    # seconds of the size whose expected error is the target, and ...
+    costly: float   # ... of the size whose threefold expected error is
+
+
+@dataclasses.dataclass
+class Refusal:
+    """Why a series has no prediction. `hopeful`: more runs may give one."""
+    reason: str
+    hopeful: bool = True
+
+
+def telling(seconds):
+    """Which runs tell of larger ones: not those that cost more than a larger one, with another solver or on a busy machine."""
+    return [i for i, t in enumerate(seconds) if all(t <= 1.05 * later for later in seconds[i + 1:])]
+
+
+def power_cost(sizes, seconds):
+    """(a, b, q) of a + b n^q, start-up and work, neither negative, least squares of the relative misfit; the latest runs say most."""
+    keep = telling(seconds)
+    n, t = np.array(sizes, float)[keep], np.array(seconds, float)[keep]
+    best = None
+    for q in np.arange(0.5, 5.01, 0.05):
+        basis = np.column_stack([np.ones_like(n), (n / n[-1])**q]) / t[:, None]
+        weight = np.sqrt(n / n[-1])[:, None]
+        ab = np.linalg.lstsq(basis * weight, weight[:, 0], rcond=None)[0]
+        if ab[0] < 0:  # no start-up to be seen
+            ab = np.array([0, 1 / basis[:, 1].mean()])
+        if len(n) < 2 or ab[1] <= 0:
+            continue
+        misfit = float((((basis @ ab - 1) * weight[:, 0]) ** 2).sum()) + 1e-3 * (q - 3) ** 2  # undecided: as a solver in space
+        if best is None or misfit < best[0]:
+            best = (misfit, ab[0], ab[1] / n[-1]**q, q)
+    return best[1:] if best else (float(t[-1]), 0.0, 1.0)
+
+
+class Series:
+    def __init__(self, study, quantity, labels):
+        self.study, self.quantity, self.labels, self.rows = study, quantity, labels, []
+        self.name = ", ".join(v for k, v in labels.items() if k != study.axes.refining.name) or "the case"
+        self.formal = estimates.order_of(self.name, quantity.given.get("orders"))
+        self.failed = ""   # why it is not run any more
+        self.short = ""    # why its third size was not run
+        self.misses = 0    # runs of a predicted size that left too much
+
+    # -- runs
+    def sizes(self):
+        return [r.point.size for r in self.rows]
+
+    def add(self, size, say):
+        point = self.study.axes.point({**self.labels, self.study.axes.refining.name: f"{size:g}"}, size)
+        row, = self.study.run([point], 1, False, say)
+        if row.good:
+            self.rows = sorted([*self.rows, row], key=lambda r: r.point.size)
+        else:
+            self.failed = f"its run of size {size:g} failed: {row.reason}"
+        return row
+
+    def cost(self, row):
+        return getattr(row.record, self.study.clock)
+
+    def spent(self):
+        return sum(self.cost(r) for r in self.rows)
+
+    def seconds(self, size):
+        if len(self.rows) < 2:
+            return self.cost(self.rows[-1]) * max(1, size / self.rows[-1].point.size)
+        a, b, q = power_cost(self.sizes(), [self.cost(r) for r in self.rows])
+        nearest = min(self.rows, key=lambda r: abs(math.log(r.point.size / size)))
+        # through the nearest run: its misfit is that of this one, too
+        return self.cost(nearest) / (a + b * nearest.point.size**q) * (a + b * size**q)
+
+    # -- errors
+    @property
+    def known(self):
+        """Whether errors need no extrapolation."""
+        return self.quantity.is_error or isinstance(self.quantity.reference, (int, float))
+
+    def values(self):
+        """Errors where they are known, else values."""
+        return [self.exact(r) if self.known else r.values[self.quantity.name] for r in self.rows]
+
+    def exact(self, row):
+        value, reference = row.values[self.quantity.name], self.quantity.reference
+        if self.quantity.is_error:
+            return value
+        return (value - reference) / (1 if self.quantity.given.get("absolute") or reference == 0 else abs(reference))
+
+    def fit(self):
+        """(Fit, "") or (None, reason), of relative errors where the quantity has them."""
+        if self.known:
+            return fits.of_errors(self.sizes(), self.values(), self.formal)
+        found, reason = fits.of_values(self.sizes(), self.values(), self.formal)
+        if found is None or self.quantity.given.get("absolute"):
+            return found, reason
+        if abs(found.limit) <= found.deviation:
+            return None, "its limit is 0 or near it: relative errors say nothing (`absolute: true` asks for the difference itself)"
+        scale = abs(found.limit)
+        return dataclasses.replace(found, limit=found.limit / scale, terms=[(c / scale, p) for c, p in found.terms],
+                                   deviation=found.deviation / scale, scale=scale,
+                                   seen=[(n, e / scale) for n, e in found.seen]), ""
+
+    def left(self, row):
+        """(error, bound) of a run; None without a fit."""
+        if self.known:
+            index = self.rows.index(row)
+            return (fits.settled(self.sizes(), self.values(), self.formal)[index],) * 2
+        fit, _ = self.fit()
+        if fit is None:
+            return None
+        return fit.error(row.point.size), fit.bound(row.point.size)
+
+    def meets(self, row, target):
+        left = self.left(row)
+        return left is not None and left[0] <= ENOUGH * target and left[1] <= SURE * target and self.scatter() <= NOISE * target
+
+    def scatter(self):
+        return 0.0 if self.known or (fit := self.fit()[0]) is None else fit.deviation
+
+    # -- what a target needs
+    def predict(self, target):
+        """Prediction or Refusal."""
+        if self.failed:
+            there = next((r for r in self.rows if self.meets(r, target)), None)
+            return Prediction(there.point.size, *self.left(there), *[self.cost(there)] * 3) if there else Refusal(self.failed, False)
+        fit, reason = self.fit()
+        if fit is None:
+            return Refusal(self.short if self.short and len(self.rows) < 3 else reason, not self.short)
+        largest, timeout = self.sizes()[-1], float(self.study.section.get("timeout", 3600))
+        wanted = fit.size_for(target, lambda n: max(fit.error(n) * fit.factor / AIM, fit.bound(n) / AIM_BOUND))
+        if wanted is None or self.scatter() > NOISE * target:
+            return Refusal(f"its values scatter: the error's bound does not fall below {max(fit.bound(1e12), self.scatter() / NOISE):.2g}")
+        if wanted > FARTHEST * largest:
+            return Refusal(f"it would need a size of over {FARTHEST} times the largest that was run, {largest:g}: too far for a prediction")
+        size = self.size_between(max(wanted, self.rows[0].point.size / DOWN), target)
+        seconds = self.seconds(size)
+        if seconds > timeout:
+            return Refusal(f"size {size:g} would take about {seconds:.2g} s, more than a run may ({timeout:g} s, `timeout`)")
+        ends = fit.size_for(target, fit.error), fit.size_for(target, lambda n: fits.POOR * fit.error(n) + fit.deviation)
+        cheap, costly = (self.seconds(n) if n and n <= FARTHEST * largest else math.inf for n in ends)
+        return Prediction(size, fit.error(size), fit.bound(size), seconds, min(cheap, seconds), max(costly, seconds))
+
+    def size_between(self, wanted, target):
+        """A size that may be run: that of a run which meets the target, or one above all that do not."""
+        rounded, above = self.study.axes.refining.round, [r for r in self.rows if r.point.size >= wanted - 1e-9]
+        refused = max((r.point.size for r in self.rows if not self.meets(r, target)), default=0)
+        size = rounded(wanted, up=True)
+        if size > refused:
+            return size if self.misses < 2 or above else max(size, rounded(STRIDE * refused, up=True))
+        better = next((r.point.size for r in above if r.point.size > refused), math.inf)
+        size = max(rounded(refused * (1 + 1e-3), up=True), rounded(min(refused * 1.1, math.sqrt(refused * better)), up=True))
+        return min(size, better)
