@@ -91,11 +91,29 @@ Entry Reader::take(std::string_view name) {
   return find(frame.node, name);
 }
 
+std::string Reader::keys_of(const Place& place, const std::string& path, const Declare& declare) {
+  constexpr std::size_t most = 12;
+  const std::vector<Message> kept = messages_, kept_doubts = doubts_;
+  frames_.push_back({YAML::Node(YAML::NodeType::Map), place, path, {}, {}, messages_.size(), {}, false});
+  Section section(*this);
+  declare(section);
+  std::vector<std::string> keys = frames_.back().known;
+  frames_.pop_back();
+  messages_ = kept;
+  doubts_ = kept_doubts;
+  if (keys.empty()) return "";
+  const bool all = keys.size() <= most;
+  keys.resize(std::min(keys.size(), most));
+  return fmt::format(" Its keys: {}{}.", join(keys), all ? "" : ", ...");
+}
+
 void Reader::read_mapping(const YAML::Node& node, const Place& place, const std::string& path,
                           const Declare& declare) {
   const bool is_empty = !node.IsDefined() || node.IsNull();
   if (!is_empty && !node.IsMap()) {
-    report(place, path, fmt::format("expected a mapping (keys with values), found {}.", kind_of(node)));
+    report(place, path,
+           fmt::format("expected a mapping (keys with values), found {}.{}", kind_of(node),
+                       keys_of(place, path, declare)));
     return;
   }
   frames_.push_back(

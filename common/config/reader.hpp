@@ -54,6 +54,8 @@ class Reader final : public Visitor {
   void report(const Place& place, const std::string& path, const std::string& text);
   void report_key(const Place& place, const std::string& path, const std::string& text);
   void report_unknown_keys();
+  /// " Its keys: a, b." of a mapping that is none.
+  std::string keys_of(const Place& place, const std::string& path, const Declare& declare);
   /// What a rule across keys finds, if nothing that it may look at is wrong.
   std::optional<Message> finding(const std::function<std::string()>& rule, std::string_view key) const;
   /// A misspelt required key is one mistake, not two.

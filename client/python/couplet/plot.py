@@ -69,7 +69,7 @@ def curves(x, label, columns, names, log, title):
             ax.set_yscale("log")
         ax.set_ylabel(f"[{unit}]")
         ax.grid(alpha=0.3)
-        if len(some) <= MOST_LINES:
+        if len(some) <= MOST_LINES and ax.get_legend_handles_labels()[0]:
             ax.legend(fontsize=7)
     axes[-1, 0].set_xlabel(label)
     axes[0, 0].set_title(title, fontsize=10)
@@ -164,14 +164,19 @@ def of_case(case, picture):
     return done.returncode
 
 
+def folder_of_run(option, files):
+    expect(len(files) == 1, f"{option}: give one folder of a run")
+    expect(files[0].is_dir(), f"{files[0]}: there is no such folder; has the case been run?")
+
+
 def run(options):
     if options.mode is not None:
-        expect(len(options.files) == 1 and options.files[0].is_dir(), "--mode: give one folder of a run")
+        folder_of_run("--mode", options.files)
         from couplet import fields
         print(fields.draw_mode(options.files[0], options.mode, options.picture))
         return 0
     if options.field:
-        expect(len(options.files) == 1 and options.files[0].is_dir(), "--field: give one folder of a run")
+        folder_of_run("--field", options.files)
         from couplet import fields
         print(fields.draw(options.files[0], options.field, options.picture, options.at, options.component, options.warp))
         return 0

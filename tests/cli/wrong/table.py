@@ -133,7 +133,7 @@ case.yaml:2:14: simulation.endtime: unknown key. Did you mean 'end-time'?
 case.yaml:2:56: simulation.output.every: unknown key. Valid keys: folder, interval, steps.
 """, ("time-step: 0.5 s", "time-step: 0.5 s, output: {every: 1 s}")),
     solid("value instead of a section", """
-case.yaml:2:47: simulation.output: expected a mapping (keys with values), found 'all'.
+case.yaml:2:47: simulation.output: expected a mapping (keys with values), found 'all'. Its keys: folder, interval, steps.
 """, ("time-step: 0.5 s", "time-step: 0.5 s, output: all")),
 ]
 

@@ -68,8 +68,9 @@ const Case cases[] = {
     {"damping: {}", "3:1: damping.mass: this required key is missing (number in 1/s)."},
     {"damping:", "3:1: damping.mass: this required key is missing (number in 1/s)."},
     {"damping: " + std::string(100, 'x'), "3:1: damping: expected a mapping (keys with values), found '" +
-                                              std::string(60, 'x') + "' and 40 characters more."},
-    {"damping: 3", "3:1: damping: expected a mapping (keys with values), found '3'."},
+                                              std::string(60, 'x') +
+                                              "' and 40 characters more. Its keys: mass."},
+    {"damping: 3", "3:1: damping: expected a mapping (keys with values), found '3'. Its keys: mass."},
     {"boundaries: [left]",
      "3:1: boundaries: expected a mapping with one entry for each patch, found a list."},
     {"boundaries: {left: {velocity: [1, 2]}}",
@@ -84,11 +85,12 @@ const Case cases[] = {
     {"boundaries:\n  left: {type: wall, pressure: 3}",
      "4:22: boundaries.left.pressure: this key does not belong here; it goes with type: outlet."},
     {"boundaries: {left: wall}",
-     "3:14: boundaries.left: expected a mapping (keys with values), found 'wall'."},
+     "3:14: boundaries.left: expected a mapping (keys with values), found 'wall'. Its keys: type, velocity, pressure."},
     {"probes: {name: tip}", "3:1: probes: expected a list of mappings, found a mapping."},
     {"probes:\n  - {name: tip}\n  - {at: [0, 0]}",
      "5:5: probes[1].name: this required key is missing (text)."},
-    {"probes: [tip]", "3:10: probes[0]: expected a mapping (keys with values), found 'tip'."},
+    {"probes: [tip]",
+     "3:10: probes[0]: expected a mapping (keys with values), found 'tip'. Its keys: name, at."},
     {"probes: [{name: tip, where: [0, 0]}]", "3:22: probes[0].where: unknown key. Valid keys: name, at."},
 };
 INSTANTIATE_TEST_SUITE_P(Config, WrongKey, testing::ValuesIn(cases),

@@ -129,7 +129,7 @@ def finish(job, code, picture):
     if code == 3 or (job.asked and job.recorded and folders.checkpoint(job.output)):
         print(f"stopped after {took}, saved as {folders.checkpoint(job.output)}; go on: {again}", file=sys.stderr)
         return 3 if code == 3 else code
-    what = {2: f"mend the case: couplet check {shlex.quote(shown(job.case.file))} tells all its mistakes at once"}.get(
+    what = {2: f"mend what is named above; all mistakes of the file at once: couplet check {shlex.quote(shown(job.case.file))}"}.get(
         code, f"from the last checkpoint: {again}" if job.recorded and folders.checkpoint(job.output) else f"logs in {out}")
     why = "" if code == 2 else f": {job.last_words()}"  # what is wrong with a case stands just above
     print(f"failed after {took}, exit code {code}{why}\n{what}", file=sys.stderr)

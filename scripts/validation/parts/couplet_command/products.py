@@ -47,7 +47,7 @@ BARS = [
     Bar("schema: all cases valid, wrong ones of the tests", "refused where a schema can", tests("^cases_schema_refuses_what_a_schema_can$")),
     Bar("schema and reference", "what the programs say", names_of_programs),
     Bar("site: all documents, gallery of all cases, search", "no dead link, nothing from elsewhere, no error in a headless browser", tests("^command_site$")),
-    Bar("every command of the tutorials, in an empty folder with an empty HOME", "ends well, with a picture each", tests("^command_tutorial_", 7), long=True),
+    Bar("every command of the tutorials, in an empty folder with an empty HOME", "ends well, with a picture each", tests("^command_tutorial_", 8), long=True),
     Bar("couplet new of every case of the gallery", "a valid case in an empty folder", tests("^command_gallery$")),
     Bar("READMEs of configs/", "a picture and a command each", readmes),
     Bar("every command of the READMEs of configs/, in a copy with an empty HOME",
