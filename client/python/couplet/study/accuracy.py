@@ -12,7 +12,7 @@ import tempfile
 
 from couplet.places import ROOT
 from couplet.runs import Case, Task, Wrong, expect, run_all
-from couplet.study.pictures import figure, finish
+from couplet.study.pictures import divided, figure, finish, looks
 
 
 def load(case):
@@ -38,14 +38,16 @@ def row_of(module, series, mesh, task, record):
 
 
 def draw(title, rows, quantity, clock, picture):
-    made, axes = figure(title)
-    for series in dict.fromkeys(row["series"] for row in rows):
-        points = [(r[clock], r[quantity], r["mesh"]) for r in rows if r["series"] == series]
-        line, = axes.loglog([p[0] for p in points], [p[1] for p in points], "o-", markersize=4, label=series)
-        for seconds, gap, mesh in points if series == rows[0]["series"] else ():
-            axes.annotate(mesh, (seconds, gap), fontsize=6, color=line.get_color(), xytext=(4, 4), textcoords="offset points")
-    axes.set(xlabel=f"{clock.split()[0]} time of the whole process, one core [s]", ylabel=quantity)
-    finish(made, axes, picture)
+    found = divided(dict.fromkeys(row["series"] for row in rows))
+    styles, clock_name = looks(found), "processor" if clock.startswith("processor") else "wall"
+    made, panels = figure(title, len(found))
+    for axes, (_, names) in zip(panels, found):
+        for k, series in enumerate(names):
+            points = [(r[clock], r[quantity], r["mesh"]) for r in rows if r["series"] == series]
+            axes.loglog([p[0] for p in points], [p[1] for p in points], **styles[series], label=series)
+            for seconds, gap, mesh in points if k == 0 else ():
+                axes.annotate(mesh, (seconds, gap), fontsize=6, color=styles[series]["color"], xytext=(4, 4), textcoords="offset points")
+    finish(made, panels, picture, f"{clock_name} time of the whole process, one core [s]", quantity)
 
 
 def declare(parser):
@@ -54,7 +56,7 @@ def declare(parser):
     parser.add_argument("--meshes", nargs="*", default=[], metavar="MESH", help="only these meshes")
     parser.add_argument("--repeat", type=int, default=1, metavar="N", help="runs of each point, of which the median counts (1; short runs are measured three times)")
     parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="the folder whose bin/ holds the programs")
-    parser.add_argument("--clock", choices=("wall", "processor"), default="wall", help="what the picture shows; on a busy machine the processor time is the steadier one")
+    parser.add_argument("--clock", choices=("wall", "processor"), default="processor", help="what the picture shows (processor: steadier on a busy machine)")
     parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="by default configs/CASE/out/accuracy.png; the table goes beside it as .csv")
 
 

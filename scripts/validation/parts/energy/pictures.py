@@ -64,7 +64,7 @@ def pictures(job):
         with open(folder / "runs.csv", newline="") as file:
             rows = list(csv.DictReader(file))
         good = [r for r in rows if not r["reason"]]
-        peers = re.findall(r"^\| (CalculiX \w+|solidDisplacementFoam) \| ([\d.e+-]+) \| ([\d.e+-]+) \|", (folder / "report.md").read_text(), re.M)
+        peers = re.findall(r"^\| ((?:CalculiX \w+|solidDisplacementFoam)(?:, [\w, -]+)?) \| ([\d.e+-]+) \| ([\d.e+-]+) \|", (folder / "report.md").read_text(), re.M)
         missing = lacking(rows, cells, folder, quantity, peers)
         best = [(g, *cheapest(ours(good, quantity, g))) for g in sorted(GRADIENTS)] + [("CalculiX", *cheapest(theirs(peers)))]
         told = [f"{who} {seconds:.2f} s ({what.replace('CalculiX ', '')})" if what != "none" else f"{who} none" for who, seconds, what in best]
