@@ -51,6 +51,19 @@ def at_work(leader):
     return found
 
 
+def in_copy(root):
+    """{process: command line} of programs that work on the copy of the cases, in whatever session."""
+    found = {}
+    for file in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            words = file.read_bytes().decode(errors="replace").replace("\0", " ")
+            if f"{root}/build/bin/" in words and (file.parent / "stat").read_text().rpartition(")")[2].split()[0] != "Z":
+                found[int(file.parent.name)] = words[:120]
+        except OSError:
+            continue
+    return found
+
+
 def may_stop(command, leader, said):
     """It is a study or another script, or a program of ours has made a step."""
     return command.startswith("scripts/") or not at_work(leader) or re.search(r"\] t ?= ?[\d.e+-]+(/| s)", said.read_text(errors="replace")) is not None
@@ -76,7 +89,7 @@ def run(settings, command, root, home):
                 job.wait(300)
             except subprocess.TimeoutExpired:
                 how += ", to no effect"
-        left = at_work(job.pid)
+        left = at_work(job.pid) | in_copy(root)
         for pid in session(job.pid):
             os.kill(pid, signal.SIGKILL)
         said.seek(0)

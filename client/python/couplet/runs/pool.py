@@ -5,6 +5,8 @@ import concurrent.futures
 import threading
 import time
 
+from couplet.runs import process
+
 
 def run_all(tasks, jobs=1, again=False, say=print):
     """{task: Record} of all tasks, in their order. `again`: made again although there. `say` gets a line a task."""
@@ -53,5 +55,9 @@ def run_all(tasks, jobs=1, again=False, say=print):
         except BaseException:  # the user stops it: what is running ends, nothing new begins
             with mutex:
                 queue.clear()
+            process.STOP.set()
             raise
+        finally:
+            pool.shutdown()
+            process.STOP.clear()
     return {task: records[task] for task in tasks}

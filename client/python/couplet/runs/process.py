@@ -6,7 +6,11 @@ import pathlib
 import platform
 import signal
 import subprocess
+import threading
 import time
+
+STOP = threading.Event()  # set: what was launched from whatever thread ends
+PATIENCE = 5.0            # [s] between SIGTERM and SIGKILL
 
 
 class RunFailed(RuntimeError):
@@ -46,6 +50,8 @@ def launch(command, log, folder=None, timeout=3600, env=None):
                 pid, status, usage = os.wait4(process.pid, os.WNOHANG)
                 if pid:
                     break
+                if STOP.is_set():
+                    raise KeyboardInterrupt
                 if time.monotonic() - start > timeout:
                     late = True
                     os.killpg(process.pid, signal.SIGKILL)
@@ -54,6 +60,10 @@ def launch(command, log, folder=None, timeout=3600, env=None):
                 time.sleep(min(0.02, 0.002 + 0.01 * (time.monotonic() - start)))
         except BaseException:  # the user stops the study: nothing is left running
             os.killpg(process.pid, signal.SIGTERM)
+            limit = time.monotonic() + PATIENCE
+            while os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None and time.monotonic() < limit:
+                time.sleep(0.02)
+            os.killpg(process.pid, signal.SIGKILL)
             os.wait4(process.pid, 0)
             raise
         finally:
