@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """A minimal Debian of its own (debootstrap, as root, from the mirror of this machine's apt; COUPLET_CHROOT names one that is there), and in it the
-statements of packaging/Containerfile, one by one. Usage: chroot.py BUILD [package | container]. package: the second image with cpack's .deb of BUILD:
+statements of packaging/Containerfile, one by one. Usage: chroot.py BUILD [package [DEB] | container]. package: the second image with cpack's .deb of BUILD:
 installed by apt, used by a new user, removed. container: the first image's statements, too, which compile everything; its .deb is the one used."""
 import os
 import pathlib
@@ -119,6 +119,8 @@ with tempfile.TemporaryDirectory(prefix="couplet-chroot-") as scratch:
         maker = System(folder / "maker", base)
         make(maker, first, None)
         package = next((maker.folder / "couplet/build").glob("*.deb"))
+    elif sys.argv[3:]:
+        package = pathlib.Path(sys.argv[3])
     else:
         subprocess.run(["cpack", "-B", folder / "deb"], cwd=build, check=True, capture_output=True)
         package = next((folder / "deb").glob("*.deb"))

@@ -14,10 +14,10 @@ from validation.job import Bar
 PROGRAMS = ("solid_solver", "fluid_solver", "mesh_mover", "thermocline", "coupler")
 
 
-def tests(pattern, least=1):
+def tests(pattern, least=1, seconds=1800):
     """A bar that asks whether registered tests pass."""
     def measure(job):
-        passed, total, skipped, output = job.ctest(pattern)
+        passed, total, skipped, output = job.ctest(pattern, seconds)
         lost = re.findall(r"\d+ - (\S+) \((?:Failed|Timeout|Not Run)", output)
         return f"{passed} of {total} tests pass{' (lost: ' + ', '.join(lost[:4]) + ')' if lost else ''}", passed == total >= least
     return measure
