@@ -68,6 +68,7 @@ class FluidParticipant final : public Participant, public EstimatesError {
   double wall_displacement(const Exchange& in) const;
   bool stands_still() const { return interface_ && !motion_ && step_.scheme != Scheme::standalone; }
   bool holds_volume() const { return fluid_->parameters().volume_level == VolumeLevelBy::structure; }
+  double answer() const;
   void prepare(const Vectors<D>& w);
   void set_up_motion();
   void tell_impulse() const;

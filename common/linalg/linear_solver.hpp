@@ -74,10 +74,12 @@ class LinearSolver {
   void restore(const PreconditionerMemory& memory);
   int preconditioners_built() const { return built_; }
   int total_iterations() const { return total_iterations_; }
+  /// |v| over all ranks. Collective.
+  double norm(std::span<const double> values) const;
+  /// |b - A x|. Collective.
+  double true_residual(std::span<const double> b, std::span<const double> x) const;
 
  private:
-  double norm(std::span<const double> values) const;
-  double true_residual(std::span<const double> b, std::span<const double> x) const;
   void make_preconditioner();
   void use_single_precision();
   void make_single_factors();

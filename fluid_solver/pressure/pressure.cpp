@@ -186,7 +186,8 @@ SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::
 
 template <int D>
 SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<double>& b,
-                                           std::vector<double>& p, double relative, double absolute) {
+                                           std::vector<double>& p, double relative, double absolute,
+                                           double answer) {
   const Index owned = mesh_.cells.n_owned();
   if (singular()) {
     remove_mean(b);
@@ -195,6 +196,12 @@ SolveStatistics PressureEquation<D>::solve(const Placement<D>& at, std::vector<d
     double pin = owned > 0 ? p[0] : 0;
     MPI_Bcast(&pin, 1, MPI_DOUBLE, 0, mesh_.comm);
     for (Index c = 0; c < owned; ++c) p[c] -= pin;
+  }
+  if (answer > 0) {
+    const double enough = relative * solver_->norm(b);
+    const double left = answer * solver_->true_residual(b, std::span<const double>(p).first(owned));
+    absolute = std::max({absolute, least_answer * enough, std::min(enough, left)});
+    relative = 0;
   }
   const int made = solver_->preconditioners_built();
   const SolveStatistics statistics =

@@ -35,9 +35,11 @@ class PressureEquation {
   }
   /// `b`: per owned cell, made compatible here when the domain is closed; `p`: per local cell, guess on
   /// entry, mean zero in a closed domain (at its convective outlets, if there are any), ghosts current on
-  /// exit. Stops at max(relative |b|, absolute). Collective.
+  /// exit. Stops at max(relative |b|, absolute). With `answer`, the residual of the guess falls to this share, too, down to
+  /// least_answer relative |b|: a partner that changes b sees p change by what it has changed. Collective.
   SolveStatistics solve(const Placement<D>& at, std::vector<double>& b, std::vector<double>& p,
-                        double relative, double absolute);
+                        double relative, double absolute, double answer = 0);
+  static constexpr double least_answer = 1e-4;
 
  private:
   void make_pattern();

@@ -170,7 +170,7 @@ void PressureProjection<D>::add_oblique_pressure() {
 /// what two passes leave of it grows from about 45 degrees on: there the passes go on until the gradient
 /// stands.
 template <int D>
-void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w) {
+void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, double answer) {
   k_.gradient_guess = k_.gradient_start;
   const bool to_the_end = k_.oblique && k_.by.implicit && k_.very_oblique;
   const int passes = to_the_end ? most_oblique_passes : k_.oblique ? oblique_passes : 1;
@@ -180,7 +180,7 @@ void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w) {
     else
       add_oblique_pressure();
     const double tolerance = (pass < passes ? first_pass_tolerance : 1) * k_.parameters.pressure_tolerance;
-    solve_pressure(from, w, std::min(tolerance, loosest_tolerance));
+    solve_pressure(from, w, std::min(tolerance, loosest_tolerance), answer);
     if (pass == passes && to_the_end)
       throw SolveFailure(
           "The non-orthogonal part of the pressure equation did not converge in {} passes at t = {:.6g} s: "
@@ -208,7 +208,8 @@ bool PressureProjection<D>::gradient_stands() const {
 }
 
 template <int D>
-void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance) {
+void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance,
+                                           double answer) {
   const Placement<D>& now = *k_.step.to;
   const double factor = k_.rho / k_.step.dt;
   set_boundary_flux(w);
@@ -240,7 +241,7 @@ void PressureProjection<D>::solve_pressure(const State<D>& from, const Vectors<D
   b_.resize(k_.mesh.cells.n_owned());
   const double floor = flux_floor * factor * std::sqrt(sum(k_.mesh.comm, size));
   const SolveStatistics solved =
-      pressure_.solve(now, b_, k_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()));
+      pressure_.solve(now, b_, k_.p, tolerance, std::max(floor, std::numeric_limits<double>::min()), answer);
   k_.statistics.pressure_iterations += solved.iterations;
   if (k_.bodies) fill_pressure_in_bodies();
   if (k_.step.yields) let_walls_yield();

@@ -22,7 +22,8 @@ class PressureProjection {
   /// The matrix of the work's step, if that of another placement is there. Collective.
   void assemble();
   /// p and p_b for the given velocities w at t^{n+1}. Collective.
-  void project(const State<D>& from, const Vectors<D>& w);
+  /// `answer`: PressureEquation::solve().
+  void project(const State<D>& from, const Vectors<D>& w, double answer);
   /// psi in p for the boundary fluxes of w: the potential that makes phi^p free of divergence. Collective.
   void solve_initial(const Placement<D>& at);
   /// phi^p at the boundary from w. Collective.
@@ -46,7 +47,7 @@ class PressureProjection {
   void let_walls_yield();
   void add_oblique_pressure();
   bool gradient_stands() const;
-  void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance);
+  void solve_pressure(const State<D>& from, const Vectors<D>& w, double tolerance, double answer);
   void set_boundary_pressure(const State<D>& from, const Vectors<D>& w);
   void pressure_gradient(const Placement<D>& at, const std::vector<double>& p,
                          const std::vector<double>& boundary, Vectors<D>& sum) const;

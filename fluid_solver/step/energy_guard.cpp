@@ -50,6 +50,19 @@ double EnergyGuard<D>::mean_pressure(const EnergyStep<D>& s) const {
   return sums[1] > 0 ? sums[0] / sums[1] : 0;
 }
 
+/// Kinetic energy [J] that the pressure's solver may leave in a fluid at rest: the sum of rho V u^2 / 2 over the cells, of
+/// the velocity u = tolerance p dt / (rho h) that the pressure p on the boundary gives in a step where it differs by its
+/// tolerance from cell to cell. Collective.
+template <int D>
+double EnergyGuard<D>::energy_at_rest(const EnergyStep<D>& s) const {
+  double sums[3] = {0, double(s.p.size()), 0};
+  for (const double p : s.p) sums[0] += std::abs(p);
+  for (Index c = 0; c < mesh_.cells.n_owned(); ++c) sums[2] += std::pow(s.to.volume[c], 1 - 2. / D);
+  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_DOUBLE, MPI_SUM, mesh_.comm);
+  const double impulse = pressure_tolerance_ * s.dt * sums[0] / std::max(1., sums[1]);
+  return 0.5 * impulse * impulse / rho_ * sums[2];
+}
+
 /// sums: work, what passed, p |phi|, |phi|.
 template <int D>
 void EnergyGuard<D>::add_boundary(const EnergyStep<D>& s, double level, double* sums) const {
@@ -112,6 +125,7 @@ EnergyJudgement EnergyGuard<D>::judge(const EnergyStep<D>& s) const {
   j.ledger.excess = std::max(0.0, before.excess + j.gain - std::max(0.0, j.work) - unsure);
   j.out_of_bounds = j.gain > 0 && j.ledger.excess > largest_excess * j.ledger.reference &&
                     sums[energy] > least_energy * j.ledger.largest;
+  if (j.out_of_bounds) j.out_of_bounds = sums[energy] > energy_at_rest(s);  // the same on all ranks, and rare
   return j;
 }
 

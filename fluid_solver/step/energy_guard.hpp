@@ -40,8 +40,14 @@ struct EnergyJudgement {
 template <int D>
 class EnergyGuard {
  public:
-  EnergyGuard(const Mesh& mesh, const Boundary<D>& boundary, double density, double viscosity)
-      : mesh_(mesh), boundary_(boundary), rho_(density), mu_(viscosity) {}
+  /// `pressure_tolerance`: of the pressure's solver, relative.
+  EnergyGuard(const Mesh& mesh, const Boundary<D>& boundary, double density, double viscosity,
+              double pressure_tolerance)
+      : mesh_(mesh),
+        boundary_(boundary),
+        rho_(density),
+        mu_(viscosity),
+        pressure_tolerance_(pressure_tolerance) {}
   /// Collective.
   EnergyJudgement judge(const EnergyStep<D>& step) const;
   /// Sum of rho V |u|^2 / 2 [J] over the cells of this rank.
@@ -49,10 +55,11 @@ class EnergyGuard {
 
  private:
   double mean_pressure(const EnergyStep<D>& step) const;
+  double energy_at_rest(const EnergyStep<D>& step) const;
   void add_boundary(const EnergyStep<D>& step, double level, double* sums) const;
   const Mesh& mesh_;
   const Boundary<D>& boundary_;
-  double rho_, mu_;
+  double rho_, mu_, pressure_tolerance_;
 };
 
 /// Why a step may have gone wrong in one cell, as a sentence; local. `cell`: owned. `frame_rate`: |2 omega| of a frame

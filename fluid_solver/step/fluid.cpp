@@ -304,12 +304,12 @@ void Fluid<D>::prepare(std::span<const Vec3> points, const Vectors<D>& wall_velo
 }
 
 template <int D>
-void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity) {
+void Fluid<D>::solve_pressure(const Vectors<D>& wall_velocity, double answer) {
   if (!wall_velocity.empty())
     for (std::size_t b = 0; b < last_w_.size(); ++b)
       if (boundary_.is_interface(b)) last_w_[b] = wall_velocity[b];
   check_wall_velocity();
-  step_.project(level(), last_w_);
+  step_.project(level(), last_w_, answer);
   // Once a prediction: what a repetition changes is the potential flow of a bounded wall velocity.
   if (!judged_) step_.complete(level());
   judged_ = true;

@@ -53,8 +53,9 @@ class Fluid {
   /// Before solve_pressure(): the turn of the interface's and the bodies' faces at the step's end, see turn_of();
   /// empty: they do not turn. At the faces of other walls zeros.
   void set_turn(Vectors<D> turn) { given_turn_ = std::move(turn); }
-  /// Throws SolveFailure if the flow that follows is none; everything that can fail is here and in prepare().
-  void solve_pressure(const Vectors<D>& wall_velocity);
+  /// Throws SolveFailure if the flow that follows is not valid; everything that can fail is here and in prepare().
+  /// `answer`: PressureEquation::solve(), of a pass of a coupling that iterates.
+  void solve_pressure(const Vectors<D>& wall_velocity, double answer = 0);
   /// Force that friction would add if it saw the wall velocity w instead of w*, that of prepare(),
   /// rho sqrt(nu dt) |w - w*| S / dt, over the load of the last solve_pressure() (less a uniform pressure),
   /// both as root mean square over the interface. Collective.

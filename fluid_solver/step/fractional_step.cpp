@@ -16,7 +16,7 @@ FractionalStep<D>::FractionalStep(const Mesh& mesh, const Boundary<D>& boundary,
       flux_(k_),
       projection_(k_, moving),
       loads_(k_),
-      energy_guard_(mesh, boundary, parameters.density, parameters.viscosity) {
+      energy_guard_(mesh, boundary, parameters.density, parameters.viscosity, parameters.pressure_tolerance) {
   if (parameters.rotating_frame) k_.frame.emplace(*parameters.rotating_frame);
   if (!parameters.bodies.empty()) k_.bodies = std::make_unique<ImmersedBodies<D>>(mesh, parameters);
   if (parameters.gaps.empty()) return;
@@ -64,9 +64,9 @@ void FractionalStep<D>::rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& 
 }
 
 template <int D>
-void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w) {
+void FractionalStep<D>::project(const State<D>& from, const Vectors<D>& w, double answer) {
   level_.reset();
-  projection_.project(from, w);
+  projection_.project(from, w, answer);
   loads_.set_forces(from);
 }
 

@@ -34,7 +34,7 @@ class FractionalStep {
   /// R of a state, explicit, and its viscous force on the boundary faces. Collective.
   void rates(const State<D>& of, Vectors<D>& rate, Vectors<D>& shear);
   /// May be called again with another w after one predict(). Collective.
-  void project(const State<D>& from, const Vectors<D>& w);
+  void project(const State<D>& from, const Vectors<D>& w, double answer = 0);
   /// Makes level n+1 of the last project(), beside level n, and judges it. Throws SolveFailure naming time
   /// and place if its velocity is not finite. Collective.
   void complete(const State<D>& from);

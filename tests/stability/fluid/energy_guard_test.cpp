@@ -84,6 +84,21 @@ TEST(EnergyGuard, too_many_sub_steps_are_named_by_cause_cell_and_place) {
   EXPECT_EQ(said("t > 0.015 && y > 0.13 && y < 0.24 ? 2 : 1", 0.01), "");
 }
 
+TEST(EnergyGuard, what_a_pressure_solve_leaves_in_a_fluid_at_rest_is_no_blow_up) {
+  for (const double density : {1.0, 1e3, 1e5}) {
+    FluidParameters p = layers();
+    p.initial_velocity = FluidParameters().initial_velocity;
+    p.density = density;
+    p.viscosity = 1;
+    p.viscous = ViscousTreatment::automatic;
+    p.pressure_tolerance = 1e-6;
+    p.boundaries["xmin"] = boundary(BoundaryType::outlet, {}, "3000");
+    FluidCase<2> c(MPI_COMM_WORLD, box(9), p);
+    for (int i = 0; i < 5; ++i) c.step(5e-3);
+    EXPECT_LT(c.state().ledger.energy, 1e-12 * density);
+  }
+}
+
 /// What brings energy: a lid, an inlet, a pressure, a force, a wall that moves the mesh, from rest and at
 /// once.
 class Driven : public ::testing::TestWithParam<ViscousTreatment> {};
