@@ -103,10 +103,11 @@ def counts(verdicts):
     return text
 
 
-def write(file, name, table):
-    """`table`: [(quantity, Row)]."""
+def write(file, name, table, note=""):
+    """`table`: [(quantity, Row)]; `note`: what to know of it, before its rows."""
     text = f"# Validation: {name}\n\nWritten by `scripts/validate {name} --write` on {datetime.date.today()}, "
     text += f"{platform.machine()}: {counts(row.verdict for _, row in table)}. The last column names the commit that was measured.\n\n"
+    text += f"{note}\n\n" if note else ""
     text += "| quantity | wanted | got | | commit |\n|---|---|---|---|---|\n"
     for quantity, row in table:
         cells = (quantity, row.wanted, row.got, row.verdict, row.commit)

@@ -71,7 +71,7 @@ def main():
             made, inside = looked_at(draw)
             failed += check(f"{name}: no word is cut, three panels", inside and len(made.axes) == 3)
         made, inside = looked_at(lambda: pictures.phases(LONG, many, file))
-        failed += check("phases: at most eight, processor seconds of each run", len(made.axes[0].get_legend().get_texts()) <= 8 and "(1.6 s)" in made.axes[0].get_yticklabels()[0].get_text())
+        failed += check("phases: at most eight, no word is cut, processor seconds of each run", inside and len(made.axes[1].get_legend().get_texts()) <= 8 and "(1.6 s)" in made.axes[0].get_yticklabels()[0].get_text())
     return 1 if failed else 0
 
 

@@ -3,6 +3,7 @@
 import dataclasses
 import hashlib
 import json
+import math
 import os
 import pathlib
 import shutil
@@ -117,14 +118,16 @@ class Race:
         return found
 
     def too_long(self, earlier, size, longest):
-        """By the growth that the last two runs show, at least quadratic in the size."""
+        """By the growth that the last two runs show, at least linear in the size; two runs of a series are made unless the first took too long."""
         if not earlier:
             return False
-        (n, cost), grown = earlier[-1], 2.0
-        if len(earlier) > 1 and earlier[-2][1] > 0.1:
-            from couplet.study.convergence import slope
-            grown = max(grown, slope(*zip(*earlier[-2:])) or grown)
-        return cost * (size / n)**grown > LONGEST * max(longest, 1.0)
+        (n, cost), limit = earlier[-1], LONGEST * max(longest, 1.0)
+        if len(earlier) == 1:
+            return cost > limit
+        (coarse, first), grown = earlier[-2], 1.0
+        if first > 0:
+            grown = max(grown, math.log(cost / first) / math.log(n / coarse)) if math.isfinite(cost) and n > coarse else grown
+        return cost * (size / n)**grown > limit
 
     def row(self, contender, name, point):
         """A run, made once for the same input, as a row like ours."""

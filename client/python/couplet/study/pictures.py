@@ -68,7 +68,7 @@ def figure(title, count=1):
     """(figure, [axes]) of so many panels with the same scales, under a title that is wrapped where it is longer than the picture is wide."""
     columns = min(count, 2 if count in (2, 4) else 3)
     lines = -(-count // columns)
-    width, height = (6.6, 4.4) if count == 1 else (4.6 * columns, 3.7 * lines + 0.3)
+    width, height = (6.6, 4.4) if count == 1 else (4.6 * columns, 4.5 * lines + 0.3)
     made, axes = plt.subplots(lines, columns, figsize=(width, height), dpi=130 if count == 1 else 110, constrained_layout=True, sharex=True, sharey=True, squeeze=False)
     made.suptitle(textwrap.fill(title, int(NARROW * width / 6.6)), fontsize=10)
     for one in axes.flat[count:]:
@@ -92,8 +92,8 @@ def finish(made, axes, file, xlabel="", ylabel=""):
         one.grid(which="both", alpha=0.25)
         plain(one.xaxis), plain(one.yaxis)
         handles, labels = one.get_legend_handles_labels()
-        if len(labels) > 1:
-            one.legend(fontsize=7, framealpha=0.7)
+        if len(labels) > 1:  # of several panels below each, where it hides nothing
+            one.legend(fontsize=7, framealpha=0.7, **({"loc": "upper center", "bbox_to_anchor": (0.5, -0.08), "ncols": 1 + (max(map(len, labels)) < 36)} if len(axes) > 1 else {}))
     made.supxlabel(xlabel, fontsize=10), made.supylabel(ylabel, fontsize=10)
     made.savefig(file)
     plt.close(made)
@@ -186,7 +186,8 @@ def phases(title, rows, file, most=24):
         return None
     names = sorted({p for r in good for p in r.record.phases}, key=lambda p: -sum(r.record.phases.get(p, 0) for r in good))
     shown = names[:MOST] if len(names) <= MOST else names[:MOST - 1]
-    made, axes = plt.subplots(figsize=(7.2, 1.2 + 0.24 * len(good)), dpi=130, constrained_layout=True)
+    high = 0.6 + 0.24 * len(good)
+    made, (axes, below) = plt.subplots(2, 1, figsize=(7.2, 0.8 + high), dpi=130, constrained_layout=True, height_ratios=(high, 0.4))
     left, at = np.zeros(len(good)), np.arange(len(good))
     total = np.array([max(sum(r.record.phases.values()), 1e-12) for r in good])
     for p in [*shown, *(["the rest"] if len(names) > len(shown) else [])]:
@@ -195,9 +196,11 @@ def phases(title, rows, file, most=24):
         left += 100 * part / total
     axes.set_yticks(at, [f"{r.point.name} ({r.record.cpu:.2g} s)" for r in good], fontsize=6)
     axes.set(xlabel="share of the run [%]; in brackets its processor seconds", xlim=(0, 100))
+    axes.margins(y=0.01)
     axes.invert_yaxis()
     made.suptitle(textwrap.fill(title, NARROW), fontsize=10)
-    axes.legend(fontsize=6, ncols=4, loc="upper center", bbox_to_anchor=(0.45, -0.5 / (0.24 * len(good) + 0.6)))
+    below.axis("off")
+    below.legend(*axes.get_legend_handles_labels(), fontsize=6, ncols=4, loc="center")
     made.savefig(file)
     plt.close(made)
     return file
