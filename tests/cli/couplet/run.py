@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, stop, wrong, kill, tell, gallery, python"""
+"""The command couplet on a small coupled case. Usage: run.py BIN PART [MPIRUN ...]; parts: by_hand, side_by_side, stop, wrong, kill, tell, gallery, python"""
 import pathlib
 import re
 import shutil
@@ -67,6 +67,25 @@ def by_hand(folder):
     check("or by the work expected", re.search(r"-n 2 \S*fluid_solver", foreseen.stdout) and foreseen.stdout.count("-n 1 ") == 3, foreseen.stdout + foreseen.stderr)
     batch = call(bin_, "run", case, "-n", "fluid=2", "--slurm=--time=5", "--print").stdout
     check("--slurm makes a script", batch.startswith("#!/bin/bash\n#SBATCH") and "--ntasks=5" in batch and "#SBATCH --time=5" in batch, batch)
+
+
+def side_by_side(folder):
+    """Two jobs at once: none is bound to the cores of the other, and both leave the same."""
+    case = case_in(folder / "a", bin_, end_time=0.1)
+    jobs = [start(bin_, "run", case, "--participant", "fluid", "-n", "fluid=2", "--set", f"simulation.output.folder={folder / name}") for name in "bc"]
+    check("both step", until(lambda: all((folder / name / "fluid/steps.csv").exists() for name in "bc")))
+    own = pathlib.Path("/proc/self/status").read_text().partition("Cpus_allowed_list:")[2].split()[0]
+    lists = []
+    for file in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if file.read_bytes().startswith(f"{bin_ / 'fluid_solver'}\0{case}".encode()):
+                lists.append((file.parent / "status").read_text().partition("Cpus_allowed_list:")[2].split()[0])
+        except OSError:
+            continue
+    check("every rank may run on every core", len(lists) == 4 and set(lists) == {own}, (lists, own))
+    codes = [job.communicate() and job.returncode for job in jobs]
+    same = call(bin_, "compare", folder / "b", folder / "c")
+    check("both end well, with the same results", codes == [0, 0] and same.returncode == 0, same.stdout)
 
 
 def stop(folder):
@@ -215,5 +234,5 @@ def python(folder):
 
 
 with tempfile.TemporaryDirectory(prefix="couplet-command-") as scratch:
-    {"by_hand": by_hand, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "gallery": gallery, "python": python}[what](pathlib.Path(scratch))
+    {"by_hand": by_hand, "side_by_side": side_by_side, "stop": stop, "wrong": wrong, "kill": kill, "tell": tell, "gallery": gallery, "python": python}[what](pathlib.Path(scratch))
 end()

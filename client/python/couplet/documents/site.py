@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The site: all documents and the READMEs of cases and folders, searchable, with a gallery of all cases, by MkDocs and its Material theme. Nothing
 on it is loaded from elsewhere."""
+import math
 import os
 import pathlib
 import re
@@ -89,6 +90,12 @@ def with_links(page, text, there, needed):
     return "".join(part if i % 2 else re.sub(r"(!?)\[((?:[^][]|\[[^]]*\])*)\]\(([^)\s]+)\)", link, part) for i, part in enumerate(parts))
 
 
+def duration(seconds):
+    for unit, size, below in (("s", 1, 90), ("min", 60, 5400), ("h", 3600, math.inf)):
+        if seconds < below:
+            return f"{max(1, round(seconds / size))} {unit}"
+
+
 def card(entry, there, needed):
     readme = pathlib.Path("configs") / entry.name / "README.md"
     picture = target_of(readme, entry.picture, there)[1] if entry.picture else None
@@ -99,7 +106,7 @@ def card(entry, there, needed):
     title = f"[{entry.title}]({readme})" if readme in there else entry.title
     first = re.split(r"(?<=[.!?]) ", re.sub(r"\[([^]]*)\]\([^)]*\)", r"\1", entry.about))[0]
     return (f'<div markdown="1">\n{shown}**{title}**\n\n{first}\n\n{", ".join(f"`{p}`" for p in dict.fromkeys(entry.programs))}'
-            f"{f'; {entry.cells} cells' if entry.cells else ''}\n\n`couplet run configs/{entry.name}`\n\n</div>\n")
+            f"{f'; {entry.cells} cells' if entry.cells else ''}{f'; about {duration(float(entry.seconds))} of one core' if entry.seconds else ''}\n\n`couplet run configs/{entry.name}`\n\n</div>\n")
 
 
 def gallery(there, needed):

@@ -6,6 +6,8 @@ import pathlib
 import re
 import shutil
 import subprocess
+import tempfile
+import threading
 
 import yaml
 
@@ -24,6 +26,7 @@ class Entry:
     programs: list
     picture: str    # file beside README.md or below docs/, as the README names it; empty if there is none
     cells: str = ""  # of the largest mesh (configs/cells.csv)
+    seconds: str = ""  # of one core for the whole run, about (same file)
 
     @property
     def folder(self):
@@ -43,22 +46,41 @@ def entry(folder):
 def entries():
     found = [entry(file.parent) for file in sorted((ROOT / "configs").glob("*/case.yaml"))]
     table = ROOT / "configs" / CELLS
-    rows = dict(csv.reader(table.read_text().splitlines())) if table.exists() else {}
+    rows = {row[0]: row[1:] for row in csv.reader(table.read_text().splitlines())} if table.exists() else {}
     for e in found:
-        e.cells = rows.get(e.name, "")
+        e.cells, e.seconds = (*rows.get(e.name, ()), "", "")[:2]
     return found
 
 
-def cells_of_all(build):
-    """Text of cells.csv: of each case the most cells that one of its programs expects."""
-    text = "case,cells\n"
+def seconds_of(case, build, limit):
+    """Processor seconds of a whole run, without waiting: measured, or from how far it got within `limit` seconds of the clock; "" if it did not step."""
+    from couplet.places import command
+    from couplet.runs import folder
+    from couplet.runs.results import Results
+    with tempfile.TemporaryDirectory(prefix="couplet-gallery-") as scratch:
+        out = pathlib.Path(scratch) / "out"
+        job = subprocess.Popen([command(), "run", case, "--bin", build / "bin", "--set", f"simulation.output.folder={out}"], stdout=subprocess.PIPE,
+                               stderr=subprocess.DEVNULL, text=True)
+        timer = threading.Timer(limit, lambda: folder.stop(out) or job.terminate())
+        timer.start()
+        said = job.communicate()[0]
+        timer.cancel()
+        ways = re.findall(r"\] t ?= ?([\d.e+-]+)/([\d.e+-]+) s", said)
+        worked = Results(out).costs()["work"] if out.is_dir() else 0
+    return f"{float(f'{worked * float(ways[-1][1]) / float(ways[-1][0]):.1g}'):g}" if ways and worked > 0 else ""
+
+
+def cells_of_all(build, limit=0):
+    """Text of cells.csv: of each case the most cells that one of its programs expects, and the processor seconds of a run (kept where `limit` is 0)."""
+    text, before = "case,cells,seconds\n", {e.name: e.seconds for e in entries()}
     for file in sorted((ROOT / "configs").glob("*/case.yaml")):
         case, most = Case(file, build), 0
         for name in case.participants:
             if case.program(name).exists():
                 said = subprocess.run([case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True).stdout
                 most = max([most, *map(int, re.findall(r"^expected: +(\d+) cells", said, flags=re.M))])
-        text += f"{case.file.parent.name},{most or ''}\n"
+        seconds = seconds_of(file, build, limit) if limit else before[case.file.parent.name]
+        text += f"{case.file.parent.name},{most or ''},{seconds}\n"
     return text
 
 

@@ -25,8 +25,9 @@ class Cost:
 
 
 def environment():
-    return dict(os.environ, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1",
-                OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", MPLBACKEND="Agg")
+    """One thread per rank; ranks are not bound to cores: Open MPI would bind those of jobs side by side to the same ones."""
+    ours = dict(OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", MPLBACKEND="Agg")
+    return {"OMPI_MCA_hwloc_base_binding_policy": "none", **os.environ, **ours}
 
 
 def last_words(text):

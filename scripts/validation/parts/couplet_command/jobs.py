@@ -33,6 +33,7 @@ def overhead(job):
 
 BARS = [
     Bar("couplet run and the line that it prints, typed by hand: a coupled flap", "the same results, bit for bit", tests("^command_by_hand$")),
+    Bar("two jobs side by side, each on two ranks", "no rank bound to the other's cores, the same results", tests("^command_side_by_side$")),
     Bar("overhead of couplet run", "< 0.2 s", overhead),
     Bar("stop, SIGINT, SIGTERM, then resume", "exit code 3, then to the undisturbed results, bit for bit", tests("^command_stop$")),
     Bar("the launcher killed, terminated three times, hung up; a program killed", "no process left", tests("^command_kill$")),
