@@ -7,8 +7,7 @@ import numpy as np
 from couplet.peers import mesh
 from couplet.peers.foam_files import PolyMesh, foam_environment, last_time, one, put, read_field, read_rows, values
 from couplet.peers.results import write_fields, write_table
-from couplet.peers.values import depends_on_time, field, number, only, refuse, vector
-from couplet.runs.case import expect
+from couplet.peers.values import depends_on_time, field, number, only, refuse, settled, vector
 
 PROGRAMS = ("icoFoam", "pimpleFoam")
 HERE = {"program", "mesh", "mesh-scale", "mesh-parameters", "dimension", "density", "viscosity", "boundaries", "initial-velocity", "initial-pressure",
@@ -30,6 +29,7 @@ class Flow:
     def __init__(self, data, name, folder, work, trusted=False):
         self.name, self.where, self.section = name, f"participants.{name}", data["participants"][name]
         self.folder, self.work, self.trusted, self._mesh = folder, work, trusted, None
+        settled(data)
         only(self.section, self.where, HERE, "OpenFOAM's icoFoam and pimpleFoam")
         self.dimension = int(self.section.get("dimension", 3))
         self.end = number(data["simulation"]["end-time"], "simulation.end-time")
@@ -50,10 +50,7 @@ class Flow:
             self.depth = flat.size() if self.dimension == 2 else 1.0
             body = flat.extruded(self.depth) if self.dimension == 2 else flat
             kinds = {p: "wall" if g["type"] in WALLS else "symmetry" if g["type"] == "symmetry" else "patch" for p, g in self.boundaries.items()}
-            for patch in flat.patches:
-                expect(patch in kinds, f"{self.where}.boundaries.{patch}: is missing")
-            for patch in kinds:
-                expect(patch in flat.patches, f"{self.where}.boundaries.{patch}: the mesh has no such patch; it has {', '.join(flat.patches)}")
+            mesh.check_patches(flat, kinds, self.where)
             self._mesh = flat, body, PolyMesh(body, kinds)
         return self._mesh
 

@@ -79,6 +79,14 @@ class Mesh:
         return found
 
 
+def check_patches(mesh, boundaries, where):
+    """Every patch needs an entry, and every entry a patch."""
+    for patch in mesh.patches:
+        expect(patch in boundaries, f"{where}.boundaries.{patch}: is missing")
+    for patch in boundaries:
+        expect(patch in mesh.patches, f"{where}.boundaries.{patch}: the mesh has no such patch; it has {', '.join(mesh.patches)}")
+
+
 def normals(corners):
     """(m, 3), not of unit length: of edges in the plane those to the right of their direction."""
     if corners.shape[1] == 2:

@@ -109,7 +109,7 @@ class Race:
                     continue
                 try:
                     row = self.row(contender, name, point)
-                except Refused as error:
+                except Wrong as error:  # refused, or gmsh cannot make its mesh
                     self.why[contender.name] = str(error)
                     continue
                 earlier.append((point.size, row.record.cpu if row.good else float("inf")))

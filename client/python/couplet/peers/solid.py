@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 
 from couplet.peers import elements, mesh
-from couplet.peers.values import field, number, only, refuse, vector
+from couplet.peers.values import field, number, only, refuse, settled, vector
 
 HERE = {"program", "mesh", "mesh-scale", "mesh-parameters", "dimension", "plane", "analysis", "kinematics", "material", "boundaries", "gravity",
         "solution-method", "probes", "output", "stiffness-tolerance", "time-scheme"}  # the last ones change how, not what is solved
@@ -27,6 +27,7 @@ class Solid:
     def __post_init__(self):
         self.where, self.meshes = f"participants.{self.name}", {}
         self.section = s = self.data["participants"][self.name]
+        settled(self.data)
         only(s, self.where, HERE, self.program)
         if s.get("analysis", "dynamic") != "static":
             refuse(f"{self.where}.analysis", f"'{s.get('analysis', 'dynamic')}' is not exported to {self.program}; static is")
@@ -53,6 +54,7 @@ class Solid:
         """Of first or second order; made once."""
         if order not in self.meshes:
             self.meshes[order] = mesh.of_participant(self.section, self.folder, self.where, self.work, order, self.trusted)
+            mesh.check_patches(self.meshes[order], self.boundaries, self.where)
         return self.meshes[order]
 
     def gravity(self):

@@ -86,6 +86,12 @@ def only(section, where, known, program):
             refuse(f"{where}.{key}", f"has no counterpart in {program}")
 
 
+def settled(data):
+    """Refuses a case whose effects the program decides."""
+    if data["simulation"].get("effects", "as-given") != "as-given":
+        refuse("simulation.effects", f"'{data['simulation']['effects']}' leaves to the program what is solved; export it with the effects that it chose")
+
+
 def with_changes(case, changes):
     """The sections of a case with {absolute key: value} set."""
     data = copy.deepcopy({k: v for k, v in case.data.items() if k != "study"})

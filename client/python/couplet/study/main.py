@@ -71,12 +71,12 @@ def run_axes(case, arguments):
         return 0
     rows = study.run(points, arguments.jobs or 1, arguments.again, say)
     peers, why = [], {}
-    if arguments.peers or study.section.get("peers") == "case":
+    if arguments.peers:
         from couplet.peers.race import Race
         race = Race(study, say, arguments.allow_commands)
         peers, why = race.rows(rows), race.why
         for name, reason in why.items():
-            say(f"{name}: not beside ours: {reason}")
+            say(f"{name} was not run: {reason}")
     page = study.report(rows, peers, why)
     if arguments.publish:
         arguments.publish.mkdir(parents=True, exist_ok=True)
@@ -118,6 +118,7 @@ def run(arguments):
         expect(len(cases) == 1, "--optimise: one case at a time.")
         return optimise.run(cases[0], arguments)
     if all("axes" not in case.study for case in cases):
+        expect(not arguments.peers, "--peers: the study needs 'axes' and 'quantities'.")
         expect(not arguments.for_error, "--for-error: the study needs 'axes', of which one has 'sizes'.")
         return run_variants(cases, arguments)
     expect(len(cases) == 1, "a study by axes: one case at a time.")

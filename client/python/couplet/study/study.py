@@ -54,8 +54,7 @@ class Study:
         functions of a file beside the case."""
         found = {q.name: [(name, [(r.record.cpu, r.errors[q.name]) for r in some if r.errors.get(q.name, 0) > 0]) for name, some in table.series_of(peers).items()]
                  for q in self.quantities}
-        given = self.section.get("peers")
-        for quantity, word in (given if isinstance(given, dict) else {}).items():
+        for quantity, word in (self.section.get("peers") or {}).items():
             from couplet.study.quantities import module
             file, function = (part.strip() for part in word.split(":"))
             try:
@@ -81,7 +80,7 @@ class Study:
                     f"{where['cores']} cores; times are {pictures.CLOCKS[self.clock]}. Table: `runs.csv`. Repeat with `scripts/study`.")
         others = self.others(peers)
         for name, reason in (why or {}).items():
-            report.text(f"Not beside ours: {name}. {reason}.")
+            report.text(f"{name} was not run: {reason}.")
         for quantity in self.quantities:
             self.about(report, rows, quantity, against[quantity.name], others.get(quantity.name, ()))
         if self.axes.refining:
