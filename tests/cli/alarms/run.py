@@ -43,7 +43,7 @@ def launch_line(programs, case, folder):
     words = [str(case), "--strict=effects", f"--set=simulation.output.folder={folder}"]
     if "coupling" not in text:  # participants of a case without coupling run one by one; the first speaks for it
         return [str(programs / names[0][0]), *words, "--participant", names[0][1]], text["simulation"]["end-time"]
-    line = ["mpirun", "--oversubscribe", "--mca", "odls_base_sigkill_timeout", "100", "-n", "1", str(programs / "coupler"), *words]
+    line = ["mpirun", "--oversubscribe", "--mca", "odls_base_sigkill_timeout", "30", "-n", "1", str(programs / "coupler"), *words]
     for program, name in names:
         line += [":", "-n", "1", str(programs / program), *words, "--participant", name]
     return line, text["simulation"]["end-time"]
