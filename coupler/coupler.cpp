@@ -99,6 +99,7 @@ void Coupler::initialise() {
   check_places(comm_, sides_, *links_, parameters_.mapping);
   compare_surfaces(comm_, sides_, *links_, schedule_);
   still_guard_.emplace(comm_, sides_);
+  data_guard_.emplace(comm_, sides_);
   unknown_.emplace(comm_, sides_, *links_, group_, schedule_.side_by_side);
   audit_.emplace(comm_, sides_, *links_);
   if (simulation_.error_estimate && schedule_.iterates) errors_.emplace();
@@ -117,6 +118,7 @@ std::optional<StepFailure> Coupler::attempt(const Step& step) {
   if (!diverged_.empty()) return StepFailure(diverged_, false);
   enter_(Phase::begin_step, step.time);
   for (Partner& p : partners_) p.seconds = 0;
+  data_guard_->start_step();
   try {
     solve(step);
   } catch (const SchemeFailure& failure) {
@@ -127,7 +129,7 @@ std::optional<StepFailure> Coupler::attempt(const Step& step) {
     if (!swings && mechanics_->knows_work()) swings = work_guard_.suspects(parameters_.scheme);
     if (swings && parameters_.on_divergence == CouplingParameters::OnDivergence::stop)
       return StepFailure(fmt::format("{} Before that, {}", failure.what(), *swings), false);
-    return failure.what();
+    return StepFailure(failure.what() + data_guard_->silent());
   }
   return {};
 }

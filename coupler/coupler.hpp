@@ -18,6 +18,7 @@
 #include "coupler/acceleration/volume_level.hpp"
 #include "coupler/exchange/partners.hpp"
 #include "coupler/judge/audit.hpp"
+#include "coupler/judge/data_guard.hpp"
 #include "coupler/judge/error_estimate.hpp"
 #include "coupler/judge/guards.hpp"
 #include "coupler/judge/lag_estimate.hpp"
@@ -117,6 +118,7 @@ class Coupler {
   OscillationGuard oscillation_guard_;
   WorkGuard work_guard_;
   std::optional<StillGuard> still_guard_;
+  std::optional<DataGuard> data_guard_;
   std::optional<CouplingAudit> audit_;
   std::optional<CouplingErrorEstimate> errors_;  // none: not wanted, or nothing is iterated
   std::optional<LagEstimate> lag_;               // none: not wanted, not explicit, or it could not tell

@@ -36,6 +36,10 @@ void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
   for (std::string& still : still_guard_->accepted(given_, taken_))
     log::finding(comm_rank(comm_), {.id = "structure-at-rest",
                                     .sentence = fmt::format("t = {:g} s: {}", time, std::move(still))});
+  for (log::Finding& finding : data_guard_->accepted(given_, last_dt_)) {
+    finding.sentence = fmt::format("t = {:g} s: {}", time, finding.sentence);
+    log::finding(comm_rank(comm_), finding);
+  }
   audit_->loads(given_);
   audit_->tell(parameters_, time);
   if (!reason || !diverged_.empty()) return;

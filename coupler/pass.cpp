@@ -35,6 +35,7 @@ void Coupler::answer(std::size_t i, Exchange& given, bool move_mesh) {
   }
   if (mover_failed) throw SolveFailure(*mover_failed);
   require_finite(comm_, given, sides_[i].interface, sides_[i].interface.gives, partners_[i].name());
+  data_guard_->answered(i, taken_[i], given);
 }
 
 /// After `i` has answered, where fluids are closed.

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "common/base/error.hpp"
+#include "common/log/finding.hpp"
 #include "common/log/log.hpp"
 #include "coupler/coupler.hpp"
 #include "tests/coupling/support/passing.hpp"
@@ -77,6 +78,37 @@ class RenewingPiston final : public tests::Passing<toy::Piston&> {
   int passes_ = 0;
 };
 
+/// A piston that keeps its first answer of each step, as a fluid whose first guess meets its solver's tolerance.
+class DeafPiston final : public tests::Passing<toy::Piston&> {
+ public:
+  explicit DeafPiston(toy::Piston& piston) : Passing(piston) {}
+  void begin_step(const Step& step) override {
+    first_.clear();
+    inner.begin_step(step);
+  }
+  Exchange solve(const Exchange& in) override {
+    if (first_.empty()) first_ = inner.solve(in);
+    return first_;
+  }
+
+ private:
+  Exchange first_;
+};
+
+/// A spring that gives `times` its velocity.
+class HastySpring final : public tests::Passing<toy::Spring&> {
+ public:
+  HastySpring(toy::Spring& spring, double times) : Passing(spring), times_(times) {}
+  Exchange solve(const Exchange& in) override {
+    Exchange out = inner.solve(in);
+    for (double& v : out.at("velocity")) v *= times_;
+    return out;
+  }
+
+ private:
+  double times_;
+};
+
 /// One coupled run and its results.
 struct ToyRun {
   CouplingParameters coupling;
@@ -86,6 +118,8 @@ struct ToyRun {
   bool with_mover = false, mover_fails = false;
   double renewed_push = 0;  // 0: the piston itself
   bool tells = true;
+  bool deaf = false;  // the piston keeps its first answer
+  double times = 1;   // the velocity that the spring gives, over its own
   fs::path restart;
 
   std::vector<std::string> mover_log;
@@ -121,9 +155,13 @@ struct ToyRun {
     mover.fails = mover_fails;
     mover.motions = &motions;
     RenewingPiston renewing(piston, renewed_push, tells);
-    Participant& pusher = renewed_push == 0 ? static_cast<Participant&>(piston) : renewing;
+    DeafPiston deaf_one(piston);
+    HastySpring hasty(spring, times);
+    Participant& pusher = deaf                ? static_cast<Participant&>(deaf_one)
+                          : renewed_push == 0 ? static_cast<Participant&>(piston)
+                                              : renewing;
     CouplerChannels channels{std::make_unique<LocalChannel>("fluid", pusher),
-                             std::make_unique<LocalChannel>("solid", spring), nullptr};
+                             std::make_unique<LocalChannel>("solid", hasty), nullptr};
     if (with_mover) channels.mesh = std::make_unique<LocalChannel>("mover", mover);
     Coupler coupler(coupling, simulation, std::move(channels), {folder, folder / "checkpoints", restart});
     problem = coupler.run();
@@ -317,6 +355,40 @@ TEST(CoupledToy, what_was_learnt_before_a_participant_answers_anew_is_forgotten)
     RecordProperty(fmt::format("iterations_{}", int(type)),
                    fmt::format("{:.2f} {:.2f}", iterations[0], iterations[1]));
   }
+}
+
+TEST(CoupledToy, a_velocity_that_is_not_the_rate_of_the_displacement_is_found_and_one_that_is_not) {
+  const auto found = [] {
+    return std::ranges::count(log::findings(), std::string("velocity-and-displacement"), &log::Finding::id);
+  };
+  for (const double times : {1., 3., 0.2}) {
+    ToyRun run;
+    run.mass_ratio(0.5);
+    run.times = times;
+    const auto before = found();
+    run();
+    EXPECT_EQ(run.problem, "");
+    ASSERT_EQ(found() - before, times == 1 ? 0 : 1) << times;
+    if (times == 1) continue;
+    const log::Finding& last = log::findings().back();
+    EXPECT_EQ(last.severity, Severity::wrong);
+    EXPECT_NEAR(last.number, times, 0.1 * times);
+    EXPECT_THAT(last.sentence, testing::HasSubstr("velocity of 'solid'"));
+  }
+}
+
+// A constant relaxation of 0.05 is too slow for 25 passes, whether the piston answers or not.
+TEST(CoupledToy, a_step_that_fails_names_the_participant_that_did_not_answer) {
+  ToyRun run;
+  run.mass_ratio(0.9);
+  run.coupling.acceleration = {AccelerationParameters::Type::constant, 0.05, 1};
+  run.coupling.convergence.max_iterations = 25;
+  run();
+  EXPECT_THAT(run.problem, testing::HasSubstr("did not converge in 25 iterations"));
+  EXPECT_THAT(run.problem, testing::Not(testing::HasSubstr("gave the same answer")));
+  run.deaf = true;
+  run();
+  EXPECT_THAT(run.problem, testing::HasSubstr("'fluid' gave the same answer in 15 of the last 15 passes"));
 }
 
 TEST(CoupledToy, interrupted_run_equals_uninterrupted_run_bit_for_bit) {
