@@ -71,7 +71,8 @@ void find_restart(Job& job, const CommandLine& command_line, bool is_driver) {
   const double end = job.simulation.end_time;
   if (job.restart_time > end * (1 + 1e-9))
     throw Error(
-        "--restart {}: its time, {:g} s, lies beyond the end of the run ('simulation.end-time': {:g} s); give a later end-time.",
+        "--restart {}: its time, {:g} s, is beyond the end of the run ('simulation.end-time': {:g} s); set "
+        "a later end-time.",
         command_line.restart_folder.string(), job.restart_time, end);
 }
 
@@ -84,20 +85,20 @@ void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
   std::error_code failed;
   if (job.rank == 0) std::filesystem::create_directories(job.output_folder, failed);
   if (any(job.comm, bool(failed)))
-    throw Error("The output folder {} could not be made ({}). Its place is `simulation.output.folder` of {}.",
+    throw Error("Cannot create the output folder {} ({}). It is set by `simulation.output.folder` of {}.",
                 job.output_folder.string(), failed.message(), command_line.case_file.string());
   for (const std::filesystem::path& folder : {job.output_folder, job.checkpoints})
     if (any(job.comm, job.rank == 0 && std::filesystem::is_symlink(folder)))
       throw Error(
-          "{} is a symbolic link: a run does not write through it. Move it, or give another `simulation.output.folder`.",
+          "{} is a symbolic link; a run does not write through symbolic links. Move it, or set another "
+          "`simulation.output.folder`.",
           folder.string());
   const bool is_driver = job.alone || is_coupler;
   if (any(job.comm, job.rank == 0 && (!lock(job.output_folder / ".lock") ||
                                       (is_driver && !lock(output / ".checkpoints.lock")))))
     throw Error(
-        "The output folder {} is in use by another job that is still running. Wait for it, or give this one "
-        "another "
-        "folder with --set simulation.output.folder=....",
+        "The output folder {} is in use by another job that is still running. Wait for it to end, or choose "
+        "another folder with --set simulation.output.folder=....",
         job.output_folder.string());
   log::setup(job.name, job.rank, command_line.verbosity, (job.output_folder / (job.name + ".log")).string());
   job.restart_time = std::numeric_limits<double>::quiet_NaN();
@@ -155,7 +156,7 @@ int code_of_findings(const Job& job, CommandLine::Strict strict) {
   if (const int n = log::count(Severity::wrong, true); n > 0) {
     if (job.rank == 0)
       log::error(
-          "The answer is useless ({}, see above): exit code {}. Where you want it all the same: '--accept ID' to all "
+          "The result is useless ({}, see above): exit code {}. To accept it anyway: '--accept ID' for all "
           "programs, or 'simulation.accept: [ID]'.",
           ids_of(Severity::wrong, true), exit_wrong);
     return exit_wrong;
@@ -163,7 +164,7 @@ int code_of_findings(const Job& job, CommandLine::Strict strict) {
   const int n = strict == no ? 0 : log::count(Severity::warning, strict == effects);
   if (n == 0) return 0;
   if (job.rank == 0)
-    log::error("--strict: the result is in doubt ({} warning{} above: {}); the run counts as failed.", n,
+    log::error("--strict: the result is questionable ({} warning{} above: {}); the run counts as failed.", n,
                n == 1 ? "" : "s", ids_of(Severity::warning, strict == effects));
   return exit_failed;
 }
@@ -249,7 +250,7 @@ const Member* Job::find(const std::string& participant) const {
 MPI_Comm Job::connect(const std::string& participant) const {
   const Member* other = find(participant);
   if (other == nullptr)
-    throw Error("'{}' is to be connected with '{}', which is not part of the job.", name, participant);
+    throw Error("Cannot connect '{}' to '{}', which is not part of the job.", name, participant);
   MPI_Comm peers;
   constexpr int tag = 100;
   MPI_Intercomm_create(comm, 0, MPI_COMM_WORLD, other->first_rank, tag, &peers);

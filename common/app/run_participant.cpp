@@ -115,7 +115,7 @@ void closing_words(const Job& job, Participant& participant, RunAudit& audit, Er
   for (std::string& line : audit.closing_lines(!closing.has_failed)) sentences.push_back(std::move(line));
   if (closing.has_failed)
     sentences.push_back(
-        "the run failed: what it left out and its error are not judged, but for what is said above.");
+        "the run failed: its error and neglected effects are not judged, except as reported above.");
   else
     errors.find();
   for (std::string& line : errors.sentences()) {
@@ -129,7 +129,7 @@ void closing_words(const Job& job, Participant& participant, RunAudit& audit, Er
   if (job.rank != 0) return;
   for (const std::string& sentence : sentences) log::info("{}", sentence);
   log::info("{}", log::timers().table("time of '" + job.name + "'", seconds));
-  log::info("peak memory of '{}': {:.0f} MB on the rank that needed most, {:.0f} MB on all", job.name, most,
+  log::info("peak memory of '{}': {:.0f} MB on the rank with the most, {:.0f} MB in total", job.name, most,
             all);
 }
 

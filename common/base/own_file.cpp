@@ -12,9 +12,9 @@ const std::filesystem::path& own_file(const std::filesystem::path& file) {
   std::error_code ignored;
   const auto status = std::filesystem::symlink_status(file, ignored);
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return file;
-  throw Error("'{}' is {}: a run does not write there. Move it, or give another `simulation.output.folder`.",
+  throw Error("'{}' is {}; a run does not write there. Move it, or set another `simulation.output.folder`.",
               file.string(),
-              std::filesystem::is_symlink(status) ? "a symbolic link, which would lead into another file"
+              std::filesystem::is_symlink(status) ? "a symbolic link, which would lead to another file"
                                                   : "no file");
 }
 

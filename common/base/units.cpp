@@ -99,7 +99,7 @@ class UnitParser {
  private:
   [[noreturn]] void fail() const {
     if (rest_.empty()) throw Error("the unit '{}' is incomplete.", all_);
-    throw Error("cannot understand the unit '{}' at '{}'.", all_, rest_);
+    throw Error("cannot parse the unit '{}' at '{}'.", all_, rest_);
   }
   void skip_blanks() { rest_ = rest_.substr(std::min(rest_.find_first_not_of(" \t"), rest_.size())); }
   bool take(std::string_view token) {
@@ -159,7 +159,7 @@ class UnitParser {
     if (take("(")) {
       // Brackets in brackets are a call in a call: a long row of them shall not use up the stack.
       if (++depth_ > deepest)
-        throw Error("the unit '{:.20}...' has more than {} brackets in brackets.", all_, deepest);
+        throw Error("the unit '{:.20}...' has more than {} nested brackets.", all_, deepest);
       const Unit unit = product();
       if (!take(")")) fail();
       --depth_;
@@ -194,7 +194,7 @@ class UnitParser {
 /// What a number without a unit would be, or why there must be one.
 double bare_number(double number, std::string_view text, std::string_view unit) {
   if (!needs_unit(unit) || (number == 0 && unit != "K")) return number;
-  throw Error("'{0}' has no unit, and this number needs one: write {0} {1} or {0} {2}.", text,
+  throw Error("'{0}' has no unit, but one is required: write {0} {1} or {0} {2}.", text,
               unit == "K"     ? "degC"
               : unit == "rad" ? "deg"
                               : "deg/s",
@@ -206,14 +206,14 @@ void check_kind(const Unit& given, std::string_view given_text, double number, s
                 std::string_view unit) {
   if (unit == kelvin_difference && given.offset != 0)
     throw Error(
-        "'{}' is a temperature where a difference of temperatures is expected: write {:.10g} K (a difference is the same "
-        "number in K and degC).",
+        "'{}' is a temperature, but a temperature difference is expected: write {:.10g} K (differences have "
+        "the same value in K and degC).",
         text, number);
   if (unit == "rad/s" && given_text.find("Hz") != std::string_view::npos)
-    throw Error("'{}' is a frequency where a speed of rotation is expected: 1 Hz is 6.2832 rad/s.", text);
+    throw Error("'{}' is a frequency, but an angular velocity is expected: 1 Hz is 6.2832 rad/s.", text);
   if (unit != "K") return;
   if (given_text == kelvin_difference)
-    throw Error("'{}' is a difference of temperatures where a temperature is expected.", text);
+    throw Error("'{}' is a temperature difference, but a temperature is expected.", text);
   const double kelvin = given.factor * number + given.offset;
   if (kelvin < 0) throw Error("'{}' is {:.10g} K, below absolute zero.", text, kelvin);
 }
@@ -245,19 +245,19 @@ double parse_quantity(std::string_view text, std::string_view unit) {
     throw Error("'{}' is not a number; expected {}.", text,
                 wanted.is_number() ? "a plain number" : fmt::format("a number in {} or with its unit", unit));
   if (quantity->unit.empty()) return bare_number(quantity->number, text, unit);
-  if (quantity->unit.front() == ',') throw Error("'{}' has a decimal comma; write a point.", text);
+  if (quantity->unit.front() == ',') throw Error("'{}' has a decimal comma; use a decimal point.", text);
   if (unit.empty() && quantity->unit != "%")
-    throw Error("'{}' has more than a number in it ('{}'); expected a plain number.", text, quantity->unit);
+    throw Error("'{}' contains more than a number ('{}'); expected a plain number.", text, quantity->unit);
   const Unit given = [&] {
     try {
       return parse_unit(quantity->unit);
     } catch (const Error& error) {
-      throw Error("'{}': {} Expected {} or a unit that converts to it.", text, error.what(),
+      throw Error("'{}': {} Expected {} or a unit convertible to it.", text, error.what(),
                   unit.empty() ? "a plain number" : unit);
     }
   }();
   if (given.dimension != wanted.dimension)
-    throw Error("'{}': the unit '{}' does not convert to {}; expected {} or a unit that converts to it.",
+    throw Error("'{}': the unit '{}' is not convertible to {}; expected {} or a unit convertible to it.",
                 text, quantity->unit, unit, unit);
   check_kind(given, quantity->unit, quantity->number, text, unit);
   const double si = given.factor * quantity->number + given.offset;

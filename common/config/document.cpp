@@ -25,10 +25,10 @@ class Inspection {
     if (messages.size() >= most_messages) return;
     // Anchors of anchors double with every line.
     if (++nodes_ > most_nodes)
-      throw Error("{}: there are more than {} values up to here. Do anchors contain each other?",
+      throw Error("{}: more than {} values up to here. Do anchors contain each other?",
                   path.substr(0, 60), most_nodes);
     if (depth > deepest)
-      throw Error("{}: this is nested deeper than {} levels. Does an anchor contain itself?",
+      throw Error("{}: nested deeper than {} levels. Does an anchor contain itself?",
                   path.substr(0, 60), deepest);
     if (node.IsScalar()) check_text(node, path, "value");
     if (node.IsSequence()) {
@@ -49,7 +49,7 @@ class Inspection {
     if (found == text.end()) return true;
     messages.push_back(
         {place_of(node), path,
-         fmt::format("this {} holds a control character (code {}); remove it.", what, int(*found))});
+         fmt::format("this {} contains a control character (code {}); remove it.", what, int(*found))});
     return false;
   }
 
@@ -66,14 +66,14 @@ class Inspection {
       if (name.size() > longest_name) {
         messages.push_back(
             {place, path,
-             fmt::format("a key has {} characters; at most {} are possible.", name.size(), longest_name)});
+             fmt::format("a key has {} characters; at most {} are allowed.", name.size(), longest_name)});
         continue;
       }
       const std::string here = join_path(path, name);
       const auto [first, is_new] = seen.emplace(name, place);
       if (!is_new)
         messages.push_back({place, here,
-                            fmt::format("this key stands here twice (first at {}:{}); remove one of the two.",
+                            fmt::format("this key appears twice (first at {}:{}); remove one of the two.",
                                         first->second.line, first->second.column)});
       look(item.second, here, depth + 1);
     }
@@ -86,20 +86,21 @@ class Inspection {
 std::string explain(const std::string& message, std::string_view line) {
   static const std::pair<const char*, const char*> known[] = {
       {"illegal map value",
-       "a ':' stands where no key can be; check the indentation above, and quote a text that has ': '"},
+       "a ':' is not allowed here; check the indentation above, and quote text that contains ': '"},
       {"end of sequence flow not found",
-       "a list that was opened with '[' before this place is not closed by ']'"},
+       "a list opened with '[' before this position is not closed by ']'"},
       {"end of map flow not found",
-       "a mapping that was opened with '{' before this place is not closed by '}'"},
-      {"illegal flow end", "this bracket closes something that is not open; check '[', ']', '{' and '}'"},
-      {"end of map not found", "this line does not fit the mapping above; check its indentation and its ':'"},
+       "a mapping opened with '{' before this position is not closed by '}'"},
+      {"illegal flow end", "this bracket closes nothing; check '[', ']', '{' and '}'"},
+      {"end of map not found", "this line does not match the mapping above; check its indentation and its "
+                               "':'"},
       {"end of sequence not found",
-       "this line does not fit the list above; check its indentation and its '- '"},
+       "this line does not match the list above; check its indentation and its '- '"},
       {"the referenced anchor is not defined",
        "this '*name' refers to an anchor '&name' that does not exist"},
   };
   if (line.substr(0, line.find_first_not_of(" \t")).find('\t') != std::string_view::npos)
-    return "a tab cannot indent a line; use spaces";
+    return "tabs cannot be used for indentation; use spaces";
   for (const auto& [theirs, ours] : known)
     if (message == theirs) return ours;
   return message;
@@ -139,8 +140,8 @@ YAML::Node parse_yaml(const std::string& text, const std::string& name) {
     // A line that is indented less than the first key starts a second document without a word in yaml-cpp.
     if (const auto second = SecondDocument::find(text))
       throw Error(
-          "{}:{}:{}: this line does not belong to the mapping above; check its indentation (and no '---' "
-          "here).",
+          "{}:{}:{}: this line does not belong to the mapping above; check its indentation (and remove "
+          "'---').",
           name, second->line + 1, second->column + 1);
     return root;
   } catch (const YAML::Exception& error) {
@@ -161,7 +162,8 @@ YAML::Node step_into(const YAML::Node& node, const std::string& path, const std:
   if (node.IsSequence()) {
     const bool is_number = !part.empty() && part.find_first_not_of("0123456789") == std::string::npos;
     if (!is_number || part.size() > 6 || std::stoul(part) >= node.size())
-      throw Error("{}: {} is a list of {} entries, so an entry number from 0 is expected in place of '{}'.",
+      throw Error("{}: {} is a list of {} entries; expected an entry number, counted from 0, instead of "
+                  "'{}'.",
                   option, describe(path), node.size(), part);
     return node[std::stoul(part)];
   }
@@ -170,7 +172,7 @@ YAML::Node step_into(const YAML::Node& node, const std::string& path, const std:
   const Entry entry = find(node, part);
   if (!entry.found)
     throw Error(
-        "{}: there is no '{}' {}. {} (A mapping that is not there can be given as a whole: --set '{}={{key: "
+        "{}: '{}' does not exist {}. {} (A missing mapping can be set as a whole: --set '{}={{key: "
         "value}}'.)",
         option, part, path.empty() ? std::string("at the top level") : fmt::format("in '{}'", path),
         did_you_mean(part, key_names(node), "keys"), join_path(path, part));
@@ -191,11 +193,11 @@ Document Document::read(const std::filesystem::path& file) {
     throw Error("{}: this is a folder; give the YAML file in it, for example {}.", file.string(),
                 (file / "case.yaml").string());
   if (!std::filesystem::is_regular_file(file, error))
-    throw Error("{}: this is neither a file nor a link to one (a pipe?); save the case in a file.",
+    throw Error("{}: this is not a regular file or a link to one (a pipe?); save the case in a file.",
                 file.string());
   constexpr std::uintmax_t largest = 64 << 20;
   if (const auto size = std::filesystem::file_size(file, error); size > largest)
-    throw Error("{}: this file has {} MB; at most {} are read as a case.", file.string(), size >> 20,
+    throw Error("{}: this file has {} MB; a case may have at most {}.", file.string(), size >> 20,
                 largest >> 20);
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
@@ -228,7 +230,7 @@ void Document::set(const std::string& assignment) {
     throw Error("{}: expected key=value, for example --set simulation.end-time='2 s'.", option);
   const std::string path(trim(assignment.substr(0, equals)));
   if (std::any_of(path.begin(), path.end(), is_control))
-    throw Error("{}: the key holds a control character; remove it.", option);
+    throw Error("{}: the key contains a control character; remove it.", option);
   const std::vector<std::string> parts = split(path, '.');
   YAML::Node value;
   try {

@@ -39,7 +39,7 @@ std::string row(const Item& item) {
       type = "mapping";
       break;
     case Item::Kind::optional:
-      type = "mapping", fallback = "absent: not there";
+      type = "mapping", fallback = "absent: not used";
       break;
     case Item::Kind::map:
       type = fmt::format("mapping by {}", item.what);

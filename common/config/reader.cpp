@@ -138,7 +138,7 @@ void Reader::report_unknown_keys() {
       if (key == name) owners.push_back(owner);
     if (!owners.empty()) {
       report(place_of(item.first), path,
-             fmt::format("this key does not belong here; it goes with {}.", join(owners, " or ")));
+             fmt::format("this key is not valid here; it requires {}.", join(owners, " or ")));
       continue;
     }
     std::vector<std::string> free;
@@ -151,7 +151,7 @@ void Reader::report_unknown_keys() {
            "unknown key. " + did_you_mean(name, meant ? free : frame.known, "keys"));
   }
   if (unknown > most)
-    report(frame.place, frame.path, fmt::format("{} more unknown keys stand here.", unknown - most));
+    report(frame.place, frame.path, fmt::format("{} more unknown keys follow.", unknown - most));
 }
 
 std::string Reader::problem_of(const Facts& facts, const Slot& slot) const {
@@ -164,7 +164,7 @@ std::string Reader::problem_of(const Facts& facts, const Slot& slot) const {
   const auto around =
       std::find_if(frames_.rbegin(), frames_.rend(), [](const Frame& f) { return bool(f.dimension); });
   if (around != frames_.rend() && !facts.size && std::ssize(**texts) != *around->dimension)
-    return fmt::format("{} components are given where the {}-dimensional scene needs {}.", (**texts).size(),
+    return fmt::format("{} components are given, but the {}-dimensional scene needs {}.", (**texts).size(),
                        *around->dimension, *around->dimension);
   for (std::size_t i = 0; i < (**texts).size(); ++i)
     if (const std::string problem = check_expression_((**texts)[i]); !problem.empty())

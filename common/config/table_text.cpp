@@ -30,12 +30,12 @@ const Axis& axis_of(const std::string& name) {
     if (name == axis.name) return axis;
     names.emplace_back(axis.name);
   }
-  throw Error("a table is 'of' one of: {}; '{}' is none of them.", join(names), name);
+  throw Error("'of' of a table must be one of: {}; found '{}'.", join(names), name);
 }
 
 std::string word(const YAML::Node& node, const char* key) {
   const YAML::Node value = node[key];
-  if (!value || !value.IsScalar()) throw Error("a table needs '{}' with one word.", key);
+  if (!value || !value.IsScalar()) throw Error("a table needs '{}' with a single word.", key);
   return value.Scalar();
 }
 
@@ -58,7 +58,7 @@ std::string outside_of(const YAML::Node& node) {
   if (!node["outside"]) return "clamp";
   const std::string outside = word(node, "outside");
   if (outside != "clamp" && outside != "error")
-    throw Error("'outside' of a table is one of: clamp, error; not '{}'.", outside);
+    throw Error("'outside' of a table must be one of: clamp, error; found '{}'.", outside);
   return outside;
 }
 
@@ -72,15 +72,16 @@ std::string table_text(const YAML::Node& node, const Key::Facts& facts, const st
   const Axis& axis = axis_of(word(node, "of"));
   std::string text = fmt::format("table({}, {}", axis.expression, outside_of(node));
   if (node["file"]) {
-    if (node["at"] || node["values"]) throw Error("a table has either a 'file' or 'at' and 'values'.");
+    if (node["at"] || node["values"]) throw Error("a table takes either 'file' or 'at' and 'values', not "
+                                                  "both.");
     text += fmt::format(", \"{}\"", (folder / word(node, "file")).string());
     if (node["column"]) text += fmt::format(", \"{}\"", word(node, "column"));
     return text + ")";
   }
-  if (node["column"]) throw Error("'column' goes with 'file'.");
+  if (node["column"]) throw Error("'column' requires 'file'.");
   const std::vector<double> at = numbers(node, "at", axis.unit), values = numbers(node, "values", facts.unit);
   if (at.size() != values.size())
-    throw Error("a table needs one value for each place; {} places and {} values are given.", at.size(),
+    throw Error("a table needs one value per point; {} points and {} values are given.", at.size(),
                 values.size());
   for (std::size_t i = 0; i < at.size(); ++i) text += fmt::format(", {}, {}", at[i], values[i]);
   return text + ")";

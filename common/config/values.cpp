@@ -48,7 +48,7 @@ int read_integer(const YAML::Node& node, const Facts& facts) {
   const double value = parse_quantity(text, facts.unit);
   if (value != std::nearbyint(value)) throw Error("'{}' is not a whole number.", text);
   if (std::abs(value) > std::numeric_limits<int>::max())
-    throw Error("'{}' is not a whole number that this key can hold.", text);
+    throw Error("'{}' is out of range for this integer key.", text);
   check_range(value, facts);
   return static_cast<int>(value);
 }
@@ -56,7 +56,7 @@ int read_integer(const YAML::Node& node, const Facts& facts) {
 bool read_bool(const YAML::Node& node) {
   const std::string& text = scalar(node, "true or false");
   bool value = false;
-  if (!YAML::convert<bool>::decode(node, value)) throw Error("'{}' is not one of: true, false.", text);
+  if (!YAML::convert<bool>::decode(node, value)) throw Error("'{}' is not valid; expected true or false.", text);
   return value;
 }
 
@@ -77,8 +77,8 @@ ExpressionText read_expression(const YAML::Node& node, const Facts& facts,
   if (node.IsMap()) return {table_text(node, facts, folder)};
   const std::string& text = scalar(
       node, facts.unit.empty() ? "a number or an expression in x, y, z, t"
-                               : fmt::format("a number in {0}, with its unit, or an expression in x, y, z, t "
-                                             "that gives {0}",
+                               : fmt::format("a number in {0}, with its unit, or an expression in x, y, z, "
+                                             "t that yields {0}",
                                              facts.unit));
   const auto quantity = split_quantity(text);
   const bool is_expression =

@@ -43,7 +43,7 @@ namespace {
 void check_cut(const Cut& cut, int ranks) {
   for (const Starts* starts : {&cut.vertices, &cut.faces})
     if (starts->size() != std::size_t(ranks) + 1)
-      throw Error("it cuts its interface over {} ranks, but runs on {}", starts->size() - 1, ranks);
+      throw Error("it partitions its interface over {} ranks, but runs on {}", starts->size() - 1, ranks);
 }
 
 /// What stands only once in a list of names.
@@ -59,17 +59,17 @@ void check_places(const Interface& interface, const Cut& mine, int rank, const s
     return std::size_t(starts[std::size_t(rank) + 1] - starts[std::size_t(rank)]);
   };
   if (interface.vertices.size() != here(mine.vertices) || interface.face_centres.size() != here(mine.faces))
-    throw Error("'{}' announced {} vertices and {} faces of its interface and described {} and {}.", whose,
+    throw Error("'{}' announced an interface of {} vertices and {} faces, but described {} and {}.", whose,
                 here(mine.vertices), here(mine.faces), interface.vertices.size(),
                 interface.face_centres.size());
   for (const Index v : interface.face_vertices)
     if (v >= mine.vertices.back())
-      throw Error("A face of the interface of '{}' has vertex {} of {} (counted from 0).", whose, v,
+      throw Error("A face of the interface of '{}' refers to vertex {} of {} (counted from 0).", whose, v,
                   mine.vertices.back());
   const std::size_t parts = std::max<std::size_t>(1, interface.parts.size());
   for (const int part : interface.face_part)
     if (std::size_t(part) >= parts)
-      throw Error("A face of the interface of '{}' is of part {} of {} (counted from 0).", whose, part,
+      throw Error("A face of the interface of '{}' refers to part {} of {} (counted from 0).", whose, part,
                   parts);
 }
 
@@ -87,7 +87,7 @@ Reply MpiChannel::unpacked(const std::vector<char>& head, Cut& cut) const {
     check_names(reply.interface.gives);
     return reply;
   } catch (const Error& error) {
-    throw Error("The reply of '{}' to {} cannot be used: {} (docs/protocol.md says what it must be)", name_,
+    throw Error("The reply of '{}' to {} is not valid: {} (format: docs/protocol.md)", name_,
                 couplet::name(pending_), error.what());
   }
 }
@@ -116,7 +116,7 @@ Reply MpiChannel::receive() {
 
 void MpiChannel::receive_places(Interface& interface) {
   for (const auto& [other, slice] : exchanged(mine_, comm_rank(comm_), theirs_))
-    put_back(receive_bytes(peers_, other, places_tag, "the places of '" + name_ + "'"), interface);
+    put_back(receive_bytes(peers_, other, places_tag, "the interface geometry of '" + name_ + "'"), interface);
   check_places(interface, mine_, comm_rank(comm_), name_);
   if (interface.face_vertices.empty()) interface.face_offset.clear();  // not known
 }

@@ -24,11 +24,11 @@ struct Kind {
 };
 
 constexpr std::array<Kind, 4> kinds{
-    {{"mesh", &ErrorParts::mesh, "mesh", "a finer mesh would lower it"},
-     {"step", &ErrorParts::step, "step", "a shorter time step would lower it"},
-     {"linear", &ErrorParts::linear, "linear tolerance", "a tighter tolerance of the solver would lower it"},
+    {{"mesh", &ErrorParts::mesh, "mesh", "a finer mesh would reduce it"},
+     {"step", &ErrorParts::step, "step", "a shorter time step would reduce it"},
+     {"linear", &ErrorParts::linear, "linear tolerance", "a tighter solver tolerance would reduce it"},
      {"coupling", &ErrorParts::coupling, "coupling tolerance",
-      "a tighter 'convergence' of the coupling would lower it"}}};
+      "a tighter 'convergence' of the coupling would reduce it"}}};
 
 struct Part {
   const Kind* kind;
@@ -85,7 +85,8 @@ ErrorParts ErrorParts::of(const std::string& text) {
     double value = 0;
     if (kind == kinds.end() || !(words >> value))
       throw Error(
-          "'{}' is no list of parts of an error: expected names (mesh, step, linear, coupling) each with a number.",
+          "'{}' is not a valid list of error parts: expected names (mesh, step, linear, coupling), each "
+          "with a number.",
           text);
     parts.*(kind->value) = value;
   }
@@ -109,10 +110,9 @@ std::optional<log::Finding> worthless(const std::vector<NamedErrors>& participan
       .number = total,
       .limit = as_large_as_the_solution,
       .sentence = fmt::format(
-          "estimated error: {:.2g} of the solution (limit {:g}): the estimated error is as large as the solution "
-          "itself: it is not to be trusted",
+          "estimated error: {:.2g} of the solution (limit {:g}): result not reliable",
           total, as_large_as_the_solution),
-      .advice = "refine what dominates it"};
+      .advice = "refine the dominant part"};
 }
 
 std::vector<std::string> error_sentences(const std::vector<NamedErrors>& participants) {
@@ -131,12 +131,13 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
       std::ranges::any_of(parts, [](const Part& p) { return p.kind->value == &ErrorParts::mesh; });
   std::vector<std::string> sentences{
       fmt::format("estimated error {:.2g} of the solution: {}{}.", total_error(participants), list,
-                  knows_mesh ? "" : "; what the mesh (or modes left out) leaves is not known and not in it")};
+                  knows_mesh ? "" : "; the error due to the mesh (or truncated modes) is unknown and not "
+                                    "included")};
   if (parts.size() < 2 || !(worst.value > 0)) return sentences;
   const std::string idle = idle_words(parts, worst.value);
   sentences.push_back(fmt::format("the {}{} dominates: {}{}.", worst.kind->words,
                                   several ? " (" + worst.whose + ")" : "", worst.kind->advice,
-                                  idle.empty() ? "" : "; " + idle + " would buy nothing"));
+                                  idle.empty() ? "" : "; " + idle + " would not help"));
   return sentences;
 }
 

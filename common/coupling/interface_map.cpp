@@ -29,8 +29,8 @@ std::vector<const Patch*> find_patches(const Mesh& mesh, const std::vector<std::
 void check_size(MPI_Comm comm, std::size_t got, std::size_t entries, int components) {
   if (!any(comm, got != 0 && got != entries * std::size_t(components))) return;
   throw Error(
-      "The interface data that arrived has {} values; {} entries of {} components were expected. Check "
-      "that both participants describe the interface that they use.",
+      "The interface data received have {} values; expected {} entries of {} components. Check that both "
+      "participants describe the interface they use.",
       got, entries, components);
 }
 

@@ -46,7 +46,7 @@ std::vector<std::vector<GlobalIndex>> exchange_owned_ids(MPI_Comm peers, const M
   MPI_Allgather(mine, 3, MPI_INT64_T, theirs.data(), 3, MPI_INT64_T, peers);
   if (theirs[0] != mine[0] || theirs[1] != mine[1])
     throw Error(
-        "The meshes of the fluid and of the mesh mover differ: {} points in {}-D on this side, {} points in "
+        "The meshes of the fluid and the mesh mover differ: {} points in {}-D on this side, {} points in "
         "{}-D on the other. Both participants must read the same mesh file.",
         mine[0], mine[1], theirs[0], theirs[1]);
   std::vector<int> counts, first;
@@ -96,8 +96,7 @@ bool any_of_source(MPI_Comm peers, MPI_Comm own, bool is_source, bool value) {
 
 [[noreturn]] void throw_other_points(const std::string& detail) {
   throw Error(
-      "The meshes of the fluid and of the mesh mover differ{}. Both participants must read the same mesh "
-      "file.",
+      "The meshes of the fluid and the mesh mover differ{}. Both participants must read the same mesh file.",
       detail);
 }
 
@@ -125,7 +124,7 @@ class Source final : public MeshMotionSource {
     }
     exchange(peers, wanted);
     if (any_of_source(peers, mesh.comm, true, missing))
-      throw_other_points(": their points carry other numbers");
+      throw_other_points(": their points have different numbers");
     for (std::size_t r = 0; r < points.size(); ++r)
       if (!points[r].empty()) from_.push_back({static_cast<int>(r), std::move(points[r])});
     compare_points(mesh);
@@ -165,7 +164,8 @@ class Source final : public MeshMotionSource {
       for (int c = 0; c < dim_; ++c)
         other =
             other || std::abs(theirs[std::size_t(p) * dim_ + c] - mesh.reference_points[p][c]) > tolerance;
-    if (any_of_source(peers_, mesh.comm, true, other)) throw_other_points(": their points lie elsewhere");
+    if (any_of_source(peers_, mesh.comm, true, other)) throw_other_points(": their points have different "
+                                                                          "coordinates");
   }
 
   MPI_Comm peers_;
@@ -181,7 +181,7 @@ class Sink final : public MeshMotionSink {
     exchange_owned_ids(peers, mesh);
     const auto wanted = exchange(peers, std::vector<std::vector<GlobalIndex>>(remote_size(peers)));
     if (any_of_source(peers, mesh.comm, false, false))
-      throw_other_points(": their points carry other numbers");
+      throw_other_points(": their points have different numbers");
 
     std::vector<std::pair<GlobalIndex, Index>> owned;
     for (Index p = 0; p < mesh.points.n_owned(); ++p) owned.emplace_back(mesh.point_id[p], p);
@@ -197,7 +197,8 @@ class Sink final : public MeshMotionSink {
     std::vector<double> points;
     for (const Vec3& x : mesh.reference_points) points.insert(points.end(), x.begin(), x.begin() + dim_);
     send(points);
-    if (any_of_source(peers, mesh.comm, false, false)) throw_other_points(": their points lie elsewhere");
+    if (any_of_source(peers, mesh.comm, false, false)) throw_other_points(": their points have different "
+                                                                          "coordinates");
   }
 
   ~Sink() override {

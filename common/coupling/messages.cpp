@@ -151,7 +151,7 @@ Reply unpack_reply(std::span<const char> bytes, Cut& cut) {
   r.report.energy = in.real();
   r.data = in.exchange();
   r.interface.dim = int(in.integer(2, 3, "the dimension"));
-  r.anew = in.integer(0, 1, "the word on an answer made anew") != 0;
+  r.anew = in.integer(0, 1, "the flag for a recomputed reply") != 0;
   r.interface.parts = in.names();
   r.interface.takes = in.data();
   r.interface.gives = in.data();
@@ -167,7 +167,7 @@ std::vector<Interface::Datum> present(const Exchange& data, const std::vector<In
   for (const auto& [name, values] : data) {
     const auto found = std::ranges::find(announced, name, &Interface::Datum::name);
     if (found == announced.end())
-      throw Error("'{}' is no datum that '{}' had announced at its interface.", name, whose);
+      throw Error("'{}' is not a datum that '{}' announced at its interface.", name, whose);
     list.push_back(*found);
   }
   return list;
@@ -186,7 +186,7 @@ std::vector<std::span<Value>> stretches(Data& data, const std::vector<Interface:
     const std::size_t first = n * (at_vertices ? slice.first_vertex : slice.first_face),
                       count = n * (at_vertices ? slice.vertices : slice.faces);
     if (first + count > array.size())
-      throw Error("'{}' gave {} values of '{}' where its interface has {} {} of {} components.", whose,
+      throw Error("'{}' gave {} values of '{}', but its interface has {} {} of {} components.", whose,
                   array.size(), datum.name, (first + count) / n, at_vertices ? "vertices" : "faces", n);
     if (count > 0) parts.emplace_back(array.data() + first, count);
   }

@@ -60,7 +60,7 @@ const std::vector<RoleContract>& role_contracts() {
 
 const RoleContract& contract_of(const std::string& role) {
   const auto found = std::ranges::find(role_contracts(), role, &RoleContract::role);
-  if (found == role_contracts().end()) throw Error("There is no role '{}' in a coupling.", role);
+  if (found == role_contracts().end()) throw Error("The coupling has no role '{}'.", role);
   return *found;
 }
 
@@ -87,7 +87,7 @@ const Player* player_of(const std::string& program) {
 std::string text(const RoleContract& contract) {
   return fmt::format(
       "takes {} and gives {}", text(contract.takes),
-      contract.gives_nothing ? "nothing but the points of the fluid's moved mesh" : text(contract.gives));
+      contract.gives_nothing ? "only the points of the fluid's moved mesh" : text(contract.gives));
 }
 
 std::string problem_of_role(const RoleContract& contract, const std::vector<Datum>& takes,

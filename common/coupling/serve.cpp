@@ -31,8 +31,8 @@ void check_lists(MPI_Comm comm, const Interface& interface) {
   const int rank = static_cast<int>(max(comm, differs ? comm_rank(comm) : -1));
   if (rank >= 0)
     throw Error(
-        "rank {} describes other data to give or take than rank 0. All ranks describe the same data, also those "
-        "without places, or rank 0 alone describes them.",
+        "Rank {} describes different data to give or take than rank 0. All ranks must describe the same "
+        "data, including ranks without faces, or rank 0 alone describes them.",
         rank);
 }
 
@@ -76,7 +76,7 @@ void dispatch(const Command& command, Participant& participant, const std::strin
     case Op::finalise:
       return;
   }
-  throw Error("The coupler sent command {}, which this program does not know.",
+  throw Error("The coupler sent command {}, which is unknown to this program.",
               static_cast<long>(command.op));
 }
 
@@ -102,7 +102,8 @@ class Ranks {
     plan_ = exchanged(mine_, comm_rank(comm_),
                       {even_starts(mine_.vertices.back(), ranks), even_starts(mine_.faces.back(), ranks)});
     for (const auto& [other, slice] : plan_)
-      send_bytes(coupler_, other, places_tag, cut_out(interface, slice), "the coupler to take places");
+      send_bytes(coupler_, other, places_tag, cut_out(interface, slice), "the coupler to receive the "
+                                                                         "interface geometry");
   }
 
   /// Values for the names that the head has announced. A rank without places gets none.
@@ -133,14 +134,14 @@ class Ranks {
       const auto wanted =
           std::size_t(starts[rank + 1] - starts[rank]) * std::size_t(datum.size(interface_.dim));
       if (data.at(datum.name).size() != wanted)
-        throw Error("'{}' gave {} values of '{}' where its interface has room for {}.", name_,
+        throw Error("'{}' gave {} values of '{}', but its interface has room for {}.", name_,
                     data.at(datum.name).size(), datum.name, wanted);
     }
     SendAll sending(coupler_);
     for (const auto& [other, slice] : plan_)
       if (const auto values = cut_out(data, list, interface_.dim, slice, name_); !values.empty())
         sending.add(other, output_tag, values);
-    sending.wait("the coupler to take values");
+    sending.wait("the coupler to receive values");
   }
 
  private:
@@ -188,7 +189,8 @@ void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant
     if (command.op == Op::accept_step) observer.accepted(command, reply.report);
     const bool described = reply.status == Reply::Status::ok && command.op == Op::initialise;
     Cut cut = described ? cut_of(comm, reply.interface) : Cut{};
-    if (root) head = pack(reply, cut), send_bytes(coupler, 0, reply_tag, head, "the coupler to take a reply");
+    if (root) head = pack(reply, cut), send_bytes(coupler, 0, reply_tag, head, "the coupler to receive a "
+                                                                               "reply");
     if (described) {
       // Participants that describe all on rank 0 leave the rest of the description to it, too.
       broadcast_bytes(comm, head, "");

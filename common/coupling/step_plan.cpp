@@ -22,7 +22,7 @@ GlobalIndex count(double end_time, double nominal_dt) {
   const double steps = end_time / nominal_dt;
   if (!(steps <= StepPlan::most_steps))
     throw Error(
-        "From 0 to {:g} s there are {:g} steps of {:g} s; at most {:g} are possible. Is a unit missing?",
+        "{:g} s take {:g} steps of {:g} s; at most {:g} are allowed. Is a unit missing?",
         end_time, steps, nominal_dt, StepPlan::most_steps);
   return static_cast<GlobalIndex>(std::ceil(steps * (1 - 1e-15) - rest_taken_along));
 }
@@ -115,8 +115,7 @@ void StepPlan::restore(const std::array<double, 6>& state, double time) {
   if (std::abs(this->time() - time) > 1e-9 * nominal_dt_)
     throw Error(
         "The checkpoint is at t = {:g} s, which is not a multiple of the time step {:g} s: restart with the "
-        "time step "
-        "of the run that wrote it, or with one that divides this time.",
+        "time step of the run that wrote it, or with a step that divides this time.",
         time, nominal_dt_);
 }
 

@@ -26,18 +26,18 @@ class Unpacker {
 
   Unpacker(std::span<const char> bytes, const char* what) : bytes_(bytes), what_(what) {}
   Unpacker(std::span<const char> bytes, std::int64_t mark, const char* what) : Unpacker(bytes, what) {
-    if (integer() != mark) throw Error("A message between programs is not the {} that was expected.", what_);
+    if (integer() != mark) throw Error("Received a message that is not the expected {}.", what_);
     const std::int64_t version = integer();
     if (version != protocol_version)
       throw Error(
-          "A {} has protocol version {}, this program speaks version {}: use programs of one version.", what_,
+          "A {} has protocol version {}, but this program uses version {}: use programs of one version.", what_,
           version, protocol_version);
   }
   std::int64_t integer() { return plain<std::int64_t>(); }
   std::int64_t integer(std::int64_t least, std::int64_t most, const char* field) {
     const std::int64_t value = integer();
     if (value < least || value > most)
-      throw Error("A {} between programs gives {} as {}; {} to {} is expected.", what_, field, value, least,
+      throw Error("A {} gives {} as {}; expected {} to {}.", what_, field, value, least,
                   most);
     return value;
   }
@@ -54,7 +54,8 @@ class Unpacker {
     for (const char c : value) sound = sound && static_cast<unsigned char>(c) >= 32 && c != 127;
     if (!sound)
       throw Error(
-          "A {} between programs holds a name that is none: {} bytes, or with control characters; at most {} are expected.",
+          "A {} contains an invalid name ({} bytes, or with control characters); at most {} bytes are "
+          "allowed.",
           what_, value.size(), longest_name);
     return value;
   }
@@ -62,7 +63,7 @@ class Unpacker {
     Vec3 p;
     raw(p.data(), 3 * sizeof(double));
     if (!p.allFinite())
-      throw Error("A {} between programs gives {} as ({}, {}, {}).", what_, of, p[0], p[1], p[2]);
+      throw Error("A {} gives {} as ({}, {}, {}).", what_, of, p[0], p[1], p[2]);
     return p;
   }
   /// Of a list whose entries take at least `words` times 8 bytes.
@@ -75,7 +76,7 @@ class Unpacker {
     for (std::size_t i = 1; i < values.size(); ++i) sound = sound && values[i] >= values[i - 1];
     if (!sound)
       throw Error(
-          "A {} between programs cuts its {} over ranks in a way that is none: it must begin with 0 and never fall.",
+          "A {} partitions its {} over ranks incorrectly: the offsets must start at 0 and never decrease.",
           what_, of);
     return values;
   }
@@ -95,14 +96,14 @@ class Unpacker {
       Interface::Datum datum{name(), "", Interface::Place::vertices};
       datum.unit = name();
       datum.place =
-          integer(0, 1, "the place of a datum") == 0 ? Interface::Place::vertices : Interface::Place::faces;
+          integer(0, 1, "the location of a datum") == 0 ? Interface::Place::vertices : Interface::Place::faces;
       datum.components = static_cast<int>(integer(0, 9, "the number of components of a datum"));
       list.push_back(datum);
     }
     return list;
   }
   void finish() const {
-    if (position_ != bytes_.size()) throw Error("A {} between programs is longer than its content.", what_);
+    if (position_ != bytes_.size()) throw Error("A {} is longer than its content.", what_);
   }
 
  private:
@@ -122,7 +123,7 @@ class Unpacker {
     if (size > 0) std::memcpy(to, bytes_.data() + position_, size);
     position_ += size;
   }
-  [[noreturn]] void truncated() const { throw Error("A {} between programs is cut short.", what_); }
+  [[noreturn]] void truncated() const { throw Error("A {} is truncated.", what_); }
 
   std::span<const char> bytes_;
   const char* what_;

@@ -82,7 +82,7 @@ std::vector<char> receive_bytes(MPI_Comm peers, int from, int tag, const std::st
   MPI_Get_count(&status, MPI_BYTE, &count);
   // MPI counts up to 2^31 - 1; beyond it the count is not defined.
   if (count < 0 || std::size_t(count) > most)
-    throw Error("While waiting for {}: a message of {} bytes came, at most {} are expected.", what, count,
+    throw Error("While waiting for {}: received a message of {} bytes; expected at most {}.", what, count,
                 most);
   std::vector<char> bytes(static_cast<std::size_t>(count));
   MPI_Request request;
@@ -138,7 +138,7 @@ void receive_stretches(MPI_Comm peers, int from, int tag, const Stretches& to, c
   MPI_Get_count(&status, MPI_BYTE, &bytes);
   // A program of somebody else may have another idea of its interface than it has announced.
   if (std::size_t(bytes) != wanted * sizeof(double))
-    throw Error("While waiting for {}: a message of {} values came where {} had been announced.", what,
+    throw Error("While waiting for {}: received a message of {} values; {} were announced.", what,
                 std::size_t(bytes) / sizeof(double), wanted);
   MPI_Request request;
   MPI_Imrecv(layout.at(), layout.count(), layout.type(), &message, &request);

@@ -34,15 +34,15 @@ ByteSource::ByteSource(const std::filesystem::path& file, std::string kind, cons
   std::error_code code;
   const auto status = std::filesystem::status(file, code);
   if (!std::filesystem::exists(status))
-    throw Error("{}: there is no such {}. Relative paths start at the folder of the YAML file.", name_,
+    throw Error("{}: this {} does not exist. Relative paths start at the folder of the YAML file.", name_,
                 kind_);
   // A pipe would wait for ever for somebody to write, a device would never end.
   if (!std::filesystem::is_regular_file(status))
-    throw Error("{}: this {} cannot be read: it is a folder, a pipe or a device, not a regular file.", name_,
+    throw Error("{}: this {} is not a regular file, but a folder, pipe or device.", name_,
                 kind_);
   const std::uintmax_t size = std::filesystem::file_size(file, code);
   if (!code && size > limits_.bytes)
-    throw Error("{}: this {} has {} MB; at most {} MB are read. Keep fewer rows or columns.", name_, kind_,
+    throw Error("{}: this {} has {} MB; at most {} MB are read. Reduce its rows or columns.", name_, kind_,
                 size >> 20, limits_.bytes >> 20);
   stream_.open(file, std::ios::binary);
   if (!stream_) throw Error("{}: this {} cannot be read. Check its permissions.", name_, kind_);
@@ -50,7 +50,7 @@ ByteSource::ByteSource(const std::filesystem::path& file, std::string kind, cons
   if (!begins_gzip(input_.data(), end_)) return;
   auto stream = std::make_unique<z_stream>();
   if (inflateInit2(stream.get(), MAX_WBITS + gzip_format) != Z_OK)
-    throw Error("{}: no memory to decompress this {}.", name_, kind_);
+    throw Error("{}: not enough memory to decompress this {}.", name_, kind_);
   gzip_.reset(stream.release());
 }
 
@@ -59,7 +59,7 @@ ByteSource::~ByteSource() = default;
 bool ByteSource::fill() {
   if (at_ < end_) return true;
   stream_.read(input_.data(), std::streamsize(input_.size()));
-  if (stream_.bad()) throw Error("{}: this {} cannot be read to its end.", name_, kind_);
+  if (stream_.bad()) throw Error("{}: this {} cannot be read to the end.", name_, kind_);
   at_ = 0;
   end_ = std::size_t(stream_.gcount());
   return end_ > 0;
@@ -67,19 +67,18 @@ bool ByteSource::fill() {
 
 void ByteSource::refuse_damage(const char* what) const {
   throw Error(
-      "{}: this {} is damaged or was cut short: it cannot be decompressed to its end ({}). Copy or compress "
-      "it again.",
+      "{}: this {} is damaged or truncated: decompression failed ({}). Copy or compress it again.",
       name_, kind_, what);
 }
 
 void ByteSource::check_size() const {
   if (given_ > limits_.bytes)
-    throw Error("{}: this {} has more than {} MB{}; no more are read. Keep fewer rows or columns.", name_,
+    throw Error("{}: this {} has more than {} MB{}; no more are read. Reduce its rows or columns.", name_,
                 kind_, limits_.bytes >> 20, gzip_ ? " when decompressed" : "");
   if (gzip_ && given_ > always_allowed && double(given_) > limits_.expansion * double(taken_))
     throw Error(
-        "{}: this {} expands to more than {:g} times its size, as no measured data do (a gzip bomb?). If you "
-        "trust it, decompress it yourself and name the plain file.",
+        "{}: this {} expands to more than {:g} times its size, which is not plausible for measured data (a "
+        "gzip bomb?). If you trust it, decompress it yourself and name the plain file.",
         name_, kind_, limits_.expansion);
 }
 
@@ -87,10 +86,10 @@ void ByteSource::check_size() const {
 void ByteSource::next_member() {
   std::array<char, 2> head{};
   for (char& c : head) {
-    if (!fill()) refuse_damage("its last bytes belong to nothing");
+    if (!fill()) refuse_damage("its last bytes are not part of any member");
     c = input_[at_++];
   }
-  if (!begins_gzip(head.data(), head.size())) refuse_damage("other bytes follow the compressed text");
+  if (!begins_gzip(head.data(), head.size())) refuse_damage("the compressed data are followed by other bytes");
   if (inflateReset(gzip_.get()) != Z_OK) refuse_damage("zlib's state");
   std::array<unsigned char, 2> copy{static_cast<unsigned char>(head[0]), static_cast<unsigned char>(head[1])};
   unsigned char nothing = 0;
@@ -98,7 +97,7 @@ void ByteSource::next_member() {
   gzip_->avail_in = uInt(copy.size());
   gzip_->next_out = &nothing;
   gzip_->avail_out = 1;
-  if (inflate(gzip_.get(), Z_NO_FLUSH) != Z_OK) refuse_damage("the head of a member");
+  if (inflate(gzip_.get(), Z_NO_FLUSH) != Z_OK) refuse_damage("the header of a member");
   taken_ += head.size();
   member_ended_ = false;
 }

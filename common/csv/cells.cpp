@@ -110,7 +110,7 @@ std::string why_no_number(std::string_view text) {
   if (error == std::errc::result_out_of_range)
     return fmt::format("'{}' is beyond the range of numbers", cell);
   if (error == std::errc() && end == text.data() + text.size() && !std::isfinite(value))
-    return fmt::format("'{}' is not a number; a finite one is needed", cell);
+    return fmt::format("'{}' is not a finite number", cell);
   return fmt::format("'{}' is not a number", cell);
 }
 

@@ -77,22 +77,22 @@ void CsvReader::take_names() {
   for (const std::string_view cell : cells_)
     if (!cell.empty() && !is_like_number(cell))
       throw Error(
-          "{}: the first line holds both numbers ('{}') and words ('{}'): are these names of columns or values? "
-          "{}.",
+          "{}: the first line contains both numbers ('{}') and words ('{}'): are these column names or "
+          "values? {}.",
           place(), number->substr(0, 60), cell.substr(0, 60),
           cell.find_first_of("0123456789") == 0
-              ? "Write numbers without units; a unit belongs in the name of the column, as in 'time [s]'"
-              : "Give every column a name that is no number, or leave the names out");
+              ? "Write numbers without units; a unit belongs in the column name, as in 'time [s]'"
+              : "Give every column a name that is not a number, or omit the names");
 }
 
 void CsvReader::check_width() const {
   if (cells_.size() == width_) return;
   const bool commas = separator_ == ',' && cells_.size() > width_;
   const bool other = cells_.size() == 1 && separator_of(cells_[0]) != ' ';
-  throw Error("{}: {} values, but the file has {} columns (separated by {}, as its line {} is).{}", place(),
+  throw Error("{}: {} values, but the file has {} columns (separated by {}, as in line {}).{}", place(),
               cells_.size(), width_, word_for(separator_), first_line_,
-              commas  ? " If commas are decimal commas, write decimal points."
-              : other ? " Use one separator in the whole file."
+              commas  ? " If commas are decimal commas, use decimal points."
+              : other ? " Use one separator throughout the file."
                       : "");
 }
 
@@ -100,8 +100,8 @@ void CsvReader::check_width() const {
 void CsvReader::refuse_ambiguous() const {
   if (!names_.empty() || separator_ != ',' || width_ < 3 || has_points_) return;
   throw Error(
-      "{}:{}: the commas may separate {} whole numbers or be decimal commas. Name the columns in the first line, "
-      "or separate them by semicolons and write decimal points.",
+      "{}:{}: ambiguous commas: they may separate {} whole numbers or be decimal commas. Name the columns "
+      "in the first line, or use semicolons as separators and decimal points.",
       lines_.name(), first_line_, width_);
 }
 
@@ -122,11 +122,11 @@ double CsvReader::number(std::size_t column, std::string_view what) const {
   const std::string_view cell = cells_.at(column);
   const auto value = number_of(cell);
   if (value && !(separator_ == ',' && has_leading_zero(cell))) return *value;
-  const std::string expected = what.empty() ? "" : fmt::format("; {} was expected here", what);
+  const std::string expected = what.empty() ? "" : fmt::format("; expected {} here", what);
   if (value)
     throw Error(
-        "{}: '{}' begins with a zero: are the commas decimal commas? Write decimal points, and numbers without "
-        "leading zeros{}.",
+        "{}: '{}' starts with a zero: are the commas decimal commas? Use decimal points, and numbers "
+        "without leading zeros{}.",
         place(), cell.substr(0, 60), expected);
   throw Error("{}: {}{}.", place(), why_no_number(cell), expected);
 }

@@ -34,12 +34,13 @@ void LineReader::check(std::string_view line) const {
   if (bad == line.end()) return;
   if (*bad == '\0')
     throw Error(
-        "{}: this {} is no plain text: it holds zero bytes, as UTF-16 and binary files do. Save it as UTF-8.",
+        "{}: this {} is not plain text: it contains zero bytes, as UTF-16 and binary files do. Save it as "
+        "UTF-8.",
         place(), kind_);
   if (*bad == '\r')
-    throw Error("{}: a carriage return stands within this line. Save the {} with line ends LF or CR LF.",
+    throw Error("{}: carriage return within this line. Save the {} with line ends LF or CR LF.",
                 place(), kind_);
-  throw Error("{}: this {} is no plain text: it holds the control character 0x{:02x}. Save it as text.",
+  throw Error("{}: this {} is not plain text: it contains the control character 0x{:02x}. Save it as text.",
               place(), kind_, static_cast<unsigned char>(*bad));
 }
 
@@ -66,7 +67,7 @@ bool LineReader::next(std::string_view& line) {
     line = std::string_view(buffer_.data() + begin_, last - begin_);
     begin_ = found ? stop + 1 : end_;
     if (++number_ > limits_.lines)
-      throw Error("{}: this {} has more than {} lines; no more are read. Keep fewer rows.", name_, kind_,
+      throw Error("{}: this {} has more than {} lines; no more are read. Reduce its rows.", name_, kind_,
                   limits_.lines);
     if (number_ == 1 && line.starts_with(mark_of_utf8)) line.remove_prefix(mark_of_utf8.size());
     if (line.ends_with('\r')) line.remove_suffix(1);

@@ -12,22 +12,27 @@ namespace {
 std::string cost_text(const EffectCost& cost) {
   std::string text = cost.adds;
   if (cost.bytes_a_cell > 0)
-    text += fmt::format("{}{:g} B a cell", text.empty() ? "" : "; ", cost.bytes_a_cell);
+    text += fmt::format("{}{:g} B per cell", text.empty() ? "" : "; ", cost.bytes_a_cell);
   if (cost.share_of_step > 0)
     text += fmt::format("{}{:+.0f} % of a step", text.empty() ? "" : "; ", 100 * cost.share_of_step);
   return text.empty() ? "negligible" : text;
 }
 
+const char* verdict_word(const EffectVerdict& v) {
+  if (v.sound()) return v.left_out ? "justified" : "adequate";
+  if (v.severity() == Severity::wrong) return "wrong";
+  return v.left_out ? "not justified" : "questionable";
+}
+
 }  // namespace
 
 std::string text(const EffectVerdict& v) {
-  const char* good = v.left_out ? "leaving it out was sound" : "sound";
-  return fmt::format("{}; {}.", without_advice(v), v.sound() ? good : v.recommendation);
+  return fmt::format("{}{}{}", without_advice(v), v.sound() ? "" : "; ", v.sound() ? "" : v.recommendation);
 }
 
 std::string without_advice(const EffectVerdict& v) {
-  return fmt::format("{}{}: {} (sound up to {:.2g})", v.effect, v.left_out ? " left out" : "", v.sentence,
-                     v.threshold);
+  return fmt::format("{}{}: {} (limit {:.2g}): {}", v.effect, v.left_out ? " neglected" : "", v.sentence,
+                     v.threshold, verdict_word(v));
 }
 
 std::string EffectVerdict::id() const {
@@ -71,7 +76,7 @@ std::string summary(const std::vector<Effect>& effects) {
     list += list.empty() ? "" : ", ";
     list += e.on() ? fmt::format("{} ({})", e.name, e.asked_by) : e.name;
   }
-  return fmt::format("effects: {}{}{}", on.empty() ? "none" : on, off.empty() ? "" : "; left out: ", off);
+  return fmt::format("effects: {}{}{}", on.empty() ? "none" : on, off.empty() ? "" : "; neglected: ", off);
 }
 
 std::string explanation(const std::vector<Effect>& effects) {
@@ -80,22 +85,23 @@ std::string explanation(const std::vector<Effect>& effects) {
     for (const Effect& e : effects)
       if (e.on() == on)
         lines +=
-            on ? fmt::format("  on   {}: asked for by {}; adds {}\n", e.name, e.asked_by, cost_text(e.cost))
+            on ? fmt::format("  on   {}: enabled by {}; adds {}\n", e.name, e.asked_by, cost_text(e.cost))
                : fmt::format(
                      "  off  {}: {}{}\n", e.name, e.keys,
-                     e.judged_when_on || e.judged_by.empty() ? "" : "; a run judges it: " + e.judged_by);
+                     e.judged_when_on || e.judged_by.empty() ? "" : "; judged by the run: " + e.judged_by);
   const bool has_numbers = std::ranges::any_of(effects, [](const Effect& e) {
     return e.on() && (e.cost.bytes_a_cell > 0 || e.cost.share_of_step > 0);
   });
   if (has_numbers)
     lines +=
-        "  (numbers: measured in the plane on one rank, of a step of a small scene without the effect; docs/effects.md)\n";
+        "  (numbers: measured in two dimensions on one rank; share of a step of a small scene without the "
+        "effect; docs/effects.md)\n";
   return lines;
 }
 
 std::string markdown(const std::string& program, const std::vector<Effect>& effects) {
   std::string lines = fmt::format(
-      "## {}\n\n| effect | asked for by | adds | judged when left out |\n|---|---|---|---|\n", program);
+      "## {}\n\n| effect | enabled by | adds | judged when neglected |\n|---|---|---|---|\n", program);
   for (const Effect& e : effects)
     lines += fmt::format("| {} | {} | {} | {} |\n", e.name, e.keys, cost_text(e.cost), e.judged_by);
   return lines;

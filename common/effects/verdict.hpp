@@ -16,7 +16,7 @@ struct EffectVerdict {
   std::string effect;    ///< the name on its card
   double number = 0;     ///< how large what was left out would have been, of the whole run so far
   double threshold = 0;  ///< leaving it out was sound up to here
-  std::string sentence;  ///< what the number is, with its unit, without verdict: "the largest ... is 0.29"
+  std::string sentence;  ///< what the number is, with its unit, without verdict: "max |grad u| = 0.29"
   std::string recommendation;  ///< what to switch on, or to do, where it was not sound
   bool left_out = true;        ///< false: a verdict on an effect that the scene has
   /// From here on (or NaN) the answer is useless, not only questionable; infinite: never.
@@ -31,10 +31,10 @@ struct EffectVerdict {
   std::string id() const;
 };
 
-/// One line: "<effect> left out: <sentence> (sound up to <threshold>); leaving it out was sound." or the
-/// recommendation.
+/// One line: "<effect> neglected: <sentence> (limit <threshold>): <justified, not justified or wrong>", and where it
+/// is not justified the recommendation.
 std::string text(const EffectVerdict& verdict);
-/// "<effect> left out: <sentence> (sound up to <threshold>)".
+/// "<effect> neglected: <sentence> (limit <threshold>): <verdict>".
 std::string without_advice(const EffectVerdict& verdict);
 
 /// Which effects have become unsound since the last look; each is told once. A run asks now and then, so that a

@@ -64,10 +64,9 @@ struct Expression::State {
 
   [[noreturn]] void fail(std::size_t column, const std::string& what) const {
     throw Error(
-        "{}the expression '{}' cannot be read at column {}: {}. Known are the variables x, y, z [m] and t "
-        "[s], the "
-        "constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, "
-        "abs, min, max.",
+        "{}cannot parse the expression '{}' at column {}: {}. Known are the variables x, y, z [m] and t "
+        "[s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, "
+        "sqrt, abs, min, max.",
         where.empty() ? "" : where + ": ", text, column, what);
   }
 
@@ -79,8 +78,7 @@ struct Expression::State {
   void require_finite(double value) const {
     if (std::isfinite(value)) return;
     throw Error(
-        "{}the expression '{}' gives {} at x = {:g}, y = {:g}, z = {:g}, t = {:g}; a finite number is "
-        "needed.",
+        "{}the expression '{}' yields {} at x = {:g}, y = {:g}, z = {:g}, t = {:g}; it must be finite.",
         where.empty() ? "" : where + ": ", text, value, xyzt[0], xyzt[1], xyzt[2], xyzt[3]);
   }
 
@@ -123,7 +121,7 @@ bool Expression::is_zero() const { return !uses_time() && !uses_space() && state
 std::vector<Expression> make_expressions(const std::vector<config::ExpressionText>& texts, int dim,
                                          const std::string& where) {
   if (std::ssize(texts) != dim)
-    throw Error("{}: {} components are given where the {}-dimensional scene needs {}.", where, texts.size(),
+    throw Error("{}: {} components are given, but the {}-dimensional scene needs {}.", where, texts.size(),
                 dim, dim);
   std::vector<Expression> expressions;
   for (int c = 0; c < dim; ++c) expressions.emplace_back(texts[c], fmt::format("{}[{}]", where, c));
@@ -141,7 +139,7 @@ std::string problem_of(const config::ExpressionText& text) {
 
 std::string problem_of(const std::vector<config::ExpressionText>& texts, int n) {
   if (std::ssize(texts) != n)
-    return fmt::format("{} components are given where the {}-dimensional scene needs {}", texts.size(), n, n);
+    return fmt::format("{} components are given, but the {}-dimensional scene needs {}", texts.size(), n, n);
   for (const config::ExpressionText& text : texts)
     if (std::string problem = problem_of(text); !problem.empty()) return problem;
   return "";

@@ -32,23 +32,23 @@ Columns columns_of(const csv::CsvReader& reader, const std::vector<std::string>&
     const auto [name, unit] = csv::heading_of(head[i]);
     const auto found = std::ranges::find(known, name);
     if (found == known.end())
-      throw Error("{}: a column '{}' has no meaning here. {}", place, name,
+      throw Error("{}: unknown column '{}'. {}", place, name,
                   did_you_mean(name, known, "columns"));
     const auto at = static_cast<std::size_t>(found - known.begin());
     // A header in other units would be taken for what it is not.
     const std::string wanted = at < axis_names.size() ? axis_units[at] : "m/s";
     if (head[i].find('[') != std::string::npos && unit != wanted)
-      throw Error("{}: the column '{}' is in '{}'; only {} is read here.", place, name, unit, wanted);
+      throw Error("{}: the column '{}' is in '{}'; only {} is accepted here.", place, name, unit, wanted);
     int& column = at < axis_names.size() ? columns.axis[at] : columns.value[at - axis_names.size()];
-    if (column >= 0) throw Error("{}: there are two columns '{}'.", place, name);
+    if (column >= 0) throw Error("{}: the column '{}' appears twice.", place, name);
     column = static_cast<int>(i);
   }
   for (std::size_t i = 0; i < values.size(); ++i)
     if (columns.value[i] < 0)
-      throw Error("{}: the column '{}' is missing; the first line names the columns, such as 'y,t,{}'.",
+      throw Error("{}: the column '{}' is missing; the first line must name the columns, such as 'y,t,{}'.",
                   place, values[i], join(values, ","));
   if (std::ranges::all_of(columns.axis, [](int c) { return c < 0; }))
-    throw Error("{}: no column is an axis; name one of them x, y, z or t.", place);
+    throw Error("{}: no column is an axis; name at least one of them x, y, z or t.", place);
   return columns;
 }
 
@@ -67,7 +67,7 @@ Rows rows_of(csv::CsvReader& reader) {
     for (std::size_t i = 0; i < rows.width; ++i) rows.values.push_back(reader.number(i, reader.names()[i]));
     rows.line.push_back(reader.line());
     if (rows.values.size() > most_numbers)
-      throw Error("{}: a table of a grid has at most {:g} numbers. Give fewer places.", reader.place(),
+      throw Error("{}: a grid table has at most {:g} numbers. Use fewer points.", reader.place(),
                   double(most_numbers));
   }
   return rows;
@@ -83,7 +83,7 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
                           Outside outside) {
   csv::CsvReader reader(file, "table");
   if (reader.names().empty())
-    throw Error("{}: the first line names the columns, such as 'y,t,{}'.", file.string(), join(values, ","));
+    throw Error("{}: the first line must name the columns, such as 'y,t,{}'.", file.string(), join(values, ","));
   const Columns columns = columns_of(reader, values);
   const Rows rows = rows_of(reader);
   if (rows.size() == 0) throw Error("{}: the table has no values.", file.string());
@@ -101,7 +101,8 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
     places *= double(axis.size());
   }
   if (places > most_places)
-    throw Error("{}: its axes have {:.3g} places; is every line at another one? A table is a full grid.",
+    throw Error("{}: its axes span {:.3g} points; does every line have its own coordinates? A table must be "
+                "a full grid.",
                 file.string(), places);
   table.data_.assign(static_cast<std::size_t>(places) * values.size(), 0.0);
   std::vector<char> there(static_cast<std::size_t>(places), 0);
@@ -111,7 +112,7 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
       if (columns.axis[a] >= 0)
         at = at * table.axes_[a].size() + place_on(table.axes_[a], rows(r, columns.axis[a]));
     if (there[at])
-      throw Error("{}:{}: this place of the grid stands in a line before, too.", file.string(), rows.line[r]);
+      throw Error("{}:{}: duplicate grid point; an earlier line has the same coordinates.", file.string(), rows.line[r]);
     there[at] = 1;
     for (std::size_t v = 0; v < values.size(); ++v)
       table.data_[at * values.size() + v] = rows(r, columns.value[v]);
@@ -127,7 +128,7 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
         fmt::format("{} = {:g}{}{}", axis_names[a], axis[at % axis.size()], where.empty() ? "" : ", ", where);
     at /= axis.size();
   }
-  throw Error("{}: the grid has no value at {}; each place of an axis needs one at each place of the others.",
+  throw Error("{}: the grid has no value at {}; a table must be a full grid.",
               file.string(), where);
 }
 
@@ -139,7 +140,7 @@ void GridTable::evaluate(const Vec3& x, double t, std::span<double> values) cons
     const std::vector<double>& axis = axes_[a];
     if (axis.empty()) continue;
     if (outside_ == Outside::error && (at[a] < axis.front() || at[a] > axis.back()))
-      throw Error("{}: the table goes from {} = {:g} {} to {:g} {}, but its value at {:g} {} is needed.",
+      throw Error("{}: the table covers {} = {:g} {} to {:g} {}, but its value at {:g} {} is needed.",
                   file_, axis_names[a], axis.front(), axis_units[a], axis.back(), axis_units[a], at[a],
                   axis_units[a]);
     if (axis.size() == 1) continue;

@@ -25,33 +25,34 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
   s.value("translation", m.translation)
       .unit("m")
       .plausible(1e-9, 1e4)
-      .doc("one expression of t [s] a component; absent: none");
+      .doc("one expression of t [s] per component; absent: none");
   s.value("angle", m.angle)
       .unit("rad")
       .plausible(1e-9, 1e4)
-      .doc("of the rotation about 'centre', expression of t [s] in rad");
+      .doc("angle about 'centre', expression of t [s] in rad");
   s.value("centre", m.centre)
       .unit("m")
       .plausible(1e-9, 1e4)
-      .doc("of the rotation and of the radii, in the reference configuration");
-  s.value("axis", m.axis).size(3).doc("of the rotation, 3-D; a plane scene turns about z");
+      .doc("centre of the rotation and of the radii, in the reference configuration");
+  s.value("axis", m.axis).size(3).doc("axis of the rotation, 3-D; a 2-D scene rotates about z");
   s.value("displacement", m.displacement)
       .unit("m")
       .plausible(1e-9, 1e4)
       .doc(
-          "any field besides: one expression of x, y, z [m] in the reference configuration and t [s] a "
-          "component");
+          "additional displacement field: one expression of x, y, z [m] in the reference configuration and "
+          "t [s] per component");
   if (with_radii) {
     s.value("inner-radius", m.inner_radius)
         .unit("m")
         .plausible(1e-9, 1e4)
         .not_negative()
-        .doc("with outer-radius: what lies within this distance of the centre moves like one body");
+        .doc("with outer-radius: everything within this distance of the centre moves as a rigid body");
     s.value("outer-radius", m.outer_radius)
         .unit("m")
         .plausible(1e-9, 1e4)
         .positive()
-        .doc("beyond it the mesh rests, between the radii it follows smoothly; absent: the whole mesh moves");
+        .doc("beyond it the mesh is at rest; between the radii the motion decays smoothly; absent: the "
+             "whole mesh moves");
   }
   s.check(
       [&m] {
@@ -68,7 +69,8 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
 void check_axis(const Vec3& axis, int dim, const std::string& key) {
   if (dim == 2 && (axis[0] != 0 || axis[1] != 0 || !(axis[2] > 0)))
     throw Error(
-        "{}: a plane scene turns about z, [0, 0, 1]; to turn the other way give the negative angle or speed.",
+        "{}: a 2-D scene rotates about z, [0, 0, 1]; for the opposite direction use a negative angle or "
+        "speed.",
         key);
 }
 
@@ -80,8 +82,8 @@ PrescribedMotion::PrescribedMotion(const MotionParameters& parameters, int dim)
   const auto refuse = [](const Expression& e, const char* key) {
     if (e.uses_space())
       throw Error(
-          "motion.{}: '{}' depends on the place, but it is one value for all points. Use 'displacement' for "
-          "a motion that differs from place to place.",
+          "motion.{}: '{}' depends on the position, but it is a single value for all points. Use "
+          "'displacement' for a motion that varies in space.",
           key, e.text());
   };
   refuse(angle_, "angle");

@@ -20,9 +20,9 @@ constexpr std::size_t most_rows = 1000000;  // each costs 24 bytes in every key 
 std::size_t find_column(const std::filesystem::path& file, const std::vector<std::string>& names,
                         const std::string& column, std::size_t n) {
   if (const auto number = csv::number_of(column); number && *number == std::floor(*number)) {
-    if (n < 2) throw Error("{}: a table needs two columns, places and values; there is one.", file.string());
+    if (n < 2) throw Error("{}: a table needs two columns, points and values; found one.", file.string());
     if (*number < 2 || *number > double(n))
-      throw Error("{}: the table's values stand in a column from 2 to {}, not in '{}'.", file.string(), n,
+      throw Error("{}: the table's values must be in a column from 2 to {}, not in '{}'.", file.string(), n,
                   column);
     return static_cast<std::size_t>(*number) - 1;
   }
@@ -31,8 +31,8 @@ std::size_t find_column(const std::filesystem::path& file, const std::vector<std
     found =
         std::ranges::find_if(names, [&](const std::string& n) { return csv::heading_of(n).name == column; });
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  throw Error("{}: there is no column '{}' for a table. {}", file.string(), column,
-              names.empty() ? "Its first line holds no names; give the number of a column, from 2."
+  throw Error("{}: the table's column '{}' does not exist. {}", file.string(), column,
+              names.empty() ? "Its first line contains no names; give the number of a column, from 2."
                             : did_you_mean(column, names, "columns"));
 }
 
@@ -46,11 +46,11 @@ Table::Table(std::vector<double> at, std::vector<double> values, Outside outside
       where_(std::move(where)) {
   const std::string place = where_.empty() ? "" : where_ + ": ";
   if (at_.empty() || at_.size() != values_.size())
-    throw Error("{}a table needs one value for each place, {} values for {} places were given.", place,
+    throw Error("{}a table needs one value per point; {} values for {} points are given.", place,
                 values_.size(), at_.size());
   for (std::size_t i = 1; i < at_.size(); ++i) {
     if (!(at_[i] > at_[i - 1]))
-      throw Error("{}the places of a table must grow, but {:g} stands before {:g}.", place, at_[i - 1],
+      throw Error("{}the points of a table must increase, but {:g} is followed by {:g}.", place, at_[i - 1],
                   at_[i]);
     integral_[i] = integral_[i - 1] + 0.5 * (values_[i] + values_[i - 1]) * (at_[i] - at_[i - 1]);
   }
@@ -59,8 +59,8 @@ Table::Table(std::vector<double> at, std::vector<double> values, Outside outside
 void Table::check_inside(double at) const {
   if (outside_ == Outside::clamp || (at >= at_.front() && at <= at_.back())) return;
   throw Error(
-      "{}the table goes from {:g} to {:g}, but its value at {:g} is needed. Extend it, or let its ends "
-      "hold with 'outside: clamp'.",
+      "{}the table covers {:g} to {:g}, but its value at {:g} is needed. Extend it, or use 'outside: clamp' "
+      "to hold its end values.",
       where_.empty() ? "" : where_ + ": ", at_.front(), at_.back(), at);
 }
 
@@ -97,16 +97,16 @@ Table read_table(const std::filesystem::path& file, const std::string& column, T
   std::optional<std::size_t> wanted;
   while (rows.next()) {
     if (!wanted) wanted = find_column(file, names, column, rows.cells().size());
-    at.push_back(rows.number(0, names.empty() ? "the place in column 1" : names[0]));
+    at.push_back(rows.number(0, names.empty() ? "the point in column 1" : names[0]));
     values.push_back(rows.number(
         *wanted, names.empty() ? fmt::format("the value in column {}", *wanted + 1) : names[*wanted]));
     if (at.size() > 1 && !(at.back() > at[at.size() - 2]))
-      throw Error("{}: the first column of a table must grow, but {:g} stands before {:g}.", rows.place(),
+      throw Error("{}: the first column of a table must increase, but {:g} is followed by {:g}.", rows.place(),
                   at[at.size() - 2], at.back());
     if (at.size() > most_rows)
-      throw Error("{}: a table has at most {} rows. Keep fewer of them.", rows.place(), most_rows);
+      throw Error("{}: a table has at most {} rows. Reduce them.", rows.place(), most_rows);
   }
-  if (at.empty()) throw Error("{}: this table holds no rows of numbers.", file.string());
+  if (at.empty()) throw Error("{}: this table contains no rows of numbers.", file.string());
   Table table(std::move(at), std::move(values), outside, file.string());
   const auto unit_of = [&](std::size_t column) {
     return column < names.size() ? csv::heading_of(names[column]).unit : std::string();
@@ -127,7 +127,7 @@ Property::Property(const config::ExpressionText& text, const std::string& where)
     rest = take_tables(text.text, tables);
   } catch (const TextProblem& problem) {
     if (problem.is_sentence) throw Error("{}{}", place, problem.what);
-    throw Error("{}'{}' cannot be read at column {}: {}.", place, text.text, problem.at + 1, problem.what);
+    throw Error("{}cannot parse '{}' at column {}: {}.", place, text.text, problem.at + 1, problem.what);
   }
   const bool is_table = tables.size() == 1 && rest.starts_with("tab00(") && rest.ends_with(")") &&
                         trim(std::string_view(rest).substr(6, rest.size() - 7)) == "T";

@@ -58,12 +58,12 @@ std::vector<Argument> arguments_of(const std::string& text, std::size_t open, st
     }
     if (text[i] == ')') --depth;
   }
-  throw TextProblem{text.size(), "a ')' or '\"' of a table is missing", false};
+  throw TextProblem{text.size(), "missing ')' or '\"' of a table", false};
 }
 
 double number(const Argument& argument) {
   if (const auto value = csv::number_of(argument.text)) return *value;
-  throw TextProblem{argument.at, fmt::format("a table holds numbers, not '{}'", argument.text), false};
+  throw TextProblem{argument.at, fmt::format("a table contains numbers, not '{}'", argument.text), false};
 }
 
 std::string unquoted(const std::string& text) {
@@ -77,16 +77,16 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
   if (i < arguments.size() && (arguments[i].text == "clamp" || arguments[i].text == "error"))
     outside = arguments[i++].text == "error" ? Table::Outside::error : Table::Outside::clamp;
   if (i >= arguments.size() || arguments[0].text.empty())
-    throw TextProblem{begin, "a table is written table(t, 0, 10, 5, 20), variable first, then pairs", false};
+    throw TextProblem{begin, "a table has the form table(t, 0, 10, 5, 20): the variable first, then pairs", false};
   try {
     if (arguments[i].text.starts_with('"')) {
       if (arguments.size() > i + 2)
-        throw TextProblem{arguments[i + 2].at, "after the file of a table comes one column at most", false};
+        throw TextProblem{arguments[i + 2].at, "the file of a table is followed by at most one column", false};
       return read_table(unquoted(arguments[i].text),
                         i + 1 < arguments.size() ? unquoted(arguments[i + 1].text) : "2", outside);
     }
     if ((arguments.size() - i) % 2 != 0)
-      throw TextProblem{arguments.back().at, "a table needs pairs: a value for each place", false};
+      throw TextProblem{arguments.back().at, "a table needs pairs: a value for each point", false};
     std::vector<double> at, values;
     for (; i < arguments.size(); i += 2) {
       at.push_back(number(arguments[i]));

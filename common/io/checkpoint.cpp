@@ -62,10 +62,10 @@ CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& f
     const std::filesystem::path folder = folder_of(file);
     std::filesystem::create_directories(folder, code);
     if (!std::filesystem::is_directory(folder))
-      trouble = fmt::format("The folder '{}' for the checkpoint '{}' could not be made ({}).",
+      trouble = fmt::format("Cannot create the folder '{}' for the checkpoint '{}' ({}).",
                             folder.string(), file.string(), code.message());
     else if (::access(folder.c_str(), W_OK) != 0)
-      trouble = fmt::format("The folder '{}' for the checkpoint '{}' cannot be written to.", folder.string(),
+      trouble = fmt::format("Cannot write to the folder '{}' of the checkpoint '{}'.", folder.string(),
                             file.string());
   }
   hdf5::throw_together(comm, trouble);
@@ -99,7 +99,7 @@ void CheckpointWriter::write(const std::string& name, std::span<const double> va
     return;
   }
   if (hdf5::exists(state_->id, array_path(name)))
-    throw Error("The checkpoint '{}' got the array '{}' twice.", state_->file.string(), name);
+    throw Error("The checkpoint '{}' received the array '{}' twice.", state_->file.string(), name);
   const hdf5::Rows rows = hdf5::distribute_rows(state_->comm, values.size(), 1);
   hdf5::write_table(state_->id, array_path(name), rows, values.data());
   const std::int64_t layout[2] = {static_cast<std::int64_t>(values.size()), checksum(values)};
@@ -124,7 +124,7 @@ void CheckpointWriter::close() {
     hdf5::close_file(state_->id);
   } catch (const Error& error) {
     trouble = fmt::format(
-        "The checkpoint '{}' could not be written ({}). The last good one is kept; is the disk full?",
+        "Cannot write the checkpoint '{}' ({}). The last good one is kept; is the disk full?",
         state_->file.string(), error.what());
   }
   hdf5::throw_together(state_->comm, trouble);
@@ -133,7 +133,7 @@ void CheckpointWriter::close() {
     std::error_code code;
     std::filesystem::rename(state_->part, state_->file, code);
     if (code)
-      trouble = fmt::format("The checkpoint '{}' could not be put in place ({}).", state_->file.string(),
+      trouble = fmt::format("Cannot rename the finished checkpoint to '{}' ({}).", state_->file.string(),
                             code.message());
     else
       flush_to_disk(state_->file.has_parent_path() ? state_->file.parent_path() : std::filesystem::path("."));
@@ -152,19 +152,20 @@ hdf5::Reader open(const std::filesystem::path& file) { return {file, what, advic
 std::vector<std::int64_t> layout_of(const hdf5::Reader& in, const std::string& name, int ranks) {
   const auto n = std::uint64_t(ranks);
   if (const std::uint64_t rows = in.rows(layout_path(name), 2); rows != n)
-    in.refuse(fmt::format("the layout of '{}' is that of {} ranks; {} are expected", name, rows, n));
+    in.refuse(fmt::format("the layout of '{}' is for {} ranks; expected {}", name, rows, n));
   std::vector<std::int64_t> layout(2 * n);
   in.read(layout_path(name), {0, n, n, 2}, layout.data());
   const std::uint64_t total = in.rows(array_path(name), 1);
   std::uint64_t left = total;
   for (std::size_t r = 0; r < n; ++r) {
     if (layout[2 * r] < 0 || std::uint64_t(layout[2 * r]) > left)
-      in.refuse(fmt::format("the array '{}' has {} values; its layout gives rank {} {} of {} that are left",
+      in.refuse(fmt::format("the array '{}' has {} values; its layout assigns to rank {} {} of the {} "
+                            "remaining",
                             name, total, r, layout[2 * r], left));
     left -= std::uint64_t(layout[2 * r]);
   }
   if (left != 0)
-    in.refuse(fmt::format("the array '{}' has {} values; its layout leaves {} of them to no rank", name,
+    in.refuse(fmt::format("the array '{}' has {} values; its layout assigns {} of them to no rank", name,
                           total, left));
   return layout;
 }
@@ -180,8 +181,8 @@ void examine_stamp(const hdf5::Reader& in) {
   const auto set = read_checkpoint_set(folder_of(in.file()));
   if (!set || in.text("/", "set", 1024) == set->stamp.text()) return;
   throw Error(
-      "'{}' was written at another step or by another run than the checkpoint it lies in (step {}, t = {:g} s of "
-      "run {}).",
+      "'{}' is from another step or another run than the checkpoint that contains it (step {}, t = {:g} s "
+      "of run {}).",
       in.file().string(), set->stamp.step, set->stamp.time, set->stamp.run);
 }
 
@@ -205,7 +206,7 @@ void examine_content(const hdf5::Reader& in, int ranks) {
 
 /// The file as a whole, in a process of its own. Its digest is compared before HDF5 sees it.
 void examine(const std::filesystem::path& file, int ranks) {
-  if (!std::filesystem::exists(file)) throw Error("There is no checkpoint '{}'.", file.string());
+  if (!std::filesystem::exists(file)) throw Error("The checkpoint '{}' does not exist.", file.string());
   if (const std::string problem = problem_in_set(file); !problem.empty()) throw Error(problem);
   rehearse(file, what, [&] { examine_content(open(file), ranks); });
 }
@@ -264,8 +265,7 @@ struct CheckpointReader::State {
       in.read(array_path(name), rows, values.data());
       if (checksum(values) != wanted)
         throw Error(
-            "The checkpoint '{}' is corrupted: the checksum of the array '{}' is wrong on rank {}. Use an "
-            "earlier "
+            "The checkpoint '{}' is corrupted: wrong checksum of the array '{}' on rank {}. Use an earlier "
             "checkpoint.",
             in.file().string(), name, comm_rank(comm));
       return 0;
@@ -296,7 +296,7 @@ CheckpointReader::CheckpointReader(const StateInMemory& memory) : memory_(&memor
 
 const std::vector<double>& CheckpointReader::in_memory(const std::string& name) const {
   const auto found = memory_->arrays_.find(name);
-  if (found == memory_->arrays_.end()) throw Error("The state in memory has no '{}'.", name);
+  if (found == memory_->arrays_.end()) throw Error("The saved state has no '{}'.", name);
   return found->second;
 }
 
@@ -304,7 +304,7 @@ void CheckpointReader::read(const std::string& name, std::span<double> values) {
   if (memory_) {
     const std::vector<double>& kept = in_memory(name);
     if (kept.size() != values.size())
-      throw Error("The state in memory holds {} values of '{}', but {} are expected.", kept.size(), name,
+      throw Error("The saved state has {} values of '{}', but {} are expected.", kept.size(), name,
                   values.size());
     std::copy(kept.begin(), kept.end(), values.begin());
     return;
@@ -313,7 +313,7 @@ void CheckpointReader::read(const std::string& name, std::span<double> values) {
   std::string trouble;
   if (rows.count != values.size())
     trouble = fmt::format(
-        "The checkpoint '{}' holds {} values of '{}' on rank {}, but {} are expected. Is it from the same "
+        "The checkpoint '{}' has {} values of '{}' on rank {}, but {} are expected. Is it from the same "
         "mesh?",
         state_->in.file().string(), rows.count, name, comm_rank(state_->comm), values.size());
   hdf5::throw_together(state_->comm, trouble);
@@ -333,8 +333,8 @@ std::vector<double> CheckpointReader::read_or_none(const std::string& name, std:
   std::string trouble;
   if (!values.empty() && values.size() != n)
     trouble = fmt::format(
-        "The {} holds {} values of '{}', but {} or none are expected. Is it of the same case?",
-        memory_ ? std::string("state in memory") : fmt::format("checkpoint '{}'", state_->in.file().string()),
+        "The {} has {} values of '{}', but {} or none are expected. Is it of the same case?",
+        memory_ ? std::string("saved state") : fmt::format("checkpoint '{}'", state_->in.file().string()),
         values.size(), name, n);
   if (memory_ && !trouble.empty()) throw Error(trouble);
   if (!memory_) hdf5::throw_together(state_->comm, trouble);
@@ -345,8 +345,8 @@ std::size_t CheckpointReader::read_count(const std::string& name, std::size_t mo
   const double value = read_scalar(name);
   if (!(value >= 0 && value <= double(most)) || value != std::floor(value))
     throw Error(
-        "The {} gives {} as '{}'; a whole number from 0 to {} is expected.",
-        memory_ ? std::string("state in memory") : fmt::format("checkpoint '{}'", state_->in.file().string()),
+        "The {} gives {} as '{}'; expected a whole number from 0 to {}.",
+        memory_ ? std::string("saved state") : fmt::format("checkpoint '{}'", state_->in.file().string()),
         value, name, most);
   return static_cast<std::size_t>(value);
 }

@@ -113,7 +113,7 @@ void write_in_place(const fs::path& file, const std::string& text) {
     fs::rename(part, file, failed);
   }
   if (!stream || failed)
-    throw Error("The checkpoint file '{}' could not be written{}. Is the disk full?", file.string(),
+    throw Error("Cannot write the checkpoint file '{}'{}. Is the disk full?", file.string(),
                 failed ? fmt::format(" ({})", failed.message()) : std::string());
 }
 
@@ -149,7 +149,7 @@ std::optional<CheckpointSet> read_checkpoint_set(const fs::path& folder) {
   if (!fs::is_regular_file(file, ignored)) return {};
   auto set = parse_list(read_text(file));
   if (!set)
-    throw Error("'{}', the list of the files of a checkpoint, is damaged. Use an earlier checkpoint.",
+    throw Error("'{}', the list of files of a checkpoint, is damaged. Use an earlier checkpoint.",
                 file.string());
   return set;
 }
@@ -171,19 +171,19 @@ std::string problem_in_set(const fs::path& file) {
                                   [&](const CheckpointSet::File& f) { return f.name == name; });
   if (entry == set->files.end())
     return fmt::format(
-        "'{}' does not belong to the checkpoint in its folder: {} does not list it. The run that wrote the "
-        "set had no such participant.",
+        "'{}' does not belong to the checkpoint in its folder: it is not listed in {}. The run that wrote "
+        "the set had no such participant.",
         file.string(), list_name);
   std::error_code failed;
   const auto size = fs::file_size(file, failed);
   if (failed) return fmt::format("The checkpoint file '{}' is missing or cannot be read.", file.string());
   if (size == entry->size && digest_of_file(file) == entry->digest) return "";
   return fmt::format(
-      "'{}' is not the file that was written with this checkpoint (step {}, t = {:g} s of run {}): {}. It was damaged, or it "
-      "comes from another set. Use another checkpoint.",
+      "'{}' is not the file written with this checkpoint (step {}, t = {:g} s of run {}): {}. It is "
+      "damaged, or from another set. Use another checkpoint.",
       file.string(), set->stamp.step, set->stamp.time, set->stamp.run,
       size == entry->size ? std::string("its digest differs")
-                          : fmt::format("it has {} bytes in place of {}", size, entry->size));
+                          : fmt::format("it has {} bytes instead of {}", size, entry->size));
 }
 
 fs::path begin_checkpoint_set(const fs::path& parent, const CheckpointStamp& stamp) {
@@ -192,12 +192,12 @@ fs::path begin_checkpoint_set(const fs::path& parent, const CheckpointStamp& sta
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed)
-    throw Error("The checkpoint folder {} could not be made: {}.", folder.string(), failed.message());
+    throw Error("Cannot create the checkpoint folder {}: {}.", folder.string(), failed.message());
   try {
     clear(folder);
     write_in_place(folder / pending_name, fmt::format("{}\n{}", first_line, stamp.text()));
   } catch (const fs::filesystem_error& error) {
-    throw Error("The earlier checkpoint in {} could not be taken away: {}.", folder.string(),
+    throw Error("Cannot remove the earlier checkpoint in {}: {}.", folder.string(),
                 error.code().message());
   }
   return folder;

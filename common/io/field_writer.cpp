@@ -132,7 +132,7 @@ void FieldWriter::State::read_entries(const hdf5::Reader& file, const std::vecto
         const std::string table = group + "/" + place + "/" + field;
         const double components = file.number(table, "components");
         if (!(components >= 1 && components <= 9))
-          file.refuse("'" + table + "' has no sound number of components");
+          file.refuse("'" + table + "' has an invalid number of components");
         one.fields.push_back({field, file.text(table, "unit"), place == "cells", int(components)});
       }
     index.entries.push_back(std::move(one));
@@ -141,11 +141,11 @@ void FieldWriter::State::read_entries(const hdf5::Reader& file, const std::vecto
 
 std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
   const hdf5::Reader in(file(), "output", "Move it away or restart without it.");
-  if (in.text("/", "format") != fields_format) in.refuse("it is not an output of fields");
+  if (in.text("/", "format") != fields_format) in.refuse("it is not a field output file");
   const double kind = in.number("/", "kind");
   const auto known = {0, 4, 5, 6, 7, 8, 9};
   if (std::ranges::find(known, kind) == known.end())
-    in.refuse(fmt::format("its cells are of kind {}, which is not known", kind));
+    in.refuse(fmt::format("its cells are of the unknown kind {}", kind));
   index = {file().filename().string(), std::int64_t(kind), 0, cell_rows.total, point_rows.total, moving, {}};
   const std::uint64_t width = index.kind == 0 ? 1 : std::uint64_t(xdmf::points_of(index.kind));
   if (in.number("/", "ranks") != comm_size(mesh.comm) || in.rows("mesh/cell-id", 1) != cell_rows.total ||
@@ -195,7 +195,7 @@ FieldWriter::FieldWriter(const Mesh& mesh, std::filesystem::path folder, std::st
     std::filesystem::create_directories(s.folder, code);
     if (!std::filesystem::is_directory(s.folder))
       trouble =
-          fmt::format("The output folder '{}' could not be made ({}).", s.folder.string(), code.message());
+          fmt::format("Cannot create the output folder '{}' ({}).", s.folder.string(), code.message());
   }
   hdf5::throw_together(mesh.comm, trouble);
   if (std::isnan(restart_time) || !s.continue_from(restart_time)) s.start();

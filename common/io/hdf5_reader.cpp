@@ -40,7 +40,7 @@ Reader::Reader(std::filesystem::path file, std::string what, std::string advice)
 }
 
 void Reader::refuse(const std::string& why) const {
-  throw Error("The {} '{}' cannot be used: {}.{}{}", what_, file_.string(), why, advice_.empty() ? "" : " ",
+  throw Error("Cannot use the {} '{}': {}.{}{}", what_, file_.string(), why, advice_.empty() ? "" : " ",
               advice_);
 }
 
@@ -48,23 +48,23 @@ void Reader::refuse(const std::string& why) const {
 Handle Reader::find(const std::string& path) const {
   const Quiet quiet;
   Handle at(H5Oopen(id_, "/", H5P_DEFAULT), H5Oclose);
-  if (at < 0) refuse(fmt::format("its root cannot be opened ({})", reason()));
+  if (at < 0) refuse(fmt::format("cannot open its root group ({})", reason()));
   const std::vector<std::string> parts = split(path, '/');
-  if (parts.size() > deepest) refuse(fmt::format("'{}' lies deeper than {} groups", path, deepest));
+  if (parts.size() > deepest) refuse(fmt::format("'{}' is nested deeper than {} groups", path, deepest));
   for (const std::string& part : parts) {
     if (part.empty()) continue;
     if (H5Iget_type(at) != H5I_GROUP)
-      refuse(fmt::format("the way to '{}' leads through an object that is not a group", path));
+      refuse(fmt::format("the path to '{}' leads through an object that is not a group", path));
     const htri_t there = H5Lexists(at, part.c_str(), H5P_DEFAULT);
     if (there == 0) return {};
     H5L_info_t link;
     if (there < 0 || H5Lget_info(at, part.c_str(), &link, H5P_DEFAULT) < 0)
-      refuse(fmt::format("'{}' cannot be found ({})", path, reason()));
+      refuse(fmt::format("cannot find '{}' ({})", path, reason()));
     if (link.type != H5L_TYPE_HARD)
-      refuse(fmt::format("'{}' of the path '{}' is {}; an object of the file itself is expected", part, path,
+      refuse(fmt::format("'{}' of the path '{}' is {}; expected an object in the file itself", part, path,
                          name_of_link(link.type)));
     Handle next(H5Oopen(at, part.c_str(), H5P_DEFAULT), H5Oclose);
-    if (next < 0) refuse(fmt::format("'{}' cannot be opened ({})", path, reason()));
+    if (next < 0) refuse(fmt::format("cannot open '{}' ({})", path, reason()));
     at = std::move(next);
   }
   return at;
@@ -90,7 +90,7 @@ Handle Reader::attribute(const std::string& path, const std::string& name) const
   if (H5Aexists(owner, name.c_str()) <= 0) refuse(fmt::format("'{}' has no attribute '{}'", path, name));
   Handle found(H5Aopen(owner, name.c_str(), H5P_DEFAULT), H5Aclose);
   if (found < 0)
-    refuse(fmt::format("the attribute '{}' of '{}' cannot be opened ({})", name, path, reason()));
+    refuse(fmt::format("cannot open the attribute '{}' of '{}' ({})", name, path, reason()));
   return found;
 }
 
@@ -100,11 +100,11 @@ double Reader::number(const std::string& path, const std::string& name) const {
   const Handle type(H5Aget_type(found), H5Tclose), space(H5Aget_space(found), H5Sclose);
   const Shape shape = shape_of(space);
   if (!shape.is_one_value() || !(is_real(type) || is_integer(type)))
-    refuse(fmt::format("the attribute '{}' of '{}' holds {} ({}); one number is expected", name, path,
+    refuse(fmt::format("the attribute '{}' of '{}' contains {} ({}); expected one number", name, path,
                        shape.text(), name_of(type)));
   double value = 0;
   if (H5Aread(found, H5T_NATIVE_DOUBLE, &value) < 0)
-    refuse(fmt::format("the attribute '{}' of '{}' cannot be read ({})", name, path, reason()));
+    refuse(fmt::format("cannot read the attribute '{}' of '{}' ({})", name, path, reason()));
   return value;
 }
 
@@ -117,18 +117,18 @@ std::string Reader::text(const std::string& path, const std::string& name, std::
   if (!shape.is_one_value() || H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 ||
       size == 0 || size > longest)
     refuse(fmt::format(
-        "the attribute '{}' of '{}' holds {} ({}); one text of a fixed length of at most {} bytes is expected",
+        "the attribute '{}' of '{}' contains {} ({}); expected one fixed-length text of at most {} bytes",
         name, path, shape.text(), name_of(type), longest));
   std::string text(size, '\0');
   if (H5Aread(found, type, text.data()) < 0)
-    refuse(fmt::format("the attribute '{}' of '{}' cannot be read ({})", name, path, reason()));
+    refuse(fmt::format("cannot read the attribute '{}' of '{}' ({})", name, path, reason()));
   text.resize(text.find_last_not_of('\0') + 1);  // what pads it
   return text;
 }
 
 void Reader::check_filters(const std::string& path, const Handle& storage) const {
   const int n = H5Pget_nfilters(storage);
-  if (n < 0 || n > 4) refuse(fmt::format("the table '{}' has {} filters; at most 4 are read", path, n));
+  if (n < 0 || n > 4) refuse(fmt::format("the table '{}' has {} filters; at most 4 are supported", path, n));
   for (int i = 0; i < n; ++i) {
     unsigned flags = 0, values[8];
     std::size_t n_values = 8;
@@ -137,7 +137,7 @@ void Reader::check_filters(const std::string& path, const Handle& storage) const
         H5Pget_filter2(storage, unsigned(i), &flags, &n_values, values, sizeof name, name, nullptr);
     if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE && filter != H5Z_FILTER_FLETCHER32)
       refuse(fmt::format(
-          "the table '{}' is stored by filter {}; deflate (1), shuffle (2) and fletcher32 (3) are read", path,
+          "the table '{}' uses filter {}; only deflate (1), shuffle (2) and fletcher32 (3) are supported", path,
           filter));
   }
 }
@@ -148,11 +148,11 @@ void Reader::check_storage(const std::string& path, const Table& table) const {
   if (storage < 0) refuse(fmt::format("the storage of the table '{}' is damaged ({})", path, reason()));
   if (H5Pget_external_count(storage) != 0)
     refuse(fmt::format(
-        "the values of the table '{}' lie in another file; they are expected in the file itself", path));
+        "the values of the table '{}' are stored in another file; expected them in the file itself", path));
   const H5D_layout_t layout = H5Pget_layout(storage);
   if (layout != H5D_CONTIGUOUS && layout != H5D_COMPACT && layout != H5D_CHUNKED)
     refuse(fmt::format(
-        "the table '{}' is made up of tables of other files; a table of the file itself is expected", path));
+        "the table '{}' is composed of tables in other files; expected a table in the file itself", path));
   std::uint64_t most = bytes_;
   if (layout == H5D_CHUNKED) {
     check_filters(path, storage);
@@ -172,7 +172,7 @@ void Reader::check_storage(const std::string& path, const Table& table) const {
   }
   if (table.bytes > most)
     refuse(fmt::format(
-        "the table '{}' declares {} bytes of values; a file of {} bytes is expected to hold at most {}", path,
+        "the table '{}' declares {} bytes of values; a file of {} bytes can contain at most {}", path,
         table.bytes, bytes_, most));
 }
 
@@ -181,21 +181,21 @@ Reader::Table Reader::open(const std::string& path, Kind kind) const {
   table.id = object(path);
   const Quiet quiet;
   if (H5Iget_type(table.id) != H5I_DATASET)
-    refuse(fmt::format("'{}' is a group or a type; a table is expected", path));
+    refuse(fmt::format("'{}' is a group or a type; expected a table", path));
   table.type = Handle(H5Dget_type(table.id), H5Tclose);
   table.space = Handle(H5Dget_space(table.id), H5Sclose);
   if (table.type < 0 || table.space < 0)
-    refuse(fmt::format("the table '{}' cannot be read ({})", path, reason()));
+    refuse(fmt::format("cannot read the table '{}' ({})", path, reason()));
   const Shape shape = shape_of(table.space);
   const bool right = is_integer(table.type) || (kind == Kind::numbers && is_real(table.type));
   if (!right || !shape.sound || shape.size.empty() || shape.size.size() > 2)
-    refuse(fmt::format("the table '{}' holds {} ({}); one or two dimensions of {} are expected", path,
+    refuse(fmt::format("the table '{}' contains {} ({}); expected one or two dimensions of {}", path,
                        shape.text(), name_of(table.type), kind == Kind::integers ? "integers" : "numbers"));
   table.rows = shape.size[0];
   table.is_flat = shape.size.size() == 1;
   if (!table.is_flat) table.width = shape.size[1];
   if (table.rows > largest_table || table.width > largest_table || table.rows * table.width > largest_table)
-    refuse(fmt::format("the table '{}' holds {}; at most {} values are read", path, shape.text(),
+    refuse(fmt::format("the table '{}' contains {}; at most {} values are supported", path, shape.text(),
                        largest_table));
   table.bytes = table.rows * table.width * H5Tget_size(table.type);
   check_storage(path, table);
@@ -205,10 +205,10 @@ Reader::Table Reader::open(const std::string& path, Kind kind) const {
 Reader::Table Reader::open(const std::string& path, Kind kind, const Rows& rows) const {
   Table table = open(path, kind);
   if (table.rows != rows.total || table.width != rows.width)
-    refuse(fmt::format("the table '{}' has {} rows of {} values; {} of {} are expected", path, table.rows,
+    refuse(fmt::format("the table '{}' has {} rows of {} values; expected {} of {}", path, table.rows,
                        table.width, rows.total, rows.width));
   if (rows.first > rows.total || rows.count > rows.total - rows.first)
-    refuse(fmt::format("rows {} to {} of the table '{}' are asked for, which has {}", rows.first,
+    refuse(fmt::format("rows {} to {} of the table '{}' requested, but it has {}", rows.first,
                        rows.first + rows.count, path, table.rows));
   return table;
 }
@@ -223,13 +223,13 @@ void Reader::read(const std::string& path, const Table& table, const Rows& rows,
   // Its own number of dimensions is 1 or 2, as has been checked.
   if (H5Sselect_hyperslab(table.space, H5S_SELECT_SET, start, nullptr, count, nullptr) < 0 ||
       H5Dread(table.id, type, memory, table.space, H5P_DEFAULT, values) < 0)
-    refuse(fmt::format("the table '{}' cannot be read ({})", path, reason()));
+    refuse(fmt::format("cannot read the table '{}' ({})", path, reason()));
 }
 
 std::uint64_t Reader::rows(const std::string& path, std::uint64_t width) const {
   const Table table = open(path, Kind::numbers);
   if (table.width != width)
-    refuse(fmt::format("the table '{}' has {} values a row; {} are expected", path, table.width, width));
+    refuse(fmt::format("the table '{}' has {} values per row; expected {}", path, table.width, width));
   return table.rows;
 }
 
@@ -255,7 +255,7 @@ std::vector<std::string> Reader::members(const std::string& group, std::size_t m
   const Handle place = object(group);
   const Quiet quiet;
   if (H5Iget_type(place) != H5I_GROUP)
-    refuse(fmt::format("'{}' is a table or a type; a group is expected", group));
+    refuse(fmt::format("'{}' is a table or a type; expected a group", group));
   struct List {
     std::vector<std::string>& names;
     std::size_t most;
@@ -267,14 +267,14 @@ std::vector<std::string> Reader::members(const std::string& group, std::size_t m
     return 0;
   };
   if (H5Literate(place, H5_INDEX_NAME, H5_ITER_INC, nullptr, collect, &list) < 0)
-    refuse(fmt::format("the group '{}' cannot be listed, or has more than {} members", group, most));
+    refuse(fmt::format("cannot list the group '{}', or it has more than {} members", group, most));
   return names;
 }
 
 void Reader::add_leaves(const std::string& group, const std::string& below, std::size_t& left,
                         std::vector<std::string>& to) const {
   for (const std::string& name : members(group + below, left)) {
-    if (left-- == 0) refuse(fmt::format("the group '{}' has too many members, or itself as one", group));
+    if (left-- == 0) refuse(fmt::format("the group '{}' has too many members, or contains itself", group));
     const std::string path = below + "/" + name;
     const Handle member = object(group + path);
     if (H5Iget_type(member) == H5I_GROUP)

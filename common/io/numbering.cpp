@@ -29,8 +29,8 @@ void check_numbering(CheckpointReader& file, const Mesh& mesh) {
   const bool differs = then.size() != 1 || then[0] != number_of(mesh);
   if (max(mesh.comm, differs ? 1. : 0.) > 0)
     throw Error(
-        "The checkpoint was written with the cells shared out otherwise among the ranks, or in another order: with "
-        "another version of the partitioner, or of gmsh. It cannot be continued with this mesh on these ranks.");
+        "The checkpoint was written with another distribution or order of the cells: with another version "
+        "of the partitioner or of gmsh. It cannot be continued with this mesh on these ranks.");
 }
 
 }  // namespace couplet

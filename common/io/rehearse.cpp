@@ -104,7 +104,7 @@ void rehearse(const std::filesystem::path& file, const std::string& what, const 
   if (has_pipe) ::close(ends[0]);
   if (child < 0) {
     log::warn(
-        "'{}' is read without having been tried in a process of its own, because none could be started ({}).",
+        "'{}' is read without a prior trial in a separate process, because none could be started ({}).",
         file.string(), why);
     return;
   }
@@ -114,12 +114,12 @@ void rehearse(const std::filesystem::path& file, const std::string& what, const 
   if (outcome.starts_with(refused)) throw Error(outcome.substr(1));
   const bool time = WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL ||
                                             WTERMSIG(status) == SIGALRM);
-  throw Error("The {} '{}' cannot be used: it is damaged, or made to do harm ({}). Make it anew.", what,
+  throw Error("The {} '{}' cannot be used: it is damaged or malicious ({}). Create it again.", what,
               file.string(),
               outcome.starts_with(out_of_memory)
-                  ? "reading it takes more memory than a file of its size needs"
-              : time ? "reading it takes longer than a file of its size needs"
-                     : "a trial of reading it crashed");
+                  ? "reading it takes more memory than its size justifies"
+              : time ? "reading it takes longer than its size justifies"
+                     : "a trial read crashed");
 }
 
 }  // namespace couplet

@@ -38,7 +38,7 @@ std::unique_ptr<csv::LineReader> rows_of(const std::filesystem::path& file, cons
   if (!old->next(line)) return nullptr;
   if (line != head)
     throw Error(
-        "The series '{}' cannot be continued: its columns are '{}', those of this run '{}'. Move it away.",
+        "Cannot continue the series '{}': its columns are '{}', those of this run are '{}'. Move it away.",
         file.string(), line, head);
   return old;
 }
@@ -72,17 +72,17 @@ Series::Series(const std::filesystem::path& file, const std::vector<std::string>
   std::filesystem::rename(part, file, code);
   if (!code) file_.open(file, std::ios::app);
   if (code || !file_)
-    throw Error("The series '{}' cannot be written. Is the folder there and may you write to it?",
+    throw Error("Cannot write the series '{}'. Does the folder exist, with write permission?",
                 file.string());
 }
 
 void Series::row(std::span<const double> values) {
   if (values.size() != n_columns_)
-    throw Error("A series row has {} values, its head {} columns.", values.size(), n_columns_);
+    throw Error("A series row has {} values, but its header has {} columns.", values.size(), n_columns_);
   // The shortest text that reads back as the same number.
   file_ << fmt::format("{}\n", fmt::join(values, ","));
   file_.flush();
-  if (!file_) throw Error("A series row could not be written. Is the disk full?");
+  if (!file_) throw Error("Cannot write a series row. Is the disk full?");
 }
 
 }  // namespace couplet

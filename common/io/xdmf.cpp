@@ -119,7 +119,7 @@ void write(const std::filesystem::path& index, const Series& series) {
             "    <Grid Name=\"series\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
     for (const Entry& entry : series.entries) file << grid(series, entry);
     file << "    </Grid>\n  </Domain>\n</Xdmf>\n";
-    if (!file.flush()) throw Error("The index '{}' could not be written. Is the disk full?", index.string());
+    if (!file.flush()) throw Error("Cannot write the index '{}'. Is the disk full?", index.string());
   }
   std::filesystem::rename(part, index);
 }

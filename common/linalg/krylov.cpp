@@ -74,8 +74,8 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
   statistics.residual = true_residual(b, x);
   // Every comparison with a NaN is false, so that it would count as converged.
   if (!std::isfinite(size) || !std::isfinite(statistics.residual))
-    throw SolveFailure("The Krylov solver for {} was given {} that is not finite.", what_,
-                       std::isfinite(size) ? "a guess" : "a right-hand side");
+    throw SolveFailure("The Krylov solver for {}: {} is not finite.", what_,
+                       std::isfinite(size) ? "the initial guess" : "the right-hand side");
   if (projection && projection->project(r_, x)) {
     statistics.residual = std::sqrt(over_ranks<1>(comm_, {dot_here(r_, r_)})[0]);
     if (statistics.residual <= wanted) statistics.residual = true_residual(b, x);
@@ -92,15 +92,15 @@ SolveStatistics KrylovSolver::solve(std::span<const double> b, std::span<double>
     }
     if (stuck || statistics.iterations >= options.max_iterations || !std::isfinite(statistics.residual))
       throw SolveFailure(
-          "The Krylov solver for {} did not converge: {} reached a residual of {:.3e} of the right-hand side "
-          "({:.3e} wanted) in {} of at most {} iterations{}.",
+          "The Krylov solver for {} did not converge: {} reached a relative residual of {:.3e} (tolerance "
+          "{:.3e}) in {} of at most {} iterations{}.",
           what_,
           options.is_symmetric ? "CG"
           : options.is_hard    ? "IDR(4)"
           : is_hard            ? "IDR(4) after BiCGStab"
                                : "BiCGStab",
           statistics.residual / size, options.relative_tolerance, statistics.iterations,
-          options.max_iterations, stuck ? " and a restart gains nothing" : "");
+          options.max_iterations, stuck ? " and a restart does not help" : "");
     // A start that is nearly there already would end a hair further on, which is not what "gains nothing" means.
     const bool is_near = std::isfinite(before) && statistics.residual < 2 * wanted;
     const double aim = is_near ? wanted / 2 : wanted;
@@ -151,7 +151,7 @@ void KrylovSolver::run_cg(std::span<double> x, double wanted, int max_iterations
 void KrylovSolver::run_idr(std::span<double> x, double wanted, int max_iterations,
                            SolveStatistics& statistics) {
   if (!is_announced_ && statistics.iterations > 0)
-    log::info("{}: {} iterations of BiCGStab were not enough, IDR(4) goes on", what_, statistics.iterations);
+    log::info("{}: {} iterations of BiCGStab were not enough; IDR(4) continues", what_, statistics.iterations);
   is_announced_ = true;
   for (auto* v : {&shadow_, &p_, &v_, &t_, &z_}) *v = std::vector<double>();
   if (!idr_) idr_ = std::make_unique<Idr>(comm_, n_);

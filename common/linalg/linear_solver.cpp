@@ -304,7 +304,7 @@ KSPConvergedReason LinearSolver::continue_by_idr(std::span<const double> b, std:
   Idr idr(matrix_->comm(), b.size());
   const int most = 2 * (options_.max_iterations - statistics.iterations);
   if (most > 0)
-    log::info("{}: BiCGStab stopped after {} iterations, IDR(4) goes on", what_, statistics.iterations);
+    log::info("{}: BiCGStab stopped after {} iterations; IDR(4) continues", what_, statistics.iterations);
   int applications = 0, before = -1;
   while (applications < most && applications > before) {
     before = applications;

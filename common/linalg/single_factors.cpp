@@ -47,7 +47,7 @@ void SingleFactors::factorise(std::span<const int> offset, std::span<const int> 
   }
   analysis_->solver.factorize(a);
   if (analysis_->solver.info() != Eigen::Success)
-    throw SolveFailure("A matrix of {} rows that should be positive definite has no Cholesky factors.", n);
+    throw SolveFailure("Cholesky factorisation failed: a matrix of {} rows is not positive definite.", n);
   if (first) find_supernodes();
   keep_values();
 }

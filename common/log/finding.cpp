@@ -91,7 +91,7 @@ std::string unknown_ids(std::span<const std::string> ids) {
   for (const std::string& id : ids) {
     if (std::ranges::count(known, id) > 0) continue;
     const auto meant = closest(id, known);
-    text += fmt::format("{}there is no finding '{}'{}", text.empty() ? "" : "; ", id,
+    text += fmt::format("{}unknown finding '{}'{}", text.empty() ? "" : "; ", id,
                         meant ? fmt::format(", did you mean '{}'?", *meant) : "");
   }
   return text.empty() ? text : fmt::format("{}. Findings: {}", text, join(known));

@@ -19,12 +19,12 @@ std::vector<int> materials_of_cells(const RawMesh& raw) {
                     join(raw.zones));
       int& material = of_zone[zone - raw.zones.begin()];
       if (material >= 0)
-        throw Error("Its zone '{}' is given to two materials; each zone is made of one.", name);
+        throw Error("Its zone '{}' is assigned to two materials; each zone has exactly one.", name);
       material = static_cast<int>(m);
     }
   for (std::size_t z = 0; z < of_zone.size(); ++z)
     if (of_zone[z] < 0)
-      throw Error("Its zone '{}' has no material; add it to the zones of one. The zones are {}.",
+      throw Error("Its zone '{}' has no material; add it to the zones of a material. The zones are {}.",
                   raw.zones[z], join(raw.zones));
   if (raw.materials.size() == 1) return {};
   std::vector<int> result;

@@ -21,7 +21,7 @@ struct Side {
 
 int patch_index(const RawMesh& raw, const std::string& name) {
   const auto found = std::find(raw.patches.begin(), raw.patches.end(), name);
-  if (found == raw.patches.end()) throw Error("There is no patch '{}' to be periodic.", name);
+  if (found == raw.patches.end()) throw Error("The periodic patch '{}' does not exist.", name);
   return static_cast<int>(found - raw.patches.begin());
 }
 
@@ -76,8 +76,8 @@ void join(const RawMesh& raw, const Faces& faces, const std::array<std::string, 
                           second = sides_of(raw, faces, patch_index(raw, names[1]));
   if (first.size() != second.size() || first.empty())
     throw Error(
-        "The periodic patches '{}' and '{}' have {} and {} faces. Mesh both alike (gmsh: Periodic Curve or "
-        "Periodic Surface).",
+        "The periodic patches '{}' and '{}' have {} and {} faces. Mesh both identically (gmsh: Periodic "
+        "Curve or Periodic Surface).",
         names[0], names[1], first.size(), second.size());
   const Vec3 translation = middle(second) - middle(first);
   const Finder finder(second);
@@ -85,8 +85,8 @@ void join(const RawMesh& raw, const Faces& faces, const std::array<std::string, 
     const std::size_t found = finder.find(second, side.centre + translation, tolerance * side.size);
     if (found == second.size() || gone[second[found].face - faces.n_interior])
       throw Error(
-          "The face at {} of the periodic patch '{}' has no partner on '{}' at {}. The patches must be "
-          "copies of each other by a translation.",
+          "The face at {} of the periodic patch '{}' has no match on '{}' at {}. The patches must be "
+          "translated copies of each other.",
           place(side.centre, raw.dim), names[0], names[1], place(side.centre + translation, raw.dim));
     const Index a = side.face, b = second[found].face;
     gone[a - faces.n_interior] = gone[b - faces.n_interior] = 1;

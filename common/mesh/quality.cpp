@@ -183,15 +183,13 @@ void check_and_report(const Mesh& mesh) {
   };
   if (const auto trouble = find_inverted(mesh, mesh.reference))
     throw Error(
-        "The mesh has an inverted cell: cell {} at {} m has the volume {:.3g} m^3. Its faces cross one "
-        "another; mesh "
-        "that place anew, coarser or with another element size.",
+        "The mesh has an inverted cell: cell {} at {} m has the volume {:.3g} m^3. Its faces intersect; "
+        "remesh there, coarser or with another element size.",
         trouble->cell_id, text(trouble->centre), trouble->volume);
   if (const auto trouble = find_crossed(mesh, mesh.reference, mesh.reference_points))
     throw Error(
-        "The mesh has a cell that crosses itself: cell {} at {} m. Its points come in the wrong order; mesh "
-        "that "
-        "place anew.",
+        "The mesh has a self-intersecting cell: cell {} at {} m. Its points are in the wrong order; remesh "
+        "there.",
         trouble->cell_id, text(trouble->centre));
   const MeshQuality q = measure_quality(mesh, mesh.reference);
   if (comm_rank(mesh.comm) != 0) return;

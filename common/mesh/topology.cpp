@@ -117,19 +117,19 @@ void check_elements(const RawMesh& raw, std::span<const HalfFace> cells, std::sp
   const std::string& name = raw.patches[raw.boundary_patch[elements[0].element()]];
   if (cells.empty())
     throw Error(
-        "Patch '{}' has a face at {} that is no face of any cell. Mesh the boundary and the interior "
-        "together so that their points agree.",
+        "Patch '{}' has a face at {} that belongs to no cell. Mesh the boundary and the interior together "
+        "so that their points coincide.",
         name, where());
   if (cells.size() == 2)
     throw Error(
         "Patch '{}' has a face at {} that lies between two cells. A patch must lie on the boundary; remove "
-        "the inner surface from the physical group (or the mesh has every cell twice).",
+        "the inner surface from the physical group (or the mesh contains every cell twice).",
         name, where());
   for (const HalfFace& e : elements)
     if (raw.boundary_patch[e.element()] != raw.boundary_patch[elements[0].element()])
       throw Error(
           "The boundary face at {} is in two patches, '{}' and '{}'. Every boundary face must be in exactly "
-          "one.",
+          "one patch.",
           where(), name, raw.patches[raw.boundary_patch[e.element()]]);
 }
 
@@ -140,9 +140,9 @@ void report_unassigned(const RawMesh& raw, const HalfFaces& halves, const std::v
     places +=
         fmt::format("{}{}", i ? ", " : "", place(mean_point(raw, halves.points(unassigned[i])), raw.dim));
   throw Error(
-      "{} boundary face{} in no patch, with centre{} {}{}. Every boundary face must be in exactly one patch: "
-      "add {} to a physical group (if the place is inside the domain, the mesh has two points there that "
-      "should be one).",
+      "{} boundary face{} in no patch, with centre{} {}{}. Every boundary face must be in exactly one "
+      "patch: add {} to a physical group (for a location inside the domain: the mesh has two coincident "
+      "points there that should be one).",
       unassigned.size(), unassigned.size() == 1 ? " is" : "s are", unassigned.size() == 1 ? "" : "s", places,
       unassigned.size() > 3 ? ", ..." : "",
       raw.dim == 2 ? "the curve (Physical Curve)" : "the surface (Physical Surface)");
@@ -164,8 +164,8 @@ Faces build_faces(const RawMesh& raw) {
   halves.for_each_face([&](std::span<const HalfFace> cells, std::span<const HalfFace> elements) {
     if (cells.size() > 2)
       throw Error(
-          "{} cells share the face at {}. A face has two cells at most; the mesh has cells twice or cells "
-          "that overlap.",
+          "{} cells share the face at {}, but a face has at most two cells; the mesh has duplicate or "
+          "overlapping cells.",
           cells.size(), place(mean_point(raw, halves.points(cells[0])), raw.dim));
     check_elements(raw, cells, elements);
     if (cells.size() == 2)

@@ -142,7 +142,7 @@ class Sides {
     }
     middle /= area;
     return fmt::format(
-        "the faces of part {} of {} ({} faces from face {} on, their middle at ({:.4g}, {:.4g}, {:.4g}))",
+        "the faces of part {} of {} ({} faces from face {} on, centred at ({:.4g}, {:.4g}, {:.4g}))",
         part + 1, welded_.part.size(), welded_.part[part].size(), welded_.part[part].front() + 1, middle.x(),
         middle.y(), middle.z());
   }
@@ -189,7 +189,7 @@ class Sides {
 
 /// Of one part. Empty: it is right, or nothing tells.
 std::string part_problem(const Sides& sides, std::size_t part, std::size_t samples, Facing wanted) {
-  constexpr const char* rule = "(vertices of a face turn right-handed about the outward normal)";
+  constexpr const char* rule = "(the vertices of a face must turn right-handed about its outward normal)";
   const Votes votes = sides.of(part, samples);
   const double said = votes.outward + votes.inward;
   const double right = wanted == Facing::outward ? votes.outward : votes.inward, wrong = said - right;
@@ -198,31 +198,32 @@ std::string part_problem(const Sides& sides, std::size_t part, std::size_t sampl
     if (wrong >= 0.9 * said)
       return wanted == Facing::outward
                  ? fmt::format(
-                       "{} are turned inside out: their normals point into the structure, whose other side lies "
-                       "before them, and those of a body point out of it {}",
+                       "{} are inside out: their normals point into the structure, but must point out of it "
+                       "{}",
                        sides.name(part), rule)
                  : fmt::format(
-                       "{} point out of the space that the surface encloses, and those of a cavity's wall "
-                       "('modes.cavity: true') point into it {}",
+                       "{} point out of the space that the surface encloses, but those of a cavity wall "
+                       "('modes.cavity: true') must point into it {}",
                        sides.name(part), rule);
   }
   const std::optional<double> volume = sides.volume(part);
   if (!volume) {
     if (!(said >= 0.5 * votes.all)) return "";
     return fmt::format(
-        "on which side of {} the structure lies cannot be told: {:.0f} % of them look away from other faces and {:.0f} % at "
-        "them. Give the whole surface of the structure, closed where it is closed",
+        "cannot determine on which side of {} the structure lies: {:.0f} % of them face away from other "
+        "faces and {:.0f} % towards them. Give the complete surface of the structure, closed where it is "
+        "closed",
         sides.name(part), 100 * votes.outward / said, 100 * votes.inward / said);
   }
   if (wanted == Facing::outward ? !(*volume < 0) : !(*volume > 0)) return "";
   return wanted == Facing::outward
              ? fmt::format(
-                   "{} are turned inside out: their normals point into the {:.3g} m^3 that the surface encloses, and "
-                   "those of a body point out of it {}",
+                   "{} are inside out: their normals point into the {:.3g} m^3 that the surface encloses, "
+                   "but must point out of it {}",
                    sides.name(part), -*volume, rule)
              : fmt::format(
-                   "{} point out of the {:.3g} m^3 that the surface encloses, and those of a cavity's wall "
-                   "('modes.cavity: true') point into it {}",
+                   "{} point out of the {:.3g} m^3 that the surface encloses, but those of a cavity wall "
+                   "('modes.cavity: true') must point into it {}",
                    sides.name(part), *volume, rule);
 }
 

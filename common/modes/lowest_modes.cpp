@@ -127,7 +127,8 @@ EigenModes lowest_modes(const SparseMatrix& stiffness, const SparseMatrix& mass,
   PetscInt rows = 0;
   petsc_check(MatGetSize(stiffness.petsc(), &rows, nullptr));
   if (n > rows)
-    throw Error("{} modes are asked for; the model has {} unknowns. Ask for fewer or refine it.", n, rows);
+    throw Error("{} modes are requested, but the model has only {} unknowns. Request fewer modes or refine "
+                "the model.", n, rows);
   Mat k = stiffness.petsc(), m = mass.petsc();
   petsc_check(MatSetOption(k, MAT_SYMMETRIC, PETSC_TRUE));
   petsc_check(MatSetOption(m, MAT_SYMMETRIC, PETSC_TRUE));
@@ -149,10 +150,9 @@ EigenModes lowest_modes(const SparseMatrix& stiffness, const SparseMatrix& mass,
     return modes;
   }
   throw SolveFailure(
-      "The {} lowest modes could not be found with certainty: the eigenvalue solver gave fewer, or others "
-      "than the "
-      "count of pivots says. Check that the model is one piece and its stiffness is positive, or ask for "
-      "fewer modes.",
+      "Cannot verify the {} lowest modes: the eigenvalue solver returned fewer, or not those that the pivot "
+      "count predicts. Check that the model is connected and its stiffness is positive, or request fewer "
+      "modes.",
       n);
 }
 

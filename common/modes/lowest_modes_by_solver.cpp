@@ -134,7 +134,7 @@ void keep(EigenModes& modes, std::size_t n) {
 EigenModes lowest_modes(MPI_Comm comm, std::size_t n_owned, const ModalOperators& of, int n, double shift) {
   EigenModes modes = Search(comm, n_owned, of, shift).run(n, {});
   if (static_cast<int>(modes.eigenvalue.size()) < n)
-    throw SolveFailure("Only {} of {} modes were found. Ask for fewer modes or refine the mesh.",
+    throw SolveFailure("Only {} of {} modes were found. Request fewer modes or refine the mesh.",
                        modes.eigenvalue.size(), n);
   keep(modes, std::size_t(n));
   // Without factors no pivots can be counted: what is left beside the found ones must lie above them.
@@ -150,7 +150,8 @@ EigenModes lowest_modes(MPI_Comm comm, std::size_t n_owned, const ModalOperators
     keep(modes, std::size_t(n));
   }
   throw SolveFailure(
-      "The {} lowest modes could not be found with certainty: further ones keep turning up below them.", n);
+      "Cannot verify the {} lowest modes: further ones keep appearing below them. Request fewer modes or "
+      "refine the mesh.", n);
 }
 
 }  // namespace couplet

@@ -96,12 +96,12 @@ std::string impossible_in(const ModalModel& model) {
   for (std::size_t m = 0; m < n && model.frequency[m] == 0; ++m)
     if (const double misfit = rigid_motion(model, m).misfit; misfit > 0.02)
       return fmt::format(
-          "mode {} has 0 Hz, but its shape is no rigid motion: {:.2g} of it (rms) is something else. Rows of the shapes "
-          "go vertex by vertex, three components each",
+          "mode {} has 0 Hz, but its shape is not a rigid motion: {:.2g} of it (rms) is deformation. The "
+          "rows of the shapes are per vertex, with three components each",
           m + 1, misfit);
   if (const int m = mode_of_two_shapes(model); m >= 0)
     return fmt::format(
-        "the shape of mode {} at the faces ('shape/faces') is not the mean of that at their vertices", m + 1);
+        "the shape of mode {} at the faces ('shape/faces') is not the mean of the shape at their vertices", m + 1);
   // Bessel: a uniform motion of the whole mass has at most its own length in the modes.
   for (int c = 0; c < 3; ++c) {
     double effective = 0;
@@ -109,8 +109,8 @@ std::string impossible_in(const ModalModel& model) {
       effective += model.participation[c * n + m] * model.participation[c * n + m];
       if (effective > 1.01 * model.mass)
         return fmt::format(
-            "the effective masses (participation^2) of modes 1 to {} along {} add up to {:.4g} kg, more than the mass "
-            "of {:.4g} kg",
+            "the effective masses (participation^2) of modes 1 to {} along {} add up to {:.4g} kg, more "
+            "than the total mass of {:.4g} kg",
             m + 1, "xyz"[c], effective, model.mass);
     }
   }
@@ -165,8 +165,8 @@ std::string scale_problem_of(const ModalModel& model) {
       const bool small = told * told < 0.05 * model.mass && seen * seen < 0.3 * model.mass;
       if (!(whole && apart) && (small || (seen / told > 0.3 && seen / told < 3))) continue;
       return fmt::format(
-          "the participation of mode {} along {} is {:.3g} sqrt(kg), and the shape and mass of the surface give {:.3g}: "
-          "shapes and participation are not of the same modes",
+          "the participation of mode {} along {} is {:.3g} sqrt(kg), but the shape and mass of the surface "
+          "give {:.3g}: shapes and participation are from different modes",
           m + 1, "xyz"[c], told, seen);
     }
   }
@@ -181,13 +181,13 @@ std::string scale_problem_of(const ModalModel& model) {
 
 std::string problem_of(const ModalModel& model) {
   const std::size_t n = model.n_modes(), vertices = model.vertices.size(), faces = model.faces.size();
-  if (n == 0) return "it holds no mode";
-  if (faces == 0) return "its surface has no face";
+  if (n == 0) return "it contains no modes";
+  if (faces == 0) return "its surface has no faces";
   for (std::size_t m = 0; m < n; ++m) {
     if (!std::isfinite(model.frequency[m]) || model.frequency[m] < 0)
       return fmt::format("the frequency of mode {} is {} Hz", m + 1, model.frequency[m]);
     if (m > 0 && model.frequency[m] < model.frequency[m - 1])
-      return fmt::format("mode {} has a lower frequency than the mode before it", m + 1);
+      return fmt::format("mode {} has a lower frequency than the previous mode", m + 1);
   }
   if (model.vertex_shape.size() != vertices * 3 * n)
     return fmt::format("the shapes have {} values; {} vertices x 3 components x {} modes are needed",
@@ -205,13 +205,13 @@ std::string problem_of(const ModalModel& model) {
       return fmt::format("face {} has {} vertices; 3 or 4 are needed", f + 1, corners.size());
     for (const Index v : corners)
       if (v < 0 || std::size_t(v) >= vertices)
-        return fmt::format("face {} names vertex {}; there are {}", f + 1, v, vertices);
+        return fmt::format("face {} refers to vertex {}; there are {}", f + 1, v, vertices);
   }
   if (std::string wrong = surface_problem_of(model); !wrong.empty()) return wrong;
   const auto finite = [](double value) { return std::isfinite(value); };
   for (const auto* values :
        {&model.vertex_shape, &model.face_shape, &model.participation, &model.face_density})
-    if (!std::ranges::all_of(*values, finite)) return "it holds a value that is no number";
+    if (!std::ranges::all_of(*values, finite)) return "it contains a value that is not finite";
   return "";
 }
 
@@ -226,8 +226,9 @@ std::string order_problem_of(const ModalModel& model) {
       roughness(model, lowest, [n](std::size_t v, std::size_t c) { return c * n + v; });
   if (by_component >= 0.5 * by_vertex) return "";
   return fmt::format(
-      "the shape of mode {} looks as if all x components came first, then all y, then all z: read so, neighbouring "
-      "vertices differ {:.2g} times less (mean square). Rows go vertex by vertex, three components each",
+      "the shape of mode {} seems to list all x components first, then all y, then all z: read that way, "
+      "neighbouring vertices differ {:.2g} times less (mean square). The rows must be per vertex, with "
+      "three components each",
       lowest + 1, by_vertex / std::max(by_component, 1e-12 * by_vertex));
 }
 
@@ -241,7 +242,7 @@ std::string surface_problem_of(const ModalModel& model) {
       const Index from = corners[i], to = corners[(i + 1) % corners.size()];
       used[std::size_t(from)] = true;
       for (std::size_t j = 0; j < i; ++j)
-        if (corners[j] == from) return fmt::format("face {} names vertex {} twice", f + 1, from);
+        if (corners[j] == from) return fmt::format("face {} refers to vertex {} twice", f + 1, from);
       faces_of[{from, to}].push_back(f);
     }
   }
@@ -249,11 +250,11 @@ std::string surface_problem_of(const ModalModel& model) {
   for (const auto& [edge, faces] : faces_of)
     if (faces.size() > 1 && !faces_of.contains({edge.second, edge.first}))
       return fmt::format(
-          "faces {} and {} go along their edge between vertices {} and {} in the same direction: one of them is turned "
-          "inside out",
+          "faces {} and {} traverse their edge between vertices {} and {} in the same direction: one of "
+          "them is inside out",
           faces[0] + 1, faces[1] + 1, edge.first, edge.second);
   for (std::size_t v = 0; v < used.size(); ++v)
-    if (!used[v]) return fmt::format("no face has vertex {}", v);
+    if (!used[v]) return fmt::format("vertex {} belongs to no face", v);
   return "";
 }
 

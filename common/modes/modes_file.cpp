@@ -21,8 +21,8 @@ void write(const hdf5::Handle& id, const char* path, const std::vector<double>& 
   hdf5::write_table(id, path, rows(values.size() / width, width), values.data());
 }
 
-constexpr const char* what = "file of modes";
-constexpr const char* advice = "docs/formats.md says what it must hold.";
+constexpr const char* what = "modes file";
+constexpr const char* advice = "docs/formats.md describes the required content.";
 constexpr std::uint64_t most_modes = 2000;  // they are compared with each other
 
 std::vector<std::int64_t> read_integers(const hdf5::Reader& file, const char* path) {
@@ -38,22 +38,22 @@ void read_faces(const hdf5::Reader& file, Csr& faces) {
   constexpr std::int64_t most = std::numeric_limits<Index>::max();
   bool sound = !offset.empty() && offset.front() == 0 && offset.back() == std::int64_t(vertex.size());
   for (std::size_t f = 1; f < offset.size(); ++f) sound = sound && offset[f] >= offset[f - 1];
-  if (!sound) file.refuse("'surface/face-offset' must grow from 0 to the length of 'surface/face-vertex'");
+  if (!sound) file.refuse("'surface/face-offset' must increase from 0 to the length of 'surface/face-vertex'");
   for (const std::int64_t v : vertex)
-    if (v < 0 || v > most) file.refuse(fmt::format("'surface/face-vertex' names vertex {}", v));
+    if (v < 0 || v > most) file.refuse(fmt::format("'surface/face-vertex' contains vertex {}", v));
   faces.offset.assign(offset.begin(), offset.end());
   faces.index.assign(vertex.begin(), vertex.end());
 }
 
 /// All that is in the file, by itself sound or not.
 ModalModel read_tables(const hdf5::Reader& file) {
-  if (file.text("/", "format") != format_name) file.refuse("it is not a file of modes");
+  if (file.text("/", "format") != format_name) file.refuse("it is not a modes file");
   if (const double version = file.number("/", "version"); version != format_version)
-    file.refuse(fmt::format("its version is {}; {} is read", version, format_version));
+    file.refuse(fmt::format("its version is {}; expected {}", version, format_version));
   ModalModel model;
   const std::uint64_t n = file.rows("frequency", 1);
   if (n > most_modes)
-    file.refuse(fmt::format("'frequency' has {} rows; at most {} modes are read", n, most_modes));
+    file.refuse(fmt::format("'frequency' has {} rows; at most {} modes are supported", n, most_modes));
   model.frequency = file.table("frequency", n, 1);
   const std::uint64_t vertices = file.rows("surface/vertices", 3);
   const std::vector<double> places = file.table("surface/vertices", vertices, 3);
@@ -65,7 +65,7 @@ ModalModel read_tables(const hdf5::Reader& file) {
   const std::size_t faces = model.faces.size();
   if (faces > 8 * (vertices + 1))
     file.refuse(
-        fmt::format("{} faces have {} vertices; a surface has at most 2 faces a vertex", faces, vertices));
+        fmt::format("{} faces have {} vertices; a surface has at most 2 faces per vertex", faces, vertices));
   if (file.has("surface/face-density")) model.face_density = file.table("surface/face-density", faces, 1);
   if (file.has("shape/faces")) model.face_shape = file.table("shape/faces", 3 * faces, n);
   return model;
@@ -111,12 +111,12 @@ void write_modes(const std::filesystem::path& file, const ModalModel& model, con
   std::error_code failed;
   std::filesystem::rename(part, file, failed);
   if (failed)
-    throw Error("The file of modes '{}' could not be written: {}.", file.string(), failed.message());
+    throw Error("Cannot write the modes file '{}': {}.", file.string(), failed.message());
 }
 
 ModalModel read_modes(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file))
-    throw Error("The file of modes '{}' does not exist. The path is relative to the folder of the YAML file.",
+    throw Error("The modes file '{}' does not exist. The path is relative to the folder of the YAML file.",
                 file.string());
   rehearse(file, what, [&] { read_tables(hdf5::Reader(file, what, advice)); });
   return read_model(hdf5::Reader(file, what, advice));

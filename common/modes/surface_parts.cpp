@@ -91,8 +91,8 @@ std::string neighbour_problem_of(const ModalModel& model, const WeldedSurface& w
     if (uses.size() != 2 || uses[0].forward != uses[1].forward) continue;
     const Vec3 x = 0.5 * (model.vertices[edge.first] + model.vertices[edge.second]);
     return fmt::format(
-        "faces {} and {} meet along an edge at ({:.4g}, {:.4g}, {:.4g}) and go along it in the same direction: one of "
-        "them is turned inside out",
+        "faces {} and {} share an edge at ({:.4g}, {:.4g}, {:.4g}) and traverse it in the same direction: "
+        "one of them is inside out",
         uses[0].face + 1, uses[1].face + 1, x.x(), x.y(), x.z());
   }
   return "";

@@ -62,7 +62,7 @@ std::vector<double> StepErrors::state() const {
 void StepErrors::restore(std::span<const double> state) {
   *this = {};
   if (state.empty()) return;  // of a run that did not collect them
-  SavedNumbers saved(state, "errors of steps");
+  SavedNumbers saved(state, "step errors");
   const std::span<const double> head = saved.next(scalars - 1);
   rate_ = head[0], size_ = head[1], below_ = head[2], highest_ = head[3], time_ = head[4];
   const auto key = [&] {  // may be negative

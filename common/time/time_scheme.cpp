@@ -83,16 +83,17 @@ void declare(config::Section& s, TimeSchemeParameters& p) {
   words.emplace_back("generalised-alpha", TimeScheme::generalised_alpha);
   s.choice("type", p.type, words)
       .doc(
-          "how time derivatives are approximated; all but euler are second order, all but trapezoidal damp "
-          "the highest modes");
+          "time integration scheme; all but euler are second order, all but trapezoidal damp the highest "
+          "modes");
   s.value("spectral-radius", p.spectral_radius)
       .range(0, 1)
-      .doc("of generalised-alpha: what is left of the highest modes after a step; 1 damps nothing");
+      .doc("for generalised-alpha: spectral radius at high frequencies, the share of the highest modes that "
+           "remains after a step; 1 damps nothing");
 }
 
 void declare_first_order(config::Section& s, TimeSchemeParameters& p) {
   s.choice("type", p.type, first_order_words)
-      .doc("how time derivatives are approximated; all but euler are second order");
+      .doc("time integration scheme; all but euler are second order");
 }
 
 std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, double dt,
@@ -116,7 +117,7 @@ std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, doubl
 std::vector<Stage> first_order_stages(const TimeSchemeParameters& scheme, double dt,
                                       const StepHistory& history) {
   if (scheme.type == TimeScheme::generalised_alpha)
-    throw std::logic_error("generalised-alpha is for second derivatives");
+    throw std::logic_error("generalised-alpha requires second derivatives in time");
   return second_order_stages(scheme, dt, history);
 }
 

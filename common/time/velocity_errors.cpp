@@ -12,7 +12,7 @@ StepErrors::Seen VelocityErrors::add(std::span<const double> before, std::span<c
                                      double dt_old, double size, const Norm& norm, double forgotten) {
   const bool first_order = local_.order == 1, knows_third = !first_order && has_before_;
   if (knows_third && v_before_.size() != now.size())
-    throw Error("The checkpoint's errors of steps are those of another mesh. Use an earlier one.");
+    throw Error("The checkpoint's step errors are from another mesh. Use an earlier checkpoint.");
   std::vector<double> second(now.size()), third(knows_third ? now.size() : 0);
   for (std::size_t i = 0; i < second.size(); ++i) second[i] = (now[i] - before[i]) / dt;
   for (std::size_t i = 0; i < third.size(); ++i)
@@ -44,7 +44,7 @@ void VelocityErrors::restore(std::span<const double> state) {
   errors_ = {};
   judged_ = has_before_ = false;
   if (state.empty()) return;
-  SavedNumbers saved(state, "errors of steps");
+  SavedNumbers saved(state, "step errors");
   const double kind = saved.real();
   judged_ = kind == 1 || kind == 3;
   has_before_ = kind >= 2;

@@ -21,15 +21,15 @@ std::string problem_of_name(const std::string& name) {
   if (name.empty()) return "a participant needs a name";
   if (name == coupler_name) return "the coupler is not a participant; its keys are in `coupling`";
   if (name == "checkpoints" || name == "run")
-    return "the run itself has a folder or file of this name; take another";
+    return "this name is reserved for a folder or file of the run; choose another";
   if (name.size() > longest_participant_name)
-    return fmt::format("the name has {} characters; at most {} are possible", name.size(),
+    return fmt::format("the name has {} characters; at most {} are allowed", name.size(),
                        longest_participant_name);
   const auto is_bad = [](char c) {
     return c == '/' || c == '\\' || c == ' ' || c == '.' || c == '\n' || c == '\t';
   };
   if (name.front() == '-' || std::any_of(name.begin(), name.end(), is_bad))
-    return "the name becomes a folder: no '/', '\\', '.' or blank in it, no '-' in front";
+    return "the name becomes a folder name: it must not contain '/', '\\', '.' or blanks, nor start with '-'";
   return "";
 }
 
@@ -46,7 +46,7 @@ void list_expected(const config::Document& document, CaseFile& result) {
   if (result.coupled) result.expected.push_back({coupler_name, "coupler"});
   const std::vector<std::string> names = config::keys_of(document, "participants");
   if (names.size() > most_participants)
-    throw Error("{}: {} participants; at most {} are possible.", config::where(document, "participants"),
+    throw Error("{}: {} participants; at most {} are allowed.", config::where(document, "participants"),
                 names.size(), most_participants);
   for (const std::string& name : names) {
     // The first one is told alone: its path cannot be looked up.
@@ -55,8 +55,8 @@ void list_expected(const config::Document& document, CaseFile& result) {
     const auto program = config::text_of(document, "participants." + name + ".program");
     if (!program)
       result.errors.push_back(
-          fmt::format("{}: the key 'program' is missing: the name of the program that runs this "
-                      "participant, for instance solid_solver.",
+          fmt::format("{}: the key 'program' is missing: the program that runs this participant, for "
+                      "example solid_solver.",
                       config::where(document, "participants." + name)));
     result.expected.push_back({name, program.value_or("?")});
   }
@@ -67,9 +67,9 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
   const std::string& source = file.document->name();
   if (kind.is_coupler) {
     if (!command_line.participant.empty() && command_line.participant != coupler_name)
-      throw Error("The coupler takes no --participant: it couples those that {} names.", source);
+      throw Error("The coupler takes no --participant: it couples the participants named in {}.", source);
     if (!file.coupled)
-      throw Error("{}:1:1: there is no `coupling` section, so there is nothing for the coupler to do.",
+      throw Error("{}:1:1: the `coupling` section is missing, so the coupler has nothing to do.",
                   source);
     return coupler_name;
   }
@@ -80,15 +80,16 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
     if (e.program == kind.name) mine.push_back(e.participant);
   }
   if (names.empty())
-    throw Error("{}:1:1: there is no `participants` section, which says what {} is to run.", source,
+    throw Error("{}:1:1: the `participants` section, which defines what {} runs, is missing.", source,
                 kind.name);
   const std::string& wanted = command_line.participant;
   if (!wanted.empty()) {
     if (std::find(names.begin(), names.end(), wanted) == names.end())
-      throw Error("--participant {}: {} has no participant of this name. {}", wanted, source,
+      throw Error("--participant {}: {} has no participant with this name. {}", wanted, source,
                   did_you_mean(wanted, names, "participants"));
     if (std::find(mine.begin(), mine.end(), wanted) == mine.end())
-      throw Error("--participant {}: it is run by the program '{}', but '{}' was started for it.", wanted,
+      throw Error("--participant {}: this participant is run by the program '{}', but '{}' was started for "
+                  "it.", wanted,
                   config::text_of(*file.document, "participants." + wanted + ".program").value_or("?"),
                   kind.name);
     return wanted;
@@ -97,11 +98,11 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
     std::vector<std::string> pairs;
     for (const Expected& e : file.expected)
       if (e.participant != coupler_name) pairs.push_back(fmt::format("'{}' ({})", e.participant, e.program));
-    throw Error("{}: none of them is run by the program '{}': {}.",
+    throw Error("{}: no participant is run by the program '{}': {}.",
                 config::where(*file.document, "participants"), kind.name, join(pairs));
   }
   if (mine.size() > 1)
-    throw Error("{}: {} of them are run by the program '{}' ({}): say which one with --participant.",
+    throw Error("{}: {} participants are run by the program '{}' ({}): select one with --participant.",
                 config::where(*file.document, "participants"), mine.size(), kind.name, join(mine));
   return mine.front();
 }

@@ -89,14 +89,14 @@ KeyChanges changes_between(const std::string& then, const std::string& now) {
     const bool is_content = path.find(": content of ") != std::string::npos;
     if (found == after.end()) {
       // Another name of a file is one change, not two.
-      if (!is_content) note(path, fmt::format(": was {}, is not there any more", value));
+      if (!is_content) note(path, fmt::format(": was {}, is now absent", value));
     } else if (is_content ? value != found->second : !config::same_value(value, found->second)) {
       note(path, is_content ? " has changed" : fmt::format(": was {}, is {}", value, found->second));
     }
   }
   for (const auto& [path, value] : after)
     if (!before.count(path) && path.find(": content of ") == std::string::npos)
-      note(path, fmt::format(": was not there, is {}", value));
+      note(path, fmt::format(": was absent, is now {}", value));
   return changes;
 }
 
@@ -111,8 +111,9 @@ void judge_changes(const fs::path& checkpoint, const std::string& now, bool cons
   if (changes.physics.empty()) return;
   if (!consent)
     throw Error(
-        "The case is not the one that {} was written with:\n  {}\nStart all programs with --restart-with-changes as well if that "
-        "is what you want.",
+        "The case differs from the one that {} was written with:\n"
+        "  {}\n"
+        "If this is intended, start all programs with --restart-with-changes as well.",
         checkpoint.string(), join(changes.physics, "\n  "));
   for (const std::string& change : changes.physics) log::warn("since the checkpoint: {}", change);
 }

@@ -29,8 +29,8 @@ class Cast {
             "the coupler is not a participant; its keys are in `coupling`");
       else if (!in_cast(e.participant))
         problems_.push_back(fmt::format(
-            "{}: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give "
-            "it one or take it out.",
+            "{}: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign "
+            "one, or remove the participant.",
             config::where(document_, "participants." + e.participant)));
     }
     return problems_;
@@ -57,7 +57,7 @@ class Cast {
       if (const Player* player = player_of(e.program);
           player && problem_of_role(contract, *player, has_mover_).empty())
         able.push_back(fmt::format("'{}' ({})", e.participant, e.program));
-    return able.empty() ? "" : fmt::format(". Of this case's participants {} can", join(able));
+    return able.empty() ? "" : fmt::format(". In this case {} can", join(able));
   }
 
   void look_at_role(const RoleContract& contract) {
@@ -74,10 +74,11 @@ class Cast {
     if (player)
       problem = problem_of_role(contract, *player, has_mover_);
     else if (contract.gives_nothing)
-      problem = "only mesh_mover moves the mesh of a fluid";
+      problem = "only mesh_mover can move the mesh of a fluid";
     else if (contract.role == "fluid" && has_mover_)
       problem =
-          "only fluid_solver takes a moved mesh; a fluid of your own moves its mesh itself, without `mesh`";
+          "only fluid_solver accepts a moved mesh; your own fluid program must move its mesh itself, "
+          "without `mesh`";
     if (!problem.empty())
       say(key, fmt::format("'{}' is run by {}, which cannot be the {}: {}{}", *name, who->program,
                            contract.role, problem, others(contract)));
@@ -91,13 +92,13 @@ class Cast {
       const Expected* who = find(*here);
       if (who == nullptr) unknown(key, *here);
       if (std::find(exchanging.begin(), here, *here) != here)
-        problems_.push_back(fmt::format("{}: '{}' is there twice.", config::where(document_, key), *here));
+        problems_.push_back(fmt::format("{}: '{}' is listed twice.", config::where(document_, key), *here));
       const Player* player = who ? player_of(who->program) : nullptr;
       if (player && player->moves_mesh)
         say(key,
             fmt::format(
-                "'{}' is run by {}, which cannot be part of an exchange: it serves one fluid, and gives the "
-                "coupler nothing; name it as `mesh`, and its fluid as `fluid`",
+                "'{}' is run by {}, which cannot be part of an exchange: it serves one fluid and gives the "
+                "coupler no data; name it as `mesh` and its fluid as `fluid`",
                 *here, who->program));
     }
   }
@@ -117,8 +118,8 @@ class Cast {
         continue;
       say(key,
           fmt::format(
-              "'{}' holds the wall '{}' by `type: {}`, which '{}' has as an interface that the structure moves: "
-              "its mesh would stand still there. Give it `type: interface`",
+              "'{}' holds the wall '{}' fixed by `type: {}`, but in '{}' it is an interface that the "
+              "structure moves, so the mesh would not follow. Set `type: interface`",
               *mover, patch, *type, *fluid));
     }
   }

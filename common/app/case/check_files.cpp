@@ -39,7 +39,7 @@ class FileCheck {
     // Caches are made when they are needed, some by a script of the case.
     if (name.ends_with(".cache.msh") && !fs::exists(file, ignored)) return;
     if (!fs::is_regular_file(file, ignored)) {
-      report("mesh", fmt::format("there is no file '{}'.", file.string()));
+      report("mesh", fmt::format("the file '{}' does not exist.", file.string()));
       return;
     }
     try {
@@ -51,7 +51,7 @@ class FileCheck {
         check_geo(read_geo(file));
       } else if (const std::string kind = file.extension().string();
                  kind != ".unv" && kind != ".cgns" && !is_read_by_meshio(kind)) {
-        report("mesh", fmt::format("'{}' is neither .msh nor .geo, .inp, .unv, .med, .exo or .cgns.", name));
+        report("mesh", fmt::format("'{}' is not a .msh, .geo, .inp, .unv, .med, .exo or .cgns file.", name));
       }
     } catch (const Error& error) {
       report("mesh", error.what());
@@ -61,7 +61,7 @@ class FileCheck {
   void check_geo(const GeoScript& script) {
     for (const std::string& name : config::keys_of(document_, section_ + ".mesh-parameters"))
       if (std::find(script.constants.begin(), script.constants.end(), name) == script.constants.end())
-        report("mesh-parameters." + name, fmt::format("the .geo defines no such name by DefineConstant. {}",
+        report("mesh-parameters." + name, fmt::format("the .geo defines no such name with DefineConstant. {}",
                                                       did_you_mean(name, script.constants, "names")));
     if (!script.danger.empty()) report("mesh", script.refusal());
     const auto dimension = config::text_of(document_, section_ + ".dimension");
@@ -77,7 +77,7 @@ class FileCheck {
     };
     for (const std::string& entry : entries)
       if (!has(patches, entry))
-        report("boundaries." + entry, fmt::format("the mesh has no patch of this name. {}",
+        report("boundaries." + entry, fmt::format("the mesh has no patch with this name. {}",
                                                   did_you_mean(entry, patches, "patches")));
     for (const std::string& patch : patches)
       if (!has(entries, patch))
@@ -90,7 +90,7 @@ class FileCheck {
       std::error_code ignored;
       if (!fs::is_regular_file(folder_ / value, ignored))
         report(path.substr(section_.size() + 1),
-               fmt::format("there is no file '{}'.", (folder_ / value).string()));
+               fmt::format("the file '{}' does not exist.", (folder_ / value).string()));
     }
   }
 

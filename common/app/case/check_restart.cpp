@@ -27,7 +27,7 @@ std::string problem_of_restart(const CommandLine& command_line, const CaseFile& 
     }
     if (!has_own)
       return fmt::format(
-          "--restart {}: the checkpoint has no file {}: it was not written by a run with this program.",
+          "--restart {}: the checkpoint has no file {}: the run that wrote it did not include this program.",
           folder.string(), own);
     if (is_coupler || !file.coupled)
       judge_changes(folder, case_keys(*file.document, command_line.case_file.parent_path()),

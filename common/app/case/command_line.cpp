@@ -40,13 +40,14 @@ std::string footer(const ProgramText& program) {
   const std::string alone =
       fmt::format("Alone:      mpirun -n 4 {} case.yaml --participant NAME\n", program.name);
   return fmt::format(
-      "Keys of {} in the YAML file ({} --docs tells everything):\n{}\n{}"
-      "Coupled:    mpirun -n 1 coupler case.yaml : -n 2 fluid_solver case.yaml : -n 1 solid_solver case.yaml "
-      ": "
-      "-n 1 mesh_mover case.yaml\n"
+      "Keys of {} in the YAML file ({} --docs prints the full reference):\n"
+      "{}\n"
+      "{}Coupled:    mpirun -n 1 coupler case.yaml : -n 2 fluid_solver case.yaml : -n 1 solid_solver "
+      "case.yaml : -n 1 mesh_mover case.yaml\n"
       "            Every program gets the same YAML file and the same --set options.\n"
-      "Exit codes: 0 done, 1 the run failed, 2 the configuration or the command line is wrong, 3 stopped by SIGTERM with a "
-      "checkpoint to go on from, 4 done, but the answer is proved useless (--accept ID lets it pass).",
+      "Exit codes: 0 done, 1 the run failed, 2 invalid configuration or command line, 3 stopped by SIGTERM "
+      "with a checkpoint to continue from, 4 done, but the result is provably useless (--accept ID accepts "
+      "it).",
       is_participant ? "this program's section under 'participants'" : "the section 'coupling'", program.name,
       list_keys(items), is_participant ? alone : "");
 }
@@ -56,7 +57,7 @@ std::string explain_extra(const CLI::App& app, const std::string& word) {
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   const auto meant = word.starts_with('-') ? closest(word, names) : std::nullopt;
-  return fmt::format("There is no option or argument '{}'.{}", word,
+  return fmt::format("Unknown option or argument '{}'.{}", word,
                      meant ? fmt::format(" Did you mean '{}'?", *meant) : "");
 }
 
@@ -64,7 +65,7 @@ CommandLine::Strict strictness(const std::string& word) {
   if (word.empty()) return CommandLine::Strict::no;
   if (word == "answer" || word == "true") return CommandLine::Strict::answer;
   if (word == "effects") return CommandLine::Strict::effects;
-  throw CLI::ValidationError("--strict=" + word + ": give --strict or --strict=effects.");
+  throw CLI::ValidationError("--strict=" + word + ": use --strict or --strict=effects.");
 }
 
 }  // namespace
@@ -82,37 +83,38 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
   app.set_version_flag("--version", version_text());
   app.add_option("case", line.case_file, "YAML file of the case")->type_name("case.yaml");
   app.add_option("--participant", line.participant,
-                 "name under 'participants' in the YAML file; needed if several have this program")
+                 "name under 'participants' in the YAML file; required if several participants use this "
+                 "program")
       ->type_name("NAME");
   app.add_option("--set", line.overrides,
                  "set one value, for example --set simulation.end-time='2 s'; repeatable")
       ->type_name("a.b=v")
       ->allow_extra_args(false);
-  app.add_option("--restart", line.restart_folder, "go on from the checkpoints in this folder")
+  app.add_option("--restart", line.restart_folder, "continue from the checkpoints in this folder")
       ->type_name("FOLDER");
   app.add_flag("--restart-with-changes", line.restart_with_changes,
-               "go on although keys that change what is solved are not those of the checkpoint");
+               "continue although keys that change the solution differ from those of the checkpoint");
   app.add_flag("--allow-commands", line.allow_commands,
-               "let a .geo run commands and write files: it does so with your rights");
+               "allow a .geo to run commands and write files, with your permissions");
   std::string strict;
   app.add_flag(
       "--strict{answer}", strict,
-      "a run with warnings about its own answer ends with exit code 1; --strict=effects: also one with warnings about "
+      "exit with code 1 if the run warns about its own result; --strict=effects: also if it warns about "
       "neglected effects");
   app.add_option(
          "--accept", line.accept,
-         "let a finding pass (the word in brackets at the end of its line; docs/findings.md); repeatable")
+         "accept a finding by its id (in brackets at the end of its line; docs/findings.md); repeatable")
       ->type_name("ID")
       ->allow_extra_args(false);
-  app.add_flag("--check", check, "only check the configuration: exit code 0 or 2");
+  app.add_flag("--check", check, "only check the configuration; exit code 0 or 2");
   app.add_flag("--docs", docs, "print the reference of all keys as Markdown");
   app.add_flag("--schema", schema, "print the JSON schema of all keys, for editors");
-  app.add_flag("--print-config", print_config, "print all values in force as YAML");
+  app.add_flag("--print-config", print_config, "print all values in effect as YAML");
   app.add_flag("--explain", explain,
-               "print which effects the scene has, what they add, and the launch line; runs nothing");
+               "print the effects of the scene, their costs and the launch line; runs nothing");
   app.add_flag("--effects", effects, "print the list of all effects as Markdown");
-  app.add_flag("-v,--verbose", verbose, "every rank tells more");
-  app.add_flag("-q,--quiet", quiet, "warnings and errors only");
+  app.add_flag("-v,--verbose", verbose, "every rank logs more");
+  app.add_flag("-q,--quiet", quiet, "log warnings and errors only");
   // What is left over is told in our words, with the option that was meant.
   app.allow_extras();
   try {
@@ -121,10 +123,10 @@ ParsedCommandLine parse_command_line(int argc, const char* const* argv, const Pr
       throw CLI::ExtrasError(explain_extra(app, rest.front()), CLI::ExitCodes::ExtrasError);
     if (check + docs + schema + print_config + explain + effects > 1)
       throw CLI::ExcludesError(
-          "Give one of --check, --docs, --schema, --print-config, --explain and --effects, not several.",
+          "Use only one of --check, --docs, --schema, --print-config, --explain and --effects.",
           CLI::ExitCodes::ExcludesError);
     if (verbose && quiet)
-      throw CLI::ExcludesError("Give --verbose or --quiet, not both.", CLI::ExitCodes::ExcludesError);
+      throw CLI::ExcludesError("Use either --verbose or --quiet, not both.", CLI::ExitCodes::ExcludesError);
     line.strict = strictness(strict);
     if (const std::string problem = log::unknown_ids(line.accept); !problem.empty())
       throw CLI::ValidationError("--accept: " + problem);

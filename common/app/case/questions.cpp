@@ -68,7 +68,7 @@ void print_expected(const CommandLine& command_line, const ProgramKind& kind) {
   try {
     fmt::print("expected:         {}\n", text(kind.expected(scene)));
   } catch (const Error& error) {
-    fmt::print("expected:         not known: {}\n", error.what());
+    fmt::print("expected:         unknown: {}\n", error.what());
   }
 }
 
@@ -92,9 +92,9 @@ int explain(const CommandLine& command_line, const ProgramKind& kind) {
     job += fmt::format("{} -n 1 {} {}", job.empty() ? "mpirun" : " :", e.program,
                        command_line.case_file.string());
   if (file.coupled)
-    fmt::print("all of the case:  {}\n", job);
+    fmt::print("whole case:       {}\n", job);
   else
-    fmt::print("to run it:        {} {}\n", kind.name, command_line.case_file.string());
+    fmt::print("launch:           {} {}\n", kind.name, command_line.case_file.string());
   return 0;
 }
 

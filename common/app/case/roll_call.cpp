@@ -94,13 +94,13 @@ std::string disagreement(const std::vector<Attendant>& attendants) {
     if (a.case_hash == 0) continue;
     if (a.case_hash != first.case_hash)
       return fmt::format(
-          "\n  '{}' reads {} and '{}' reads {}, and what they read differs. All programs of a job need the "
-          "same "
-          "YAML file and the same --set overrides.",
+          "\n"
+          "  '{}' reads {} and '{}' reads {}, and the contents differ. All programs of a job need the same "
+          "YAML file and the same --set options.",
           label(first), first.case_file, label(a), a.case_file);
     if (a.restart != first.restart)
       return fmt::format(
-          "\n  '{}' {} and '{}' {}. All programs of a job restart from the same folder, or none does.",
+          "\n  '{}' {} and '{}' {}. Either all programs of a job restart, from the same folder, or none.",
           label(first), first.restart.empty() ? "starts afresh" : "was given --restart " + first.restart,
           label(a), a.restart.empty() ? "starts afresh" : "was given --restart " + a.restart);
   }
@@ -123,15 +123,15 @@ std::string attendance(const std::vector<Attendant>& attendants, const std::vect
     const auto& run_by = programs[participant];
     if (numbers.size() > 1 || run_by.size() > 1)
       text += fmt::format(
-          "\n  {} programs were started as participant '{}' ({}): each participant runs once; give each "
-          "program its "
-          "own --participant.",
+          "\n"
+          "  {} programs were started as participant '{}' ({}); each participant runs once. Give each "
+          "program its own --participant.",
           std::max(numbers.size(), run_by.size()), participant, join({run_by.begin(), run_by.end()}));
     const bool known =
         std::any_of(expected.begin(), expected.end(),
                     [&name = participant](const Expected& e) { return e.participant == name; });
     if (!known)
-      text += fmt::format("\n  '{}' was started, but the YAML file does not ask for it.", participant);
+      text += fmt::format("\n  '{}' was started, but the YAML file does not list it.", participant);
   }
   return text;
 }
@@ -144,10 +144,11 @@ Attendant introduced(const std::string& text, int process) {
   for (std::string field; std::getline(in, field, field_end);) fields.push_back(field);
   const auto malformed = [&](const std::string& why) {
     return Error(
-        "Process {} of the job introduces itself in a way that cannot be understood: {}. docs/protocol.md says how, in step 3.",
+        "The handshake of process {} of the job is malformed: {}. docs/protocol.md, step 3, describes the "
+        "format.",
         process, why);
   };
-  if (fields.size() < 8) throw malformed(fmt::format("it gives {} fields, 8 are expected", fields.size()));
+  if (fields.size() < 8) throw malformed(fmt::format("it has {} fields, expected 8", fields.size()));
   Attendant a;
   a.program = fields[0];
   a.participant = fields[1];
@@ -156,11 +157,12 @@ Attendant introduced(const std::string& text, int process) {
   a.named = fields[5] == "1";
   if (!is_name(a.program) || !is_name(a.participant))
     throw malformed(
-        fmt::format("the names of its program and participant have control characters or more than {} bytes",
+        fmt::format("the names of its program and participant contain control characters or more than {} "
+                    "bytes",
                     longest_text));
   if (!parse(fields[3], a.case_hash) || !parse(fields[6], a.application) || !parse(fields[7], a.world_rank))
-    throw malformed("the hash of its case, the number of its program or its rank is no whole number");
-  if (a.world_rank != process) throw malformed(fmt::format("it says that it is process {}", a.world_rank));
+    throw malformed("the hash of its case, the index of its program or its rank is not a whole number");
+  if (a.world_rank != process) throw malformed(fmt::format("it claims to be process {}", a.world_rank));
   a.errors.assign(fields.begin() + 8, fields.end());
   return a;
 }
@@ -177,17 +179,17 @@ void check_hands(std::span<const std::int64_t> all) {
     const std::int64_t mark = all[4 * r], version = all[4 * r + 1], kind = all[4 * r + 2];
     if (mark != hello_mark)
       fail(fmt::format(
-          "process {} of the job is no program of Couplet: its handshake begins with {}. A program of your own joins as "
-          "docs/protocol.md says.",
+          "Process {} of the job is not a Couplet program: its handshake begins with {}. docs/protocol.md "
+          "describes how your own program can join.",
           r, mark));
     if (version != protocol_version)
       fail(fmt::format(
-          "process {} of the job ({}) speaks version {} of the protocol, the programs of Couplet here speak version {}. Use "
-          "programs, and for a guest the client library, of one version of Couplet.",
+          "Process {} of the job ({}) uses version {} of the protocol; the Couplet programs here use "
+          "version {}. Use programs and the client library from one version of Couplet.",
           r, kind == 0 ? "a program of Couplet" : "a guest", version, protocol_version));
     if (kind != 0 && kind != 1)
       fail(fmt::format(
-          "process {} of the job says that it is of kind {}; 0 (a program of Couplet) or 1 (a guest) is expected.",
+          "Process {} of the job reports kind {}; expected 0 (a Couplet program) or 1 (a guest).",
           r, kind));
   }
 }
@@ -198,7 +200,7 @@ MPI_Comm shake_hands(MPI_Comm world) {
   MPI_Request request;
   MPI_Iallgather(mine.data(), 4, MPI_INT64_T, all.data(), 4, MPI_INT64_T, world, &request);
   wait_politely(request,
-                "every process of the job to say that it is part of it (docs/protocol.md, handshake)");
+                "every process of the job to join (docs/protocol.md, handshake)");
   check_hands(all);
   MPI_Comm natives;
   MPI_Comm_split(world, 0, comm_rank(world), &natives);
@@ -220,7 +222,8 @@ std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self) {
     attendants.push_back(introduced(one, int(attendants.size())));
   if (attendants.size() != std::size_t(comm_size(world)))
     throw Error(
-        "{} processes introduce themselves, but the job has {}: a guest's introduction must hold one end of text (0x1e).",
+        "{} processes introduce themselves, but the job has {}: a guest's handshake must contain exactly "
+        "one end-of-text character (0x1e).",
         attendants.size(), comm_size(world));
   return attendants;
 }
@@ -231,7 +234,7 @@ Verdict judge(const std::vector<Attendant>& attendants, const std::vector<Expect
     Verdict verdict;
     verdict.problem = "The job cannot start:" + why;
     if (with_launch_line && !expected.empty())
-      verdict.problem += fmt::format("\n  Start it as: {}", launch_line(attendants, expected));
+      verdict.problem += fmt::format("\n  Start it with: {}", launch_line(attendants, expected));
     return verdict;
   };
   const std::string errors = configuration_errors(attendants);
@@ -247,8 +250,9 @@ Verdict judge(const std::vector<Attendant>& attendants, const std::vector<Expect
   if (one_program && !is_coupler && (first.named || !coupled)) return {"", true};
   if (!coupled)
     return cannot_start(
-        fmt::format("\n  {} has no `coupling` section, so its participants cannot run as one job: add "
-                    "the section or run each program alone.",
+        fmt::format("\n"
+                    "  {} has no `coupling` section, so its participants cannot run as one job: add the "
+                    "section, or run each program alone.",
                     first.case_file),
         false);
   std::string text = attendance(attendants, expected);

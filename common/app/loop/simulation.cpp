@@ -15,53 +15,53 @@ void declare(config::Section& section, SimulationParameters& p) {
       .plausible(1e-10, 1e11)
       .positive()
       .required()
-      .doc("the run ends at this time");
+      .doc("end time of the run");
   section.value("time-step", p.time_step)
       .unit("s")
       .plausible(1e-13, 1e8)
       .positive()
       .required()
-      .doc("step of the run; in a coupled run the coupling step, which a participant may divide for itself");
+      .doc("time step of the run; in a coupled run the coupling step, which a participant may subdivide");
   section.value("max-step-halvings", p.max_step_halvings)
       .range(0, 20)
       .doc(
-          "a step that could not be solved is halved at most this often before the run stops; ten halvings for one cause "
-          "without a time of full steps in between stop it, too");
+          "maximum number of halvings of a step that could not be solved; ten halvings for one cause "
+          "without full steps in between also stop the run");
   section.value("accept", p.accept)
       .doc(
-          "ids of findings (docs/findings.md) that are accepted: they are logged, but neither end the run with exit code 4 nor "
-          "fail it with --strict");
+          "ids of findings (docs/findings.md) to accept: they are logged, but neither end the run with exit "
+          "code 4 nor make it fail with --strict");
   section.check([&]() -> std::string { return log::unknown_ids(p.accept); }, "accept");
   section.choice("effects", p.choose_effects, {{"as-given", false}, {"auto", true}})
       .doc(
-          "auto: dimension, inertia, turbulence model and viscous treatment that the case does not name are decided by "
-          "estimates, each told with its reason");
+          "auto: dimension, inertia, turbulence model and viscous treatment that the case does not set are "
+          "chosen from estimates; each choice is logged with its reason");
   section.value("error-estimate", p.error_estimate)
       .doc(
-          "the run ends with an estimate of its error by mesh, time step and tolerances, and says which dominates; "
-          "off, nothing is collected for it");
+          "estimate the error due to mesh, time step and tolerances at the end of the run and report which "
+          "dominates; off: nothing is collected for it");
   section.value("hang-timeout", p.hang_timeout)
       .unit("s")
       .plausible(1, 1e6)
       .not_negative()
       .doc(
-          "the job ends and names the culprit when one of its processes has given no sign of life for so long: an "
-          "iteration of a solver, a phase of a step, or, while a mesh is made, a matrix is factorised or files are written, "
-          "processor time; 0: never");
+          "the job ends and names the culprit when one of its processes shows no sign of life for this long "
+          "(an iteration of a solver, a phase of a step, or processor time during meshing, factorisation "
+          "and file output); 0: never");
   section.section(
       "output",
       [&](config::Section& s) {
         s.value("folder", p.output_folder)
-            .doc("where each participant makes its folder; relative to the folder of the YAML file");
+            .doc("folder in which each participant creates its own; relative to the folder of the YAML file");
         s.value("interval", p.output_interval)
             .unit("s")
             .plausible(1e-12, 1e10)
             .not_negative()
-            .doc("time between outputs of fields; 0: only the start and the end");
+            .doc("time between field outputs; 0: only start and end");
         s.value("steps", p.output_steps)
-            .doc("steps.csv: step, iterations, error, energy and seconds of each accepted step");
+            .doc("steps.csv: step, iterations, error, energy and wall time of each accepted step");
       },
-      "fields for pictures");
+      "fields for visualisation");
   section.section(
       "checkpoint",
       [&](config::Section& s) {
@@ -72,15 +72,15 @@ void declare(config::Section& section, SimulationParameters& p) {
             .doc("time between checkpoints; 0: only at the end of the run");
         s.value("keep", p.checkpoints_kept)
             .range(1, 1000000)
-            .doc("so many of the latest checkpoints are kept");
+            .doc("number of latest checkpoints to keep");
       },
-      "files to continue from with --restart");
+      "files for --restart");
   section.check(
       [&]() -> std::string {
         if (p.time_step > p.end_time) return "the time step must not be longer than the run ('end-time')";
         const double steps = p.end_time / p.time_step;
         if (steps <= StepPlan::most_steps) return "";
-        return fmt::format("the run would take {:g} steps; at most {:g} are possible", steps,
+        return fmt::format("the run would take {:g} steps; at most {:g} are allowed", steps,
                            StepPlan::most_steps);
       },
       "time-step");

@@ -71,8 +71,8 @@ fs::path find_checkpoint(const fs::path& folder, bool tell) {
   const std::vector<FoundSet> found = checkpoint_sets(folder);
   if (found.empty())
     throw Error(
-        "--restart {}: there is no complete checkpoint. Give a folder made by an earlier run, such as "
-        "out/checkpoints/step-00000100, or the folder above it for the latest one.",
+        "--restart {}: no complete checkpoint found. Give a checkpoint folder of an earlier run, such as "
+        "out/checkpoints/step-00000100, or its parent folder for the latest one.",
         folder.string());
   const FoundSet& furthest = found.back();
   const auto youngest =
@@ -81,8 +81,8 @@ fs::path find_checkpoint(const fs::path& folder, bool tell) {
       });
   if (tell && youngest->stamp.run > furthest.stamp.run)
     log::warn(
-        "--restart {}: {} of an earlier run has gone further (t = {:g} s) than the last of the latest run, {} (t = {:g} s). "
-        "The former is taken; give the folder itself for the latter.",
+        "--restart {}: {}, from an earlier run, is later (t = {:g} s) than the last one of the latest run, "
+        "{} (t = {:g} s). The former is used; to use the latter, give its folder.",
         folder.string(), furthest.folder.filename().string(), furthest.stamp.time,
         youngest->folder.filename().string(), youngest->stamp.time);
   return furthest.folder;
@@ -125,7 +125,7 @@ fs::path StepLoop::checkpoint(const StepActions& actions) {
     std::ofstream keys(folder / "keys.txt", std::ios::binary);
     keys << simulation_.keys;
     keys.close();
-    if (!keys) throw Error("The checkpoint in {} could not be written. Is the disk full?", folder.string());
+    if (!keys) throw Error("Cannot write the checkpoint in {}. Is the disk full?", folder.string());
     finish_checkpoint_set(folder, stamp);
     log::debug("checkpoint {} at t = {:g} s", folder.string(), plan_.time());
     // Only what this run wrote goes: sets of other runs are theirs.
@@ -141,7 +141,7 @@ void StepLoop::stop(const StepActions& actions) {
   const fs::path folder = checkpoint(actions);
   Watch::stopped();
   if (comm_rank(comm_) == 0)
-    log::info("stopped at t = {:g} s, as asked by a signal; the state is saved: go on with --restart {}",
+    log::info("stopped at t = {:g} s by a signal; the state is saved: continue with --restart {}",
               plan_.time(), folder.string());
 }
 
@@ -151,9 +151,8 @@ std::string StepLoop::give_up(const StepActions& actions, const Step& step, cons
     return fmt::format("The run ends at t = {:g} s: {} The state at t = {:g} s was saved in {}.", step.time,
                        failure.reason, step.time, checkpoints_.string());
   return fmt::format(
-      "The step from t = {:g} s could not be solved, also not with dt = {:g} s after {} halvings: {} The "
-      "state at t = "
-      "{:g} s was saved in {}.",
+      "The step from t = {:g} s failed, even with dt = {:g} s after {} halvings: {} The state at t = {:g} s "
+      "was saved in {}.",
       step.time, step.dt, plan_.halvings(), failure.reason, step.time, checkpoints_.string());
 }
 
@@ -163,14 +162,14 @@ StepFailure StepLoop::seen_again(const StepFailure& failure, double dt) {
   const GlobalIndex mine = comm_rank(comm_) == 0 ? causes_.halved(failure.reason, dt) : 0,
                     times = sum(comm_, mine);
   if (times < HalvingCauses::most) return failure;
-  return {fmt::format("{} halvings of steps for one cause did not cure it: {}", times, failure.reason),
+  return {fmt::format("{} halvings of the step for one cause did not help: {}", times, failure.reason),
           false};
 }
 
 std::string StepLoop::run(const StepActions& actions) {
   on_first_rank(comm_, [&] {
     for (const fs::path& folder : clear_incomplete_sets(checkpoints_))
-      log::info("the incomplete checkpoint {} of an earlier run was taken away", folder.string());
+      log::info("removed the incomplete checkpoint {} of an earlier run", folder.string());
   });
   if (!restarted_) actions.write_start(outputs_++);
   while (!plan_.finished()) {

@@ -46,8 +46,8 @@ StartGuard::StartGuard(double seconds, std::string label) {
     if (stop.stop_requested()) return;
     const std::string stopped = stopped_ones();
     std::ostringstream text;
-    text << "[" << label << "] error: the programs of this job have not all answered within " << seconds
-         << " s of its start (simulation.hang-timeout): "
+    text << "[" << label << "] error: not all programs of this job have answered within " << seconds
+         << " s of the start (simulation.hang-timeout): "
          << (stopped.empty() ? "one of them hangs or was not started" : "stopped (as by SIGSTOP): " + stopped)
          << ". The job ends.\n";
     std::cerr << text.str() << std::flush;

@@ -86,7 +86,7 @@ void Listener::speak(bool any_asleep, bool any_busy) const {
     separator = "; ";
   }
   if (line.empty()) return;
-  line << ". Nothing was heard of it for " << patience_
+  line << ". No sign of life for " << patience_
        << " s (simulation.hang-timeout). All programs of the job end.\n";
   end_job_with(line);
 }

@@ -33,7 +33,7 @@ double all_wait(double t) {
 
 [[noreturn]] void name_the_circle() {
   Line line;
-  line << "couplet: all programs of the job wait for each other, and none is left to send: ";
+  line << "couplet: deadlock: all programs of the job wait for each other: ";
   const char* separator = "";
   for (int i = 0; i < board.count; ++i) {
     const Slot& slot = board.slots[i];

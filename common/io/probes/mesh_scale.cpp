@@ -20,9 +20,9 @@ void doubt_mesh_scale(const Mesh& mesh, std::span<const Vec3> places) {
                  {.id = "questionable-mesh-scale",
                   .number = size,
                   .limit = size < smallest ? smallest : largest,
-                  .sentence = fmt::format("size of the mesh: {:.3g} m (usual: {:g} to {:g} m): implausible",
+                  .sentence = fmt::format("mesh size: {:.3g} m (usual: {:g} to {:g} m): implausible",
                                           size, smallest, largest),
-                  .advice = "check 'mesh-scale': 0.001 is that of a mesh in millimetres"});
+                  .advice = "check 'mesh-scale' (0.001 for a mesh in millimetres)"});
   double farthest = 0;
   for (const Vec3& place : places) farthest = std::max(farthest, place.norm());
   if (farthest > 0 && farthest < corner * size)
@@ -31,10 +31,10 @@ void doubt_mesh_scale(const Mesh& mesh, std::span<const Vec3> places) {
                   .number = farthest,
                   .limit = corner * size,
                   .sentence = fmt::format(
-                      "places of the probes: all within {:.3g} m of the origin in a mesh of {:.3g} m "
-                      "(usual: over {:.3g} m): implausible",
+                      "probe positions: all within {:.3g} m of the origin in a mesh of {:.3g} m (usual: "
+                      "over {:.3g} m): implausible",
                       farthest, size, corner * size),
-                  .advice = "is the mesh in millimetres? Then give 'mesh-scale: 0.001'"});
+                  .advice = "is the mesh in millimetres? Then set 'mesh-scale: 0.001'"});
 }
 
 }  // namespace couplet

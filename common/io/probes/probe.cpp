@@ -148,9 +148,8 @@ Probe::Probe(const Mesh& mesh, const std::string& name, const Vec3& place, std::
        std::move(chosen.candidate.weights));
   if (chosen.outside && chosen.key > tolerance.value_or(on_boundary * size))
     throw Error(
-        "The probe '{}' at ({}, {}, {}) lies outside the mesh: the nearest place of it is ({:.6g}, "
-        "{:.6g}, {:.6g}), "
-        "{:.3g} m away. Move the probe there or into the mesh.",
+        "The probe '{}' at ({}, {}, {}) is outside the mesh: the nearest point of the mesh is ({:.6g}, "
+        "{:.6g}, {:.6g}), {:.3g} m away. Move the probe there or into the mesh.",
         name, place[0], place[1], place[2], place_[0], place_[1], place_[2], chosen.key);
 }
 

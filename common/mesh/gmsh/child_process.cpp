@@ -92,7 +92,7 @@ ProgramEnd run_child(const ChildProcess& child) {
   p.memory = rlim_t(sysconf(_SC_PHYS_PAGES)) * rlim_t(sysconf(_SC_PAGESIZE));
   p.parent = getpid();
   std::array<int, 2> pipe{};
-  if (pipe2(pipe.data(), O_CLOEXEC) != 0) throw Error("No pipe can be made: {}.", std::strerror(errno));
+  if (pipe2(pipe.data(), O_CLOEXEC) != 0) throw Error("Cannot create a pipe: {}.", std::strerror(errno));
   p.failures = pipe[1];
   const pid_t id = fork();
   if (id == 0) be_child(p);
@@ -102,11 +102,11 @@ ProgramEnd run_child(const ChildProcess& child) {
   const bool failed = id > 0 && read(pipe[0], &error, sizeof error) == sizeof error;
   close(pipe[0]);
   if (id < 0)
-    throw Error("The program '{}' cannot be started: {}.", child.command[0], std::strerror(fork_error));
+    throw Error("Cannot start the program '{}': {}.", child.command[0], std::strerror(fork_error));
   int status = 0;
   while (waitpid(id, &status, 0) < 0 && errno == EINTR) {
   }
-  if (failed) throw Error("The program '{}' cannot be started: {}.", child.command[0], std::strerror(error));
+  if (failed) throw Error("Cannot start the program '{}': {}.", child.command[0], std::strerror(error));
   if (WIFEXITED(status)) return {WEXITSTATUS(status), 0};
   return {-1, WIFSIGNALED(status) ? WTERMSIG(status) : 0};
 }

@@ -64,7 +64,7 @@ class Check {
         symbol();
     }
     if (!open_.empty() && found_.what.empty())
-      found_ = {fmt::format("a bracket '{}' that does not close", open_.back().symbol), open_.back().line};
+      found_ = {fmt::format("an unclosed bracket '{}'", open_.back().symbol), open_.back().line};
     return found_;
   }
 
@@ -102,11 +102,11 @@ class Check {
     if (geo_words::is_refused(w)) return offend_by_word("");
     if (geo_words::is_control(w)) return control(w);
     if (w == "Field") return field();
-    if (geo_words::gives_text(w) && !may_be_text()) return offend_by_word(" in this place");
+    if (geo_words::gives_text(w) && !may_be_text()) return offend_by_word(" at this position");
     if (is_any(tokens_[i_], {"Printf", "Warning", "Error", "Sprintf"})) return printf();
     if (file_name_after(tokens_, i_) != 0) return;
     if (is_any(tokens_[i_], {"Include", "Merge", "ShapeFromFile"}))
-      return offend_by_word(" of a computed name");
+      return offend_by_word(" with a computed name");
     for (const char* part : {"EndIf", "EndFor", "Else", "Return"})  // gmsh finds them inside a name, too
       if (w.find(part) != std::string_view::npos) return offend_by_word(" as a name");
     if (!geo_words::is_allowed(w)) name(w);
@@ -120,9 +120,9 @@ class Check {
       if (!at(1).is("(") && !(is_own_name(at(1)) && at(2).is("In") && at(3).is("{")))
         offend_by_word(" of this form");
     } else if (w == "Call") {
-      if (!is_own_name(at(1)) || !at(2).is(";")) offend_by_word(" of a computed name");
+      if (!is_own_name(at(1)) || !at(2).is(";")) offend_by_word(" with a computed name");
     } else if (w == "Macro" || w == "Function") {
-      if (!is_own_name(at(1))) offend_by_word(" of a computed name");
+      if (!is_own_name(at(1))) offend_by_word(" with a computed name");
     }
   }
 
@@ -161,8 +161,8 @@ class Check {
   void printf() {
     const bool to_terminal = !tokens_[i_].is("Sprintf");
     if (!(at(1).is("(") || (!to_terminal && at(1).is("["))) || !at(2).is_text())
-      return offend_by_word(" of a computed format");
-    if (!is_harmless_format(at(2).text)) offend_by_word(" of a format other than %g, %e or %f");
+      return offend_by_word(" with a computed format");
+    if (!is_harmless_format(at(2).text)) offend_by_word(" with a format other than %g, %e or %f");
   }
 
   /// Whether what stands here may be a text: it is assigned to a name, or stands in a bracket for texts.
@@ -182,7 +182,7 @@ class Check {
     if (p.is("=") && at(-3).is(".") && at(-4).is("]") && geo_words::is_formula(at(-2).text) &&
         is_harmless_formula(t))
       return;
-    offend(fmt::format("the text \"{}\" in this place", t));
+    offend(fmt::format("the text \"{}\" at this position", t));
   }
 
   void symbol() {
@@ -219,7 +219,7 @@ class Check {
   void close(char s) {
     static constexpr std::string_view opening = "([{", closing = ")]}";
     if (open_.empty() || opening.find(open_.back().symbol) != closing.find(s))
-      return offend(fmt::format("a bracket '{}' that nothing opens", s));
+      return offend(fmt::format("a bracket '{}' without an opening one", s));
     const Bracket b = open_.back();
     open_.pop_back();
     const GeoToken& next = at(1);
@@ -234,7 +234,7 @@ class Check {
     if (next.is(".") || next.is(";")) return;  // of Delete Field [1]; see point()
     if (!next.is("=")) return offend("'Field' of this form");
     if (!at(2).is_word() || !geo_words::is_field(at(2).text) || !at(3).is(";"))
-      offend(fmt::format("a Field of the kind '{}'", at(2).text));
+      offend(fmt::format("a Field of type '{}'", at(2).text));
   }
 
   /// Mesh.MeshSizeMin, Field[1].VIn
@@ -244,7 +244,7 @@ class Check {
       if (!next.is_word() || !geo_words::is_option(at(-1).text, next.text))
         offend(fmt::format("the option '{}.{}'", at(-1).text, next.text));
     } else if (!at(-1).is("]") || !is_of_field() || !next.is_word() || !at(2).is("=")) {
-      offend("a point in this place");
+      offend("a point at this position");
     }
   }
 

@@ -47,7 +47,7 @@ class Lexer {
       } else if (c == '/' && peek(1) == '*') {
         const std::size_t end = all_.find("*/", at_ + 2);
         if (end == std::string_view::npos)
-          doubt("a comment that does not end");
+          doubt("an unterminated comment");
         else
           comment(end + 2);
       } else {
@@ -107,13 +107,13 @@ class Lexer {
     if (known.find(rest[0]) == std::string_view::npos)
       doubt(std::isprint(static_cast<unsigned char>(rest[0])) != 0
                 ? "the character '" + std::string(1, rest[0]) + "'"
-                : "a character that is none of ASCII's");
+                : "a non-ASCII character");
     ++at_;
   }
 
   void text(char quote) {
     const std::size_t end = all_.find(quote, at_ + 1);
-    if (end == std::string_view::npos) return doubt("a text whose quotation mark does not close");
+    if (end == std::string_view::npos) return doubt("a text with an unclosed quotation mark");
     const std::string_view inside = all_.substr(at_ + 1, end - at_ - 1);
     check(inside);
     found_.tokens.push_back({Kind::text, inside, line_});

@@ -26,7 +26,7 @@ std::string read_file(const fs::path& file) {
   std::ifstream in;
   if (fs::is_regular_file(file, ignored)) in.open(file, std::ios::binary);
   if (!in.is_open())
-    throw Error("The geometry file '{}' cannot be opened. Check the path and the permissions.",
+    throw Error("Cannot open the geometry file '{}'. Check the path and the permissions.",
                 file.string());
   if (fs::file_size(file, ignored) > largest)
     throw Error("The geometry file '{}' is larger than {} MB.", file.string(), largest >> 20);
@@ -151,7 +151,7 @@ class Scan {
       danger(where, open_.back());
       return std::string("refused.geo");
     };
-    if (fs::path(name).is_absolute()) return refuse("a path from the root");
+    if (fs::path(name).is_absolute()) return refuse("an absolute path");
     std::error_code ignored;
     const fs::path real = fs::weakly_canonical(file, ignored);
     const auto [end, rest] = std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end());
@@ -173,7 +173,8 @@ class Scan {
       found = script_.files[add(real, kind)].name;
     } else {
       return refuse(
-          "none of .geo, .step, .stp, .brep, .iges, .igs, .stl, .unv, and .msh that begins with $MeshFormat");
+          "not a .geo, .step, .stp, .brep, .iges, .igs, .stl or .unv file, nor a .msh that begins with "
+          "$MeshFormat");
     }
     return names_[real] = found;
   }
@@ -221,8 +222,8 @@ class Scan {
 
 std::string GeoScript::refusal() const {
   return fmt::format(
-      "The geometry has {}, which is not passed to gmsh: a .geo can run commands and write files with your rights. {}. "
-      "If you trust the case, start with --allow-commands.",
+      "The geometry has {}, which is not passed to gmsh, because a .geo can run commands and write files "
+      "with your permissions. {}. If you trust the case, start with --allow-commands.",
       danger, geo_words::sentence);
 }
 

@@ -33,9 +33,9 @@ bool is_formula(std::string_view option);
 
 /// One sentence for messages.
 inline constexpr std::string_view sentence =
-    "Allowed are the statements that draw and mesh: numbers, points, curves, surfaces, volumes, loops, OpenCASCADE "
-    "shapes and booleans, Extrude and other motions, Physical, Transfinite, Recombine, Periodic, sizes and Fields, "
-    "For, If, Macro, DefineConstant, Include and Merge of files in the folder of the case, Printf to the terminal "
-    "(docs/formats.md)";
+    "Allowed are statements for drawing and meshing: numbers, points, curves, surfaces, volumes, loops, "
+    "OpenCASCADE shapes and booleans, Extrude and other transformations, Physical, Transfinite, Recombine, "
+    "Periodic, sizes and Fields, For, If, Macro, DefineConstant, Include and Merge of files in the folder "
+    "of the case, Printf to the terminal (docs/formats.md)";
 
 }  // namespace couplet::geo_words

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 std::string read_text(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error("The file '{}' cannot be opened. Check the path and the permissions.", file.string());
+  if (!in) throw Error("Cannot open the file '{}'. Check the path and the permissions.", file.string());
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();
@@ -61,14 +61,14 @@ void write_files(const GmshInput& input, const fs::path& folder) {
     out << file.text;
     out.close();
     if (!out)
-      throw Error("The file '{}' cannot be written. Check the space on the disk.",
+      throw Error("Cannot write the file '{}'. Check the disk space.",
                   (folder / file.name).string());
   }
 }
 
 std::string reason(const ProgramEnd& end) {
-  if (end.signal == SIGXCPU) return "4 hours of processor time are over";
-  if (end.signal == SIGXFSZ) return "a file became larger than 64 GB";
+  if (end.signal == SIGXCPU) return "the limit of 4 hours of processor time was exceeded";
+  if (end.signal == SIGXFSZ) return "a file exceeded 64 GB";
   return end.signal != 0 ? fmt::format("ended by signal {}", end.signal)
                          : fmt::format("exit code {}", end.code);
 }
@@ -90,8 +90,8 @@ void put(const fs::path& mesh, const fs::path& result, const fs::path& source) {
   if (error) {
     fs::remove(own, error);
     throw Error(
-        "The mesh of '{}' is to be written beside it, but the folder cannot be written to. Change the permissions, or make "
-        "the .msh elsewhere and give that.",
+        "The mesh of '{}' is written next to it, but that folder is not writable. Change the permissions, "
+        "or create the .msh elsewhere and use that.",
         source.string());
   }
   flush_to_disk(own);
@@ -104,8 +104,8 @@ void run_gmsh(const std::vector<std::string>& options, const GmshInput& input, c
               const std::string& verb) {
   if (access(fs::absolute(result).parent_path().c_str(), W_OK) != 0)
     throw Error(
-        "The mesh of '{}' is to be written beside it, but the folder cannot be written to. Change the permissions, or make "
-        "the .msh elsewhere and give that.",
+        "The mesh of '{}' is written next to it, but that folder is not writable. Change the permissions, "
+        "or create the .msh elsewhere and use that.",
         input.source.string());
   const OwnFolder folder;
   const fs::path mesh = folder.path() / "mesh.msh", log = folder.path() / "gmsh.log";
@@ -143,8 +143,8 @@ fs::path convert_mesh(const fs::path& file) {
   const std::string library = kind == ".med" ? "Med" : kind == ".cgns" ? "Cgns" : "";
   if (!library.empty() && !gmsh_has(library))
     throw Error(
-        "The mesh '{}' cannot be read: the gmsh on the PATH was built without {}. Convert it elsewhere, for example by "
-        "meshio, to .msh 4.1 with its groups as physical names.",
+        "Cannot read the mesh '{}': the gmsh on the PATH was built without {}. Convert it elsewhere, for "
+        "example with meshio, to .msh 4.1 with its groups as physical names.",
         file.string(), kind == ".med" ? "MED" : "CGNS");
   const std::string text = read_text(file);
   const std::string hash = fmt::format("{:016x}", stable_hash(text));

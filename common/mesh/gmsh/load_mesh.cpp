@@ -19,7 +19,7 @@ RawMesh read_geo_mesh(const std::filesystem::path& geo, int dim, const MeshParam
   try {
     return read_msh(cached);
   } catch (const Error& error) {
-    log::warn("The cached mesh is damaged and made anew: {}", error.what());
+    log::warn("The cached mesh is damaged and is regenerated: {}", error.what());
   }
   std::filesystem::remove(cached);
   return read_msh(mesh_geo(geo, dim, parameters));
@@ -47,29 +47,29 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
     const bool foreign = kind == ".unv" || kind == ".cgns" || is_read_by_meshio(kind);
     if (kind == ".vtk")
       throw Error(
-          "The mesh file '{}' cannot be read: its parts have no names there. Convert it with meshio to .msh 4.1 with "
-          "physical names, or have it written as .unv, whose groups become patches and zones.",
+          "Cannot read the mesh file '{}': this format does not name its parts. Convert it with meshio to "
+          ".msh 4.1 with physical names, or export it as .unv, whose groups become patches and zones.",
           file.string());
     if (kind != ".msh" && kind != ".inp" && kind != ".geo" && !foreign)
       throw Error(
-          "The mesh file '{}' is neither .msh nor .geo, .inp, .unv, .med, .exo or .cgns. Convert it with gmsh or meshio to .msh 4.1 "
-          "with physical names.",
+          "The mesh file '{}' is not a .msh, .geo, .inp, .unv, .med, .exo or .cgns file. Convert it with "
+          "gmsh or meshio to .msh 4.1 with physical names.",
           file.string());
     if (kind != ".geo" && !parameters.empty())
       throw Error(
-          "The mesh '{}' is finished, so 'mesh-parameters' cannot change it. Leave them out, or give the "
-          ".geo "
-          "it was made from.",
+          "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the "
+          ".geo it was made from.",
           file.string());
     raw = kind == ".geo" ? read_geo_mesh(file, dim, parameters) : read_finished_mesh(file);
     for (Vec3& x : raw.points) x *= scale;
     if (raw.cell_type.empty())
-      throw Error("The mesh '{}' has no cells. Put the {} into a physical group, else gmsh does not save {}.",
+      throw Error("The mesh '{}' has no cells. Put the {} into a physical group; otherwise gmsh does not "
+                  "save {}.",
                   file.string(), dim == 2 ? "surface" : "volume", dim == 2 ? "its triangles" : "its cells");
     if (raw.dim != dim)
       throw Error(
-          "The mesh '{}' is {}-dimensional, but 'dimension: {}' is asked for.{}", file.string(), raw.dim, dim,
-          dim == 3 ? " Put the volume into a physical group, else gmsh does not save its cells." : "");
+          "The mesh '{}' is {}-dimensional, but the case sets 'dimension: {}'.{}", file.string(), raw.dim, dim,
+          dim == 3 ? " Put the volume into a physical group; otherwise gmsh does not save its cells." : "");
     raw.periodic = periodic;
     raw.materials = materials;
     raw.find_wide_points = find_wide_points;
@@ -81,7 +81,7 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
     check_and_report(mesh);
     return mesh;
   } catch (const Error& e) {
-    throw Error("The mesh '{}' cannot be used. {}", file.string(), e.what());
+    throw Error("Cannot use the mesh '{}'. {}", file.string(), e.what());
   }
 }
 

@@ -33,7 +33,7 @@ void seal_cache(const std::filesystem::path& file, const std::string& name) {
   std::ofstream out(file, std::ios::binary | std::ios::app);
   out << seal;
   out.close();
-  if (!out) throw Error("The mesh '{}' cannot be written. Check the space on the disk.", file.string());
+  if (!out) throw Error("Cannot write the mesh '{}'. Check the disk space.", file.string());
 }
 
 bool is_sound_cache(const std::filesystem::path& file) {
@@ -43,7 +43,7 @@ bool is_sound_cache(const std::filesystem::path& file) {
   if (at != std::string::npos && std::string_view(text).substr(at) ==
                                      seal_of(std::string_view(text).substr(0, at), file.filename().string()))
     return true;
-  log::warn("The cached mesh '{}' is damaged, or none that Couplet made: it is made anew.", file.string());
+  log::warn("The cached mesh '{}' is damaged, or not written by Couplet; it is regenerated.", file.string());
   return false;
 }
 

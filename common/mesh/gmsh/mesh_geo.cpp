@@ -22,11 +22,10 @@ void check_names(const std::filesystem::path& geo, const std::vector<std::string
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     if (known.empty())
       throw Error(
-          "The geometry file '{}' defines no parameter, so 'mesh-parameters' cannot set '{}'. Write the "
-          "names "
-          "that are to be set from outside as 'DefineConstant [ {} = {} ];'.",
+          "The geometry file '{}' defines no parameters, so 'mesh-parameters' cannot set '{}'. Declare "
+          "names that are set from outside as 'DefineConstant [ {} = {} ];'.",
           geo.string(), name, name, value);
-    throw Error("The geometry file '{}' defines no parameter '{}' by DefineConstant. {}", geo.string(), name,
+    throw Error("The geometry file '{}' defines no parameter '{}' with DefineConstant. {}", geo.string(), name,
                 did_you_mean(name, known, "names"));
   }
 }
@@ -39,8 +38,8 @@ void check_counts(const std::filesystem::path& geo, const std::map<std::string, 
     if (count == counts.end()) continue;
     if (!(value > 0) || !(value < 1e7) || (count->second && value != std::floor(value)))
       throw Error(
-          "mesh-parameters: '{}' is a number of cells in the geometry file '{}' (Layers, Transfinite Curve): it must be {} above 0 "
-          "and below 1e7, not {}.",
+          "mesh-parameters: '{}' is a number of cells in the geometry file '{}' (Layers, Transfinite "
+          "Curve): it must be {} above 0 and below 1e7, not {}.",
           name, geo.string(), count->second ? "a whole number" : "a number", value);
   }
 }
@@ -69,7 +68,7 @@ void refuse_empty(const std::filesystem::path& geo, const std::filesystem::path&
   if (has_cells(mesh, dim)) return;
   std::filesystem::remove(mesh);
   throw Error(
-      "gmsh made no {} of '{}'. Check that it has a {} and that the whole of it is in a physical group.",
+      "gmsh generated no {} from '{}'. Check that it has a {} and that all of it is in a physical group.",
       dim == 3 ? "cells in three dimensions" : "triangles or quadrilaterals", geo.string(),
       dim == 3 ? "volume" : "surface");
 }
@@ -82,8 +81,8 @@ std::filesystem::path mesh_geo(const std::filesystem::path& geo, int dim, const 
   if (!script.danger.empty() && !trusted) throw Error("{}", script.refusal());
   if (!script.lost.empty())
     throw Error(
-        "The {} does not end with a newline: gmsh reads one statement of such a last line and leaves out the others. End it "
-        "with a newline.",
+        "The {} does not end with a newline; gmsh would read only one statement of such a last line and "
+        "skip the others. Add a newline at the end.",
         script.lost);
   check_names(geo, script.constants, parameters);
   check_counts(geo, script.counts, parameters);

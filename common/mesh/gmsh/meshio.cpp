@@ -106,8 +106,9 @@ RawMesh read_by_meshio(const fs::path& file) {
                                         folder.path(), log);
   if (end.code == no_module)
     throw Error(
-        "The mesh '{}' is read by the Python module meshio, but python3 on the PATH has no module for it:{} Install it "
-        "(Debian: apt install python3-meshio {}), or convert the mesh elsewhere to .msh 4.1 with its groups as physical names.",
+        "The mesh '{}' is read with the Python module meshio, but python3 on the PATH lacks a module:{} "
+        "Install it (Debian: apt install python3-meshio {}), or convert the mesh elsewhere to .msh 4.1 with "
+        "its groups as physical names.",
         file.string(), complaint(log), file.extension() == ".med" ? "python3-h5py" : "python3-netcdf4");
   if (end.code != 0 || !fs::is_regular_file(fs::symlink_status(deck)))
     throw Error("meshio could not read '{}' ({}).{}", file.string(),

@@ -36,8 +36,8 @@ std::optional<std::string> on_path(const std::string& program) {
 std::string program_of(const Words& command) {
   if (const auto file = on_path(command[0])) return *file;
   throw Error(
-      "A mesh that is no .msh is read by the program '{}', which is not on the PATH. Install it (Debian: apt install {}) "
-      "or give a .msh file instead.",
+      "Meshes other than .msh are read with the program '{}', which is not on the PATH. Install it (Debian: "
+      "apt install {}) or give a .msh file.",
       command[0], command[0]);
 }
 
@@ -105,8 +105,8 @@ std::optional<Bubblewrap> find_bubblewrap(const fs::path& folder) {
   const auto bwrap = on_path("bwrap"), probe = on_path("true");
   if (!bwrap || !probe) {
     log::info(
-        "gmsh runs without a sandbox of its own, under limits only: bubblewrap (bwrap) is not installed (Debian: apt install "
-        "bubblewrap).");
+        "gmsh runs without a sandbox, with resource limits only: bubblewrap (bwrap) is not installed "
+        "(Debian: apt install bubblewrap).");
     return std::nullopt;
   }
   for (const bool proc : {true, false}) {
@@ -117,7 +117,8 @@ std::optional<Bubblewrap> find_bubblewrap(const fs::path& folder) {
     if (run_child(child).code == 0) return found;
   }
   log::info(
-      "gmsh runs without a sandbox of its own, under limits only: bubblewrap does not start here (user namespaces?).");
+      "gmsh runs without a sandbox, with resource limits only: bubblewrap cannot start here (user "
+      "namespaces?).");
   return std::nullopt;
 }
 
@@ -126,7 +127,7 @@ std::optional<Bubblewrap> find_bubblewrap(const fs::path& folder) {
 OwnFolder::OwnFolder() {
   std::string name = (fs::temp_directory_path() / "couplet-gmsh-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr)
-    throw Error("No folder for gmsh can be made in '{}': {}. Set TMPDIR to a folder that can be written to.",
+    throw Error("Cannot create a folder for gmsh in '{}': {}. Set TMPDIR to a writable folder.",
                 fs::temp_directory_path().string(), std::strerror(errno));
   path_ = fs::canonical(name);
 }

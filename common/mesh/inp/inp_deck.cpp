@@ -19,9 +19,9 @@ constexpr std::size_t most_members = 20000000;
 
 /// Keywords that make or move nodes and elements, or part the deck: what they do is not done here.
 constexpr std::pair<std::string_view, std::string_view> refused[] = {
-    {"NGEN", "it makes nodes"},          {"NFILL", "it makes nodes"},   {"NCOPY", "it makes nodes"},
-    {"NMAP", "it moves nodes"},          {"SYSTEM", "it moves nodes"},  {"ELGEN", "it makes elements"},
-    {"ELCOPY", "it makes elements"},     {"SUBMODEL", "it is no mesh"}, {"IMPORT", "it reads another file"},
+    {"NGEN", "it generates nodes"},          {"NFILL", "it generates nodes"},   {"NCOPY", "it generates nodes"},
+    {"NMAP", "it transforms nodes"},          {"SYSTEM", "it transforms nodes"},  {"ELGEN", "it generates elements"},
+    {"ELCOPY", "it generates elements"},     {"SUBMODEL", "it is not a mesh"}, {"IMPORT", "it reads another file"},
     {"MANIFEST", "it reads other files"}};
 
 class DeckReader {
@@ -30,7 +30,7 @@ class DeckReader {
 
   InpDeck read() {
     bool more = lines_.next();
-    if (more && !lines_.is_keyword()) lines_.fail("an input deck begins with a keyword ('*NODE', ...).");
+    if (more && !lines_.is_keyword()) lines_.fail("an input deck must begin with a keyword ('*NODE', ...).");
     while (more) more = block();
     return std::move(deck_);
   }
@@ -41,7 +41,8 @@ class DeckReader {
     const InpKeyword k = lines_.keyword();
     for (const auto& [word, reason] : refused)
       if (k.word == word)
-        lines_.fail(fmt::format("*{} is not read: {}. Have the mesh written with all nodes and elements.",
+        lines_.fail(fmt::format("*{} is not supported: {}. Export the mesh with all nodes and elements "
+                                "written out.",
                                 word, reason));
     if (k.word == "INCLUDE") {
       const std::string* name = k.find("INPUT");
@@ -56,7 +57,8 @@ class DeckReader {
     if (k.word == "SOLID SECTION") return section(k);
     if (k.word == "PART" && ++parts_ > 1)
       lines_.fail(
-          "a deck of several parts is not read. Have it written flat (Abaqus: 'do not use parts and assemblies').");
+          "decks with several parts are not supported. Export it flat (Abaqus: 'do not use parts and "
+          "assemblies').");
     if (k.word == "INSTANCE") return instance();
     ++deck_.passed_over["*" + k.word.substr(0, 40)];
     return skip();
@@ -71,10 +73,11 @@ class DeckReader {
   bool instance() {
     if (++instances_ > 1)
       lines_.fail(
-          "a deck of several instances is not read. Have it written flat (Abaqus: 'do not use parts and assemblies').");
+          "decks with several instances are not supported. Export it flat (Abaqus: 'do not use parts and "
+          "assemblies').");
     const bool more = lines_.next();
     if (more && !lines_.is_keyword())
-      lines_.fail("an instance that is moved is not read. Have the deck written flat.");
+      lines_.fail("transformed instances are not supported. Export the deck flat.");
     return more;
   }
 
@@ -86,14 +89,14 @@ class DeckReader {
 
   bool nodes(const InpKeyword& k) {
     if (const std::string* system = k.find("SYSTEM"); system && upper(*system) != "R")
-      lines_.fail("*NODE in other than rectangular coordinates is not read.");
+      lines_.fail("*NODE is supported in rectangular coordinates only.");
     InpSet* set = k.find("NSET") ? &deck_.node_sets.at(*k.find("NSET")) : nullptr;
     while (lines_.next() && !lines_.is_keyword()) {
       csv::split_cells(lines_.text(), ',', cells_);
       while (!cells_.empty() && cells_.back().empty()) cells_.pop_back();
       const std::int64_t id = cells_.empty() ? 0 : identifier_of(cells_[0]);
       if (id == 0 || cells_.size() < 2 || cells_.size() > 7)
-        lines_.fail("a node has a whole number above 0 and two or three coordinates: '12, 0.5, 1, 0'.");
+        lines_.fail("a node needs a whole number above 0 and two or three coordinates: '12, 0.5, 1, 0'.");
       Vec3 x = Vec3::Zero();
       for (std::size_t a = 1; a < std::min<std::size_t>(cells_.size(), 4); ++a) {
         if (cells_[a].empty()) continue;
@@ -102,9 +105,9 @@ class DeckReader {
         x[Index(a) - 1] = *value;
       }
       if (deck_.points.size() >= std::size_t(std::numeric_limits<Index>::max()))
-        lines_.fail("more nodes than a mesh can have.");
+        lines_.fail("too many nodes for a mesh.");
       if (!deck_.point_of_node.emplace(id, static_cast<Index>(deck_.points.size())).second)
-        lines_.fail(fmt::format("node {} is given twice.", id));
+        lines_.fail(fmt::format("node {} is defined twice.", id));
       deck_.points.push_back(x);
       if (set) add(*set, {id, id, 1});
     }
@@ -136,13 +139,13 @@ class DeckReader {
       const std::uint64_t mark = lines_.mark();
       lines_.identifiers(std::size_t(type.n_nodes) + 1, numbers_);
       if (numbers_.size() != std::size_t(type.n_nodes) + 1)
-        lines_.fail(fmt::format("a {} has its number and {} nodes, here are {} numbers.", name, type.n_nodes,
+        lines_.fail(fmt::format("a {} needs its number and {} nodes; found {} numbers.", name, type.n_nodes,
                                 numbers_.size()));
       const auto corners = std::span(numbers_).subspan(1, n_kept);
       for (std::size_t i = 1; i < corners.size(); ++i)
         if (std::ranges::find(corners.first(i), corners[i]) != corners.first(i).end())
           lines_.fail(fmt::format(
-              "element {} has node {} twice. Degenerate cells are not read; give it as a C3D6, C3D5 or C3D4.",
+              "element {} has node {} twice. Degenerate cells are not supported; use a C3D6, C3D5 or C3D4.",
               numbers_[0], corners[i]));
       deck_.elements.all.push_back(
           {numbers_[0], mark, type, deck_.elements.nodes.size(), deck_.elements.groups.size() - 1});
@@ -170,7 +173,7 @@ class DeckReader {
     if (const std::int64_t id = identifier_of(cell); id > 0) return add(set, {id, id, 1});
     const InpSet* other = sets.find(std::string(cell));
     if (!other)
-      lines_.fail(fmt::format("'{}' is no number and no {} given before.", cell.substr(0, 60), kind));
+      lines_.fail(fmt::format("'{}' is neither a number nor a {} defined before.", cell.substr(0, 60), kind));
     if (other == &set) return;
     const std::vector<InpRange> members = other->members;
     for (const InpRange& r : members) add(set, r);
@@ -186,7 +189,7 @@ class DeckReader {
         lines_.identifiers(2, numbers_);
         const std::int64_t step = numbers_.size() > 2 ? numbers_[2] : 1;
         if (numbers_.size() > 3 || numbers_[1] < numbers_[0])
-          lines_.fail("GENERATE takes first, last and step: '1, 100, 3'.");
+          lines_.fail("GENERATE needs first, last and step: '1, 100, 3'.");
         add(here, {numbers_[0], numbers_[1] - (numbers_[1] - numbers_[0]) % step, step});
         continue;
       }
@@ -204,12 +207,12 @@ class DeckReader {
   bool surface(const InpKeyword& k) {
     InpSurface surface{required(k, "NAME"), {}, {}};
     if (!surface_names_.insert(upper(surface.name)).second)
-      lines_.fail(fmt::format("the surface '{}' is given twice.", surface.name.substr(0, 60)));
+      lines_.fail(fmt::format("the surface '{}' is defined twice.", surface.name.substr(0, 60)));
     if (k.find("COMBINE") || k.find("CROP"))
-      lines_.fail("a surface made of other surfaces is not read; name its faces.");
+      lines_.fail("surfaces composed of other surfaces are not supported; list the faces.");
     const std::string type = k.find("TYPE") ? upper(*k.find("TYPE")) : "ELEMENT";
     if (type != "ELEMENT" && type != "NODE")
-      lines_.fail(fmt::format("a surface of TYPE={} is not read; ELEMENT and NODE are.", type.substr(0, 40)));
+      lines_.fail(fmt::format("surfaces of TYPE={} are not supported; use ELEMENT or NODE.", type.substr(0, 40)));
     while (lines_.next() && !lines_.is_keyword()) {
       csv::split_cells(lines_.text(), ',', cells_);
       const auto cells = cells_;
@@ -222,7 +225,7 @@ class DeckReader {
       const std::string face = cells.size() > 1 ? upper(cells[1]) : "";
       if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '6')
         lines_.fail(
-            fmt::format("a face of an element or of an ELSET is expected, such as 'beam, S3', not '{}'.",
+            fmt::format("expected a face of an element or of an ELSET, such as 'beam, S3', not '{}'.",
                         lines_.text().substr(0, 60)));
       add_named(members, cells[0], deck_.element_sets, "ELSET");
       surface.parts.push_back({std::move(members.members), face[1] - '1', lines_.mark()});
@@ -234,7 +237,7 @@ class DeckReader {
   bool section(const InpKeyword& k) {
     const std::string& name = required(k, "ELSET");
     const InpSet* set = deck_.element_sets.find(name);
-    if (!set) lines_.fail(fmt::format("*SOLID SECTION: no ELSET '{}' is given before.", name.substr(0, 60)));
+    if (!set) lines_.fail(fmt::format("*SOLID SECTION: no ELSET '{}' is defined before.", name.substr(0, 60)));
     deck_.sections.emplace_back(set->name, set->members);
     return skip();
   }

@@ -62,14 +62,14 @@ std::string why_not_read(std::string_view name) {
   const auto begins = [&](std::initializer_list<const char*> all) {
     return std::ranges::any_of(all, [&](const char* n) { return name.starts_with(n); });
   };
-  const char* reason = begins({"CAX", "DCAX"}) ? "axisymmetric elements are no cells here"
+  const char* reason = begins({"CAX", "DCAX"}) ? "axisymmetric elements are not supported"
                        : begins({"S3", "S4", "S6", "S8", "STRI", "SC", "M3D"})
-                           ? "shells and membranes have no cells; mesh the wall as a solid"
-                       : begins({"DC", "AC", "F", "U"}) ? "it is no element of a solid"
+                           ? "shells and membranes are not supported; mesh the wall as a solid"
+                       : begins({"DC", "AC", "F", "U"}) ? "it is not a solid element"
                                                         : "it is unknown";
   return fmt::format(
-      "elements of type '{}' are not read ({}). C3D4, C3D5, C3D6, C3D8, C3D10, C3D15, C3D20, CPS3, CPS4, CPS6, CPS8 and the CPE alike "
-      "are, those of second order by their corners.",
+      "elements of type '{}' are not supported ({}). Supported: C3D4, C3D5, C3D6, C3D8, C3D10, C3D15, "
+      "C3D20, CPS3, CPS4, CPS6, CPS8 and their CPE equivalents; second-order ones by their corners.",
       name.substr(0, 40), reason);
 }
 

@@ -51,15 +51,16 @@ void InpLines::open(const fs::path& file) {
 void InpLines::include(const std::string& name) {
   if (name.empty()) fail("*INCLUDE names no file (INPUT=...).");
   if (files_.size() >= most_deep || opened_.size() >= most_files)
-    fail(fmt::format("*INCLUDE goes deeper than {} files, or there are more than {} of them.", most_deep,
+    fail(fmt::format("*INCLUDE is nested deeper than {} files, or there are more than {} of them.", most_deep,
                      most_files));
   const fs::path file = fs::weakly_canonical(folder_ / name);
   const fs::path below = file.lexically_relative(folder_);
   if (below.empty() || *below.begin() == "..")
     fail(
-        fmt::format("*INCLUDE '{}' lies outside the folder of the mesh '{}'. Put it there, or into the file.",
+        fmt::format("*INCLUDE '{}' is outside the folder of the mesh '{}'. Move it there, or insert its "
+                    "content into the file.",
                     name, folder_.string()));
-  if (!fs::is_regular_file(file)) fail(fmt::format("*INCLUDE: there is no file '{}'.", file.string()));
+  if (!fs::is_regular_file(file)) fail(fmt::format("*INCLUDE: the file '{}' does not exist.", file.string()));
   open(file);
 }
 
@@ -92,11 +93,11 @@ InpKeyword InpLines::keyword() {
   std::string text(line_.substr(1));
   while (text.ends_with(',')) {
     if (text.size() > longest_keyword || !next() || is_keyword())
-      fail("this keyword line ends with a comma, but nothing goes on from it.");
+      fail("this keyword line ends with a comma, but does not continue.");
     text += line_;
   }
   InpKeyword result;
-  if (!csv::split_cells(text, ',', cells_)) fail("a quote is not closed.");
+  if (!csv::split_cells(text, ',', cells_)) fail("unclosed quotation mark.");
   for (const std::string_view cell : cells_) {
     if (result.word.empty()) {
       // "SOLID  SECTION" is "SOLID SECTION".
@@ -122,12 +123,12 @@ void InpLines::identifiers(std::size_t n, std::vector<std::int64_t>& numbers) {
       if (cell.empty()) continue;
       numbers.push_back(identifier_of(cell));
       if (numbers.back() == 0)
-        fail(fmt::format("'{}' is no number of a node or an element (whole, above 0, below 2^31).",
+        fail(fmt::format("'{}' is not a valid node or element number (whole, above 0, below 2^31).",
                          cell.substr(0, 60)));
     }
     if (numbers.size() >= n) return;
     if (!next() || is_keyword())
-      fail(fmt::format("{} whole numbers are expected here, there are {}.", n, numbers.size()));
+      fail(fmt::format("expected {} whole numbers here, found {}.", n, numbers.size()));
   }
 }
 

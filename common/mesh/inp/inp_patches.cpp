@@ -58,7 +58,8 @@ class InpPatches {
       Vec3 mean = Vec3::Zero();
       for (const Index p : outer_[face]) mean += raw_.points[std::size_t(p)] / double(outer_[face].size());
       throw Error(
-          "{}: the boundary face at {} is in two surfaces, '{}' and '{}'. Every boundary face must be in one only.",
+          "{}: the boundary face at {} is in two surfaces, '{}' and '{}'. Every boundary face must be in "
+          "exactly one.",
           body_.lines.place(), place(mean, raw_.dim), raw_.patches[std::size_t(of_face)],
           raw_.patches[std::size_t(patch)]);
     }
@@ -72,7 +73,7 @@ class InpPatches {
       body_.visit(part.elements, body_.cell_of_element, [&](Index cell) {
         const InpShape& shape = *body_.elements[std::size_t(cell)]->type.shape;
         if (part.face >= shape.n_faces)
-          throw Error("{}: surface '{}': element {} has faces S1 to S{} alone.",
+          throw Error("{}: surface '{}': element {} has faces S1 to S{} only.",
                       body_.lines.place_of(part.mark), surface.name, body_.elements[std::size_t(cell)]->id,
                       shape.n_faces);
         points.clear();

@@ -47,7 +47,7 @@ template <class Use>
 void InpBody::visit(const std::vector<InpRange>& members,
                     const std::unordered_map<std::int64_t, Index>& index, const Use& use) {
   if (!for_each_member(members, index, work, use))
-    throw Error("{}: the sets of this deck name too many members.", lines.place());
+    throw Error("{}: the sets of this deck have too many members.", lines.place());
 }
 
 }  // namespace couplet

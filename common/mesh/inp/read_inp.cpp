@@ -24,7 +24,7 @@ class InpMesh {
     raw_.points = std::move(deck_.points);
     make_cells();
     if (raw_.cell_type.empty())
-      throw Error("{}: the deck has no element of a body (C3D4, C3D8, CPS4, ...).", lines_.name());
+      throw Error("{}: the deck has no solid elements (C3D4, C3D8, CPS4, ...).", lines_.name());
     drop_unused();
     find_zones();
     report(name_patches(body_));
@@ -35,7 +35,7 @@ class InpMesh {
   Index point_of(const InpElements::Element& e, std::int64_t node) const {
     const auto found = deck_.point_of_node.find(node);
     if (found == deck_.point_of_node.end())
-      throw Error("{}: element {} has node {}, which the deck does not give.", lines_.place_of(e.mark), e.id,
+      throw Error("{}: element {} has node {}, which the deck does not define.", lines_.place_of(e.mark), e.id,
                   node);
     return found->second;
   }
@@ -52,7 +52,7 @@ class InpMesh {
       for (int i = 0; i < e.type.shape->n_corners; ++i)
         points.push_back(point_of(e, deck_.elements.nodes[e.first_node + std::size_t(i)]));
       if (!body_.cell_of_element.emplace(e.id, static_cast<Index>(raw_.cell_type.size())).second)
-        throw Error("{}: element {} is given twice.", lines_.place_of(e.mark), e.id);
+        throw Error("{}: element {} is defined twice.", lines_.place_of(e.mark), e.id);
       raw_.cell_type.push_back(e.type.shape->cell);
       raw_.cell_points.push_row(points);
       body_.elements.push_back(&e);
@@ -99,7 +99,8 @@ class InpMesh {
   void report(std::size_t inner) const {
     if (deck_.second_order > 0)
       log::info(
-          "'{}': {} elements of second order are taken by their corners; give them about half the size.",
+          "'{}': {} second-order elements are reduced to their corners; compensate with about half the "
+          "element size.",
           lines_.name(), deck_.second_order);
     if (inner > 0)
       log::info("'{}': {} faces of surfaces lie between two cells and belong to no patch.", lines_.name(),
@@ -108,7 +109,7 @@ class InpMesh {
     for (const auto& [word, n] : deck_.passed_over)
       if (words.size() < most_words) words.push_back(word);
     if (!words.empty())
-      log::info("'{}': read for its mesh alone; passed over: {}.", lines_.name(), join(words));
+      log::info("'{}': only the mesh is read; skipped: {}.", lines_.name(), join(words));
   }
 
   InpLines& lines_;

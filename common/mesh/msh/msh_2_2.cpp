@@ -12,7 +12,7 @@ void read_nodes(MshCursor& in, MshContent& content) {
   for (std::size_t i = 0; i < n; ++i) {
     const int tag = in.integer();
     if (!content.point_of_tag.emplace(tag, static_cast<Index>(content.points.size())).second)
-      in.fail(fmt::format("Node {} is there twice.", tag));
+      in.fail(fmt::format("Duplicate node {}.", tag));
     Vec3 x;
     for (double& value : x) value = in.real();
     content.points.push_back(x);

@@ -39,7 +39,7 @@ void MshReader41::read_nodes(MshCursor& in, MshContent& content) const {
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t tag = in.size();
       if (!content.point_of_tag.emplace(tag, static_cast<Index>(content.points.size() + i)).second)
-        in.fail(fmt::format("Node {} is there twice.", tag));
+        in.fail(fmt::format("Duplicate node {}.", tag));
     }
     for (std::size_t i = 0; i < n; ++i) {
       Vec3 x;
@@ -75,7 +75,7 @@ void MshReader41::read_elements(MshCursor& in, MshContent& content) const {
 
 void MshReader41::read(MshCursor& in, const std::string& section, MshContent& content) {
   if (section == "PartitionedEntities")
-    in.fail("Partitioned meshes are not read. Save the whole mesh; it is partitioned when it is loaded.");
+    in.fail("Partitioned meshes are not supported. Save the whole mesh; it is partitioned on loading.");
   if (section == "Entities")
     read_entities(in);
   else if (section == "Nodes")

@@ -44,7 +44,7 @@ std::string MshCursor::next_section() {
 void MshCursor::skip_section() {
   const std::size_t end = text_.find("$End" + section_, at_);
   if (end == std::string::npos)
-    fail(fmt::format("Section ${0} has no $End{0}. The file was not written fully.", section_));
+    fail(fmt::format("Section ${0} has no $End{0}. The file is incomplete.", section_));
   at_ = end;
   line();
 }
@@ -54,8 +54,8 @@ void MshCursor::end_section() {
   while (!at_end() && text.empty()) text = line();
   if (text != "$End" + section_)
     fail(fmt::format(
-        "Expected $End{} here, found '{:.40}'. The counts in the section do not fit its content, or the file "
-        "was not written fully.",
+        "Expected $End{} here, found '{:.40}'. The counts in the section do not match its content, or the "
+        "file is incomplete.",
         section_, text));
 }
 
@@ -63,7 +63,7 @@ std::string_view MshCursor::word() {
   while (!at_end() && is_space(text_[at_])) ++at_;
   const std::size_t first = at_;
   while (!at_end() && !is_space(text_[at_])) ++at_;
-  if (first == at_) fail("The file ends here in the middle of its data. It was not written fully.");
+  if (first == at_) fail("The file ends here in the middle of its data. It is incomplete.");
   return std::string_view(text_).substr(first, at_ - first);
 }
 
@@ -87,7 +87,7 @@ double MshCursor::text_real() {
 
 std::size_t MshCursor::count() {
   const std::size_t n = size();
-  if (n > text_.size()) fail(fmt::format("{} entries cannot fit into this file; the count is wrong.", n));
+  if (n > text_.size()) fail(fmt::format("{} entries do not fit into this file; the count is wrong.", n));
   return n;
 }
 
@@ -117,8 +117,8 @@ const MshElementType* find_msh_type(int gmsh) {
 const MshElementType& msh_type_or_fail(const MshCursor& cursor, int gmsh) {
   if (const MshElementType* type = find_msh_type(gmsh)) return *type;
   cursor.fail(fmt::format(
-      "Element type {} is not one of line, triangle, quadrilateral, tetrahedron, hexahedron, prism or "
-      "pyramid of first order. If the mesh has curved elements, mesh again with Mesh.ElementOrder = 1.",
+      "Element type {} is not supported: expected a first-order line, triangle, quadrilateral, tetrahedron, "
+      "hexahedron, prism or pyramid. For curved elements, remesh with Mesh.ElementOrder = 1.",
       gmsh));
 }
 

@@ -68,7 +68,7 @@ class MshCursor {
   template <class T>
   T raw() {
     if (text_.size() - at_ < sizeof(T))
-      fail("The file ends here in the middle of its data. It was not written fully.");
+      fail("The file ends here in the middle of its data. It is incomplete.");
     T value;
     std::memcpy(&value, text_.data() + at_, sizeof(T));
     at_ += sizeof(T);

@@ -12,31 +12,31 @@ namespace {
 std::string read_all(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
   if (!in)
-    throw Error("The mesh file '{}' cannot be opened. Check the path and the permissions.", file.string());
+    throw Error("Cannot open the mesh file '{}'. Check the path and the permissions.", file.string());
   std::string text(static_cast<std::size_t>(in.tellg()), '\0');
   in.seekg(0);
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (!in) throw Error("The mesh file '{}' cannot be read.", file.string());
+  if (!in) throw Error("Cannot read the mesh file '{}'.", file.string());
   return text;
 }
 
 /// True for version 4.1, false for 2.2.
 bool read_format(MshCursor& in) {
   if (in.at_end() || in.next_section() != "MeshFormat")
-    in.fail("This is not a .msh file of gmsh: it does not start with $MeshFormat.");
+    in.fail("This is not a gmsh .msh file: it does not start with $MeshFormat.");
   const double version = in.text_real();
   const long mode = in.text_integer(), data_size = in.text_integer();
   if (version != 2.2 && version != 4.1)
     in.fail(fmt::format(
-        "Version {} of the .msh format is not read. Save the mesh as version 4.1 (gmsh -format msh41) or 2.2 "
-        "(gmsh -format msh22).",
+        "Version {} of the .msh format is not supported. Save the mesh as version 4.1 (gmsh -format msh41) "
+        "or 2.2 (gmsh -format msh22).",
         version));
-  if (data_size != 8) in.fail(fmt::format("Numbers of {} bytes are not read; 8 are expected.", data_size));
+  if (data_size != 8) in.fail(fmt::format("Numbers of {} bytes are not supported; expected 8.", data_size));
   in.end_of_line();
   if (mode == 1) {
     in.binary = true;
     if (in.raw<int>() != 1)
-      in.fail("The file was written on a machine with another byte order. Save it as ASCII.");
+      in.fail("The file was written on a machine with a different byte order. Save it as ASCII.");
   }
   in.end_section();
   return version == 4.1;
@@ -140,7 +140,7 @@ RawMesh to_raw(const MshContent& content, const std::filesystem::path& file) {
       const int zone = groups.empty() ? zones.use_default() : zones.use(groups[0]);
       for (const int other : groups)
         if (zones.use(other) != zone)
-          throw Error("{}: a {} is in two physical groups, '{}' and '{}'. A cell may be in one only.",
+          throw Error("{}: a {} is in two physical groups, '{}' and '{}'. A cell must be in exactly one.",
                       file.string(), type.name, zones.name(zone), zones.name(zones.use(other)));
       raw.cell_type.push_back(cell_type(e.type));
       raw.cell_points.push_row(nodes);
@@ -174,7 +174,7 @@ MshContent read_content(const std::filesystem::path& file) {
     else
       read_msh_2_2(in, section, content);
   }
-  if (!nodes || !elements) in.fail("The file has no $Nodes or no $Elements. It was not written fully.");
+  if (!nodes || !elements) in.fail("The file has no $Nodes or no $Elements. It is incomplete.");
   return content;
 }
 
