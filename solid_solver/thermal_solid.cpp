@@ -23,7 +23,7 @@ Interface ThermalSolid::initialise() {
 }
 
 void ThermalSolid::begin_step(const Step& step) {
-  if (!(step.dt > 0)) throw Error("The solid was asked for a step of {} s; time must go on.", step.dt);
+  if (!(step.dt > 0)) throw Error("The solid received a step of {} s; it must be above 0.", step.dt);
   step_ = step;
 }
 

@@ -75,7 +75,7 @@ void SolidBody::check_supports() const {
   check_mesh(mesh_, elastic_.vertices());
   check_symmetry(parameters_, mesh_, elastic_);
   if (!parameters_.gravity.empty() && std::ssize(parameters_.gravity) != mesh_.dim)
-    throw Error("gravity: {} components are given where the {}-dimensional scene needs {}.",
+    throw Error("gravity: {} components are given, but the {}-dimensional scene needs {}.",
                 parameters_.gravity.size(), mesh_.dim, mesh_.dim);
   if (!is_dynamic()) check_supported(mesh_, elastic_);
 }
@@ -86,19 +86,18 @@ void SolidBody::find_mass() {
     has_no_energy = has_no_energy || elastic_.condition(f) == ElasticCondition::zero_gradient;
   if (kernel_.is_symmetric() && any(mesh_.comm, has_no_energy))
     throw Error(
-        "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no "
-        "energy, so that "
-        "this gradient cannot have it; use 'symmetry' or 'frictionless', or 'face-gradient: thesis'.");
+        "solution-method.face-gradient: symmetric: a boundary of 'type: zero-normal-gradient' has no energy "
+        "functional, so this gradient does not support it; use 'symmetry' or 'frictionless', or "
+        "'face-gradient: thesis'.");
   if (kernel_.is_symmetric() && any(mesh_.comm, has_loose_vertex(mesh_, elastic_)))
     throw Error(
-        "solution-method.face-gradient: symmetric: a part of a patch holds components of the displacement and ends "
-        "at vertices that it does not hold; there this gradient would lose a part of the reaction. Give the part a "
-        "patch of its own, hold all components, or take 'face-gradient: thesis'.");
+        "solution-method.face-gradient: symmetric: a part of a patch holds components of the displacement "
+        "and ends at vertices that it does not hold; this gradient would lose part of the reaction there. "
+        "Give the part its own patch, hold all components, or use 'face-gradient: thesis'.");
   if (!kernel_.is_symmetric() && largest_poissons_ratio(parameters_) > most_poissons_ratio)
     throw Error(
-        "material.poissons-ratio: {:g} is beyond {:g}, up to which 'face-gradient: thesis' and 'corrected' "
-        "can go; "
-        "'symmetric' can (with 'solution-method: {{type: auto}}' and no 'zero-normal-gradient').",
+        "material.poissons-ratio: {:g} exceeds {:g}, the limit of 'face-gradient: thesis' and 'corrected'; "
+        "use 'symmetric' (with 'solution-method: {{type: auto}}' and without 'zero-normal-gradient').",
         largest_poissons_ratio(parameters_), most_poissons_ratio);
   if (!is_dynamic()) return;
   std::vector<double> densities;

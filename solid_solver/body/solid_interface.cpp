@@ -22,11 +22,12 @@ double speed_in(const SolidMaterial& m) {
 WallImpedance impedance_of(const SolidBody& body, const Interface& interface) {
   const Mesh& mesh = body.mesh();
   if (body.boundaries().interface_patches().empty())
-    throw Error("interface: surface-density: no patch has 'type: interface', where it could be given.");
+    throw Error("interface: surface-density: no patch has 'type: interface', so there is no face to give it "
+                "at.");
   if (!body.is_dynamic())
     throw Error(
-        "interface: surface-density: a static solid answers without its mass; take 'analysis: dynamic' or remove "
-        "the key.");
+        "interface: surface-density: the response of a static solid does not depend on its mass; use "
+        "'analysis: dynamic' or remove the key.");
   std::vector<double> densities, speeds, volumes;
   for (Index c = 0; c < mesh.cells.n_owned(); ++c) {
     densities.push_back(body.density(c));
@@ -54,7 +55,8 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
     description_.gives.push_back({"surface-density", "kg/m^2", Interface::Place::faces, 1});
   }
   if (!parameters.interface_data || !parameters.interface_data->temperature) return;
-  if (!map_) throw Error("interface: no patch has 'type: interface', where a temperature could be taken.");
+  if (!map_) throw Error("interface: no patch has 'type: interface', so there is no face to receive a "
+                         "temperature at.");
   takes_temperature_ = true;
   for (const auto& effect : body.effects())
     if (effect->wants_temperature()) effect->set_interface(description_.face_centres);
@@ -75,7 +77,7 @@ std::vector<double> SolidInterface::load(const Exchange& in) const {
   for (const auto& [name, values] : in) {
     if (name == "temperature" && takes_temperature_) continue;
     if (std::ranges::none_of(description_.takes, [&](const auto& datum) { return datum.name == name; }))
-      throw Error("The solid was given '{}', which it does not take.", name);
+      throw Error("The solid received '{}', which it does not accept.", name);
     if (name == "pressure" && values.size() * dim == total.size()) {
       // A normal force on each face; the areas point out of the solid.
       for (std::size_t i = 0; i < values.size(); ++i)
@@ -83,7 +85,7 @@ std::vector<double> SolidInterface::load(const Exchange& in) const {
       continue;
     }
     if (values.size() != total.size())
-      throw Error("The solid was given {} values of '{}'; its interface has {} faces of {} components.",
+      throw Error("The solid received {} values of '{}', but its interface has {} faces of {} components.",
                   values.size(), name, description_.face_centres.size(), dim);
     for (std::size_t i = 0; i < values.size(); ++i) total[i] += values[i];
   }

@@ -42,17 +42,17 @@ void BearingLoad::find_axis() {
     area += n.norm();
   }
   area_ = sum(mesh_->comm, area);
-  if (!(area_ > 0)) throw Error("{}: the faces that take this load have no area.", where_);
+  if (!(area_ > 0)) throw Error("{}: the faces with this load have zero area.", where_);
   const Eigen::SelfAdjointEigenSolver<Tensor3> axes(Tensor3(sum_of(mesh_->comm, spread) / area_));
   if (!(axes.eigenvalues()[1] > curved))
     throw Error(
-        "{}: these faces are nearly flat, but a bearing load needs a cylinder, or half of one; take 'type: force' or "
-        "'remote-load'.",
+        "{}: these faces are nearly flat, but a bearing load requires a full or half cylinder; use 'type: "
+        "force' or 'remote-load'.",
         where_);
   if (axes.eigenvalues()[0] > along_axis)
     throw Error(
-        "{}: these faces are no cylinder: their normals point along all three axes. Put the hole alone into the patch, or "
-        "choose its faces by 'parts'.",
+        "{}: these faces are not a cylinder: their normals point along all three axes. Put only the hole "
+        "into the patch, or select its faces by 'parts'.",
         where_);
   if (mesh_->dim == 3) axis_ = axes.eigenvectors().col(0);
 }
@@ -62,8 +62,8 @@ Vec3 BearingLoad::force_at(double t) const {
   for (int a = 0; a < mesh_->dim; ++a) force[a] = force_[std::size_t(a)](Vec3::Zero(), t);
   if (std::abs(force.dot(axis_)) > most_axial * force.norm())
     throw Error(
-        "{}.force: {:.2g} of the force goes along the axis ({:.3g}, {:.3g}, {:.3g}) of the cylinder, where a pin slides; give "
-        "that part as a 'force' or 'remote-load' on a shoulder.",
+        "{}.force: {:.2g} of the force acts along the axis ({:.3g}, {:.3g}, {:.3g}) of the cylinder, where "
+        "a pin slides; apply that part as a 'force' or 'remote-load' to a shoulder.",
         where_, std::abs(force.dot(axis_)) / force.norm(), axis_[0], axis_[1], axis_[2]);
   return force;
 }
@@ -80,7 +80,7 @@ BearingLoad::Push BearingLoad::find_push(const Vec3& force) const {
     spread = sum_of(mesh_->comm, spread);
     const Eigen::SelfAdjointEigenSolver<Tensor3> axes(spread);
     if (!(axes.eigenvalues()[1] > 1e-3 * area_ * curved))
-      throw Error("{}.force: no half of the cylinder faces the force ({:g}, {:g}, {:g}) N; turn its sign?",
+      throw Error("{}.force: no half of the cylinder faces the force ({:g}, {:g}, {:g}) N; reverse its sign?",
                   where_, force[0], force[1], force[2]);
     Vec3 better = Vec3::Zero();  // across the axis, along which there is nothing
     for (int k = 1; k < 3; ++k) {

@@ -25,7 +25,7 @@ void check_names(const Mesh& mesh, const SolidParameters& parameters) {
   const std::vector<std::string> patches = patch_names(mesh);
   for (const auto& [name, boundary] : parameters.boundaries)
     if (std::ranges::find(patches, name) == patches.end())
-      throw Error("boundaries.{}: mesh '{}' has no patch of this name. {} The patches are {}.", name,
+      throw Error("boundaries.{}: mesh '{}' has no patch with this name. {} The patches are {}.", name,
                   parameters.mesh, did_you_mean(name, patches, "patches"), join(patches));
   for (const std::string& name : patches)
     if (!parameters.boundaries.contains(name))
@@ -49,7 +49,7 @@ SolidBoundaries::SolidBoundaries(const Mesh& mesh, const SolidParameters& parame
     for (const SolidPart& part : boundary.parts) holds_.back() |= !is_load(part.type);
     if (boundary.type == Type::interface_) {
       if (!boundary.parts.empty())
-        throw Error("boundaries.{}: an interface cannot have parts; make them patches of their own.",
+        throw Error("boundaries.{}: an interface cannot have parts; make them separate patches.",
                     patch.name);
       interface_patches_.push_back(patch.name);
     }
@@ -109,7 +109,7 @@ void SolidBoundaries::choose_faces(const Patch& patch, const SolidBoundary& boun
   for (std::size_t i = 0; i < tests.size(); ++i)
     if (!any(mesh_->comm, !conditions_[own + 1 + i].faces.empty()))
       throw Error(
-          "{}.parts[{}].where: '{}' selects no face of patch '{}'. It is tested at the centres of the faces; "
+          "{}.parts[{}].where: '{}' selects no face of patch '{}'. It is evaluated at the face centres; "
           "widen it, for example to abs(z - 0.5) < half the height of a face.",
           where, i, tests[i].text(), patch.name);
   make_load(conditions_[own], boundary, where);

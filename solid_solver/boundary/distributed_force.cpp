@@ -50,7 +50,7 @@ DistributedForce::DistributedForce(const Mesh& mesh, std::vector<Index> faces, c
     first += size * mesh.reference.face_centre[f];
   }
   area_ = sum(mesh.comm, area);
-  if (!(area_ > 0)) throw Error("{}: the faces that take this load have no area.", where);
+  if (!(area_ > 0)) throw Error("{}: the faces with this load have zero area.", where);
   centre_ = sum_of(mesh.comm, first) / area_;
   if (!has_point) return;
   Tensor3 inertia = Tensor3::Zero();
@@ -102,8 +102,9 @@ void DistributedForce::check_taken(const Vec3& moment, const Vec3& force) const 
   if ((lost_ * moment).norm() <= rounding * scale) return;
   const Vec3 axis = (lost_ * moment).normalized();
   throw Error(
-      "{}: the centres of its faces lie on one line through ({:g}, {:g}, {:g}), so that they take no moment about ({:.3g}, "
-      "{:.3g}, {:.3g}), where the load has {:g} N m. Refine the patch, choose more faces or take 'type: force'.",
+      "{}: the face centres lie on one line through ({:g}, {:g}, {:g}), so they cannot transmit a moment "
+      "about ({:.3g}, {:.3g}, {:.3g}), but the load has {:g} N m. Refine the patch, select more faces or "
+      "use 'type: force'.",
       where_, centre_[0], centre_[1], centre_[2], axis[0], axis[1], axis[2], (lost_ * moment).norm());
 }
 

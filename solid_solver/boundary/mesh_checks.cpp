@@ -42,16 +42,14 @@ std::optional<Found> find_any(const Mesh& mesh, const std::vector<Index>& points
 void check_mesh(const Mesh& mesh, const VertexInterpolation& vertices) {
   if (const auto trouble = find_inverted(mesh, mesh.reference))
     throw Error(
-        "The mesh has an inverted cell: cell {} at {} has the volume {:.3g} m^3. Its faces cross one "
-        "another; "
-        "mesh that place anew, coarser or with another element size.",
+        "The mesh has an inverted cell: cell {} at {} has the volume {:.3g} m^3. Its faces intersect; "
+        "remesh there, coarser or with another element size.",
         trouble->cell_id, text_of(trouble->centre, mesh.dim), trouble->volume);
   // Where a cell does not lie behind its face the operator is not elliptic.
   if (const auto fold = find_fold(mesh, mesh.reference))
     throw Error(
-        "The mesh is folded at {}: cell {} (counted from 0 in the file) does not lie behind its face there. "
-        "A cell is "
-        "inverted or bent over; mesh that place anew.",
+        "The mesh is folded at {}: cell {} (counted from 0 in the file) is not behind its face there. A "
+        "cell is inverted or bent over; remesh there.",
         text_of(fold->centre, mesh.dim), fold->cell_id);
   if (const auto bent = find_any(mesh, vertices.bent_points()))
     throw Error(
@@ -60,9 +58,8 @@ void check_mesh(const Mesh& mesh, const VertexInterpolation& vertices) {
         text_of(bent->first, mesh.dim));
   if (const auto inexact = find_any(mesh, vertices.inexact_points()); inexact && comm_rank(mesh.comm) == 0)
     log::warn(
-        "at {} vertices, the first at {}, the cells and faces around do not span space: values there are "
-        "means of "
-        "what is around, exact for constant fields only",
+        "at {} vertices, the first at {}, the adjacent cells and faces do not span all directions: values "
+        "there are plain means of the neighbours, exact for constant fields only",
         inexact->count, text_of(inexact->first, mesh.dim));
 }
 

@@ -63,13 +63,13 @@ std::vector<Index> faces_of_point_load(const Mesh& mesh, const PointLoad& load,
   if (load.radius == 0) {
     if (nearest.distance > widths * nearest.width)
       throw Error(
-          "{}.point: {} m lies beside the surface: the nearest face is {:g} m away and {:.2g} m wide. Check the unit, or give "
-          "a 'radius'.",
+          "{}.point: {} m is off the surface: the nearest face is {:g} m away and {:.2g} m wide. Check the "
+          "unit, or give a 'radius'.",
           where, place_of(load.point, mesh.dim), nearest.distance, nearest.width);
     if (nearest.is_open == 0)
       throw Error(
-          "{}.point: the face nearest to {} m belongs to patch '{}' and is held there, so that a force on it has no effect. "
-          "Move the point, or give a 'radius' that reaches faces without support.",
+          "{}.point: the face nearest to {} m belongs to patch '{}' and is held there, so a force on it has "
+          "no effect. Move the point, or give a 'radius' that reaches unsupported faces.",
           where, place_of(load.point, mesh.dim), mesh.patches[std::size_t(nearest.patch)].name);
     if (nearest.face >= 0) faces.push_back(nearest.face);
     return faces;
@@ -80,7 +80,8 @@ std::vector<Index> faces_of_point_load(const Mesh& mesh, const PointLoad& load,
       faces.push_back(f);
   if (!any(mesh.comm, !faces.empty()))
     throw Error(
-        "{}.radius: no face without support has its centre within {:g} m of {} m; the nearest face is {:g} m away{}.",
+        "{}.radius: no unsupported face has its centre within {:g} m of {} m; the nearest face is {:g} m "
+        "away{}.",
         where, load.radius, place_of(load.point, mesh.dim), nearest.distance,
         nearest.is_open ? "" : " and is held");
   return faces;

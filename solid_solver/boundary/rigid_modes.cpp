@@ -227,15 +227,14 @@ void check_supported(const Mesh& mesh, const ElasticOperator& elastic) {
     if (body.modes.empty()) continue;
     if (bodies.size() > 1)
       trouble += fmt::format(
-          "{}the body around ({:.4g}, {:.4g}, {:.4g}), one of {} that do not hang together, is free in ",
+          "{}the body around ({:.4g}, {:.4g}, {:.4g}), one of {} unconnected ones, is free in ",
           trouble.empty() ? "" : "; ", body.centre[0], body.centre[1], body.centre[2], bodies.size());
     for (std::size_t i = 0; i < body.modes.size(); ++i) trouble += (i ? ", " : "") + body.modes[i];
   }
   if (trouble.empty()) return;
   throw Error(
-      "boundaries: a static analysis needs supports that hold the solid in place; these leave it free: {}. "
-      "Hold it "
-      "by 'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use "
+      "boundaries: the supports of this static analysis leave rigid motions free: {}. Prevent them by "
+      "'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use "
       "'analysis: dynamic'.",
       trouble);
 }

@@ -71,12 +71,12 @@ EffectChoice inertia(const SolidParameters& p, const MeshFacts& mesh, const Choi
   const bool has_interface = std::ranges::any_of(
       p.boundaries, [](const auto& b) { return b.second.type == SolidCondition::Type::interface_; });
   if (scene.coupled && has_interface && takes_forces)
-    return choose(true, "the forces of its partner change in time");
-  if (!p.initial_velocity.empty()) return choose(true, "'initial-velocity' sets it moving");
+    return choose(true, "the partner's forces vary in time");
+  if (!p.initial_velocity.empty()) return choose(true, "'initial-velocity' is given");
   if (p.damping) return choose(true, "'damping' is given");
   if (p.time_scheme.type != TimeScheme::trapezoidal) return choose(true, "'time-scheme' is given");
   const double change = time_of_change(loads_of(p), 0.5 * mesh.size, scene.end_time);
-  if (std::isinf(change)) return choose(false, "no load changes in time");
+  if (std::isinf(change)) return choose(false, "no load varies in time");
   const double period = lowest_period(p, mesh);
   return choose(
       change < slow * period,
@@ -89,7 +89,7 @@ std::vector<EffectChoice> choose_effects(const SolidParameters& p, const MeshFac
                                          const ChoiceScene& scene) {
   std::vector<EffectChoice> choices{
       {"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
-       mesh.dim == 2 ? "the mesh has cells in the plane only" : "the mesh has volumes", false}};
+       mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false}};
   if (p.analysis != SolidParameters::Analysis::thermal) choices.push_back(inertia(p, mesh, scene));
   return choices;
 }

@@ -38,7 +38,7 @@ V verdict(double number, double threshold, std::string sentence, std::string rec
 V judge_inertia(const P& p, const E& e) {
   if (!is_elastic(p) || has_finite_strain(p)) return {};  // whose static steps are load steps: t is no time
   return verdict(e.inertia_over_load, 0.01,
-                 fmt::format("it would have reached {:.2g} of the load", e.inertia_over_load),
+                 fmt::format("inertia / load = {:.2g}", e.inertia_over_load),
                  "use 'analysis: dynamic'");
 }
 
@@ -53,30 +53,30 @@ V judge_geometry(const P& p, const E& e) {
                                               e.largest_strain, 57.29578 * e.largest_rotation);
   const std::string change = e.large_strain.empty() ? "" : "; " + e.large_strain;
   return verdict(g, 0.02,
-                 fmt::format("the largest displacement gradient seen is {:.2g}{}{}", g, parts, change),
-                 g < 0.1 ? "errors of some per cent are to be expected"
-                         : "it would matter: the result is that of the linear theory, not of the body; "
-                           "'kinematics: finite-strain' takes it into account");
+                 fmt::format("max |grad u| = {:.2g}{}{}", g, parts, change),
+                 g < 0.1 ? "expect errors of a few per cent"
+                         : "the result holds for linear theory, not for the body: use 'kinematics: "
+                           "finite-strain'");
 }
 
 V judge_yield(const P& p, const E& e) {
   if (!is_elastic(p)) return {};
   return verdict(
       e.share_of_yield, 1,
-      fmt::format("the largest equivalent stress is {:.2g} of the yield strength", e.share_of_yield),
-      "the body would yield there: the result is that of an elastic body, this program knows no other");
+      fmt::format("max equivalent stress / yield strength = {:.2g}", e.share_of_yield),
+      "the body would yield: the result is that of an elastic body; use a program with plasticity");
 }
 
 V judge_incompressibility(const P& p, const E&) {
   if (!is_elastic(p) || has_volume_strain_of_cells(p)) return {};
   const double nu = std::max(0.0, largest_poissons_ratio(p));
   return verdict(
-      nu, 0.45, fmt::format("the largest Poisson's ratio is {:g}", nu),
+      nu, 0.45, fmt::format("max Poisson's ratio = {:g}", nu),
       has_orthotropic(p)
-          ? "coarse meshes may be too stiff there, and an orthotropic material has no volume strain of cells: compare two "
-            "meshes"
-          : "coarse meshes are too stiff or worse there: 'solution-method: {face-gradient: symmetric}' takes one "
-            "volume strain a cell");
+          ? "coarse meshes may be too stiff there, and an orthotropic material has no volume strain per "
+            "cell: compare two meshes"
+          : "coarse meshes are too stiff or worse there: use 'solution-method: {face-gradient: symmetric}' "
+            "with one volume strain per cell");
 }
 
 // The strain of a free body with a coefficient of 1e-5 1/K beside the largest gradient of the displacement.
@@ -86,16 +86,16 @@ V judge_thermal_strain(const P& p, const E& e) {
   return verdict(
       strain / std::max(e.largest_gradient, 1e-300), 0.02,
       fmt::format(
-          "a temperature range of {:.3g} K would strain a free body with 1e-5 1/K by {:.2g}, the largest "
-          "displacement gradient being {:.2g}",
+          "a temperature range of {:.3g} K would strain a free body with 1e-5 1/K by {:.2g}; max |grad u| = "
+          "{:.2g}",
           e.temperature_range, strain, e.largest_gradient),
-      "'thermal-expansion' takes it into account");
+      "use 'thermal-expansion'");
 }
 
 V judge_thermoelastic(const P&, const E& e) {
   return verdict(e.coupling_number, 0.05,
-                 fmt::format("heat of deformation would stiffen the solid by {:.1e}", e.coupling_number),
-                 "'thermoelastic-coupling: true' takes it into account");
+                 fmt::format("heat of deformation / stiffness = {:.1e}", e.coupling_number),
+                 "use 'thermoelastic-coupling: true'");
 }
 
 const std::array cards{
@@ -109,7 +109,8 @@ const std::array cards{
         "geometric non-linearity",
         "`kinematics: finite-strain`",
         [](const P& p) { return when(has_finite_strain(p), "kinematics: finite-strain"); },
-        {"F and the derivatives of the law a face, Newton's method; `type: segregated` takes the thesis's way in place of it, at 9 to 17 times the solve's time",
+        {"per face F and the derivatives of the material law, Newton's method; `type: segregated` uses the "
+         "updated-Lagrangian method of the thesis instead, at 9 to 17 times the solution time",
          0, 33},
         "largest displacement gradient, 0.02",
         judge_geometry},
@@ -122,15 +123,16 @@ const std::array cards{
     SolidCard{
         "near incompressibility",
         "`solution-method: {face-gradient: symmetric, volume-strain: cells}` (or `shared`)",
-        [](const P& p) { return when(has_volume_strain_of_cells(p), "one volume strain a cell"); },
-        {"a mean stress a cell, a pass over the faces; from nu = 0.49 up without factors also an unknown a cell",
+        [](const P& p) { return when(has_volume_strain_of_cells(p), "one volume strain per cell"); },
+        {"a mean stress per cell, a pass over the faces; from nu = 0.49, without factors, also an unknown "
+         "per cell",
          630, 0.1},
         "largest Poisson's ratio, 0.45",
         judge_incompressibility},
     SolidCard{"orthotropic elasticity",
               "`material.orthotropic`",
               [](const P& p) { return when(is_elastic(p) && has_orthotropic(p), "orthotropic"); },
-              {"21 constants a face (6 in the plane) in place of 2", 116, 0}},
+              {"21 constants per face (6 in two dimensions) instead of 2", 116, 0}},
     SolidCard{"gravity",
               "`gravity`",
               [](const P& p) { return when(!p.gravity.empty(), "gravity"); },
@@ -143,7 +145,7 @@ const std::array cards{
               "`damping`",
               [](const P& p) { return when(p.damping.has_value(), "damping"); },
               {},
-              "said of every dynamic run without it"},
+              "reported for every dynamic run without it"},
     SolidCard{"conduction of heat",
               "`heat`",
               [](const P& p) { return when(p.heat.has_value(), "heat"); },
@@ -157,13 +159,13 @@ const std::array cards{
     SolidCard{"thermoelastic coupling",
               "`thermoelastic-coupling: true`",
               [](const P& p) { return when(p.thermoelastic_coupling, "thermoelastic-coupling"); },
-              {"a strain rate a cell", 0, 0},
+              {"a strain rate per cell", 0, 0},
               "stiffening by heat of deformation, 0.05",
               judge_thermoelastic},
     SolidCard{"properties of temperature",
               "`youngs-modulus-table`, `poissons-ratio-table`",
               [](const P& p) { return when(varies(p), "a table of the material"); },
-              {"Lame's constants a cell; the matrix is made anew when they change", 0, 0}},
+              {"Lame's constants per cell; the matrix is reassembled when they change", 0, 0}},
     SolidCard{"third dimension", "`dimension: 3`",
               [](const P& p) { return when(p.dimension == 3, "dimension: 3"); }},
     SolidCard{"energies",
@@ -174,8 +176,8 @@ const std::array cards{
         "free vibrations",
         "`output.modes` above 0",
         [](const P& p) { return when(p.output.modes > 0, "output.modes"); },
-        {"modes.csv and modes.h5, found once at the start: factors of the shifted stiffness with the vertices as unknowns, and some "
-         "forty solutions with them",
+        {"modes.csv and modes.h5, computed once at the start: factors of the shifted stiffness with the "
+         "vertices as unknowns, and about forty solutions with them",
          0, 0}},
 };
 

@@ -215,7 +215,7 @@ void SolidErrorEstimate::restore(std::span<const double> state) {
     steps_.restore(state);
     return;
   }
-  SavedNumbers saved(state, "errors of steps");
+  SavedNumbers saved(state, "step errors");
   linear_.restore(saved.next(saved.count_of(1)));
   const std::span<const double> drift = saved.next(PhaseDrift::n_values);
   steps_.restore(saved.rest());

@@ -34,20 +34,20 @@ void SolidJudge::look() {
          .number = strain.mismatch(),
          .limit = StrainAudit::most_mismatch,
          .sentence =
-             fmt::format("t = {:g} s: the displacement is not to be trusted: {}", state.time, strain.text()),
+             fmt::format("t = {:g} s: error indicator: {}: displacement not reliable", state.time, strain.text()),
          .advice =
-             "mesh finer, most of all across what bends; cells long in the direction of bending, few tetrahedra or "
-             "prisms across and nu near 0.5 are what does this"});
+             "refine the mesh, above all across the bending direction; typical causes: cells elongated "
+             "along it, few tetrahedra or prisms across, nu near 0.5"});
   }
   if (!body_.is_dynamic() || !body_.effects().empty() || !body_.prescribed().is_zero()) return;
   judge_energy(
       std::max(0.0, std::min(strain.strain_energy, strain.stress_work)),
       body_.kernel().is_symmetric()
-          ? "a shorter step or 'time-scheme: {type: bathe}' stops it"
-          : "the operator of 'solution-method: {face-gradient: thesis}' and 'corrected' is not symmetric, so "
-            "that undamped motion grows on leaning, stretched or perturbed cells; 'face-gradient: symmetric' "
-            "has no such growth, 'time-scheme: {type: bathe}' or a little 'damping: {stiffness: ...}' takes "
-            "it out, 'output: {spectrum: true}' tells its rate on a coarse mesh of the same kind");
+          ? "a shorter step or 'time-scheme: {type: bathe}' prevents it"
+          : "the operator of 'solution-method: {face-gradient: thesis}' and 'corrected' is not symmetric, "
+            "so undamped motion grows on skewed, stretched or perturbed cells; use 'face-gradient: "
+            "symmetric', or damp it by 'time-scheme: {type: bathe}' or a little 'damping: {stiffness: "
+            "...}'; 'output: {spectrum: true}' computes its rate on a coarse mesh of the same kind");
 }
 
 StrainAudit SolidJudge::compared() const {
@@ -62,8 +62,8 @@ void SolidJudge::look_at_finite() {
   const SolidState& state = stepper_.state();
   const double strain = body_.finite()->energy(body_.unknowns_of(state.cell_u, state.face_u), state.known);
   judge_energy(strain,
-               "a time scheme that does not keep the energy of a law that is not linear; a shorter step, "
-               "'energy-momentum: true' or 'time-scheme: {type: bathe}' stops it");
+               "a time scheme that does not conserve the energy of a nonlinear law; a shorter step, "
+               "'energy-momentum: true' or 'time-scheme: {type: bathe}' prevents it");
 }
 
 /// Kinetic and `strain` energy [J] against what was brought in: a growth is told once, one that leaves nothing of the
@@ -77,7 +77,7 @@ void SolidJudge::judge_energy(double strain, const char* cure) {
   energy_audit_.scale = std::max(energy_audit_.scale, std::abs(energy_audit_.given));
   if (energy_audit_.is_hopeless())
     throw Error(
-        "t = {:g} s: {}: the motion has grown out of nothing and nothing of the answer is left. Cause: {}.",
+        "t = {:g} s: energy balance: {}: spurious growth has replaced the solution; {}.",
         state.time, energy_audit_.text(), cure);
   if (!energy_audit_.is_doubtful() || energy_audit_.severity() <= energy_told_) return;
   energy_told_ = energy_audit_.severity();
@@ -86,8 +86,8 @@ void SolidJudge::judge_energy(double strain, const char* cure) {
                 .severity = energy_told_,
                 .number = energy_audit_.created(),
                 .limit = energy_audit_.limit(),
-                .sentence = fmt::format("t = {:g} s: {}: the motion grows out of nothing. Cause: {}",
-                                        state.time, energy_audit_.text(), cure)});
+                .sentence = fmt::format("t = {:g} s: energy balance: {} (limit {:+.2g} %): spurious growth; {}", state.time,
+                                        energy_audit_.text(), 100 * energy_audit_.limit(), cure)});
 }
 
 void SolidJudge::see_gradient(std::span<const double> points) {
@@ -116,7 +116,7 @@ void SolidJudge::estimate_large_strain() {
     large_strain_ =
         couplet::estimate_large_strain(body_, stepper_.last_solve().unknowns, stepper_.trial().known);
   } catch (const SolveFailure& failure) {
-    log::warn("output.large-strain-estimate: it could not be found: {}", failure.what());
+    log::warn("output.large-strain-estimate: the estimate failed: {}", failure.what());
   }
 }
 
@@ -147,16 +147,14 @@ std::vector<std::string> SolidJudge::sentences() const {
   std::vector<std::string> sentences;
   if (audit_)
     sentences.push_back(fmt::format("error indicator: {}{}.", audit_->text(),
-                                    audit_->is_doubtful() ? "; NOT to be trusted" : ""));
+                                    audit_->is_doubtful() ? "; NOT reliable" : ""));
   if (large_strain_) sentences.push_back(large_strain_->text() + ".");
   if (energy_audit_.scale > 0) sentences.push_back(fmt::format("energy balance: {}.", energy_audit_.text()));
   if (body_.is_dynamic() && !body_.parameters().damping && !body_.kernel().is_symmetric())
     sentences.push_back(
-        "structural damping left out: free vibration does not decay, and modes that the time step resolves "
-        "may grow; a "
-        "little 'damping: {stiffness: ...}' or 'time-scheme: {type: bathe}' would stop that, 'output: "
-        "{spectrum: true}' "
-        "tells the rate on a coarse mesh of the same kind.");
+        "structural damping neglected: free vibration does not decay, and modes resolved by the time step "
+        "may grow; a little 'damping: {stiffness: ...}' or 'time-scheme: {type: bathe}' prevents that; "
+        "'output: {spectrum: true}' computes the rate on a coarse mesh of the same kind.");
   return sentences;
 }
 

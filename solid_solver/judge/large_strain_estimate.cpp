@@ -128,8 +128,8 @@ LargeStrainEstimate summed(const Mesh& mesh, const Values& u1, const Values& u2,
 
 std::string LargeStrainEstimate::text() const {
   if (!is_known())
-    return "large strain: the expansion about the linear solution knows no equilibrium under the whole load; the "
-           "body would snap or buckle, or the load is far too large for linear theory";
+    return "large strain: the expansion about the linear solution has no equilibrium under the full load; "
+           "the body would snap or buckle, or the load is far too large for linear theory";
   return fmt::format("large strain would change the displacement by about {:.3g} %", 100 * change);
 }
 

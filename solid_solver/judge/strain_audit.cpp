@@ -56,16 +56,16 @@ std::string StrainAudit::text() const {
         fmt::format("; the strains of the two face gradients differ by {:.2g} %", 100 * gradient_difference);
   if (inner_variation > most_variation)
     text += fmt::format(
-        "; the strains within its quadrilaterals vary so much that they are {:.2g} % too stiff (more cells across, or 'volume-strain: "
-        "shared')",
+        "; the strains vary so much within its quadrilaterals that they are {:.2g} % too stiff (use more "
+        "cells across, or 'volume-strain: shared')",
         100 * inner_variation);
   return text;
 }
 
 std::string EnergyAudit::text() const {
   return fmt::format(
-      "the solid holds {:.6g} J of kinetic and strain energy where loads and initial motion brought in "
-      "{:.6g} J ({:+.2g} %)",
+      "the solid has {:.6g} J of kinetic and strain energy; loads and initial motion supplied {:.6g} J "
+      "({:+.2g} %)",
       held, given, 100 * created());
 }
 

@@ -60,8 +60,8 @@ FiniteStrain::FiniteStrain(const Mesh& mesh, const ElasticOperator& rows, const 
     all.push_back(laws_.back().get());
     if (rows.volume_by_cells() && !laws_.back()->has_bulk())
       throw Error(
-          "solution-method.volume-strain: cells: the law '{}' has no part of the volume alone that could be one a "
-          "cell; take 'volume-strain: faces' or another law.",
+          "solution-method.volume-strain: cells: the law '{}' has no purely volumetric part to evaluate per "
+          "cell; use 'volume-strain: faces' or another law.",
           law.name);
   }
   kernel_ = make_finite_kernel(mesh, rows, all);
@@ -218,7 +218,7 @@ SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
   NewtonIterate now;
   now.residual = residual(load, u, now.ratio);
   if (!std::isfinite(now.residual))
-    throw SolveFailure("The first guess of the step turns a cell inside out. {}", where_worst());
+    throw SolveFailure("The initial guess of the step inverts a cell. {}", where_worst());
   const double scale = scale_of(load, u, now.residual);
   // Its difference quotients divide rounding by the change over the step.
   const auto floor = [&] {
@@ -234,8 +234,8 @@ SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
     if (std::max(now.residual, whole_) <= std::max(tolerance_ * scale, floor())) break;
     if (statistics.iterations == most_iterations)
       throw SolveFailure(
-          "Newton's method did not find the equilibrium: after {} iterations the residual is {:.2g} of the load "
-          "({:.0e} wanted). {}",
+          "Newton's method did not converge: after {} iterations the residual is {:.2g} of the load "
+          "(tolerance {:.0e}). {}",
           statistics.iterations, std::max(now.residual, whole_) / scale, tolerance_, where_worst());
     const double ratio = statistics.iterations == 0 ? 1 : now.residual / before;
     const double wanted = 0.5 * tolerance_ * scale / now.residual;
@@ -252,8 +252,8 @@ SolveStatistics FiniteStrain::iterate(const Load& load, std::span<double> u) {
     if (!search(load, u, now,
                 (statistics.iterations == 1 ? first : growth) * std::max(before, small * scale)))
       throw SolveFailure(
-          "Newton's method found no way on: steps down to {:.3f} of its length turn a cell inside out or raise the "
-          "residual more than {:g}-fold. {}",
+          "Newton's line search failed: even {:.3f} of the step inverts a cell or increases the residual "
+          "more than {:g}-fold. {}",
           now.length, growth, where_worst());
     if (correction <= rounding * size && now.residual < small * scale) {
       iterates_.push_back(now);
@@ -276,8 +276,8 @@ double FiniteStrain::judge_rounding(const Load& load, double scale, double left)
   if (loads == 0) return 0;
   if (left > drowned * loads && !is_drowned_told_)
     log::warn(
-        "The load ({:.2g} N) is hardly larger than the rounding of the inner forces of a body this stiff that was "
-        "moved this far ({:.2g} N): what it does to the body is not resolved.",
+        "The load ({:.2g} N) is close to the rounding error of the internal forces of this stiff, displaced "
+        "body ({:.2g} N): its effect is not resolved.",
         loads, left);
   is_drowned_told_ = is_drowned_told_ || left > drowned * loads;
   return left / loads;

@@ -22,7 +22,7 @@ const char* name_of(ElasticCondition condition) {
     case ElasticCondition::zero_gradient:
       return "'zero-normal-gradient'";
     case ElasticCondition::bonded:
-      return "a bond between two materials";
+      return "an interface between two materials";
     default:
       return nullptr;
   }
@@ -42,8 +42,9 @@ UpdatedLagrangian::UpdatedLagrangian(const Mesh& mesh, const ElasticOperator& ro
   unknown_condition = max(mesh.comm, unknown_condition);
   if (unknown_condition >= 0)
     throw Error(
-        "solution-method.type: segregated: at finite strain it knows 'fixed-displacement' of all components, 'symmetry', "
-        "'traction', 'pressure', 'free' and 'interface', not {}; take 'type: newton-krylov' (or 'auto').",
+        "solution-method.type: segregated: at finite strain it supports 'fixed-displacement' of all "
+        "components, 'symmetry', 'traction', 'pressure', 'free' and 'interface', not {}; use 'type: "
+        "newton-krylov' (or 'auto').",
         name_of(static_cast<ElasticCondition>(unknown_condition)));
   const SolidMaterial material = materials_of(parameters).front();
   law_ = laws::of(material.law)->make(lame_constants(parameters, material), material.law_coefficients);
@@ -179,7 +180,7 @@ SolveStatistics UpdatedLagrangian::solve(const LargeStrainLoad& load, std::span<
   accelerator_.restart();
   double size = residual(load, u, r);
   if (!std::isfinite(size))
-    throw SolveFailure("The first guess of the step turns a cell inside out. {}", where_worst());
+    throw SolveFailure("The initial guess of the step inverts a cell. {}", where_worst());
   // In motion b holds the inertia of the place itself, far larger than what accelerates the body.
   std::vector<double> inner(u.size(), 0);
   if (load.mass_factor > 0) add_forces(inner);
@@ -188,15 +189,16 @@ SolveStatistics UpdatedLagrangian::solve(const LargeStrainLoad& load, std::span<
   while (size > std::max(method_.relative_tolerance * scale, noise_)) {
     if (statistics.iterations == method_.max_iterations)
       throw SolveFailure(
-          "The segregated method did not find the equilibrium: {} outer iterations ('solution-method.max-iterations'), "
-          "residual {:.2g} of the load ({:.0e} wanted). {} Shorter load steps help; 'type: newton-krylov' needs far fewer.",
+          "The segregated method did not converge: {} outer iterations ('solution-method.max-iterations'), "
+          "residual {:.2g} of the load (tolerance {:.0e}). {} Use shorter load steps, or 'type: "
+          "newton-krylov', which needs far fewer.",
           statistics.iterations, size / scale, method_.relative_tolerance, where_worst());
     ++statistics.iterations;
     statistics.inner_iterations += systems.find_step(r, step);
     accelerator_.advance(u, step);
     size = residual(load, u, r);
     if (!std::isfinite(size))
-      throw SolveFailure("The segregated method turned a cell inside out in iteration {}. {}",
+      throw SolveFailure("The segregated method inverted a cell in iteration {}. {}",
                          statistics.iterations, where_worst());
   }
   statistics.residual = scale > 0 ? size / scale : 0;

@@ -11,7 +11,7 @@ namespace couplet {
 namespace {
 
 std::string problem_of_numbers(const std::vector<double>& values, bool positive, const char* what) {
-  if (values.size() != 3) return fmt::format("{} numbers are given where {} are wanted", values.size(), what);
+  if (values.size() != 3) return fmt::format("{} numbers are given, but {} are needed", values.size(), what);
   if (positive && !std::ranges::all_of(values, [](double v) { return v > 0; }))
     return "all three must be positive";
   return "";
@@ -23,8 +23,8 @@ std::string problem_of_constants(const Orthotropic& m) {
     return "";  // said already
   return is_positive(matrix_of(m))
              ? ""
-             : "with these moduli the strain energy would not be positive: |nu_ij| must be below sqrt(E_i / E_j), and "
-               "1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 positive (nu_ji = nu_ij E_j / E_i)";
+             : "these moduli violate positive strain energy: |nu_ij| must be below sqrt(E_i / E_j), and 1 - "
+               "nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 positive (nu_ji = nu_ij E_j / E_i)";
 }
 
 std::string problem_of_axis(const std::vector<config::ExpressionText>& axis) {
@@ -38,18 +38,19 @@ void declare(config::Section& s, Orthotropic& m) {
   s.check([&m] { return problem_of_numbers(m.youngs_moduli, true, "three (E1, E2, E3)"); }, "youngs-moduli");
   s.value("poissons-ratios", m.poissons_ratios)
       .required()
-      .doc("nu12, nu23, nu13; nu12: contraction along 2 for a pull along 1, nu21 = nu12 E2 / E1");
+      .doc("nu12, nu23, nu13; nu12: contraction along 2 under tension along 1, nu21 = nu12 E2 / E1");
   s.check([&m] { return problem_of_numbers(m.poissons_ratios, false, "three (nu12, nu23, nu13)"); },
           "poissons-ratios");
   s.value("shear-moduli", m.shear_moduli).unit("Pa").plausible(100, 2e12).required().doc("G12, G23, G13");
   s.check([&m] { return problem_of_numbers(m.shear_moduli, true, "three (G12, G23, G13)"); }, "shear-moduli");
   s.check([&m] { return problem_of_constants(m); }, "poissons-ratios");
   s.value("first-axis", m.first_axis)
-      .doc("direction of axis 1, one expression of x, y, z a component, any length; absent: x");
+      .doc("direction of axis 1, one expression of x, y, z per component, any length; absent: x");
   s.check([&m] { return problem_of_axis(m.first_axis); }, "first-axis");
   s.value("second-axis", m.second_axis)
       .doc(
-          "axis 2, of which counts what lies across axis 1; absent: y; in the plane it follows from the first");
+          "axis 2, of which only the part normal to axis 1 counts; absent: y; in two dimensions it follows "
+          "from axis 1");
   s.check([&m] { return problem_of_axis(m.second_axis); }, "second-axis");
 }
 
@@ -66,8 +67,8 @@ MaterialAxes::MaterialAxes(const Orthotropic& m, int dimension) : dimension_(dim
     first_ = make_expressions(m.first_axis, dimension, "material.orthotropic.first-axis");
   if (!m.second_axis.empty() && dimension == 2)
     throw Error(
-        "material.orthotropic.second-axis: in the plane the second axis follows from the first (a quarter turn); remove "
-        "it.");
+        "material.orthotropic.second-axis: in two dimensions the second axis follows from the first "
+        "(rotated by 90 degrees); remove it.");
   if (!m.second_axis.empty())
     second_ = make_expressions(m.second_axis, dimension, "material.orthotropic.second-axis");
   for (const auto* axis : {&first_, &second_})
@@ -85,8 +86,8 @@ Tensor3 MaterialAxes::at(const Vec3& place) const {
   if (length > 0) second -= first * (first.dot(second) / (length * length));
   if (!(length > 0) || !(second.norm() > 1e-6 * size))
     throw Error(
-        "material.orthotropic: at ({:.4g}, {:.4g}, {:.4g}) m 'first-axis' and 'second-axis' are zero or along one line; "
-        "they must span a plane there.",
+        "material.orthotropic: at ({:.4g}, {:.4g}, {:.4g}) m 'first-axis' and 'second-axis' are zero or "
+        "parallel; they must span a plane.",
         place[0], place[1], place[2]);
   Tensor3 axes;
   axes.col(0) = first / length;

@@ -77,10 +77,11 @@ SolveStatistics BlockCoupled::solve(std::span<const double> b, std::span<double>
     return accelerator_ ? solve_corrected(b, u) : solver_.solve(b, u);
   } catch (const SolveFailure& e) {
     // Never the method that has just failed.
-    throw SolveFailure("{} The method is {}. If the loads are sound, 'solution-method: {}' is another way{}.",
+    throw SolveFailure("{} The method is {}. If the loads are correct, try 'solution-method: {}'{}.",
                        e.what(), name(),
                        linear_ == LinearMethod::direct ? "{type: newton-krylov}" : "{linear-solver: direct}",
-                       linear_ == LinearMethod::direct ? "" : ", which needs most memory and bears most");
+                       linear_ == LinearMethod::direct ? "" : ", the most robust option, at the highest "
+                                                              "memory cost");
   }
 }
 
@@ -96,8 +97,7 @@ SolveStatistics BlockCoupled::solve_corrected(std::span<const double> b, std::sp
     if (statistics.iterations == max_iterations_ || !std::isfinite(statistics.residual))
       throw SolveFailure(
           "The deferred correction of the block-coupled method did not converge: residual {:.3e} of the "
-          "right-hand "
-          "side after {} corrections, {:.3e} wanted.",
+          "right-hand side after {} corrections (tolerance {:.3e}).",
           statistics.residual / size, statistics.iterations, tolerance_);
     ++statistics.iterations;
     std::ranges::fill(step_, 0.0);

@@ -149,8 +149,8 @@ void check_symmetry(const SolidParameters& p, const Mesh& mesh, const ElasticOpe
   }
   if (max(mesh.comm, worst) > mirror_tolerance)
     throw Error(
-        "boundaries: a 'symmetry' plane stands oblique to the axes of an orthotropic material, so that one half is not the "
-        "mirror image of the other; use 'frictionless', or turn 'material.orthotropic.first-axis'.");
+        "boundaries: a 'symmetry' plane is oblique to the axes of an orthotropic material, so one half is "
+        "not the mirror image of the other; use 'frictionless', or align 'material.orthotropic.first-axis'.");
 }
 
 }  // namespace couplet

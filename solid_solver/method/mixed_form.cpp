@@ -41,7 +41,7 @@ MixedForm::MixedForm(const SolidProblem& problem, const MethodParameters& parame
       "displacement and mean stress", problem.mesh.comm, n_u_ + n_p_,
       [this](std::span<const double> x, std::span<double> y) { apply(x, y); },
       [this](std::span<const double> r, std::span<double> z) { precondition(r, z); });
-  name_ = "newton-krylov (mixed form: mean stresses of cells beside the displacements)";
+  name_ = "newton-krylov (mixed form: mean stresses of the cells as additional unknowns)";
 }
 
 /// mu / h, by which both kinds of unknowns and rows are of one size; larger where the tolerance leaves so much of the
@@ -109,8 +109,8 @@ SolveStatistics MixedForm::solve(std::span<const double> b, std::span<double> u)
     statistics = krylov_->solve(right, x, options_);
   } catch (const SolveFailure& e) {
     throw SolveFailure(
-        "{} Is the solid held everywhere, is nu below 0.5, are the cells sound? If they are, 'solution-method: "
-        "{{preconditioner: factors}}' is another way, which needs most memory and bears most.",
+        "{} Is the solid held everywhere, is nu below 0.5, are the cells well shaped? If so, try "
+        "'solution-method: {{preconditioner: factors}}', the most robust option, at the highest memory cost.",
         e.what());
   }
   if (problem_.is_static()) krylov_->forget_vectors();  // what is written next needs room
@@ -120,8 +120,8 @@ SolveStatistics MixedForm::solve(std::span<const double> b, std::span<double> u)
   const double size = norm(problem_.mesh.comm, b), forces = norm(problem_.mesh.comm, left);
   if (!(forces <= too_much * forces_left_ * size))
     throw SolveFailure(
-        "The mixed form left forces of {:.1e} of the load in the equilibrium of the displacements alone "
-        "({:.0e} wanted): nu is too close to 0.5 for double precision, or the cells are not sound.",
+        "The mixed form leaves a residual of {:.1e} of the load in the momentum balance alone (tolerance "
+        "{:.0e}): nu is too close to 0.5 for double precision, or the cells are badly shaped.",
         forces / size, forces_left_);
   statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return statistics;

@@ -207,10 +207,10 @@ SolveStatistics NewtonKrylov::solve(std::span<const double> b, std::span<double>
                         : multigrid_             ? "{face-gradient: symmetric, preconditioner: factors}"
                                                  : "{face-gradient: corrected}";
     throw SolveFailure(
-        "{} Is the solid held everywhere, is nu below 0.5, are the cells sound? If the loads and supports "
-        "are, 'solution-method: {}' is another way{}.",
+        "{} Is the solid held everywhere, is nu below 0.5, are the cells well shaped? If loads and supports "
+        "are correct, try 'solution-method: {}'{}.",
         e.what(), other,
-        !problem_.is_symmetric() || multigrid_ ? ", which needs most memory and bears most" : "");
+        !problem_.is_symmetric() || multigrid_ ? ", the most robust option, at the highest memory cost" : "");
   }
 }
 

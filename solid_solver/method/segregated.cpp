@@ -34,10 +34,8 @@ SolveStatistics Segregated::solve(std::span<const double> b, std::span<double> u
     if (statistics.iterations == max_iterations_ || !std::isfinite(statistics.residual))
       throw SolveFailure(
           "The segregated method did not converge: {} outer iterations, residual {:.3e} of the right-hand "
-          "side, {:.3e} "
-          "wanted. Bending and large nu couple the components too much for it: 'solution-method: {{type: "
-          "newton-krylov}}' "
-          "needs no outer iterations.",
+          "side (tolerance {:.3e}). Bending or large nu couple the components too strongly for it; use "
+          "'solution-method: {{type: newton-krylov}}', which needs no outer iterations.",
           statistics.iterations, statistics.residual / wanted * tolerance_, tolerance_);
     ++statistics.iterations;
     statistics.inner_iterations += systems_.find_step(residual_, step_);

@@ -49,11 +49,11 @@ bool wants_mixed_form(const SolidProblem& problem) {
 void check_mixed_form(const SolidProblem& problem, const MethodParameters& parameters) {
   if (parameters.preconditioner != Preconditioner::mixed) return;
   if (!problem.is_symmetric())
-    throw Error("solution-method: 'preconditioner: mixed' goes with 'face-gradient: symmetric'.");
+    throw Error("solution-method: 'preconditioner: mixed' requires 'face-gradient: symmetric'.");
   if (!problem.elastic.volume_by_cells())
     throw Error(
-        "solution-method: 'preconditioner: mixed' needs 'volume-strain: cells' or 'shared' ('auto' takes cells from nu = 0.4 "
-        "up): the volume strain of faces leaves no mean stress of cells.");
+        "solution-method: 'preconditioner: mixed' requires 'volume-strain: cells' or 'shared' ('auto' "
+        "selects cells from nu = 0.4): with the volume strain of faces there is no mean stress per cell.");
 }
 
 /// Steps so short that inertia makes the system easy. Collective.
@@ -84,8 +84,8 @@ std::string decide(const SolidProblem& problem, MethodParameters& parameters) {
     if (parameters.type != MethodType::automatic && parameters.type != MethodType::newton_krylov)
       throw Error(
           "solution-method: 'face-gradient: symmetric' is solved by conjugate gradients ('type: "
-          "newton-krylov' or "
-          "'auto'); 'segregated' and 'block-coupled' are those of 'face-gradient: thesis' and 'corrected'.");
+          "newton-krylov' or 'auto'); 'segregated' and 'block-coupled' require 'face-gradient: thesis' or "
+          "'corrected'.");
     if (parameters.preconditioner == Preconditioner::automatic) {
       const bool mixed = wants_mixed_form(problem);
       const bool direct = mixed ? small : factors_pay(problem, easy, small);
@@ -156,7 +156,7 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
     method->name_ += problem.elastic.is_anisotropic() ? " (auto: orthotropic)"
                      : problem.is_symmetric()
                          ? " (auto)"
-                         : " (auto: the symmetric one cannot have the boundaries or the solver)";
+                         : " (auto: the symmetric one does not support these boundaries or this solver)";
   return method;
 }
 

@@ -112,7 +112,7 @@ void SolidStepper::load_guesses(CheckpointReader& file) {
     const SolidProblem problem = problem_of(system);
     const auto apply = [&](std::span<const double> x, std::span<double> y) {
       if (x.size() != body_.unknowns_of(state_.cell_u, state_.face_u).size())
-        throw Error("The checkpoint's corrections of solves are those of another mesh. Use an earlier one.");
+        throw Error("The checkpoint's solver corrections are from another mesh. Use an earlier checkpoint.");
       problem.apply(x, y);
       if (problem.rigid) problem.rigid->project(y);  // as the solves that kept them did
     };

@@ -74,7 +74,7 @@ void SolidStepper::apply_stiffness() {
 void SolidStepper::begin_step(const Step& step, bool has_loads) {
   step_ = step;
   effort_ = {};
-  if (!(step.dt > 0)) throw Error("The solid was asked for a step of {} s; time must go on.", step.dt);
+  if (!(step.dt > 0)) throw Error("The solid received a step of {} s; it must be above 0.", step.dt);
   if (has_loads) prepare_loads();
   if (body_.prescribed().is_zero()) return;
   const double end = step.time + step.dt;
@@ -105,7 +105,7 @@ void SolidStepper::solve(std::vector<double> interface_load) {
   } catch (const SolveFailure& failure) {
     // Linear equations: a shorter step meets the same ones.
     if (body_.is_dynamic() || body_.finite() || step_.scheme != Scheme::standalone) throw;
-    throw SchemeFailure("The static step could not be solved, and a shorter one meets the same equations: {}",
+    throw SchemeFailure("The static step failed, and a shorter step would solve the same equations: {}",
                         failure.what());
   }
   trial_.time = step_.time + step_.dt;

@@ -42,7 +42,7 @@ void SolidStepper::judge_step() {
   const double tolerance = share_of_a_step * parameters_.step_control->tolerance;
   if (trial_.error > tolerance)
     throw SolveFailure(
-        "The estimated error of the step, {:.2g} m, is above a tenth of the tolerance, {:g} m.", trial_.error,
+        "The estimated step error, {:.2g} m, exceeds a tenth of the tolerance, {:g} m.", trial_.error,
         tolerance);
 }
 

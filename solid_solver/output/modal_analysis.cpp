@@ -67,7 +67,7 @@ void check_factors(const SolidProblem& problem, TiedMatrix& factors, double shif
   factors.apply(x, back);
   for (std::size_t i = 0; i < n; ++i) back[i] -= force[i];
   if (!(norm(problem.mesh.comm, back) <= exact * norm(problem.mesh.comm, force)))
-    throw SolveFailure("The factors are not those of the stiffness.");
+    throw SolveFailure("The factors do not match the stiffness.");
 }
 
 /// Whether the search goes by factors. Collective.
@@ -140,7 +140,7 @@ EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
                        : search(problem, method, cell_mass, n, shift_part * scale);
   } catch (const SolveFailure& e) {
     if (!chooses) throw;
-    log::info("modes: {} does not get there: {}", by_factors ? "the search by factors" : "multigrid",
+    log::info("modes: {} did not succeed: {}", by_factors ? "the factorised search" : "multigrid",
               e.what());
     method.preconditioner =
         by_factors ? MethodParameters::Preconditioner::multigrid : MethodParameters::Preconditioner::factors;

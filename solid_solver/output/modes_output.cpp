@@ -36,8 +36,8 @@ void SolidOutput::write_modes(bool estimates) {
   const std::optional<SolidProblem> problem = vibration(body_);
   if (!problem)
     throw Error(
-        "output.modes: free vibrations want 'analysis: dynamic' and 'solution-method: {face-gradient: symmetric}': the "
-        "stiffness of the other face gradients is not symmetric.");
+        "output.modes: free vibrations require 'analysis: dynamic' and 'solution-method: {face-gradient: "
+        "symmetric}': the stiffness of the other face gradients is not symmetric.");
   const std::vector<double> mass = cell_masses(body_);
   const int n = body_.parameters().output.modes;
   EigenModes found;
@@ -52,7 +52,7 @@ void SolidOutput::write_modes(bool estimates) {
     for (std::size_t m = 0; m < found.shape.size(); ++m)
       if (found.eigenvalue[m] > 0) swinging.push_back(found.shape[m]);
     if (!swinging.empty())
-      errs = fmt::format("; the mesh leaves an estimated {:.2g} % in the worst of them",
+      errs = fmt::format("; estimated error due to the mesh up to {:.2g} %",
                          100 * 0.5 * energy_mesh_error(body_, swinging));
   }
   write_vibrations(*problem, found, "", errs);
@@ -77,9 +77,9 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const EigenModes
   }
   if (mesh.dim == 3) couplet::write_modes(context_.output_folder / "modes.h5", model, "");
   log::info(
-      "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv{}; largest residual {:.1e}{}",
+      "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv{}; max residual {:.1e}{}",
       model.n_modes(), of, model.frequency.front(), model.frequency.back(),
-      mesh.dim == 3 ? ", their shapes on the surface in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
+      mesh.dim == 3 ? ", their surface shapes in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
       found.worst_residual, errs);
 }
 
@@ -124,10 +124,11 @@ void SolidOutput::write_buckling() {
     for (std::size_t m = 0; m < found.factor.size(); ++m)
       series.row(std::vector<double>{double(m + 1), found.factor[m]});
     if (found.factor.empty())
-      log::info("buckling: these loads, however large, buckle nothing");
+      log::info("buckling: these loads cannot buckle the body at any magnitude");
     else
       log::info(
-          "buckling: the loads at the end times {:.6g} buckle the body; {} factors in buckling.csv, shapes in buckling.xdmf",
+          "buckling: the loads at the end multiplied by {:.6g} buckle the body; {} factors in buckling.csv, "
+          "shapes in buckling.xdmf",
           found.factor.front(), found.factor.size());
   }
   if (!found.factor.empty()) tell_buckling(mesh.comm, found.factor.front(), "");

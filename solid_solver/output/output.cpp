@@ -140,8 +140,7 @@ void SolidOutput::write_spectrum(double dt) {
   }
   log::info(
       "spectrum of M^-1 K: {} eigenvalues, {} of them in complex pairs; undamped vibration grows by up to "
-      "{:.3g} 1/s, "
-      "with {} and dt = {:g} s{} by up to {:.3g} 1/s",
+      "{:.3g} 1/s; with {} and dt = {:g} s{} by up to {:.3g} 1/s",
       values.size(), n_complex, growth, name(p.time_scheme.type), dt, p.damping ? ", damped," : "", discrete);
 }
 

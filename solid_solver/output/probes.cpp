@@ -22,7 +22,7 @@ OutputField effect_field(const SolidBody& body, const std::string& name) {
   for (const auto& effect : body.effects()) effect->add_fields(fields);
   for (const OutputField& field : fields)
     if (field.name == name && field.place == OutputField::Place::points) return field;
-  throw Error("probes: the field '{}' is watched, but nothing in this scene computes it.", name);
+  throw Error("probes: the field '{}' is requested, but nothing in this scene computes it.", name);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ void SolidProbes::add_columns(const std::string& probe, const std::string& field
       columns_.push_back(probe + " " + field + "-" + component + " [" + unit + "]");
   };
   if (field == "acceleration" && body_.parameters().analysis == SolidParameters::Analysis::static_)
-    throw Error("probes.{}: a static analysis has no acceleration to watch.", probe);
+    throw Error("probes.{}: a static analysis has no acceleration.", probe);
   if (field == "displacement") return vector("", "m");
   if (field == "velocity") return vector("velocity ", "m/s");
   if (field == "acceleration") return vector("acceleration ", "m/s^2");

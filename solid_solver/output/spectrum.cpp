@@ -33,9 +33,8 @@ std::vector<double> columns(const Eigen::MatrixXd& a) { return {a.data(), a.data
 void check_size(GlobalIndex n) {
   if (n > largest_spectrum)
     throw Error(
-        "output.spectrum: the spectrum of {} displacement components was asked for; it is computed up to {}. "
-        "Use a "
-        "coarser mesh of the same kind.",
+        "output.spectrum: the scene has {} displacement components; the spectrum is computed for at most "
+        "{}. Use a coarser mesh of the same kind.",
         n, largest_spectrum);
 }
 

@@ -22,7 +22,7 @@ std::string problem_of_components(const SolidCondition& c, int dimension) {
   const auto given = [&](int i) { return c.components[i].has_value(); };
   const bool any = given(0) || given(1) || given(2);
   if (any != c.value.empty())
-    return "give either 'value' (all components) or 'components' (those that are known, x, y, z)";
+    return "give either 'value' (all components) or 'components' (the prescribed ones of x, y, z)";
   if (!c.value.empty()) return problem_of(c.value, dimension);
   if (dimension == 2 && given(2)) return "a 2-dimensional scene has no component z";
   for (const auto& text : c.components)
@@ -35,7 +35,7 @@ void declare_displacement(config::Section& s, SolidCondition& c, const int& dime
   s.value("value", c.value)
       .unit("m")
       .plausible(1e-9, 1e4)
-      .doc("displacement, one expression of x, y, z, t a component");
+      .doc("displacement, one expression of x, y, z, t per component");
   s.section(
       "components",
       [&c](config::Section& v) {
@@ -45,8 +45,8 @@ void declare_displacement(config::Section& s, SolidCondition& c, const int& dime
               .plausible(1e-9, 1e4)
               .doc("displacement along this axis, of x, y, z, t");
       },
-      "in place of value: these components are known, the others are free; a part of a patch then holds its "
-      "faces, but not the vertices at its edge");
+      "instead of value: the prescribed components; the others are free. On a part of a patch this holds "
+      "its faces, but not the vertices at its edge");
   s.check([&] { return problem_of_components(c, dimension); }, "value");
   declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area on the free components");
 }
@@ -55,7 +55,8 @@ void declare_plate(config::Section& s, SolidCondition& c, const int& dimension) 
   s.value("plate-normal", c.plate_normal).doc("normal of the plate, any length");
   s.check([&c] { return c.plate_normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
           "plate-normal");
-  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area on what is left free");
+  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area on the remaining free "
+                                                             "components");
 }
 
 void declare_spring(config::Section& s, SolidCondition& c, const int& dimension) {
@@ -63,13 +64,13 @@ void declare_spring(config::Section& s, SolidCondition& c, const int& dimension)
       .unit("N/m^3")
       .plausible(1, 1e16)
       .required()
-      .doc("force per area and displacement, of x, y, z (Winkler's bedding)");
+      .doc("force per area and displacement, of x, y, z (Winkler foundation)");
   s.check([&c] { return problem_of(c.stiffness); }, "stiffness");
   s.choice("direction", c.along_normal, {{"all", false}, {"normal", true}})
-      .doc("which displacement the springs resist");
+      .doc("displacement components that the springs resist");
   declare_vector(s, "value", c.value, dimension, "m",
                  "displacement of the far ends of the springs, of x, y, z, t");
-  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area beside the springs");
+  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area in addition to the springs");
 }
 
 void declare_condition(config::Section& s, SolidCondition& c, const int& dimension, bool whole_patch) {
@@ -79,7 +80,7 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
         .unit("Pa")
         .plausible(1e-9, 1e11)
         .required()
-        .doc("force per area, one expression of x, y, z, t a component");
+        .doc("force per area, one expression of x, y, z, t per component");
     v.check([&] { return problem_of(c.value, dimension); }, "value");
   };
   const auto pressure = [&](config::Section& v) {
@@ -87,7 +88,7 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
         .unit("Pa")
         .plausible(1e-9, 1e11)
         .required()
-        .doc("pressure that pushes into the solid, of x, y, z, t");
+        .doc("pressure acting into the solid, of x, y, z, t");
     v.check([&] { return problem_of(c.pressure); }, "value");
   };
   const auto plate = [&](config::Section& v) { declare_plate(v, c, dimension); };
@@ -115,11 +116,12 @@ void declare_condition(config::Section& s, SolidCondition& c, const int& dimensi
   if (whole_patch) types.emplace_back("interface", Type::interface_, nothing);
   s.variant<Type>(
       "type", c.type, types,
-      "what is known there; force: its total; remote-load: force and moment at a point, shared out by area; bearing-load: a "
-      "pin's pressure by the cosine on the half of a cylinder; hydrostatic-pressure: of a liquid below its level; symmetry: a plane of any orientation; frictionless: no displacement across the "
-      "surface, curved or not; soft-support: no displacement along the plate's normal; hard-support: nor "
-      "along the edge; zero-normal-gradient: the displacement does not change along the normal"
-      "; interface (whole patches): the load comes from the coupler",
+      "boundary condition; force: total force; remote-load: force and moment at a point, distributed by "
+      "area; bearing-load: cosine pressure of a pin on half of a cylinder; hydrostatic-pressure: of a "
+      "liquid below its level; symmetry: a plane of any orientation; frictionless: no displacement normal "
+      "to the surface, curved or not; soft-support: no displacement along the plate's normal; hard-support: "
+      "nor along the edge; zero-normal-gradient: the displacement does not change along the normal; "
+      "interface (whole patches): the load comes from the coupler",
       true);
 }
 
@@ -132,12 +134,12 @@ void declare(config::Section& s, SolidBoundary& b, const int& dimension) {
       [&dimension](config::Section& p, SolidPart& part) {
         p.value("where", part.where)
             .required()
-            .doc("expression of x, y, z at the centre of a face that is not 0 on the faces of this part");
+            .doc("expression of x, y, z at the face centres, nonzero on the faces of this part");
         p.check([&part] { return problem_of(part.where); }, "where");
         declare_condition(p, part, dimension, false);
       },
-      "parts of the patch, such as a line of faces, with a condition of their own; the first that selects a "
-      "face counts");
+      "parts of the patch, such as a line of faces, with their own condition; the first one that selects a "
+      "face applies");
 }
 
 }  // namespace couplet

@@ -35,33 +35,33 @@ void declare_boundary(config::Section& s, HeatBoundary& b) {
        {"flux", Type::flux,
         [&b, expression](config::Section& v) {
           expression(v, {"value", "W/m^2", 1e-6, 1e11}, b.value,
-                     "heat that flows into the solid, of x, y, z, t");
+                     "heat flux into the solid, of x, y, z, t");
         }},
        {"convection", Type::convection,
         [&b, expression](config::Section& v) {
           expression(v, {"coefficient", "W/(m^2 K)", 1e-3, 1e7}, b.coefficient,
-                     "heat transfer, of x, y, z, t");
+                     "heat transfer coefficient, of x, y, z, t");
           expression(v, {"ambient", "K", 70, 5000}, b.ambient, "temperature of the fluid, of x, y, z, t");
         }},
        {"adiabatic", Type::adiabatic, [](config::Section&) {}},
        {"symmetry", Type::symmetry, [](config::Section&) {}}},
-      "what is known on the patch; a symmetry plane must be flat", true);
+      "thermal condition of the patch; a symmetry plane must be flat", true);
 }
 
 }  // namespace
 
 void declare(config::Section& s, HeatMaterial& m) {
   declare_property(s, {"conductivity", "W/(m K)", 1e-3, 1e4}, m.conductivity, 0,
-                   "heat conductivity: a number or a table of T");
+                   "thermal conductivity: a number or a table of T");
   declare_property(s, {"specific-heat", "J/(kg K)", 10, 1e5}, m.specific_heat, 0,
                    "specific heat: a number or a table of T");
   declare_property(s, {"expansion", "1/K", 1e-8, 1e-2}, m.expansion, -1,
-                   "instantaneous coefficient of thermal expansion: a number or a table of T, which is "
-                   "integrated from the reference temperature on");
+                   "instantaneous coefficient of thermal expansion: a number or a table of T, integrated "
+                   "from the reference temperature");
   declare_property(s, {"youngs-modulus-table", "Pa", 1, 2e12}, m.youngs_modulus, 0,
-                   "table of T that holds in place of youngs-modulus where the temperature is known");
+                   "table of T that replaces youngs-modulus where the temperature is known");
   s.value("poissons-ratio-table", m.poissons_ratio)
-      .doc("table of T that holds in place of poissons-ratio where the temperature is known");
+      .doc("table of T that replaces poissons-ratio where the temperature is known");
   s.check([&m] { return m.poissons_ratio ? problem_of_property(*m.poissons_ratio, -1) : std::string(); },
           "poissons-ratio-table");
 }
@@ -70,7 +70,7 @@ void declare(config::Section& s, HeatParameters& h) {
   using Analysis = HeatParameters::Analysis;
   using Scheme = HeatParameters::Scheme;
   s.choice("analysis", h.analysis, {{"transient", Analysis::transient}, {"steady", Analysis::steady}})
-      .doc("steady leaves out the heat that the solid stores");
+      .doc("steady neglects the heat stored in the solid");
   s.choice(
        "time-scheme", h.scheme,
        {{"euler", Scheme::euler}, {"three-point", Scheme::three_point}, {"trapezoidal", Scheme::trapezoidal}})
@@ -78,35 +78,35 @@ void declare(config::Section& s, HeatParameters& h) {
   s.value("initial-temperature", h.initial_temperature)
       .unit("K")
       .plausible(70, 5000)
-      .doc("at the start, of x, y, z");
+      .doc("initial temperature, of x, y, z");
   s.check([&h] { return problem_of(h.initial_temperature); }, "initial-temperature");
   s.value("source", h.source)
       .unit("W/m^3")
       .plausible(1e-6, 1e14)
-      .doc("heat set free in the solid, of x, y, z, t");
+      .doc("heat source in the solid, of x, y, z, t");
   s.check([&h] { return problem_of(h.source); }, "source");
   s.map<HeatBoundary>(
       "boundaries", h.boundaries, [](config::Section& b, HeatBoundary& v) { declare_boundary(b, v); },
       "patch",
-      "patches that are not adiabatic; those that are mechanical symmetry planes are thermal ones, too");
+      "patches that are not adiabatic; mechanical symmetry planes are thermal ones as well");
   s.value("tolerance", h.tolerance)
       .range(1e-14, 1e-2)
       .doc(
-          "change of the temperature over its range at which the iteration over properties that depend on it "
-          "stops");
+          "convergence limit of the iteration over temperature-dependent properties: change of the "
+          "temperature over its range");
   s.value("max-iterations", h.max_iterations)
       .range(1, 1000)
-      .doc("of that iteration, after which a step has failed");
+      .doc("maximum number of these iterations; beyond it the step fails");
   s.value("linear-tolerance", h.linear_tolerance)
       .range(1e-15, 1e-4)
-      .doc("residual over right-hand side of the linear system, where it is not solved directly");
+      .doc("relative residual tolerance of the linear system, where it is not solved directly");
 }
 
 void declare(config::Section& s, ThermalExpansion& e) {
   s.value("reference-temperature", e.reference_temperature)
       .unit("K")
       .plausible(70, 5000)
-      .doc("where the thermal strain is zero");
+      .doc("temperature of zero thermal strain");
 }
 
 }  // namespace couplet

@@ -73,17 +73,16 @@ double FaceInterpolation::value(std::size_t point, std::span<const double> faces
 void declare(config::Section& s, InterfaceData& d) {
   using Load = InterfaceData::Load;
   s.choice("load", d.load, {{"forces", Load::forces}, {"pressure", Load::pressure}})
-      .doc("taken at the faces: pressure-force and viscous-force, or one pressure");
+      .doc("data received at the faces: pressure-force and viscous-force, or one pressure");
   s.value("temperature", d.temperature)
       .doc(
-          "a temperature is taken at the faces; the solid has it along the interface, linear between the "
-          "faces, and "
-          "the same through its thickness");
+          "receive a temperature at the faces; the solid uses it along the interface, linear between the "
+          "faces and constant through its thickness");
   s.value("surface-density", d.surface_density)
       .doc(
-          "also give the mass behind the faces [kg/m^2], the solid's mass over the area of its interface as far as a pressure wave gets "
-          "through it within a step: the impedance for "
-          "a fluid with `impedance: structure` (Robin)");
+          "also give the mass behind the faces [kg/m^2]: the solid's mass per interface area, as deep as a "
+          "pressure wave travels within a step; the impedance for a fluid with `impedance: structure` "
+          "(Robin)");
 }
 
 double WallImpedance::in_step(double dt) const {
@@ -147,7 +146,8 @@ std::vector<double> InterfaceTemperature::with_others(const std::vector<double>&
   const Index n_owned = faces_.n_owned();
   if (any(comm_, std::ssize(here) != n_owned))
     throw Error(
-        "The solid was given {} temperatures; its interface has {} faces on this rank, or another rank says so.",
+        "Expected {1} temperatures on this rank, one per interface face, but received {0} (here or on "
+        "another rank).",
         here.size(), n_owned);
   std::vector<double> values = here;
   values.resize(faces_.n_local());

@@ -11,13 +11,14 @@ namespace couplet {
 namespace {
 
 void declare_law(config::Section& s, SolidMaterial& m) {
-  std::string doc = "of finite strain, Young's modulus and Poisson's ratio being those at small strain: " +
+  std::string doc = "material law at finite strain, with Young's modulus and Poisson's ratio as its "
+                    "small-strain values: " +
                     join(laws::names());
   s.value("law", m.law).doc(doc);
   s.check(
       [&m]() -> std::string {
         if (m.law.empty() || laws::find(m.law)) return "";
-        return fmt::format("there is no law '{}'. {} The laws are {}", m.law,
+        return fmt::format("unknown law '{}'. {} The laws are {}", m.law,
                            did_you_mean(m.law, laws::names(), "laws"), join(laws::names()));
       },
       "law");
@@ -25,14 +26,14 @@ void declare_law(config::Section& s, SolidMaterial& m) {
   for (const laws::Entry& e : laws::all())
     if (e.n_coefficients > 0)
       wanted += fmt::format("{}{}: {}", wanted.empty() ? "" : "; ", e.name, e.coefficients);
-  s.value("law-coefficients", m.law_coefficients).doc("what a law wants beside them; " + wanted);
+  s.value("law-coefficients", m.law_coefficients).doc("additional parameters of the law; " + wanted);
   s.check(
       [&m]() -> std::string {
         const laws::Entry* law = laws::of(m.law);
         if (!law || m.law_coefficients.size() <= law->n_coefficients) return "";
         return law->n_coefficients == 0
-                   ? fmt::format("the law '{}' takes none", law->name)
-                   : fmt::format("{} numbers are given where the law '{}' takes at most {}: {}",
+                   ? fmt::format("the law '{}' has no parameters", law->name)
+                   : fmt::format("{} numbers are given, but the law '{}' takes at most {}: {}",
                                  m.law_coefficients.size(), law->name, law->n_coefficients,
                                  law->coefficients);
       },
@@ -46,8 +47,8 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   if (is_elastic)
     s.optional_section<Orthotropic>(
         "orthotropic", m.orthotropic, [](config::Section& o, Orthotropic& v) { declare(o, v); },
-        "elastic constants of a body with three planes of symmetry (wood, plies), in place of youngs-modulus and "
-        "poissons-ratio");
+        "elastic constants of a material with three planes of symmetry (wood, plies), instead of "
+        "youngs-modulus and poissons-ratio");
   const auto needed = [&](config::Key& key) -> config::Key& {
     return is_elastic && !m.orthotropic ? key.required() : key;
   };
@@ -60,7 +61,7 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
       s.value("poissons-ratio", m.poissons_ratio)
           .range(-0.99, 0.49999)
           .doc(
-              "Poisson's ratio, needed without 'orthotropic'; from 0.4 up the symmetric face gradient is the "
+              "Poisson's ratio, needed without 'orthotropic'; from 0.4 the symmetric face gradient is the "
               "default"));
   s.check(
       [&m] {
@@ -74,14 +75,15 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
       .unit("Pa")
       .plausible(1000, 1e11)
       .positive()
-      .doc("the run says where the equivalent stress reaches it; changes nothing else");
+      .doc("the run reports where the equivalent stress reaches it; no other effect");
   if (is_elastic) declare_law(s, m);
   declare(s, m.heat);
 }
 
 void declare(config::Section& s, ZoneMaterial& m, bool is_elastic) {
   s.value("zones", m.zones)
-      .doc("physical volumes (2-D: surfaces) of the mesh that are made of it; without: the one of this name");
+      .doc("physical volumes (2-D: surfaces) of the mesh made of this material; absent: the one with this "
+           "name");
   declare(s, static_cast<SolidMaterial&>(m), is_elastic);
 }
 

@@ -18,21 +18,21 @@ void declare(config::Section& s, MethodParameters& m) {
             {"segregated", Type::segregated},
             {"newton-krylov", Type::newton_krylov}})
       .doc(
-          "block-coupled: one assembled system of all displacement components; segregated: one scalar system "
-          "a "
-          "component and outer iterations (with kinematics finite-strain: the thesis's updated-Lagrangian method); newton-krylov: the operator applied without a matrix; auto: by "
-          "size and "
-          "scene, the log says what and why");
+          "block-coupled: one assembled system of all displacement components; segregated: one scalar "
+          "system per component with outer iterations (with kinematics finite-strain: the "
+          "updated-Lagrangian method of the thesis); newton-krylov: matrix-free; auto: chosen by size and "
+          "scene, logged with the reason");
   s.choice("face-gradient", m.face_gradient,
            {{"auto", FaceGradient::automatic},
             {"thesis", FaceGradient::thesis},
             {"corrected", FaceGradient::corrected},
             {"symmetric", FaceGradient::symmetric}})
       .doc(
-          "displacement gradient at the faces; symmetric: from an energy, so that it neither locks in bending nor lets motion "
-          "grow on any mesh, by conjugate gradients; thesis: the source's, which locks in bending with few or long cells; "
-          "corrected: the thesis's with second-order corrections, which does not, but undamped motion grows sooner with short "
-          "steps; auto: symmetric, and thesis with 'zero-normal-gradient', 'type: segregated' or 'block-coupled'");
+          "displacement gradient at the faces; symmetric: derived from an energy, free of bending locking "
+          "and of spurious growth on any mesh, solved by conjugate gradients; thesis: of the source, locks "
+          "in bending with few or elongated cells; corrected: the same with second-order corrections, free "
+          "of locking, but undamped motion grows sooner with short steps; auto: symmetric, but thesis with "
+          "'zero-normal-gradient', 'type: segregated' or 'block-coupled'");
   using VolumeStrain = MethodParameters::VolumeStrain;
   s.choice("volume-strain", m.volume_strain,
            {{"auto", VolumeStrain::automatic},
@@ -40,10 +40,10 @@ void declare(config::Section& s, MethodParameters& m) {
             {"cells", VolumeStrain::cells},
             {"shared", VolumeStrain::shared}})
       .doc(
-          "of face-gradient symmetric; cells: one a cell, which does not lock as nu goes to 0.5; faces: that of each "
-          "face; shared: a tenth of the bulk modulus, at most a third of the shear modulus, on the faces', the rest on the "
-          "cells': best in plane strain and for plates, too soft for bars in space with few cells across; auto: cells from "
-          "nu = 0.4 up, else faces");
+          "for face-gradient symmetric; cells: one per cell, free of volumetric locking as nu approaches "
+          "0.5; faces: one per face; shared: a tenth of the bulk modulus, at most a third of the shear "
+          "modulus, on the faces, the rest on the cells: best in plane strain and for plates, too soft for "
+          "3-D bars with few cells across; auto: cells from nu = 0.4, otherwise faces");
   s.check(
       [&m] {
         const bool asked = m.volume_strain == VolumeStrain::cells || m.volume_strain == VolumeStrain::shared;
@@ -51,7 +51,8 @@ void declare(config::Section& s, MethodParameters& m) {
                            m.face_gradient == FaceGradient::corrected || m.type == Type::block_coupled ||
                            m.type == Type::segregated;
         return asked && other
-                   ? "it is of 'face-gradient: symmetric' with 'type: newton-krylov'; change these, or remove it"
+                   ? "it requires 'face-gradient: symmetric' with 'type: newton-krylov'; change these, or "
+                     "remove it"
                    : "";
       },
       "volume-strain");
@@ -60,44 +61,46 @@ void declare(config::Section& s, MethodParameters& m) {
             {"direct", LinearSolver::direct},
             {"bicgstab-ilu", LinearSolver::bicgstab_ilu},
             {"gmres-multigrid", LinearSolver::gmres_multigrid}})
-      .doc("of block-coupled; auto: direct up to 60 000 unknowns (static: 200 000), above that bicgstab-ilu");
+      .doc("linear solver of block-coupled; auto: direct up to 60 000 unknowns (static: 200 000), otherwise "
+           "bicgstab-ilu");
   s.choice("preconditioner", m.preconditioner,
            {{"auto", Preconditioner::automatic},
             {"multigrid", Preconditioner::multigrid},
             {"factors", Preconditioner::factors},
             {"mixed", Preconditioner::mixed}})
       .doc(
-          "of newton-krylov; multigrid: compact component-wise operator and rigid motions of aggregates; "
-          "factors: LU of "
-          "the thesis's operator (symmetric: Cholesky of its own), kept for all steps of one size; mixed: of the symmetric "
-          "gradient with one volume strain a cell, whose mean stresses become unknowns too, so that nu close to 0.5 costs "
-          "hardly more iterations than 0.3; auto: factors of small bodies, else mixed from nu = 0.49 up, else multigrid");
+          "for newton-krylov; multigrid: compact component-wise operator and rigid motions of aggregates; "
+          "factors: LU of the thesis operator (symmetric: its own Cholesky factors), reused for all steps "
+          "of one size; mixed: for the symmetric gradient with one volume strain per cell, with the mean "
+          "stresses as additional unknowns, so that nu close to 0.5 takes hardly more iterations than 0.3; "
+          "auto: factors for small bodies, otherwise mixed from nu = 0.49, otherwise multigrid");
   s.choice(
        "acceleration", m.acceleration,
        {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}})
-      .doc("of the outer iterations of segregated");
+      .doc("for the outer iterations of segregated");
   s.value("aitken-interval", m.aitken_interval)
       .range(2, 100)
-      .doc("Aitken's formula after every so many iterations");
+      .doc("apply Aitken's formula every so many iterations");
   s.value("anderson-history", m.anderson_history)
       .range(1, 30)
-      .doc("iterations that Anderson's method combines");
+      .doc("number of iterations combined by Anderson's method");
   s.choice("predictor", m.predictor,
            {{"none", Predictor::none}, {"euler", Predictor::euler}, {"adams", Predictor::adams}})
       .doc(
-          "first guess of a dynamic step: the last displacement; moved on with the velocity (2.73); with two "
-          "velocities (2.74)");
+          "initial guess of a dynamic step: the last displacement; extrapolated with the velocity (2.73); "
+          "with two velocities (2.74)");
   s.value("corrections-kept", m.corrections_kept)
       .range(0, ResidualProjection::most)
       .doc(
-          "of newton-krylov in dynamic analyses: of the corrections that the last so many steps made to the "
-          "predictor, the combination that leaves the least residual is added to the guess; 0: none");
+          "for newton-krylov in dynamic analyses: the last so many corrections of the predictor are "
+          "combined to minimise the initial residual; 0: off");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc(
-          "residual over right-hand side at which the iteration stops; of symmetric newton-krylov (and of any in 2-D with more than "
-          "5000 cells) in steps so small that inertia outweighs stiffness, over its elastic part");
-  s.value("max-iterations", m.max_iterations).range(1, 1e6).doc("iterations after which a step has failed");
+          "relative residual tolerance; for symmetric newton-krylov (and any in 2-D with more than 5000 "
+          "cells) in steps so small that inertia dominates stiffness, relative to its elastic part");
+  s.value("max-iterations", m.max_iterations).range(1, 1e6).doc("maximum number of iterations; beyond it a "
+                                                                "step fails");
 }
 
 }  // namespace couplet

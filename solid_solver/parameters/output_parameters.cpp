@@ -17,50 +17,51 @@ const std::vector<std::string> probe_fields{"displacement", "velocity",         
 std::string unknown_field(const std::vector<std::string>& chosen) {
   for (const std::string& field : chosen)
     if (std::ranges::find(probe_fields, field) == probe_fields.end())
-      return fmt::format("there is no field '{}'; the fields are {}", field, join(probe_fields));
+      return fmt::format("unknown field '{}'; the fields are {}", field, join(probe_fields));
   return chosen.empty() ? "at least one field is needed" : "";
 }
 
 }  // namespace
 
 void declare(config::Section& s, SolidProbe& p) {
-  s.value("point", p.point).unit("m").plausible(1e-9, 1e4).required().doc("place in the undeformed solid");
+  s.value("point", p.point).unit("m").plausible(1e-9, 1e4).required().doc("position in the undeformed solid");
   s.value("fields", p.fields)
       .doc(
-          "what is watched there: displacement, velocity, acceleration, stress, equivalent-stress, "
+          "fields to record: displacement, velocity, acceleration, stress, equivalent-stress, "
           "principal-stress, strain, temperature");
   s.check([&] { return unknown_field(p.fields); }, "fields");
 }
 
 void declare(config::Section& s, SolidOutputParameters& o) {
-  s.value("deformed", o.deformed).doc("write the mesh points where they have moved to");
+  s.value("deformed", o.deformed).doc("write the displaced mesh points");
   s.value("stress", o.stress).doc("write stress components and the equivalent stress");
   s.value("strain", o.strain).doc("write strain components");
   s.value("principal-stress", o.principal_stress).doc("write the principal stresses, largest first");
-  s.value("point-stress", o.point_stress).doc("write stress components at the points too");
+  s.value("point-stress", o.point_stress).doc("also write stress components at the points");
   s.value("acceleration", o.acceleration).doc("write the acceleration of a dynamic analysis");
   s.value("energies", o.energies).doc("write the energies after each step to energies.csv");
   s.value("large-strain-estimate", o.large_strain_estimate)
       .doc(
-          "of a linear static analysis: by how much 'kinematics: finite-strain' would change the displacement, in two "
-          "more linear solves a step; told at the end of the run");
+          "for a linear static analysis: change of the displacement that 'kinematics: finite-strain' would "
+          "cause, from two more linear solves per step; reported at the end of the run");
   s.value("spectrum", o.spectrum)
       .doc(
-          "write the eigenvalues of M^-1 K of a dynamic analysis to spectrum.csv at the start and tell how "
-          "fast free "
-          "vibration grows; for small meshes");
+          "write the eigenvalues of M^-1 K of a dynamic analysis to spectrum.csv at the start and report "
+          "the growth rate of free vibration; for small meshes");
   s.value("modes", o.modes)
       .range(0, 1000)
       .doc(
-          "so many of the lowest free vibrations (face-gradient: symmetric) are found: of a dynamic analysis at the start and "
-          "without loads, of a linear static one at the end and about the loaded equilibrium, whose stress stiffens or softens "
-          "the body; modes.csv, and in 3-D modes.h5, which plate_modal reads; 0: none");
+          "number of lowest free vibrations to compute (face-gradient: symmetric): for a dynamic analysis "
+          "at the start and unloaded, for a linear static one at the end, about the loaded equilibrium "
+          "whose stress stiffens or softens the body; modes.csv, and in 3-D modes.h5, which plate_modal "
+          "reads; 0: none");
   s.value("buckling", o.buckling)
       .range(0, 1000)
       .doc(
-          "so many of the lowest factors of the loads of a linear static analysis at which its equilibrium buckles "
-          "(face-gradient: symmetric), found at the end: buckling.csv and the shapes in buckling.xdmf; pressures follow the "
-          "surface, other loads keep their direction; 0: none; with 'analysis: buckling' 4");
+          "number of lowest load factors at which the equilibrium of a linear static analysis buckles "
+          "(face-gradient: symmetric), computed at the end: buckling.csv and the shapes in buckling.xdmf; "
+          "pressures follow the surface, other loads keep their direction; 0: none; with 'analysis: "
+          "buckling' 4");
 }
 
 }  // namespace couplet

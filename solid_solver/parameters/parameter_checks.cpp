@@ -41,17 +41,20 @@ void check_updated_lagrangian(config::Section& s, SolidParameters& p) {
   };
   refuse(
       "solution-method", p.method.face_gradient == Method::FaceGradient::symmetric,
-      "'type: segregated' at finite strain is the thesis's updated-Lagrangian method on 'face-gradient: thesis' with "
-      "the volume strain of the faces; the symmetric gradient goes with 'type: newton-krylov' (or 'auto')");
+      "'type: segregated' at finite strain is the updated-Lagrangian method on 'face-gradient: thesis' with "
+      "the volume strain of the faces; the symmetric gradient requires 'type: newton-krylov' (or 'auto')");
   refuse(
       "materials", p.materials.size() > 1,
-      "'solution-method: {type: segregated}' at finite strain knows one material; take 'type: newton-krylov' (or 'auto')");
+      "'solution-method: {type: segregated}' at finite strain supports one material only; use 'type: "
+      "newton-krylov' (or 'auto')");
   refuse(
       "energy-momentum", p.energy_momentum,
-      "'solution-method: {type: segregated}' at finite strain has no conserving stress; take 'type: newton-krylov'");
+      "'solution-method: {type: segregated}' at finite strain has no energy-momentum stress; use 'type: "
+      "newton-krylov'");
   refuse(
       "output", p.output.energies,
-      "'solution-method: {type: segregated}' at finite strain writes no energies; take 'type: newton-krylov' (or 'auto')");
+      "'solution-method: {type: segregated}' at finite strain writes no energies; use 'type: newton-krylov' "
+      "(or 'auto')");
 }
 
 }  // namespace
@@ -66,7 +69,7 @@ void check_together(config::Section& s, SolidParameters& p) {
       [&] {
         return p.gravity.empty() || std::ssize(p.gravity) == p.dimension
                    ? std::string()
-                   : fmt::format("{} components are given where the {}-dimensional scene needs {}",
+                   : fmt::format("{} components are given, but the {}-dimensional scene needs {}",
                                  p.gravity.size(), p.dimension, p.dimension);
       },
       "gravity");
@@ -88,14 +91,14 @@ void check_together(config::Section& s, SolidParameters& p) {
   s.check(
       [&] {
         return !p.initial_velocity.empty() && p.analysis != SolidParameters::Analysis::dynamic
-                   ? "it has an effect with 'analysis: dynamic' only; remove it"
+                   ? "it requires 'analysis: dynamic'; remove it"
                    : "";
       },
       "initial-velocity");
   s.check(
       [&] {
         return p.interface_data && p.analysis != SolidParameters::Analysis::thermal && !has_interface(p)
-                   ? "no patch is an interface: give one 'type: interface', or remove this section"
+                   ? "no patch is an interface: set 'type: interface' for one, or remove this section"
                    : "";
       },
       "interface");
@@ -110,8 +113,8 @@ void check_together(config::Section& s, SolidParameters& p) {
       [&] {
         return p.analysis != SolidParameters::Analysis::static_ || is_held(p)
                    ? ""
-                   : "nothing holds the solid of this static analysis: at least one patch must be fixed, supported, "
-                     "sprung or on a plane of symmetry";
+                   : "no patch supports the solid in this static analysis: at least one must be fixed, "
+                     "supported, sprung or a plane of symmetry";
       },
       "boundaries");
   s.check(
@@ -133,24 +136,26 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
   };
   const bool is_dynamic = p.analysis == SolidParameters::Analysis::dynamic;
   refuse("solution-method", p.method.volume_strain == MethodParameters::VolumeStrain::shared,
-         "finite strain takes 'volume-strain: faces' or 'cells' and no share of both");
+         "finite strain supports 'volume-strain: faces' or 'cells', but not 'shared'");
   refuse(
       "solution-method", p.method.preconditioner == MethodParameters::Preconditioner::mixed,
-      "'preconditioner: mixed' is that of small strain; at finite strain Newton's method carries the pressures of cells by "
-      "itself from nu = 0.48 up");
+      "'preconditioner: mixed' is for small strain; at finite strain Newton's method uses cell pressures by "
+      "itself from nu = 0.48");
   refuse("plane", p.dimension == 2 && p.plane == SolidParameters::Plane::stress,
-         "finite strain knows plane strain only; model the sheet in 3-D");
-  refuse("thermal-expansion", p.expansion.has_value(), "finite strain has no thermal strain");
+         "finite strain supports plane strain only; model the sheet in 3-D");
+  refuse("thermal-expansion", p.expansion.has_value(), "finite strain does not support thermal strain");
   refuse("damping", is_dynamic && p.damping && p.damping->stiffness > 0,
-         "'stiffness' damps rigid rotations at finite strain; use 'mass', or the losses of 'time-scheme'");
+         "'stiffness' damps rigid rotations at finite strain; use 'mass', or the dissipation of "
+         "'time-scheme'");
   refuse("interface", p.interface_data && p.interface_data->load == InterfaceData::Load::pressure,
-         "finite strain takes forces; 'load: pressure' would not follow the surface");
+         "finite strain requires forces; 'load: pressure' would not follow the surface");
   s.check(
       [&p]() -> std::string {
         const bool fits = has_finite_strain(p) && p.analysis == SolidParameters::Analysis::dynamic &&
                           p.time_scheme.type == TimeScheme::trapezoidal;
         return p.energy_momentum && !fits
-                   ? "it needs 'kinematics: finite-strain', 'analysis: dynamic' and 'time-scheme: {type: trapezoidal}'"
+                   ? "it requires 'kinematics: finite-strain', 'analysis: dynamic' and 'time-scheme: {type: "
+                     "trapezoidal}'"
                    : "";
       },
       "energy-momentum");
@@ -161,8 +166,8 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
       p.method.type == Method::Type::block_coupled ||
           p.method.face_gradient == Method::FaceGradient::corrected ||
           (!is_segregated && p.method.face_gradient == Method::FaceGradient::thesis),
-      "finite strain is solved by Newton's method on 'face-gradient: symmetric' ('type: newton-krylov' or 'auto'), or "
-      "by 'type: segregated' on 'face-gradient: thesis'");
+      "finite strain is solved by Newton's method on 'face-gradient: symmetric' ('type: newton-krylov' or "
+      "'auto'), or by 'type: segregated' on 'face-gradient: thesis'");
   check_updated_lagrangian(s, p);
   bool has_tables = false;
   for (const SolidMaterial& m : materials_of(p))
@@ -171,14 +176,14 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
       [&p]() -> std::string {
         for (const SolidMaterial& m : materials_of(p))
           if (!has_finite_strain(p) && (!m.law.empty() || !m.law_coefficients.empty()))
-            return "a law has an effect with 'kinematics: finite-strain' only";
+            return "a law requires 'kinematics: finite-strain'";
         return "";
       },
       p.materials.empty() ? "material" : "materials");
   refuse("material", has_tables,
-         "finite strain takes no tables of the elastic constants over the temperature");
+         "finite strain does not support tables of the elastic constants over temperature");
   refuse("output", p.output.spectrum || p.output.modes > 0 || p.output.buckling > 0,
-         "'spectrum', 'modes' and 'buckling' are those of the linear solid; use small-strain");
+         "'spectrum', 'modes' and 'buckling' require the linear solid; use small-strain");
 }
 
 void check_buckling(config::Section& s, SolidParameters& p) {
@@ -186,13 +191,13 @@ void check_buckling(config::Section& s, SolidParameters& p) {
       [&p]() -> std::string {
         if (p.output.buckling == 0) return "";
         if (p.analysis != SolidParameters::Analysis::static_)
-          return "'buckling' is of a static analysis: 'analysis: buckling' or 'static'";
+          return "'buckling' requires a static analysis: 'analysis: buckling' or 'static'";
         using FaceGradient = MethodParameters::FaceGradient;
         const FaceGradient chosen = p.method.face_gradient;
         return chosen == FaceGradient::automatic || chosen == FaceGradient::symmetric
                    ? ""
-                   : "'buckling' wants 'solution-method: {face-gradient: symmetric}' (or 'auto'): the stiffness of the other "
-                     "face gradients is not symmetric";
+                   : "'buckling' requires 'solution-method: {face-gradient: symmetric}' (or 'auto'): the "
+                     "stiffness of the other face gradients is not symmetric";
       },
       "output");
 }
@@ -212,7 +217,8 @@ void check_rigid_patches(config::Section& s, SolidParameters& p) {
   };
   refuse(
       "kinematics", has_finite_strain(p),
-      "a remote-load with 'coupling: rigid' turns by small angles; take 'coupling: distributing' at finite strain");
+      "a remote-load with 'coupling: rigid' is limited to small rotations; use 'coupling: distributing' at "
+      "finite strain");
   const bool is_gradient = p.method.face_gradient == Method::FaceGradient::symmetric ||
                            p.method.face_gradient == Method::FaceGradient::automatic;
   const bool is_method =
@@ -221,10 +227,11 @@ void check_rigid_patches(config::Section& s, SolidParameters& p) {
       "solution-method",
       !is_gradient || !is_method || p.method.preconditioner == Method::Preconditioner::mixed ||
           !symmetric_suits(p),
-      "a remote-load with 'coupling: rigid' goes with 'face-gradient: symmetric' and 'type: newton-krylov' (or 'auto') without "
-      "'preconditioner: mixed' and 'zero-normal-gradient'");
+      "a remote-load with 'coupling: rigid' requires 'face-gradient: symmetric' and 'type: newton-krylov' "
+      "(or 'auto') without 'preconditioner: mixed' and 'zero-normal-gradient'");
   refuse("output", p.output.spectrum || p.output.modes > 0 || p.output.large_strain_estimate,
-         "'spectrum', 'modes' and 'large-strain-estimate' know no remote-load with 'coupling: rigid'");
+         "'spectrum', 'modes' and 'large-strain-estimate' do not support a remote-load with 'coupling: "
+         "rigid'");
 }
 
 void check_large_strain_estimate(config::Section& s, SolidParameters& p) {
@@ -232,17 +239,17 @@ void check_large_strain_estimate(config::Section& s, SolidParameters& p) {
       [&p]() -> std::string {
         if (!p.output.large_strain_estimate) return "";
         if (p.analysis != SolidParameters::Analysis::static_ || has_finite_strain(p))
-          return "'large-strain-estimate' is of a linear static analysis: 'analysis: static' without 'kinematics: "
-                 "finite-strain'";
+          return "'large-strain-estimate' requires a linear static analysis: 'analysis: static' without "
+                 "'kinematics: finite-strain'";
         if (p.dimension == 2 && p.plane == SolidParameters::Plane::stress)
-          return "'large-strain-estimate' knows plane strain only; model the sheet in 3-D";
+          return "'large-strain-estimate' supports plane strain only; model the sheet in 3-D";
         if (has_orthotropic(p) || p.expansion)
-          return "'large-strain-estimate' knows neither orthotropic materials nor thermal strain";
+          return "'large-strain-estimate' supports neither orthotropic materials nor thermal strain";
         MethodParameters any = p.method;
         any.type = MethodParameters::Type::automatic;
         SolidParameters q = p;
         q.method = any;
-        return symmetric_suits(q) ? "" : "'large-strain-estimate' cannot have 'zero-normal-gradient'";
+        return symmetric_suits(q) ? "" : "'large-strain-estimate' does not support 'zero-normal-gradient'";
       },
       "output");
 }
@@ -255,8 +262,9 @@ void check_orthotropic(config::Section& s, SolidParameters& p) {
             key);
   };
   refuse("kinematics", has_finite_strain(p),
-         "an orthotropic material is linear; finite strain knows the laws of docs/large-strain.md only");
-  refuse("thermal-expansion", p.expansion.has_value(), "an orthotropic material has no thermal strain here");
+         "an orthotropic material is linear; finite strain supports only the laws of docs/large-strain.md");
+  refuse("thermal-expansion", p.expansion.has_value(), "an orthotropic material does not support thermal "
+                                                       "strain");
   refuse(
       "solution-method",
       p.method.type == Method::Type::segregated || p.method.type == Method::Type::block_coupled ||
@@ -264,13 +272,14 @@ void check_orthotropic(config::Section& s, SolidParameters& p) {
           p.method.face_gradient == Method::FaceGradient::corrected ||
           p.method.volume_strain == Method::VolumeStrain::cells ||
           p.method.volume_strain == Method::VolumeStrain::shared,
-      "an orthotropic material goes with 'face-gradient: symmetric' (or 'auto'), 'type: newton-krylov' (or 'auto') "
-      "and the volume strain of the faces");
+      "an orthotropic material requires 'face-gradient: symmetric' (or 'auto'), 'type: newton-krylov' (or "
+      "'auto') and the volume strain of the faces");
   s.check(
       [&p]() -> std::string {
         for (const SolidMaterial& m : materials_of(p))
           if (m.orthotropic && (m.heat.youngs_modulus || m.heat.poissons_ratio))
-            return "an orthotropic material takes no tables of the elastic constants over the temperature";
+            return "an orthotropic material does not support tables of the elastic constants over "
+                   "temperature";
         return "";
       },
       p.materials.empty() ? "material" : "materials");
@@ -279,10 +288,11 @@ void check_orthotropic(config::Section& s, SolidParameters& p) {
         for (const SolidMaterial& m : materials_of(p)) {
           if (!m.orthotropic) continue;
           if (!m.orthotropic->first_axis.empty() && std::ssize(m.orthotropic->first_axis) != p.dimension)
-            return fmt::format("'orthotropic.first-axis' has {} components where the scene has {}",
+            return fmt::format("'orthotropic.first-axis' has {} components, but the scene has {}",
                                m.orthotropic->first_axis.size(), p.dimension);
           if (p.dimension == 2 && !m.orthotropic->second_axis.empty())
-            return "in the plane 'orthotropic.second-axis' follows from the first (a quarter turn); remove it";
+            return "in two dimensions 'orthotropic.second-axis' follows from the first (rotated by 90 "
+                   "degrees); remove it";
           if (p.dimension == 3 && !m.orthotropic->second_axis.empty() &&
               m.orthotropic->second_axis.size() != 3)
             return "'orthotropic.second-axis' needs three components";

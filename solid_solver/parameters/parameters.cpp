@@ -14,29 +14,29 @@ bool takes_temperature(const SolidParameters& p) { return p.interface_data && p.
 void declare_heat(config::Section& s, SolidParameters& p) {
   s.optional_section<HeatParameters>(
       "heat", p.heat, [](config::Section& h, HeatParameters& v) { declare(h, v); },
-      "conduction of heat; the temperature of a step is solved for before its displacement");
+      "heat conduction; each step solves for the temperature before the displacement");
   s.value("temperature", p.temperature)
       .unit("K")
       .plausible(70, 5000)
       .doc("prescribed temperature, of x, y, z, t");
   s.optional_section<ThermalExpansion>(
       "thermal-expansion", p.expansion, [](config::Section& e, ThermalExpansion& v) { declare(e, v); },
-      "thermal strain; needs 'heat' or 'temperature', and 'expansion' of the material");
+      "thermal strain; requires 'heat' or 'temperature', and 'expansion' of the material");
   s.optional_section<InterfaceData>(
       "interface", p.interface_data, [](config::Section& i, InterfaceData& v) { declare(i, v); },
-      "what the patches of type 'interface' take from the coupler; absent: forces");
+      "data that patches of type 'interface' receive from the coupler; absent: forces");
   s.value("stiffness-tolerance", p.stiffness_tolerance)
       .range(0, 0.1)
       .doc(
-          "relative change of youngs-modulus-table and poissons-ratio-table at which the matrix is made "
-          "anew");
+          "relative change of youngs-modulus-table and poissons-ratio-table at which the matrix is "
+          "reassembled");
   s.value("thermoelastic-coupling", p.thermoelastic_coupling)
-      .doc("a solid that is stretched cools: heat of the strain rate, thesis (2.27), one step late");
+      .doc("cooling by stretching: heat of the strain rate, thesis (2.27), lagged by one step");
   s.check(
       [&] {
         return p.thermoelastic_coupling &&
                        !(p.expansion && p.heat && p.heat->analysis == HeatParameters::Analysis::transient)
-                   ? "it needs a transient 'heat' and 'thermal-expansion'"
+                   ? "it requires a transient 'heat' and 'thermal-expansion'"
                    : "";
       },
       "thermoelastic-coupling");
@@ -55,19 +55,19 @@ void declare_heat(config::Section& s, SolidParameters& p) {
   s.check(
       [&] {
         return takes_temperature(p) && (p.heat || p.temperature)
-                   ? "the temperature is taken at the interface; remove 'heat' or 'temperature'"
+                   ? "the temperature is received at the interface; remove 'heat' or 'temperature'"
                    : "";
       },
       "interface");
   s.check(
       [&] {
-        return p.heat && p.temperature ? "'heat' solves for the temperature; remove one of the two" : "";
+        return p.heat && p.temperature ? "'heat' computes the temperature; remove one of the two" : "";
       },
       "temperature");
   s.check(
       [&] {
         return p.expansion && !p.heat && !p.temperature && !takes_temperature(p)
-                   ? "thermal strain needs a temperature; give 'heat' or 'temperature'"
+                   ? "thermal strain needs a temperature; add 'heat' or 'temperature'"
                    : "";
       },
       "thermal-expansion");
@@ -94,16 +94,17 @@ void declare(config::Section& s, SolidParameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
+          "keys remain in metres");
   s.value("mesh-parameters", p.mesh_parameters)
-      .doc("numbers for names that the .geo defines by DefineConstant: {n: 8}");
+      .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
   s.value("dimension", p.dimension).range(2, 3).doc("2: cells in the plane z = 0, unit depth; 3");
   s.choice("plane", p.plane, {{"strain", Plane::strain}, {"stress", Plane::stress}})
-      .doc("what a 2-D scene is a cut of");
+      .doc("assumption of a 2-D scene");
   s.check(
       [&p] {
         return p.dimension == 3 && p.plane == Plane::stress
-                   ? "a 3-dimensional scene is no cut; remove this key"
+                   ? "only for 2-dimensional scenes; remove this key"
                    : "";
       },
       "plane");
@@ -113,8 +114,8 @@ void declare(config::Section& s, SolidParameters& p) {
             {"thermal", Analysis::thermal},
             {"buckling", Analysis::buckling}})
       .doc(
-          "static leaves out inertia; thermal conducts heat only; buckling is static with 'output: {buckling: 4}', or as many as "
-          "are asked for there");
+          "static neglects inertia; thermal conducts heat only; buckling is static with 'output: {buckling: "
+          "4}', or the number given there");
   if (p.analysis == Analysis::buckling) {
     p.analysis = Analysis::static_;
     p.output.buckling = 4;
@@ -123,12 +124,12 @@ void declare(config::Section& s, SolidParameters& p) {
   s.choice("kinematics", p.kinematics,
            {{"small-strain", Kinematics::small_strain}, {"finite-strain", Kinematics::finite_strain}})
       .doc(
-          "finite-strain: large rotations and strains, material.law by an energy, Newton's method on the symmetric "
-          "face gradient");
+          "finite-strain: large rotations and strains, hyperelastic material.law, Newton's method on the "
+          "symmetric face gradient");
   s.value("energy-momentum", p.energy_momentum)
       .doc(
-          "of dynamic finite strain with the trapezoidal rule: the stress of a step does exactly the work that the strain "
-          "energy changes by, so that energy and momenta are kept");
+          "for dynamic finite strain with the trapezoidal rule: the work of the stress in a step equals the "
+          "change of the strain energy, so energy and momenta are conserved");
   const bool is_elastic = p.analysis != SolidParameters::Analysis::thermal;
   s.optional_section<bool>(
       "material", p.material_given,
@@ -137,7 +138,7 @@ void declare(config::Section& s, SolidParameters& p) {
   s.map<ZoneMaterial>(
       "materials", p.materials,
       [is_elastic](config::Section& m, ZoneMaterial& v) { declare(m, v, is_elastic); }, "material",
-      "in place of material: several, each with its zones of the mesh; bonded where they meet");
+      "instead of material: several, each with its zones of the mesh; bonded where they meet");
   s.check(
       [&p] {
         return p.material_given.has_value() == p.materials.empty()
@@ -150,22 +151,22 @@ void declare(config::Section& s, SolidParameters& p) {
       "patch", "one entry for each patch of the mesh");
   s.map<PointLoad>(
       "point-loads", p.point_loads, [&p](config::Section& l, PointLoad& v) { declare(l, v, p.dimension); },
-      "load", "forces and moments at points of the surface, beside what the patches there have");
+      "load", "forces and moments at points of the surface, in addition to the patch loads");
   s.value("body-force", p.body_force)
       .unit("N/m^3")
       .plausible(1e-6, 1e11)
-      .doc("force per volume, one expression of x, y, z, t a component");
+      .doc("force per volume, one expression of x, y, z, t per component");
   s.value("gravity", p.gravity)
       .unit("m/s^2")
       .plausible(1e-3, 2000)
-      .doc("acceleration of gravity, one number a component");
+      .doc("acceleration of gravity, one number per component");
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s")
       .plausible(1e-9, 1e4)
-      .doc("velocity at the start, one expression of x, y, z a component");
+      .doc("initial velocity, one expression of x, y, z per component");
   s.section(
       "time-scheme", [&](config::Section& t) { declare(t, p.time_scheme); },
-      "integration in time of a dynamic analysis");
+      "time integration of a dynamic analysis");
   s.optional_section<SolidDamping>(
       "damping", p.damping, [](config::Section& d, SolidDamping& v) { declare(d, v); },
       "structural damping; dynamic analysis only");
@@ -173,14 +174,13 @@ void declare(config::Section& s, SolidParameters& p) {
   s.optional_section<TimeStepControl>(
       "time-step-control", p.step_control, [](config::Section& c, TimeStepControl& v) { declare(c, v); },
       "halves steps ('simulation.time-step' is the longest, 'max-step-halvings' limits) where the estimated "
-      "error of "
-      "the time scheme asks for it; dynamic analysis only");
+      "error of the time scheme requires it; dynamic analysis only");
   s.section(
       "solution-method", [&](config::Section& m) { declare(m, p.method); },
-      "how the equations of a step are solved");
+      "solution method for the equations of a step");
   s.map<SolidProbe>(
       "probes", p.probes, [](config::Section& q, SolidProbe& v) { declare(q, v); }, "probe",
-      "places whose displacement is written to probes.csv at each step");
+      "points whose displacement is written to probes.csv at each step");
   s.section(
       "output", [&](config::Section& o) { declare(o, p.output); }, "fields written at the output interval");
   check_together(s, p);

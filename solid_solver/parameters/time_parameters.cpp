@@ -22,7 +22,7 @@ void declare(config::Section& s, TimeStepControl& c) {
       .plausible(1e-15, 1)
       .positive()
       .required()
-      .doc("wanted accuracy of the displacement, rms over the volume; one step may add a tenth of it");
+      .doc("target accuracy of the displacement, rms over the volume; one step may contribute a tenth of it");
 }
 
 }  // namespace couplet

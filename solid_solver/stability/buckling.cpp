@@ -22,9 +22,9 @@ constexpr double loaded_shift_part = 1e-4;
 
 void check_buckling_of(const SolidBody& body) {
   if (!body.kernel().is_symmetric())
-    throw SolveFailure("It wants 'solution-method: {face-gradient: symmetric}'.");
-  if (!TiedMatrix::suits(body.mesh())) throw SolveFailure("It knows no periodic patches.");
-  if (!body.rigid().empty()) throw SolveFailure("It knows no patches that move as rigid bodies.");
+    throw SolveFailure("It requires 'solution-method: {face-gradient: symmetric}'.");
+  if (!TiedMatrix::suits(body.mesh())) throw SolveFailure("It does not support periodic patches.");
+  if (!body.rigid().empty()) throw SolveFailure("It does not support patches that move as rigid bodies.");
 }
 
 void make_largest_one(MPI_Comm comm, std::vector<double>& shape) {
@@ -61,7 +61,7 @@ double overload(const SolidBody& body, const Prestress& prestress) {
 Buckling find_buckling(const SolidBody& body, const Prestress& prestress, int n) {
   check_buckling_of(body);
   if (!(largest_stress(body, prestress) > 0))
-    throw SolveFailure("The loads leave no stress in the body; give it a load or a support that moves.");
+    throw SolveFailure("The loads cause no stress in the body; add a load or a moving support.");
   const Mesh& mesh = body.mesh();
   const auto stress = make_stress_stiffness(mesh, body.elastic(), prestress);
   TiedMatrix stiffness(mesh, body.elastic(), {});
@@ -101,7 +101,7 @@ Buckling find_buckling(const SolidBody& body, const Prestress& prestress, int n)
     result.shape.resize(kept);
     return result;
   }
-  throw SolveFailure("The {} lowest load factors could not be found with certainty; ask for fewer.", n);
+  throw SolveFailure("Cannot verify the {} lowest load factors; request fewer.", n);
 }
 
 EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, int n) {
@@ -119,7 +119,7 @@ EigenModes preloaded_modes(const SolidBody& body, const Prestress& prestress, in
   TiedMatrix loaded(mesh, body.elastic(), {.stress = 1, .prestress = &prestress});
   loaded.factorise();
   if (loaded.negative() > 0)
-    throw SolveFailure("The loaded equilibrium is not stable: {} motions have a negative stiffness.",
+    throw SolveFailure("The loaded equilibrium is unstable: {} modes have negative stiffness.",
                        loaded.negative());
   TiedMatrix shifted(mesh, body.elastic(),
                      {.mass = shift, .density = density, .stress = 1, .prestress = &prestress});

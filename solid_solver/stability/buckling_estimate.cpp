@@ -38,15 +38,15 @@ void tell_buckling(MPI_Comm comm, double factor, const char* how) {
        .severity = holds ? Severity::warning : Severity::wrong,
        .number = factor,
        .limit = holds ? BucklingEstimate::low : 1,
-       .sentence = fmt::format("buckling: the loads times {}{:.3g} (limit {:g}) buckle the body: {}", how,
+       .sentence = fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how,
                                factor, holds ? BucklingEstimate::low : 1,
-                               holds ? "linear theory leaves out that they soften it"
-                                     : "the equilibrium that was found does not hold"),
+                               holds ? "linear theory neglects the softening by these loads"
+                                     : "the computed equilibrium is unstable"),
        .advice =
            holds
-               ? "'kinematics: finite-strain' takes it into account; 'analysis: buckling' gives factors and shapes"
-               : "smaller loads, a stiffer body or more supports; 'analysis: buckling' gives factors and "
-                 "shapes, 'kinematics: finite-strain' with a small lateral load what comes after"});
+               ? "use 'kinematics: finite-strain'; 'analysis: buckling' gives factors and shapes"
+               : "reduce the loads, stiffen the body or add supports; 'analysis: buckling' gives factors "
+                 "and shapes, 'kinematics: finite-strain' with a small lateral load the post-buckling state"});
 }
 
 BucklingEstimate estimate_buckling(const SolidBody& body, const SolidFields& fields, double time,

@@ -39,12 +39,12 @@ void EquilibriumWatch::see(const SolidBody& body, const SolidStepper& stepper, c
        .number = stiffness,
        .limit = 0,
        .sentence = fmt::format(
-           "t = {:g} s: stability of the equilibrium: the least stiffness of the loaded body is {:.2g} of that of the "
-           "unloaded one (limit 0): this equilibrium does not hold; {}",
+           "t = {:g} s: stability of the equilibrium: min stiffness loaded / unloaded = {:.2g} (limit 0): "
+           "unstable; {}",
            now.time, stiffness, where),
        .advice =
-           "a small lateral load or imperfection leads to the equilibrium that holds; 'analysis: buckling' of the "
-           "linear body gives load factors and shapes"});
+           "a small lateral load or imperfection leads to the stable equilibrium; 'analysis: buckling' of "
+           "the linear body gives load factors and shapes"});
 }
 
 }  // namespace couplet

@@ -46,8 +46,8 @@ Heat::Heat(const Mesh& mesh, std::vector<HeatProperties> materials, const HeatPa
       matrix_(conduction_.make_matrix()) {
   if (is_steady() && !boundaries_.fix_the_level())
     throw Error(
-        "heat.boundaries: a steady temperature needs a level; give at least one patch 'type: temperature' or "
-        "'type: convection'.");
+        "heat.boundaries: a steady temperature is undetermined without a level; set at least one patch to "
+        "'type: temperature' or 'type: convection'.");
   properties_vary_ =
       std::ranges::any_of(materials_, [](const HeatProperties& m) { return !m.is_constant(); });
   solver_ = std::make_unique<LinearSolver>(
@@ -159,7 +159,7 @@ void Heat::solve(const Step& step, std::span<const double> source) {
     if (iteration == parameters_.max_iterations)
       throw SolveFailure(
           "The temperature at t = {:g} s still changes by {:.1e} of its range after {} iterations over the "
-          "properties that depend on it (tolerance {:.0e}); a smaller time step may help.",
+          "temperature-dependent properties (tolerance {:.0e}); try a smaller time step.",
           end, change, iteration, parameters_.tolerance);
     filled_for_ = -1;
   }
@@ -315,17 +315,17 @@ void Heat::judge(std::vector<std::string>& sentences) const {
   const double stored = m.density * m.specific_heat(level);
   if (!(stored > 0)) {
     sentences.push_back(
-        "heat storage left out (steady): give 'specific-heat' to have its time compared with the step.");
+        "heat storage neglected (steady): give 'specific-heat' to compare its time scale with the step.");
     return;
   }
   const double time = size * size * stored / m.conductivity(level);
   sentences.push_back(
-      fmt::format("heat storage left out (steady): heat needs about {:.2g} s to spread through the solid, a "
-                  "step is {:.2g} "
-                  "s (Fourier number {:.2g}); {}.",
+      fmt::format("heat storage neglected (steady): heat needs about {:.2g} s to spread through the solid, "
+                  "a step takes {:.2g} s (Fourier number {:.2g}): {}.",
                   time, state_.dt, state_.dt / time,
-                  state_.dt > 3 * time ? "leaving it out was sound"
-                                       : "use 'analysis: transient' if the loads change that fast"));
+                  state_.dt > 3 * time ? "justified"
+                                       : "not justified if the loads change that fast; use 'analysis: "
+                                         "transient'"));
 }
 
 void Heat::save(CheckpointWriter& file) const {

@@ -26,7 +26,7 @@ HeatBoundaries::HeatBoundaries(const Mesh& mesh, const HeatParameters& parameter
     if (!patch.bonded) names.push_back(patch.name);
   for (const auto& [name, boundary] : parameters.boundaries)
     if (!mesh.find_patch(name))
-      throw Error("heat.boundaries.{}: the mesh has no patch of this name. {}", name,
+      throw Error("heat.boundaries.{}: the mesh has no patch with this name. {}", name,
                   did_you_mean(name, names, "patches"));
   for (const std::string& name : names) {
     OnPatch here;

@@ -70,7 +70,7 @@ void HeatErrors::see_step(const HeatState& before, const HeatState& now) {
   for (std::size_t c = 0; c < n; ++c) rate[c] = (now.cells[c] - before.cells[c]) / now.dt;
   // Rates are those of the middles of steps, as far apart as half of both.
   if (dt_ > 0 && rate_.size() != n)
-    throw Error("The checkpoint's errors of steps are those of another mesh. Use an earlier one.");
+    throw Error("The checkpoint's step errors are from another mesh. Use an earlier checkpoint.");
   if (dt_ > 0)  // the same on all ranks, also on one without cells
     steps_.add(rate_, rate, 0.5 * (now.dt + dt_), dt_, size(now.cells, level_),
                [this](std::span<const double> cells) { return root_mean_square(cells); });
@@ -123,7 +123,7 @@ std::vector<double> HeatErrors::state() const {
 
 void HeatErrors::restore(std::span<const double> state) {
   if (state.empty()) return;
-  SavedNumbers saved(state, "errors of steps");
+  SavedNumbers saved(state, "step errors");
   begun_ = saved.real() != 0, level_ = saved.real(), dt_ = saved.real();
   const std::span<const double> rate = saved.next(saved.count_of(1));
   rate_.assign(rate.begin(), rate.end());

@@ -52,9 +52,9 @@ void HeatSwing::accepted(const Mesh& mesh, const std::vector<double>& before,
        .number = size / (highest_ - lowest_),
        .limit = noticeable,
        .sentence = fmt::format(
-           "t = {:.6g} s: the temperature swings to and fro from step to step, by {:.3g} K (root mean square) of "
-           "{:.3g} K between the coldest and the hottest: 'heat: {{scheme: trapezoidal}}' does not damp what a "
-           "step does not resolve. 'scheme: three-point' or 'euler' does, or take shorter steps.",
+           "t = {:.6g} s: the temperature oscillates from step to step: amplitude {:.3g} K (rms) in a range "
+           "of {:.3g} K: 'heat: {{scheme: trapezoidal}}' does not damp unresolved modes. Use 'scheme: "
+           "three-point' or 'euler', or shorter steps.",
            time, size, highest_ - lowest_)});
 }
 

@@ -21,7 +21,7 @@ std::vector<std::string> symmetry_patches(const SolidParameters& parameters) {
 
 Property property(const std::optional<config::ExpressionText>& text, const std::string& key,
                   const char* needed_by) {
-  if (!text) throw Error("material.{}: this key is missing; {} needs it.", key, needed_by);
+  if (!text) throw Error("material.{}: this key is missing; {} requires it.", key, needed_by);
   return Property(*text, "material." + key);
 }
 
