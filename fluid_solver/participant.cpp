@@ -68,23 +68,21 @@ void FluidParticipant<D>::set_up_motion() {
   if (!parameters.motion) {
     if (!bodies.empty())
       throw Error(
-          "boundaries.{}: a wall of type 'body' moves as the section 'motion' says, which is not there.",
+          "boundaries.{}: a wall of type 'body' moves by the section 'motion', which is missing.",
           bodies.front()->name);
     return;
   }
   if (motion_)
     throw Error(
-        "motion: this fluid has a mesh mover, which moves its mesh already. Remove one of them; a wall that "
-        "a mesh mover "
-        "moves by itself is of type 'moving-wall' here.");
+        "motion: this fluid has a mesh mover, which already moves its mesh. Remove one of them; a wall that "
+        "a mesh mover moves by itself has type 'moving-wall' here.");
   prescribed_ = std::make_unique<PrescribedMotion>(*parameters.motion, D);
   const double start = fluid_->state().time;
   const double largest = max(mesh_.comm, prescribed_->largest_displacement(mesh_.reference_points, start));
   if (largest > 0)
     throw Error(
         "motion: at t = {:g} s it displaces the mesh by up to {:.3g} m, but the fluid starts from the "
-        "reference "
-        "configuration. Subtract the value at the start, or multiply with a ramp.",
+        "reference configuration. Subtract the initial value, or multiply by a ramp.",
         start, largest);
 }
 
@@ -116,9 +114,9 @@ void FluidParticipant<D>::tell_impulse() const {
   const double speed = set_body_start(mesh_, boundary, *fluid_->parameters().motion, step_.time, w, no_turn);
   if (speed > 0 && comm_rank(mesh_.comm) == 0)
     log::warn(
-        "motion: at t = {:g} s its bodies move with {:.3g} m/s already, in a fluid at rest: the first step is an impulse "
-        "(its forces are that over the step's size). Let the motion grow from rest (ramp), or give the fluid's velocity "
-        "as 'initial-velocity'.",
+        "motion: at t = {:g} s its bodies already move at {:.3g} m/s in a fluid at rest, so the first step "
+        "is an impulse (its forces scale with one over the step). Let the motion start from rest (ramp), or "
+        "set the fluid's 'initial-velocity'.",
         step_.time, speed);
 }
 
@@ -231,10 +229,10 @@ void FluidParticipant<D>::doubt_given_step(double size) {
        .number = size / by.limit,
        .limit = far_above,
        .sentence = fmt::format(
-           "t = {:.6g} s: time-step: sub-steps of {:.3g} s are {:.1f} times what friction in cell {} at ({:.4g}, {:.4g}, "
-           "{:.4g}) m allows an implicit viscous term on its cells: pressures and forces grow out of nothing",
+           "t = {:.6g} s: time-step: sub-steps of {:.3g} s are {:.1f} times the limit of an implicit "
+           "viscous term in cell {} at ({:.4g}, {:.4g}, {:.4g}) m: pressures and forces grow spuriously",
            step_.time + step_.dt, size, size / by.limit, by.cell, by.place.x(), by.place.y(), by.place.z()),
-       .advice = fmt::format("leave 'time-step' out, or give at most {:.3g} s", by.limit)});
+       .advice = fmt::format("remove 'time-step', or set at most {:.3g} s", by.limit)});
 }
 
 /// One line where a step took many more parts than when it was last told, or many fewer, with the cell that
@@ -256,8 +254,8 @@ void FluidParticipant<D>::tell_sub_steps() {
   const StepLimiter limiter = fluid_->step_limiter();
   if (comm_rank(mesh_.comm) == 0)
     log::info(
-        "t = {:.6g} s: {} sub-steps of {:.3g} s; {} in cell {} at ({:.4g}, {:.4g}, {:.4g}) m allows {:.3g} s, of "
-        "which {:.0f} % are used",
+        "t = {:.6g} s: {} sub-steps of {:.3g} s; {} in cell {} at ({:.4g}, {:.4g}, {:.4g}) m limits them to "
+        "{:.3g} s, of which {:.0f} % are used",
         end, now, step_.dt / now, limiter.friction ? "friction" : "convection", limiter.cell,
         limiter.place.x(), limiter.place.y(), limiter.place.z(), limiter.limit,
         100 * fluid_->parameters().safety_factor);
@@ -331,18 +329,17 @@ std::vector<std::string> FluidParticipant<D>::finish() {
   std::vector<std::string> sentences;
   if (statistics_ && !(statistics_->duration() > 0))
     sentences.push_back(
-        fmt::format("Running statistics begin at t = {:g} s: this run ended before, there are none.",
+        fmt::format("Running statistics start at t = {:g} s, but this run ended before: there are none.",
                     fluid_->parameters().statistics->start));
   if (steps_ > 0)
     sentences.push_back(fmt::format(
-        "Semi-implicit coupling: friction was computed anew with a better wall velocity in {} of {} steps; "
-        "what it "
-        "missed at a step's end was at most {:.2g} of the load{}",
+        "Semi-implicit coupling: the friction was recomputed with an updated wall velocity in {} of {} "
+        "steps; max error at the end of a step {:.2g} of the load{}",
         renewed_steps_, steps_, largest_unseen_,
         largest_unseen_ < near_limit
             ? "."
-            : ": the scheme is near its limit, where friction drags more than a third of all mass that "
-              "moves; use 'scheme: implicit' or a smaller step."));
+            : ": the scheme is near its limit, where friction drags more than a third of the moving mass; "
+              "use 'scheme: implicit' or a smaller step."));
   return sentences;
 }
 

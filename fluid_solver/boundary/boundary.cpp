@@ -27,8 +27,9 @@ void check_names(const Mesh& mesh, const FluidParameters& parameters) {
                   did_you_mean(name, patches, "patches"));
   if (!missing.empty())
     throw Error(
-        "boundaries: the mesh '{}' has patches without a boundary: {}. Give each of them a type (inlet, "
-        "outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface or body).",
+        "boundaries: the mesh '{}' has patches without a boundary condition: {}. Give each of them a type "
+        "(inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface or "
+        "body).",
         parameters.mesh, join(missing));
 }
 
@@ -39,7 +40,7 @@ FaceKind kind_of(BoundaryType type) {
 
 Expression turning_of(const BoundaryParameters& b, const std::string& where) {
   Expression speed(b.rotation->speed, where + ".rotation.speed");
-  if (speed.uses_space()) throw Error("{}.rotation.speed: it may depend on t alone.", where);
+  if (speed.uses_space()) throw Error("{}.rotation.speed: it may depend on t only.", where);
   return speed;
 }
 
@@ -108,7 +109,7 @@ void Boundary<D>::add_patch(const Mesh& mesh, const Patch& patch, const Boundary
       return;
     case BoundaryType::periodic:
       if (sum(comm_, GlobalIndex(patch.count)) > 0)
-        throw Error("{}: the mesh was not joined at this periodic patch.", where);
+        throw Error("{}: the mesh is not joined at this periodic patch.", where);
       return;
     case BoundaryType::inlet:
     case BoundaryType::moving_wall:
@@ -139,8 +140,8 @@ bool Boundary<D>::set_wall_mass(std::span<const Index> boundary_faces, std::span
     if (!asked_[b]) continue;
     if (!(masses[i] > 0) || !std::isfinite(masses[i]))
       throw Error(
-          "impedance: structure: the structure gave a 'surface-density' of {:g} kg/m^2 at a face of the interface; above "
-          "0 is needed.",
+          "impedance: structure: the structure gave a 'surface-density' of {:g} kg/m^2 at an interface "
+          "face; it must be above 0.",
           masses[i]);
     changed = changed || wall_mass_[b] != masses[i];
     wall_mass_[b] = masses[i];

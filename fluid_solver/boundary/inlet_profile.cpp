@@ -46,13 +46,12 @@ InletShape<D> inlet_shape(const Mesh& mesh, const Patch& patch, InletProfile pro
   const Extent e = extent_of(mesh, patch);
   if (!(e.area.norm() > (1 - flat_enough) * e.size))
     throw Error(
-        "boundaries.{}: the patch is not flat, so 'mean-speed' has no direction. Give a 'velocity' instead.",
+        "boundaries.{}: the patch is not flat, so 'mean-speed' has no direction. Give a 'velocity'.",
         patch.name);
   if (D == 3 && profile == InletProfile::parabolic &&
       std::abs(e.size / (std::numbers::pi * e.radius * e.radius) - 1) > round_enough)
     throw Error(
-        "boundaries.{}: the patch is not round, so there is no parabolic profile for it. Give a 'velocity' "
-        "instead.",
+        "boundaries.{}: the patch is not round, so a parabolic profile is not defined. Give a 'velocity'.",
         patch.name);
   InletShape<D> shape;
   shape.direction = -e.area.normalized().template head<D>();

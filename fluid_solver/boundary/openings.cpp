@@ -48,12 +48,12 @@ std::vector<std::string> Openings::doubts() const {
     doubts.push_back(
         openings_[i].inlet
             ? fmt::format(
-                  "inlet '{}': {:.3g} m^3 left through it (expected: none): implausible; its velocity points into the "
-                  "domain: check the signs",
+                  "inlet '{}': outflow {:.3g} m^3 (expected: none): implausible; its velocity must point "
+                  "into the domain: check the signs",
                   openings_[i].patch->name, wrong)
             : fmt::format(
-                  "outlet '{}': {:.3g} m^3 entered through it (expected: none): questionable; how fast fluid enters an "
-                  "outlet is not given: make it an inlet, or give the pressure that pushes",
+                  "outlet '{}': inflow {:.3g} m^3 (expected: none): questionable; the velocity of inflow "
+                  "through an outlet is undetermined: make it an inlet, or prescribe the driving pressure",
                   openings_[i].patch->name, wrong));
   }
   return doubts;

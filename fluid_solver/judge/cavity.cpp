@@ -49,14 +49,15 @@ void check_cavity(const Fluid<D>& fluid, Scheme scheme) {
   const bool closed = boundary.closed() && !boundary.has_convective_outlet();
   if (fluid.parameters().volume_level == VolumeLevelBy::structure) {
     if (scheme == Scheme::standalone)
-      throw Error("volume-level: structure: this fluid runs alone, there is no structure; remove the key.");
+      throw Error("volume-level: structure: this fluid runs alone, without a structure; remove the key.");
     if (boundary.yields())
       throw Error(
-          "volume-level: structure: walls whose surface-density is given take their level from the pressure equation; "
-          "remove one of the two keys.");
+          "volume-level: structure: walls with a surface-density get their level from the pressure "
+          "equation; remove one of the two keys.");
     if (!closed || boundary.interface_patches().empty() || !boundary.body_patches().empty())
       throw Error(
-          "volume-level: structure: this fluid {}, so no structure can set its pressure level; remove the key.",
+          "volume-level: structure: this fluid {}, so a structure cannot set its pressure level; remove the "
+          "key.",
           !closed                           ? "has an outlet"
           : boundary.body_patches().empty() ? "has no wall of type interface"
                                             : "has bodies that move as prescribed");
@@ -68,9 +69,9 @@ void check_cavity(const Fluid<D>& fluid, Scheme scheme) {
   if (share <= largest_open_share) return;
   throw Error(
       "boundaries: this fluid has no outlet, and its interface is a wall of the cavity ({:.3g} of its area "
-      "{:.3g} m^2 faces one way): it could only move by changing the volume of an incompressible fluid. The pressure "
-      "level that holds the volume is not computed; give the key 'volume-level: structure', or an outlet (a small one "
-      "far from the interface will do).",
+      "{:.3g} m^2 faces one way): it could move only by changing the volume of an incompressible fluid. The "
+      "pressure level that conserves the volume is not computed; set 'volume-level: structure', or add an "
+      "outlet (a small one far from the interface is enough).",
       share, area);
 }
 

@@ -152,7 +152,7 @@ void FluidErrorEstimate<D>::restore(std::span<const double> state) {
   seen_ = 0, judged_ = false, steps_ = {};
   u_.clear(), rate_.clear(), rate_change_.clear();
   if (state.empty()) return;
-  SavedNumbers saved(state, "errors of steps");
+  SavedNumbers saved(state, "step errors");
   seen_ = int(saved.count(1e9)), judged_ = saved.real() != 0, dt_old_ = saved.real();
   const std::size_t n = saved.count_of(2 * D);
   const Vectors<D>& u = fluid_.state().u;

@@ -94,13 +94,13 @@ void GapPockets<D>::check(const Placement<D>& at, const Vectors<D>& w, double ti
       if (sizes[n * (1 + g) + i] > 0) names.push_back(given_[g]->name);
     if (in_blocked_cells)
       throw SchemeFailure(
-          "gaps: at t = {:.6g} s the closed gap reaches '{}', which would let {:.3g} m^3/s through its blocked cells. "
-          "Let the gap be narrower than 'opening' away from it only, or let its velocity go to zero before.",
+          "gaps: at t = {:.6g} s the closed gap reaches '{}', where {:.3g} m^3/s would cross its blocked "
+          "cells. Keep the gap wider than 'opening' there, or reduce that velocity to zero before it closes.",
           time, join(names), sizes[i]);
     throw SchemeFailure(
-        "gaps: at t = {:.6g} s the closed gap cuts '{}' off from every outlet, but {:.3g} m^3/s are to flow {} there: "
-        "what flows in has nowhere to go. Give that part of the fluid an outlet, let the velocity go to zero before "
-        "the gap closes, or give a pressure in its place (type outlet).",
+        "gaps: at t = {:.6g} s the closed gap separates '{}' from every outlet, but {:.3g} m^3/s are to "
+        "flow {} there, which cannot be balanced. Give that part of the fluid an outlet, reduce the "
+        "velocity to zero before the gap closes, or prescribe a pressure instead (type outlet).",
         time, join(names), std::abs(sums[i]), sums[i] < 0 ? "in" : "out");
   }
 }
@@ -116,8 +116,8 @@ std::string GapPockets<D>::cause(const Placement<D>& at) const {
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, D + 1, MPI_DOUBLE, MPI_SUM, mesh_.comm);
   return fmt::format(
-      "A closed gap has shut {} cells around ({:.4g}, {:.4g}, {:.4g}) m off from every outlet: what their walls press has "
-      "nowhere to go. Give that part of the fluid an outlet, or let it be blocked, too.",
+      "A closed gap has separated {} cells around ({:.4g}, {:.4g}, {:.4g}) m from every outlet: the volume "
+      "that their walls displace cannot leave. Give that part of the fluid an outlet, or block it as well.",
       GlobalIndex(sums[D]), sums[0] / sums[D], sums[1] / sums[D], D == 3 ? sums[2] / sums[D] : 0.0);
 }
 

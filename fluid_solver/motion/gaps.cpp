@@ -47,7 +47,7 @@ Gaps<D>::Gaps(const Mesh& mesh, const FluidParameters& parameters)
         throw Error("gaps.{}.between: the mesh has no patch '{}'. {}", name, patch,
                     did_you_mean(patch, there, "patches"));
       if (!is_wall(parameters.boundaries.at(patch).type))
-        throw Error("gaps.{}.between: '{}' is no wall; a gap lies between two walls.", name, patch);
+        throw Error("gaps.{}.between: '{}' is not a wall; a gap lies between two walls.", name, patch);
       walls_.back()[side].patches.push_back(mesh.find_patch(patch));
     }
   }

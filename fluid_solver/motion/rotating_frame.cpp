@@ -16,7 +16,7 @@ RotatingFrame<D>::RotatingFrame(const RotationParameters& p)
     : speed_(p.speed, "rotating-frame.speed"),
       centre_(p.centre),
       axis_(D == 2 ? Vec3(Vec3::UnitZ()) : Vec3(p.axis.normalized())) {
-  if (speed_.uses_space()) throw Error("rotating-frame.speed: it may depend on t alone.");
+  if (speed_.uses_space()) throw Error("rotating-frame.speed: it may depend on t only.");
 }
 
 template <int D>

@@ -32,7 +32,7 @@ void FluidOutput<D>::check_coefficients() const {
   for (const auto& [name, c] : fluid_.parameters().output.coefficients)
     for (const std::string& patch : c.patches)
       if (std::ranges::find(names, patch) == names.end())
-        throw Error("output.coefficients.{}.patches: '{}' is no wall. {}", name, patch,
+        throw Error("output.coefficients.{}.patches: '{}' is not a wall. {}", name, patch,
                     did_you_mean(patch, names, "walls"));
 }
 

@@ -74,11 +74,11 @@ Sample::Sample(const Mesh& mesh, std::string name, const SampleParameters& p) : 
   if (probes_.empty()) try {
       Probe(mesh, name_, p.from);
     } catch (const Error& outside) {
-      throw Error("output.samples.{}: none of its places lies in the mesh. {}", name_, outside.what());
+      throw Error("output.samples.{}: none of its points is in the mesh. {}", name_, outside.what());
     }
   const auto asked = std::size_t(p.points) * std::size_t(rows);
   if (probes_.size() < asked && comm_rank(mesh.comm) == 0)
-    log::info("output.samples.{}: {} of {} places lie outside the mesh and are left out", name_,
+    log::info("output.samples.{}: {} of {} points are outside the mesh and are omitted", name_,
               asked - probes_.size(), asked);
 }
 

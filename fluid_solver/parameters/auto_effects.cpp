@@ -46,17 +46,17 @@ EffectChoice turbulence(const FluidParameters& p, const MeshFacts& mesh, double 
     return EffectChoice{"turbulence", "", "none, laminar", std::move(reason), false};
   };
   if (mesh.dim == 2) return without("eddies are three-dimensional");
-  if (!(speed > 0)) return without("no boundary and no start names a speed");
+  if (!(speed > 0)) return without("no boundary or initial condition sets a speed");
   const double nu = p.viscosity / p.density;
-  if (!(nu > 0)) return without("a fluid without friction");
+  if (!(nu > 0)) return without("inviscid fluid");
   const double reynolds = speed * mesh.smallest_side() / nu, cell = speed * mesh.mean_cell / nu;
   if (reynolds < laminar)
     return without(fmt::format("Reynolds number {:.3g}, below {:g}", reynolds, laminar));
   if (cell < resolved)
     return without(
-        fmt::format("the mesh resolves it: Reynolds number {:.3g}, {:.2g} of a cell", reynolds, cell));
+        fmt::format("the mesh resolves it: Reynolds number {:.3g}, {:.2g} per cell", reynolds, cell));
   return {"turbulence", "{model: wale}", "wale",
-          fmt::format("Reynolds number {:.3g}, {:.3g} of a cell: the mesh does not resolve the eddies",
+          fmt::format("Reynolds number {:.3g}, {:.3g} per cell: the mesh does not resolve the eddies",
                       reynolds, cell),
           false};
 }
@@ -78,13 +78,13 @@ EffectChoice viscous(const FluidParameters& p, const MeshFacts& mesh, double spe
 }
 
 EffectChoice mesh_motion(const FluidParameters& p, const ChoiceScene& scene) {
-  if (scene.has_mover) return {"", "", "moving mesh", "'coupling.mesh' names a mover", false};
+  if (scene.has_mover) return {"", "", "moving mesh", "'coupling.mesh' names a mesh mover", false};
   if (p.motion) return {"", "", "moving mesh", "'motion' prescribes it", false};
   const bool interface = std::ranges::any_of(
       p.boundaries, [](const auto& b) { return b.second.type == BoundaryType::interface; });
   if (scene.coupled && interface)
     return {"", "", "mesh at rest",
-            "no mover: the run says when the interface moves by more than a tenth of a cell", false};
+            "no mesh mover: the run reports if the interface moves by more than a tenth of a cell", false};
   return {"", "", "mesh at rest", "nothing moves", false};
 }
 
@@ -94,7 +94,7 @@ std::vector<EffectChoice> choose_effects(const FluidParameters& p, const MeshFac
                                          const ChoiceScene& scene) {
   const double speed = speed_of(p, mesh, scene.end_time);
   return {{"dimension", std::to_string(mesh.dim), std::to_string(mesh.dim),
-           mesh.dim == 2 ? "the mesh has cells in the plane only" : "the mesh has volumes", false},
+           mesh.dim == 2 ? "the mesh has two-dimensional cells only" : "the mesh has volumes", false},
           turbulence(p, mesh, speed),
           viscous(p, mesh, speed),
           mesh_motion(p, scene)};

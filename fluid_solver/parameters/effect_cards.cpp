@@ -32,17 +32,17 @@ V judge_turbulence(const S&, const E& e) {
   const bool resolved_walls = e.largest_yplus > 0 && e.largest_yplus <= 1;
   return EffectVerdict{
       "", e.largest_peclet, resolved_walls ? 250. : 50.,
-      fmt::format("the largest cell Reynolds number is {:.3g}, the largest y+ {:.3g}", e.largest_peclet,
+      fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", e.largest_peclet,
                   e.largest_yplus),
-      "steep layers may be finer than the mesh: refine it, or give 'turbulence' if the flow is turbulent"};
+      "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is turbulent"};
 }
 
 V judge_walls(const S&, const E& e) {
   if (std::isnan(e.largest_yplus)) return {};
   return EffectVerdict{"", e.largest_yplus, 2,
-                       fmt::format("the largest y+ is {:.3g}, the largest cell Reynolds number {:.3g}",
+                       fmt::format("max y+ = {:.3g}, max cell Reynolds number = {:.3g}",
                                    e.largest_yplus, e.largest_peclet),
-                       "there is no wall function: y+ should be about 1, refine at the walls"};
+                       "there is no wall function: refine at the walls to y+ of about 1"};
 }
 
 std::optional<Sound> sound_in(const S& s) {
@@ -58,11 +58,11 @@ V judge_compressibility(const S& s, const E& e) {
       .effect = "",
       .number = mach,
       .threshold = 0.3,
-      .sentence = fmt::format("the largest speed, {:.3g} m/s, is {:.2g} of that of sound in {} ({:.4g} m/s)",
+      .sentence = fmt::format("max speed {:.3g} m/s = {:.2g} of the speed of sound in {} ({:.4g} m/s)",
                               e.largest_speed, mach, sound->of, sound->speed),
       .recommendation =
-          "density would change by more than 5 %, which this program does not know; is the speed of sound "
-          "another, give it in 'compressibility'"};
+          "density would change by more than 5 %: use a compressible solver; if the speed of sound differs, "
+          "set it in 'compressibility'"};
 }
 
 // Where flow is stopped or driven faster than waves cross the domain the pressure rises as rho c du or rho L
@@ -72,10 +72,10 @@ EffectVerdict judge_density(const S& s, const E& e, const Sound& sound) {
   return {.effect = "",
           .number = change,
           .threshold = 0.05,
-          .sentence = fmt::format("pressures {:.3g} Pa apart would change the density of {} by {:.2g} of it",
+          .sentence = fmt::format("pressure range {:.3g} Pa: density change of {} = {:.2g}",
                                   e.pressure_range, sound.of, change),
           .recommendation =
-              "flow changes faster here than waves of pressure would let it; this program knows no waves"};
+              "the flow changes faster than pressure waves would allow: use a compressible solver"};
 }
 
 // What the walls displace goes partly into compression, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
@@ -88,10 +88,10 @@ EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
       .number = share,
       .threshold = 0.1,
       .sentence =
-          fmt::format("compression of {} takes up {:.2g} of the volume that the walls move", sound.of, share),
+          fmt::format("compression of {} / volume displaced by the walls = {:.2g}", sound.of, share),
       .recommendation =
-          "the fluid yields like a spring beside the structure, which this program does not know: frequencies and "
-          "stability of the coupled motion may be others"};
+          "the compliance of the fluid may change frequencies and stability of the coupled motion: use a "
+          "compressible solver"};
 }
 
 // A column of length L answers a motion of rate omega as tan(omega L/c) / (omega L/c): 3 % more than without waves at 0.3.
@@ -102,10 +102,9 @@ EffectVerdict judge_wave_time(const S&, const E& e, const Sound& sound) {
       .number = phase,
       .threshold = 0.3,
       .sentence = fmt::format(
-          "sound in {} crosses the fluid in {:.2g} s, {:.2g} of the time 1/omega = {:.2g} s in which "
-          "the walls move",
+          "sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of the wall motion",
           sound.of, e.size / sound.speed, phase, 1 / e.wall_rate),
-      .recommendation = "waves of pressure come back while the walls move, which this program does not know"};
+      .recommendation = "pressure waves return while the walls move: use a compressible solver"};
 }
 
 /// The worst of the three, by its limit.
@@ -132,17 +131,17 @@ V judge_energy(const S&, const E& e) {
       .number = e.energy_excess,
       .threshold = 0.1,
       .sentence = fmt::format(
-          "the flow has {:.2g} of its kinetic energy from no work of boundaries and forces", e.energy_excess),
-      .recommendation = "the time scheme makes it: leave 'time-step' out or make it smaller",
+          "kinetic energy without work of boundaries or forces = {:.2g} of the total", e.energy_excess),
+      .recommendation = "the time scheme generates it: remove 'time-step' or reduce it",
       .wrong_from = 0.5};
 }
 
 V judge_still_mesh(const S& s, const E& e) {
   if (s.moving_mesh || std::isnan(e.wall_displacement)) return {};
   return EffectVerdict{"", e.wall_displacement, 0.1,
-                       fmt::format("the interface moves by up to {:.2g} of the height of the cell beside it",
+                       fmt::format("max interface displacement / adjacent cell height = {:.2g}",
                                    e.wall_displacement),
-                       "give the case a mesh mover: 'coupling: {mesh: {participant: ...}}'"};
+                       "add a mesh mover: 'coupling: {mesh: {participant: ...}}'"};
 }
 
 // A wall that moves across itself on a mesh that rests is an inlet.
@@ -150,66 +149,66 @@ V judge_moving_walls(const S&, const E& e) {
   if (std::isnan(e.through_walls)) return {};
   return EffectVerdict{
       "", e.through_walls, 0.1,
-      fmt::format("of the speed of a moving wall {:.2g} goes through the wall", e.through_walls),
-      "its mesh rests, so that fluid comes in or leaves there: let the wall move along itself, "
-      "call it an inlet, or move it with 'motion'"};
+      fmt::format("a moving wall has a normal velocity of {:.2g} times its speed", e.through_walls),
+      "its mesh is at rest, so fluid crosses the wall: use a tangential velocity, make it an inlet, or move "
+      "it with 'motion'"};
 }
 
 V judge_blocked(const S&, const E& e) {
   if (std::isnan(e.blocked_cells)) return {};
   return EffectVerdict{"", e.blocked_cells, 0.5,
-                       fmt::format("gaps block {:.2g} of all cells", e.blocked_cells),
-                       "is the 'opening' given in metres, and smaller than the channel?"};
+                       fmt::format("blocked by gaps: {:.2g} of all cells", e.blocked_cells),
+                       "is 'opening' in metres, and smaller than the channel?"};
 }
 
 const std::array cards{
     FluidCard{"turbulence model",
               "`turbulence`",
               [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },
-              {"an eddy viscosity a cell, a velocity gradient a step", 62, 0.78},
-              "largest cell Reynolds number, 50, or 250 where walls are resolved (y+ up to 1)",
+              {"an eddy viscosity per cell, a velocity gradient per step", 62, 0.78},
+              "max cell Reynolds number, 50, or 250 with resolved walls (y+ up to 1)",
               judge_turbulence},
     FluidCard{"resolved walls",
               "`turbulence`",
               [](const S& s) { return when(s.parameters.turbulence.has_value(), "turbulence"); },
               {},
-              "with a turbulence model: largest y+, 2",
+              "with a turbulence model: max y+, 2",
               judge_walls,
               true},
     FluidCard{"balance of the kinetic energy",
               "always",
               [](const S&) { return std::string("always"); },
               {"a loop over the boundary", 0, 0},
-              "kinetic energy that no work explains, over all, 0.1",
+              "kinetic energy without work, of the total, 0.1",
               judge_energy,
               true},
     FluidCard{"compressibility",
               "not available here",
               [](const S&) { return std::string(); },
               {},
-              "largest speed over that of sound (`compressibility`, or by density and viscosity), 0.3",
+              "max speed over the speed of sound (`compressibility`, or by density and viscosity), 0.3",
               judge_compressibility},
     FluidCard{
         "waves of pressure",
         "not available here",
         [](const S&) { return std::string(); },
         {},
-        "density change by the range of pressure, 0.05; of moving walls: volume taken up by compression over that of "
-        "their stroke, 0.1, and time of sound across the fluid over 1/omega of their motion, 0.3",
+        "density change by the pressure range, 0.05; for moving walls: compressed over displaced volume, "
+        "0.1, and travel time of sound across the fluid over 1/omega of the wall motion, 0.3",
         judge_waves},
     FluidCard{
         "mesh motion",
         "a mesh mover in `coupling.mesh`, or `motion`",
         [](const S& s) { return when(s.moving_mesh, s.parameters.motion ? "motion" : "coupling.mesh"); },
         {"points, swept volumes, geometry of each step; without `motion` the process mesh_mover", 0, 0},
-        "of an interface: largest displacement over the cell's height, 0.1",
+        "for an interface: max displacement over the cell height, 0.1",
         judge_still_mesh},
     FluidCard{"frame that moves",
-              "`motion` with a `translation` alone",
+              "`motion` with only a `translation`",
               [](const S& s) {
                 return when(s.parameters.motion && s.parameters.motion->translates(), "motion.translation");
               },
-              {"nothing: geometry, pressure matrix and factors are made once", 0, 0}},
+              {"nothing: geometry, pressure matrix and factors are computed once", 0, 0}},
     FluidCard{"frame that turns",
               "`rotating-frame`",
               [](const S& s) { return when(s.parameters.rotating_frame.has_value(), "rotating-frame"); },
@@ -217,11 +216,11 @@ const std::array cards{
     FluidCard{"coupling load",
               "a boundary of `type: interface`",
               [](const S& s) { return when(s.coupled && has_interface(s), "a boundary of type interface"); },
-              {"forces a face of the interface", 0, 0}},
+              {"forces per interface face", 0, 0}},
     FluidCard{"implicit sub-steps bounded by accuracy",
               "`implicit-stretch`",
               [](const S& s) { return when(s.parameters.implicit_stretch.has_value(), "implicit-stretch"); },
-              {"up to as many more sub-steps as stability would let them be longer", 0, 0}},
+              {"up to as many more sub-steps as the stability limit exceeds this bound", 0, 0}},
     FluidCard{
         "walls that yield (Robin interface)",
         "`surface-density` or `impedance` of a boundary of type interface",
@@ -230,23 +229,23 @@ const std::array cards{
               std::ranges::any_of(s.parameters.boundaries, [](const auto& b) { return b.second.foresees(); }),
               "surface-density");
         },
-        {"two loops over the interface a pass, a pressure a face over the coupling; pressure matrix anew where the "
-         "step is cut",
+        {"two loops over the interface per pass, a pressure per face in the coupling; a new pressure matrix "
+         "where the step is halved",
          0, 0}},
     FluidCard{"pressure level of a closed fluid",
               "`volume-level: structure`",
               [](const S& s) {
                 return when(s.parameters.volume_level == VolumeLevelBy::structure, "volume-level: structure");
               },
-              {"the structure's step once or twice more a pass, an inflow a face of the interface", 0, 0}},
+              {"one or two more structure steps per pass, an inflow per interface face", 0, 0}},
     FluidCard{"immersed bodies",
               "`bodies`",
               [](const S& s) { return when(!s.parameters.bodies.empty(), "bodies"); },
-              {"a mark a cell and face", 350, 0.58}},
+              {"a flag per cell and face", 350, 0.58}},
     FluidCard{"gaps that close",
               "`gaps`",
               [](const S& s) { return when(!s.parameters.gaps.empty(), "gaps"); },
-              {"a mark a cell; the distance of two walls where they are near each other", 40, 0},
+              {"a flag per cell; the distance of the two walls where they are close", 40, 0},
               "share of the cells that they block, 0.5",
               judge_blocked,
               true},
@@ -258,7 +257,7 @@ const std::array cards{
                 return std::string();
               },
               {},
-              "on a mesh at rest: flow through them over their speed and area, 0.1",
+              "on a mesh at rest: flow through them over speed times area, 0.1",
               judge_moving_walls,
               true},
     FluidCard{"body force",
@@ -270,17 +269,17 @@ const std::array cards{
     FluidCard{"running statistics",
               "`statistics`",
               [](const S& s) { return when(s.parameters.statistics.has_value(), "statistics"); },
-              {"sums of velocity, pressure and their squares a cell", 56, 0.04}},
+              {"sums of velocity, pressure and their squares per cell", 56, 0.04}},
     FluidCard{"lines and planes",
               "`output.samples`",
               [](const S& s) { return when(!s.parameters.output.samples.empty(), "output.samples"); },
-              {"interpolation at their places and files at the outputs", 0, 0}},
+              {"interpolation at their points and files at the outputs", 0, 0}},
     FluidCard{"velocity from a file",
               "`table` of an inlet or moving wall",
               [](const S& s) {
                 return when(has_boundary(s, [](const auto& b) { return b.table.has_value(); }), "table");
               },
-              {"the table; a look-up a face of the patch", 0, 0}},
+              {"the table; a look-up per face of the patch", 0, 0}},
     FluidCard{"rotating inlet or wall",
               "`rotation` of an inlet or moving wall",
               [](const S& s) {

@@ -20,9 +20,9 @@ void declare_rotation(config::Section& r, RotationParameters& rotation) {
       .unit("rad/s")
       .plausible(1e-6, 1e6)
       .required()
-      .doc("expression of t [s] in rad/s; where there is a ramp, it holds for it, too");
-  r.value("centre", rotation.centre).unit("m").plausible(1e-9, 1e4).doc("a point of the axis");
-  r.value("axis", rotation.axis).size(3).doc("3-D; a plane scene turns about z");
+      .doc("expression of t [s] in rad/s; a ramp applies to it as well");
+  r.value("centre", rotation.centre).unit("m").plausible(1e-9, 1e4).doc("a point on the axis");
+  r.value("axis", rotation.axis).size(3).doc("3-D; a 2-D scene rotates about z");
   r.check([&rotation] { return rotation.axis.norm() > 0 ? std::string() : "'axis' must not be zero"; },
           "axis");
 }
@@ -35,29 +35,29 @@ void declare_table_and_rotation(config::Section& s, BoundaryParameters& b) {
         t.value("file", table.file)
             .required()
             .doc(
-                "CSV file beside the case; its first line names the columns: some of x, y, z [m], t [s], and u, v, w "
-                "[m/s]; its lines are a full grid, linear in between");
+                "CSV file next to the case; its first line names the columns: some of x, y, z [m], t [s], "
+                "and u, v, w [m/s]; its lines form a full grid with linear interpolation");
         t.choice("outside", table.outside,
                  {{"error", GridTable::Outside::error}, {"clamp", GridTable::Outside::clamp}})
-            .doc("where a value beyond the ends is needed: error, or clamp (the ends hold)");
+            .doc("for values beyond the ends: error, or clamp (hold the end values)");
       },
-      "velocity from a file instead of 'velocity'");
+      "velocity from a file, instead of 'velocity'");
   s.optional_section<RotationParameters>(
       "rotation", b.rotation, declare_rotation,
-      "omega x (r - centre) besides the other velocity: a rotating inlet or wall; absent: none");
+      "omega x (r - centre) added to the other velocity: a rotating inlet or wall; absent: none");
 }
 
 void declare_inlet(config::Section& s, BoundaryParameters& b) {
   s.value("velocity", b.velocity)
       .unit("m/s")
       .plausible(1e-9, 1e4)
-      .doc("one expression of x, y, z [m] and t [s] a component");
+      .doc("one expression of x, y, z [m] and t [s] per component");
   s.value("mean-speed", b.mean_speed)
       .unit("m/s")
       .plausible(1e-9, 1e4)
-      .doc("instead of a velocity: mean speed straight into the domain, an expression of t [s]");
+      .doc("instead of 'velocity': mean normal speed into the domain, an expression of t [s]");
   s.choice("profile", b.profile, {{"uniform", InletProfile::uniform}, {"parabolic", InletProfile::parabolic}})
-      .doc("of mean-speed; parabolic: zero at the rim of the patch, a straight line in 2-D, a disc in 3-D");
+      .doc("for mean-speed; parabolic: zero at the rim of the patch, a straight line in 2-D, a disc in 3-D");
   declare_ramp(s, b);
   declare_table_and_rotation(s, b);
   s.check(
@@ -66,7 +66,7 @@ void declare_inlet(config::Section& s, BoundaryParameters& b) {
         if (given != 1) return std::string("give either 'velocity', 'mean-speed' or 'table'");
         if (b.profile == InletProfile::parabolic && !b.mean_speed)
           return std::string(
-              "'profile: parabolic' is that of 'mean-speed'; give 'mean-speed' in place of the other, or leave 'profile' out");
+              "'profile: parabolic' requires 'mean-speed'; use 'mean-speed', or remove 'profile'");
         return std::string();
       },
       "type");
@@ -76,7 +76,7 @@ void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
   s.value("velocity", b.velocity)
       .unit("m/s")
       .plausible(1e-9, 1e4)
-      .doc("one expression of x, y, z [m] and t [s] a component");
+      .doc("one expression of x, y, z [m] and t [s] per component");
   declare_ramp(s, b);
   declare_table_and_rotation(s, b);
   s.check(
@@ -92,7 +92,7 @@ void declare_moving_wall(config::Section& s, BoundaryParameters& b) {
 void declare_outlet(config::Section& s, BoundaryParameters& b) {
   s.value("pressure", b.pressure).unit("Pa").plausible(1e-9, 1e11).doc("expression of x, y, z [m] and t [s]");
   s.value("backflow-stabilisation", b.backflow_stabilisation)
-      .doc("fluid that comes in here brings no kinetic energy along; without it strong backflow may grow");
+      .doc("inflow here carries no kinetic energy; without it strong backflow may grow");
 }
 
 void declare_boundary(config::Section& s, BoundaryParameters& b) {
@@ -109,7 +109,7 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
        {"symmetry", BoundaryType::symmetry, nothing},
        {"periodic", BoundaryType::periodic,
         [&b](Section& v) {
-          v.value("partner", b.partner).required().doc("the patch that is the translated copy of this one");
+          v.value("partner", b.partner).required().doc("the patch that is a translated copy of this one");
         }},
        {"interface", BoundaryType::interface,
         [&b](Section& v) {
@@ -118,28 +118,30 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
               .plausible(1e-6, 1e6)
               .positive()
               .doc(
-                  "mass per area of the structure behind it: its answer is then foreseen in the pressure equation "
-                  "(Robin condition), with `coupling.order: structure-first`; a solid's density times its thickness, or "
-                  "less: too little costs passes, too much may diverge; absent: the wall moves as the coupling says");
+                  "mass per area of the structure behind the wall: the pressure equation then anticipates "
+                  "its response (Robin condition), with `coupling.order: structure-first`; the density of a "
+                  "solid times its thickness, or less: too small costs passes, too large may diverge; "
+                  "absent: the wall moves as the coupling prescribes");
           v.choice("impedance", b.impedance,
                    {{"given", Impedance::given}, {"structure", Impedance::structure}})
               .doc(
-                  "who says it: given: `surface-density`, if there is one; structure: the structure itself, for each face "
-                  "(solid_solver with `interface: {surface-density: true}`, plate_modal with `surface-density: true`, or any "
-                  "program that gives 'surface-density' [kg/m^2] at its faces)");
+                  "source of the surface density: given: `surface-density`, if present; structure: the "
+                  "structure itself, for each face (solid_solver with `interface: {surface-density: true}`, "
+                  "plate_modal with `surface-density: true`, or any program that gives 'surface-density' "
+                  "[kg/m^2] at its faces)");
           v.check(
               [&b] {
                 return b.surface_density && b.impedance == Impedance::structure
-                           ? "the structure says it: leave 'surface-density' out"
+                           ? "the structure gives it: remove 'surface-density'"
                            : "";
               },
               "impedance");
         }},
        {"body", BoundaryType::body, nothing}},
-      "inlet: given velocity; outlet: given pressure; convective-outlet: what is there moves out with the "
-      "mean outflow speed, its mean pressure is 0; no-slip: wall at rest; moving-wall: wall with a given "
-      "velocity; slip, symmetry: no flow through, no friction; periodic: what leaves here enters at the "
-      "partner; interface: wall that moves with the structure; body: wall that moves as 'motion' says",
+      "inlet: prescribed velocity; outlet: prescribed pressure; convective-outlet: the flow leaves with the "
+      "mean outflow speed, with zero mean pressure; no-slip: wall at rest; moving-wall: wall with a "
+      "prescribed velocity; slip, symmetry: no normal flow, no friction; periodic: outflow re-enters at the "
+      "partner; interface: wall that moves with the structure; body: wall that moves by 'motion'",
       true);
 }
 
@@ -161,11 +163,11 @@ void declare_gap(config::Section& s, GapParameters& gap) {
       .plausible(1e-8, 10)
       .positive()
       .required()
-      .doc("cells where the walls are nearer to each other than this are blocked");
+      .doc("cells where the walls are closer than this are blocked");
   s.check(
       [&gap] {
         const bool two = gap.between.size() == 2 && gap.between[0] != gap.between[1];
-        return two ? std::string() : "names two different patches";
+        return two ? std::string() : "requires two different patches";
       },
       "between");
 }
@@ -177,10 +179,11 @@ void declare(config::Section& s, FluidParameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
+          "keys remain in metres");
   s.value("mesh-parameters", p.mesh_parameters)
-      .doc("numbers for names that the .geo defines by DefineConstant: {n: 8}");
-  s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D scene is 1 m deep");
+      .doc("values for names that the .geo defines with DefineConstant: {n: 8}");
+  s.value("dimension", p.dimension).required().range(2, 3).doc("2 or 3; a 2-D scene has a depth of 1 m");
   s.value("density", p.density).unit("kg/m^3").plausible(0.01, 25000).positive().required().doc("density");
   s.value("viscosity", p.viscosity)
       .unit("Pa s")
@@ -190,84 +193,77 @@ void declare(config::Section& s, FluidParameters& p) {
       .doc("dynamic viscosity");
   s.doubt([&p] { return config::doubt_of_kinematic_viscosity(p.viscosity, p.density); }, "viscosity");
   s.map<BoundaryParameters>("boundaries", p.boundaries, declare_boundary, "patch",
-                            "what happens at each patch of the mesh; every patch needs an entry");
+                            "boundary condition of each patch of the mesh; every patch needs an entry");
   s.value("time-step", p.time_step)
       .unit("s")
       .plausible(1e-12, 1e10)
       .positive()
       .doc(
-          "largest step of the fluid itself; a coupling step is cut into equal parts not larger than it. "
-          "Absent: "
-          "the stability limit");
+          "largest step of the fluid itself; a coupling step is divided into equal parts not larger than "
+          "it. Absent: the stability limit");
   s.value("safety-factor", p.safety_factor)
       .range(0.05, 1)
-      .doc("part of the stability limit that is used when time-step is absent");
+      .doc("fraction of the stability limit to use when time-step is absent");
   s.choice("viscous", p.viscous,
            {{"auto", ViscousTreatment::automatic},
             {"explicit", ViscousTreatment::explicit_},
             {"implicit", ViscousTreatment::implicit}})
       .doc(
-          "time scheme of the viscous term; auto: implicit where its explicit stability limit would cost "
-          "clearly "
-          "more steps;");
+          "time scheme of the viscous term; auto: implicit where its explicit stability limit would require "
+          "clearly more steps;");
   s.value("implicit-stretch", p.implicit_stretch)
       .range(1, 1e6)
       .doc(
-          "largest step with an implicit viscous term, in limits of the explicit one: bounds it by accuracy, since the "
-          "second order of the implicit term shows where nu dt / h^2 is about 1 or less only (4 gives it on the flap); "
-          "absent: by stability alone, which is cheaper");
+          "largest step with an implicit viscous term, in units of the explicit limit: bounds it for "
+          "accuracy, since second order shows only where nu dt / h^2 is about 1 or less (4 gives it on the "
+          "flap); absent: stability limit only, which is cheaper");
   s.check(
       [&p] {
         return p.implicit_stretch && p.viscous == ViscousTreatment::explicit_
-                   ? "it bounds steps with an implicit viscous term, and 'viscous' is explicit; remove it"
+                   ? "it bounds steps with an implicit viscous term, but 'viscous' is explicit; remove it"
                    : "";
       },
       "implicit-stretch");
   s.value("pressure-tolerance", p.pressure_tolerance)
       .range(1e-14, 1e-1)
       .doc(
-          "of the pressure equation, relative to the divergence of the predicted velocity; a coupled run "
-          "needs about "
-          "1e-4 of the coupling tolerance");
+          "tolerance of the pressure equation, relative to the divergence of the predicted velocity; a "
+          "coupled run needs about 1e-4 of the coupling tolerance");
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s")
       .plausible(1e-9, 1e4)
-      .doc("one expression of x, y, z [m] a component; made divergence-free at the start. Absent: at rest");
+      .doc("one expression of x, y, z [m] per component; made divergence-free at the start. Absent: at rest");
   s.value("initial-pressure", p.initial_pressure)
       .unit("Pa")
       .plausible(1e-9, 1e11)
-      .doc("expression of x, y, z [m]; a first guess only");
+      .doc("expression of x, y, z [m]; an initial guess only");
   s.value("body-force", p.body_force)
       .unit("m/s^2")
       .plausible(1e-4, 1e6)
-      .doc("force per mass, one expression of x, y, z [m] and t [s] a component; absent: none");
+      .doc("force per mass, one expression of x, y, z [m] and t [s] per component; absent: none");
   s.choice(
        "scheme", p.scheme,
        {{"adams-bashforth", ExplicitScheme::adams_bashforth}, {"runge-kutta", ExplicitScheme::runge_kutta}})
       .doc(
-          "time scheme of the explicit terms; runge-kutta: three stages with a projection each, steps 2.5 "
-          "times as "
-          "long for three times the work, explicit viscous term, mesh at rest");
+          "time scheme of the explicit terms; runge-kutta: three stages with a projection each, 2.5 times "
+          "longer steps at three times the work, explicit viscous term, mesh at rest");
   s.choice("projection", p.projection,
            {{"flux-memory", Projection::flux_memory},
             {"incremental", Projection::incremental},
             {"non-incremental", Projection::non_incremental}})
       .doc(
-          "what becomes of the difference between face fluxes and averaged cell velocities; flux-memory: "
-          "kept "
-          "from step to step and evened out by friction and convection, robust, steady loads do not depend "
-          "on "
-          "the step; incremental: only the change of the pressure makes it, second order in time and the "
-          "least "
-          "loss of kinetic energy, but pressure noise is not damped; non-incremental: new in each step, "
-          "first "
-          "order in time");
+          "treatment of the difference between face fluxes and averaged cell velocities; flux-memory: "
+          "carried over from step to step and smoothed by friction and convection, robust, steady loads "
+          "independent of the step; incremental: driven by pressure changes only, second order in time with "
+          "the lowest loss of kinetic energy, but pressure noise is not damped; non-incremental: computed "
+          "anew in each step, first order in time");
   s.choice("volume-level", p.volume_level,
            {{"none", VolumeLevelBy::nobody}, {"structure", VolumeLevelBy::structure}})
       .doc(
-          "of a fluid without an outlet whose interface is a wall of its cavity: who sets the pressure level that "
-          "holds its volume; none: such a fluid is refused; structure: the coupler finds the level from the "
-          "structure's answer to a pressure (coupler/volume.csv); the fluid's own pressures keep the mean zero");
+          "for a fluid without an outlet whose interface is a wall of its cavity: what sets the pressure "
+          "level that conserves its volume; none: such a fluid is rejected; structure: the coupler finds "
+          "the level from the structure's response to a pressure (coupler/volume.csv); the fluid's own "
+          "pressures keep zero mean");
   s.map<BodyParameters>(
       "bodies", p.bodies,
       [](config::Section& b, BodyParameters& body) {
@@ -276,41 +272,40 @@ void declare(config::Section& s, FluidParameters& p) {
             .plausible(1e-9, 1e4)
             .required()
             .doc(
-                "expression of x, y, z [m] and t [s]: below zero inside, near the surface about the distance "
-                "to it");
+                "expression of x, y, z [m] and t [s]: negative inside, approximately the distance near the "
+                "surface");
         b.value("velocity", body.velocity)
             .unit("m/s")
             .plausible(1e-9, 1e4)
             .doc(
-                "one expression of x, y, z [m] and t [s] a component, that of the motion which level "
-                "describes; "
-                "absent: at rest");
+                "one expression of x, y, z [m] and t [s] per component, the velocity of the motion that "
+                "level describes; absent: at rest");
       },
-      "body", "rigid bodies in a mesh that does not know them; needs an outlet and a mesh at rest");
+      "body", "rigid bodies in a mesh that does not conform to them; requires an outlet and a mesh at rest");
   s.map<GapParameters>(
       "gaps", p.gaps, declare_gap, "gap",
-      "gaps that nearly close as the mesh moves: their cells let nothing through, take no part in "
-      "the size of the step, and open again");
+      "gaps that nearly close as the mesh moves: their cells block the flow, do not limit the step size, "
+      "and open again");
   s.optional_section<MotionParameters>(
       "motion", p.motion,
       [](config::Section& m, MotionParameters& motion) { couplet::declare(m, motion, true); },
-      "prescribed motion of the mesh, of all of it or about a body, without a mesh mover; it starts from the "
+      "prescribed motion of the whole mesh or around a body, without a mesh mover; it starts from the "
       "reference configuration; absent: none");
   s.optional_section<RotationParameters>(
       "rotating-frame", p.rotating_frame, declare_rotation,
-      "a frame that turns: the mesh rests in it, all velocities are relative to it, and Coriolis, centrifugal and Euler "
-      "forces act; absent: none");
+      "a rotating frame: the mesh is at rest in it, all velocities are relative to it, and Coriolis, "
+      "centrifugal and Euler forces act; absent: none");
   s.optional_section<TurbulenceParameters>(
       "turbulence", p.turbulence,
       [](config::Section& t, TurbulenceParameters& turbulence) {
         t.choice("model", turbulence.model,
                  {{"smagorinsky", TurbulenceModel::smagorinsky}, {"wale", TurbulenceModel::wale}})
-            .doc("wale: no eddy viscosity in pure shear, right at walls; smagorinsky: the classic");
+            .doc("wale: no eddy viscosity in pure shear, correct at walls; smagorinsky: the classical model");
         t.value("constant", turbulence.constant)
             .positive()
-            .doc("of the model, times the cell's width; absent: 0.325 (wale), 0.17 (smagorinsky)");
+            .doc("model constant, multiplied by the cell width; absent: 0.325 (wale), 0.17 (smagorinsky)");
       },
-      "eddy viscosity of the scales that the mesh does not resolve; absent: none");
+      "eddy viscosity of the unresolved scales; absent: none");
   s.optional_section<StatisticsParameters>(
       "statistics", p.statistics,
       [](config::Section& t, StatisticsParameters& statistics) {
@@ -318,17 +313,17 @@ void declare(config::Section& s, FluidParameters& p) {
             .unit("s")
             .plausible(1e-12, 1e10)
             .not_negative()
-            .doc("time from which on means are taken");
+            .doc("start time of the averaging");
       },
       "time means of velocity and pressure, their fluctuations and Reynolds stresses in the field output");
   s.optional_section<CompressibilityParameters>(
       "compressibility", p.compressibility,
       [](config::Section& c, CompressibilityParameters& known) { declare(c, known); },
-      "what is known of the fluid's compressibility, by which a run judges whether neglecting it was right; absent: the speed of "
-      "sound of a gas at 1 atm or of a liquid, where density and viscosity are of such");
+      "compressibility of the fluid, for the judgement whether neglecting it is justified; absent: the "
+      "speed of sound of a gas at 1 atm or of a liquid, by density and viscosity");
   s.section(
       "output", [&p](config::Section& o) { declare_output(o, p.output); },
-      "what is written beyond velocity, pressure, forces and balance");
+      "output in addition to velocity, pressure, forces and balance");
   s.map<ProbeParameters>(
       "probes", p.probes,
       [](config::Section& q, ProbeParameters& probe) {
@@ -336,7 +331,7 @@ void declare(config::Section& s, FluidParameters& p) {
             .unit("m")
             .plausible(1e-9, 1e4)
             .required()
-            .doc("place in the reference configuration");
+            .doc("position in the reference configuration");
       },
       "probe", "points whose velocity and pressure are written after each step");
 }

@@ -8,7 +8,7 @@ namespace couplet::fluid {
 namespace {
 
 void declare_coefficients(config::Section& s, CoefficientParameters& c) {
-  s.value("patches", c.patches).required().doc("walls whose forces are added");
+  s.value("patches", c.patches).required().doc("walls whose forces are summed");
   s.value("speed", c.speed)
       .unit("m/s")
       .plausible(1e-9, 1e4)
@@ -28,7 +28,7 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
       .unit("m")
       .plausible(1e-9, 1e4)
       .doc("point about which the moment is taken; it rests");
-  s.value("axis", c.axis).size(3).doc("of the moment; a plane scene turns about z");
+  s.value("axis", c.axis).size(3).doc("axis of the moment; a 2-D scene rotates about z");
   const auto needs_direction = [&s](const char* key, const auto& value) {
     s.check([&value] { return value.norm() > 0 ? "" : "a direction must not be zero"; }, key);
   };
@@ -46,8 +46,8 @@ void declare_sample(config::Section& s, SampleParameters& p) {
         .required()
         .doc("first end, in the reference configuration");
     v.value("to", p.to).unit("m").plausible(1e-9, 1e4).required().doc("other end");
-    v.value("points", p.points).range(2, 100000).doc("how many, ends included");
-    v.check([&p] { return p.from == p.to ? "'from' and 'to' are one point" : ""; }, "to");
+    v.value("points", p.points).range(2, 100000).doc("number of points, ends included");
+    v.check([&p] { return p.from == p.to ? "'from' and 'to' coincide" : ""; }, "to");
   };
   const auto plane = [&p, line](config::Section& v) {
     line(v);
@@ -56,7 +56,7 @@ void declare_sample(config::Section& s, SampleParameters& p) {
         .plausible(1e-9, 1e4)
         .required()
         .doc("third corner: the plane is from-to by from-up");
-    v.value("rows", p.rows).range(2, 10000).doc("how many along from-up");
+    v.value("rows", p.rows).range(2, 10000).doc("number of points along from-up");
     v.check(
         [&p] { return (p.to - p.from).cross(p.up - p.from).norm() > 0 ? "" : "the corners lie on one line"; },
         "up");
@@ -77,8 +77,8 @@ void declare_output(config::Section& s, FluidOutputParameters& p) {
       "coefficients.csv: force and moment coefficients of some walls, means over the step");
   s.map<SampleParameters>(
       "samples", p.samples, declare_sample, "name",
-      "sample-<name>.csv: velocity and pressure (with 'statistics' their means and rms) on a line or plane at each "
-      "output; they move with the mesh, what lies outside it is left out");
+      "sample-<name>.csv: velocity and pressure (with 'statistics' their means and rms) on a line or plane "
+      "at each output; the points move with the mesh, and points outside it are omitted");
   s.value("energy-budget", p.energy_budget)
       .doc(
           "energy.csv: kinetic energy and the power that viscosity, eddy viscosity and pressure take from "

@@ -79,7 +79,7 @@ std::vector<std::string> substances() {
 void declare(config::Section& s, CompressibilityParameters& p) {
   s.value("speed-of-sound", p.speed_of_sound).unit("m/s").plausible(10, 2e4).positive().doc("of the fluid");
   s.value("substance", p.substance)
-      .doc("instead: a gas or liquid whose speed of sound is known: " + join(substances()));
+      .doc("alternative: a gas or liquid with known speed of sound: " + join(substances()));
   s.value("temperature", p.temperature)
       .unit("K")
       .plausible(70, 5000)
@@ -90,7 +90,8 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .plausible(1, 1e10)
       .positive()
       .doc(
-          "instead: absolute pressure of a gas; the speed of sound is sqrt(heat-capacity-ratio pressure/density)");
+          "alternative: absolute pressure of a gas; the speed of sound is sqrt(heat-capacity-ratio "
+          "pressure/density)");
   s.value("heat-capacity-ratio", p.heat_capacity_ratio)
       .range(1, 2)
       .doc("of a gas; absent: of the substance, or of the gas with the nearest density");
@@ -99,22 +100,24 @@ void declare(config::Section& s, CompressibilityParameters& p) {
       .plausible(1e-15, 1e6)
       .not_negative()
       .doc(
-          "fluid before the inlets that the mesh does not have (a plenum, a cylinder); it is compressed by the pressure at the "
-          "inlets. In 2-D per metre of depth");
+          "fluid volume upstream of the inlets that is not meshed (a plenum, a cylinder); the pressure at "
+          "the inlets compresses it. In 2-D per metre of depth");
   s.check(
       [&p]() -> std::string {
-        if (p.substance.empty()) return p.temperature ? "'temperature' needs a 'substance'" : "";
+        if (p.substance.empty()) return p.temperature ? "'temperature' requires a 'substance'" : "";
         const std::vector<std::string> known = substances();
         if (std::ranges::count(known, p.substance) == 0)
           return fmt::format("unknown substance '{}'. {}", p.substance,
                              did_you_mean(p.substance, known, "substances"));
-        return p.speed_of_sound || p.pressure ? "give one of 'speed-of-sound', 'substance' and 'pressure'"
+        return p.speed_of_sound || p.pressure ? "give only one of 'speed-of-sound', 'substance' and "
+                                                "'pressure'"
                                               : "";
       },
       "substance");
   s.check(
       [&p] {
-        return p.speed_of_sound && p.pressure ? "give one of 'speed-of-sound', 'substance' and 'pressure'"
+        return p.speed_of_sound && p.pressure ? "give only one of 'speed-of-sound', 'substance' and "
+                                                "'pressure'"
                                               : "";
       },
       "pressure");

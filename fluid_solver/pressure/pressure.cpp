@@ -176,7 +176,7 @@ SolveStatistics PressureEquation<D>::solve_or_tell(const Placement<D>& at, std::
                                                    std::span<double> p, double relative, double absolute) {
   const auto where = [&] { return largest_entry<D>(mesh_, at, [&](Index c) { return b[c]; }); };
   if (!std::isfinite(absolute))
-    throw SolveFailure("The fluxes of the pressure equation are out of all bounds. {}", where());
+    throw SolveFailure("The fluxes of the pressure equation are out of range. {}", where());
   try {
     return solver_->solve(b, p, relative, absolute);
   } catch (const SolveFailure& failure) {  // on all ranks alike

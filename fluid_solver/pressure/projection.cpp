@@ -118,9 +118,8 @@ void PressureProjection<D>::balance_closed_domain() {
   // Walls that turn let nothing through but round-off of their speeds.
   if (!adjustable && std::abs(sums[total]) > std::max(1e-6 * sums[size], 1e-12 * sums[speeds]))
     throw Error(
-        "The fluid domain is closed, but the given velocities let {:.6g} m^3/s more out than in. Add an "
-        "outlet or "
-        "correct the velocities.",
+        "The fluid domain is closed, but the prescribed velocities give a net outflow of {:.6g} m^3/s. Add "
+        "an outlet or correct the velocities.",
         sums[total]);
   // With a level that holds the volume, or walls that yield to one, only guesses of the wall's motion leave so much over.
   if (adjustable && !k_.boundary.has_convective_outlet() &&
@@ -129,11 +128,10 @@ void PressureProjection<D>::balance_closed_domain() {
       std::abs(sums[total]) > round_speed * sums[speeds] &&
       sums[size] > least_speed * (sums[adjustable_area] + sums[other_area]))
     throw Error(
-        "The fluid domain is closed: at t = {:.6g} s {:.6g} m^3/s more flow out than in, and neither the "
-        "given velocities "
-        "nor the motion of the interface make up for it. What a pressure level would have to push through "
-        "the interface "
-        "is not computed: give the fluid an outlet (a small one far from the interface will do).",
+        "The fluid domain is closed: at t = {:.6g} s the net outflow is {:.6g} m^3/s, which neither the "
+        "prescribed velocities nor the interface motion balance. The pressure level that would push it "
+        "through the interface is not computed: add an outlet (a small one far from the interface is "
+        "enough).",
         k_.by.time + k_.step.dt, sums[total]);
   const double correction = sums[total] / (adjustable ? sums[adjustable_area] : sums[other_area]);
   for (std::size_t b = 0; b < k_.w.size(); ++b) {
@@ -183,9 +181,9 @@ void PressureProjection<D>::project(const State<D>& from, const Vectors<D>& w, d
     solve_pressure(from, w, std::min(tolerance, loosest_tolerance), answer);
     if (pass == passes && to_the_end)
       throw SolveFailure(
-          "The non-orthogonal part of the pressure equation did not converge in {} passes at t = {:.6g} s: "
-          "the "
-          "mesh is too oblique, {:.0f} degrees between a face and the line of its cells.",
+          "The non-orthogonal correction of the pressure equation did not converge in {} passes at t = "
+          "{:.6g} s: the mesh is too skewed, {:.0f} degrees between a face normal and the line of its cell "
+          "centres.",
           passes, k_.by.time + k_.step.dt, k_.degrees);
     if (pass == passes) break;
     if (to_the_end) gradient_before_ = k_.gradient_guess;

@@ -112,7 +112,7 @@ int ViscousSolver<D>::solve(const Vectors<D>& w, double tolerance, Vectors<D>& b
   // The round-off of b itself is all that can be asked for: a little above it counts as solved.
   if (!(rz <= std::max(goal, 1e-26 * sums[0])))
     throw SolveFailure(
-        "The implicit viscous term could not be solved: residual {:.3e} of {:.3e} after {} iterations. {}",
+        "The implicit viscous solve did not converge: residual {:.3e} of {:.3e} after {} iterations. {}",
         std::sqrt(rz), std::sqrt(sums[0]), iterations,
         largest_entry<D>(mesh_, *at_, [&](Index c) { return b[c].norm(); }));
   mesh_.cells.update_ghosts(flat<D>(u), D);

@@ -167,11 +167,11 @@ void FractionalStep<D>::check(const State<D>& from) {
       !finite ? "its velocity is not finite"
       : fast  ? fmt::format("its velocity grew to {:.3g} m/s", judgement_.speed)
               : fmt::format(
-                    "its kinetic energy grew by {:.3g} J to {:.3g} J in a step, of which boundaries "
-                     "and forces brought {:.3g} J",
+                    "its kinetic energy grew by {:.3g} J to {:.3g} J in one step, of which boundaries and "
+                    "forces supplied {:.3g} J",
                     e.gain, e.ledger.energy, e.work);
   throw SolveFailure(
-      "The flow diverges at t = {:.6g} s: {}, most in cell {} at ({:.6g}, {:.6g}, {:.6g}) m. {}",
+      "The flow diverges at t = {:.6g} s: {}, mostly in cell {} at ({:.6g}, {:.6g}, {:.6g}) m. {}",
       k_.by.time + k_.step.dt, what, GlobalIndex(data[3]), data[0], data[1], data[2], cause);
 }
 

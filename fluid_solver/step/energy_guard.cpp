@@ -148,25 +148,25 @@ std::string likely_cause(const Mesh& mesh, const Boundary<D>& boundary, const En
   const double degrees = std::atan(tangent) * 180 / std::numbers::pi;
   if (!implicit && diffusion > convection && size > limit)
     return fmt::format(
-        "The explicit viscous term is stable there up to a step of {:.3g} s, and this one is {:.3g} s: use "
-        "'viscous: auto' or leave 'time-step' out.",
+        "The explicit viscous term is stable there up to a step of {:.3g} s, but this step is {:.3g} s: use "
+        "'viscous: auto' or remove 'time-step'.",
         s.dt * limit / size, s.dt);
   if (convection > 1)
     return fmt::format(
-        "The flow crosses {:.3g} of that cell in one step of {:.3g} s; convection is explicit and needs less "
-        "than 1: leave 'time-step' out or make it smaller.",
+        "The flow crosses {:.3g} of that cell in one step of {:.3g} s; explicit convection requires less "
+        "than 1: remove 'time-step' or reduce it.",
         convection, s.dt);
   if (degrees > 40)
     return fmt::format(
-        "A face of that cell is {:.0f} degrees off the line between the cells: a smaller step does not help, "
-        "a mesh without such cells does.",
+        "A face of that cell is {:.0f} degrees off the line between the cell centres: a smaller step does "
+        "not help; use a mesh without such cells.",
         degrees);
   const double beside_friction = 0.5 * frame_rate * std::pow(s.to.volume[cell], 2. / D) / nu;
   if (beside_friction > fast_frame)
     return fmt::format(
-        "The frame turns fast beside friction, omega h^2/nu = {:.3g} in that cell: what it makes at walls is not "
-        "damped from about {:g} on. A smaller step does not help; finer cells do, or a mesh that turns in a frame at rest "
-        "('motion').",
+        "The frame rotates too fast for the friction: omega h^2/nu = {:.3g} in that cell (limit about "
+        "{:g}); the wall layer is not damped. A smaller step does not help; use finer cells, or a mesh that "
+        "rotates in a frame at rest ('motion').",
         beside_friction, fast_frame);
   return "Try a smaller time step.";
 }

@@ -199,7 +199,7 @@ double Fluid<D>::next_size(double remaining, bool& last) {
     throw SolveFailure(
         "The fluid would need more than {} sub-steps of {:.3g} s for the step of {:.3g} s at t = {:.6g} s. {}",
         most_sub_steps, limit, dt_, time_,
-        parameters_.time_step ? "'time-step' asks for them."
+        parameters_.time_step ? " It follows from 'time-step'."
                               : in_words(step_size_.limiter(level(), history_.implicit)));
   last = n == 1;
   return remaining / n;

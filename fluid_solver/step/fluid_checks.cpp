@@ -21,11 +21,12 @@ void check_frame(const Mesh& mesh, const Boundary<D>& boundary, const FluidParam
   const auto refuse = [](const char* what) { throw Error("rotating-frame: {}", what); };
   if (moving)
     refuse(
-        "the mesh rests in the frame. Give the turn to 'motion' (angle), or remove 'motion' and the mesh mover.");
+        "the mesh is at rest in the frame. Move the rotation to 'motion' (angle), or remove 'motion' and "
+        "the mesh mover.");
   if (!boundary.interface_patches().empty())
     refuse(
-        "a structure would have to know the frame, too, and none does: there must be no boundary of type interface.");
-  if (!parameters.bodies.empty()) refuse("a fluid with immersed bodies has none; leave 'bodies' out.");
+        "no structure supports a rotating frame: boundaries of type interface are not allowed.");
+  if (!parameters.bodies.empty()) refuse("immersed bodies do not support it; remove 'bodies'.");
   if (parameters.scheme == ExplicitScheme::runge_kutta)
     refuse("its forces are extrapolated from step to step: use 'scheme: adams-bashforth'.");
   const RotationParameters& frame = *parameters.rotating_frame;
@@ -34,7 +35,7 @@ void check_frame(const Mesh& mesh, const Boundary<D>& boundary, const FluidParam
   for (const Vec3& shift : mesh.neighbour_shift)
     across = across || shift.cross(axis).norm() > 1e-6 * shift.norm();
   if (any(mesh.comm, across))
-    refuse("the centrifugal force is not the same at periodic patches that are not shifted along the axis.");
+    refuse("the centrifugal force differs between periodic patches that are not shifted along the axis.");
 }
 
 void check_axes(const FluidParameters& parameters, int dim) {
@@ -54,22 +55,23 @@ void check_together(const Mesh& mesh, const Boundary<D>& boundary, FluidParamete
   check_frame(mesh, boundary, parameters, moving);
   if (!parameters.bodies.empty()) {
     if (!parameters.gaps.empty())
-      throw Error("gaps: a fluid with immersed bodies has none; leave 'gaps' or 'bodies' out.");
+      throw Error("gaps: not supported together with immersed bodies; remove 'gaps' or 'bodies'.");
     if (moving)
-      throw Error("bodies: the mesh of a fluid with immersed bodies must rest; remove its mesh mover.");
+      throw Error("bodies: the mesh of a fluid with immersed bodies must be at rest; remove its mesh mover.");
     if (boundary.closed())
-      throw Error("bodies: a fluid with immersed bodies needs an outlet, since they may displace fluid.");
+      throw Error("bodies: a fluid with immersed bodies needs an outlet, because they may displace fluid.");
     if (parameters.viscous == ViscousTreatment::implicit)
       throw Error("viscous: implicit is not possible with immersed bodies, which act on the explicit step.");
     parameters.viscous = ViscousTreatment::explicit_;
   }
   if (!parameters.gaps.empty() && boundary.closed())
-    throw Error("gaps: a fluid with gaps that close needs an outlet: its blocked cells keep what they hold.");
+    throw Error("gaps: a fluid with closing gaps needs an outlet, because its blocked cells retain their "
+                "fluid.");
   if (parameters.scheme != ExplicitScheme::runge_kutta) return;
   if (moving) throw Error("scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover.");
   if (parameters.viscous == ViscousTreatment::implicit)
     throw Error(
-        "scheme: runge-kutta takes the viscous term explicitly; use 'viscous: explicit' or adams-bashforth.");
+        "scheme: runge-kutta treats the viscous term explicitly; use 'viscous: explicit' or adams-bashforth.");
   parameters.viscous = ViscousTreatment::explicit_;
 }
 
@@ -83,9 +85,9 @@ void refuse_torn(const Mesh& mesh, const PeriodicPoints& periodic, std::span<con
   for (Index f = 0; f < mesh.n_interior; ++f) size = std::max(size, mesh.shift(f).norm());
   if (gap > most_torn * max(mesh.comm, size))
     throw Error(
-        "The motion of the mesh to t = {:.6g} s parts the two sides of periodic patches by {:.3g} m. Both must move "
-        "alike: in a mesh mover give them 'type: periodic', too; a 'motion' must repeat itself from side to side, "
-        "which a turn of the whole mesh does not.",
+        "The mesh motion to t = {:.6g} s separates the two sides of periodic patches by {:.3g} m. Both must "
+        "move alike: set 'type: periodic' for them in the mesh mover as well; a 'motion' must be periodic "
+        "from side to side, which a rotation of the whole mesh is not.",
         time, gap);
 }
 

@@ -34,8 +34,7 @@ void Fluid<D>::refuse_inverted(const Placement<D>& at) const {
   if (mesh_.cells.n_owned() > 0) place.template head<D>() = at.centre[where];
   MPI_Bcast(place.data(), 3, MPI_DOUBLE, least.rank, mesh_.comm);
   throw SolveFailure(
-      "The motion of the mesh from t = {:.6g} s turns a cell over near ({:.6g}, {:.6g}, {:.6g}) m (volume "
-      "{:.3e} m^3).",
+      "The mesh motion from t = {:.6g} s inverts a cell near ({:.6g}, {:.6g}, {:.6g}) m (volume {:.3e} m^3).",
       time_, place.x(), place.y(), place.z(), least.value);
 }
 

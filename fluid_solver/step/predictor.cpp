@@ -231,9 +231,8 @@ void Predictor<D>::solve_oblique_viscous(const Vectors<D>& w, double a) {
     if (sums[0] <= enough * enough * sums[1]) return;
     if (pass == most_passes)
       throw SolveFailure(
-          "The non-orthogonal part of the viscous term did not converge in {} passes (change {:.2e}). The "
-          "mesh is "
-          "too oblique for an implicit viscous term: use 'viscous: explicit'.",
+          "The non-orthogonal correction of the viscous term did not converge in {} passes (change {:.2e}). "
+          "The mesh is too skewed for an implicit viscous term: use 'viscous: explicit'.",
           most_passes, std::sqrt(sums[0] / sums[1]));
   }
 }

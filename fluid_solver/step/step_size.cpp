@@ -267,7 +267,7 @@ StepLimiter StepSize<D>::limiter(const State<D>& s, bool implicit) {
 }
 
 std::string in_words(const StepLimiter& by) {
-  return fmt::format("{} in cell {} at ({:.6g}, {:.6g}, {:.6g}) m allows no longer ones.",
+  return fmt::format("{} in cell {} at ({:.6g}, {:.6g}, {:.6g}) m limits them to this size.",
                      by.friction ? "Friction" : "The velocity", by.cell, by.place.x(), by.place.y(),
                      by.place.z());
 }
