@@ -151,7 +151,7 @@ void receive_input(couplet_client& c) {
     std::vector<Stretch> parts;
     for (const Datum* d : present) part_of(c, p, *d, c.input[d->name], parts);
     if (!parts.empty() && !receive(c.coupler, p.rank, input_tag, parts))
-      end_the_job("a message with values has another length than announced.");
+      end_the_job("a message with values does not have the announced length.");
   }
 }
 
@@ -249,7 +249,8 @@ enum couplet_event couplet_next(couplet_client* c) try {
         if (c->command.sub_steps > 1)
           end_the_job(
               "'coupling.sub-steps' of '" + c->participant +
-              "': this library takes one step a coupling step; remove it, and cut the step in your own program.");
+              "': this library takes one step per coupling step; remove it, and subdivide the step in your "
+              "own program.");
         continue;
       case finalise:
         continue;  // answered by this library

@@ -24,7 +24,7 @@ class Reader {
   std::size_t left() const { return bytes_.size() - at_; }
   std::string text() {
     const std::int64_t n = integer();
-    if (n < 0 || std::size_t(n) > bytes_.size() - at_) throw std::runtime_error("a command is cut short.");
+    if (n < 0 || std::size_t(n) > bytes_.size() - at_) throw std::runtime_error("a command is truncated.");
     std::string value(bytes_.data() + at_, std::size_t(n));
     at_ += std::size_t(n);
     return value;
@@ -34,7 +34,7 @@ class Reader {
   template <class T>
   T plain() {
     T value;
-    if (sizeof value > bytes_.size() - at_) throw std::runtime_error("a command is cut short.");
+    if (sizeof value > bytes_.size() - at_) throw std::runtime_error("a command is truncated.");
     std::memcpy(&value, bytes_.data() + at_, sizeof value);
     at_ += sizeof value;
     return value;
@@ -166,15 +166,15 @@ bool receive(MPI_Comm peers, int from, int tag, const std::vector<Stretch>& part
 
 Command unpack(const std::vector<char>& head) {
   Reader in(head);
-  if (in.integer() != command_mark) throw std::runtime_error("a message of the coupler is no command.");
+  if (in.integer() != command_mark) throw std::runtime_error("a message of the coupler is not a command.");
   if (const auto v = in.integer(); v != version)
-    throw std::runtime_error("the coupler speaks version " + std::to_string(v) +
+    throw std::runtime_error("the coupler uses version " + std::to_string(v) +
                              " of the protocol, this client version " + std::to_string(version) + ".");
   Command c;
   c.op = in.integer();
   if (c.op < 1 || c.op > 8)
     throw std::runtime_error("the coupler sent command " + std::to_string(c.op) +
-                             ", which this client does not know.");
+                             ", which is unknown to this client.");
   c.time = in.real();
   c.dt = in.real();
   c.scheme = in.integer();
@@ -185,7 +185,7 @@ Command unpack(const std::vector<char>& head) {
   c.output = in.integer();
   c.folder = in.text();
   const std::int64_t n = in.integer();
-  if (n < 0 || std::size_t(n) > in.left() / 8) throw std::runtime_error("a command is cut short.");
+  if (n < 0 || std::size_t(n) > in.left() / 8) throw std::runtime_error("a command is truncated.");
   for (std::int64_t i = 0; i < n; ++i) c.data.push_back(in.text());
   if (in.left() != 0) throw std::runtime_error("a command is longer than its content.");
   return c;
@@ -205,10 +205,10 @@ Place join(const std::string& participant, const std::string& program) {
   wait(request);
   for (std::size_t r = 0; r < std::size_t(size); ++r)
     if (all[4 * r] != hello_mark)
-      throw std::runtime_error("process " + std::to_string(r) + " of the job speaks another protocol.");
+      throw std::runtime_error("process " + std::to_string(r) + " of the job uses another protocol.");
   for (std::size_t r = 0; r < std::size_t(size); ++r)
     if (all[4 * r + 1] != version)
-      throw std::runtime_error("process " + std::to_string(r) + " of the job speaks version " +
+      throw std::runtime_error("process " + std::to_string(r) + " of the job uses version " +
                                std::to_string(all[4 * r + 1]) + " of the protocol, this client version " +
                                std::to_string(version) +
                                ": use the client library and the programs of one version of Couplet.");

@@ -78,7 +78,7 @@ Coupler::Coupler(const CouplingParameters& parameters, const SimulationParameter
 std::size_t Coupler::index_of(const std::string& name) const {
   for (std::size_t i = 0; i < partners_.size(); ++i)
     if (partners_[i].channel && partners_[i].name() == name) return i;
-  throw Error("'{}' is no participant of this coupling.", name);
+  throw Error("'{}' is not a participant of this coupling.", name);
 }
 
 std::vector<Partner*> Coupler::everyone() {

@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   couplet::CouplingParameters parameters;
   const couplet::ProgramKind kind{
       "coupler",
-      "couples a fluid, a structure and a mesh mover, or participants of any kind, each a program of its own",
+      "couples a fluid, a structure and a mesh mover, or participants of any kind, each a separate program",
       true, [&](couplet::config::Section& section) { declare(section, parameters); },
       [&](const couplet::EffectScene&) {
         return couplet::effects_of(couplet::coupling_effect_cards(), parameters);

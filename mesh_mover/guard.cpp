@@ -201,13 +201,13 @@ std::string Guard::refusal(const Geometry& moved, std::span<const Vec3> points) 
   const auto at = [](const Vec3& x) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", x.x(), x.y(), x.z()); };
   if (const auto trouble = find_inverted(mesh_, moved))
     return fmt::format(
-        "inverts cell {} at {} (volume {:.3e} m^3). Try a smaller step, more stiffening, another "
-        "'method', or a coarser mesh there.",
+        "inverts cell {} at {} (volume {:.3e} m^3). Try a smaller step, more stiffening, another 'method', "
+        "or a coarser mesh there.",
         trouble->cell_id, at(trouble->centre), trouble->volume);
   if (const auto trouble = find_crossed(mesh_, moved, points))
     return fmt::format(
-        "makes cell {} at {} cross itself. Try a smaller step, more stiffening, another 'method', "
-        "or a coarser mesh there.",
+        "makes cell {} at {} intersect itself. Try a smaller step, more stiffening, another 'method', or a "
+        "coarser mesh there.",
         trouble->cell_id, at(trouble->centre));
   if (smallest_volume_ratio_ <= 0 && !limits_.judges_shape()) return "";
   const MeshState state = measure(moved, points);
@@ -226,7 +226,7 @@ std::string Guard::refusal(const Geometry& moved, std::span<const Vec3> points) 
     const auto& [limit, key] = limits[m];
     const Worst& worst = state.worst[m];
     if (!limit || (least_is_worst(m) ? worst.value >= *limit : worst.value <= *limit)) continue;
-    return fmt::format("leaves cell {} at {} with a {} of {:.3g}; {} is {:.3g}.", worst.cell, at(worst.place),
+    return fmt::format("leaves cell {} at {} with a {} of {:.3g} ({} is {:.3g}).", worst.cell, at(worst.place),
                        measure_names[m], worst.value, key, *limit);
   }
   return "";

@@ -21,8 +21,8 @@ int normal_axis(const Mesh& mesh, const Patch& patch) {
   for (int c = 0; c < mesh.dim; ++c)
     if (max(mesh.comm, off[c]) < axis_tolerance) return c;
   throw Error(
-      "Patch '{}' slides (type: slip) but is not a plane normal to a coordinate axis. Use type: fixed, turn "
-      "the mesh so that the plane is, or use 'method: pseudo-solid', which slides along any surface.",
+      "Patch '{}' slides (type: slip), but is not a plane normal to a coordinate axis. Use type: fixed, "
+      "rotate the mesh to align the plane, or use 'method: pseudo-solid', which slides along any surface.",
       patch.name);
 }
 

@@ -9,7 +9,8 @@ int main(int argc, char** argv) {
   couplet::Program program{
       .name = "mesh_mover",
       .description =
-          "moves the points of a mesh with its interface or as the case says, as a Laplacian, an elastic body or by rotations",
+          "moves the mesh points with the interface or as prescribed, by a Laplacian, an elastic body or "
+          "rotations",
       .declare = [&](couplet::config::Section& s) { couplet::mesh_mover::declare(s, parameters); },
       .make =
           [&](const couplet::ParticipantContext& context) {

@@ -41,8 +41,8 @@ Mesh load_checked(const Parameters& parameters, const ParticipantContext& contex
           context.name, p.name);
   if (const auto fold = find_fold(mesh, mesh.reference))
     throw Error(
-        "participants.{}.mesh: the mesh is folded at ({:.4g}, {:.4g}, {:.4g}) m: cell {} (counted from 0 in the file) does "
-        "not lie behind its face there. Cells overlap or are bent over; mesh that place anew.",
+        "participants.{}.mesh: the mesh is folded at ({:.4g}, {:.4g}, {:.4g}) m: cell {} (counted from 0 in "
+        "the file) is not behind its face there. Cells overlap or are bent over; remesh there.",
         context.name, fold->centre.x(), fold->centre.y(), fold->centre.z(), fold->cell_id);
   return mesh;
 }
@@ -73,8 +73,8 @@ Mover::Mover(const Parameters& parameters, const ParticipantContext& context)
   make_method();
   if (parameters.form == Form::automatic && comm_rank(mesh_.comm) == 0)
     log::info(
-        "mesh motion: displacements from the reference mesh (form: total), so that the same interface always "
-        "gives the same mesh");
+        "mesh motion: displacements from the reference mesh (form: total), so the mesh depends only on the "
+        "current interface");
   if (context.mesh_peer != MPI_COMM_NULL) sink_ = make_mesh_motion_sink(context.mesh_peer, mesh_);
   if (!context.coupled && !context.output_folder.empty())
     fields_ = std::make_unique<FieldWriter>(mesh_, context.output_folder, name_, true, context.restart_time);
@@ -178,8 +178,8 @@ void Mover::refuse_torn() const {
   for (const Vec3& shift : mesh_.neighbour_shift) size = std::max(size, shift.norm());
   if (gap > most_torn * max(mesh_.comm, size))
     throw SolveFailure(
-        "participant '{}': the motion from t = {:.6g} s parts the two sides of periodic patches by {:.3g} m: what moves "
-        "there must move alike on both.",
+        "participant '{}': the motion from t = {:.6g} s separates the two sides of periodic patches by "
+        "{:.3g} m: both must move alike.",
         name_, step_.time, gap);
 }
 
@@ -198,8 +198,8 @@ Exchange Mover::solve(const Exchange& in) {
           "participant '{}': the mesh motion from t = {:.6g} s {}{}", name_, step_.time, refusal,
           incremental() || parameters_.method == Method::rotations
               ? ""
-              : " 'form: incremental' with 'stiffening-volumes: current' bears larger motions, but "
-                "its mesh depends on the path.");
+              : " 'form: incremental' with 'stiffening-volumes: current' tolerates larger motions, but its "
+                "mesh depends on the path.");
   } catch (const SolveFailure&) {
     if (sink_) sink_->send_failure();
     throw;

@@ -24,27 +24,29 @@ void declare_boundary(config::Section& s, Boundary& b) {
               .required()
               .doc("the patch that is the translated copy of this one, as in the fluid");
         }}},
-      "interface: moves with the structure; moving: moves as 'motion' says; fixed: stays; slip: slides "
-      "along the patch (curved ones with method: pseudo-solid); free: follows what is inside; periodic: moves as its partner, across which the mesh goes on",
+      "interface: moves with the structure; moving: moves as 'motion' prescribes; fixed: at rest; slip: "
+      "slides along the patch (curved ones with method: pseudo-solid); free: follows the interior; "
+      "periodic: moves as its partner, across which the mesh continues",
       true);
 }
 
 void declare_guard(config::Section& s, GuardParameters& g) {
   s.value("smallest-scaled-jacobian", g.smallest_scaled_jacobian)
       .range(-1, 1)
-      .doc("of a cell's corners: 1 at right angles (equal angles in simplices), 0 where a corner is flat");
+      .doc("minimum scaled Jacobian of the cell corners: 1 at right angles (equal angles in simplices), 0 "
+           "at a flat corner");
   s.value("largest-edge-ratio", g.largest_edge_ratio)
       .range(1, 1e6)
       .doc("longest over shortest edge of a cell");
   s.value("largest-angle", g.largest_angle)
       .range(0, 90)
-      .doc("between a face's normal and the line of its cells' centres [degree]");
+      .doc("angle between a face normal and the line of its cell centres [degree]");
   s.value("largest-area-change", g.largest_area_change)
       .not_negative()
       .doc("f_A = |log2(V/V0)| of Stein, Tezduyar and Benney, V0 of the reference mesh");
   s.value("largest-shape-change", g.largest_shape_change)
       .not_negative()
-      .doc("f_AR = |log2(AR/AR0)| of the same, AR = (longest edge)^dimension / V");
+      .doc("f_AR = |log2(AR/AR0)| of the same authors, AR = (longest edge)^dimension / V");
 }
 
 void declare_method(config::Section& s, Parameters& p) {
@@ -53,25 +55,26 @@ void declare_method(config::Section& s, Parameters& p) {
             {"pseudo-solid", Method::pseudo_solid},
             {"rotations", Method::rotations}})
       .doc(
-          "laplacian: each component by itself, cheapest; pseudo-solid: an elastic body, bears bending and "
-          "rotation; rotations: rotation and displacement of the surface are carried into the mesh, bears the "
-          "largest rotations");
+          "laplacian: each component separately, cheapest; pseudo-solid: an elastic body, tolerates bending "
+          "and rotation; rotations: rotation and displacement of the surface are propagated into the mesh, "
+          "tolerates the largest rotations");
   s.choice("form", p.form,
            {{"auto", Form::automatic}, {"total", Form::total}, {"incremental", Form::incremental}})
       .doc(
-          "total: the displacement from the reference mesh is solved for, the same interface always gives the "
-          "same mesh; incremental: that from the last step's mesh, which depends on the path; auto: total");
+          "total: the displacement from the reference mesh is computed, so the mesh depends only on the "
+          "current interface; incremental: the displacement from the last step's mesh, which depends on the "
+          "path; auto: total");
   s.value("stiffening", p.stiffening)
       .range(0, 3)
-      .doc("chi: stiffness of a cell is its volume to the power -chi, so that small cells deform less");
+      .doc("chi: the stiffness of a cell is its volume to the power -chi, so small cells deform less");
   s.choice("stiffening-volumes", p.stiffening_volumes,
            {{"reference", StiffeningVolumes::reference}, {"current", StiffeningVolumes::current}})
-      .doc("whose volumes; current: those of the last step, for form: incremental");
-  s.value("poisson-ratio", p.poisson_ratio).range(-0.9, 0.45).doc("of the pseudo-solid");
+      .doc("reference volumes of the stiffening; current: those of the last step, for form: incremental");
+  s.value("poisson-ratio", p.poisson_ratio).range(-0.9, 0.45).doc("Poisson's ratio of the pseudo-solid");
   s.check(
       [&p] {
         if (p.stiffening_volumes == StiffeningVolumes::current && p.form != Form::incremental)
-          return std::string("'stiffening-volumes: current' needs 'form: incremental'");
+          return std::string("'stiffening-volumes: current' requires 'form: incremental'");
         return std::string();
       },
       "stiffening-volumes");
@@ -84,36 +87,37 @@ void declare(config::Section& section, Parameters& p) {
   section.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
+          "keys remain in metres");
   section.value("mesh-parameters", p.mesh_parameters)
-      .doc("numbers for names that the .geo defines by DefineConstant; the same as the fluid's");
+      .doc("values for names that the .geo defines with DefineConstant; the same as the fluid's");
   section.value("dimension", p.dimension).range(2, 3).required().doc("2 or 3");
   declare_method(section, p);
   section.value("smallest-volume-ratio", p.smallest_volume_ratio)
       .range(0, 1)
       .doc(
-          "a motion that leaves a cell less than this share of its reference volume is refused (0: only "
-          "inverted "
-          "cells are)");
+          "a motion that shrinks a cell below this fraction of its reference volume is rejected (0: only "
+          "inverted cells are)");
   section.section(
       "guard", [&p](config::Section& g) { declare_guard(g, p.guard); },
-      "further limits; a motion beyond one is refused with the cell and its place, so that the step is halved");
+      "further limits; a motion beyond one is rejected with the cell and its location, so the step is halved");
   section.map<Boundary>("boundaries", p.boundaries, declare_boundary, "patch",
-                        "how the points of each patch of the mesh move; every patch needs an entry");
+                        "motion of the points of each patch of the mesh; every patch needs an entry");
   section.section(
       "linear-solver",
       [&](config::Section& s) {
         s.choice("method", p.linear.method,
                  {{"direct", LinearMethod::direct_symmetric}, {"cg-multigrid", LinearMethod::cg_multigrid}})
             .doc(
-                "direct: one factorisation for the whole run (best below about 100 000 cells; a pseudo-solid in 3-D or with "
-                "periodic patches has none); cg-multigrid: conjugate gradients with a kept multigrid preconditioner");
+                "direct: one factorisation for the whole run (best below about 100 000 cells; not available "
+                "for a pseudo-solid in 3-D or with periodic patches); cg-multigrid: conjugate gradients "
+                "with a reused multigrid preconditioner");
         s.value("relative-tolerance", p.linear.relative_tolerance)
             .range(1e-14, 1e-1)
-            .doc("of the residual, for cg-multigrid");
+            .doc("relative residual tolerance, for cg-multigrid");
         s.value("max-iterations", p.linear.max_iterations).range(1, 100000).doc("for cg-multigrid");
       },
-      "how the motion equations are solved");
+      "solution of the motion equations");
 }
 
 }  // namespace couplet::mesh_mover

@@ -89,8 +89,8 @@ void Rotations::find_room(const Parameters& parameters) {
     body.outer = min(mesh_.comm, nearest);
     if (!(body.outer > least_room * body.inner))
       throw Error(
-          "method: rotations: patch '{}' reaches {:.3g} m from its centre ({:.4g}, {:.4g}, {:.4g}) m, and "
-          "another patch comes as near as {:.3g} m: it has no room to turn. Use 'method: pseudo-solid'.",
+          "method: rotations: patch '{}' extends {:.3g} m from its centre ({:.4g}, {:.4g}, {:.4g}) m, but "
+          "another patch is as close as {:.3g} m: there is no space to rotate. Use 'method: pseudo-solid'.",
           body.name, body.inner, body.centre.x(), body.centre.y(), body.centre.z(), body.outer);
     body.outer = std::min(body.outer, 10 * body.inner);
   }
@@ -98,8 +98,8 @@ void Rotations::find_room(const Parameters& parameters) {
     for (const Body& b : bodies_)
       if (a.name < b.name && (a.centre - b.centre).norm() < a.outer + b.outer)
         throw Error(
-            "method: rotations: the surroundings of patches '{}' and '{}' overlap; use 'method: pseudo-solid', or "
-            "one name for both if they move as one body.",
+            "method: rotations: the surroundings of patches '{}' and '{}' overlap; use 'method: "
+            "pseudo-solid', or one name for both if they move as one body.",
             a.name, b.name);
 }
 

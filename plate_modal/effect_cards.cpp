@@ -31,33 +31,34 @@ V judge_rotation(const S&, const E& e) {
   // A rigid body that turns by 0.25 rad is stretched by 1 / cos, 3 %.
   if (!std::isnan(e.rotation))
     return verdict(e.rotation, 0.25,
-                   fmt::format("the structure has turned as a whole by {:.2g} rad", e.rotation),
-                   "modes are linear and turn a body along its tangent: take a program for finite strain");
+                   fmt::format("rigid rotation = {:.2g} rad", e.rotation),
+                   "linear modes move a body along its tangent: use a program for finite strain");
   return verdict(
       e.displacement_over_size, 0.25,
-      fmt::format("the largest displacement is {:.2g} of the structure's size", e.displacement_over_size),
-      "modes are linear and know no large rotation: take a program for finite strain");
+      fmt::format("max displacement / structure size = {:.2g}", e.displacement_over_size),
+      "modes are linear and cannot describe large rotations: use a program for finite strain");
 }
 
 V judge_in_plane(const S& s, const E& e) {
   return verdict(
       e.in_plane_share, 0.01,
       fmt::format(
-          "{:.2g} of {} lies in the plane of the plate", e.in_plane_share,
+          "in-plane share of {1} = {0:.2g}", e.in_plane_share,
           s.parameters.gravity.empty() ? "the initial velocity" : "the gravity or the initial velocity"),
-      "no mode moves in the plane: that part is left out. Give its normal part alone, or take a volume");
+      "no mode moves in the plane, so that part is neglected: apply only its normal part, or use a volume "
+      "model");
 }
 
 V judge_kept(const S& s, const E& e) {
   if (is_dynamic(s))
     return verdict(
         e.modes_apart, 0.05,
-        fmt::format("the modes left out have {:.2g} of the compliance of the loads", e.modes_apart),
-        "the loads move shapes that were not kept: keep more modes ('modes.number')");
+        fmt::format("compliance of the loads in truncated modes = {:.2g}", e.modes_apart),
+        "the loads excite truncated modes: keep more modes ('modes.number')");
   return verdict(
       e.modes_apart, 0.05,
-      fmt::format("the deflection by modes is {:.2g} of the deflection itself off", e.modes_apart),
-      "fields and probes show the deflection itself, but modal.csv and the interface the modes: keep "
+      fmt::format("truncation error of the deflection = {:.2g}", e.modes_apart),
+      "fields and probes show the full deflection, but modal.csv and the interface only the modes: keep "
       "more modes ('modes.number')");
 }
 
@@ -66,23 +67,22 @@ V judge_kept(const S& s, const E& e) {
 V judge_load_beyond(const S&, const E& e) {
   return verdict(
       e.step.load_over_last, 2. / 3,
-      fmt::format("the load swings with {:.3g} Hz, {:.2g} of the frequency of the highest mode kept",
+      fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
                   e.step.load_omega / (2 * std::numbers::pi), e.step.load_over_last),
-      "modes left out may be near resonance with it: keep modes up to one and a half times that "
-      "frequency ('modes.number')");
+      "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')");
 }
 
 V judge_velocity(const S&, const E& e) {
   return verdict(
       e.velocity_lost, 0.1,
-      fmt::format("the modes have no part in {:.2g} of the energy of the initial velocity", e.velocity_lost),
-      "a uniform velocity beside supports needs many modes: keep more, or start by 'initial-amplitudes'");
+      fmt::format("initial kinetic energy outside the modes = {:.2g}", e.velocity_lost),
+      "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'");
 }
 
 V judge_within(const S&, const E& e) {
   return verdict(
       e.within_faces, 0.05,
-      fmt::format("a force at the middle of each face makes {:.2g} of the load's effect on the modes wrong",
+      fmt::format("error of the load's effect on the modes with one force per face = {:.2g}",
                   e.within_faces),
       "the pressure varies within a face: refine the mesh there");
 }
@@ -91,27 +91,28 @@ V judge_within(const S&, const E& e) {
 V judge_mesh(const S&, const E& e) {
   return verdict(
       e.mesh_gap, 0.1,
-      fmt::format("the middle of a cell deflects by {:.2g} otherwise than its corners (rms over the motion)",
+      fmt::format("deflection of cell centres against their corners = {:.2g} (rms over the motion)",
                   e.mesh_gap),
-      "the mesh does not resolve the modes that move: at least four cells in half a wave in each direction");
+      "the mesh does not resolve the moving modes: use at least four cells per half wave in each direction");
 }
 
 // A plate that is held all round is stiffened by its stretch as 1 + 0.5 (w/h)^2, more or less by its edges.
 V judge_stretch(const S&, const E& e) {
   return verdict(
       e.displacement_over_thickness, e.stretch_limit,
-      fmt::format("the plate is held on opposite sides and deflects by {:.2g} of its thickness",
+      fmt::format("held on opposite sides: max deflection / thickness = {:.2g}",
                   e.displacement_over_thickness),
-      "unless its edges may slide in its plane, its stretch stiffens it noticeably: take a program for finite strain");
+      "unless its edges may slide in its plane, stretching stiffens it noticeably: use a program for finite "
+      "strain");
 }
 
 // A force at the middle of each face does not see what lies between them.
 V judge_lost(const S&, const E& e) {
   if (!e.load_lost) return {};
   return EffectVerdict{
-      "", 1, 0.5, "the pressures of the case were 0 at the middle of every face in every step",
-      "a load that is smaller than a face or shorter than a step is lost: refine, or spread it over "
-      "a face or a step with the same resultant"};
+      "", 1, 0.5, "the prescribed pressures were 0 at every face centre in every step",
+      "a load smaller than a face or shorter than a step is lost: refine, or distribute it over a face or a "
+      "step with the same resultant"};
 }
 
 // Rounding alone: the modes do not move along the forces, or these cancel.
@@ -120,19 +121,20 @@ V judge_no_part(const S&, const E& e) {
   return EffectVerdict{
       "", 1, 0.5,
       fmt::format(
-          "the pressures of the case have no part in any mode ({:.1g} of what they would have along the motion)",
+          "modal load of the prescribed pressures = {:.1g} of what it would be along the motion",
           e.load_on_modes),
-      "nothing moves by them: with 'modes.file' the upper side is where the surface looks to +z, whatever the structure's "
-      "own normal is; pressures on both sides that are alike cancel; a mode of another symmetry needs 'modes.number'"};
+      "nothing moves by them: with 'modes.file' the upper side is where the surface faces +z, whatever the "
+      "structure's own normal; equal pressures on both sides cancel; a mode of another symmetry needs "
+      "'modes.number'"};
 }
 
 // Mindlin's plate against Kirchhoff's: rotary inertia and shear lower omega^2 by (k h)^2 (1/12 + 1/(5 (1 - nu)))
 // of it, omega by 2 % where half a wave, pi / k, is ten thicknesses long.
 V judge_shear(const S& s, const E& e) {
   return verdict(e.thickness_over_wave, 0.1,
-                 fmt::format("the thickness is {:.2g} of half a wave of the highest mode {}",
+                 fmt::format("thickness / half the wavelength of the highest mode {1} = {0:.2g}",
                              e.thickness_over_wave, is_dynamic(s) ? "with 1 % of the motion" : "kept"),
-                 "such modes are softened by shear and rotary inertia: keep fewer, or take a volume");
+                 "shear and rotary inertia soften such modes: keep fewer, or use a volume model");
 }
 
 // Ten steps a period make the trapezoidal rule's 3 % too long, and a mode that swings at another frequency than its
@@ -140,13 +142,13 @@ V judge_shear(const S& s, const E& e) {
 V judge_step(const S&, const E& e) {
   const StepEvidence& step = e.step;
   if (!(step.coarse_share > 0))
-    return verdict(step.coarse_share, 0.1, "no mode that swings has less than ten steps a period", "");
+    return verdict(step.coarse_share, 0.1, "no oscillating mode has fewer than ten steps per period", "");
   return verdict(
       step.coarse_share, 0.1,
-      fmt::format("modes with less than ten steps a period (first of all mode {}: {:.2g} steps) swing with "
-                  "{:.2g} of the displacement (rms)",
+      fmt::format("modes with fewer than ten steps per period (first: mode {}, {:.2g} steps) make up {:.2g} "
+                  "of the displacement (rms)",
                   step.coarse_mode, step.steps_a_period, step.coarse_share),
-      fmt::format("they swing at another frequency than the structure: take 'simulation.time-step: {:.2g} s'",
+      fmt::format("they oscillate at a wrong frequency: use 'simulation.time-step: {:.2g} s'",
                   step.recommended_step));
 }
 
@@ -154,19 +156,18 @@ V judge_resonance(const S&, const E& e) {
   const StepEvidence& step = e.step;
   return verdict(
       step.resonance_error, 0.1,
-      fmt::format("the load drives mode {} {:.2g} times as far as without inertia, where the step's error of "
-                  "its frequency makes {:.2g} of the displacement",
+      fmt::format("mode {} is near resonance (amplification {:.2g}): displacement error by the step's "
+                  "frequency error = {:.2g}",
                   step.resonant_mode, step.amplification, step.resonance_error),
-      fmt::format("take 'simulation.time-step: {:.2g} s'", step.resonant_step));
+      fmt::format("use 'simulation.time-step: {:.2g} s'", step.resonant_step));
 }
 
 V judge_load(const S&, const E& e) {
   return verdict(
       e.step.load_apart, 0.1,
-      fmt::format("the load in the middle of a step and its mean over the step are {:.2g} of the load apart "
-                  "(rms)",
+      fmt::format("load at mid-step against its mean over the step: difference {:.2g} of the load (rms)",
                   e.step.load_apart),
-      "the step does not see how the load changes: take ten steps or more a period of the load");
+      "the step does not resolve the load: use ten or more steps per load period");
 }
 
 // A body on a seat: the time of an impact is wrong by a third of a step and its speed after it by as much of the
@@ -174,9 +175,9 @@ V judge_load(const S&, const E& e) {
 V judge_contact(const S&, const E& e) {
   return verdict(
       e.step.contact_share, 0.1,
-      fmt::format("an impact on the seat lasts {:.2g} s (pi sqrt(m / kappa)), a step {:.2g} of that",
+      fmt::format("an impact on the seat lasts {:.2g} s (pi sqrt(m / kappa)), one step is {:.2g} of that",
                   e.step.contact_time, e.step.contact_share),
-      fmt::format("the rebound is not resolved: take 'simulation.time-step: {:.2g} s', or a softer seat",
+      fmt::format("the rebound is not resolved: use 'simulation.time-step: {:.2g} s', or a softer seat",
                   e.step.contact_time / 20));
 }
 
@@ -190,16 +191,16 @@ std::string contact_asked_by(const S& s) {
   for (const auto& [name, zone] : p.zones)
     mass = std::min(mass, zone.density.value_or(p.material.density) * zone.thickness.value_or(p.thickness));
   const double shortest = std::numbers::pi * std::sqrt(mass / kappa);
-  return fmt::format("contact: an impact lasts {:.2g} s or longer, {:.2g} steps; twenty are good", shortest,
+  return fmt::format("contact: an impact lasts at least {:.2g} s, {:.2g} steps (recommended: 20)", shortest,
                      shortest / s.time_step);
 }
 
 V judge_energy(const S&, const E& e) {
   V v = verdict(
       e.energy_mismatch, 0.01,
-      fmt::format("the balance of the energies (4.29-4.31) is off by up to {:.2g} of the largest energy",
+      fmt::format("max error of the energy balance (4.29-4.31) / largest energy = {:.2g}",
                   e.energy_mismatch),
-      "take a smaller step, or 'trapezoidal' with 'contact.rule: conserving'");
+      "use a smaller step, or 'trapezoidal' with 'contact.rule: conserving'");
   if (v) v->wrong_from = 0.5;
   return v;
 }
@@ -213,33 +214,33 @@ const std::array cards{
     PlateCard{"inertia",
               "`analysis: dynamic`",
               [](const S& s) { return when(is_dynamic(s), "analysis: dynamic"); },
-              {"rate and acceleration a mode", 0, 0}},
+              {"rate and acceleration per mode", 0, 0}},
     PlateCard{"balance of the energies",
               "`analysis: dynamic`",
               [](const S& s) { return when(is_dynamic(s), "analysis: dynamic"); },
               {"energies.csv", 0, 0},
-              "mismatch over the largest energy, 0.01",
+              "error of the energy balance over the largest energy, 0.01",
               judge_energy,
               true},
     PlateCard{"step that resolves the modes",
               "`analysis: dynamic`",
               [](const S& s) { return when(is_dynamic(s), "analysis: dynamic"); },
               {},
-              "swings of modes with less than ten steps a period over the displacement, 0.1",
+              "share of modes with fewer than ten steps per period in the displacement, 0.1",
               judge_step,
               true},
     PlateCard{"step near a resonance",
               "`analysis: dynamic`",
               [](const S& s) { return when(is_dynamic(s), "analysis: dynamic"); },
               {},
-              "error of the frequency x 2 x amplification of a changing load, of the displacement, 0.1",
+              "frequency error x 2 x amplification of a varying load, relative to the displacement, 0.1",
               judge_resonance,
               true},
     PlateCard{"step that resolves the load",
               "`load`",
               [](const S& s) { return when(is_dynamic(s) && s.parameters.load.has_value(), "load"); },
               {},
-              "load in the middle of a step against its mean over the step, 0.1",
+              "load at mid-step against its mean over the step, 0.1",
               judge_load,
               true},
     PlateCard{"step that resolves the contact",
@@ -250,33 +251,33 @@ const std::array cards{
               judge_contact,
               true},
     left_out("large rotation", "no key: not in the model",
-             "largest displacement over the structure's size, or rotation as a whole [rad], 0.25",
+             "max displacement over the structure's size, or rigid rotation [rad], 0.25",
              judge_rotation),
     left_out("motion in the plane", "no key: not in the model",
-             "share of gravity on a plate that may fall, or of the initial velocity, in its plane, 0.01",
+             "in-plane share of gravity on a plate that may fall, or of the initial velocity, 0.01",
              judge_in_plane),
     left_out("deflection beyond the modes", "`modes.number`",
-             "modes left out: static, of the deflection, dynamic, of the compliance of the loads, 0.05",
+             "truncated modes: static, of the deflection, dynamic, of the compliance of the loads, 0.05",
              judge_kept),
     left_out("load faster than the modes", "`modes.number`",
-             "frequency of a load that swings over that of the highest mode kept, 2/3", judge_load_beyond),
+             "frequency of an oscillating load over that of the highest retained mode, 2/3", judge_load_beyond),
     left_out("initial velocity beyond the modes", "`modes.number`",
-             "share of its energy that no mode has, 0.1", judge_velocity),
+             "share of its energy outside the modes, 0.1", judge_velocity),
     left_out("load between the faces or steps", "no key: finer mesh or step",
-             "a prescribed pressure that is 0 wherever it is taken", judge_lost),
+             "a prescribed pressure that is 0 wherever it is evaluated", judge_lost),
     left_out("load that moves no mode", "no key: `load`, `modes.number`",
-             "loads of the pressures on the modes over what they would be along the motion, 1e-9",
+             "modal loads of the pressures over what they would be along the motion, 1e-9",
              judge_no_part),
     left_out("load within a face", "no key: finer mesh",
-             "midpoint of each face against sixteen points, of the load's effect on the modes, 0.05",
+             "face centre against sixteen points, of the load's effect on the modes, 0.05",
              judge_within),
     left_out("mesh that resolves the modes", "no key: finer mesh",
              "mean of a cell's corners against its mean deflection, rms over the motion, 0.1", judge_mesh),
     left_out("stretch of the mid-surface", "no key: not in the model",
-             "of a plate with two held edges or more: deflection over thickness, 0.5, or 0.2 with hinges",
+             "of a plate with two or more held edges: deflection over thickness, 0.5, or 0.2 with hinges",
              judge_stretch),
     left_out("shear and rotary inertia", "no key: not in the model",
-             "thickness over half the wave of the highest mode with 1 % of the motion, 0.1", judge_shear),
+             "thickness over half the wavelength of the highest mode with 1 % of the motion, 0.1", judge_shear),
     PlateCard{"damping",
               "`damping`",
               [](const S& s) { return when(s.parameters.damping.has_value(), "damping"); },
@@ -289,11 +290,11 @@ const std::array cards{
         "contact with a seat",
         "`contact`",
         contact_asked_by,
-        {"the shapes of the faces that look at the seat, a full matrix of the modes; contact.csv", 78, 0.1}},
+        {"mode shapes of the faces towards the seat, a full matrix of the modes; contact.csv", 78, 0.1}},
     PlateCard{"pressures of the case",
               "`load`",
               [](const S& s) { return when(s.parameters.load.has_value(), "load"); },
-              {"an expression a face and step", 2150, 0}},
+              {"one expression per face and step", 2150, 0}},
     PlateCard{"forces of a fluid",
               "`coupling`",
               [](const S& s) { return when(s.coupled, "coupling"); },
@@ -303,7 +304,7 @@ const std::array cards{
     PlateCard{"modes of another program",
               "`modes.file`",
               [](const S& s) { return when(s.parameters.modes_file.has_value(), "modes.file"); },
-              {"no mesh, no eigenvalues", 0, 0}},
+              {"no mesh, no eigenvalue problem", 0, 0}},
     PlateCard{"probes",
               "`probes`",
               [](const S& s) { return when(!s.parameters.probes.empty(), "probes"); },

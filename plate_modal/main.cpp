@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   couplet::plate::Parameters parameters;
   const couplet::Program program{
       .name = "plate_modal",
-      .description = "a thin plate, or any linear structure, by superposition of its modes",
+      .description = "a thin plate, or any linear structure, by modal superposition",
       .declare = [&](couplet::config::Section& s) { couplet::plate::declare(s, parameters); },
       .make =
           [&](const couplet::ParticipantContext& c) {

@@ -73,7 +73,7 @@ void tell_size(const Structure& structure) {
     std::ranges::sort(sorted, std::greater());
     slender = fmt::format(", thickness over its shorter span 1/{:.3g}", sorted[1] / h);
   }
-  log::info("the structure spans {:.4g} x {:.4g} x {:.4g} m, mass {:.4g} kg{}", side.x(), side.y(), side.z(),
+  log::info("the structure extends over {:.4g} x {:.4g} x {:.4g} m, mass {:.4g} kg{}", side.x(), side.y(), side.z(),
             model.mass, slender);
 }
 
@@ -119,7 +119,7 @@ PlateResults::PlateResults(const Structure& structure)
             structure.context().name, name, x.x(), x.y(), x.z(), distance, allowed);
       if (distance < 1e-6 * size) continue;
       const Vec3 at = place_in(model, probes_.back());
-      log::info("probes.{}: ({:g}, {:g}, {:g}) is {:.3g} m off the surface; it stands at ({:g}, {:g}, {:g}).",
+      log::info("probes.{}: ({:g}, {:g}, {:g}) is {:.3g} m off the surface; moved to ({:g}, {:g}, {:g}).",
                 name, x.x(), x.y(), x.z(), distance, at.x(), at.y(), at.z());
     }
   });

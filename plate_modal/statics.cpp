@@ -23,7 +23,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
   repeats_ = trial_.q == solved_ && trial_.q == state_.q;
   if (repeats_) {
     if (first && comm_rank(context_.comm) == 0)
-      log::info("the loads do not change from step to step: the deflection stays, and no rows repeat it");
+      log::info("the loads do not change from step to step, so the constant deflection is written once");
     return;
   }
   solved_ = trial_.q;
@@ -38,7 +38,7 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
       d.by_modes = std::max(d.by_modes, std::abs(by_modes[i]));
       d.apart = std::max(d.apart, std::abs(direct_[i] - by_modes[i]));
     }
-    log::info("static deflection: at most {:.6e} m; by {} modes {:.6e} m, apart by at most {:.2e} m",
+    log::info("static deflection: max {:.6e} m; by {} modes {:.6e} m; max difference {:.2e} m",
               d.direct, share_->n_modes(), d.by_modes, d.apart);
   });
 }

@@ -23,9 +23,9 @@ void refuse_wound_springs(const Contact& contact, const Share& share, std::span<
   const Contact::Place place = contact.deepest(q);
   if (place.depth <= 1e-9 * couplet::max(share.comm(), size)) return;
   throw Error(
-      "contact: at the start the structure stands {:.3g} m deep in the seat, deepest at ({:g}, {:g}, {:g}). Lower "
-      "'height' (it counts from the origin along the direction, and a side of a plate is half a thickness from its "
-      "mid-surface), or say 'starts-inside: true' if these springs are meant to push from the start.",
+      "contact: initially the structure is {:.3g} m inside the seat, deepest at ({:g}, {:g}, {:g}). Lower "
+      "'height' (it counts from the origin along the direction; a side of a plate is half a thickness from "
+      "its mid-surface), or set 'starts-inside: true' if these springs are meant to push from the start.",
       place.depth, place.centre.x(), place.centre.y(), place.centre.z());
 }
 
@@ -61,8 +61,8 @@ void take_changed_energy(const Oscillators& oscillators, bool tells, ModalState&
   if (!(std::abs(now.contact - kept.contact) + std::abs(now.gravity - kept.gravity) > 1e-9 * scale)) return;
   if (tells)
     log::warn(
-        "energy: with the changes of this restart the seat holds {:.4g} J in place of {:.4g} J, and the gravity {:.4g} J in "
-        "place of {:.4g} J: this jump of {:.4g} J is no part of the balance.",
+        "energy: with the changes of this restart the seat stores {:.4g} J instead of {:.4g} J, and gravity "
+        "{:.4g} J instead of {:.4g} J: this jump of {:.4g} J is not part of the balance.",
         now.contact, kept.contact, now.gravity, kept.gravity, jump);
   kept.contact = now.contact;
   kept.gravity = now.gravity;
@@ -93,17 +93,15 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
     if (!built_.note.empty()) log::warn("{}", built_.note);
     if (p.modes_file)
       log::info(
-          "modes of a file: what modes that it does not hold would add to an answer cannot be told from it. A load on few "
-          "faces, or along a direction in which the structure is stiff, needs many: have "
-          "twice as many written, and compare.");
+          "modes from a file: the contribution of truncated modes cannot be estimated. A load on few faces, "
+          "or along a stiff direction, needs many: export twice as many, and compare.");
     if (built_.reused)
-      log::info("modes of {} are used again", (context_.output_folder / "modes.h5").string());
+      log::info("reusing the modes of {}", (context_.output_folder / "modes.h5").string());
   }
   if (p.analysis == Parameters::Analysis::static_ && share_->omega().front() == 0)
     throw Error(
-        "The structure moves as a rigid body (mode 1 has no frequency): a static analysis needs supports "
-        "that hold "
-        "it.");
+        "The structure moves as a rigid body (mode 1 has zero frequency): a static analysis needs supports "
+        "that prevent this.");
   gravity_.assign(share_->n_modes(), 0);
   if (!p.gravity.empty()) gravity_ = share_->participation(Vec3(p.gravity.data()));
   if (p.contact) make_contact();
@@ -134,7 +132,7 @@ void Structure::make_contact() {
   if (comm_rank(context_.comm) != 0) return;
   const double steps = shortest / context_.time_step;
   const std::string text = fmt::format(
-      "contact: one over all its faces lasts {:.3g} s (pi sqrt(m / kappa)), one over a part of them longer",
+      "contact: over all faces it lasts {:.3g} s (pi sqrt(m / kappa)), over part of them longer",
       shortest);
   if (std::isnan(steps))
     log::info("{}.", text);
@@ -142,7 +140,7 @@ void Structure::make_contact() {
     log::info("{}: {:.3g} steps of it.", text, steps);
   else
     log::warn(
-        "{}: {:.2g} steps of it. Twenty find the speed after it to 1 %: 'simulation.time-step: {:.2g} s'.",
+        "{}: {:.2g} steps of it. Twenty resolve the speed after it to 1 %: 'simulation.time-step: {:.2g} s'.",
         text, steps, shortest / 20);
 }
 
@@ -191,8 +189,8 @@ void Structure::refuse_made_energy() const {
   const double made = trial_.energies.mismatch(), had = std::max(largest_true_, true_energy(trial_));
   if (!(made > had)) return;
   throw SolveFailure(
-      "At t = {:g} s the time scheme has made {:.3g} J, more than the {:.3g} J that the structure had at most: the "
-      "motion is the scheme's, not the structure's. Take {}.",
+      "At t = {:g} s the time scheme has generated {:.3g} J, more than the {:.3g} J that the structure had "
+      "at most: the motion is spurious. Use {}.",
       step_.time + step_.dt, made, had,
       parameters_.contact && parameters_.contact->rule == ContactRule::midpoint
           ? "'contact.rule: conserving', or 'simulation.time-step' below a twentieth of a contact"
@@ -281,12 +279,13 @@ std::vector<std::string> Structure::finish() {
   if (contact_ && !met_seat_)
     if (const Contact::Place nearest = contact_->deepest(state_.q); !(nearest.depth > 0))
       said.push_back(fmt::format(
-          "contact: the seat was never met; at the end it is {:.3g} m away where it is nearest, at ({:.4g}, {:.4g}, {:.4g}).",
+          "contact: the structure never touched the seat; final minimum gap {:.3g} m, at ({:.4g}, {:.4g}, "
+          "{:.4g}).",
           -nearest.depth, nearest.centre.x(), nearest.centre.y(), nearest.centre.z()));
   if (parameters_.analysis == Parameters::Analysis::dynamic && largest_exchange_ > 0)
     said.push_back(fmt::format(
-        "energy: the balance of the structure (4.29-4.31) is off by at most {:.2e} J, {:.2g} % of "
-        "the largest energy.",
+        "energy: max error of the balance of the structure (4.29-4.31): {:.2e} J, {:.2g} % of the largest "
+        "energy.",
         worst_mismatch_, 100 * worst_mismatch_ / largest_exchange_));
   return said;
 }
@@ -314,9 +313,8 @@ void Structure::save(CheckpointWriter& file) const {
 void Structure::load(CheckpointReader& file) {
   if (file.read("omega") != share_->omega())
     throw Error(
-        "The checkpoint was made with other modes than those of this run: mesh, material, thickness, "
-        "supports or the "
-        "number of modes differ.");
+        "The checkpoint was written with other modes than this run uses: mesh, material, thickness, "
+        "supports or the number of modes differ.");
   state_ = initial_state();
   for (const auto& [name, values] : {std::pair{"q", &state_.q},
                                      {"v", &state_.v},

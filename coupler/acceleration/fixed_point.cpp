@@ -44,8 +44,7 @@ FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const Re
     x = accelerator.next(std::move(x), image);
   }
   throw SolveFailure(
-      "the coupling did not converge in {} iterations: the relative residual is {:.2e} ({:.1e} is asked "
-      "for).",
+      "the coupling did not converge in {} iterations: the relative residual is {:.2e} (tolerance {:.1e}).",
       parameters.max_iterations, result.residual.relative, parameters.relative);
 }
 

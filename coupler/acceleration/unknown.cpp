@@ -64,7 +64,7 @@ Iterate Unknown::gather(const std::vector<Exchange>& given) const {
   for (const Part& p : parts_) {
     const std::vector<double>& values = given[p.giver].at(p.datum.name);
     if (values.size() != p.count)
-      throw Error("A participant gave {} values of '{}' where {} had been announced.", values.size(),
+      throw Error("A participant gave {} values of '{}', but {} were announced.", values.size(),
                   p.datum.name, p.count);
     std::vector<double>& to = p.rides ? x.rider : x.unknown;  // parts lie in it one after the other
     to.insert(to.end(), values.begin(), values.end());
@@ -114,7 +114,7 @@ std::vector<double> Unknown::weights() const {
 }
 
 void Unknown::restore_weights(const std::vector<double>& w) {
-  if (w.size() != parts_.size() + 1) throw Error("The checkpoint is of a coupling with other data.");
+  if (w.size() != parts_.size() + 1) throw Error("The checkpoint is from a coupling with other data.");
   scaled_ = w[0] != 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) parts_[i].weight = w[i + 1];
 }

@@ -52,24 +52,26 @@ VolumeLevel::VolumeLevel(MPI_Comm comm, const std::vector<Side>& sides, const Li
     if (!has(sides[i].interface.gives, inflow_name)) continue;
     if (!schedule.iterates || schedule.side_by_side)
       throw Error(
-          "'{}' is a closed fluid whose pressure level the structure sets: that is found in the iteration of a "
-          "step, one after the other; take 'scheme: semi-implicit' or 'implicit' with 'order: serial'.",
+          "'{}' is a closed fluid whose pressure level the structure determines, in the serial iteration of "
+          "a step; use 'scheme: semi-implicit' or 'implicit' with 'order: serial'.",
           sides[i].name);
     if (!schedule.sub_steps.empty())
       throw Error(
-          "coupling.sub-steps: '{}' is a closed fluid whose pressure level the structure sets (volume-level: structure) "
-          "from its motion at the end of the same step; leave 'sub-steps' out and take a smaller time step.",
+          "coupling.sub-steps: the pressure level of the closed fluid '{}' (volume-level: structure) "
+          "follows from the structure's motion at the end of the same step; remove 'sub-steps' and use a "
+          "smaller time step.",
           sides[i].name);
     if (!structures_.empty())
       throw Error(
-          "'{}' is a closed fluid whose pressure level the structure sets: it must stand before '{}' in the order "
-          "of a step.",
+          "'{}' is a closed fluid whose pressure level the structure determines: it must precede '{}' in "
+          "the order of a step.",
           sides[i].name, sides[structures_.front()].name);
     dim_ = sides[i].interface.dim;
     cavities_.push_back({i, sides[i].name, CavityWall(comm, sides[i], schedule.moved == sides[i].name)});
   }
   if (!cavities_.empty() && structures_.empty())
-    throw Error("Nobody takes the '{}' of '{}', a closed fluid whose pressure level a structure must set.",
+    throw Error("No participant takes the '{}' of '{}', a closed fluid whose pressure level a structure "
+                "must determine.",
                 load_name, cavities_.front().name);
 }
 
@@ -89,7 +91,7 @@ void VolumeLevel::loaded(std::size_t i, const Exchange& taken, Exchange& given) 
   found->load = values_of(given, load_name);
   found->areas = found->wall.areas(values_of(taken, "displacement"));
   if (!found->place.empty() && found->place.size() != values_of(taken, "displacement").size())
-    throw Error("The checkpoint's place of the closed fluid '{}' is damaged. Use an earlier one.",
+    throw Error("The checkpoint's index of the closed fluid '{}' is damaged. Use an earlier checkpoint.",
                 found->name);
   const std::vector<Vec3> begin = found->wall.areas(found->place);
   for (std::size_t f = 0; f < begin.size(); ++f) found->areas[f] = (found->areas[f] + begin[f]) / 2;
@@ -172,8 +174,8 @@ Eigen::VectorXd VolumeLevel::step_to(const Eigen::VectorXd& g) const {
   const Eigen::FullPivLU<Eigen::MatrixXd> lu(slope_);
   if (!slope_.allFinite() || !lu.isInvertible())
     throw SolveFailure(
-        "no pressure in the closed fluid{} '{}' holds {} volume: a pressure there moves no wall, or two of them "
-        "share all they could move.",
+        "cannot determine a pressure in the closed fluid{} '{}' that conserves {} volume: the cavity has no "
+        "compliant wall, or two cavities act on the same wall (singular system).",
         cavities_.size() > 1 ? "s beginning with" : "", cavities_.front().name,
         cavities_.size() > 1 ? "their" : "its");
   return lu.solve(-g);
@@ -214,8 +216,8 @@ void VolumeLevel::find(std::vector<Exchange>& known, const std::function<void()>
     best = left;
   }
   throw SolveFailure(
-      "no pressure level was found for the closed fluid '{}' in {} tries: the volume still misses {:.1e} of what "
-      "flows through its wall.",
+      "the pressure level of the closed fluid '{}' did not converge in {} iterations: volume error {:.1e} "
+      "of the flow through its wall.",
       cavities_.front().name, most_tries, best);
 }
 
@@ -247,7 +249,7 @@ void VolumeLevel::load(CheckpointReader& file) {
   const std::vector<double> numbers = all_gather(comm_, file.read("volume-level"));
   const std::size_t n = cavities_.size();
   if (numbers.size() != 1 + 6 * n && numbers.size() != 1 + 6 * n + n * n)
-    throw Error("The checkpoint is of a coupling with other closed fluids.");
+    throw Error("The checkpoint is from a coupling with other closed fluids.");
   slope_dt_ = numbers[0];
   for (std::size_t k = 0; k < n; ++k) {
     Cavity& c = cavities_[k];

@@ -19,7 +19,7 @@ CavityWall::CavityWall(MPI_Comm comm, const Side& side, bool moves)
   const Starts corners =
       starts_of(all_gather(comm, std::vector<GlobalIndex>{GlobalIndex(i.face_vertices.size())}));
   if (corners.back() == 0)
-    throw Error("'{}' does not tell the corners of its faces: its volume is not known.", side.name);
+    throw Error("'{}' does not provide the corners of its faces, so its volume is unknown.", side.name);
   if (offset_.size() != reference_.size() + 1) offset_.assign(reference_.size() + 1, 0);
   std::vector<Transfer::Entry> entries;
   for (std::size_t k = 0; k < i.face_vertices.size(); ++k)

@@ -55,7 +55,7 @@ std::vector<NamedErrors> finalise_all(const std::vector<Partner*>& partners, con
     try {
       errors.push_back({p->name(), ErrorParts::of(text)});
     } catch (const Error& error) {  // of a guest: no reason to lose a run that has ended
-      log::warn("'{}' says at its end what is left aside: {}", p->name(), error.what());
+      log::warn("Ignoring the malformed closing message of '{}': {}", p->name(), error.what());
     }
   }
   return errors;

@@ -23,21 +23,16 @@ double norm(MPI_Comm comm, const std::vector<double>& values) {
 const char* cure_of_oscillation(Scheme scheme) {
   switch (scheme) {
     case Scheme::explicit_:
-      return "This is the explicit coupling's added-mass instability: the fluid that moves along is too "
-             "heavy "
-             "for the "
-             "structure, and no smaller step helps. `scheme: semi-implicit` takes the added mass into the "
-             "iteration, "
-             "`scheme: implicit` all of the fluid.";
+      return "This is the added-mass instability of explicit coupling: the structure is too light for the "
+             "fluid moving with it, and smaller steps do not help. `scheme: semi-implicit` iterates the "
+             "added mass, `scheme: implicit` the whole fluid.";
     case Scheme::semi_implicit:
-      return "The semi-implicit scheme takes the wall shear at the guessed velocity: where viscosity is "
-             "strong "
-             "and the "
-             "structure light, that grows though every step converges, and no smaller step helps much. "
-             "`scheme: implicit` iterates it.";
+      return "The semi-implicit scheme evaluates the wall shear at the predicted velocity: with strong "
+             "viscosity and a light structure this grows although every step converges, and smaller steps "
+             "hardly help. Use `scheme: implicit`, which iterates it.";
     default:
-      return "The scheme iterates all that the participants exchange: tighten `convergence.relative`, lower "
-             "`predictor.order`, or look at the participants' own time schemes.";
+      return "The scheme iterates all exchanged data: tighten `convergence.relative`, lower "
+             "`predictor.order`, or check the participants' own time schemes.";
   }
 }
 
@@ -59,21 +54,16 @@ void IterationGuard::pass(double residual, double omega, bool constant) {
   const double factor = std::pow(residual / at_turn_, 1. / growing_);
   if (!constant)
     throw SolveFailure(
-        "the coupling diverges: the residual has grown by {:.3g} a pass over {} passes. The last factor was "
-        "{:.3g}. If smaller steps do not help, `acceleration.type: iqn-ils` follows several modes at once, "
-        "and "
-        "the "
+        "the coupling diverges: the residual grew by {:.3g} per pass over {} passes, by {:.3g} in the last "
+        "one. If smaller steps do not help, `acceleration.type: iqn-ils` handles several modes at once; the "
         "participants' own tolerances may be too loose for it.",
         factor, growing_, omega);
   // |1 - omega (1 + r)| = factor for the heaviest mode
   const double r = (factor + 1) / omega - 1;
   throw SchemeFailure(
-      "the coupling diverges: the residual has grown by {:.3g} a pass over {} passes. With constant "
-      "relaxation "
-      "{:g} "
-      "that is an added mass of about {:.3g} times the structure's; only relaxations below {:.3g} converge, "
-      "whatever "
-      "the step. `acceleration.type: aitken` or `iqn-ils` adapt it.",
+      "the coupling diverges: the residual grew by {:.3g} per pass over {} passes. With constant relaxation "
+      "{:g} this implies an added mass of about {:.3g} times the structure's; only relaxations below {:.3g} "
+      "converge, at any step. Use `acceleration.type: aitken` or `iqn-ils`, which adapt it.",
       factor, growing_, omega, r, 2 / (1 + r));
 }
 
@@ -81,9 +71,8 @@ namespace {
 
 std::string swing(int turns, double factor, double growth, Scheme scheme) {
   return fmt::format(
-      "the interface swings to and fro from step to step and more each time: over {} steps the swing has "
-      "grown "
-      "{:.3g}-fold, {:.3g} a step, though every step was solved. {}",
+      "interface oscillation: over {} steps the amplitude grew {:.3g}-fold, {:.3g} per step, although every "
+      "step was solved: unstable. {}",
       turns, factor, growth, cure_of_oscillation(scheme));
 }
 
@@ -136,8 +125,9 @@ std::optional<std::string> WorkGuard::suspects(Scheme scheme) const {
   if (scheme != Scheme::explicit_ || steps_ < 4 || !(std::abs(fluid_ - structure_) > 0.5 * exchanged_))
     return {};
   return fmt::format(
-      "the fluid gave {:.3g} J and the structure took {:.3g} J, more than half of all work apart: the added-mass "
-      "instability of the explicit scheme. `scheme: semi-implicit` or `implicit` iterates it.",
+      "interface work: the fluid gave {:.3g} J and the structure took {:.3g} J, more than half of all work "
+      "apart: added-mass instability of the explicit scheme. `scheme: semi-implicit` or `implicit` iterates "
+      "it.",
       fluid_, structure_);
 }
 
@@ -162,8 +152,8 @@ std::optional<std::string> WorkGuard::accepted(double fluid, double structure, S
   const bool grows = last.apart() > 2 * windows_[1].apart() && windows_[1].apart() > 2 * windows_[0].apart();
   if (!grows || !(last.apart() > 0.5 * last.size) || !(last.apart() > 0.1 * exchanged_)) return {};
   return fmt::format(
-      "the work on the two sides of the interface parts more and more: over the last {} steps the fluid gave "
-      "{:.4g} J and the structure took {:.4g} J. The scheme itself feeds or drains the motion. {}",
+      "interface work: over the last {} steps the fluid gave {:.4g} J and the structure took {:.4g} J, "
+      "increasingly apart: the scheme itself adds or removes energy. {}",
       window, last.given, last.taken, cure_of_oscillation(scheme));
 }
 
@@ -181,10 +171,10 @@ WorkGuard::Verdict WorkGuard::verdict(bool by_nearest) const {
       steps_, fluid_, structure_, 100 * v.part, net >= energy ? "net work" : "structure's largest energy",
       v.sound ? "closed."
       : by_nearest
-          ? "NOT CLOSED: `mapping.type: nearest` carries motion and load by maps that do not belong together; "
-            "`projection` keeps the work on any meshes."
-          : "NOT CLOSED: the wall that the fluid saw moved otherwise than the structure; smaller steps "
-            "or a scheme that iterates close it.");
+          ? "NOT CLOSED: `mapping.type: nearest` transfers motion and load by maps that are not transposes "
+            "of each other; `projection` conserves the work on any meshes."
+          : "NOT CLOSED: the wall seen by the fluid moved differently from the structure; use smaller steps "
+            "or an iterating scheme.");
   return v;
 }
 

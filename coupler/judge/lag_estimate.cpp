@@ -101,22 +101,24 @@ LagEstimate::Range LagEstimate::over_size() const {
 std::string LagEstimate::sentence(const std::vector<NamedErrors>& participants) const {
   const Range range = over_size();
   if (std::isnan(range.least))
-    return "what explicit coupling leaves is not known (no step could be looked at; the first is the fourth).";
+    return "the error of explicit coupling is unknown (no step was examined; the first is the fourth).";
   double others = 0;
   for (const NamedErrors& of : participants)
     for (const double part : {of.parts.mesh, of.parts.step})
       if (part > others) others = part;  // not where it is NaN
   std::string text =
-      fmt::format("explicit coupling leaves between {:.2g} and {:.2g} of the motion, not in other estimates",
+      fmt::format("the error of explicit coupling is between {:.2g} and {:.2g} of the motion, not included "
+                  "in other estimates",
                   range.least, range.most);
-  if (range.most < nothing * others) return text + ": iterating would buy nothing.";
+  if (range.most < nothing * others) return text + ": iterating would not help.";
   if (range.least > others)
-    return text + ": a 'scheme' that iterates or a shorter time step would lower the error.";
-  return text + "; a run with a 'scheme' that iterates tells.";
+    return text + ": an iterating 'scheme' or a shorter time step would reduce the error.";
+  return text + "; a run with an iterating 'scheme' would show.";
 }
 
 std::string LagEstimate::not_possible() {
-  return "what explicit coupling leaves is not known (it is for motions alone, without sub-steps and closed fluids).";
+  return "the error of explicit coupling is unknown (it is estimated only for motions, without sub-steps "
+         "and closed fluids).";
 }
 
 std::array<double*, LagEstimate::values> LagEstimate::list(Sums& s) {

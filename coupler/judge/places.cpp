@@ -88,8 +88,7 @@ std::string other_extent(const Box& a, const std::string& from, const Box& b, co
   if (off <= allowed) return "";
   const double ratio = a.extent() / std::max(b.extent(), 1e-300);
   return fmt::format(
-      "The interface of '{}' reaches from {} m and that of '{}' from {} m: they are not in the same place{}. "
-      "Check "
+      "The interface of '{}' extends from {} m and that of '{}' from {} m: their positions differ{}. Check "
       "the meshes' units and positions and which patches are of type interface.",
       from, a.text(), to, b.text(),
       ratio > 5 || ratio < 0.2
@@ -124,8 +123,9 @@ bool all_near(MPI_Comm comm, const std::vector<Neighbour>& found, const std::vec
 std::string not_nested(const std::string& from, const std::string& to) {
   return fmt::format(
       "The faces of '{}' and '{}' do not nest: vertices of either side lie between those of the other. With "
-      "`coupling.mapping.type: nearest` the wall would move in stairs and the load would do other work on the two "
-      "sides. Set `coupling.mapping.type: projection`: it keeps work, force and moment on any meshes.",
+      "`coupling.mapping.type: nearest` the wall would move in steps and the load would do different work "
+      "on the two sides. Set `coupling.mapping.type: projection`: it conserves work, force and moment on "
+      "any meshes.",
       from, to);
 }
 
@@ -150,11 +150,9 @@ PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
     if (found[i].distance <= 2 * size) continue;
     const Vec3& p = target.points[i];
     report.problem = fmt::format(
-        "The point ({:.6g}, {:.6g}, {:.6g}) of '{}' is {:.3g} m away from the nearest of '{}', where the "
-        "faces are "
-        "{:.3g} m: the two interfaces are not the same surface. Check the meshes and which patches are of "
-        "type "
-        "interface.",
+        "The point ({:.6g}, {:.6g}, {:.6g}) of '{}' is {:.3g} m away from the nearest point of '{}', where "
+        "the face size is {:.3g} m: the two interfaces are not the same surface. Check the meshes and which "
+        "patches are of type interface.",
         p.x(), p.y(), p.z(), to.name, found[i].distance, from.name, size);
   }
   report.problem = first_text(comm, report.problem);
@@ -164,8 +162,7 @@ PlaceReport judge_places(MPI_Comm comm, const Side& from, const Side& to) {
   if (const int most = most_followers(comm, found, source.starts); most >= 3)
     report.notes.push_back(
         fmt::format("note: '{}' is much coarser than '{}': up to {} vertices follow the same one, so the "
-                    "motion arrives in "
-                    "stairs. `mapping.type: projection` carries it without them.",
+                    "motion is stepped. `mapping.type: projection` avoids this.",
                     from.name, to.name, most));
   return report;
 }
@@ -207,9 +204,9 @@ void check_foreseen(const std::vector<Side>& sides, const Links& links, const Sc
     });
     if (behind && schedule.iterates && !schedule.side_by_side) continue;
     throw Error(
-        "'{}' foresees the answer of its walls (`surface-density` at its interface): the structure must be asked before "
-        "it in each pass. Take 'coupling.order: structure-first' (in an exchange: the structure first in the list) with "
-        "'scheme: semi-implicit' or 'implicit', or remove the key.",
+        "'{}' anticipates the response of its walls (`surface-density` at its interface), so the structure "
+        "must be solved before it in each pass. Use 'coupling.order: structure-first' (in an exchange: the "
+        "structure first in the list) with 'scheme: semi-implicit' or 'implicit', or remove the key.",
         sides[own.taker].name);
   }
 }

@@ -45,8 +45,8 @@ std::vector<std::string> StillGuard::accepted(const std::vector<Exchange>& given
     if (one.steps < patience) continue;
     one.told = true;
     findings.push_back(fmt::format(
-        "motion of '{}': 0 m at every vertex of its interface for {} steps under a load of up to {:.3g} {} per "
-        "face: the interface is held in place; check its boundary conditions and `coupling`.",
+        "motion of '{}': 0 m at every interface vertex for {} steps under a load of up to {:.3g} {} per "
+        "face: the interface is held fixed; check its boundary conditions and `coupling`.",
         one.name, one.steps, load, one.unit));
   }
   return findings;

@@ -78,9 +78,9 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
   const double apart = moves.area - moved.area, limit = 1e-6 * moved.area;
   if (apart < -limit)
     throw Error(
-        "'{}' moves {} of the {} faces of the interface of '{}' ({:.4g} of {:.4g} m^2): the rest of the mesh's wall would "
-        "stand still where the structure moves. Give every patch that is of `type: interface` in the fluid the same type "
-        "in the mesh mover.",
+        "'{}' moves {} of the {} faces of the interface of '{}' ({:.4g} of {:.4g} m^2): the rest of the "
+        "mesh wall would not follow the structure. Set `type: interface` in the mesh mover for every patch "
+        "that has it in the fluid.",
         mover->name, moves.faces, moved.faces, fluid->name, moves.area, moved.area);
   if (apart > limit)
     log::finding(comm_rank(comm),
@@ -88,10 +88,10 @@ void check_mover(MPI_Comm comm, const std::vector<Side>& sides, const Schedule& 
                   .number = apart,
                   .limit = limit,
                   .sentence = fmt::format(
-                      "mesh motion: '{}' moves {} faces by the structure where the interface of '{}' "
-                      "has {}: patches that are no interface of the fluid follow the nearest vertex",
+                      "mesh motion: '{}' moves {} faces by the structure, but the interface of '{}' has {}: "
+                      "patches that are not an interface of the fluid follow the nearest vertex",
                       mover->name, moves.faces, fluid->name, moved.faces),
-                  .advice = "give them another type"});
+                  .advice = "set another type for them"});
 }
 
 }  // namespace
@@ -165,9 +165,10 @@ void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links
           comm_rank(comm),
           {.id = "surfaces-apart",
            .sentence =
-               fmt::format("surfaces that move together differ: {}: loads and motion go over to another size",
+               fmt::format("surfaces that move together differ: {}: loads and motion are transferred "
+                           "between different sizes",
                            difference),
-           .advice = "check the meshes' units and dimensions, and which patches are of `type: interface`"});
+           .advice = "check the meshes' units and dimensions, and which patches have `type: interface`"});
   }
 }
 

@@ -42,7 +42,7 @@ std::vector<Source> sources_of(const Datum& wanted, std::size_t taker, const std
     if (const Datum* datum = find(sides[g].interface.gives, wanted.name)) found.push_back({g, datum});
   }
   if (found.empty())
-    throw Error("'{}' takes '{}', which nobody gives. Given are: {}.", sides[taker].name, wanted.name,
+    throw Error("'{}' takes '{}', which no participant gives. Given are: {}.", sides[taker].name, wanted.name,
                 all.empty() ? "no data at all" : join(all));
   return found;
 }
@@ -112,7 +112,8 @@ PointSet share_of(MPI_Comm comm, const PointSet& places, const Datum& given, std
   }
   const auto taker_of =
       nearest_of(comm, places, theirs,
-                 fmt::format("'{}' and '{}' both take '{}' of '{}' in the same place: it would count twice.",
+                 fmt::format("'{}' and '{}' both take '{}' of '{}' at the same location: it would count "
+                             "twice.",
                              sides[takers[0]].name, sides[takers[1]].name, given.name, sides[g].name));
   return part_of(places, taker_of, here);
 }
@@ -192,8 +193,8 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
           sources.size() < 2
               ? ""
               : fmt::format(
-                    "'{}' takes '{}', which both '{}' and '{}' give in the same place: only one of "
-                    "them may.",
+                    "'{}' takes '{}', which both '{}' and '{}' give at the same location: only one of them "
+                    "may.",
                     names_[t], wanted.name, names_[sources[0].giver], names_[sources[1].giver]);
       const auto giver_of = nearest_of(comm, to, from, both);
       for (std::size_t s = 0; s < sources.size(); ++s) {
@@ -225,7 +226,7 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
   for (const Side& side : sides)
     for (const Datum& datum : side.interface.gives)
       if (takers_of(datum, sides).empty())
-        notes_.push_back(fmt::format("note: nobody takes '{}' of '{}'", datum.name, side.name));
+        notes_.push_back(fmt::format("note: no participant takes '{}' of '{}'", datum.name, side.name));
 }
 
 std::vector<double> Links::carried(const Link& link, const std::vector<Exchange>& given) const {
@@ -233,7 +234,7 @@ std::vector<double> Links::carried(const Link& link, const std::vector<Exchange>
   if (found == given[link.giver].end()) return {};
   const std::size_t places = entries_[link.giver][link.datum.place == Place::vertices ? 0 : 1];
   if (found->second.size() != places * std::size_t(link.components))
-    throw Error("'{}' gave {} values of '{}' where its {} places of {} components had been announced.",
+    throw Error("'{}' gave {} values of '{}', but announced {} locations of {} components.",
                 names_[link.giver], found->second.size(), link.datum.name, places, link.components);
   return link.mapping->apply(found->second, link.components);
 }

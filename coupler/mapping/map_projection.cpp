@@ -59,8 +59,8 @@ struct FacesAround {
 void require_corners(bool known) {
   if (!known)
     throw Error(
-        "A mapping by projection needs the vertices of each face, which a participant does not list: take "
-        "`coupling.mapping.type: rbf`.");
+        "A mapping by projection needs the vertices of each face, but one participant does not list them: "
+        "use `coupling.mapping.type: rbf`.");
 }
 
 SparseMap nearest_projection(const Interface& surface, const std::vector<Vec3>& targets) {
@@ -111,19 +111,19 @@ SparseMap local_interpolation(const std::vector<Vec3>& sources, const std::vecto
 void check_corners(const Interface& surface, const std::string& name, GlobalIndex vertices) {
   if (surface.face_offset.empty() && surface.face_vertices.empty()) return;
   const auto refuse = [&](const std::string& what) {
-    throw Error("The corners of the faces of '{}' are listed wrongly: {}.", name, what);
+    throw Error("The face corners of '{}' are invalid: {}.", name, what);
   };
   const std::size_t n = surface.face_centres.size();
   if (surface.face_offset.size() != n + 1)
     refuse(
-        fmt::format("{} offsets for {} faces, one more than faces is right", surface.face_offset.size(), n));
+        fmt::format("{} offsets for {} faces; expected one more than faces", surface.face_offset.size(), n));
   if (surface.face_offset.front() != 0 || surface.face_offset.back() != Index(surface.face_vertices.size()))
-    refuse("the offsets do not go from 0 to the number of corners");
+    refuse("the offsets do not run from 0 to the number of corners");
   for (std::size_t f = 0; f < n; ++f)
     if (surface.face_offset[f + 1] - surface.face_offset[f] < 2)
-      refuse(fmt::format("face {} has less than two corners", f));
+      refuse(fmt::format("face {} has fewer than two corners", f));
   for (const Index v : surface.face_vertices)
-    if (v < 0 || v >= vertices) refuse(fmt::format("vertex {} is none of its {}", v, vertices));
+    if (v < 0 || v >= vertices) refuse(fmt::format("vertex {} is not one of its {}", v, vertices));
 }
 
 }  // namespace couplet

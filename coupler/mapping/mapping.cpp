@@ -77,9 +77,8 @@ void require_twins(MPI_Comm comm, const PointSet& from, const PointSet& to,
     throw Error("{}{}", text, advice);
   if (!some_twice(comm, forth, from.starts) && count(comm, from) == count(comm, to)) return;
   throw Error(
-      "Several {} lie within {:.3g} m of each other or of the same one of the {}: the twins are not clear. "
-      "Set "
-      "a smaller `coupling.mapping.tolerance`.",
+      "Ambiguous matching: several {} lie within {:.3g} m of each other or of the same one of the {}. Set a "
+      "smaller `coupling.mapping.tolerance`.",
       to.what, tolerance, from.what);
 }
 
@@ -167,8 +166,8 @@ std::vector<Transfer::Entry> between(MPI_Comm comm, const PointSet& from, const 
 void require_places(const PointSet& from, const PointSet& to, GlobalIndex n_from, GlobalIndex n_to) {
   if (n_from == 0 || n_to == 0)
     throw Error(
-        "There are {} {} and {} {}: an interface needs some on both sides. Check which patches are of type "
-        "interface.",
+        "There are {} {} and {} {}, but an interface needs some on both sides. Check which patches have "
+        "type interface.",
         n_from, from.what, n_to, to.what);
 }
 
@@ -212,7 +211,7 @@ void Mapping::set(MPI_Comm comm, const PointSet& from, const PointSet& to,
   max_distance_ = max(comm, max_distance_);
   mean_distance_ = sum(comm, total) / double(n_to_);
   transfer_ = Transfer(comm, to.starts, from.starts, std::move(entries));
-  summary_ = fmt::format("{} {} to {} {}, distance at most {:.3g} m, mean {:.3g} m", n_from_, from.what,
+  summary_ = fmt::format("{} {} to {} {}: max distance {:.3g} m, mean {:.3g} m", n_from_, from.what,
                          n_to_, to.what, max_distance_, mean_distance_);
 }
 

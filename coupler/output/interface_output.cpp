@@ -46,7 +46,7 @@ std::vector<std::pair<double, std::string>> kept(const fs::path& list, double re
     const auto t = csv::number_of(quoted(time + 10));
     const std::string_view name = quoted(file + 6);  // "side-000001.0.vtp"
     if (!t || !name.ends_with(".0.vtp"))
-      throw Error("{}: this line is damaged. Move the list away; the files it names stay.", in.place());
+      throw Error("{}: this line is damaged. Move the list away; the files it names remain.", in.place());
     if (*t <= restart_time * (1 + 1e-12)) files.emplace_back(*t, name.substr(0, name.size() - 6));
   }
   return files;
@@ -60,7 +60,7 @@ InterfaceOutput::InterfaceOutput(MPI_Comm comm, fs::path folder, const std::vect
   std::error_code failed;
   if (comm_rank(comm) == 0) fs::create_directories(folder_, failed);
   if (any(comm, bool(failed)))
-    throw Error("The folder {} could not be made: {}.", folder_.string(), failed.message());
+    throw Error("Cannot create the folder {}: {}.", folder_.string(), failed.message());
   for (const Side& side : sides) {
     const Interface& i = side.interface;
     if (side.faces.back() == 0) continue;
@@ -130,7 +130,7 @@ void InterfaceOutput::write_piece(const Surface& surface, const fs::path& file, 
   for (const auto& [datum, values] : data)
     if (datum->place == Interface::Place::faces) array(out, datum->name, *values, datum->size(i.dim));
   out << "</CellData>\n</Piece>\n</PolyData>\n</VTKFile>\n";
-  if (!out) throw Error("{} could not be written: is the disk full?", file.string());
+  if (!out) throw Error("Cannot write {}: is the disk full?", file.string());
 }
 
 void InterfaceOutput::write_list(const Surface& surface) const {

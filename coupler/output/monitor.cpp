@@ -167,15 +167,14 @@ void Monitor::step(const Step& step, double time, const FixedPointResult& result
 std::string Monitor::summary(int halvings) const {
   const double steps = double(std::max(1L, steps_));
   std::string text = fmt::format(
-      "{} steps, {} halvings in {:.2f} s; coupling iterations: {:.2f} on average, {} at most\n  {:<20} "
-      "{:>11} {:>11} "
-      "{:>15}",
+      "{} steps, {} halvings in {:.2f} s; coupling iterations: mean {:.2f}, max {}\n"
+      "  {:<20} {:>11} {:>11} {:>15}",
       steps_, halvings, wall_, double(iterations_) / steps, most_iterations_, "", "working", "waiting",
       "working");
   for (std::size_t i = 0; i < names_.size(); ++i)
     text += fmt::format("\n  {:<20} {:>9.2f} s {:>9.2f} s {:>9.3f} ms a step", names_[i], worked_[i],
                         std::max(0., wall_ - worked_[i]), 1e3 * worked_[i] / steps);
-  text += fmt::format("\n  {:<20} {:>9.2f} s {:>11} {:>9.3f} ms a step (of the processor)", "coupler", own_,
+  text += fmt::format("\n  {:<20} {:>9.2f} s {:>11} {:>9.3f} ms per step (processor time)", "coupler", own_,
                       "", 1e3 * own_ / steps);
   return text;
 }

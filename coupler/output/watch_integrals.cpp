@@ -66,7 +66,7 @@ std::vector<bool> faces_of_part(MPI_Comm comm, const std::string& name, const Wa
   for (std::size_t f = 0; f < counts.size(); ++f)
     counts[f] = number >= 0 && f < interface.face_part.size() && interface.face_part[f] == number;
   if (sum(comm, GlobalIndex(std::ranges::count(counts, true))) == 0)
-    throw Error("coupling.watch.{}.part: the interface of '{}' has no part '{}'. It has: {}.", name,
+    throw Error("coupling.watch.{}.part: the interface of '{}' has no part '{}'. Its parts are: {}.", name,
                 p.participant, p.part, interface.parts.empty() ? "none with a name" : join(interface.parts));
   return counts;
 }
@@ -101,7 +101,7 @@ WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, co
                                                      const Side& side, const Surface& surface) const {
   const Datum* datum = find(side.interface, p.data);
   if (!datum)
-    throw Error("coupling.watch.{}.data: '{}' neither gives nor takes '{}'. It has: {}.", name, p.participant,
+    throw Error("coupling.watch.{}.data: '{}' neither gives nor takes '{}'. Its data are: {}.", name, p.participant,
                 p.data, names_of(side.interface));
   const int n = datum->size(side.interface.dim);
   Integral i{0, Kind::amount, *datum, faces_of_part(comm_, name, p, side.interface), std::size_t(n)};
@@ -109,19 +109,21 @@ WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, co
     if (datum->place == Place::faces) return i;
     if (!p.part.empty())
       throw Error(
-          "coupling.watch.{}.part: '{}' of '{}' is at vertices, which belong to no part. Leave `part` out.",
+          "coupling.watch.{}.part: '{}' of '{}' is given at vertices, which belong to no part. Remove "
+          "`part`.",
           name, p.data, p.participant);
     i.counts.assign(side.interface.vertices.size(), true);
     return i;
   }
   if (n != 1 && n != side.interface.dim)
     throw Error(
-        "coupling.watch.{}.data: '{}' has {} components; those with 1 or {} can be integrated over the surface.",
+        "coupling.watch.{}.data: '{}' has {} components; only data with 1 or {} can be integrated over the "
+        "surface.",
         name, p.data, n, side.interface.dim);
   if (datum->place == Place::vertices && !surface.knows_corners)
     throw Error(
-        "coupling.watch.{}.data: '{}' does not tell the corners of its faces, which the integral of '{}' needs. "
-        "Watch that of the participant on the other side.",
+        "coupling.watch.{}.data: '{}' does not provide the corners of its faces, which the integral of '{}' "
+        "needs. Watch the participant on the other side.",
         name, p.participant, p.data);
   i.kind = n == 1 ? Kind::scalar : Kind::flux;
   i.columns = n == 1 ? 2 : 1;
@@ -134,7 +136,7 @@ WatchIntegrals::WatchIntegrals(MPI_Comm comm, const std::vector<Side>& sides,
   for (const auto& [name, p] : watched) {
     const auto side = std::ranges::find(sides, p.participant, &Side::name);
     if (side == sides.end())
-      throw Error("coupling.watch.{}.participant: '{}' is no participant of this coupling.", name,
+      throw Error("coupling.watch.{}.participant: '{}' is not a participant of this coupling.", name,
                   p.participant);
     const auto index = std::size_t(side - sides.begin());
     auto surface = std::ranges::find(surfaces_, index, &Surface::side);

@@ -32,54 +32,56 @@ std::optional<EffectVerdict> judge_one_pass(const P& p, const CouplingEvidence& 
   return EffectVerdict{
       "", e.returned, limit / 2,
       fmt::format(
-          "of a change of the motion {:.3g} comes back by the load in the next pass (the added mass over the "
-          "structure's); one pass a step diverges from {:.2g} on",
+          "added-mass ratio: {:.3g} of a change of the motion returns through the load in the next pass; "
+          "one pass per step diverges from {:.2g}",
           e.returned, limit),
-      "take the added mass into the iteration: 'scheme: semi-implicit'"};
+      "iterate the added mass: 'scheme: semi-implicit'"};
 }
 
 std::optional<EffectVerdict> judge_lost_load(const P&, const CouplingEvidence& e) {
   if (std::isnan(e.lost_load)) return {};
   return EffectVerdict{
       "", e.lost_load, 0.02,
-      fmt::format("forces that a fluid gives and no structure takes are {:.2g} of those taken", e.lost_load),
-      "let the structure take 'viscous-force', too ('interface: {load: forces}' of a solid)"};
+      fmt::format("fluid forces not taken / taken by the structure = {:.2g}", e.lost_load),
+      "let the structure take 'viscous-force' as well ('interface: {load: forces}' of a solid)"};
 }
 
 const std::array cards{
     CouplingCard{"exchange among any participants",
                  "`exchange`",
                  [](const P& p) { return when(p.exchange.has_value(), "exchange"); },
-                 {"sums of the amounts that go over", 0, 0}},
+                 {"sums of the exchanged amounts", 0, 0}},
     CouplingCard{"iteration of the whole step",
                  "`scheme: implicit`",
                  [](const P& p) { return when(p.scheme == Scheme::implicit, "scheme: implicit"); },
-                 {"all participants and the mesh motion once a pass", 0, 0}},
+                 {"all participants and the mesh motion once per pass", 0, 0}},
     CouplingCard{
         "iteration of pressure and structure",
         "`scheme: semi-implicit`",
         [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
-        {"a pressure solve and a structure's step a pass; mesh motion and predictor once a step", 0, 0},
-        "explicit: share of a change of the motion that the next pass returns, 0.5 (predictor of order 2: 0.17); two "
-        "passes more in steps 4, 16, 64, ...",
+        {"a pressure solve and a structure step per pass; mesh motion and predictor once per step", 0, 0},
+        "explicit: share of a change of the motion that the next pass returns, 0.5 (predictor of order 2: "
+        "0.17); two additional passes in steps 4, 16, 64, ...",
         judge_one_pass},
     CouplingCard{"friction of the current wall velocity",
                  "`scheme: semi-implicit`, implicit viscous term",
                  [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
-                 {"two vectors a face of the interface, a loop over it a pass", 0, 0}},
+                 {"two vectors per interface face, a loop over it per pass", 0, 0}},
     CouplingCard{
         "prediction renewed",
-        "`scheme: semi-implicit`, where friction misses over 0.1 % of the load (heavy structures: 5 %), up to four times a step",
+        "`scheme: semi-implicit`, where the friction error exceeds 0.1 % of the load (heavy structures: 5 "
+        "%), up to four times per step",
         [](const P& p) { return when(p.scheme == Scheme::semi_implicit, "scheme: semi-implicit"); },
-        {"sums over the interface a pass; where it acts, the first part of the fluid's step once more each time",
+        {"sums over the interface per pass; where active, the first part of the fluid's step is repeated "
+         "each time",
          0, 0}},
     CouplingCard{"viscous coupling load",
-                 "by a structure that takes `viscous-force` beside `pressure-force`",
+                 "by a structure that takes `viscous-force` in addition to `pressure-force`",
                  [](const P& p) {
                    return when(p.fluid.has_value() || p.exchange.has_value(), "what the structure takes");
                  },
-                 {"a force a face of the interface", 0, 0},
-                 "forces given that nobody takes over those taken, 0.02",
+                 {"a force per interface face", 0, 0},
+                 "fluid forces not taken over those taken, 0.02",
                  judge_lost_load,
                  true},
     CouplingCard{"relaxation by Aitken",
@@ -92,15 +94,15 @@ const std::array cards{
     CouplingCard{"quasi-Newton of the interface",
                  "`acceleration.type: iqn-ils` or `iqn-mvj`",
                  [](const P& p) { return when(iterates(p) && is_quasi_newton(p), "acceleration.type"); },
-                 {"three vectors of the interface for each of at most `maximum-columns` differences", 0, 0}},
+                 {"three interface vectors for each of at most `maximum-columns` differences", 0, 0}},
     CouplingCard{"prediction",
                  "`predictor.order` above 0",
                  [](const P& p) { return when(predicts(p), "predictor.order"); },
                  {"the motion of two earlier steps", 0, 0}},
-    CouplingCard{"mapping between surfaces that do not match",
+    CouplingCard{"mapping between non-matching surfaces",
                  "`mapping.type` other than `matched`",
                  [](const P& p) { return when(p.mapping.type != MappingType::matched, "mapping.type"); },
-                 {"a sparse matrix over the interface, made once", 0, 0}},
+                 {"a sparse matrix over the interface, computed once", 0, 0}},
     CouplingCard{"mesh motion",
                  "`mesh`",
                  [](const P& p) { return when(p.mesh.has_value(), "mesh"); },
@@ -108,32 +110,32 @@ const std::array cards{
     CouplingCard{"mesh on the guess",
                  "`mesh-on-guess`, implicit scheme",
                  [](const P& p) { return when(p.mesh_on_guess, "mesh-on-guess"); },
-                 {"the motion of the guess kept for the step", 0, 0}},
+                 {"the motion of the guess, kept for the step", 0, 0}},
     CouplingCard{"load as the unknown",
                  "`order: structure-first`",
                  [](const P& p) {
                    return when(p.order == P::Exchange::Order::structure_first, "order: structure-first");
                  },
-                 {"forces of the faces beside the motion of the vertices in the unknown", 0, 0}},
+                 {"face forces in addition to the vertex motion in the unknown", 0, 0}},
     CouplingCard{"sub-steps",
                  "`sub-steps`",
                  [](const P& p) { return when(!p.sub_steps.empty(), "sub-steps"); },
-                 {"state n of who takes them, in memory; that many of its steps a pass", 0, 0}},
+                 {"state n of the sub-stepping participant, in memory; that many of its steps per pass", 0, 0}},
     CouplingCard{"interface data for ParaView",
                  "`interface-output: true`",
                  [](const P& p) { return when(p.interface_output, "interface-output"); },
-                 {"a file of each interface with each output", 0, 0}},
+                 {"a file for each interface and output", 0, 0}},
     CouplingCard{
         "integrals over interfaces",
         "`watch`",
         [](const P& p) { return when(!p.watch.empty(), "watch"); },
-        {"coordinates of the corners of each interface that is watched, a loop over its faces a step", 0, 0}},
+        {"corner coordinates of each watched interface, a loop over its faces per step", 0, 0}},
     CouplingCard{
         "guards that stop",
         "`on-divergence: stop`",
         [](const P& p) { return when(p.on_divergence == P::OnDivergence::stop, "on-divergence: stop"); },
-        {"a few sums over the interface a step", 0, 0},
-        "motion that the coupling itself makes: swings that grow, work that parts, iterations that diverge"},
+        {"a few sums over the interface per step", 0, 0},
+        "motion caused by the coupling itself: growing oscillations, diverging work, diverging iterations"},
 };
 
 }  // namespace

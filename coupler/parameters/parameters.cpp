@@ -28,9 +28,8 @@ void declare(config::Section& section, CouplingParameters::Exchange& p) {
       .doc("their names under `participants`, in the order of a step");
   section.choice("order", p.order, {{"serial", Order::serial}, {"parallel", Order::parallel}})
       .doc(
-          "serial: one after the other, each with what those before it gave in this step; parallel: all at "
-          "the "
-          "same time with what was given in the last step");
+          "serial: one after the other, each with the data of the preceding ones from this step; parallel: "
+          "all at the same time with the data of the last step");
 }
 
 /// Either fluid and structure, or an exchange.
@@ -38,14 +37,14 @@ std::string problem_of_roles(const CouplingParameters& p) {
   if (p.exchange) {
     const auto& list = p.exchange->participants;
     if (p.structure)
-      return "an exchange has no structure beside it: it is one of its participants; take one or the other";
+      return "an exchange has no separate structure: it is one of its participants; use one or the other";
     if (bool(p.fluid) != bool(p.mesh))
-      return "beside an exchange stand either both `fluid` and `mesh` (whose mesh is moved, and by whom) or "
-             "neither";
+      return "with an exchange give either both `fluid` and `mesh` (whose mesh is moved, and by which "
+             "participant) or neither";
     if (p.fluid && std::ranges::find(list, p.fluid->participant) == list.end())
-      return "`fluid` beside an exchange must be one of its participants";
+      return "`fluid` with an exchange must be one of its participants";
     if (p.mesh && std::ranges::find(list, p.mesh->participant) != list.end())
-      return "`mesh` serves the fluid alone and is not one of the exchange's participants";
+      return "`mesh` serves only the fluid and is not one of the exchange's participants";
     return list.size() < 2 ? "an exchange needs two participants or more" : "";
   }
   if (!p.fluid || !p.structure)
@@ -70,16 +69,16 @@ std::vector<std::string> partners_of(const CouplingParameters& p) {
 void declare(config::Section& section, WatchParameters& p, const std::vector<std::string>& partners) {
   section.value("participant", p.participant)
       .required()
-      .doc("whose interface: its name under `participants`");
+      .doc("participant whose interface is watched: its name under `participants`");
   section.value("data", p.data)
       .required()
-      .doc("name of what it gives or takes, as pressure-force, velocity or heat");
-  section.value("part", p.part).doc("patch of the interface; absent: all of it");
+      .doc("name of a datum it gives or takes, such as pressure-force, velocity or heat");
+  section.value("part", p.part).doc("patch of the interface; absent: the whole interface");
   section.check(
       [partners, &p] {
         return std::ranges::find(partners, p.participant) != partners.end()
                    ? ""
-                   : fmt::format("'{}' takes no part in the coupling; those that do: {}", p.participant,
+                   : fmt::format("'{}' takes no part in the coupling; the participants are: {}", p.participant,
                                  join(partners));
       },
       "participant");
@@ -90,17 +89,16 @@ std::string problem_of_sub_steps(const CouplingParameters& p) {
   const std::vector<std::string> names = partners_of(p);
   for (const auto& [name, n] : p.sub_steps) {
     if (std::ranges::find(names, name) == names.end())
-      return fmt::format("there is no participant '{}' that could take sub-steps", name);
+      return fmt::format("no participant '{}' that supports sub-steps", name);
     if (n != std::round(n) || n < 1 || n > 10000)
-      return fmt::format("'{}' takes a whole number of sub-steps from 1 to 10000", name);
+      return fmt::format("'{}' needs a whole number of sub-steps from 1 to 10000", name);
     if (n == 1 || !p.fluid || name != p.fluid->participant) continue;
     if (p.scheme == Scheme::semi_implicit)
-      return "the fluid takes no sub-steps in the semi-implicit scheme, which splits its step in two; take "
-             "`scheme: implicit` or `explicit`";
+      return "the fluid supports no sub-steps in the semi-implicit scheme, which splits its step in two; "
+             "use `scheme: implicit` or `explicit`";
     if (p.mesh)
-      return "a fluid whose mesh is moved takes no sub-steps: a motion that fails half-way would leave the "
-             "mover "
-             "waiting; give the sub-steps to the structure";
+      return "a fluid with a moving mesh supports no sub-steps: a motion that fails half-way would leave "
+             "the mesh mover waiting; give the sub-steps to the structure";
   }
   return "";
 }
@@ -115,28 +113,27 @@ void declare(config::Section& section, AccelerationParameters& p) {
                {"iqn-mvj", Type::iqn_mvj}})
       .doc(
           "constant: always the initial relaxation; aitken: adapted in each iteration from the last two "
-          "residuals; iqn-ils: quasi-Newton from the differences of this and earlier steps by least squares; "
-          "iqn-mvj: the same, each step's differences correcting the Jacobian of those before it");
+          "residuals; iqn-ils: quasi-Newton from the differences of this and earlier steps by least "
+          "squares; iqn-mvj: the same, each step's differences correcting the previous Jacobian");
   section.value("initial-relaxation", p.initial_relaxation)
       .range(1e-6, 2)
       .doc(
-          "relaxation of the very first iteration, or of all if constant; good is 1 / (1 + r) for added mass "
-          "over structural mass r");
+          "relaxation of the very first iteration, or of all if constant; recommended: 1 / (1 + r) for the "
+          "added mass over the structural mass r");
   section.value("maximum-relaxation", p.maximum_relaxation)
       .range(1e-6, 2)
-      .doc("aitken: upper bound of the relaxation that a step begins with");
+      .doc("aitken: upper bound of the initial relaxation of a step");
   section.value("reused-steps", p.reused_steps)
       .range(0, 1000)
-      .doc("iqn: earlier steps whose differences are used, too");
+      .doc("iqn: number of earlier steps whose differences are reused");
   section.value("maximum-columns", p.maximum_columns)
       .range(1, 10000)
-      .doc("iqn: most differences kept; each takes as much memory as three interface vectors");
+      .doc("iqn: maximum number of differences; each takes as much memory as three interface vectors");
   section.value("filter", p.filter)
       .range(0, 1)
       .doc(
-          "iqn: a difference of which less than this share is independent of newer ones is given up; noise "
-          "of "
-          "the participants over the convergence tolerance is a lower bound of what makes sense");
+          "iqn: a difference is dropped if less than this share is independent of newer ones; sensible "
+          "values are above the participants' noise over the convergence tolerance");
 }
 
 void declare(config::Section& section, ConvergenceParameters& p) {
@@ -144,7 +141,7 @@ void declare(config::Section& section, ConvergenceParameters& p) {
       .range(1e-14, 1)
       .doc(
           "a step has converged when |r| / |H(x)| is below this; r = H(x) - x, the change of the interface "
-          "displacement by one pass");
+          "displacement in one pass");
   section.value("absolute", p.absolute)
       .unit("m")
       .plausible(1e-18, 0.1)
@@ -152,7 +149,7 @@ void declare(config::Section& section, ConvergenceParameters& p) {
       .doc("or when the root mean square of r over the interface vertices is below this; 0: not used");
   section.value("max-iterations", p.max_iterations)
       .range(1, 10000)
-      .doc("a step that needs more has failed and is halved");
+      .doc("maximum number of iterations; a step that needs more fails and is halved");
 }
 
 void declare(config::Section& section, MappingParameters& p) {
@@ -164,17 +161,17 @@ void declare(config::Section& section, MappingParameters& p) {
                {"projection", Type::projection},
                {"rbf", Type::rbf}})
       .doc(
-          "matched: every vertex and face of one side has its match on the other, all else is an error; nearest: "
-          "displacements from the nearest vertex, forces to the nearest face with their sum kept, for faces that match or "
-          "nest; projection, rbf: for any faces: loads go by the transpose of the motion's map, so that work, force and "
-          "moment are kept; slopes along the surface from neighbouring faces (projection) or from a local interpolant by "
-          "compact radial functions through more faces (rbf)");
+          "matched: every vertex and face must match one on the other side; nearest: displacements from the "
+          "nearest vertex, forces to the nearest face with their sum conserved, for faces that match or "
+          "nest; projection, rbf: for any faces: loads use the transpose of the motion's map, so work, "
+          "force and moment are conserved; surface slopes from neighbouring faces (projection) or from a "
+          "local interpolant by compact radial functions through more faces (rbf)");
   section.value("tolerance", p.tolerance)
       .unit("m")
       .plausible(1e-15, 1)
       .positive()
       .doc(
-          "matching vertices are no further apart than this; by default a millionth of the interface's extent");
+          "maximum distance of matching vertices; default: a millionth of the interface's extent");
 }
 
 }  // namespace
@@ -186,53 +183,52 @@ void declare(config::Section& section, CouplingParameters& p) {
                {"semi-implicit", Scheme::semi_implicit},
                {"implicit", Scheme::implicit}})
       .doc(
-          "explicit: one pass a step; semi-implicit: mesh motion and momentum predictor once a step, "
-          "pressure and "
-          "structure iterated; implicit: everything iterated");
-  declare_role(section, "fluid", p.fluid, "who receives the interface motion and gives the load");
-  declare_role(section, "structure", p.structure, "who receives the load and gives the interface motion");
-  declare_role(section, "mesh", p.mesh, "who moves the mesh of the fluid; without it the mesh is fixed");
+          "explicit: one pass per step; semi-implicit: mesh motion and momentum predictor once per step, "
+          "pressure and structure iterated; implicit: everything iterated");
+  declare_role(section, "fluid", p.fluid, "participant that receives the interface motion and gives the load");
+  declare_role(section, "structure", p.structure, "participant that receives the load and gives the "
+                                                  "interface motion");
+  declare_role(section, "mesh", p.mesh, "participant that moves the mesh of the fluid; absent: the mesh is "
+                                        "at rest");
   section.optional_section<CouplingParameters::Exchange>(
       "exchange", p.exchange, [](config::Section& s, CouplingParameters::Exchange& e) { declare(s, e); },
-      "in place of fluid, structure and mesh: participants of any kind that exchange data once a step; each "
-      "datum that one takes comes from the one that gives it");
+      "instead of fluid, structure and mesh: participants of any kind that exchange data once per step; "
+      "each datum that one takes comes from the one that gives it");
   section.section(
       "acceleration", [&](config::Section& s) { declare(s, p.acceleration); },
-      "how the next guess follows from the residual");
+      "computation of the next guess from the residual");
   section.section(
-      "convergence", [&](config::Section& s) { declare(s, p.convergence); }, "when a step is accepted");
+      "convergence", [&](config::Section& s) { declare(s, p.convergence); }, "criteria for accepting a step");
   section.section(
       "predictor",
       [&](config::Section& s) {
         s.value("order", p.predictor_order)
             .range(0, 2)
             .doc(
-                "first guess of a step: 0 the last displacement; 1 with the last velocity; 2 with the last "
-                "two, which "
-                "keeps the semi-implicit scheme second order; data without a velocity by a polynomial of "
-                "this order. "
-                "By default 2, and 0 in an explicit exchange");
+                "initial guess of a step: 0 the last displacement; 1 with the last velocity; 2 with the "
+                "last two, which keeps the semi-implicit scheme second order; data without a velocity by a "
+                "polynomial of this order. Default 2, but 0 in an explicit exchange");
         s.check(
             [&p] {
               const double order = p.predictor_order.value_or(0);
-              return order == std::round(order) ? "" : "it is a whole number: 0, 1 or 2";
+              return order == std::round(order) ? "" : "it must be 0, 1 or 2";
             },
             "order");
       },
-      "the first guess of a step");
+      "initial guess of a step");
   section.value("sub-steps", p.sub_steps)
-      .doc("steps that a participant takes within each coupling step, by its name: {fluid: 4}; by default 1");
+      .doc("steps that a participant takes within each coupling step, by its name: {fluid: 4}; default 1");
   using Waveform = CouplingParameters::Waveform;
   section.choice("waveform", p.waveform, {{"linear", Waveform::linear}, {"constant", Waveform::constant}})
       .doc(
-          "what sub-steps see: linear: the line in time through the last values and the new ones (second "
-          "order); "
-          "constant: the new ones");
+          "data seen by sub-steps: linear: interpolated in time between the last and the new values (second "
+          "order); constant: the new values");
   section.check([&] { return problem_of_sub_steps(p); }, "sub-steps");
   section.check(
       [&] {
         return p.mesh_on_guess && (p.scheme != Scheme::implicit || !p.mesh)
-                   ? "it is for `scheme: implicit` with a `mesh` mover; the semi-implicit scheme does so by itself"
+                   ? "it requires `scheme: implicit` with a `mesh` mover; the semi-implicit scheme always "
+                     "does so"
                    : "";
       },
       "mesh-on-guess");
@@ -243,32 +239,31 @@ void declare(config::Section& section, CouplingParameters& p) {
                {"parallel", Order::parallel},
                {"structure-first", Order::structure_first}})
       .doc(
-          "of fluid and structure: serial: the structure with the load of the same pass (Gauss-Seidel); parallel: both "
-          "at the same time (Jacobi); structure-first: the fluid with the motion of the same pass, the load is "
-          "iterated: what a fluid with `surface-density` at its interface (Robin) needs");
+          "order of fluid and structure: serial: the structure with the load of the same pass "
+          "(Gauss-Seidel); parallel: both at the same time (Jacobi); structure-first: the fluid with the "
+          "motion of the same pass, and the load is iterated, as required by a fluid with `surface-density` "
+          "at its interface (Robin)");
   section.value("mesh-on-guess", p.mesh_on_guess)
       .doc(
-          "implicit: the mesh stays where the first guess of the step puts it, as in the semi-implicit scheme: the "
-          "loop holds for lighter structures");
+          "implicit: the mesh keeps the position of the initial guess of the step, as in the semi-implicit "
+          "scheme: the iteration is stable for lighter structures");
   section.section(
       "mapping", [&](config::Section& s) { declare(s, p.mapping); },
-      "between the two sides of the interface");
+      "data transfer between the two sides of the interface");
   section.value("interface-output", p.interface_output)
       .doc(
-          "with each output the data of all interfaces are written for ParaView, too: "
-          "coupler/interface/<name>.pvd");
+          "also write the data of all interfaces for ParaView with each output: coupler/interface/<name>.pvd");
   section.map<WatchParameters>(
       "watch", p.watch, [&p](config::Section& s, WatchParameters& w) { declare(s, w, partners_of(p)); },
       "integral",
-      "integrals over interfaces, a row a step in coupler/watch.csv: sums of amounts (N, W), fluxes of vectors, "
-      "integral and mean of scalars");
+      "integrals over interfaces, one row per step in coupler/watch.csv: sums of amounts (N, W), fluxes of "
+      "vectors, integral and mean of scalars");
   using OnDivergence = CouplingParameters::OnDivergence;
   section
       .choice("on-divergence", p.on_divergence, {{"stop", OnDivergence::stop}, {"warn", OnDivergence::warn}})
       .doc(
-          "when the motion swings from step to step and grows, or the work on the two sides parts: stop: the "
-          "run "
-          "ends with the reason; warn: it is said once");
+          "when the motion oscillates with growing amplitude, or the work on the two sides diverges: stop: "
+          "the run ends with the reason; warn: it is reported once");
   section.check([&] { return problem_of_roles(p); }, p.exchange ? "exchange" : "structure");
 }
 

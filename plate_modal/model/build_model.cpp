@@ -118,11 +118,12 @@ std::filesystem::path mesh_file(const Parameters& p, const std::filesystem::path
   const std::string kind = file.extension().string();
   if (kind != ".geo" && !p.mesh_parameters.empty())
     throw Error(
-        "The mesh '{}' is finished, so 'mesh-parameters' cannot change it. Leave them out, or give the .geo it was made from.",
+        "The mesh '{}' is already meshed, so 'mesh-parameters' cannot change it. Remove them, or give the "
+        ".geo it was made from.",
         file.string());
   if (kind == ".unv" || kind == ".med" || kind == ".cgns") return convert_mesh(file);
   if (kind != ".msh" && kind != ".geo")
-    throw Error("The mesh file '{}' is neither .msh nor .geo, .unv, .med or .cgns.", file.string());
+    throw Error("The mesh file '{}' is not a .msh, .geo, .unv, .med or .cgns file.", file.string());
   return kind == ".geo" ? mesh_geo(file, 2, p.mesh_parameters) : file;
 }
 
@@ -132,9 +133,8 @@ Midsurface read(const Parameters& p, const std::filesystem::path& folder) {
   RawMesh raw = read_msh(file);
   if (raw.dim != 2 || raw.cell_type.empty())
     throw Error(
-        "The mesh '{}' is not a plane one. The mid-surface of a plate is a 2-D mesh with its surface in a "
-        "physical "
-        "group.",
+        "The mesh '{}' is not two-dimensional. The mid-surface of a plate needs a 2-D mesh with its surface "
+        "in a physical group.",
         (folder / *p.mesh).string());
   for (Vec3& x : raw.points) x *= p.mesh_scale;
   Midsurface surface = midsurface_of(raw, read_boundary_entities(file));
@@ -153,8 +153,8 @@ void refuse_lost_rigid(const PlateModel& plate, const EigenModes& modes) {
   const auto rigid =
       std::ranges::count_if(first.eigenvalue, [&](double value) { return value < rigid_limit(plate); });
   throw Error(
-      "modes.number: nothing holds the plate against {} rigid motions (modes of 0 Hz), and only {} of them would be "
-      "kept: it would fall and turn in some ways and not in others. Keep at least {}.",
+      "modes.number: the plate has {} free rigid motions (modes of 0 Hz), but only {} of them would be "
+      "kept, so that it would move in some ways and not in others. Keep at least {}.",
       rigid, modes.eigenvalue.size(), rigid);
 }
 
@@ -184,7 +184,7 @@ bool reuse_modes(Built& built, const std::filesystem::path& file, const std::str
     }
   } catch (const Error&) {  // said below
   }
-  log::warn("'{}' is not as it was written: its modes are found again.", file.string());
+  log::warn("The modes file '{}' was modified; recomputing the modes.", file.string());
   return false;
 }
 
@@ -202,12 +202,12 @@ void look_at_corners(Built& built, const Midsurface& surface, const std::vector<
   }
   const Vec2& x = surface.points[corners.front()];
   built.outline = fmt::format(
-      "the simply supported outline has {} corner{} between straight edges that turn{} by {:.3g} to {:.3g} degrees, one at "
-      "({:.4g}, {:.4g}): moments are singular there, and the error falls as h^{:.2g} in place of h^2, h the cells' size. "
-      "The plate is a polygon, which deflects less than one with a curved edge however many sides it has "
-      "(Babuska's paradox), and blunt corners take a very fine mesh: with 13 edges a side of 20 the deflection is 13 % too "
-      "large, with 16 edges a side of 12 it is 22 % too small. Draw an edge that is meant to be curved by a curve (Circle, "
-      "Ellipse, Spline); else compare with a finer mesh.",
+      "the simply supported outline has {} corner{} between straight edges that turn{} by {:.3g} to {:.3g} "
+      "degrees, one at ({:.4g}, {:.4g}): moments are singular there, and the error decreases as h^{:.2g} "
+      "instead of h^2, with cell size h. A polygonal plate deflects less than one with a curved edge, "
+      "however many sides it has (Babuska's paradox), and obtuse corners need a very fine mesh: with 13 "
+      "edges per side a 20-gon deflects 13 % too much, with 16 edges per side a 12-gon 22 % too little. "
+      "Draw curved edges as curves (Circle, Ellipse, Spline); otherwise compare with a finer mesh.",
       corners.size(), corners.size() > 1 ? "s" : "", corners.size() > 1 ? "" : "s", least / degree,
       most / degree, x.x(), x.y(), order);
 }
@@ -220,9 +220,8 @@ void add_modes(Built& built, const PlateModel& plate, const Parameters& p, const
   refuse_lost_rigid(plate, modes);
   if (cuts_a_group(modes, 1e-3))
     built.note = fmt::format(
-        "modes {} and {} have the same frequency (to 0.1 %), and only the first is kept: the plate answers differently "
-        "in "
-        "directions that should be alike. Keep one more or one less.",
+        "modes {} and {} have the same frequency (to 0.1 %), but only the first is kept, so the response "
+        "differs between equivalent directions. Keep one more or one fewer.",
         p.n_modes(), p.n_modes() + 1);
   built.model = skin_of(plate, modes, p.placement, p.wetted, open_patches(plate.surface(), p));
   const double least = std::sqrt(rigid_limit(plate)) / (2 * std::numbers::pi);
@@ -255,11 +254,12 @@ ModalModel modes_of_file(const Parameters& p, const std::filesystem::path& file)
   const std::string problem = facing_problem_of(model, p.cavity ? Facing::inward : Facing::outward);
   if (problem.empty()) return model;
   throw Error(
-      "modes.file: the file of modes '{}' cannot be used: {}. {}docs/formats.md says what it must hold.",
+      "modes.file: cannot use the modes file '{}': {}. {}docs/formats.md describes the required content.",
       file.string(), problem,
       p.cavity
           ? ""
-          : "If it is the wall of a cavity, whose outside is the space within, say 'modes.cavity: true'. ");
+          : "If it is the wall of a cavity, with the enclosed space outside of the structure, set "
+            "'modes.cavity: true'. ");
 }
 
 Built build_model(const Parameters& p, const PlateContext& context, const RawMesh* raw) {

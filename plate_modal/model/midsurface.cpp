@@ -44,8 +44,9 @@ void refuse_out_of_plane(const RawMesh& raw) {
   const Vec3& x = raw.points[farthest];
   if (std::abs(x.z()) <= tolerance * (high - low).norm()) return;
   throw Error(
-      "The mid-surface does not lie in the plane z = 0: its z goes from {:.6g} to {:.6g} m, farthest at ({:.6g}, "
-      "{:.6g}, {:.6g}). A plate is meshed there, and 'placement' puts it into space; a curved or folded sheet is none.",
+      "The mid-surface does not lie in the plane z = 0: its z ranges from {:.6g} to {:.6g} m, with the "
+      "largest distance at ({:.6g}, {:.6g}, {:.6g}). Mesh the plate in that plane and position it with "
+      "'placement'; curved or folded sheets are not supported.",
       low.z(), high.z(), x.x(), x.y(), x.z());
 }
 
@@ -65,7 +66,7 @@ void add_cells(const RawMesh& raw, Midsurface& s) {
     if (!(least_corner(s, cell) > 0)) {
       const Vec2& x = s.points[cell.front()];
       throw Error(
-          "The cell {} of the mid-surface at ({:.6g}, {:.6g}) has no area or a corner that turns inwards.",
+          "The cell {} of the mid-surface at ({:.6g}, {:.6g}) has zero area or a re-entrant corner.",
           c + 1, x.x(), x.y());
     }
     s.cells.push_row(cell);
@@ -91,8 +92,8 @@ std::map<std::pair<Index, Index>, Index> element_of_edges(const RawMesh& raw) {
     if (is_new || patch == raw.boundary_patch[e]) continue;
     const Vec3 middle = 0.5 * (raw.points[ends[0]] + raw.points[ends[1]]);
     throw Error(
-        "The edge of the mid-surface at ({:.6g}, {:.6g}) belongs to two patches, '{}' and '{}': it cannot be held in "
-        "two ways. Put each curve into one physical curve.",
+        "The edge of the mid-surface at ({:.6g}, {:.6g}) belongs to two patches, '{}' and '{}', but can "
+        "have only one boundary condition. Put each curve into exactly one physical curve.",
         middle.x(), middle.y(), raw.patches[patch], raw.patches[raw.boundary_patch[e]]);
   }
   return element;
@@ -107,8 +108,8 @@ void refuse_inside(const Midsurface& s, const RawMesh& raw,
     if (found == uses.end() || found->second < 2) continue;
     const Vec2 middle = 0.5 * (s.points[edge.first] + s.points[edge.second]);
     throw Error(
-        "The patch '{}' has an edge inside the mid-surface, at ({:.6g}, {:.6g}). Only edges of the outline can be "
-        "held: take the curve out of the physical curves, or cut a slit along it.",
+        "The patch '{}' has an edge inside the mid-surface, at ({:.6g}, {:.6g}). Only edges of the outline "
+        "can be held: remove the curve from the physical curves, or cut a slit along it.",
         s.patches[raw.boundary_patch[element]], middle.x(), middle.y());
   }
 }
@@ -138,9 +139,8 @@ Midsurface midsurface_of(const RawMesh& raw, std::span<const int> curves) {
       const auto found = elements.find(edge);
       if (found == elements.end())
         throw Error(
-            "The edge of the mid-surface at ({:.6g}, {:.6g}) belongs to no patch. Put the whole outline into "
-            "physical "
-            "curves.",
+            "The edge of the mid-surface at ({:.6g}, {:.6g}) belongs to no patch. Put the whole outline "
+            "into physical curves.",
             middle.x(), middle.y());
       const Index e = found->second;
       s.edges.push_back({from, to, c, raw.boundary_patch[e], curves.empty() ? -1 : curves[e]});

@@ -17,9 +17,10 @@ void declare_body(config::Section& s, Parameters& p) {
   s.value("mesh-scale", p.mesh_scale)
       .positive()
       .doc(
-          "factor of all lengths of the mesh file: 0.001 for a mesh in millimetres; keys that are places stay in metres");
+          "scale factor for all lengths of the mesh file: 0.001 for a mesh in millimetres; positions in "
+          "keys remain in metres");
   s.value("mesh-parameters", p.mesh_parameters)
-      .doc("numbers for names that the .geo defines by DefineConstant");
+      .doc("values for names that the .geo defines with DefineConstant");
   s.section(
       "material",
       [&](config::Section& m) {
@@ -50,17 +51,17 @@ void declare_body(config::Section& s, Parameters& p) {
             .unit("m")
             .plausible(1e-7, 10)
             .positive()
-            .doc("in place of the plate's");
+            .doc("instead of the plate's");
         z.value("density", v.density)
             .unit("kg/m^3")
             .plausible(1, 25000)
             .positive()
-            .doc("in place of the plate's");
+            .doc("instead of the plate's");
         z.value("youngs-modulus", v.youngs_modulus)
             .unit("Pa")
             .plausible(1, 2e12)
             .positive()
-            .doc("in place of the plate's");
+            .doc("instead of the plate's");
       },
       "zone", "parts of the mesh (physical surfaces) that differ from the rest");
   s.map<Edge>(
@@ -72,7 +73,7 @@ void declare_body(config::Section& s, Parameters& p) {
                   {"simply-supported", Support::simply_supported},
                   {"symmetry", Support::symmetry}})
             .required()
-            .doc("how the edge is held; symmetry: no slope across it");
+            .doc("support of the edge; symmetry: no slope across it");
       },
       "patch", "one entry for each part of the outline; needed with 'mesh'");
 }
@@ -84,7 +85,7 @@ void declare_place(config::Section& s, Parameters& p) {
         q.value("origin", p.placement.origin)
             .unit("m")
             .plausible(1e-9, 1e4)
-            .doc("where the origin of the mesh lies in space");
+            .doc("position of the mesh origin in space");
         q.value("x-axis", p.placement.x).doc("direction of the mesh's x in space, of any length");
         q.value("y-axis", p.placement.y)
             .doc("direction of the mesh's y, of any length; the plate's normal is x cross y");
@@ -98,9 +99,10 @@ void declare_place(config::Section& s, Parameters& p) {
             },
             "x-axis");
       },
-      "where the mid-surface lies in space");
+      "position of the mid-surface in space");
   s.choice("wetted", p.wetted, {{"both", Wetted::both}, {"upper", Wetted::upper}, {"lower", Wetted::lower}})
-      .doc("sides that are the interface; upper: where the normal points; both: with the free edges' rims");
+      .doc("sides that form the interface; upper: where the normal points; both: including the rims of free "
+           "edges");
   s.value("surface-density", p.surface_density)
       .doc("also give the mass behind each face [kg/m^2], the impedance for a Robin interface");
 }
@@ -111,35 +113,34 @@ void declare_modes(config::Section& s, Parameters& p) {
       [&](config::Section& m) {
         m.value("number", p.number)
             .range(1, 10000)
-            .doc("of modes of a mesh that are kept, the lowest first; absent: 15");
+            .doc("number of modes of a mesh to keep, the lowest first; absent: 15");
         m.check(
             [&] { return p.number && *p.number != std::floor(*p.number) ? "a whole number is needed" : ""; },
             "number");
         m.value("file", p.modes_file)
-            .doc("modes that another program wrote (docs/formats.md), in place of 'mesh'");
+            .doc("modes written by another program (docs/formats.md), instead of 'mesh'");
         m.value("cavity", p.cavity)
             .doc(
-                "with 'file': its surface is the wall of a cavity, so the normals must point into the space that it encloses; "
-                "false: such a surface is refused as turned inside out");
-        m.check([&] { return p.cavity && !p.modes_file ? "it says something of a 'file' alone" : ""; },
+                "with 'file': its surface is the wall of a cavity, so the normals must point into the "
+                "enclosed space; false: such a surface is rejected as inside out");
+        m.check([&] { return p.cavity && !p.modes_file ? "it applies to a 'file' only" : ""; },
                 "cavity");
         m.check(
             [&] {
               return p.modes_file && !p.mesh && p.number
-                         ? "with 'modes.file' it is of no use: all modes of the file are taken"
+                         ? "it has no effect with 'modes.file': all modes of the file are used"
                          : "";
             },
             "number");
       },
-      "modes of the structure; those of a mesh are kept in modes.h5 of the output folder and used again "
-      "while "
+      "modes of the structure; those of a mesh are stored in modes.h5 of the output folder and reused while "
       "mesh and data are the same");
   s.section(
       "time-scheme", [&](config::Section& t) { couplet::declare(t, p.time_scheme); }, "integration in time");
   s.optional_section<Damping>(
       "damping", p.damping,
       [](config::Section& d, Damping& v) {
-        d.value("ratio", v.ratio).range(0, 1).doc("of critical damping, the same in every mode");
+        d.value("ratio", v.ratio).range(0, 1).doc("fraction of critical damping, the same in every mode");
         d.value("mass", v.mass)
             .unit("1/s")
             .plausible(1e-9, 1e9)
@@ -170,15 +171,15 @@ void declare_loads(config::Section& s, Parameters& p) {
         l.value("lower-pressure", v.lower)
             .unit("Pa")
             .plausible(1e-9, 1e11)
-            .doc("on the other side (with 'modes.file': -z), of x, y, z, t");
+            .doc("on the opposite side (with 'modes.file': -z), of x, y, z, t");
         l.check([&] { return v.upper ? problem_of(*v.upper) : ""; }, "upper-pressure");
         l.check([&] { return v.lower ? problem_of(*v.lower) : ""; }, "lower-pressure");
       },
-      "pressures that push into the sides, beside those of a fluid; a table of a file: 'table(t, "
+      "pressures acting on the sides, in addition to those of a fluid; a table of a file: 'table(t, "
       "\"p.csv\")'");
   s.optional_section<ContactParameters>(
       "contact", p.contact, [](config::Section& c, ContactParameters& v) { declare(c, v); },
-      "a rigid seat under the structure, in a dynamic analysis alone");
+      "a rigid seat under the structure, for dynamic analyses only");
 }
 
 /// What describes a plate says nothing about the modes of a file, which have their own surface, place and mass.
@@ -187,12 +188,12 @@ void check_file_alone(config::Section& s, const Parameters& p) {
     s.check(
         [&p, why, is_given] {
           return p.modes_file && !p.mesh && is_given()
-                     ? fmt::format("with 'modes.file' it is of no use: {}", why)
+                     ? fmt::format("it has no effect with 'modes.file': {}", why)
                      : "";
         },
         key);
   };
-  const char* inside = "the modes hold it already";
+  const char* inside = "the modes include it already";
   of_no_use("mesh-parameters", "there is no .geo", [&p] { return !p.mesh_parameters.empty(); });
   of_no_use("mesh-scale", "the file is in metres", [&p] { return p.mesh_scale != 1; });
   of_no_use("material", inside, [&p] {
@@ -203,7 +204,7 @@ void check_file_alone(config::Section& s, const Parameters& p) {
   of_no_use("thickness", inside, [&p] { return p.thickness > 0; });
   of_no_use("zones", inside, [&p] { return !p.zones.empty(); });
   of_no_use("boundaries", inside, [&p] { return !p.boundaries.empty(); });
-  of_no_use("placement", "the surface of the file stands where the file says", [&p] {
+  of_no_use("placement", "the file defines the position of the surface", [&p] {
     const Placement here;
     return p.placement.origin != here.origin || p.placement.x != here.x || p.placement.y != here.y;
   });
@@ -232,14 +233,14 @@ void check_together(config::Section& s, Parameters& p) {
   s.check(
       [&] {
         return p.contact && p.analysis != Analysis::dynamic
-                   ? "contact is part of a dynamic analysis; remove it"
+                   ? "contact requires a dynamic analysis; remove it"
                    : "";
       },
       "contact");
   s.check(
       [&] {
         return p.contact && p.modes_file && !p.contact->stiffness
-                   ? "with 'modes.file' the material is not known: give 'stiffness'"
+                   ? "with 'modes.file' the material is unknown: give 'stiffness'"
                    : "";
       },
       "contact");
@@ -247,7 +248,7 @@ void check_together(config::Section& s, Parameters& p) {
       [&] {
         return p.contact && p.contact->rule == ContactRule::conserving &&
                        p.time_scheme.type != TimeScheme::trapezoidal
-                   ? "'rule: conserving' goes with the trapezoidal time scheme; take 'rule: midpoint'"
+                   ? "'rule: conserving' requires the trapezoidal time scheme; use 'rule: midpoint'"
                    : "";
       },
       "contact");
@@ -261,7 +262,7 @@ void check_together(config::Section& s, Parameters& p) {
   s.check(
       [&] {
         return p.mesh && std::ssize(p.initial_amplitudes) > p.n_modes()
-                   ? fmt::format("{} amplitudes are given for {} modes", p.initial_amplitudes.size(),
+                   ? fmt::format("{} amplitudes are given, but there are {} modes", p.initial_amplitudes.size(),
                                  p.n_modes())
                    : "";
       },
@@ -274,8 +275,8 @@ void declare(config::Section& s, ContactParameters& c) {
   s.value("height", c.height)
       .unit("m")
       .plausible(1e-9, 1e4)
-      .doc("of the seat along 'direction', of x, y, z of the structure at rest");
-  s.value("where", c.where).doc("there is a seat where this expression of x, y, z is above 0");
+      .doc("height of the seat along 'direction', of x, y, z of the structure at rest");
+  s.value("where", c.where).doc("the seat exists where this expression of x, y, z is above 0");
   s.value("direction", c.direction)
       .size(3)
       .doc("from the seat to the structure, of any length; absent: the plate's normal");
@@ -284,21 +285,21 @@ void declare(config::Section& s, ContactParameters& c) {
       .unit("N/m^3")
       .plausible(1, 1e16)
       .positive()
-      .doc("force per area and penetration, in place of (4.33)");
+      .doc("force per area and penetration, instead of (4.33)");
   s.value("starts-inside", c.starts_inside)
       .doc(
-          "the structure may stand in the seat at the start, whose springs then push from there; false: an error");
+          "the structure may start inside the seat, whose springs then push from the start; false: an error");
   s.choice("rule", c.rule, {{"conserving", ContactRule::conserving}, {"midpoint", ContactRule::midpoint}})
       .doc(
-          "conserving: a bounce keeps the energy to rounding, with the trapezoidal time scheme alone; midpoint: the force "
-          "where the scheme has equilibrium, with any scheme");
+          "conserving: a bounce conserves the energy to rounding, with the trapezoidal time scheme only; "
+          "midpoint: the force where the scheme has equilibrium, with any scheme");
   const auto problem = [](const config::ExpressionText& text) -> std::string {
     if (std::string wrong = problem_of(text); !wrong.empty()) return wrong;
-    return Expression(text).uses_time() ? "a seat stands still: an expression of x, y, z, without t" : "";
+    return Expression(text).uses_time() ? "the seat is at rest: use an expression of x, y, z, without t" : "";
   };
   s.check(
       [&] {
-        return c.stiffness && c.scale != 1 ? "with 'stiffness' it is of no use: it scales (4.33) alone" : "";
+        return c.stiffness && c.scale != 1 ? "it has no effect with 'stiffness': it scales (4.33) only" : "";
       },
       "scale");
   s.check([&] { return problem(c.height); }, "height");
@@ -315,7 +316,7 @@ void declare(config::Section& s, Parameters& p) {
   using Analysis = Parameters::Analysis;
   s.choice("analysis", p.analysis,
            {{"dynamic", Analysis::dynamic}, {"static", Analysis::static_}, {"modal", Analysis::modal}})
-      .doc("static: deflection of the plate without inertia; modal: frequencies and shapes alone");
+      .doc("static: deflection of the plate without inertia; modal: frequencies and shapes only");
   declare_body(s, p);
   declare_place(s, p);
   declare_modes(s, p);
@@ -323,11 +324,11 @@ void declare(config::Section& s, Parameters& p) {
   s.value("initial-velocity", p.initial_velocity)
       .unit("m/s")
       .plausible(1e-9, 1e4)
-      .doc("of the whole structure at the start");
+      .doc("initial velocity of the whole structure");
   s.value("initial-amplitudes", p.initial_amplitudes)
       .unit("m")
       .plausible(1e-9, 1e4)
-      .doc("of the modes at the start: the displacement where each is largest");
+      .doc("initial amplitudes of the modes: the displacement where each is largest");
   s.map<Watched>(
       "probes", p.probes,
       [](config::Section& q, Watched& v) {
@@ -336,14 +337,14 @@ void declare(config::Section& s, Parameters& p) {
             .unit("m")
             .plausible(1e-9, 1e4)
             .doc(
-                "place on the undeformed surface, or no farther from it than the thickness or a hundredth of the structure's "
-                "size: the nearest place of the surface is taken");
+                "position on the undeformed surface, or within the thickness or a hundredth of the "
+                "structure's size of it: the nearest point of the surface is used");
       },
-      "probe", "places of the surface whose displacement is written to probes.csv at each step");
+      "probe", "points of the surface whose displacement is written to probes.csv at each step");
   s.section(
       "output",
       [&](config::Section& o) {
-        o.value("modes", p.output.modes).doc("write the shapes of the modes, one a time of a series");
+        o.value("modes", p.output.modes).doc("write the mode shapes, one per time of a series");
         o.value("fields", p.output.fields).doc("write the moving surface at the output interval");
       },
       "what is written");

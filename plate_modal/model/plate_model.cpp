@@ -200,8 +200,8 @@ EigenModes PlateModel::modes(int n) const {
   const auto free = std::ranges::count(fixed_, false);
   if (n >= free)
     throw Error(
-        "{} modes are asked for; the plate has {} unknowns that are not held, and one mode must be left out. Ask for fewer, or "
-        "take a finer mesh: modes beyond a tenth of the unknowns are the mesh's.",
+        "{} modes are requested, but the plate has {} free unknowns, and one mode must be left over. "
+        "Request fewer, or use a finer mesh: modes beyond a tenth of the unknowns are mesh artefacts.",
         n, free);
   EigenModes modes = lowest_modes(*stiffness_, *mass_, n, -frequency_scale());
   for (std::vector<double>& shape : modes.shape) {

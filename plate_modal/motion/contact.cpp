@@ -37,7 +37,7 @@ Contact::Contact(const Share& share, const ContactParameters& p, const Vec3& nor
     }
   }
   if (couplet::sum(share.comm(), GlobalIndex(gap_.size())) == 0)
-    throw Error("contact: no face of the structure looks at the seat. Check 'direction' and 'where'.");
+    throw Error("contact: no face of the structure points towards the seat. Check 'direction' and 'where'.");
   refuse_sliding(direction, faces);
 }
 
@@ -60,8 +60,8 @@ void Contact::refuse_sliding(const Vec3& direction, std::span<const std::size_t>
   const double cosine = std::sqrt(moves[0] / moves[1]);
   if (cosine >= least_cosine_to_seat) return;
   throw Error(
-      "contact.direction: the modes move the faces that look at the seat along ({:g}, {:g}, {:g}) by {:.0f} % of their "
-      "motion only; at least {:.0f} % is needed for the seat to hold them. A seat lies across the motion.",
+      "contact.direction: the modes move the faces towards the seat along ({:g}, {:g}, {:g}) by only {:.0f} "
+      "% of their motion; at least {:.0f} % is needed for contact. The seat must lie across the motion.",
       direction.x(), direction.y(), direction.z(), moves[1] > 0 ? 100 * cosine : 0,
       100 * least_cosine_to_seat);
 }

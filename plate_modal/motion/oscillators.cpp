@@ -127,9 +127,8 @@ void Oscillators::solve_contact(const Stage& stage, const ModalState& at) {
   for (int i = 0; size > newton_tolerance * scale; ++i) {
     if (i == most_iterations)
       throw SolveFailure(
-          "The impact on the seat was not found in {} iterations of Newton's method (residual {:.2e} of "
-          "{:.2e}). Try "
-          "a smaller step.",
+          "The impact on the seat did not converge in {} iterations of Newton's method (residual {:.2e} of "
+          "{:.2e}). Try a smaller step.",
           most_iterations, size, scale);
     jacobian_ = shown.x * seat_.tangent;
     for (std::size_t m = 0; m < n; ++m) jacobian_(m, m) += diagonal_[m];

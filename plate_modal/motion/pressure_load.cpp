@@ -96,7 +96,7 @@ double PressureLoad::value(const Expression& side, const Vec3& x, double t) cons
     fail(error.what());
   }
   if (!(std::abs(pressure) <= largest_pressure))
-    fail(fmt::format("a pressure of {:g} Pa is none: sizes up to {:g} Pa are taken.", pressure,
+    fail(fmt::format("a pressure of {:g} Pa is not valid: magnitudes up to {:g} Pa are accepted.", pressure,
                      largest_pressure));
   return pressure;
 }

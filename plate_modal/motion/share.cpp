@@ -98,7 +98,7 @@ std::vector<double> Share::scatter_faces(const std::vector<double>& on_root) con
   const std::vector<double> zeros(on_root.empty() && comm_rank(comm_) == 0 ? 3 * n : 0);
   const std::vector<double>& values = zeros.empty() ? on_root : zeros;
   if (comm_rank(comm_) == 0 && values.size() != 3 * n)
-    throw Error("The structure was given {} values of force; its surface has {} faces with 3 components.",
+    throw Error("The structure received {} force values, but its surface has {} faces with 3 components.",
                 values.size(), n);
   return scatter(comm_, face_counts_, 3, values.data());
 }
