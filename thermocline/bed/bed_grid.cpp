@@ -11,7 +11,7 @@ namespace couplet::thermocline {
 
 BedGrid::BedGrid(const std::vector<BedLayer>& layers, int cells) {
   if (cells < int(layers.size()))
-    throw Error("bed: {} cells are not enough for {} layers; each layer needs one at least.", cells,
+    throw Error("bed: {} cells are not enough for {} layers; each layer needs at least one.", cells,
                 layers.size());
   for (const BedLayer& l : layers) height += l.height;
   // Faces of the layers at the nearest face of the uniform grid, each layer with a cell at least.

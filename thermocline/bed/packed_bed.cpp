@@ -53,7 +53,7 @@ PackedBed::PackedBed(const BedParameters& p, const Fluid& fluid, const Filler& f
     melt_.diagonal.assign(n, 0.0);
     main_.own_part.assign(n, 0.0);
     if (advection_ == Advection::tvd)
-      throw Error("bed.advection: tvd does not know layers that melt; use upwind or implicit.");
+      throw Error("bed.advection: tvd does not support phase-change layers; use upwind or implicit.");
   }
   std::vector<double> start(n, p.initial_temperature);
   if (!p.profile_z.empty()) {

@@ -23,26 +23,26 @@ void declare(config::Section& s, ReportParameters& p) {
       .unit("day")
       .plausible(1, 1e4)
       .not_negative()
-      .doc("the means leave out these days at the start, in which the cycle becomes periodic");
+      .doc("these first days, in which the cycle becomes periodic, are excluded from the means");
   s.value("profile-day", p.profile_day)
       .unit("day")
       .plausible(1, 1e4)
       .not_negative()
-      .doc("so many days after the start the profiles of one day are written, every hour; absent: none");
+      .doc("on this day after the start, hourly profiles are written; absent: none");
   s.value("thickness-margin", p.thickness_margin)
       .unit("K difference")
       .plausible(0.1, 500)
       .positive()
-      .doc("the thermocline lies between the cold temperature plus and the hot temperature minus this");
+      .doc("the thermocline is the region between the cold temperature plus this margin and the hot "
+           "temperature minus it");
   s.value("outlet-margin", p.outlet_margin)
       .unit("K difference")
       .plausible(0.1, 500)
       .positive()
-      .doc("the time is counted in which the tank's outlet is nearer than this to its design temperature");
+      .doc("counts the time in which the tank's outlet is within this difference of its design temperature");
   s.optional_section<EconomicsParameters>(
       "economics", p.economics, [](config::Section& q, EconomicsParameters& e) { declare(q, e); },
-      "prices, in a currency of one's own: the summary then has capital and levelised cost of the "
-      "electricity");
+      "prices, in any currency: the summary then includes capital and levelised cost of electricity");
   s.value("dead-state", p.dead_state)
       .unit("K")
       .plausible(200, 400)
@@ -52,7 +52,7 @@ void declare(config::Section& s, ReportParameters& p) {
       [&p]() -> std::string {
         if (p.dead_state >= 200) return "";
         return fmt::format(
-            "{:g} K is {:.0f} degC, colder than any surroundings; write '{:g} degC' if that is meant",
+            "{:g} K is {:.0f} degC, below any ambient temperature; write '{:g} degC' if that is intended",
             p.dead_state, celsius(p.dead_state), p.dead_state);
       },
       "dead-state");
@@ -219,19 +219,20 @@ void DayReport::restore(std::span<const double> state) {
   const std::size_t sums = scalars + 2 * Sums::n_items;
   if (state.size() < sums + 1 ||
       double(state.size()) != double(sums) + StressHistory::state_size(state[sums]))
-    throw Error("report: the checkpoint is of another version of this program: its sums are not ours.");
+    throw Error("report: the checkpoint is from another version of this program; its sums are incompatible.");
   constexpr double most_days = 1e6;
   for (const double days : {state[0], state[1]})
     if (!(days >= 0 && days <= most_days))
-      throw Error("report: the checkpoint's numbers of days are damaged.");
+      throw Error("report: the checkpoint's day counts are damaged.");
   days_seen_ = static_cast<int>(state[0]);
   days_counted_ = static_cast<int>(state[1]);
   int counted = 0;
   for (int day = 0; day < days_seen_; ++day) counted += this->counts(day);
   if (counted != days_counted_)
     throw Error(
-        "report.run-in: the run to be continued has lived through {} days and counted {} of them; with a run-in of {:g} "
-        "days it would be {}. What was counted cannot be taken back: keep the run-in, or start anew.",
+        "report.run-in: the run to be continued has completed {} days and counted {} of them; with a run-in "
+        "of {:g} days it would be {}. Days already counted cannot be removed: keep the run-in, or start a "
+        "new run.",
         days_seen_, days_counted_, p_.run_in, counted);
   storable_ = state[2];
   bed_height_ = state[3];

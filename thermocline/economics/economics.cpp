@@ -7,23 +7,23 @@
 namespace couplet::thermocline {
 
 void declare(config::Section& s, EconomicsParameters& p) {
-  s.value("field", p.field).not_negative().doc("price of a square metre of solar field");
-  s.value("block", p.block).not_negative().doc("price of a kilowatt (electric) of the power block");
-  s.value("fixed", p.fixed).not_negative().doc("what does not grow with the plant");
-  s.value("steel", p.steel).not_negative().doc("price of a kilogram of the tank's wall");
-  s.value("filler", p.filler).not_negative().doc("price of a kilogram of the grains");
+  s.value("field", p.field).not_negative().doc("price per square metre of solar field");
+  s.value("block", p.block).not_negative().doc("price per kilowatt (electric) of the power block");
+  s.value("fixed", p.fixed).not_negative().doc("fixed cost, independent of the plant's size");
+  s.value("steel", p.steel).not_negative().doc("price per kilogram of the tank's wall");
+  s.value("filler", p.filler).not_negative().doc("price per kilogram of the grains");
   s.value("capsules", p.capsules)
       .not_negative()
-      .doc("price of a kilogram of capsules, the grains of layers that melt; absent: as filler");
+      .doc("price per kilogram of capsules, the grains of phase-change layers; absent: as filler");
   s.value("pump", p.pump)
       .not_negative()
-      .doc("price of a kilowatt of pump or fan, of the largest power that it took in the run");
-  s.value("fluid", p.fluid).not_negative().doc("price of a kilogram of the fluid in the bed");
+      .doc("price per kilowatt of pump or fan, by the largest power in the run");
+  s.value("fluid", p.fluid).not_negative().doc("price per kilogram of the fluid in the bed");
   s.value("insulation", p.insulation)
       .not_negative()
-      .doc("price of a square metre of insulated wall and roof");
-  s.value("foundation", p.foundation).not_negative().doc("price of a square metre of the tank's ground");
-  s.value("operation", p.operation).range(0, 1).doc("cost of a year, share of the capital");
+      .doc("price per square metre of insulated wall and roof");
+  s.value("foundation", p.foundation).not_negative().doc("price per square metre of the tank's ground");
+  s.value("operation", p.operation).range(0, 1).doc("annual cost, as a share of the capital");
   s.value("interest", p.interest).range(0, 1).doc("a year");
   s.value("lifetime", p.lifetime).range(1, 200).doc("years");
   s.check(
@@ -32,7 +32,7 @@ void declare(config::Section& s, EconomicsParameters& p) {
                            p.insulation + p.foundation >
                        0
                    ? ""
-                   : "no price is above 0: what costs nothing has no levelised cost";
+                   : "all prices are 0: the levelised cost is undefined";
       },
       "");
 }

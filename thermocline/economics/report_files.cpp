@@ -90,10 +90,10 @@ void DayReport::finish() {
     for (std::size_t i = 0; i < low.size(); ++i)
       stress << fmt::format("{},{},{},{}\n", stress_.z()[i], low[i], high[i], stress_.highest()[i]);
     stress.flush();
-    if (!stress) throw Error("{} could not be written. Is the disk full?", (folder_ / "stress.csv").string());
+    if (!stress) throw Error("Cannot write {}. Is the disk full?", (folder_ / "stress.csv").string());
   }
   summary.flush();
-  if (!summary) throw Error("{} could not be written. Is the disk full?", (folder_ / "summary.csv").string());
+  if (!summary) throw Error("Cannot write {}. Is the disk full?", (folder_ / "summary.csv").string());
 }
 
 }  // namespace couplet::thermocline

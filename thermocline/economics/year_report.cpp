@@ -51,33 +51,35 @@ std::vector<std::string> DayReport::doubts() const {
   const double days = results_[Sums::duration] / seconds_a_day;
   if (days_counted_ == 0 && p_.run_in > 0)
     sentences.push_back(fmt::format(
-        "report: no day counts: the run has {} whole days, the first {:g} are the run-in (report.run-in); summary.csv {}",
+        "report: no day counts: the run has {} whole days, but the first {:g} are the run-in "
+        "(report.run-in); summary.csv {}",
         days_seen_, p_.run_in,
-        days > 0 ? fmt::format("is that of its last {:.3g} h", 24 * days) : std::string("holds no numbers")));
+        days > 0 ? fmt::format("covers its last {:.3g} h", 24 * days) : std::string("contains no numbers")));
   if (p_.profile_day && *p_.profile_day * seconds_a_day >= last_time_)
     sentences.push_back(fmt::format(
-        "report: the run ended before its profile-day {:g} began: profiles.csv is empty", *p_.profile_day));
+        "report: the run ended before profile-day {:g}: profiles.csv is empty", *p_.profile_day));
   if (const double sold = results_[Sums::electricity] / megawatt_hour;
       days > 0 && p_.economics && !(sold > 0))
     sentences.push_back(fmt::format(
-        "report: the levelised cost is infinite: the block's electricity less what pump and fan take is {:.3g} MWh{}",
-        sold, sold < 0 ? "; they take more than it makes" : ", no hour of the days that count had any"));
+        "report: the levelised cost is infinite: net electricity (power block minus pump and fan) = {:.3g} "
+        "MWh{}",
+        sold, sold < 0 ? "; they consume more than it produces" : ", no hour of the counted days produced any"));
   if (days <= 0 || whole_years() || !(p_.economics || !plant_.parameters().tariff.empty())) return sentences;
   const double period = weather_.period_length() / seconds_a_day;
   if (period < 0.98 * year && days > period)
     sentences.push_back(fmt::format(
-        "report: the weather's {:.0f} days went round {:.3g} times: the electricity and its cost or revenue are "
-        "those of 365 such days, not of a year",
+        "report: the weather's {:.0f} days repeated {:.3g} times: the electricity and its cost or revenue "
+        "are those of 365 such days, not of a year",
         period, days / period));
   else if (days < 0.98 * year)
     sentences.push_back(fmt::format(
-        "report: {:.3g} days stand for a year in the electricity and its cost or revenue: they hold for a whole year's run "
-        "alone",
+        "report: {:.3g} days represent a year in the electricity and its cost or revenue: these are "
+        "accurate only for a run over a whole year",
         days));
   else
     sentences.push_back(fmt::format(
-        "report: the {:.4g} days that count are no whole number of years: some days of the year weigh more than others in "
-        "the electricity and its cost or revenue",
+        "report: the {:.4g} counted days are not a whole number of years: some days of the year have more "
+        "weight than others in the electricity and its cost or revenue",
         days));
   return sentences;
 }

@@ -26,16 +26,16 @@ V judge_grains(const P&, const E& e) {
   if (std::isnan(e.largest_biot)) return {};
   return EffectVerdict{
       "", e.largest_biot, 20,
-      fmt::format("the Biot number of the grains is {:.2g}, their inside has {:.2g} of the film's resistance",
+      fmt::format("Biot number of the grains = {:.2g}: their inside has {:.2g} of the film resistance",
                   e.largest_biot, e.largest_biot / 5),
-      "give 'bed.shells': five resolve the grains"};
+      "set 'bed.shells': five resolve the grains"};
 }
 
 V judge_yield(const P&, const E& e) {
   if (std::isnan(e.share_of_yield)) return {};
   return EffectVerdict{
       "", e.share_of_yield, 1,
-      fmt::format("the wall's largest equivalent stress is {:.2g} of its yield strength", e.share_of_yield),
+      fmt::format("max equivalent stress / yield strength of the wall = {:.2g}", e.share_of_yield),
       "the wall would yield: its stress and that of the grains are those of an elastic wall"};
 }
 
@@ -45,19 +45,19 @@ V judge_bending(const P&, const E& e) {
   return EffectVerdict{
       "", e.share_with_bending - e.share_as_rings, 0.1,
       fmt::format(
-          "the wall's largest equivalent stress had reached {:.3g} of its yield strength as rings, and {:.3g} as a shell",
+          "max equivalent stress / yield strength of the wall: {:.3g} as rings, {:.3g} as a shell",
           e.share_as_rings, e.share_with_bending),
-      "factors of safety are the less by that: compute the wall as a solid ('external-wall')"};
+      "reduce the factors of safety accordingly, or compute the wall as a solid ('external-wall')"};
 }
 
 V judge_sound(const P&, const E& e) {
   if (std::isnan(e.largest_mach)) return {};
   return EffectVerdict{
       "", e.largest_mach, 0.3,
-      fmt::format("at its largest flow the gas has {:.2g} of the speed of sound between the grains",
+      fmt::format("gas speed between the grains / speed of sound = {:.2g} at the largest flow",
                   e.largest_mach),
-      "its flow is compressible, and neither the pressure loss nor the films hold: take less flow, a wider bed or more "
-      "pressure"};
+      "the flow is compressible, and neither pressure loss nor films are valid: use less flow, a wider bed "
+      "or a higher pressure"};
 }
 
 V judge_capacity(const P&, const E& e) {
@@ -65,9 +65,10 @@ V judge_capacity(const P&, const E& e) {
   return EffectVerdict{
       "", e.capacity_error, 0.05,
       fmt::format(
-          "between the coldest and the hottest fluid of the run air takes {:.0f} J/(kg K), {:.2g} away from the constant",
+          "from the coldest to the hottest fluid of the run, air has {:.0f} J/(kg K), a difference of "
+          "{:.2g} from the constant",
           e.mean_capacity, e.capacity_error),
-      fmt::format("give 'fluid.specific-heat: {:.0f} J/(kg K)'", e.mean_capacity)};
+      fmt::format("set 'fluid.specific-heat: {:.0f} J/(kg K)'", e.mean_capacity)};
 }
 
 V judge_pressure(const P&, const E& e) {
@@ -75,9 +76,9 @@ V judge_pressure(const P&, const E& e) {
   return EffectVerdict{
       "", e.pumping_share, 0.02,
       fmt::format(
-          "at the largest flow the bed's pressure loss of {:.3g} kPa takes {:.2g} of the heat that the flow carries",
+          "pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
           1e-3 * e.pressure_loss, e.pumping_share),
-      "give 'pump: {}', or look at flow and grains: no store is driven so hard"};
+      "add 'pump: {}', or check flow and grains: no real store is driven this hard"};
 }
 
 // A power block makes some 0.4 of the heat electricity, and pump or fan run in charge and in discharge: a tenth of the heat
@@ -87,9 +88,9 @@ V judge_driving(const P&, const E& e) {
   return EffectVerdict{
       "", e.driving_power / e.carried_heat, 0.1,
       fmt::format(
-          "at the largest flow pump or fan take {:.3g} MW for the {:.3g} MW of heat that it carries, {:.2g} of it",
+          "pump or fan {:.3g} MW / transported heat {:.3g} MW = {:.2g} at the largest flow",
           1e-6 * e.driving_power, 1e-6 * e.carried_heat, e.driving_power / e.carried_heat),
-      "they take half of the electricity or more: take less flow, a wider or lower bed, or larger grains"};
+      "they consume half of the electricity or more: use less flow, a wider or lower bed, or larger grains"};
 }
 
 // First order in time: a front of speed v is spread as by a diffusion v^2 dt / 2, over the way H by sqrt(v dt H). Four
@@ -98,37 +99,37 @@ V judge_implicit(const P&, const E& e) {
   if (std::isnan(e.implicit_spread)) return {};
   return EffectVerdict{
       "", e.implicit_spread, 0.05,
-      fmt::format("a step of implicit advection spreads a front that crosses the bed over {:.2g} of "
-                  "its height (standard deviation)",
+      fmt::format("implicit advection with this step smears a front that crosses the bed over {:.2g} of its "
+                  "height (standard deviation)",
                   e.implicit_spread),
-      fmt::format("take 'simulation.time-step: {:.2g} s'", e.implicit_step)};
+      fmt::format("use 'simulation.time-step: {:.2g} s'", e.implicit_step)};
 }
 
 const std::array cards{
     Card{"resolved grains",
          "`bed.shells` above 1",
          [](const P& p) { return when(p, p.tank.bed.shells > 1, "bed.shells"); },
-         {"a temperature a shell of the grains of each cell", 64, 0.21},
+         {"a temperature per shell of the grains of each cell", 64, 0.21},
          "Biot number of the grains, 20",
          judge_grains},
     Card{"implicit advection",
          "`bed.advection: implicit`",
          [](const P& p) { return when(p, p.tank.bed.advection == Advection::implicit, "bed.advection"); },
          {},
-         "spread of a front by the step over the bed's height, 0.05",
+         "smearing of a front by the step, over the bed's height, 0.05",
          judge_implicit,
          true},
     Card{"pressure loss of the bed",
          "`pump`",
          [](const P& p) { return when(p, p.tank.pump.has_value(), "pump"); },
-         {"Ergun's equation in each step of the bed", 0, 0},
-         "power of a pump or fan over the heat that the largest flow carries, 0.02",
+         {"Ergun's equation in each bed step", 0, 0},
+         "power of a pump or fan over the heat transported by the largest flow, 0.02",
          judge_pressure},
     Card{"work of pump or fan",
          "`pump`",
          [](const P& p) { return when(p, p.tank.pump.has_value(), "pump"); },
          {},
-         "power of pump or fan over the heat that the largest flow carries, 0.1",
+         "power of pump or fan over the heat transported by the largest flow, 0.1",
          judge_driving,
          true},
     Card{"melting capsules",
@@ -139,7 +140,7 @@ const std::array cards{
                        std::any_of(layers.begin(), layers.end(), [](const BedLayer& l) { return l.melting; }),
                        "bed.layers[].melting");
          },
-         {"Newton's method on the heat of the shells of all cells", 0, 0}},
+         {"Newton's method for the heat of the shells of all cells", 0, 0}},
     Card{"yielding of the wall",
          "no key: not in the model",
          [](const P&) { return std::string(); },
@@ -150,19 +151,19 @@ const std::array cards{
          "`external-wall`",
          [](const P& p) { return when(p, p.tank.external_wall.has_value(), "external-wall"); },
          {"the processes solid_solver and coupler", 0, 0},
-         "what bending adds to the largest equivalent stress, over the yield strength, 0.1",
+         "contribution of bending to the largest equivalent stress, over the yield strength, 0.1",
          judge_bending},
     Card{"compressible flow of a gas",
          "no key: not in the model",
          [](const P&) { return std::string(); },
          {},
-         "speed between the grains over that of sound, 0.3",
+         "speed between the grains over the speed of sound, 0.3",
          judge_sound},
     Card{"specific heat of a gas by its temperature",
          "no key: a constant, `fluid.specific-heat`",
          [](const P&) { return std::string(); },
          {},
-         "mean specific heat of the run's range of temperatures against the constant, 0.05",
+         "mean specific heat over the run's temperature range against the constant, 0.05",
          judge_capacity},
     Card{"shell",
          "`shell`",
@@ -171,7 +172,7 @@ const std::array cards{
     Card{"filler mechanics",
          "`filler-mechanics`",
          [](const P& p) { return when(p, p.tank.mechanics.has_value(), "filler-mechanics"); },
-         {"contact and slip a ring", 171, 0.06}},
+         {"contact and slip per ring", 171, 0.06}},
     Card{"wall as a solid",
          "`external-wall`",
          [](const P& p) { return when(p, p.tank.external_wall.has_value(), "external-wall"); },
@@ -179,11 +180,11 @@ const std::array cards{
     Card{"insulation",
          "`insulation`",
          [](const P& p) { return when(p, p.tank.insulation.has_value(), "insulation"); },
-         {"layers of the blanket a ring", 461, 0.23}},
+         {"layers of the blanket per ring", 461, 0.23}},
     Card{"ullage",
          "`ullage`",
          [](const P& p) { return when(p, p.tank.ullage.has_value(), "ullage"); },
-         {"gas, roof and radiation between them", 0, 0}},
+         {"gas, roof and radiation between the bed and the roof", 0, 0}},
     Card{"ground",
          "`ground`",
          [](const P& p) { return when(p, p.tank.ground.has_value(), "ground"); },
@@ -191,7 +192,7 @@ const std::array cards{
     Card{"elements elsewhere",
          "`elsewhere`",
          [](const P& p) { return when(p, p.tank.elsewhere.has_value(), "elsewhere"); },
-         {"a process each, and the coupler", 0, 0}},
+         {"one process each, and the coupler", 0, 0}},
     Card{"weather",
          "`ambient` with a file or a clear sky",
          [](const P& p) { return when(p, p.tank.ambient.kind != WeatherKind::constant, "ambient"); },

@@ -21,7 +21,7 @@ namespace {
 
 std::string books_of(const char* element, double taken, double passed, double stored) {
   return fmt::format(
-      "{}: {:.4g} MWh taken from the tank, {:.4g} MWh passed on; the books are off by {:.1e} of that",
+      "{}: {:.4g} MWh taken from the tank, {:.4g} MWh passed on; energy balance error {:.1e} of that",
       element, taken / 3.6e9, passed / 3.6e9,
       std::abs(stored - taken + passed) / std::max(std::abs(taken) + std::abs(passed), 1e-300));
 }
@@ -35,7 +35,7 @@ const std::vector<double>* find(const Exchange& in, const char* name) {
 std::string other_length(const std::vector<double>* told, const char* key, double own, double slack,
                          const char* where) {
   if (!told || told->empty() || !(std::abs(told->front() - own) > slack * own)) return "";
-  return fmt::format("{} is {:.6g} m, but the tank's is {:.6g} m{}", key, own, told->front(), where);
+  return fmt::format("{} is {:.6g} m, but that of the tank is {:.6g} m{}", key, own, told->front(), where);
 }
 
 class GroundModel {
@@ -175,8 +175,7 @@ class ElementParticipant final : public Participant {
         name_(context.name) {
     if (!context.coupled)
       throw Error(
-          "participants.{}: an element of a tank has nothing to do without that tank. Start it together with "
-          "a "
+          "participants.{}: an element of a tank cannot run without that tank. Start it together with a "
           "coupler and a thermocline that has 'elsewhere'.",
           context.name);
     for (const std::string& sentence : weather_->doubts())
@@ -227,7 +226,8 @@ void declare(config::Section& s, GroundElementParameters& p) {
       .doc("inner diameter of the tank");
   s.section(
       "ground", [&p](config::Section& q) { declare(q, p.ground); }, "foundation and soil under the tank");
-  declare_surroundings(s, p.initial_temperature, p.ambient, "of the tank's bottom; the ground starts steady");
+  declare_surroundings(s, p.initial_temperature, p.ambient, "temperature of the tank's bottom; the ground "
+                                                            "starts steady");
   s.check([&p] { return slip_in_ground(p.ground); }, "ground");
 }
 
@@ -242,7 +242,8 @@ void declare(config::Section& s, BlanketElementParameters& p) {
   s.value("sections", p.sections).range(1, 100000).doc("along the wall");
   s.section(
       "insulation", [&p](config::Section& q) { declare(q, p.insulation); }, "blanket around the wall");
-  declare_surroundings(s, p.initial_temperature, p.ambient, "of the wall; the blanket starts steady");
+  declare_surroundings(s, p.initial_temperature, p.ambient, "temperature of the wall; the blanket starts "
+                                                            "steady");
   s.check([&p] { return slip_in_insulation(p.insulation, p.diameter); }, "insulation");
 }
 

@@ -38,7 +38,7 @@ TankParameters with_files(TankParameters p, const std::filesystem::path& folder)
   if (const std::string problem = problem_of_rows(p.flow); !problem.empty())
     throw Error("{}: the rows: {}.", file.string(), problem);
   if (const std::string problem = forgotten_unit_of_flow(p); !problem.empty())
-    throw Error("{}: {}: here, in the head of the column.", file.string(), problem);
+    throw Error("{}: {}: here, in the column header.", file.string(), problem);
   return p;
 }
 

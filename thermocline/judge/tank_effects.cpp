@@ -19,13 +19,12 @@ void energy(const TankModel& m, double t, Lines& lines) {
                hair = 1e-12 * m.bed().heat_capacity() * m.fluid_range().second;
   if (turnover <= hair) {
     lines.push_back(fmt::format(
-        "energy: no heat was moved; the books of the bed are off by {:.1e} J, those of the tank by {:.1e} J",
+        "energy: no heat moved; energy balance error: bed {:.1e} J, tank {:.1e} J",
         std::abs(m.bed_imbalance()), std::abs(m.imbalance(t))));
     return;
   }
   lines.push_back(fmt::format(
-      "energy: {:.4g} MWh moved, {:.4g} MWh lost; the books of the bed are off by {:.1e}, those of "
-      "the tank by {:.1e} of what was moved",
+      "energy: {:.4g} MWh moved, {:.4g} MWh lost; energy balance error / heat moved: bed {:.1e}, tank {:.1e}",
       turnover / 3.6e9, m.losses() / 3.6e9, std::abs(m.bed_imbalance()) / turnover,
       std::abs(m.imbalance(t)) / turnover));
 }
@@ -39,8 +38,9 @@ void lumped_grains(const TankModel& m, Lines& lines) {
     if (run.layer.porosity < 1) largest = std::max(largest, run.layer.diameter);
   if (largest == 0) return;
   lines.push_back(fmt::format(
-      "grains: shells: 1 takes one temperature a grain and a parabola inside it (linear driving force); "
-      "grains of {:.3g} mm follow changes slower than {:.3g} s, five shells are within 2 % of all",
+      "grains: with shells: 1 each grain has one temperature and a parabolic profile (linear driving "
+      "force); grains of {:.3g} mm follow changes slower than {:.3g} s; five shells are accurate to 2 % for "
+      "all changes",
       1e3 * largest, largest * largest * filler.volumetric() / (60 * filler.conductivity)));
 }
 
@@ -50,13 +50,13 @@ void fluid(const TankModel& m, double peak_flow, Lines& lines) {
         "buoyancy: at t = {:.6g} s fluid at z = {:.3f} m was {:.2f} K colder than the fluid below it; {}",
         m.inversion().time, m.inversion().z, m.inversion().depth,
         m.setup().parameters.bed.mix_inversions ? "such fluid is mixed"
-                                                : "mixing it (bed.mix-inversions) was left out"));
+                                                : "mixing (bed.mix-inversions) was neglected"));
   const Fluid& f = m.setup().fluid;
   const auto [cold, hot] = m.fluid_range();
   if (f.real && !f.real_density && hot > cold)
     lines.push_back(fmt::format(
-        "density: that of the {} was kept at {:.1f} kg/m^3; from {:.0f} to {:.0f} degC it falls from {:.0f} "
-        "to {:.0f} (fluid.real-density)",
+        "density: constant for {} at {:.1f} kg/m^3; from {:.0f} to {:.0f} degC it falls from {:.0f} to "
+        "{:.0f} (fluid.real-density)",
         f.name, f.density, celsius(cold), celsius(hot), f.real->at(cold), f.real->at(hot)));
   if (m.bed().shells() == 1) lumped_grains(m, lines);
   if (peak_flow == 0) return;
@@ -66,13 +66,15 @@ void fluid(const TankModel& m, double peak_flow, Lines& lines) {
       std::sqrt((bed.advection == Advection::upwind ? 1 - bed.courant : 1) / m.bed().grid().size());
   if (bed.advection != Advection::tvd && spread > 0.05)
     lines.push_back(fmt::format(
-        "cells: upwind differences of {} cells spread a front that crosses the bed over {:.2g} of its height (standard deviation){}",
+        "cells: upwind differences of {} cells smear a front that crosses the bed over {:.2g} of its height "
+        "(standard deviation){}",
         m.bed().grid().size(), spread,
         bed.advection == Advection::upwind ? "; bed.advection: tvd does not" : ""));
   if (!m.setup().parameters.pump) {
     const PressureLoss loss = pressure_loss(m.bed().grid(), f, m.bed().fluid(), peak_flow, m.bed().area());
     lines.push_back(fmt::format(
-        "pressure: the bed's {:.3g} kPa at the largest flow, {:.3g} kW of a pump, were left out (pump)",
+        "pressure: the bed's loss of {:.3g} kPa at the largest flow, {:.3g} kW of a pump, was neglected "
+        "(pump)",
         1e-3 * loss.loss(), 1e-3 * pump_power(loss, f, m.bed().bottom(), peak_flow, 0.7)));
   }
   std::string layers;
@@ -80,8 +82,8 @@ void fluid(const TankModel& m, double peak_flow, Lines& lines) {
     layers += fmt::format("{}{:.3g}", layers.empty() ? "" : ", ",
                           m.bed().reynolds(run.first + run.count / 2, peak_flow));
   lines.push_back(
-      fmt::format("closures: Re of the layers at the largest flow {} from the bottom up; the film's "
-                  "correlation was fitted to Re from 15 to 8500",
+      fmt::format("closures: Re of the layers at the largest flow {} from the bottom up; the film "
+                  "correlation is fitted to Re from 15 to 8500",
                   layers));
 }
 
@@ -93,7 +95,7 @@ void surroundings(const TankModel& m, const Ambient& air, Lines& lines) {
                                     {p.insulation && p.ullage, "roof (insulation and ullage)"},
                                     {p.ground || elsewhere.ground, "bottom (ground)"}})
     if (!there) tight += fmt::format("{}{}", tight.empty() ? "" : ", ", name);
-  if (!tight.empty()) lines.push_back(fmt::format("no heat leaves through what was left out: {}", tight));
+  if (!tight.empty()) lines.push_back(fmt::format("no heat loss through neglected elements: {}", tight));
   if (!m.shell() || p.insulation || elsewhere.insulation) return;
   const auto& rings = *m.setup().rings;
   double area = 0, sum = 0;
@@ -115,8 +117,8 @@ void wall(const TankModel& m, const BendingSeen& bending, Lines& lines) {
     const double strain = steel.thermal_strain(*high) - steel.thermal_strain(*low) -
                           m.setup().filler.expansion * (*high - *low);
     lines.push_back(fmt::format(
-        "filler mechanics were left out: cooling a ring from {:.0f} to {:.0f} degC against a filler "
-        "that does not yield would add {:.0f} MPa of hoop stress",
+        "filler mechanics neglected: cooling a ring from {:.0f} to {:.0f} degC against a rigid filler would "
+        "add {:.0f} MPa of hoop stress",
         celsius(*high), celsius(*low), 1e-6 * steel.youngs_modulus(*low) * std::max(0.0, strain)));
   }
   if (m.shell() && !m.contact()) {
@@ -124,13 +126,12 @@ void wall(const TankModel& m, const BendingSeen& bending, Lines& lines) {
     const double nu = m.setup().steel->poissons_ratio;
     const double e = *std::max_element(rings->thickness.begin(), rings->thickness.end());
     std::string line =
-        fmt::format("bending of the wall was left out: it rounds off what changes within {:.2f} m",
+        fmt::format("bending of the wall neglected: it smooths variations within {:.2f} m",
                     std::sqrt(diameter / 2 * e) / std::pow(3 * (1 - nu * nu), 0.25));
     if (bending.rings > 0)
       line += fmt::format(
-          "; the largest hoop stress of {:.0f} MPa becomes {:.0f} at z = {:.2f} m, and the wall bends with "
-          "up to {:.0f} "
-          "MPa along z, at z = {:.2f} m and t = {:.6g} s (external-wall computes it)",
+          "; the largest hoop stress of {:.0f} MPa becomes {:.0f} at z = {:.2f} m, with a max bending "
+          "stress of {:.0f} MPa along z, at z = {:.2f} m and t = {:.6g} s (external-wall computes it)",
           1e-6 * bending.rings, 1e-6 * bending.shell, bending.shell_z, 1e-6 * bending.axial, bending.axial_z,
           bending.axial_time);
     lines.push_back(line);
@@ -139,8 +140,8 @@ void wall(const TankModel& m, const BendingSeen& bending, Lines& lines) {
   const auto slip = m.mechanics() ? m.mechanics()->slip() : m.contact()->slip();
   const std::size_t i = std::max_element(slip.begin(), slip.end()) - slip.begin();
   lines.push_back(
-      fmt::format("filler: {} of {} rings have reached the passive limit; over the run "
-                  "the wall has pushed the grains in by {:.2g} mm in all where that was most, z = {:.2f} m",
+      fmt::format("filler: {} of {} rings have reached the passive limit; max cumulative displacement of "
+                  "the grains by the wall {:.2g} mm, at z = {:.2f} m",
                   std::count_if(slip.begin(), slip.end(), [](double s) { return s > 0; }), slip.size(),
                   500 * slip[i] * diameter, rings->z[i]));
 }
@@ -181,8 +182,9 @@ std::vector<std::string> Tank::finish() {
   if (m.bed().fallbacks() > 0)
     lines.push_back(fmt::format("bed: {} of {} steps {}", m.bed().fallbacks(), speed_.bed_steps,
                                 m.bed().melts()
-                                    ? "ended before the temperatures of what melts agreed to 1e-6 K"
-                                    : "were taken at first order in time to stay within bounds"));
+                                    ? "ended before the temperatures of the melting layers converged to "
+                                      "1e-6 K"
+                                    : "were first order in time to remain bounded"));
   wall(m, bending_, lines);
   thermocline::speed(speed_, m.bed().grid().size(), lines);
   return lines;

@@ -13,9 +13,9 @@ void nothing(config::Section&) {}
 /// What is wrong with a column beside `temperature`.
 std::string problem_of(const std::vector<double>& temperature, const std::vector<double>& values,
                        bool positive) {
-  if (temperature.empty()) return "'temperature' is empty; give the temperatures that the values belong to";
+  if (temperature.empty()) return "'temperature' is empty; give the temperatures of the values";
   if (std::adjacent_find(temperature.begin(), temperature.end(), std::greater_equal<>()) != temperature.end())
-    return "'temperature' must grow from value to value";
+    return "'temperature' must increase from value to value";
   if (values.size() != temperature.size())
     return fmt::format("has {} values, 'temperature' has {}", values.size(), temperature.size());
   if (positive && *std::min_element(values.begin(), values.end()) <= 0) return "must be above 0 everywhere";
@@ -58,38 +58,39 @@ void declare(config::Section& section, FluidParameters& p) {
         .unit("K")
         .plausible(70, 5000)
         .required()
-        .doc("temperatures of the lists that follow");
+        .doc("temperatures of the following lists");
     declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
     declare_table(s, "viscosity", "Pa s", p.viscosity, p.temperature, "piecewise linear");
-    s.value("lowest", p.lowest).unit("K").plausible(70, 5000).doc("below it the fluid freezes: a warning");
+    s.value("lowest", p.lowest).unit("K").plausible(70, 5000).doc("freezing point: below it a warning");
     s.value("highest", p.highest)
         .unit("K")
         .plausible(70, 1e4)
-        .doc("above it the fluid boils or decomposes: a warning");
+        .doc("boiling or decomposition point: above it a warning");
   };
   const auto known = [&p](config::Section& s) {
     s.value("real-density", p.real_density)
         .doc(
-            "the density falls with temperature: in the heat that the pores hold and in the pressure on the "
-            "wall; otherwise it is the constant of thesis table 5.1");
+            "the density falls with temperature, in the heat of the pores and in the pressure on the wall; "
+            "otherwise it is the constant of thesis table 5.1");
   };
   const auto gas = [&p](config::Section& s) {
     s.value("pressure", p.pressure)
         .unit("Pa")
         .plausible(1e4, 1e8)
         .positive()
-        .doc("where the gas leaves the bed");
+        .doc("pressure where the gas leaves the bed");
     s.value("reference-temperature", p.reference_temperature)
         .unit("K")
         .range(150, 1500)
         .doc(
-            "of the density that counts for the heat in the pores; the pressure loss follows the "
+            "temperature of the density used for the heat in the pores; the pressure loss uses the actual "
             "temperature");
     s.value("specific-heat", p.air_specific_heat)
         .unit("J/(kg K)")
         .range(900, 1400)
         .doc(
-            "a constant: the default is that of air near 430 degC (it is 1007 at 50 degC, 1141 at 730 degC); the run judges it");
+            "constant; the default is that of air near 430 degC (it is 1007 at 50 degC, 1141 at 730 degC); "
+            "the run judges it");
   };
   section.variant<Type>("type", p.type,
                         {{"solar-salt", Type::solar_salt, known},
@@ -106,7 +107,7 @@ void declare(config::Section& s, Filler& f) {
       .unit("kg/m^3")
       .plausible(0.05, 25000)
       .positive()
-      .doc("of the grains; the defaults are those of quartzite");
+      .doc("density of the grains; the defaults are those of quartzite");
   s.value("specific-heat", f.specific_heat)
       .unit("J/(kg K)")
       .plausible(10, 1e5)
@@ -120,7 +121,7 @@ void declare(config::Section& s, Filler& f) {
   s.value("friction-angle", f.friction_angle)
       .unit("rad")
       .range(0.01, 1.5)
-      .doc("internal friction of the bulk, phi in (5.17)");
+      .doc("internal friction angle of the bulk, phi in (5.17)");
   s.value("expansion", f.expansion)
       .unit("1/K")
       .plausible(1e-8, 1e-3)
@@ -134,14 +135,14 @@ void declare(config::Section& s, Melting& m) {
       .plausible(70, 5000)
       .positive()
       .required()
-      .doc("middle of the range in which it melts");
-  s.value("width", m.width).unit("K difference").range(1e-3, 200).doc("of that range");
+      .doc("middle of the melting range");
+  s.value("width", m.width).unit("K difference").range(1e-3, 200).doc("width of that range");
   s.value("latent-heat", m.latent_heat)
       .unit("J/kg")
       .plausible(1000, 1e7)
       .not_negative()
       .required()
-      .doc("taken in over the range, evenly");
+      .doc("latent heat, absorbed evenly over the range");
 }
 
 void declare(config::Section& section, SteelParameters& p) {
@@ -152,17 +153,17 @@ void declare(config::Section& section, SteelParameters& p) {
     s.value("highest", p.highest)
         .unit("K")
         .plausible(70, 1e4)
-        .doc("above it the metal may not be used: a warning");
+        .doc("maximum service temperature of the metal: above it a warning");
     s.value("temperature", p.temperature)
         .unit("K")
         .plausible(70, 5000)
         .required()
-        .doc("temperatures of the lists that follow");
+        .doc("temperatures of the following lists");
     declare_table(s, "specific-heat", "J/(kg K)", p.specific_heat, p.temperature, "piecewise linear");
     declare_table(s, "conductivity", "W/(m K)", p.conductivity, p.temperature, "piecewise linear");
     declare_table(s, "youngs-modulus", "Pa", p.youngs_modulus, p.temperature, "piecewise linear");
     declare_table(s, "expansion", "1/K", p.expansion, p.temperature,
-                  "instantaneous coefficient, to be integrated");
+                  "instantaneous coefficient, integrated over temperature");
     declare_table(s, "yield-strength", "Pa", p.yield_strength, p.temperature, "piecewise linear");
   };
   section.variant<Type>("type", p.type,
@@ -192,7 +193,7 @@ void declare(config::Section& s, InsulatorParameters& p) {
       [&]() -> std::string {
         if (p.conductivity.empty() && p.temperature.empty()) return "";
         if (p.temperature.empty())
-          return p.conductivity.size() == 1 ? "" : "needs 'temperature' beside it, unless it is one constant";
+          return p.conductivity.size() == 1 ? "" : "requires 'temperature', unless it is one constant";
         return problem_of(p.temperature, p.conductivity, true);
       },
       "conductivity");

@@ -152,15 +152,14 @@ void TankModel::watch(double t) {
     throw SolveFailure("A temperature of the bed is not finite or below absolute zero.");
   if (*high > f.highest && !std::exchange(warned_hot_, true))
     warnings_.push_back(
-        fmt::format("t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m, above its limit of {:.1f} degC, "
-                    "where it boils or "
-                    "decomposes. Lower the inlet temperature, or choose another fluid.",
+        fmt::format("t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m, above its limit of {:.1f} "
+                    "degC, where it boils or decomposes. Lower the inlet temperature, or use another fluid.",
                     t, f.name, *high - zero_celsius, place(high), f.highest - zero_celsius));
   if (*low < f.lowest && !std::exchange(warned_cold_, true))
     warnings_.push_back(
-        fmt::format("t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m, below its limit of {:.1f} degC, "
-                    "where it freezes. "
-                    "Raise the inlet temperature, insulate the tank, or choose another fluid.",
+        fmt::format("t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m, below its limit of {:.1f} "
+                    "degC, where it freezes. Raise the inlet temperature, insulate the tank, or use another "
+                    "fluid.",
                     t, f.name, *low - zero_celsius, place(low), f.lowest - zero_celsius));
   const double slack = 0.1 * (f.known_to - f.known_from);
   const auto outside = *low < f.known_from - slack ? low : high;
@@ -168,7 +167,7 @@ void TankModel::watch(double t) {
       !std::exchange(warned_fluid_, true))
     warnings_.push_back(fmt::format(
         "t = {:.6g} s: the {} is at {:.1f} degC at z = {:.3f} m; its conductivity and viscosity are given "
-        "from {:.1f} to {:.1f} degC (fluid.temperature), beyond them those of the nearer end are used.",
+        "from {:.1f} to {:.1f} degC (fluid.temperature); the end values are used beyond.",
         t, f.name, celsius(*outside), place(outside), celsius(f.known_from), celsius(f.known_to)));
   if (shell_) watch_wall(t);
 }
@@ -185,13 +184,13 @@ void TankModel::watch_wall(double t) {
       !std::exchange(warned_range_, true))
     warnings_.push_back(
         fmt::format("t = {:.6g} s: the wall of {} is at {:.1f} degC at z = {:.3f} m; its properties are "
-                    "known from {:.0f} to {:.0f} degC, beyond them those of the nearer end are used.",
+                    "known from {:.0f} to {:.0f} degC; the end values are used beyond.",
                     t, steel.name, celsius(*outside), setup_->rings->z[outside - wall.begin()], celsius(low),
                     celsius(high)));
   if (*hottest > setup_->steel->highest && !std::exchange(warned_metal_, true))
     warnings_.push_back(
-        fmt::format("t = {:.6g} s: the wall of {} is at {:.1f} degC at z = {:.3f} m, above the {:.1f} degC "
-                    "it may be used at.",
+        fmt::format("t = {:.6g} s: the wall of {} is at {:.1f} degC at z = {:.3f} m, above its maximum "
+                    "service temperature of {:.1f} degC.",
                     t, setup_->steel->name, *hottest - zero_celsius, setup_->rings->z[hottest - wall.begin()],
                     setup_->steel->highest - zero_celsius));
 }

@@ -195,8 +195,8 @@ void refuse_hopeless_flow(double mass_flow, double limit, double span) {
   constexpr double most = 1e6;  // a thousand times what a flow through the finest of grids asks for
   if (span <= most * limit) return;
   throw Error(
-      "flow: {:.3g} kg/s crosses a cell of the bed in so short a time that {:.3g} s would need {:.2g} steps of it (at most {:.0g}). Is the "
-      "unit of the flow right? 'bed.advection: implicit' takes any step.",
+      "flow: {:.3g} kg/s crosses a bed cell so fast that {:.3g} s would need {:.2g} sub-steps (at most "
+      "{:.0g}). Is the unit of the flow correct? 'bed.advection: implicit' supports any step.",
       mass_flow, span, span / limit, most);
 }
 

@@ -20,8 +20,8 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
             {"stagnant", Conduction::stagnant},
             {"constant", Conduction::constant}})
       .doc(
-          "axial: 0.7 eps k + 0.5 Re Pr k; eps k; the stagnant bed of Zehner and Schluender with dispersion; "
-          "or given");
+          "axial conduction: 0.7 eps k + 0.5 Re Pr k; eps k; the stagnant bed of Zehner and Schluender with "
+          "dispersion; or given");
   s.value("conductivity", p.conductivity)
       .unit("W/(m K)")
       .plausible(1e-3, 1e4)
@@ -29,7 +29,7 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
       .doc("with conduction: constant");
   s.choice("wall-film", p.wall_film,
            {{"beek", WallFilm::beek}, {"yagi-wakao", WallFilm::yagi_wakao}, {"constant", WallFilm::constant}})
-      .doc("heat transfer between fluid and wall; the correlations count from 2 k0/d of the stagnant bed on");
+      .doc("heat transfer between fluid and wall; the correlations add to 2 k0/d of the stagnant bed");
   s.value("wall-coefficient", p.wall_coefficient)
       .unit("W/(m^2 K)")
       .plausible(1e-3, 1e7)
@@ -39,24 +39,24 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
       .unit("W/(m^2 K)")
       .plausible(1e-3, 1e7)
       .not_negative()
-      .doc("between fluid and grains; 0: Nu = 2 + 1.1 Pr^(1/3) Re^0.6");
+      .doc("film between fluid and grains; 0: Nu = 2 + 1.1 Pr^(1/3) Re^0.6");
 }
 
 std::string problem_of_profile(const BedParameters& p) {
   if (p.profile_z.size() != p.profile_temperature.size()) return "needs as many values as profile-z";
   const bool grows = std::is_sorted(p.profile_z.begin(), p.profile_z.end(), std::less_equal<>());
-  return grows ? "" : "profile-z must grow from value to value";
+  return grows ? "" : "profile-z must increase from value to value";
 }
 
 void check_together(config::Section& s, TankParameters& p) {
-  s.check([&p] { return p.mechanics && !p.shell ? "presses on a shell; add one" : ""; }, "filler-mechanics");
+  s.check([&p] { return p.mechanics && !p.shell ? "requires a shell; add one" : ""; }, "filler-mechanics");
   s.check(
-      [&p] { return p.external_wall && !(p.shell && p.mechanics) ? "needs shell and filler-mechanics" : ""; },
+      [&p] { return p.external_wall && !(p.shell && p.mechanics) ? "requires shell and filler-mechanics" : ""; },
       "external-wall");
   s.check(
       [&p] {
         return p.report && p.flow.type != FlowParameters::Type::plant
-                   ? "is about a plant: give flow: {type: plant, ...} or leave it out"
+                   ? "requires a plant: set flow: {type: plant, ...} or remove it"
                    : "";
       },
       "report");
@@ -66,8 +66,8 @@ void check_together(config::Section& s, TankParameters& p) {
         return p.report && p.flow.type == FlowParameters::Type::plant && plant.hot > plant.cold &&
                        p.report->thickness_margin >= 0.5 * (plant.hot - plant.cold)
                    ? fmt::format(
-                         "thickness-margin is {:g} K, half of the step from cold to hot ({:g} K) or more: nothing lies between "
-                         "the two critical temperatures",
+                         "thickness-margin is {:g} K, half of the difference between cold and hot ({:g} K) "
+                         "or more: nothing is left between the two critical temperatures",
                          p.report->thickness_margin, plant.hot - plant.cold)
                    : "";
       },
@@ -75,17 +75,18 @@ void check_together(config::Section& s, TankParameters& p) {
   s.check(
       [&p]() -> std::string {
         if (!p.elsewhere) return "";
-        if (p.elsewhere->ground && p.ground) return "says that the ground is elsewhere; remove 'ground' here";
+        if (p.elsewhere->ground && p.ground) return "specifies that the ground is elsewhere; remove "
+                                                    "'ground' here";
         if (p.elsewhere->insulation && p.insulation)
-          return "says that the insulation is elsewhere; remove 'insulation' here";
-        return p.elsewhere->insulation && !p.shell ? "needs a shell for the insulation to lie around" : "";
+          return "specifies that the insulation is elsewhere; remove 'insulation' here";
+        return p.elsewhere->insulation && !p.shell ? "requires a shell inside the insulation" : "";
       },
       "elsewhere");
-  s.check([&p] { return p.insulation && !p.shell ? "lies around a shell; add one" : ""; }, "insulation");
+  s.check([&p] { return p.insulation && !p.shell ? "requires a shell; add one" : ""; }, "insulation");
   s.check(
       [&p] {
         return p.fluid.type == FluidParameters::Type::air && p.bed.advection != Advection::implicit
-                   ? "a gas crosses a cell in milliseconds: give bed.advection: implicit"
+                   ? "a gas crosses a cell in milliseconds: set bed.advection: implicit"
                    : "";
       },
       "bed");
@@ -106,12 +107,13 @@ void check_together(config::Section& s, TankParameters& p) {
 }  // namespace
 
 void declare(config::Section& section, BedParameters& p) {
-  section.value("cells", p.cells).range(1, 1e6).doc("along z; layers begin and end at cell faces");
+  section.value("cells", p.cells).range(1, 1e6).doc("height along z; layers begin and end at cell faces");
   section.list<BedLayer>(
       "layers", p.layers,
       [](config::Section& s, BedLayer& l) {
         s.value("height", l.height).unit("m").plausible(0.01, 100).positive().required().doc("height");
-        s.value("porosity", l.porosity).range(0.01, 1).required().doc("volume of the fluid; 1: no filler");
+        s.value("porosity", l.porosity).range(0.01, 1).required().doc("volume fraction of the fluid; 1: no "
+                                                                      "filler");
         s.value("diameter", l.diameter)
             .unit("m")
             .plausible(1e-4, 1)
@@ -120,14 +122,14 @@ void declare(config::Section& section, BedParameters& p) {
             .doc("effective diameter of the grains");
         s.optional_section<Filler>(
             "filler", l.filler, [](config::Section& q, Filler& v) { declare(q, v); },
-            "grains of this layer, if they are others than those of the tank");
+            "grains of this layer, if different from those of the tank");
         s.optional_section<Melting>(
             "melting", l.melting, [](config::Section& q, Melting& v) { declare(q, v); },
-            "capsules whose content melts, of density, specific heat and conductivity of 'filler'");
+            "phase-change capsules with the density, specific heat and conductivity of 'filler'");
         s.check(
             [&l] {
               return l.melting && l.porosity >= 1
-                         ? "a layer of fluid alone (porosity 1) has no capsules that could melt"
+                         ? "a layer of fluid only (porosity 1) has no capsules that could melt"
                          : "";
             },
             "melting");
@@ -135,20 +137,20 @@ void declare(config::Section& section, BedParameters& p) {
       "from the bottom up");
   section.value("shells", p.shells)
       .range(1, most_shells)
-      .doc("of equal volume in a grain; 1: linear driving force");
+      .doc("number of shells of equal volume in a grain; 1: linear driving force");
   section
       .choice("advection", p.advection,
               {{"upwind", Advection::upwind}, {"tvd", Advection::tvd}, {"implicit", Advection::implicit}})
       .doc(
-          "upwind: explicit, first order, as the thesis; tvd: explicit, second order; implicit: upwind, any "
-          "step");
+          "upwind: explicit, first order, as in the thesis; tvd: explicit, second order; implicit: upwind, "
+          "any step");
   section.value("courant", p.courant)
       .range(1e-4, 0.95)
       .doc(
-          "step of the bed over the time the fluid takes through the cell with least fluid; tvd: 0.5 at "
-          "most");
+          "step of the bed over the time that the fluid takes through the cell with the least fluid; tvd: "
+          "at most 0.5");
   section.value("conducting-inlet", p.conducting_inlet)
-      .doc("heat is also conducted through the inlet's face");
+      .doc("heat conduction through the inlet's face as well");
   section.value("mix-inversions", p.mix_inversions)
       .doc("fluid that is colder than the fluid below it is mixed with it");
   section.section(
@@ -157,22 +159,22 @@ void declare(config::Section& section, BedParameters& p) {
       .unit("K")
       .plausible(70, 5000)
       .positive()
-      .doc("of fluid and filler");
+      .doc("initial temperature of fluid and filler");
   section.value("profile-z", p.profile_z)
       .unit("m")
       .plausible(1e-4, 300)
-      .doc("heights of an initial profile, in place of one temperature");
+      .doc("heights of an initial profile, instead of one temperature");
   section.value("profile-temperature", p.profile_temperature)
       .unit("K")
       .plausible(70, 5000)
-      .doc("the profile, piecewise linear");
-  section.check([&p] { return p.layers.empty() ? "needs one layer at least" : ""; }, "layers");
+      .doc("temperatures of the profile, piecewise linear");
+  section.check([&p] { return p.layers.empty() ? "at least one layer is needed" : ""; }, "layers");
   section.check(
       [&p] {
         const bool melts =
             std::any_of(p.layers.begin(), p.layers.end(), [](const BedLayer& l) { return l.melting; });
         return melts && p.advection == Advection::tvd
-                   ? "tvd does not know layers that melt; use upwind or implicit"
+                   ? "tvd does not support phase-change layers; use upwind or implicit"
                    : "";
       },
       "advection");
@@ -180,7 +182,7 @@ void declare(config::Section& section, BedParameters& p) {
   section.check(
       [&p] {
         return p.advection == Advection::tvd && p.courant > 0.5
-                   ? "is at most 0.5 with advection: tvd, which is bounded only so far"
+                   ? "is at most 0.5 with advection: tvd, the limit for boundedness"
                    : "";
       },
       "courant");
@@ -200,13 +202,13 @@ void declare(config::Section& section, ShellParameters& p) {
             .required()
             .doc("thickness");
       },
-      "from the bottom up; the last one goes on to the top");
+      "from the bottom up; the last one continues to the top");
   section.value("roof-pressure", p.roof_pressure)
       .unit("Pa")
       .plausible(1, 1e6)
       .not_negative()
-      .doc("weight of the roof per area of the roof");
-  section.check([&p] { return p.plates.empty() ? "needs one plate at least" : ""; }, "plates");
+      .doc("weight of the roof per roof area");
+  section.check([&p] { return p.plates.empty() ? "at least one plate is needed" : ""; }, "plates");
 }
 
 void declare(config::Section& section, InsulationParameters& p) {
@@ -218,12 +220,12 @@ void declare(config::Section& section, InsulationParameters& p) {
       .positive()
       .required()
       .doc("on the side, and on the roof above an ullage");
-  section.value("cells", p.cells).range(1, 200).doc("through the thickness");
-  section.value("step", p.step).unit("s").plausible(0.1, 1e5).positive().doc("its own step");
+  section.value("cells", p.cells).range(1, 200).doc("number of cells through the thickness");
+  section.value("step", p.step).unit("s").plausible(0.1, 1e5).positive().doc("time step of the insulation");
   section.value("cover-emissivity", p.outside.emissivity).range(0, 1).doc("of the metal cover");
   section.value("solar-absorptance", p.outside.solar_absorptance)
       .range(0, 1)
-      .doc("of the cover; 0: without the sun");
+      .doc("solar absorptance of the cover; 0: sun neglected");
 }
 
 void declare(config::Section& section, GroundParameters& p) {
@@ -246,18 +248,18 @@ void declare(config::Section& section, GroundParameters& p) {
             },
             "material");
       },
-      "from the tank downwards");
+      "layers from the tank downwards");
   section.value("cell", p.cell)
       .unit("m")
       .plausible(1e-3, 10)
       .positive()
-      .doc("largest height of a cell next to the tank");
-  section.value("step", p.step).unit("s").plausible(0.1, 1e5).positive().doc("its own step");
+      .doc("maximum height of a cell next to the tank");
+  section.value("step", p.step).unit("s").plausible(0.1, 1e5).positive().doc("time step of the ground");
   section.value("deep-temperature", p.deep_temperature)
       .unit("K")
       .range(200, 600)
-      .doc("below; else the air's annual mean");
-  section.check([&p] { return p.layers.empty() ? "needs one layer at least" : ""; }, "layers");
+      .doc("temperature below the layers; absent: the air's annual mean");
+  section.check([&p] { return p.layers.empty() ? "at least one layer is needed" : ""; }, "layers");
 }
 
 void declare(config::Section& section, UllageParameters& p) {
@@ -281,23 +283,23 @@ void declare(config::Section& section, TankParameters& p) {
       .unit("s")
       .plausible(0.1, 1e5)
       .not_negative()
-      .doc("the elements exchange heat at least so often; 0: once a step of the simulation");
+      .doc("maximum time between heat exchanges of the elements; 0: once per step of the simulation");
   section.section(
       "fluid", [&p](config::Section& s) { declare(s, p.fluid); }, "heat-transfer fluid");
   section.section(
       "filler", [&p](config::Section& s) { declare(s, p.filler); },
-      "grains of the bed; quartzite unless said otherwise");
+      "grains of the bed; default: quartzite");
   section.section(
       "bed", [&p](config::Section& s) { declare(s, p.bed); }, "fluid and filler");
   section.optional_section<ShellParameters>(
       "shell", p.shell, [](config::Section& s, ShellParameters& v) { declare(s, v); }, "metal wall of rings");
   section.optional_section<FillerMechanicsParameters>(
       "filler-mechanics", p.mechanics, [](config::Section&, FillerMechanicsParameters&) {},
-      "the filler follows the wall outwards and resists inwards, between Rankine's active and passive "
-      "states");
+      "the filler follows the wall outwards and resists inwards, between Rankine's active and passive states");
   section.optional_section<ExternalWallParameters>(
       "external-wall", p.external_wall, [](config::Section& s, ExternalWallParameters& v) { declare(s, v); },
-      "the wall's stress is another program's: it gets temperature and pressure and gives its displacement");
+      "another program computes the wall's stress: it receives temperature and pressure and gives its "
+      "displacement");
   section.optional_section<InsulationParameters>(
       "insulation", p.insulation, [](config::Section& s, InsulationParameters& v) { declare(s, v); },
       "blanket around the shell");
@@ -322,18 +324,18 @@ void declare(config::Section& section, TankParameters& p) {
         s.value("ground", v.ground).doc("a participant with element: ground");
         s.value("insulation", v.insulation).doc("a participant with element: insulation");
       },
-      "elements of this tank that participants of their own compute");
+      "elements of this tank that other participants compute");
   section.optional_section<PumpParameters>(
       "pump", p.pump,
       [](config::Section& s, PumpParameters& v) {
         s.value("efficiency", v.efficiency).range(0.01, 1).doc("of pump or fan with its motor");
       },
-      "pressure loss of the bed by Ergun's equation, and the work that it costs");
+      "pressure loss of the bed by Ergun's equation, and the required pump work");
   section.optional_section<Present>(
       "ambient", p.ambient_given, [&p](config::Section& s, Present&) { declare(s, p.ambient); },
-      "weather; without it: still air of 20 degC, no sun");
+      "weather; absent: still air of 20 degC, no sun");
   section.section(
-      "flow", [&p](config::Section& s) { declare(s, p.flow); }, "what is pumped through the tank");
+      "flow", [&p](config::Section& s) { declare(s, p.flow); }, "flow through the tank");
   section.section(
       "output",
       [&p](config::Section& s) {
@@ -341,12 +343,12 @@ void declare(config::Section& section, TankParameters& p) {
             .unit("s")
             .plausible(0.1, 1e7)
             .not_negative()
-            .doc("between rows of tank.csv; 0: each step");
+            .doc("time between rows of tank.csv; 0: each step");
       },
       "profiles are written at the output interval of the simulation");
   section.optional_section<ReportParameters>(
       "report", p.report, [](config::Section& s, ReportParameters& r) { declare(s, r); },
-      "books of plant and tank, day by day, and factors of safety; needs flow: {type: plant}");
+      "daily balance of plant and tank, and factors of safety; requires flow: {type: plant}");
   check_together(section, p);
 }
 

@@ -11,7 +11,8 @@ std::string forgotten_unit(const std::string& what, double kelvin_given, const F
   const double as_celsius = kelvin(kelvin_given);
   if (kelvin_given >= fluid.lowest || as_celsius < fluid.lowest || as_celsius > fluid.highest) return "";
   return fmt::format(
-      "{} is {:.6g} K, that is {:.1f} degC, and {} is no liquid below {:.0f} degC; write '{:.6g} degC' if that is meant",
+      "{} is {:.6g} K, that is {:.1f} degC, but {} is not a liquid below {:.0f} degC; write '{:.6g} degC' "
+      "if that is intended",
       what, kelvin_given, celsius(kelvin_given), fluid.name, celsius(fluid.lowest), kelvin_given);
 }
 
@@ -19,19 +20,16 @@ void ask_about_plant(const PlantParameters& p, const TankModel& model, std::vect
   if (p.restart > p.cut_off)
     all.push_back(
         fmt::format("flow.restart ({:g} K) is above flow.cut-off ({:g} K): what may start at a temperature "
-                    "is stopped at it, "
-                    "so that the cut-off alone decides about both.",
+                    "is stopped at once, so the cut-off alone is effective.",
                     p.restart, p.cut_off));
   const double top = model.bed().top(), bottom = model.bed().bottom();
   if (bottom > p.cold + p.restart && top < p.hot - p.restart)
     all.push_back(
-        fmt::format("the tank starts between charged and discharged and cannot do either: its bottom is at "
-                    "{:.1f} degC and "
-                    "charging starts at {:.1f} degC or below, its top is at {:.1f} degC and discharging "
-                    "starts at {:.1f} degC "
-                    "or above. It rests until its losses have cooled it; give bed.initial-temperature (or a "
-                    "profile) that is "
-                    "cold at the bottom or hot at the top.",
+        fmt::format("the tank starts between charged and discharged and can do neither: its bottom is at "
+                    "{:.1f} degC, but charging starts at {:.1f} degC or below; its top is at {:.1f} degC, "
+                    "but discharging starts at {:.1f} degC or above. It idles until its losses have cooled "
+                    "it; set a bed.initial-temperature (or a profile) that is cold at the bottom or hot at "
+                    "the top.",
                     celsius(bottom), celsius(p.cold + p.restart), celsius(top), celsius(p.hot - p.restart)));
 }
 
@@ -43,10 +41,9 @@ void ask_about_schedule(const FlowParameters& flow, const TankModel& model, std:
              below = row.stop_below && outlet < *row.stop_below;
   if (above || below)
     all.push_back(fmt::format(
-        "flow.rows[0] is stopped before it begins: the outlet is at {:.1f} degC and the row stops {} {:.1f} "
-        "degC. "
-        "Does the flow have the right sign (upward, out of the top, is above 0) and the bed the right "
-        "initial-temperature?",
+        "flow.rows[0] stops before it starts: the outlet is at {:.1f} degC, but the row stops {} {:.1f} "
+        "degC. Are the sign of the flow (upward, out of the top, is above 0) and the bed's "
+        "initial-temperature correct?",
         celsius(outlet), above ? "above" : "below", celsius(above ? *row.stop_above : *row.stop_below)));
 }
 
@@ -95,8 +92,8 @@ std::vector<std::string> questions(const TankParameters& p, const TankModel& mod
   const bool deep = p.ground && !p.ground->deep_temperature;
   if (!p.ambient_given && (p.insulation || p.ullage || deep || plant))
     all.push_back(
-        fmt::format("there is no section 'ambient': {} see still air of 20 degC{}.",
-                    plant ? "plant and tank" : "what surrounds the tank",
+        fmt::format("the section 'ambient' is missing: {} see still air of 20 degC{}.",
+                    plant ? "plant and tank" : "the surroundings of the tank",
                     plant ? " and no sun, day and night; the field collects nothing" : " and no sun"));
   if (plant) ask_about_plant(p.flow.plant, model, all);
   if (p.flow.type == FlowParameters::Type::schedule && p.flow.rows.front().at == 0)
@@ -114,8 +111,8 @@ std::vector<std::string> never_melted(const TankModel& model) {
     const double low = m.temperature - m.width / 2, high = m.temperature + m.width / 2;
     if (hottest <= low || coldest >= high)
       all.push_back(fmt::format(
-          "bed.layers[{}]: its capsules melt from {:.1f} to {:.1f} degC and the fluid was nowhere between, but from {:.1f} to "
-          "{:.1f} degC: their latent heat has not acted",
+          "bed.layers[{}]: its capsules melt from {:.1f} to {:.1f} degC, but the fluid stayed between "
+          "{:.1f} and {:.1f} degC: their latent heat had no effect",
           i, celsius(low), celsius(high), celsius(coldest), celsius(hottest)));
   }
   return all;
@@ -126,11 +123,11 @@ std::vector<std::string> prices_for_nothing(const EconomicsParameters& p, const 
   const auto look = [&](const char* name, double price, double amount, const char* why) {
     if (price > 0 && amount == 0)
       all.push_back(
-          fmt::format("report.economics.{} is {:g}, but there is nothing to pay for: {}", name, price, why));
+          fmt::format("report.economics.{} is {:g}, but has no effect: {}", name, price, why));
   };
   look("steel", p.steel, i.steel, "the tank has no section 'shell'");
   look("insulation", p.insulation, i.insulated, "the tank has no sections 'shell' and 'insulation'");
-  look("filler", p.filler, i.filler + (p.capsules ? 0 : i.capsules), "no layer holds grains");
+  look("filler", p.filler, i.filler + (p.capsules ? 0 : i.capsules), "no layer contains grains");
   look("capsules", p.capsules.value_or(0), i.capsules, "no layer melts");
   look("pump", p.pump, pump ? 1 : 0, "the tank has no section 'pump'");
   return all;
@@ -141,8 +138,8 @@ std::string season_without_dates(const TankParameters& p) {
   for (std::size_t i = 0; i < p.flow.plant.calendar.size(); ++i)
     if (!p.flow.plant.calendar[i].from.empty())
       return fmt::format(
-          "calendar[{}] has a season, whose days are those of the weather, and the weather is constant; give 'ambient' with "
-          "dates, or leave 'from' and 'to' out",
+          "calendar[{}] has a season of weather dates, but the weather is constant; add 'ambient' with "
+          "dates, or remove 'from' and 'to'",
           i);
   return "";
 }
@@ -150,9 +147,8 @@ std::string season_without_dates(const TankParameters& p) {
 void require_sun(double absorptance, const Weather& weather, const std::string& key) {
   if (absorptance <= 0 || weather.has_site()) return;
   throw Error(
-      "{}: the sun's height is needed to warm the cover and is not known: {} does not say where it is. Add "
-      "'site: "
-      "{{latitude, longitude, time-zone}}' to the section 'ambient', or leave solar-absorptance at 0.",
+      "{}: solar heating of the cover needs the sun's height, but {} does not specify the location. Add "
+      "'site: {{latitude, longitude, time-zone}}' to the section 'ambient', or leave solar-absorptance at 0.",
       key, weather.source());
 }
 

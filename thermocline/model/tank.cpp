@@ -59,8 +59,8 @@ Tank::Tank(const TankParameters& p, const ParticipantContext& context)
       comm_(context.comm) {
   if ((p.external_wall || p.elsewhere) && !context.coupled)
     throw Error(
-        "participants.{}.{}: nobody computes {} in a run of the tank alone. Start it together with a "
-        "coupler and {}, or remove this section.",
+        "participants.{}.{}: no participant computes {} in a run of the tank alone. Start it together with "
+        "a coupler and {}, or remove this section.",
         context.name, p.external_wall ? "external-wall" : "elsewhere", p.external_wall ? "the wall" : "them",
         p.external_wall ? "a solid_solver" : "a thermocline for each of these elements");
   if (p.external_wall)

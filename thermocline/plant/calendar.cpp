@@ -69,7 +69,8 @@ std::string problem_of_day(const std::vector<double>& values, bool share) {
     return fmt::format("has {} values; give one, or 24 for the hours of the day from 00:00 on",
                        values.size());
   for (const double v : values)
-    if (share && !(v >= 0 && v <= 1)) return fmt::format("{:g} is no share of the load; expected 0 to 1", v);
+    if (share && !(v >= 0 && v <= 1)) return fmt::format("{:g} is not a valid share of the load; expected 0 "
+                                                         "to 1", v);
   return "";
 }
 
@@ -79,12 +80,12 @@ void declare(config::Section& s, CalendarRule& r) {
   s.value("from", r.from).doc("first day of the season, MM-DD of the weather; absent: all year");
   s.value("to", r.to).doc("its last day, MM-DD; it may lie in the next year");
   s.value("load", r.load).doc("share of electric-power, one value or 24");
-  s.value("tariff", r.tariff).doc("price of the electricity per MWh, one value or 24");
+  s.value("tariff", r.tariff).doc("electricity price per MWh, one value or 24");
   s.check([&r] { return problem_of_days(r.days); }, "days");
   s.check([&r] { return problem_of_season(r); }, r.from.empty() ? "to" : "from");
   s.check([&r] { return r.load.empty() ? "" : problem_of_day(r.load, true); }, "load");
   s.check([&r] { return r.tariff.empty() ? "" : problem_of_day(r.tariff, false); }, "tariff");
-  s.check([&r] { return r.load.empty() && r.tariff.empty() ? "a rule gives a load or a tariff" : ""; }, "");
+  s.check([&r] { return r.load.empty() && r.tariff.empty() ? "a rule needs a load or a tariff" : ""; }, "");
 }
 
 Calendar::Calendar(const std::vector<CalendarRule>& rules, const CalendarStart& start)
@@ -135,7 +136,8 @@ std::vector<std::string> Calendar::doubts() const {
   for (std::size_t i = 0; i < rules_.size(); ++i)
     if (!used[i])
       sentences.push_back(fmt::format(
-          "flow.calendar[{}] holds on no day: the weather has not its days, or the rules before it give all that it gives",
+          "flow.calendar[{}] applies on no day: the weather does not contain its days, or earlier rules "
+          "override it",
           i));
   return sentences;
 }

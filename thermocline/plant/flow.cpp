@@ -15,7 +15,7 @@ namespace couplet::thermocline {
 void declare(config::Section& section, FlowParameters& p) {
   using Type = FlowParameters::Type;
   const auto row = [](config::Section& s, ScheduleRow& r) {
-    s.value("at", r.at).unit("s").plausible(1e-3, 1e11).not_negative().required().doc("from this time on");
+    s.value("at", r.at).unit("s").plausible(1e-3, 1e11).not_negative().required().doc("start time of the row");
     s.value("mass-flow", r.mass_flow)
         .unit("kg/s")
         .plausible(1e-6, 1e5)
@@ -25,7 +25,7 @@ void declare(config::Section& section, FlowParameters& p) {
         .unit("K")
         .plausible(70, 5000)
         .positive()
-        .doc("of what enters");
+        .doc("temperature of the inflow");
     s.value("stop-above", r.stop_above)
         .unit("K")
         .plausible(70, 5000)
@@ -38,16 +38,16 @@ void declare(config::Section& section, FlowParameters& p) {
         [&r] {
           return r.mass_flow == 0 || r.inlet_temperature > 0
                      ? ""
-                     : "is missing; say how hot the fluid is that this flow brings";
+                     : "is missing; specify the temperature of this inflow";
         },
         "inlet-temperature");
   };
   const auto schedule = [&p, row](config::Section& s) {
-    s.list<ScheduleRow>("rows", p.rows, row, "each in force until the next one; at rest before the first");
+    s.list<ScheduleRow>("rows", p.rows, row, "each applies until the next one; at rest before the first");
     s.value("file", p.file)
         .doc(
-            "in place of rows: a CSV with the columns time [h], mass-flow [kg/s], inlet-temperature [degC] and, where "
-            "wanted, stop-above and stop-below, each with its unit; may be compressed (.gz)");
+            "instead of rows: a CSV with the columns time [h], mass-flow [kg/s], inlet-temperature [degC] "
+            "and, optionally, stop-above and stop-below, each with its unit; may be compressed (.gz)");
     s.optional_section<ScheduleRepeat>(
         "repeat", p.repeat,
         [](config::Section& q, ScheduleRepeat& r) {
@@ -62,13 +62,13 @@ void declare(config::Section& section, FlowParameters& p) {
               .plausible(1, 1e9)
               .positive()
               .required()
-              .doc("... come again with this period");
+              .doc("... repeat with this period");
         },
-        "the schedule goes on for ever");
+        "the schedule repeats forever");
     s.check(
         [&p]() -> std::string {
           if (!p.file.empty())
-            return p.rows.empty() ? "" : "are given, and a 'file' of rows, too; leave one of them out";
+            return p.rows.empty() ? "" : "are given together with a 'file' of rows; remove one of them";
           return problem_of_rows(p);
         },
         "rows");
@@ -77,16 +77,16 @@ void declare(config::Section& section, FlowParameters& p) {
                         {{"rest", Type::rest, [](config::Section&) {}},
                          {"schedule", Type::schedule, schedule},
                          {"plant", Type::plant, [&p](config::Section& s) { declare(s, p.plant); }}},
-                        "what is pumped through the tank");
+                        "flow through the tank");
 }
 
 std::string problem_of_rows(const FlowParameters& p) {
-  if (p.rows.empty()) return "needs one row at least";
+  if (p.rows.empty()) return "at least one row is needed";
   for (std::size_t i = 1; i < p.rows.size(); ++i)
     if (p.rows[i].at <= p.rows[i - 1].at) return "each row must come after the one before it";
-  if (p.repeat && p.rows.back().at < p.repeat->from) return "no row is left to be repeated";
+  if (p.repeat && p.rows.back().at < p.repeat->from) return "no rows are left to repeat";
   if (p.repeat && p.rows.back().at >= p.repeat->from + p.repeat->every)
-    return "the last row lies beyond the period that is repeated";
+    return "the last row is after the end of the repeated period";
   return "";
 }
 
@@ -148,7 +148,7 @@ std::vector<std::string> Schedule::doubts() const {
   const auto first = std::ranges::find_if(rows_, flows);
   if (first != rows_.end() && !(current_ >= first->at))
     sentences.push_back(fmt::format(
-        "nothing has flowed: the first row of the schedule that flows, flow.rows[{}], begins at {:g} s",
+        "no flow: the first row with a flow, flow.rows[{}], starts at {:g} s",
         first - rows_.begin(), first->at));
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (!began_[i] || flowed_[i]) continue;
@@ -158,7 +158,7 @@ std::vector<std::string> Schedule::doubts() const {
       limits +=
           fmt::format("{} below {:g} degC", limits.empty() ? "" : " and", celsius(*rows_[i].stop_below));
     sentences.push_back(fmt::format(
-        "flow.rows[{}] never ran: it stops{}, and so was the outlet (the {} of the tank) whenever it began",
+        "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond that whenever it started",
         i, limits, rows_[i].mass_flow > 0 ? "top" : "bottom"));
   }
   return sentences;

@@ -37,13 +37,13 @@ class FlowColumns {
         throw Error("{}: unknown column '{}'. {}", place, head[i].substr(0, 80),
                     did_you_mean(heading.name, names, "columns"));
       const auto c = std::size_t(found - names.begin());
-      if (at_[c]) throw Error("{}: the column '{}' stands there twice.", place, heading.name);
+      if (at_[c]) throw Error("{}: the column '{}' appears twice.", place, heading.name);
       at_[c] = i;
       unit_[c] = unit_of(known[c], heading.unit, place);
     }
     for (std::size_t c = 0; c < known.size(); ++c)
       if (known[c].required && !at_[c])
-        throw Error("{}: the column '{}' is missing. A file of flows has the columns {}.", place,
+        throw Error("{}: the column '{}' is missing. A flow file has the columns {}.", place,
                     known[c].name, join(names));
   }
 
@@ -57,7 +57,7 @@ class FlowColumns {
   /// Heads without a unit would leave open whether 290 is in K or degC.
   static Unit unit_of(const FlowColumn& column, const std::string& text, const std::string& place) {
     if (text.empty())
-      throw Error("{}: say the unit of the column '{}', for example '{} [{}]'.", place, column.name,
+      throw Error("{}: the unit of the column '{}' is missing; write for example '{} [{}]'.", place, column.name,
                   column.name, column.example);
     const auto wanted = parse_unit(column.unit);
     try {
@@ -66,7 +66,7 @@ class FlowColumns {
     } catch (const Error& error) {
       throw Error("{}: column '{}': {}", place, column.name, error.what());
     }
-    throw Error("{}: the unit '{}' of the column '{}' is none of {}.", place, text, column.name, column.unit);
+    throw Error("{}: the unit '{}' of the column '{}' is not one of {}.", place, text, column.name, column.unit);
   }
 
   std::array<std::optional<std::size_t>, known.size()> at_;
@@ -84,27 +84,27 @@ ScheduleRow row_of(const FlowColumns& columns, const csv::CsvReader& row) {
   if (v[2] && !(*v[2] >= coldest && *v[2] <= hottest))
     throw Error("{}: inlet-temperature is {:g} K; expected {:g} to {:g} K.", place, *v[2], coldest, hottest);
   if (*v[1] != 0 && !v[2])
-    throw Error("{}: inlet-temperature is missing; say how hot the fluid is that this flow brings.", place);
+    throw Error("{}: inlet-temperature is missing; specify the temperature of this inflow.", place);
   return {*v[0], *v[1], v[2].value_or(0), v[3], v[4]};
 }
 
 }  // namespace
 
 std::vector<ScheduleRow> read_flow_file(const std::filesystem::path& file) {
-  csv::CsvReader reader(file, "file of flows");
+  csv::CsvReader reader(file, "flow file");
   if (reader.names().empty())
     throw Error(
-        "{}: the first line of a file of flows names its columns with their units, such as 'time [h]'.",
+        "{}: the first line of a flow file must name its columns with units, such as 'time [h]'.",
         file.string());
   const FlowColumns columns(reader.names(), reader.place_of_names());
   std::vector<ScheduleRow> rows;
   while (reader.next()) {
     rows.push_back(row_of(columns, reader));
     if (rows.size() > 1 && rows.back().at <= rows[rows.size() - 2].at)
-      throw Error("{}: time {:g} s does not come after that of the row before, {:g} s.", reader.place(),
+      throw Error("{}: time {:g} s is not after that of the previous row, {:g} s.", reader.place(),
                   rows.back().at, rows[rows.size() - 2].at);
   }
-  if (rows.empty()) throw Error("{}: there is no row in this file of flows.", file.string());
+  if (rows.empty()) throw Error("{}: this flow file has no rows.", file.string());
   return rows;
 }
 

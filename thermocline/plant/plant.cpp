@@ -14,11 +14,11 @@ namespace {
 
 std::string problem_of_weekday(const PlantParameters& p) {
   if (!p.start.weekday.empty() && !is_weekday(p.start.weekday))
-    return fmt::format("'{}' is no weekday: expected monday, tuesday, ... sunday", p.start.weekday);
+    return fmt::format("'{}' is not a weekday: expected monday, tuesday, ... sunday", p.start.weekday);
   const bool named = std::any_of(p.calendar.begin(), p.calendar.end(),
                                  [](const CalendarRule& r) { return !r.days.empty(); });
   return named && p.start.weekday.empty()
-             ? "is missing: the rules of 'calendar' name weekdays; say which one the first day is"
+             ? "is missing: the rules of 'calendar' name weekdays; specify the weekday of the first day"
              : "";
 }
 
@@ -49,29 +49,28 @@ void declare(config::Section& s, PlantParameters& p) {
       .unit("K")
       .plausible(70, 5000)
       .required()
-      .doc("leaves the solar field and, by design, the charged tank");
+      .doc("outlet temperature of the solar field and, by design, of the charged tank");
   s.value("cold", p.cold)
       .unit("K")
       .plausible(70, 5000)
       .required()
-      .doc("leaves the power block and, by design, the discharged tank");
+      .doc("outlet temperature of the power block and, by design, of the discharged tank");
   s.value("cut-off", p.cut_off)
       .unit("K difference")
       .plausible(0.1, 500)
       .positive()
       .doc(
-          "charging stops when what enters the solar field (or leaves the tank, see cut-off-at) is this much "
-          "too "
-          "warm, discharging when what enters the power block is this much too cold");
+          "charging stops when the inflow of the solar field (or the tank outlet, see cut-off-at) is this "
+          "much too warm, discharging when the inflow of the power block is this much too cold");
   s.choice("cut-off-at", p.cut_off_at,
            {{"mixed", PlantParameters::CutOffAt::mixed},
             {"outlet", PlantParameters::CutOffAt::outlet},
             {"field", PlantParameters::CutOffAt::field},
             {"block", PlantParameters::CutOffAt::block}})
       .doc(
-          "mixed: the cut-off looks at what enters field or block, where the tank's flow has been mixed with "
-          "that of the other; outlet: at what leaves the tank; field: mixed for charging, the outlet for discharging; block: "
-          "the other way round");
+          "mixed: the cut-off applies to the inflow of field or block, where the tank's flow has been mixed "
+          "with that of the other; outlet: to the tank outlet; field: mixed for charging, outlet for "
+          "discharging; block: the other way round");
   s.value("restart", p.restart)
       .unit("K difference")
       .plausible(0.1, 500)
@@ -82,15 +81,14 @@ void declare(config::Section& s, PlantParameters& p) {
           "most this much too cold");
   s.value("load", p.load)
       .doc(
-          "share of electric-power that is asked for, one value or 24 for the hours of the day from 00:00 "
-          "on");
+          "requested share of electric-power, one value or 24 for the hours of the day from 00:00");
   s.value("tariff", p.tariff)
-      .doc("price of the electricity per MWh, one value or 24; with it the report counts the revenue");
+      .doc("electricity price per MWh, one value or 24; with it the report includes the revenue");
   s.value("first-weekday", p.start.weekday)
-      .doc("monday to sunday: that of the first day; needed where a rule of 'calendar' names days");
+      .doc("weekday of the first day, monday to sunday; needed where a rule of 'calendar' names weekdays");
   s.list<CalendarRule>(
       "calendar", p.calendar, [](config::Section& q, CalendarRule& r) { declare(q, r); },
-      "days on which another load or tariff holds; of several rules the first one that gives it counts");
+      "days with another load or tariff; the first matching rule applies");
   s.check([&] { return problem_of_day(p.load, true); }, "load");
   s.check([&] { return p.tariff.empty() ? "" : problem_of_day(p.tariff, false); }, "tariff");
   s.check([&] { return problem_of_weekday(p); }, "first-weekday");
@@ -98,13 +96,15 @@ void declare(config::Section& s, PlantParameters& p) {
       [&] {
         const bool priced = std::any_of(p.calendar.begin(), p.calendar.end(),
                                         [](const CalendarRule& r) { return !r.tariff.empty(); });
-        return priced && p.tariff.empty() ? "is needed for the hours that no rule of 'calendar' gives a price"
+        return priced && p.tariff.empty() ? "is needed for the hours without a price in any rule of "
+                                            "'calendar'"
                                           : "";
       },
       "tariff");
   s.check([&] { return p.hot > p.cold ? "" : "'hot' must be above 'cold'."; }, "hot");
   s.check(
-      [&] { return p.cut_off < p.hot - p.cold ? "" : "must be smaller than the step from 'cold' to 'hot'."; },
+      [&] { return p.cut_off < p.hot - p.cold ? "" : "must be smaller than the difference between 'hot' and "
+                                                     "'cold'."; },
       "cut-off");
 }
 

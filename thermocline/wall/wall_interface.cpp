@@ -11,8 +11,9 @@ namespace couplet::thermocline {
 void declare(config::Section& s, ExternalWallParameters& p) {
   s.value("sections", p.sections)
       .range(2, 100000)
-      .doc("faces along the wall, those of the other program's inner surface");
-  s.value("angle", p.angle).unit("rad").range(1e-6, 3).doc("of the wedge that the other program computes");
+      .doc("number of faces along the wall, equal to that of the other program's inner surface");
+  s.value("angle", p.angle).unit("rad").range(1e-6, 3).doc("angle of the wedge that the other program "
+                                                           "computes");
 }
 
 WallInterface::WallInterface(const ExternalWallParameters& p, const Rings& rings)
@@ -63,7 +64,7 @@ std::vector<double> WallInterface::to_rings(std::span<const double> amounts) con
 
 std::vector<double> WallInterface::radial(std::span<const double> displacement) const {
   if (displacement.size() != std::size_t(6 * (sections_ + 1)))
-    throw Error("The wall gave {} values of displacement where its {} vertices need {}.", displacement.size(),
+    throw Error("The wall gave {} values of displacement, but its {} vertices need {}.", displacement.size(),
                 2 * (sections_ + 1), 6 * (sections_ + 1));
   std::vector<double> z, u;
   const double c = std::cos(angle_ / 2), s = std::sin(angle_ / 2);

@@ -36,26 +36,26 @@ std::vector<double> form(double length, double n, double p) {
 std::string problem_of(const SmoothDays& d, std::string& key) {
   key = "daily-sums";
   if (d.daily_sums.size() != months)
-    return fmt::format("has {} values; one for each of the 12 months is needed, January first",
+    return fmt::format("has {} values; expected one for each of the 12 months, January first",
                        d.daily_sums.size());
   constexpr double least = 36e3;  // [J/m^2]: 10 Wh
   const double highest = *std::max_element(d.daily_sums.begin(), d.daily_sums.end());
   if (highest > 0 && highest < least)
     return fmt::format(
-        "{:g} J/m^2 is the largest of its sums: no sun. A number without a unit is in J/m^2; write '{:g} kWh/m^2' if that is "
-        "meant",
+        "the largest daily sum is {:g} J/m^2: too small. A number without a unit is in J/m^2; write '{:g} "
+        "kWh/m^2' if that is intended",
         highest, highest);
   for (const double sum : d.daily_sums)
     if (sum < 0 || sum > 24 * 1412 * seconds_an_hour)
       return fmt::format(
-          "{:g} J/m^2 is no sum of a day; expected 0 to 33 kWh/m^2 (give the unit: 7.2 kWh/m^2)", sum);
+          "{:g} J/m^2 is not a plausible daily sum; expected 0 to 33 kWh/m^2 (with its unit: 7.2 kWh/m^2)", sum);
   for (const auto& [name, values] :
        {std::pair{"form-n", &d.n}, {"form-p", &d.p}, {"day-length", &d.length}}) {
     key = name;
     if (values->size() != 1 && values->size() != months)
-      return fmt::format("has {} values; give one, or one for each of the 12 months", values->size());
+      return fmt::format("has {} values; expected one, or one for each of the 12 months", values->size());
     for (const double v : *values)
-      if (!(v > 0 && v <= 100)) return fmt::format("{:g} is not a number above 0 and at most 100", v);
+      if (!(v > 0 && v <= 100)) return fmt::format("{:g} is out of range; expected above 0 and at most 100", v);
   }
   return "";
 }
@@ -70,7 +70,7 @@ double day_length(double latitude, int day) {
 
 WeatherHours with_smooth_days(WeatherHours record, const SmoothDays& d) {
   if (record.days() != days_a_year)
-    throw Error("{}: smooth days need the air of a whole year beside them; this file holds {} days.",
+    throw Error("{}: smooth days need air data of a whole year; this file has {} days.",
                 record.source, record.days());
   for (int day = 0; day < days_a_year; ++day) {
     const auto month = std::size_t(month_of_day(day));
@@ -78,8 +78,8 @@ WeatherHours with_smooth_days(WeatherHours record, const SmoothDays& d) {
     const double sunny = day_length(d.latitude, day), length = of_month(d.length, month) * sunny;
     if (length > 24 * (1 + 1e-9))
       throw Error(
-          "smooth days: day-length {:g} makes a day of {:.1f} h on {}, where the sun is up for {:.1f} h at latitude {:g} deg: "
-          "it would shine at midnight.",
+          "smooth days: day-length {:g} makes a day of {:.1f} h on {}, where the sun is up for {:.1f} h at "
+          "latitude {:g} deg: it would shine at midnight.",
           of_month(d.length, month), length, date_of_day(day), sunny, d.latitude);
     const std::vector<double> mean = form(length, of_month(d.n, month), of_month(d.p, month));
     double total = 0;
@@ -87,7 +87,7 @@ WeatherHours with_smooth_days(WeatherHours record, const SmoothDays& d) {
     if (sum > 0 && total <= 0)
       throw Error(
           "smooth days: on {} the sun does not rise at latitude {:g} deg, but daily-sums gives that month "
-          "{:g} J/m^2 a day.",
+          "{:g} J/m^2 per day.",
           date_of_day(day), d.latitude, sum);
     for (std::size_t h = 0; h < hours_a_day; ++h) {
       const double dni = sum > 0 ? sum / total * mean[h] : 0;

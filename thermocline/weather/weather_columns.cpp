@@ -47,7 +47,7 @@ WeatherColumns::WeatherColumns(const std::vector<std::string>& head, const Names
   const auto once = [&](std::optional<std::size_t> column) {
     for (std::size_t i = 0; column && i < head.size(); ++i)
       if (i != *column && lower(head[i]) == lower(head[*column]))
-        throw Error("{}: the column '{}' stands there twice.", place, trim(head[i]));
+        throw Error("{}: the column '{}' appears twice.", place, trim(head[i]));
   };
   dew_point_ = find(names.dew_point);
   once(dew_point_);
@@ -57,7 +57,7 @@ WeatherColumns::WeatherColumns(const std::vector<std::string>& head, const Names
     if (column_[q] || (q == humidity && dew_point_)) continue;
     std::vector<std::string> known(names.of[q].begin(), names.of[q].end());
     if (q == humidity) known.insert(known.end(), names.dew_point.begin(), names.dew_point.end());
-    throw Error("{}: there is no column for the {}; it may be called {}.", place, weather_quantities[q].name,
+    throw Error("{}: the column for the {} is missing; it may be named {}.", place, weather_quantities[q].name,
                 join(known));
   }
 }
@@ -103,7 +103,7 @@ std::optional<int> hour_of_year(int month, int day, int hour, const std::string&
 
 WeatherHours::Site site_of(double latitude, double longitude, double zone, const std::string& place) {
   if (!(std::abs(latitude) <= 90 && std::abs(longitude) <= 180 && std::abs(zone) <= 14))
-    throw Error("{}: latitude {:g}, longitude {:g} and time zone {:g} are no place on earth.", place,
+    throw Error("{}: latitude {:g}, longitude {:g} and time zone {:g} are not a valid location.", place,
                 latitude, longitude, zone);
   constexpr double seconds_a_degree = 240;  // the earth turns by 15 degrees an hour
   return {latitude, longitude * seconds_a_degree - 3600 * zone};

@@ -21,7 +21,8 @@ std::vector<std::size_t> read_head(const std::string& head, const std::string& p
   for (const char other : {';', '\t'})
     if (head.find(other) != std::string::npos && head.find(',') == std::string::npos)
       throw Error(
-          "{}: the columns are separated by '{}'; a weather file's are by commas, with points in the numbers.",
+          "{}: the columns are separated by '{}'; a weather file needs commas, with decimal points in the "
+          "numbers.",
           place, other == ';' ? ";" : "a tab");
   for (const std::string& field : csv::fields(head)) {
     const std::string name(trim(field));
@@ -31,7 +32,7 @@ std::vector<std::size_t> read_head(const std::string& head, const std::string& p
                   did_you_mean(name, known, "columns"));
     const auto column = static_cast<std::size_t>(found - known.begin());
     if (std::find(columns.begin(), columns.end(), column) != columns.end())
-      throw Error("{}: the column '{}' stands there twice.", place, name);
+      throw Error("{}: the column '{}' appears twice.", place, name);
     columns.push_back(column);
   }
   for (std::size_t i = 0; i < known.size(); ++i)

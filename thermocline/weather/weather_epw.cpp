@@ -23,7 +23,7 @@ constexpr std::array<EpwColumn, 5> columns{{{14, 9999}, {6, 99.9}, {21, 999}, {8
 WeatherHours::Site read_epw_site(const std::string& line, const std::string& place) {
   const std::vector<std::string> fields = csv::fields(line);
   if (fields.size() < 9)
-    throw Error("{}: the line LOCATION must hold latitude, longitude and time zone.", place);
+    throw Error("{}: the line LOCATION must contain latitude, longitude and time zone.", place);
   const double latitude = number_in(fields[6], "the latitude", place);
   const double longitude = number_in(fields[7], "the longitude", place);
   const double zone = number_in(fields[8], "the time zone", place);

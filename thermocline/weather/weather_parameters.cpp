@@ -23,9 +23,8 @@ void declare_period(config::Section& s, WeatherParameters& p) {
   s.value("from", p.from).doc("the simulation starts at 00:00 of this day, MM-DD");
   s.value("to", p.to)
       .doc(
-          "after this day, MM-DD, the weather begins again with that of 'from'; it may lie in the next year; "
-          "without it: "
-          "the year (or the file) goes round");
+          "after this day, MM-DD, the weather repeats from that of 'from'; it may lie in the next year; "
+          "absent: the year (or the file) repeats");
   s.check([&] { return wrong_date(p.from); }, "from");
   s.check([&] { return p.to.empty() ? "" : wrong_date(p.to); }, "to");
 }
@@ -35,15 +34,13 @@ void declare_file(config::Section& s, WeatherParameters& p) {
       .required()
       .doc(
           "hourly weather: EnergyPlus (EPW), SAM or NSRDB, TMY3, the typical year of PVGIS (CSV), or a CSV "
-          "with the "
-          "columns hour (of the year, from 0), dni_W_m2 (mean of the hour), T_degC, wind_m_s, rh_pct, p_Pa; "
-          "all may be "
-          "compressed (.gz)");
+          "with the columns hour (of the year, from 0), dni_W_m2 (mean of the hour), T_degC, wind_m_s, "
+          "rh_pct, p_Pa; all may be compressed (.gz)");
   s.value("shift", p.shift_hours)
       .range(-12, 12)
       .doc(
-          "whole hours by which the simulation's clock is ahead of the file's; absent: 0, but for PVGIS, whose clock is UTC, "
-          "to local standard time of its longitude");
+          "whole hours by which the simulation's clock is ahead of the file's; absent: 0, except for PVGIS, "
+          "whose clock is UTC, which is shifted to the local standard time of its longitude");
   s.check(
       [&p] {
         return !p.shift_hours || *p.shift_hours == std::floor(*p.shift_hours) ? ""
@@ -52,16 +49,16 @@ void declare_file(config::Section& s, WeatherParameters& p) {
       "shift");
   s.choice("days", p.mean_days, {{"as-recorded", false}, {"monthly-mean", true}})
       .doc(
-          "monthly-mean: each hour has the mean irradiance of that hour in its month, as tables of average "
-          "days give it");
+          "monthly-mean: each hour has the mean irradiance of that hour in its month, as in tables of "
+          "average days");
   s.optional_section<SiteParameters>(
       "site", p.site, [](config::Section& q, SiteParameters& site) { declare(q, site); },
-      "for files that do not say it: the sun's height follows from it (solar-absorptance)");
+      "for files without a location, to determine the sun's height (solar-absorptance)");
   declare_period(s, p);
 }
 
 void declare_air(config::Section& s, ClearSky& sky) {
-  s.value("altitude", sky.altitude).unit("m").range(0, 2500).doc("of the site above the sea");
+  s.value("altitude", sky.altitude).unit("m").range(0, 2500).doc("altitude of the site");
   s.value("coldest", sky.coldest).unit("K").range(200, 340).doc("temperature of the air at 03:00");
   s.value("warmest", sky.warmest).unit("K").range(200, 340).doc("temperature of the air at 15:00");
   s.value("wind", sky.wind).unit("m/s").range(0, 80).doc("speed of the wind");
@@ -74,14 +71,14 @@ void declare_smooth_days(config::Section& s, WeatherParameters& p) {
       .unit("deg")
       .range(-90, 90)
       .required()
-      .doc("of the site, north positive; the length of the days follows from it");
+      .doc("latitude of the site, north positive; it determines the length of the days");
   s.value("daily-sums", d.daily_sums)
       .unit("J/m^2")
       .plausible(1e5, 5e7)
       .required()
       .doc("mean daily direct normal irradiation of the 12 months, for example 7.2 kWh/m^2");
   s.value("form-n", d.n).doc("n of (1 - |2 t/T|^n)^p, one value or 12: 1 a peak, 2 round, large: a box");
-  s.value("form-p", d.p).doc("p of the same: small: steep sides, large: a narrow bell");
+  s.value("form-p", d.p).doc("p of the same expression: small: steep sides, large: a narrow bell");
   s.value("day-length", d.length).doc("T over the time from sunrise to sunset, one value or 12");
   for (const char* name : {"daily-sums", "form-n", "form-p", "day-length"})
     s.check(
@@ -92,7 +89,7 @@ void declare_smooth_days(config::Section& s, WeatherParameters& p) {
         },
         name);
   s.value("air", p.file)
-      .doc("a weather file whose air, wind, humidity and pressure are taken; absent: the keys that follow");
+      .doc("a weather file for air, wind, humidity and pressure; absent: the following keys");
   declare_air(s, p.sky);
   declare_period(s, p);
 }
@@ -102,7 +99,7 @@ void declare_clear_sky(config::Section& s, WeatherParameters& p) {
       .unit("deg")
       .range(-90, 90)
       .required()
-      .doc("of the site, north positive; the sun of cloudless days follows from it");
+      .doc("latitude of the site, north positive; it determines the sun of cloudless days");
   declare_air(s, p.sky);
   declare_period(s, p);
 }
@@ -140,8 +137,8 @@ WeatherHours record_of(const WeatherParameters& p, const std::filesystem::path& 
       if (record.site && (std::abs(given.latitude - record.site->latitude) > close ||
                           std::abs(given.solar_ahead - record.site->solar_ahead) > close_time))
         record.doubts.push_back(fmt::format(
-            "{}: 'site' (latitude {:g} deg, solar time {:+.2f} h against the clock) takes the place of the file's own (latitude "
-            "{:g} deg, {:+.2f} h)",
+            "{}: 'site' (latitude {:g} deg, solar time {:+.2f} h against the clock) replaces the file's own "
+            "(latitude {:g} deg, {:+.2f} h)",
             record.source, given.latitude, given.solar_ahead / hour, record.site->latitude,
             record.site->solar_ahead / hour));
       record.site = given;
@@ -168,7 +165,7 @@ void declare(config::Section& s, SiteParameters& p) {
   s.value("time-zone", p.time_zone)
       .range(-14, 14)
       .required()
-      .doc("hours that the file's clock is ahead of Greenwich");
+      .doc("hours by which the file's clock is ahead of Greenwich");
 }
 
 void declare(config::Section& section, WeatherParameters& p) {
@@ -178,7 +175,7 @@ void declare(config::Section& section, WeatherParameters& p) {
        {"file", WeatherKind::file, [&](config::Section& s) { declare_file(s, p); }},
        {"clear-sky", WeatherKind::clear_sky, [&](config::Section& s) { declare_clear_sky(s, p); }},
        {"smooth-days", WeatherKind::smooth_days, [&](config::Section& s) { declare_smooth_days(s, p); }}},
-      "where the sun and the air come from");
+      "source of sun and air");
 }
 
 std::unique_ptr<Weather> make_weather(const WeatherParameters& p, const std::filesystem::path& case_folder) {

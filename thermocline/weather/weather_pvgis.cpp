@@ -40,7 +40,7 @@ std::size_t end_of_records(const std::vector<std::string>& lines, std::size_t fi
   while (end < lines.size() && !trim(lines[end]).empty()) ++end;
   for (std::size_t i = end; i < lines.size(); ++i)
     if (is_record(lines[i]))
-      throw Error("{}: a record after the empty line {}, with which the records of a PVGIS file end.",
+      throw Error("{}: a record after the empty line {}, which ends the records of a PVGIS file.",
                   hours.place(int(i) + 1), end + 1);
   return end;
 }
@@ -55,7 +55,7 @@ double number_behind(const std::vector<std::string>& lines, std::size_t end, std
         return number_in(lines[i].substr(colon + 1), word, hours.place(int(i) + 1));
     }
   if (without) return *without;
-  throw Error("{}: a PVGIS file says '{} (decimal degrees): ...' in its first lines.", hours.place(1), word);
+  throw Error("{}: the first lines of a PVGIS file must contain '{} (decimal degrees): ...'.", hours.place(1), word);
 }
 
 }  // namespace
@@ -67,9 +67,8 @@ WeatherHours read_weather_pvgis(const std::filesystem::path& file) {
   while (head_line < lines.size() && !column_of(csv::fields(lines[head_line]), "time(UTC)")) ++head_line;
   if (head_line == lines.size())
     throw Error(
-        "{}: there is no line 'time(UTC),T2m,RH,...': only the typical year (TMY) of PVGIS as CSV is read, "
-        "not "
-        "its hourly or monthly radiation.",
+        "{}: the line 'time(UTC),T2m,RH,...' is missing: only the typical year (TMY) of PVGIS as CSV is "
+        "supported, not its hourly or monthly radiation.",
         hours.place(1));
   const double latitude = number_behind(lines, head_line, "Latitude", hours),
                longitude = number_behind(lines, head_line, "Longitude", hours);
@@ -89,12 +88,12 @@ WeatherHours read_weather_pvgis(const std::filesystem::path& file) {
     if (*time >= fields.size()) throw Error("{}: the line ends before its time.", place);
     const std::string& stamp = fields[*time];
     if (stamp.size() != 13 || stamp[8] != ':')
-      throw Error("{}: '{}' is no time YYYYMMDD:HHMM.", place, stamp);
+      throw Error("{}: '{}' is not a time YYYYMMDD:HHMM.", place, stamp);
     const std::vector<std::string> parts{stamp.substr(4, 2), stamp.substr(6, 2), stamp.substr(9, 2),
                                          stamp.substr(11, 2)};
     const int minute = whole_number(parts, 3, "the minute", place);
     if (minute < 0 || minute > 59 || minute != minutes.value_or(minute))
-      throw Error("{}: the minute is {}; all records of a PVGIS file have the same, from 0 to 59.", place,
+      throw Error("{}: the minute is {}; all records of a PVGIS file must have the same, from 0 to 59.", place,
                   minute);
     minutes = minute;
     const auto number =
@@ -115,7 +114,7 @@ WeatherHours read_weather(const std::filesystem::path& file) {
   const std::filesystem::path plain = file.extension() == ".gz" ? file.stem() : file;
   if (plain.extension() == ".epw") return read_weather_epw(file);
   if (plain.extension() == ".json")
-    throw Error("{}:1: JSON is not read; ask for the same year as CSV or EPW.", file.string());
+    throw Error("{}:1: JSON is not supported; request the same year as CSV or EPW.", file.string());
   const std::vector<std::string> lines = read_lines(file);
   const std::vector<std::string> first = csv::fields(lines.empty() ? "" : lines[0]),
                                  second = csv::fields(lines.size() > 1 ? lines[1] : "");

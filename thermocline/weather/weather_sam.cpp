@@ -36,7 +36,7 @@ void check_units(const std::vector<std::string>& head, const std::vector<std::st
     if (!column || *column >= values.size()) continue;
     const std::string_view unit = trim(values[*column]);
     if (!unit.empty() && std::find(units.begin(), units.end(), unit) == units.end())
-      throw Error("{}: '{}' is '{}'; only {} is read.", place, name, unit, units.front());
+      throw Error("{}: '{}' is '{}'; only {} is supported.", place, name, unit, units.front());
   }
 }
 

@@ -13,7 +13,7 @@ namespace couplet::thermocline {
 std::vector<std::string> doubts_about_sun(const WeatherHours& record) {
   constexpr std::size_t fortnight = 14 * hours_a_day;
   if (record.dni.size() >= fortnight && *std::max_element(record.dni.begin(), record.dni.end()) <= 0)
-    return {fmt::format("{}: in none of its {} days there is any direct irradiance", record.source,
+    return {fmt::format("{}: no direct irradiance in any of its {} days", record.source,
                         record.days())};
   if (!record.site) return {};
   constexpr double hour = 3600, day = hours_a_day * hour;  // [s]
@@ -25,7 +25,8 @@ std::vector<std::string> doubts_about_sun(const WeatherHours& record) {
   const double ahead = site.solar_ahead / hour - record.local_ahead;
   if (std::abs(ahead) > farthest_clock)
     all.push_back(fmt::format(
-        "{}: solar time of its longitude is {:.1f} h {} its time zone: is the sign of longitude or time zone wrong?",
+        "{}: the solar time of its longitude is {:.1f} h {} its time zone: is the sign of longitude or time "
+        "zone wrong?",
         record.source, std::abs(ahead), ahead > 0 ? "ahead of" : "behind"));
   double total = 0, dark = 0;
   for (std::size_t h = 0; h < record.dni.size(); ++h) {
@@ -41,8 +42,8 @@ std::vector<std::string> doubts_about_sun(const WeatherHours& record) {
   }
   if (dark > most_in_the_dark * total)
     all.push_back(fmt::format(
-        "{}: {:.0f} % of the irradiation falls into hours in which the sun is below the horizon at latitude {:g} deg: latitude, "
-        "longitude and time zone are not those of this record",
+        "{}: {:.0f} % of the irradiation is in hours with the sun below the horizon at latitude {:g} deg: "
+        "latitude, longitude and time zone do not match this record",
         record.source, 100 * dark / total, site.latitude));
   return all;
 }

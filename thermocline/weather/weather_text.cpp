@@ -29,14 +29,14 @@ double number_in(const std::string& field, std::string_view name, const std::str
   const std::string_view text = trim(field);
   if (text.empty() || text == "nan" || text == "NaN" || text == "NA") return missing;
   if (const auto value = csv::number_of(text)) return *value;
-  throw Error("{}: {}; {} was expected here.", place, csv::why_no_number(text), name);
+  throw Error("{}: {}; expected {} here.", place, csv::why_no_number(text), name);
 }
 
 void check_width(std::span<const std::string> fields, std::size_t most, const std::string& place) {
   for (std::size_t i = most; i < fields.size(); ++i)
     if (!trim(fields[i]).empty())
       throw Error(
-          "{}: {} values, but the file has {} columns. If commas are decimal commas, write decimal points.",
+          "{}: {} values, but the file has {} columns. If commas are decimal commas, use decimal points.",
           place, fields.size(), most);
 }
 
@@ -50,12 +50,12 @@ void HourCollector::add(int hour, std::array<double, 5> values, int line) {
   if (hour < expected && expected >= year && hour + year - expected <= longest_gap && hour + year >= expected)
     hour += year;
   if (hour < expected)
-    throw Error("{}: hour {} of the year comes after hour {}: each hour must be there once, in order.",
+    throw Error("{}: hour {} of the year comes after hour {}: each hour must appear once, in order.",
                 place(line), hour, expected - 1);
   if (hour - expected > longest_gap)
     throw Error(
-        "{}: hours {} to {} of the year are missing. Gaps of more than {} hours are not filled; complete the "
-        "file or choose a period without the gap.",
+        "{}: hours {} to {} of the year are missing. Gaps of more than {} hours are not filled; complete "
+        "the file or choose a period without the gap.",
         place(line), expected, hour - 1, longest_gap);
   for (int h = expected; h < hour; ++h) {
     for (auto& column : columns_) column.push_back(missing);
@@ -88,7 +88,7 @@ void HourCollector::close_gaps(std::size_t quantity, std::vector<std::string>& w
     for (std::size_t i = begin; i < end; ++i)
       v[i] = before + (after - before) * double(i - begin + 1) / double(end - begin + 1);
     warnings.push_back(
-        fmt::format("{}: the {} is missing for {} hour{} from here; a straight line fills the gap.",
+        fmt::format("{}: the {} is missing for {} hour{} from here; the gap is filled linearly.",
                     place(lines_[begin]), what, end - begin, end - begin == 1 ? "" : "s"));
     begin = end;
   }
@@ -99,7 +99,7 @@ void HourMean::add(int hour, int minute, const std::array<double, 5>& values, in
     flush();
   else if (minute <= minute_)
     throw Error(
-        "{}: minute {} of hour {} of the year comes after minute {}: each record must be there once, in order.",
+        "{}: minute {} of hour {} of the year comes after minute {}: each record must appear once, in order.",
         hours_.place(line), minute, hour, minute_);
   several_ = several_ || count_ > 0;
   hour_ = hour, minute_ = minute, line_ = line, ++count_;
@@ -126,11 +126,11 @@ void refuse_other_unit(const std::string& file, const WeatherQuantity& quantity,
 }  // namespace
 
 WeatherHours HourCollector::finish(double state_offset) {
-  if (lines_.empty()) throw Error("{}: this weather file holds no hours.", file_);
+  if (lines_.empty()) throw Error("{}: this weather file contains no hours.", file_);
   if (first_hour_ % hours_a_day != 0)
     throw Error(
-        "{}: the first record is hour {} of the year, but whole days are needed: it must be the first "
-        "hour of a day, a multiple of {}.",
+        "{}: the first record is hour {} of the year, but whole days are needed: it must be the first hour "
+        "of a day, a multiple of {}.",
         place(lines_.front()), first_hour_, hours_a_day);
   if (lines_.size() % hours_a_day != 0)
     throw Error("{}: the file ends after {} of the 24 hours of its last day. Whole days are needed.",
@@ -139,8 +139,7 @@ WeatherHours HourCollector::finish(double state_offset) {
   const bool rotated = first_hour_ > 0 && lines_.size() == year;
   if (!rotated && first_hour_ + lines_.size() > year)
     throw Error(
-        "{}: the file goes beyond hour {} of the year; a reference year has {} days (leave 29 February "
-        "out).",
+        "{}: the file extends beyond hour {} of the year; a reference year has {} days (omit 29 February).",
         place(lines_.back()), year - 1, days_a_year);
   WeatherHours result;
   result.source = file_;
@@ -154,10 +153,10 @@ WeatherHours HourCollector::finish(double state_offset) {
     const WeatherQuantity& quantity = weather_quantities[q];
     if (quantity.target == &WeatherHours::dni)
       refuse_other_unit(file_, quantity, highest, 5.1,  // the solar constant in MJ/m^2 an hour
-                        "no sun gives so little; it is read in W/m^2, not in kW/m^2 or in MJ/m^2 an hour.");
+                        "too low for the sun; expected W/m^2, not kW/m^2 or MJ/m^2 per hour.");
     if (quantity.target == &WeatherHours::humidity)
       refuse_other_unit(file_, quantity, highest, 1,
-                        "no air is so dry; it is read in percent, not as a share.");
+                        "too dry for air; expected percent, not a fraction.");
     for (double& value : columns_[q]) value *= weather_quantities[q].factor;
     result.*weather_quantities[q].target = std::move(columns_[q]);
   }

@@ -21,8 +21,8 @@ WeatherHours::Site read_tmy3_site(const std::string& line, const std::string& pl
   const std::vector<std::string> fields = csv::fields(line);
   if (fields.size() < 7)
     throw Error(
-        "{}: the first line of a TMY3 file holds number, name, state, time zone, latitude, longitude and "
-        "elevation; this one has {} fields.",
+        "{}: the first line of a TMY3 file must contain number, name, state, time zone, latitude, longitude "
+        "and elevation; this one has {} fields.",
         place, fields.size());
   return site_of(number_in(fields[4], "the latitude", place), number_in(fields[5], "the longitude", place),
                  number_in(fields[3], "the time zone", place), place);
@@ -47,7 +47,7 @@ WeatherHours read_weather_tmy3(const std::filesystem::path& file) {
       throw Error("{}: {} values, but the file has {} columns.", place, fields.size(), head.size());
     const std::vector<std::string> day = split(fields[*date], '/'), clock = split(fields[*time], ':');
     if (day.size() != 3 || clock.size() != 2)
-      throw Error("{}: '{},{}' is no date MM/DD/YYYY and time HH:MM.", place, fields[*date], fields[*time]);
+      throw Error("{}: '{},{}' is not a date MM/DD/YYYY and time HH:MM.", place, fields[*date], fields[*time]);
     const int hour = whole_number(clock, 0, "the hour", place);
     if (hour < 1 || hour > 24 || whole_number(clock, 1, "the minute", place) != 0)
       throw Error("{}: the time is {}; a TMY3 file has full hours from 01:00 to 24:00.", place,
