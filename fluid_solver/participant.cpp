@@ -67,9 +67,8 @@ void FluidParticipant<D>::set_up_motion() {
   const auto& bodies = fluid_->boundary().body_patches();
   if (!parameters.motion) {
     if (!bodies.empty())
-      throw Error(
-          "boundaries.{}: a wall of type 'body' moves by the section 'motion', which is missing.",
-          bodies.front()->name);
+      throw Error("boundaries.{}: a wall of type 'body' moves by the section 'motion', which is missing.",
+                  bodies.front()->name);
     return;
   }
   if (motion_)

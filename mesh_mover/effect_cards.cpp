@@ -30,13 +30,12 @@ const std::array cards{
          "`stiffening` above 0",
          [](const P& p) { return when(p.stiffening > 0, "stiffening"); },
          {"a stiffness per face, computed once", 0, 0}},
-    Card{
-        "sliding patches",
-        "a boundary of `type: slip`",
-        [](const P& p) { return when(slips(p), "a boundary of type slip"); },
-        {"a separate matrix for each direction that is held differently; on curved patches the nearest "
-         "point of the patch for each mesh point",
-         0, 0}},
+    Card{"sliding patches",
+         "a boundary of `type: slip`",
+         [](const P& p) { return when(slips(p), "a boundary of type slip"); },
+         {"a separate matrix for each direction that is held differently; on curved patches the nearest "
+          "point of the patch for each mesh point",
+          0, 0}},
     Card{"periodic patches",
          "a boundary of `type: periodic`",
          [](const P& p) { return when(joins(p), "a boundary of type periodic"); },

@@ -226,8 +226,8 @@ std::string Guard::refusal(const Geometry& moved, std::span<const Vec3> points) 
     const auto& [limit, key] = limits[m];
     const Worst& worst = state.worst[m];
     if (!limit || (least_is_worst(m) ? worst.value >= *limit : worst.value <= *limit)) continue;
-    return fmt::format("leaves cell {} at {} with a {} of {:.3g} ({} is {:.3g}).", worst.cell, at(worst.place),
-                       measure_names[m], worst.value, key, *limit);
+    return fmt::format("leaves cell {} at {} with a {} of {:.3g} ({} is {:.3g}).", worst.cell,
+                       at(worst.place), measure_names[m], worst.value, key, *limit);
   }
   return "";
 }

@@ -33,8 +33,9 @@ void declare_boundary(config::Section& s, Boundary& b) {
 void declare_guard(config::Section& s, GuardParameters& g) {
   s.value("smallest-scaled-jacobian", g.smallest_scaled_jacobian)
       .range(-1, 1)
-      .doc("minimum scaled Jacobian of the cell corners: 1 at right angles (equal angles in simplices), 0 "
-           "at a flat corner");
+      .doc(
+          "minimum scaled Jacobian of the cell corners: 1 at right angles (equal angles in simplices), 0 "
+          "at a flat corner");
   s.value("largest-edge-ratio", g.largest_edge_ratio)
       .range(1, 1e6)
       .doc("longest over shortest edge of a cell");

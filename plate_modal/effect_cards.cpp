@@ -30,13 +30,11 @@ V verdict(double number, double threshold, std::string sentence, std::string rec
 V judge_rotation(const S&, const E& e) {
   // A rigid body that turns by 0.25 rad is stretched by 1 / cos, 3 %.
   if (!std::isnan(e.rotation))
-    return verdict(e.rotation, 0.25,
-                   fmt::format("rigid rotation = {:.2g} rad", e.rotation),
+    return verdict(e.rotation, 0.25, fmt::format("rigid rotation = {:.2g} rad", e.rotation),
                    "linear modes move a body along its tangent: use a program for finite strain");
-  return verdict(
-      e.displacement_over_size, 0.25,
-      fmt::format("max displacement / structure size = {:.2g}", e.displacement_over_size),
-      "modes are linear and cannot describe large rotations: use a program for finite strain");
+  return verdict(e.displacement_over_size, 0.25,
+                 fmt::format("max displacement / structure size = {:.2g}", e.displacement_over_size),
+                 "modes are linear and cannot describe large rotations: use a program for finite strain");
 }
 
 V judge_in_plane(const S& s, const E& e) {
@@ -45,19 +43,17 @@ V judge_in_plane(const S& s, const E& e) {
       fmt::format(
           "in-plane share of {1} = {0:.2g}", e.in_plane_share,
           s.parameters.gravity.empty() ? "the initial velocity" : "the gravity or the initial velocity"),
-      "no mode moves in the plane, so that part is neglected: apply only its normal part, or use a volume "
+      "no mode moves along the plane, so that part is neglected: apply only its normal part, or use a volume "
       "model");
 }
 
 V judge_kept(const S& s, const E& e) {
   if (is_dynamic(s))
-    return verdict(
-        e.modes_apart, 0.05,
-        fmt::format("compliance of the loads in truncated modes = {:.2g}", e.modes_apart),
-        "the loads excite truncated modes: keep more modes ('modes.number')");
+    return verdict(e.modes_apart, 0.05,
+                   fmt::format("compliance of the loads in truncated modes = {:.2g}", e.modes_apart),
+                   "the loads excite truncated modes: keep more modes ('modes.number')");
   return verdict(
-      e.modes_apart, 0.05,
-      fmt::format("truncation error of the deflection = {:.2g}", e.modes_apart),
+      e.modes_apart, 0.05, fmt::format("truncation error of the deflection = {:.2g}", e.modes_apart),
       "fields and probes show the full deflection, but modal.csv and the interface only the modes: keep "
       "more modes ('modes.number')");
 }
@@ -65,25 +61,22 @@ V judge_kept(const S& s, const E& e) {
 // A mode answers a load of frequency f as 1 / (1 - (f / f_mode)^2): at two thirds of its own frequency with 1.8 times
 // what the static measure counts, and near it without limit.
 V judge_load_beyond(const S&, const E& e) {
-  return verdict(
-      e.step.load_over_last, 2. / 3,
-      fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
-                  e.step.load_omega / (2 * std::numbers::pi), e.step.load_over_last),
-      "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')");
+  return verdict(e.step.load_over_last, 2. / 3,
+                 fmt::format("load frequency {:.3g} Hz = {:.2g} of the highest retained mode's",
+                             e.step.load_omega / (2 * std::numbers::pi), e.step.load_over_last),
+                 "truncated modes may resonate: keep modes up to 1.5 times that frequency ('modes.number')");
 }
 
 V judge_velocity(const S&, const E& e) {
-  return verdict(
-      e.velocity_lost, 0.1,
-      fmt::format("initial kinetic energy outside the modes = {:.2g}", e.velocity_lost),
-      "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'");
+  return verdict(e.velocity_lost, 0.1,
+                 fmt::format("initial kinetic energy outside the modes = {:.2g}", e.velocity_lost),
+                 "a uniform velocity near supports needs many modes: keep more, or use 'initial-amplitudes'");
 }
 
 V judge_within(const S&, const E& e) {
   return verdict(
       e.within_faces, 0.05,
-      fmt::format("error of the load's effect on the modes with one force per face = {:.2g}",
-                  e.within_faces),
+      fmt::format("error of the load's effect on the modes with one force per face = {:.2g}", e.within_faces),
       "the pressure varies within a face: refine the mesh there");
 }
 
@@ -120,9 +113,8 @@ V judge_no_part(const S&, const E& e) {
   if (!(e.load_on_modes < 1e-9)) return {};
   return EffectVerdict{
       "", 1, 0.5,
-      fmt::format(
-          "modal load of the prescribed pressures = {:.1g} of what it would be along the motion",
-          e.load_on_modes),
+      fmt::format("modal load of the prescribed pressures = {:.1g} of what it would be along the motion",
+                  e.load_on_modes),
       "nothing moves by them: with 'modes.file' the upper side is where the surface faces +z, whatever the "
       "structure's own normal; equal pressures on both sides cancel; a mode of another symmetry needs "
       "'modes.number'"};
@@ -198,8 +190,7 @@ std::string contact_asked_by(const S& s) {
 V judge_energy(const S&, const E& e) {
   V v = verdict(
       e.energy_mismatch, 0.01,
-      fmt::format("max error of the energy balance (4.29-4.31) / largest energy = {:.2g}",
-                  e.energy_mismatch),
+      fmt::format("max error of the energy balance (4.29-4.31) / largest energy = {:.2g}", e.energy_mismatch),
       "use a smaller step, or 'trapezoidal' with 'contact.rule: conserving'");
   if (v) v->wrong_from = 0.5;
   return v;
@@ -251,8 +242,7 @@ const std::array cards{
               judge_contact,
               true},
     left_out("large rotation", "no key: not in the model",
-             "max displacement over the structure's size, or rigid rotation [rad], 0.25",
-             judge_rotation),
+             "max displacement over the structure's size, or rigid rotation [rad], 0.25", judge_rotation),
     left_out("motion in the plane", "no key: not in the model",
              "in-plane share of gravity on a plate that may fall, or of the initial velocity, 0.01",
              judge_in_plane),
@@ -260,32 +250,32 @@ const std::array cards{
              "truncated modes: static, of the deflection, dynamic, of the compliance of the loads, 0.05",
              judge_kept),
     left_out("load faster than the modes", "`modes.number`",
-             "frequency of an oscillating load over that of the highest retained mode, 2/3", judge_load_beyond),
+             "frequency of an oscillating load over that of the highest retained mode, 2/3",
+             judge_load_beyond),
     left_out("initial velocity beyond the modes", "`modes.number`",
              "share of its energy outside the modes, 0.1", judge_velocity),
     left_out("load between the faces or steps", "no key: finer mesh or step",
              "a prescribed pressure that is 0 wherever it is evaluated", judge_lost),
     left_out("load that moves no mode", "no key: `load`, `modes.number`",
-             "modal loads of the pressures over what they would be along the motion, 1e-9",
-             judge_no_part),
+             "modal loads of the pressures over what they would be along the motion, 1e-9", judge_no_part),
     left_out("load within a face", "no key: finer mesh",
-             "face centre against sixteen points, of the load's effect on the modes, 0.05",
-             judge_within),
+             "face centre against sixteen points, of the load's effect on the modes, 0.05", judge_within),
     left_out("mesh that resolves the modes", "no key: finer mesh",
              "mean of a cell's corners against its mean deflection, rms over the motion, 0.1", judge_mesh),
     left_out("stretch of the mid-surface", "no key: not in the model",
              "of a plate with two or more held edges: deflection over thickness, 0.5, or 0.2 with hinges",
              judge_stretch),
     left_out("shear and rotary inertia", "no key: not in the model",
-             "thickness over half the wavelength of the highest mode with 1 % of the motion, 0.1", judge_shear),
+             "thickness over half the wavelength of the highest mode with 1 % of the motion, 0.1",
+             judge_shear),
     PlateCard{"damping",
               "`damping`",
               [](const S& s) { return when(s.parameters.damping.has_value(), "damping"); },
-              {"a coefficient a mode", 0, 0}},
+              {"a coefficient per mode", 0, 0}},
     PlateCard{"gravity",
               "`gravity`",
               [](const S& s) { return when(!s.parameters.gravity.empty(), "gravity"); },
-              {"a load a mode", 0, 0}},
+              {"a load per mode", 0, 0}},
     PlateCard{
         "contact with a seat",
         "`contact`",

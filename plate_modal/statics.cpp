@@ -38,8 +38,8 @@ void Structure::solve_static(double t, std::span<const double> fluid) {
       d.by_modes = std::max(d.by_modes, std::abs(by_modes[i]));
       d.apart = std::max(d.apart, std::abs(direct_[i] - by_modes[i]));
     }
-    log::info("static deflection: max {:.6e} m; by {} modes {:.6e} m; max difference {:.2e} m",
-              d.direct, share_->n_modes(), d.by_modes, d.apart);
+    log::info("static deflection: max {:.6e} m; by {} modes {:.6e} m; max difference {:.2e} m", d.direct,
+              share_->n_modes(), d.by_modes, d.apart);
   });
 }
 

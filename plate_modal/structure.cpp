@@ -95,8 +95,7 @@ Structure::Structure(Parameters parameters, PlateContext context, const RawMesh*
       log::info(
           "modes from a file: the contribution of truncated modes cannot be estimated. A load on few faces, "
           "or along a stiff direction, needs many: export twice as many, and compare.");
-    if (built_.reused)
-      log::info("reusing the modes of {}", (context_.output_folder / "modes.h5").string());
+    if (built_.reused) log::info("reusing the modes of {}", (context_.output_folder / "modes.h5").string());
   }
   if (p.analysis == Parameters::Analysis::static_ && share_->omega().front() == 0)
     throw Error(
@@ -132,8 +131,7 @@ void Structure::make_contact() {
   if (comm_rank(context_.comm) != 0) return;
   const double steps = shortest / context_.time_step;
   const std::string text = fmt::format(
-      "contact: over all faces it lasts {:.3g} s (pi sqrt(m / kappa)), over part of them longer",
-      shortest);
+      "contact: over all faces it lasts {:.3g} s (pi sqrt(m / kappa)), over part of them longer", shortest);
   if (std::isnan(steps))
     log::info("{}.", text);
   else if (steps >= 10)

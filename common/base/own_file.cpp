@@ -12,10 +12,10 @@ const std::filesystem::path& own_file(const std::filesystem::path& file) {
   std::error_code ignored;
   const auto status = std::filesystem::symlink_status(file, ignored);
   if (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status)) return file;
-  throw Error("'{}' is {}; a run does not write there. Move it, or set another `simulation.output.folder`.",
-              file.string(),
-              std::filesystem::is_symlink(status) ? "a symbolic link, which would lead to another file"
-                                                  : "no file");
+  throw Error(
+      "'{}' is {}; a run does not write there. Move it, or set another `simulation.output.folder`.",
+      file.string(),
+      std::filesystem::is_symlink(status) ? "a symbolic link, which would lead to another file" : "no file");
 }
 
 void flush_to_disk(const std::filesystem::path& path) {

@@ -25,11 +25,11 @@ class Inspection {
     if (messages.size() >= most_messages) return;
     // Anchors of anchors double with every line.
     if (++nodes_ > most_nodes)
-      throw Error("{}: more than {} values up to here. Do anchors contain each other?",
-                  path.substr(0, 60), most_nodes);
+      throw Error("{}: more than {} values up to here. Do anchors contain each other?", path.substr(0, 60),
+                  most_nodes);
     if (depth > deepest)
-      throw Error("{}: nested deeper than {} levels. Does an anchor contain itself?",
-                  path.substr(0, 60), deepest);
+      throw Error("{}: nested deeper than {} levels. Does an anchor contain itself?", path.substr(0, 60),
+                  deepest);
     if (node.IsScalar()) check_text(node, path, "value");
     if (node.IsSequence()) {
       std::size_t i = 0;
@@ -87,13 +87,12 @@ std::string explain(const std::string& message, std::string_view line) {
   static const std::pair<const char*, const char*> known[] = {
       {"illegal map value",
        "a ':' is not allowed here; check the indentation above, and quote text that contains ': '"},
-      {"end of sequence flow not found",
-       "a list opened with '[' before this position is not closed by ']'"},
-      {"end of map flow not found",
-       "a mapping opened with '{' before this position is not closed by '}'"},
+      {"end of sequence flow not found", "a list opened with '[' before this position is not closed by ']'"},
+      {"end of map flow not found", "a mapping opened with '{' before this position is not closed by '}'"},
       {"illegal flow end", "this bracket closes nothing; check '[', ']', '{' and '}'"},
-      {"end of map not found", "this line does not match the mapping above; check its indentation and its "
-                               "':'"},
+      {"end of map not found",
+       "this line does not match the mapping above; check its indentation and its "
+       "':'"},
       {"end of sequence not found",
        "this line does not match the list above; check its indentation and its '- '"},
       {"the referenced anchor is not defined",
@@ -162,9 +161,10 @@ YAML::Node step_into(const YAML::Node& node, const std::string& path, const std:
   if (node.IsSequence()) {
     const bool is_number = !part.empty() && part.find_first_not_of("0123456789") == std::string::npos;
     if (!is_number || part.size() > 6 || std::stoul(part) >= node.size())
-      throw Error("{}: {} is a list of {} entries; expected an entry number, counted from 0, instead of "
-                  "'{}'.",
-                  option, describe(path), node.size(), part);
+      throw Error(
+          "{}: {} is a list of {} entries; expected an entry number, counted from 0, instead of "
+          "'{}'.",
+          option, describe(path), node.size(), part);
     return node[std::stoul(part)];
   }
   if (!node.IsMap())

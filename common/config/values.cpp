@@ -56,7 +56,8 @@ int read_integer(const YAML::Node& node, const Facts& facts) {
 bool read_bool(const YAML::Node& node) {
   const std::string& text = scalar(node, "true or false");
   bool value = false;
-  if (!YAML::convert<bool>::decode(node, value)) throw Error("'{}' is not valid; expected true or false.", text);
+  if (!YAML::convert<bool>::decode(node, value))
+    throw Error("'{}' is not valid; expected true or false.", text);
   return value;
 }
 

@@ -116,7 +116,8 @@ Reply MpiChannel::receive() {
 
 void MpiChannel::receive_places(Interface& interface) {
   for (const auto& [other, slice] : exchanged(mine_, comm_rank(comm_), theirs_))
-    put_back(receive_bytes(peers_, other, places_tag, "the interface geometry of '" + name_ + "'"), interface);
+    put_back(receive_bytes(peers_, other, places_tag, "the interface geometry of '" + name_ + "'"),
+             interface);
   check_places(interface, mine_, comm_rank(comm_), name_);
   if (interface.face_vertices.empty()) interface.face_offset.clear();  // not known
 }

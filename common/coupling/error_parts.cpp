@@ -109,9 +109,8 @@ std::optional<log::Finding> worthless(const std::vector<NamedErrors>& participan
       .severity = largest >= as_large_as_the_solution ? Severity::wrong : Severity::warning,
       .number = total,
       .limit = as_large_as_the_solution,
-      .sentence = fmt::format(
-          "estimated error: {:.2g} of the solution (limit {:g}): result not reliable",
-          total, as_large_as_the_solution),
+      .sentence = fmt::format("estimated error: {:.2g} of the solution (limit {:g}): result not reliable",
+                              total, as_large_as_the_solution),
       .advice = "refine the dominant part"};
 }
 
@@ -131,8 +130,9 @@ std::vector<std::string> error_sentences(const std::vector<NamedErrors>& partici
       std::ranges::any_of(parts, [](const Part& p) { return p.kind->value == &ErrorParts::mesh; });
   std::vector<std::string> sentences{
       fmt::format("estimated error {:.2g} of the solution: {}{}.", total_error(participants), list,
-                  knows_mesh ? "" : "; the error due to the mesh (or truncated modes) is unknown and not "
-                                    "included")};
+                  knows_mesh ? ""
+                             : "; the error due to the mesh (or truncated modes) is unknown and not "
+                               "included")};
   if (parts.size() < 2 || !(worst.value > 0)) return sentences;
   const std::string idle = idle_words(parts, worst.value);
   sentences.push_back(fmt::format("the {}{} dominates: {}{}.", worst.kind->words,

@@ -164,8 +164,10 @@ class Source final : public MeshMotionSource {
       for (int c = 0; c < dim_; ++c)
         other =
             other || std::abs(theirs[std::size_t(p) * dim_ + c] - mesh.reference_points[p][c]) > tolerance;
-    if (any_of_source(peers_, mesh.comm, true, other)) throw_other_points(": their points have different "
-                                                                          "coordinates");
+    if (any_of_source(peers_, mesh.comm, true, other))
+      throw_other_points(
+          ": their points have different "
+          "coordinates");
   }
 
   MPI_Comm peers_;
@@ -197,8 +199,10 @@ class Sink final : public MeshMotionSink {
     std::vector<double> points;
     for (const Vec3& x : mesh.reference_points) points.insert(points.end(), x.begin(), x.begin() + dim_);
     send(points);
-    if (any_of_source(peers, mesh.comm, false, false)) throw_other_points(": their points have different "
-                                                                          "coordinates");
+    if (any_of_source(peers, mesh.comm, false, false))
+      throw_other_points(
+          ": their points have different "
+          "coordinates");
   }
 
   ~Sink() override {

@@ -102,8 +102,9 @@ class Ranks {
     plan_ = exchanged(mine_, comm_rank(comm_),
                       {even_starts(mine_.vertices.back(), ranks), even_starts(mine_.faces.back(), ranks)});
     for (const auto& [other, slice] : plan_)
-      send_bytes(coupler_, other, places_tag, cut_out(interface, slice), "the coupler to receive the "
-                                                                         "interface geometry");
+      send_bytes(coupler_, other, places_tag, cut_out(interface, slice),
+                 "the coupler to receive the "
+                 "interface geometry");
   }
 
   /// Values for the names that the head has announced. A rank without places gets none.
@@ -189,8 +190,10 @@ void serve(MPI_Comm coupler, MPI_Comm comm, const std::string& name, Participant
     if (command.op == Op::accept_step) observer.accepted(command, reply.report);
     const bool described = reply.status == Reply::Status::ok && command.op == Op::initialise;
     Cut cut = described ? cut_of(comm, reply.interface) : Cut{};
-    if (root) head = pack(reply, cut), send_bytes(coupler, 0, reply_tag, head, "the coupler to receive a "
-                                                                               "reply");
+    if (root)
+      head = pack(reply, cut), send_bytes(coupler, 0, reply_tag, head,
+                                          "the coupler to receive a "
+                                          "reply");
     if (described) {
       // Participants that describe all on rank 0 leave the rest of the description to it, too.
       broadcast_bytes(comm, head, "");

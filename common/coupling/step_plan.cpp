@@ -21,9 +21,8 @@ constexpr double rest_taken_along = 1e-6;
 GlobalIndex count(double end_time, double nominal_dt) {
   const double steps = end_time / nominal_dt;
   if (!(steps <= StepPlan::most_steps))
-    throw Error(
-        "{:g} s take {:g} steps of {:g} s; at most {:g} are allowed. Is a unit missing?",
-        end_time, steps, nominal_dt, StepPlan::most_steps);
+    throw Error("{:g} s take {:g} steps of {:g} s; at most {:g} are allowed. Is a unit missing?", end_time,
+                steps, nominal_dt, StepPlan::most_steps);
   return static_cast<GlobalIndex>(std::ceil(steps * (1 - 1e-15) - rest_taken_along));
 }
 

@@ -30,15 +30,14 @@ class Unpacker {
     const std::int64_t version = integer();
     if (version != protocol_version)
       throw Error(
-          "A {} has protocol version {}, but this program uses version {}: use programs of one version.", what_,
-          version, protocol_version);
+          "A {} has protocol version {}, but this program uses version {}: use programs of one version.",
+          what_, version, protocol_version);
   }
   std::int64_t integer() { return plain<std::int64_t>(); }
   std::int64_t integer(std::int64_t least, std::int64_t most, const char* field) {
     const std::int64_t value = integer();
     if (value < least || value > most)
-      throw Error("A {} gives {} as {}; expected {} to {}.", what_, field, value, least,
-                  most);
+      throw Error("A {} gives {} as {}; expected {} to {}.", what_, field, value, least, most);
     return value;
   }
   double real() { return plain<double>(); }
@@ -62,8 +61,7 @@ class Unpacker {
   Vec3 point(const char* of) {
     Vec3 p;
     raw(p.data(), 3 * sizeof(double));
-    if (!p.allFinite())
-      throw Error("A {} gives {} as ({}, {}, {}).", what_, of, p[0], p[1], p[2]);
+    if (!p.allFinite()) throw Error("A {} gives {} as ({}, {}, {}).", what_, of, p[0], p[1], p[2]);
     return p;
   }
   /// Of a list whose entries take at least `words` times 8 bytes.
@@ -95,8 +93,8 @@ class Unpacker {
     for (std::size_t n = count(4); n > 0; --n) {
       Interface::Datum datum{name(), "", Interface::Place::vertices};
       datum.unit = name();
-      datum.place =
-          integer(0, 1, "the location of a datum") == 0 ? Interface::Place::vertices : Interface::Place::faces;
+      datum.place = integer(0, 1, "the location of a datum") == 0 ? Interface::Place::vertices
+                                                                  : Interface::Place::faces;
       datum.components = static_cast<int>(integer(0, 9, "the number of components of a datum"));
       list.push_back(datum);
     }

@@ -38,8 +38,7 @@ ByteSource::ByteSource(const std::filesystem::path& file, std::string kind, cons
                 kind_);
   // A pipe would wait for ever for somebody to write, a device would never end.
   if (!std::filesystem::is_regular_file(status))
-    throw Error("{}: this {} is not a regular file, but a folder, pipe or device.", name_,
-                kind_);
+    throw Error("{}: this {} is not a regular file, but a folder, pipe or device.", name_, kind_);
   const std::uintmax_t size = std::filesystem::file_size(file, code);
   if (!code && size > limits_.bytes)
     throw Error("{}: this {} has {} MB; at most {} MB are read. Reduce its rows or columns.", name_, kind_,
@@ -66,9 +65,8 @@ bool ByteSource::fill() {
 }
 
 void ByteSource::refuse_damage(const char* what) const {
-  throw Error(
-      "{}: this {} is damaged or truncated: decompression failed ({}). Copy or compress it again.",
-      name_, kind_, what);
+  throw Error("{}: this {} is damaged or truncated: decompression failed ({}). Copy or compress it again.",
+              name_, kind_, what);
 }
 
 void ByteSource::check_size() const {
@@ -89,7 +87,8 @@ void ByteSource::next_member() {
     if (!fill()) refuse_damage("its last bytes are not part of any member");
     c = input_[at_++];
   }
-  if (!begins_gzip(head.data(), head.size())) refuse_damage("the compressed data are followed by other bytes");
+  if (!begins_gzip(head.data(), head.size()))
+    refuse_damage("the compressed data are followed by other bytes");
   if (inflateReset(gzip_.get()) != Z_OK) refuse_damage("zlib's state");
   std::array<unsigned char, 2> copy{static_cast<unsigned char>(head[0]), static_cast<unsigned char>(head[1])};
   unsigned char nothing = 0;

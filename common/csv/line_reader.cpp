@@ -38,8 +38,8 @@ void LineReader::check(std::string_view line) const {
         "UTF-8.",
         place(), kind_);
   if (*bad == '\r')
-    throw Error("{}: carriage return within this line. Save the {} with line ends LF or CR LF.",
-                place(), kind_);
+    throw Error("{}: carriage return within this line. Save the {} with line ends LF or CR LF.", place(),
+                kind_);
   throw Error("{}: this {} is not plain text: it contains the control character 0x{:02x}. Save it as text.",
               place(), kind_, static_cast<unsigned char>(*bad));
 }

@@ -6,7 +6,8 @@
 namespace couplet {
 
 std::string text(const EffectChoice& c) {
-  if (c.given) return fmt::format("auto: {}: set by the case; auto would choose {} ({})", c.key, c.what, c.reason);
+  if (c.given)
+    return fmt::format("auto: {}: set by the case; auto would choose {} ({})", c.key, c.what, c.reason);
   return fmt::format("auto: {}{}{} ({})", c.key, c.key.empty() ? "" : ": ", c.what, c.reason);
 }
 

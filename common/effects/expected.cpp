@@ -7,10 +7,10 @@ namespace couplet {
 
 std::string text(const ExpectedCost& c) {
   const bool long_step = c.seconds_a_step >= 1;
-  return fmt::format("{} cells: about {:.0f} MB, {:.2g} {} per step on one rank (time within a factor of "
-                     "three)",
-                     c.cells, 1e-6 * c.bytes, long_step ? c.seconds_a_step : 1e3 * c.seconds_a_step,
-                     long_step ? "s" : "ms");
+  return fmt::format(
+      "{} cells: about {:.0f} MB, {:.2g} {} per step on one rank (time within a factor of "
+      "three)",
+      c.cells, 1e-6 * c.bytes, long_step ? c.seconds_a_step : 1e3 * c.seconds_a_step, long_step ? "s" : "ms");
 }
 
 }  // namespace couplet

@@ -13,10 +13,10 @@ namespace couplet {
 /// What a run found out about an effect that its scene left out, or about one that it has and that may not do
 /// what it should there (a turbulence model beside walls that are not resolved).
 struct EffectVerdict {
-  std::string effect;    ///< the name on its card
-  double number = 0;     ///< how large what was left out would have been, of the whole run so far
-  double threshold = 0;  ///< leaving it out was sound up to here
-  std::string sentence;  ///< what the number is, with its unit, without verdict: "max |grad u| = 0.29"
+  std::string effect;          ///< the name on its card
+  double number = 0;           ///< how large what was left out would have been, of the whole run so far
+  double threshold = 0;        ///< leaving it out was sound up to here
+  std::string sentence;        ///< what the number is, with its unit, without verdict: "max |grad u| = 0.29"
   std::string recommendation;  ///< what to switch on, or to do, where it was not sound
   bool left_out = true;        ///< false: a verdict on an effect that the scene has
   /// From here on (or NaN) the answer is useless, not only questionable; infinite: never.

@@ -32,8 +32,7 @@ Columns columns_of(const csv::CsvReader& reader, const std::vector<std::string>&
     const auto [name, unit] = csv::heading_of(head[i]);
     const auto found = std::ranges::find(known, name);
     if (found == known.end())
-      throw Error("{}: unknown column '{}'. {}", place, name,
-                  did_you_mean(name, known, "columns"));
+      throw Error("{}: unknown column '{}'. {}", place, name, did_you_mean(name, known, "columns"));
     const auto at = static_cast<std::size_t>(found - known.begin());
     // A header in other units would be taken for what it is not.
     const std::string wanted = at < axis_names.size() ? axis_units[at] : "m/s";
@@ -83,7 +82,8 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
                           Outside outside) {
   csv::CsvReader reader(file, "table");
   if (reader.names().empty())
-    throw Error("{}: the first line must name the columns, such as 'y,t,{}'.", file.string(), join(values, ","));
+    throw Error("{}: the first line must name the columns, such as 'y,t,{}'.", file.string(),
+                join(values, ","));
   const Columns columns = columns_of(reader, values);
   const Rows rows = rows_of(reader);
   if (rows.size() == 0) throw Error("{}: the table has no values.", file.string());
@@ -101,9 +101,10 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
     places *= double(axis.size());
   }
   if (places > most_places)
-    throw Error("{}: its axes span {:.3g} points; does every line have its own coordinates? A table must be "
-                "a full grid.",
-                file.string(), places);
+    throw Error(
+        "{}: its axes span {:.3g} points; does every line have its own coordinates? A table must be "
+        "a full grid.",
+        file.string(), places);
   table.data_.assign(static_cast<std::size_t>(places) * values.size(), 0.0);
   std::vector<char> there(static_cast<std::size_t>(places), 0);
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -112,7 +113,8 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
       if (columns.axis[a] >= 0)
         at = at * table.axes_[a].size() + place_on(table.axes_[a], rows(r, columns.axis[a]));
     if (there[at])
-      throw Error("{}:{}: duplicate grid point; an earlier line has the same coordinates.", file.string(), rows.line[r]);
+      throw Error("{}:{}: duplicate grid point; an earlier line has the same coordinates.", file.string(),
+                  rows.line[r]);
     there[at] = 1;
     for (std::size_t v = 0; v < values.size(); ++v)
       table.data_[at * values.size() + v] = rows(r, columns.value[v]);
@@ -128,8 +130,7 @@ GridTable GridTable::read(const std::filesystem::path& file, const std::vector<s
         fmt::format("{} = {:g}{}{}", axis_names[a], axis[at % axis.size()], where.empty() ? "" : ", ", where);
     at /= axis.size();
   }
-  throw Error("{}: the grid has no value at {}; a table must be a full grid.",
-              file.string(), where);
+  throw Error("{}: the grid has no value at {}; a table must be a full grid.", file.string(), where);
 }
 
 void GridTable::evaluate(const Vec3& x, double t, std::span<double> values) const {
@@ -140,8 +141,8 @@ void GridTable::evaluate(const Vec3& x, double t, std::span<double> values) cons
     const std::vector<double>& axis = axes_[a];
     if (axis.empty()) continue;
     if (outside_ == Outside::error && (at[a] < axis.front() || at[a] > axis.back()))
-      throw Error("{}: the table covers {} = {:g} {} to {:g} {}, but its value at {:g} {} is needed.",
-                  file_, axis_names[a], axis.front(), axis_units[a], axis.back(), axis_units[a], at[a],
+      throw Error("{}: the table covers {} = {:g} {} to {:g} {}, but its value at {:g} {} is needed.", file_,
+                  axis_names[a], axis.front(), axis_units[a], axis.back(), axis_units[a], at[a],
                   axis_units[a]);
     if (axis.size() == 1) continue;
     const auto above = std::upper_bound(axis.begin(), axis.end() - 1, at[a]);

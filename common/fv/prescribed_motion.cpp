@@ -51,8 +51,9 @@ void declare(config::Section& s, MotionParameters& m, bool with_radii) {
         .unit("m")
         .plausible(1e-9, 1e4)
         .positive()
-        .doc("beyond it the mesh is at rest; between the radii the motion decays smoothly; absent: the "
-             "whole mesh moves");
+        .doc(
+            "beyond it the mesh is at rest; between the radii the motion decays smoothly; absent: the "
+            "whole mesh moves");
   }
   s.check(
       [&m] {

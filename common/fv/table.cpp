@@ -101,8 +101,8 @@ Table read_table(const std::filesystem::path& file, const std::string& column, T
     values.push_back(rows.number(
         *wanted, names.empty() ? fmt::format("the value in column {}", *wanted + 1) : names[*wanted]));
     if (at.size() > 1 && !(at.back() > at[at.size() - 2]))
-      throw Error("{}: the first column of a table must increase, but {:g} is followed by {:g}.", rows.place(),
-                  at[at.size() - 2], at.back());
+      throw Error("{}: the first column of a table must increase, but {:g} is followed by {:g}.",
+                  rows.place(), at[at.size() - 2], at.back());
     if (at.size() > most_rows)
       throw Error("{}: a table has at most {} rows. Reduce them.", rows.place(), most_rows);
   }

@@ -77,11 +77,13 @@ Table table_from(const std::vector<Argument>& arguments, std::size_t begin) {
   if (i < arguments.size() && (arguments[i].text == "clamp" || arguments[i].text == "error"))
     outside = arguments[i++].text == "error" ? Table::Outside::error : Table::Outside::clamp;
   if (i >= arguments.size() || arguments[0].text.empty())
-    throw TextProblem{begin, "a table has the form table(t, 0, 10, 5, 20): the variable first, then pairs", false};
+    throw TextProblem{begin, "a table has the form table(t, 0, 10, 5, 20): the variable first, then pairs",
+                      false};
   try {
     if (arguments[i].text.starts_with('"')) {
       if (arguments.size() > i + 2)
-        throw TextProblem{arguments[i + 2].at, "the file of a table is followed by at most one column", false};
+        throw TextProblem{arguments[i + 2].at, "the file of a table is followed by at most one column",
+                          false};
       return read_table(unquoted(arguments[i].text),
                         i + 1 < arguments.size() ? unquoted(arguments[i + 1].text) : "2", outside);
     }

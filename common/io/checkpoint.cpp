@@ -62,8 +62,8 @@ CheckpointWriter::CheckpointWriter(MPI_Comm comm, const std::filesystem::path& f
     const std::filesystem::path folder = folder_of(file);
     std::filesystem::create_directories(folder, code);
     if (!std::filesystem::is_directory(folder))
-      trouble = fmt::format("Cannot create the folder '{}' for the checkpoint '{}' ({}).",
-                            folder.string(), file.string(), code.message());
+      trouble = fmt::format("Cannot create the folder '{}' for the checkpoint '{}' ({}).", folder.string(),
+                            file.string(), code.message());
     else if (::access(folder.c_str(), W_OK) != 0)
       trouble = fmt::format("Cannot write to the folder '{}' of the checkpoint '{}'.", folder.string(),
                             file.string());
@@ -123,9 +123,9 @@ void CheckpointWriter::close() {
   try {
     hdf5::close_file(state_->id);
   } catch (const Error& error) {
-    trouble = fmt::format(
-        "Cannot write the checkpoint '{}' ({}). The last good one is kept; is the disk full?",
-        state_->file.string(), error.what());
+    trouble =
+        fmt::format("Cannot write the checkpoint '{}' ({}). The last good one is kept; is the disk full?",
+                    state_->file.string(), error.what());
   }
   hdf5::throw_together(state_->comm, trouble);
   if (comm_rank(state_->comm) == 0) {
@@ -159,9 +159,10 @@ std::vector<std::int64_t> layout_of(const hdf5::Reader& in, const std::string& n
   std::uint64_t left = total;
   for (std::size_t r = 0; r < n; ++r) {
     if (layout[2 * r] < 0 || std::uint64_t(layout[2 * r]) > left)
-      in.refuse(fmt::format("the array '{}' has {} values; its layout assigns to rank {} {} of the {} "
-                            "remaining",
-                            name, total, r, layout[2 * r], left));
+      in.refuse(
+          fmt::format("the array '{}' has {} values; its layout assigns to rank {} {} of the {} "
+                      "remaining",
+                      name, total, r, layout[2 * r], left));
     left -= std::uint64_t(layout[2 * r]);
   }
   if (left != 0)

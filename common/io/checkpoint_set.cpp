@@ -191,14 +191,12 @@ fs::path begin_checkpoint_set(const fs::path& parent, const CheckpointStamp& sta
   if (fs::exists(fs::symlink_status(folder)) && !holds_a_set(folder)) folder += "-" + stamp.run;
   std::error_code failed;
   fs::create_directories(folder, failed);
-  if (failed)
-    throw Error("Cannot create the checkpoint folder {}: {}.", folder.string(), failed.message());
+  if (failed) throw Error("Cannot create the checkpoint folder {}: {}.", folder.string(), failed.message());
   try {
     clear(folder);
     write_in_place(folder / pending_name, fmt::format("{}\n{}", first_line, stamp.text()));
   } catch (const fs::filesystem_error& error) {
-    throw Error("Cannot remove the earlier checkpoint in {}: {}.", folder.string(),
-                error.code().message());
+    throw Error("Cannot remove the earlier checkpoint in {}: {}.", folder.string(), error.code().message());
   }
   return folder;
 }

@@ -194,8 +194,7 @@ FieldWriter::FieldWriter(const Mesh& mesh, std::filesystem::path folder, std::st
     std::error_code code;
     std::filesystem::create_directories(s.folder, code);
     if (!std::filesystem::is_directory(s.folder))
-      trouble =
-          fmt::format("Cannot create the output folder '{}' ({}).", s.folder.string(), code.message());
+      trouble = fmt::format("Cannot create the output folder '{}' ({}).", s.folder.string(), code.message());
   }
   hdf5::throw_together(mesh.comm, trouble);
   if (std::isnan(restart_time) || !s.continue_from(restart_time)) s.start();

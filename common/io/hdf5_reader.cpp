@@ -89,8 +89,7 @@ Handle Reader::attribute(const std::string& path, const std::string& name) const
   const Quiet quiet;
   if (H5Aexists(owner, name.c_str()) <= 0) refuse(fmt::format("'{}' has no attribute '{}'", path, name));
   Handle found(H5Aopen(owner, name.c_str(), H5P_DEFAULT), H5Aclose);
-  if (found < 0)
-    refuse(fmt::format("cannot open the attribute '{}' of '{}' ({})", name, path, reason()));
+  if (found < 0) refuse(fmt::format("cannot open the attribute '{}' of '{}' ({})", name, path, reason()));
   return found;
 }
 
@@ -137,8 +136,8 @@ void Reader::check_filters(const std::string& path, const Handle& storage) const
         H5Pget_filter2(storage, unsigned(i), &flags, &n_values, values, sizeof name, name, nullptr);
     if (filter != H5Z_FILTER_DEFLATE && filter != H5Z_FILTER_SHUFFLE && filter != H5Z_FILTER_FLETCHER32)
       refuse(fmt::format(
-          "the table '{}' uses filter {}; only deflate (1), shuffle (2) and fletcher32 (3) are supported", path,
-          filter));
+          "the table '{}' uses filter {}; only deflate (1), shuffle (2) and fletcher32 (3) are supported",
+          path, filter));
   }
 }
 
@@ -171,9 +170,9 @@ void Reader::check_storage(const std::string& path, const Table& table) const {
                        H5Dget_storage_size(table.id)));
   }
   if (table.bytes > most)
-    refuse(fmt::format(
-        "the table '{}' declares {} bytes of values; a file of {} bytes can contain at most {}", path,
-        table.bytes, bytes_, most));
+    refuse(
+        fmt::format("the table '{}' declares {} bytes of values; a file of {} bytes can contain at most {}",
+                    path, table.bytes, bytes_, most));
 }
 
 Reader::Table Reader::open(const std::string& path, Kind kind) const {

@@ -103,9 +103,8 @@ void rehearse(const std::filesystem::path& file, const std::string& what, const 
   const std::string outcome = child < 0 ? "" : all_of(ends[0]);
   if (has_pipe) ::close(ends[0]);
   if (child < 0) {
-    log::warn(
-        "'{}' is read without a prior trial in a separate process, because none could be started ({}).",
-        file.string(), why);
+    log::warn("'{}' is read without a prior trial in a separate process, because none could be started ({}).",
+              file.string(), why);
     return;
   }
   int status = 0;
@@ -116,10 +115,9 @@ void rehearse(const std::filesystem::path& file, const std::string& what, const 
                                             WTERMSIG(status) == SIGALRM);
   throw Error("The {} '{}' cannot be used: it is damaged or malicious ({}). Create it again.", what,
               file.string(),
-              outcome.starts_with(out_of_memory)
-                  ? "reading it takes more memory than its size justifies"
-              : time ? "reading it takes longer than its size justifies"
-                     : "a trial read crashed");
+              outcome.starts_with(out_of_memory) ? "reading it takes more memory than its size justifies"
+              : time                             ? "reading it takes longer than its size justifies"
+                                                 : "a trial read crashed");
 }
 
 }  // namespace couplet

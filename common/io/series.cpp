@@ -72,8 +72,7 @@ Series::Series(const std::filesystem::path& file, const std::vector<std::string>
   std::filesystem::rename(part, file, code);
   if (!code) file_.open(file, std::ios::app);
   if (code || !file_)
-    throw Error("Cannot write the series '{}'. Does the folder exist, with write permission?",
-                file.string());
+    throw Error("Cannot write the series '{}'. Does the folder exist, with write permission?", file.string());
 }
 
 void Series::row(std::span<const double> values) {

@@ -151,7 +151,8 @@ void KrylovSolver::run_cg(std::span<double> x, double wanted, int max_iterations
 void KrylovSolver::run_idr(std::span<double> x, double wanted, int max_iterations,
                            SolveStatistics& statistics) {
   if (!is_announced_ && statistics.iterations > 0)
-    log::info("{}: {} iterations of BiCGStab were not enough; IDR(4) continues", what_, statistics.iterations);
+    log::info("{}: {} iterations of BiCGStab were not enough; IDR(4) continues", what_,
+              statistics.iterations);
   is_announced_ = true;
   for (auto* v : {&shadow_, &p_, &v_, &t_, &z_}) *v = std::vector<double>();
   if (!idr_) idr_ = std::make_unique<Idr>(comm_, n_);

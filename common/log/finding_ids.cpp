@@ -30,11 +30,11 @@ constexpr std::array ids{
     // fluid_solver
     FindingId{answer, "flow-through-openings", "fluid leaves through an inlet or enters through an outlet"},
     FindingId{answer, "given-step", "a prescribed time step far too long for the viscous term on this mesh"},
-    FindingId{answer, "balance-of-the-kinetic-energy", "the flow has kinetic energy not explained by any "
-                                                       "work"},
+    FindingId{answer, "balance-of-the-kinetic-energy",
+              "the flow has kinetic energy not explained by any "
+              "work"},
     FindingId{answer, "resolved-walls", "a turbulence model on walls that the mesh does not resolve"},
-    FindingId{answer, "walls-that-move-along-themselves",
-              "fluid crosses a moving wall on a mesh at rest"},
+    FindingId{answer, "walls-that-move-along-themselves", "fluid crosses a moving wall on a mesh at rest"},
     FindingId{answer, "gaps-that-close", "gaps block most of the cells"},
     FindingId{neglected, "turbulence-model", "the mesh does not resolve layers of this Reynolds number"},
     FindingId{neglected, "compressibility", "the Mach number is high"},
@@ -44,10 +44,8 @@ constexpr std::array ids{
     FindingId{answer, "strain-energy", "work and strain energy, or two face gradients, disagree"},
     FindingId{answer, "energy-growth", "the motion has more energy than was supplied"},
     FindingId{answer, "heat-swing", "the temperature oscillates from step to step"},
-    FindingId{answer, "buckling",
-              "the loads of a linear static run are near or above the buckling loads"},
-    FindingId{answer, "unstable-equilibrium",
-              "the computed equilibrium is unstable"},
+    FindingId{answer, "buckling", "the loads of a linear static run are near or above the buckling loads"},
+    FindingId{answer, "unstable-equilibrium", "the computed equilibrium is unstable"},
     FindingId{neglected, "inertia", "a static run under a load that inertia would resist"},
     FindingId{neglected, "geometric-non-linearity", "large displacement gradients in a linear run"},
     FindingId{neglected, "yielding", "the stress exceeds the yield strength"},
@@ -62,8 +60,9 @@ constexpr std::array ids{
     FindingId{answer, "step-that-resolves-the-load", "the load changes within a step"},
     FindingId{answer, "step-that-resolves-the-contact", "an impact is shorter than ten steps"},
     FindingId{answer, "deflection-beyond-the-modes", "the loads excite truncated modes"},
-    FindingId{answer, "load-faster-than-the-modes", "the load oscillates faster than the highest retained "
-                                                    "mode"},
+    FindingId{answer, "load-faster-than-the-modes",
+              "the load oscillates faster than the highest retained "
+              "mode"},
     FindingId{answer, "initial-velocity-beyond-the-modes", "the modes cannot represent the initial velocity"},
     FindingId{answer, "load-between-the-faces-or-steps", "the load falls between faces or steps"},
     FindingId{answer, "load-that-moves-no-mode", "the load excites no mode"},

@@ -31,9 +31,8 @@ WholeMesh prepare(MPI_Comm comm, const RawMesh& raw) {
     join_periodic(whole.raw, whole.faces);
     const Index n = whole.raw.cell_points.size();
     if (n < comm_size(comm))
-      throw Error(
-          "The mesh has {} cells, fewer than the {} ranks that share it. Start fewer processes.", n,
-          comm_size(comm));
+      throw Error("The mesh has {} cells, fewer than the {} ranks that share it. Start fewer processes.", n,
+                  comm_size(comm));
     const CellPairs pairs = connected_cells(whole.faces);
     whole.part = partition(make_graph(n, pairs.first, pairs.second), comm_size(comm));
     whole.raw.boundary_points = {};  // now in `faces`

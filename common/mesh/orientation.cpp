@@ -43,9 +43,10 @@ double extent(const RawMesh& raw, Index cell) {
 
 void orient_cells(RawMesh& raw) {
   if (raw.cell_points.size() == 0)
-    throw Error("The mesh has no {} cells. Put the {} into a physical group; otherwise gmsh does not save "
-                "them.",
-                raw.dim == 2 ? "triangle or quadrilateral" : "3-D", raw.dim == 2 ? "surface" : "volume");
+    throw Error(
+        "The mesh has no {} cells. Put the {} into a physical group; otherwise gmsh does not save "
+        "them.",
+        raw.dim == 2 ? "triangle or quadrilateral" : "3-D", raw.dim == 2 ? "surface" : "volume");
   for (Index c = 0; c < raw.cell_points.size(); ++c) {
     const CellShape& shape = shape_of(raw.cell_type[c]);
     Index* points = raw.cell_points.index.data() + raw.cell_points.offset[c];
@@ -55,8 +56,8 @@ void orient_cells(RawMesh& raw) {
     const double volume = signed_volume(raw, c);
     if (!(std::abs(volume) > 1e-13 * std::pow(extent(raw, c), raw.dim)))
       throw Error(
-          "Cell {} at {} has zero volume: its points lie in one {}, or some coincide. Repair the mesh there.", c,
-          place(raw.points[points[0]], raw.dim), raw.dim == 2 ? "line" : "plane");
+          "Cell {} at {} has zero volume: its points lie in one {}, or some coincide. Repair the mesh there.",
+          c, place(raw.points[points[0]], raw.dim), raw.dim == 2 ? "line" : "plane");
     if (volume > 0) continue;
     std::array<Index, 8> as_read{};
     std::copy_n(points, shape.n_points, as_read.begin());

@@ -127,8 +127,10 @@ EigenModes lowest_modes(const SparseMatrix& stiffness, const SparseMatrix& mass,
   PetscInt rows = 0;
   petsc_check(MatGetSize(stiffness.petsc(), &rows, nullptr));
   if (n > rows)
-    throw Error("{} modes are requested, but the model has only {} unknowns. Request fewer modes or refine "
-                "the model.", n, rows);
+    throw Error(
+        "{} modes are requested, but the model has only {} unknowns. Request fewer modes or refine "
+        "the model.",
+        n, rows);
   Mat k = stiffness.petsc(), m = mass.petsc();
   petsc_check(MatSetOption(k, MAT_SYMMETRIC, PETSC_TRUE));
   petsc_check(MatSetOption(m, MAT_SYMMETRIC, PETSC_TRUE));

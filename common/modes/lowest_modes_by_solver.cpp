@@ -151,7 +151,8 @@ EigenModes lowest_modes(MPI_Comm comm, std::size_t n_owned, const ModalOperators
   }
   throw SolveFailure(
       "Cannot verify the {} lowest modes: further ones keep appearing below them. Request fewer modes or "
-      "refine the mesh.", n);
+      "refine the mesh.",
+      n);
 }
 
 }  // namespace couplet

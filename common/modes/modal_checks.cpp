@@ -101,7 +101,8 @@ std::string impossible_in(const ModalModel& model) {
           m + 1, misfit);
   if (const int m = mode_of_two_shapes(model); m >= 0)
     return fmt::format(
-        "the shape of mode {} at the faces ('shape/faces') is not the mean of the shape at their vertices", m + 1);
+        "the shape of mode {} at the faces ('shape/faces') is not the mean of the shape at their vertices",
+        m + 1);
   // Bessel: a uniform motion of the whole mass has at most its own length in the modes.
   for (int c = 0; c < 3; ++c) {
     double effective = 0;

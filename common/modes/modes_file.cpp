@@ -38,7 +38,8 @@ void read_faces(const hdf5::Reader& file, Csr& faces) {
   constexpr std::int64_t most = std::numeric_limits<Index>::max();
   bool sound = !offset.empty() && offset.front() == 0 && offset.back() == std::int64_t(vertex.size());
   for (std::size_t f = 1; f < offset.size(); ++f) sound = sound && offset[f] >= offset[f - 1];
-  if (!sound) file.refuse("'surface/face-offset' must increase from 0 to the length of 'surface/face-vertex'");
+  if (!sound)
+    file.refuse("'surface/face-offset' must increase from 0 to the length of 'surface/face-vertex'");
   for (const std::int64_t v : vertex)
     if (v < 0 || v > most) file.refuse(fmt::format("'surface/face-vertex' contains vertex {}", v));
   faces.offset.assign(offset.begin(), offset.end());
@@ -110,8 +111,7 @@ void write_modes(const std::filesystem::path& file, const ModalModel& model, con
   }
   std::error_code failed;
   std::filesystem::rename(part, file, failed);
-  if (failed)
-    throw Error("Cannot write the modes file '{}': {}.", file.string(), failed.message());
+  if (failed) throw Error("Cannot write the modes file '{}': {}.", file.string(), failed.message());
 }
 
 ModalModel read_modes(const std::filesystem::path& file) {

@@ -87,13 +87,13 @@ void declare(config::Section& s, TimeSchemeParameters& p) {
           "modes");
   s.value("spectral-radius", p.spectral_radius)
       .range(0, 1)
-      .doc("for generalised-alpha: spectral radius at high frequencies, the share of the highest modes that "
-           "remains after a step; 1 damps nothing");
+      .doc(
+          "for generalised-alpha: spectral radius at high frequencies, the share of the highest modes that "
+          "remains after a step; 1 damps nothing");
 }
 
 void declare_first_order(config::Section& s, TimeSchemeParameters& p) {
-  s.choice("type", p.type, first_order_words)
-      .doc("time integration scheme; all but euler are second order");
+  s.choice("type", p.type, first_order_words).doc("time integration scheme; all but euler are second order");
 }
 
 std::vector<Stage> second_order_stages(const TimeSchemeParameters& scheme, double dt,

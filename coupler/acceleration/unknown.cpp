@@ -64,8 +64,8 @@ Iterate Unknown::gather(const std::vector<Exchange>& given) const {
   for (const Part& p : parts_) {
     const std::vector<double>& values = given[p.giver].at(p.datum.name);
     if (values.size() != p.count)
-      throw Error("A participant gave {} values of '{}', but {} were announced.", values.size(),
-                  p.datum.name, p.count);
+      throw Error("A participant gave {} values of '{}', but {} were announced.", values.size(), p.datum.name,
+                  p.count);
     std::vector<double>& to = p.rides ? x.rider : x.unknown;  // parts lie in it one after the other
     to.insert(to.end(), values.begin(), values.end());
     if (p.weight != 1)

@@ -70,9 +70,10 @@ VolumeLevel::VolumeLevel(MPI_Comm comm, const std::vector<Side>& sides, const Li
     cavities_.push_back({i, sides[i].name, CavityWall(comm, sides[i], schedule.moved == sides[i].name)});
   }
   if (!cavities_.empty() && structures_.empty())
-    throw Error("No participant takes the '{}' of '{}', a closed fluid whose pressure level a structure "
-                "must determine.",
-                load_name, cavities_.front().name);
+    throw Error(
+        "No participant takes the '{}' of '{}', a closed fluid whose pressure level a structure "
+        "must determine.",
+        load_name, cavities_.front().name);
 }
 
 void VolumeLevel::start_step(double dt) {

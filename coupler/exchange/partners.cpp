@@ -14,8 +14,8 @@ Reply Partner::receive() {
   Reply reply = channel->receive();
   seconds += reply.seconds;
   seconds_since_accepted += reply.seconds;
-  if (reply.status == Reply::Status::hopeless) throw SchemeFailure("'{}' says: {}", name(), reply.text);
-  if (reply.status == Reply::Status::failure) throw SolveFailure("'{}' says: {}", name(), reply.text);
+  if (reply.status == Reply::Status::hopeless) throw SchemeFailure("'{}' reports: {}", name(), reply.text);
+  if (reply.status == Reply::Status::failure) throw SolveFailure("'{}' reports: {}", name(), reply.text);
   return reply;
 }
 

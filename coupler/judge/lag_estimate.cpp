@@ -106,10 +106,10 @@ std::string LagEstimate::sentence(const std::vector<NamedErrors>& participants) 
   for (const NamedErrors& of : participants)
     for (const double part : {of.parts.mesh, of.parts.step})
       if (part > others) others = part;  // not where it is NaN
-  std::string text =
-      fmt::format("the error of explicit coupling is between {:.2g} and {:.2g} of the motion, not included "
-                  "in other estimates",
-                  range.least, range.most);
+  std::string text = fmt::format(
+      "the error of explicit coupling is between {:.2g} and {:.2g} of the motion, not included "
+      "in other estimates",
+      range.least, range.most);
   if (range.most < nothing * others) return text + ": iterating would not help.";
   if (range.least > others)
     return text + ": an iterating 'scheme' or a shorter time step would reduce the error.";

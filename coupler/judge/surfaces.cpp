@@ -164,10 +164,9 @@ void compare_surfaces(MPI_Comm comm, const std::vector<Side>& sides, const Links
       log::finding(
           comm_rank(comm),
           {.id = "surfaces-apart",
-           .sentence =
-               fmt::format("surfaces that move together differ: {}: loads and motion are transferred "
-                           "between different sizes",
-                           difference),
+           .sentence = fmt::format("surfaces that move together differ: {}: loads and motion are transferred "
+                                   "between different sizes",
+                                   difference),
            .advice = "check the meshes' units and dimensions, and which patches have `type: interface`"});
   }
 }

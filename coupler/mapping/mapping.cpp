@@ -211,8 +211,8 @@ void Mapping::set(MPI_Comm comm, const PointSet& from, const PointSet& to,
   max_distance_ = max(comm, max_distance_);
   mean_distance_ = sum(comm, total) / double(n_to_);
   transfer_ = Transfer(comm, to.starts, from.starts, std::move(entries));
-  summary_ = fmt::format("{} {} to {} {}: max distance {:.3g} m, mean {:.3g} m", n_from_, from.what,
-                         n_to_, to.what, max_distance_, mean_distance_);
+  summary_ = fmt::format("{} {} to {} {}: max distance {:.3g} m, mean {:.3g} m", n_from_, from.what, n_to_,
+                         to.what, max_distance_, mean_distance_);
 }
 
 }  // namespace couplet

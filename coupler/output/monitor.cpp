@@ -172,7 +172,7 @@ std::string Monitor::summary(int halvings) const {
       steps_, halvings, wall_, double(iterations_) / steps, most_iterations_, "", "working", "waiting",
       "working");
   for (std::size_t i = 0; i < names_.size(); ++i)
-    text += fmt::format("\n  {:<20} {:>9.2f} s {:>9.2f} s {:>9.3f} ms a step", names_[i], worked_[i],
+    text += fmt::format("\n  {:<20} {:>9.2f} s {:>9.2f} s {:>9.3f} ms per step", names_[i], worked_[i],
                         std::max(0., wall_ - worked_[i]), 1e3 * worked_[i] / steps);
   text += fmt::format("\n  {:<20} {:>9.2f} s {:>11} {:>9.3f} ms per step (processor time)", "coupler", own_,
                       "", 1e3 * own_ / steps);

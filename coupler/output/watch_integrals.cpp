@@ -101,8 +101,8 @@ WatchIntegrals::Integral WatchIntegrals::integral_of(const std::string& name, co
                                                      const Side& side, const Surface& surface) const {
   const Datum* datum = find(side.interface, p.data);
   if (!datum)
-    throw Error("coupling.watch.{}.data: '{}' neither gives nor takes '{}'. Its data are: {}.", name, p.participant,
-                p.data, names_of(side.interface));
+    throw Error("coupling.watch.{}.data: '{}' neither gives nor takes '{}'. Its data are: {}.", name,
+                p.participant, p.data, names_of(side.interface));
   const int n = datum->size(side.interface.dim);
   Integral i{0, Kind::amount, *datum, faces_of_part(comm_, name, p, side.interface), std::size_t(n)};
   if (is_amount(*datum)) {

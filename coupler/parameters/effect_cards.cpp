@@ -117,19 +117,19 @@ const std::array cards{
                    return when(p.order == P::Exchange::Order::structure_first, "order: structure-first");
                  },
                  {"face forces in addition to the vertex motion in the unknown", 0, 0}},
-    CouplingCard{"sub-steps",
-                 "`sub-steps`",
-                 [](const P& p) { return when(!p.sub_steps.empty(), "sub-steps"); },
-                 {"state n of the sub-stepping participant, in memory; that many of its steps per pass", 0, 0}},
+    CouplingCard{
+        "sub-steps",
+        "`sub-steps`",
+        [](const P& p) { return when(!p.sub_steps.empty(), "sub-steps"); },
+        {"state n of the sub-stepping participant, in memory; that many of its steps per pass", 0, 0}},
     CouplingCard{"interface data for ParaView",
                  "`interface-output: true`",
                  [](const P& p) { return when(p.interface_output, "interface-output"); },
                  {"a file for each interface and output", 0, 0}},
-    CouplingCard{
-        "integrals over interfaces",
-        "`watch`",
-        [](const P& p) { return when(!p.watch.empty(), "watch"); },
-        {"corner coordinates of each watched interface, a loop over its faces per step", 0, 0}},
+    CouplingCard{"integrals over interfaces",
+                 "`watch`",
+                 [](const P& p) { return when(!p.watch.empty(), "watch"); },
+                 {"corner coordinates of each watched interface, a loop over its faces per step", 0, 0}},
     CouplingCard{
         "guards that stop",
         "`on-divergence: stop`",

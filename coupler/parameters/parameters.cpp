@@ -78,8 +78,8 @@ void declare(config::Section& section, WatchParameters& p, const std::vector<std
       [partners, &p] {
         return std::ranges::find(partners, p.participant) != partners.end()
                    ? ""
-                   : fmt::format("'{}' takes no part in the coupling; the participants are: {}", p.participant,
-                                 join(partners));
+                   : fmt::format("'{}' takes no part in the coupling; the participants are: {}",
+                                 p.participant, join(partners));
       },
       "participant");
 }
@@ -170,8 +170,7 @@ void declare(config::Section& section, MappingParameters& p) {
       .unit("m")
       .plausible(1e-15, 1)
       .positive()
-      .doc(
-          "maximum distance of matching vertices; default: a millionth of the interface's extent");
+      .doc("maximum distance of matching vertices; default: a millionth of the interface's extent");
 }
 
 }  // namespace
@@ -185,11 +184,14 @@ void declare(config::Section& section, CouplingParameters& p) {
       .doc(
           "explicit: one pass per step; semi-implicit: mesh motion and momentum predictor once per step, "
           "pressure and structure iterated; implicit: everything iterated");
-  declare_role(section, "fluid", p.fluid, "participant that receives the interface motion and gives the load");
-  declare_role(section, "structure", p.structure, "participant that receives the load and gives the "
-                                                  "interface motion");
-  declare_role(section, "mesh", p.mesh, "participant that moves the mesh of the fluid; absent: the mesh is "
-                                        "at rest");
+  declare_role(section, "fluid", p.fluid,
+               "participant that receives the interface motion and gives the load");
+  declare_role(section, "structure", p.structure,
+               "participant that receives the load and gives the "
+               "interface motion");
+  declare_role(section, "mesh", p.mesh,
+               "participant that moves the mesh of the fluid; absent: the mesh is "
+               "at rest");
   section.optional_section<CouplingParameters::Exchange>(
       "exchange", p.exchange, [](config::Section& s, CouplingParameters::Exchange& e) { declare(s, e); },
       "instead of fluid, structure and mesh: participants of any kind that exchange data once per step; "

@@ -45,9 +45,8 @@ template <int D>
 InletShape<D> inlet_shape(const Mesh& mesh, const Patch& patch, InletProfile profile) {
   const Extent e = extent_of(mesh, patch);
   if (!(e.area.norm() > (1 - flat_enough) * e.size))
-    throw Error(
-        "boundaries.{}: the patch is not flat, so 'mean-speed' has no direction. Give a 'velocity'.",
-        patch.name);
+    throw Error("boundaries.{}: the patch is not flat, so 'mean-speed' has no direction. Give a 'velocity'.",
+                patch.name);
   if (D == 3 && profile == InletProfile::parabolic &&
       std::abs(e.size / (std::numbers::pi * e.radius * e.radius) - 1) > round_enough)
     throw Error(

@@ -32,17 +32,16 @@ V judge_turbulence(const S&, const E& e) {
   const bool resolved_walls = e.largest_yplus > 0 && e.largest_yplus <= 1;
   return EffectVerdict{
       "", e.largest_peclet, resolved_walls ? 250. : 50.,
-      fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", e.largest_peclet,
-                  e.largest_yplus),
+      fmt::format("max cell Reynolds number = {:.3g}, max y+ = {:.3g}", e.largest_peclet, e.largest_yplus),
       "steep layers may be thinner than the mesh: refine it, or add 'turbulence' if the flow is turbulent"};
 }
 
 V judge_walls(const S&, const E& e) {
   if (std::isnan(e.largest_yplus)) return {};
-  return EffectVerdict{"", e.largest_yplus, 2,
-                       fmt::format("max y+ = {:.3g}, max cell Reynolds number = {:.3g}",
-                                   e.largest_yplus, e.largest_peclet),
-                       "there is no wall function: refine at the walls to y+ of about 1"};
+  return EffectVerdict{
+      "", e.largest_yplus, 2,
+      fmt::format("max y+ = {:.3g}, max cell Reynolds number = {:.3g}", e.largest_yplus, e.largest_peclet),
+      "there is no wall function: refine at the walls to y+ of about 1"};
 }
 
 std::optional<Sound> sound_in(const S& s) {
@@ -69,13 +68,13 @@ V judge_compressibility(const S& s, const E& e) {
 // du/dt, whatever the Mach number; the density follows by dp/(rho c^2).
 EffectVerdict judge_density(const S& s, const E& e, const Sound& sound) {
   const double change = e.pressure_range / (s.parameters.density * sound.speed * sound.speed);
-  return {.effect = "",
-          .number = change,
-          .threshold = 0.05,
-          .sentence = fmt::format("pressure range {:.3g} Pa: density change of {} = {:.2g}",
-                                  e.pressure_range, sound.of, change),
-          .recommendation =
-              "the flow changes faster than pressure waves would allow: use a compressible solver"};
+  return {
+      .effect = "",
+      .number = change,
+      .threshold = 0.05,
+      .sentence = fmt::format("pressure range {:.3g} Pa: density change of {} = {:.2g}", e.pressure_range,
+                              sound.of, change),
+      .recommendation = "the flow changes faster than pressure waves would allow: use a compressible solver"};
 }
 
 // What the walls displace goes partly into compression, V dp / (rho c^2) = V dp / (gamma p) of a gas: of the volume of their
@@ -87,8 +86,7 @@ EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
       .effect = "",
       .number = share,
       .threshold = 0.1,
-      .sentence =
-          fmt::format("compression of {} / volume displaced by the walls = {:.2g}", sound.of, share),
+      .sentence = fmt::format("compression of {} / volume displaced by the walls = {:.2g}", sound.of, share),
       .recommendation =
           "the compliance of the fluid may change frequencies and stability of the coupled motion: use a "
           "compressible solver"};
@@ -97,14 +95,13 @@ EffectVerdict judge_compliance(const S& s, const E& e, const Sound& sound) {
 // A column of length L answers a motion of rate omega as tan(omega L/c) / (omega L/c): 3 % more than without waves at 0.3.
 EffectVerdict judge_wave_time(const S&, const E& e, const Sound& sound) {
   const double phase = e.wall_rate * e.size / sound.speed;
-  return {
-      .effect = "",
-      .number = phase,
-      .threshold = 0.3,
-      .sentence = fmt::format(
-          "sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of the wall motion",
-          sound.of, e.size / sound.speed, phase, 1 / e.wall_rate),
-      .recommendation = "pressure waves return while the walls move: use a compressible solver"};
+  return {.effect = "",
+          .number = phase,
+          .threshold = 0.3,
+          .sentence =
+              fmt::format("sound crosses {} in {:.2g} s = {:.2g} of 1/omega = {:.2g} s of the wall motion",
+                          sound.of, e.size / sound.speed, phase, 1 / e.wall_rate),
+          .recommendation = "pressure waves return while the walls move: use a compressible solver"};
 }
 
 /// The worst of the three, by its limit.
@@ -130,18 +127,18 @@ V judge_energy(const S&, const E& e) {
       .effect = "",
       .number = e.energy_excess,
       .threshold = 0.1,
-      .sentence = fmt::format(
-          "kinetic energy without work of boundaries or forces = {:.2g} of the total", e.energy_excess),
+      .sentence = fmt::format("kinetic energy without work of boundaries or forces = {:.2g} of the total",
+                              e.energy_excess),
       .recommendation = "the time scheme generates it: remove 'time-step' or reduce it",
       .wrong_from = 0.5};
 }
 
 V judge_still_mesh(const S& s, const E& e) {
   if (s.moving_mesh || std::isnan(e.wall_displacement)) return {};
-  return EffectVerdict{"", e.wall_displacement, 0.1,
-                       fmt::format("max interface displacement / adjacent cell height = {:.2g}",
-                                   e.wall_displacement),
-                       "add a mesh mover: 'coupling: {mesh: {participant: ...}}'"};
+  return EffectVerdict{
+      "", e.wall_displacement, 0.1,
+      fmt::format("max interface displacement / adjacent cell height = {:.2g}", e.wall_displacement),
+      "add a mesh mover: 'coupling: {mesh: {participant: ...}}'"};
 }
 
 // A wall that moves across itself on a mesh that rests is an inlet.
@@ -203,16 +200,16 @@ const std::array cards{
         {"points, swept volumes, geometry of each step; without `motion` the process mesh_mover", 0, 0},
         "for an interface: max displacement over the cell height, 0.1",
         judge_still_mesh},
-    FluidCard{"frame that moves",
+    FluidCard{"moving frame",
               "`motion` with only a `translation`",
               [](const S& s) {
                 return when(s.parameters.motion && s.parameters.motion->translates(), "motion.translation");
               },
               {"nothing: geometry, pressure matrix and factors are computed once", 0, 0}},
-    FluidCard{"frame that turns",
+    FluidCard{"rotating frame",
               "`rotating-frame`",
               [](const S& s) { return when(s.parameters.rotating_frame.has_value(), "rotating-frame"); },
-              {"a force a cell", 0, 0}},
+              {"a force per cell", 0, 0}},
     FluidCard{"coupling load",
               "a boundary of `type: interface`",
               [](const S& s) { return when(s.coupled && has_interface(s), "a boundary of type interface"); },
@@ -263,7 +260,7 @@ const std::array cards{
     FluidCard{"body force",
               "`body-force`",
               [](const S& s) { return when(!s.parameters.body_force.empty(), "body-force"); },
-              {"a force a cell", 30, 0.05}},
+              {"a force per cell", 30, 0.05}},
     FluidCard{"third dimension", "`dimension: 3`",
               [](const S& s) { return when(s.parameters.dimension == 3, "dimension: 3"); }},
     FluidCard{"running statistics",

@@ -168,7 +168,7 @@ void FractionalStep<D>::check(const State<D>& from) {
       : fast  ? fmt::format("its velocity grew to {:.3g} m/s", judgement_.speed)
               : fmt::format(
                     "its kinetic energy grew by {:.3g} J to {:.3g} J in one step, of which boundaries and "
-                    "forces supplied {:.3g} J",
+                     "forces supplied {:.3g} J",
                     e.gain, e.ledger.energy, e.work);
   throw SolveFailure(
       "The flow diverges at t = {:.6g} s: {}, mostly in cell {} at ({:.6g}, {:.6g}, {:.6g}) m. {}",

@@ -24,8 +24,7 @@ void check_frame(const Mesh& mesh, const Boundary<D>& boundary, const FluidParam
         "the mesh is at rest in the frame. Move the rotation to 'motion' (angle), or remove 'motion' and "
         "the mesh mover.");
   if (!boundary.interface_patches().empty())
-    refuse(
-        "no structure supports a rotating frame: boundaries of type interface are not allowed.");
+    refuse("no structure supports a rotating frame: boundaries of type interface are not allowed.");
   if (!parameters.bodies.empty()) refuse("immersed bodies do not support it; remove 'bodies'.");
   if (parameters.scheme == ExplicitScheme::runge_kutta)
     refuse("its forces are extrapolated from step to step: use 'scheme: adams-bashforth'.");
@@ -65,8 +64,9 @@ void check_together(const Mesh& mesh, const Boundary<D>& boundary, FluidParamete
     parameters.viscous = ViscousTreatment::explicit_;
   }
   if (!parameters.gaps.empty() && boundary.closed())
-    throw Error("gaps: a fluid with closing gaps needs an outlet, because its blocked cells retain their "
-                "fluid.");
+    throw Error(
+        "gaps: a fluid with closing gaps needs an outlet, because its blocked cells retain their "
+        "fluid.");
   if (parameters.scheme != ExplicitScheme::runge_kutta) return;
   if (moving) throw Error("scheme: runge-kutta needs a mesh at rest; use adams-bashforth with a mesh mover.");
   if (parameters.viscous == ViscousTreatment::implicit)

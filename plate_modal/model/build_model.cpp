@@ -256,10 +256,9 @@ ModalModel modes_of_file(const Parameters& p, const std::filesystem::path& file)
   throw Error(
       "modes.file: cannot use the modes file '{}': {}. {}docs/formats.md describes the required content.",
       file.string(), problem,
-      p.cavity
-          ? ""
-          : "If it is the wall of a cavity, with the enclosed space outside of the structure, set "
-            "'modes.cavity: true'. ");
+      p.cavity ? ""
+               : "If it is the wall of a cavity, with the enclosed space outside of the structure, set "
+                 "'modes.cavity: true'. ");
 }
 
 Built build_model(const Parameters& p, const PlateContext& context, const RawMesh* raw) {

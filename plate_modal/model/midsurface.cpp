@@ -65,9 +65,8 @@ void add_cells(const RawMesh& raw, Midsurface& s) {
     if (least_corner(s, cell) <= 0) std::ranges::reverse(cell);
     if (!(least_corner(s, cell) > 0)) {
       const Vec2& x = s.points[cell.front()];
-      throw Error(
-          "The cell {} of the mid-surface at ({:.6g}, {:.6g}) has zero area or a re-entrant corner.",
-          c + 1, x.x(), x.y());
+      throw Error("The cell {} of the mid-surface at ({:.6g}, {:.6g}) has zero area or a re-entrant corner.",
+                  c + 1, x.x(), x.y());
     }
     s.cells.push_row(cell);
   }

@@ -85,8 +85,8 @@ void declare_place(config::Section& s, Parameters& p) {
         q.value("origin", p.placement.origin)
             .unit("m")
             .plausible(1e-9, 1e4)
-            .doc("position of the mesh origin in space");
-        q.value("x-axis", p.placement.x).doc("direction of the mesh's x in space, of any length");
+            .doc("position of the mesh origin");
+        q.value("x-axis", p.placement.x).doc("direction of the mesh's x, of any length");
         q.value("y-axis", p.placement.y)
             .doc("direction of the mesh's y, of any length; the plate's normal is x cross y");
         q.check(
@@ -99,10 +99,11 @@ void declare_place(config::Section& s, Parameters& p) {
             },
             "x-axis");
       },
-      "position of the mid-surface in space");
+      "position of the mid-surface");
   s.choice("wetted", p.wetted, {{"both", Wetted::both}, {"upper", Wetted::upper}, {"lower", Wetted::lower}})
-      .doc("sides that form the interface; upper: where the normal points; both: including the rims of free "
-           "edges");
+      .doc(
+          "sides that form the interface; upper: where the normal points; both: including the rims of free "
+          "edges");
   s.value("surface-density", p.surface_density)
       .doc("also give the mass behind each face [kg/m^2], the impedance for a Robin interface");
 }
@@ -123,8 +124,7 @@ void declare_modes(config::Section& s, Parameters& p) {
             .doc(
                 "with 'file': its surface is the wall of a cavity, so the normals must point into the "
                 "enclosed space; false: such a surface is rejected as inside out");
-        m.check([&] { return p.cavity && !p.modes_file ? "it applies to a 'file' only" : ""; },
-                "cavity");
+        m.check([&] { return p.cavity && !p.modes_file ? "it applies to a 'file' only" : ""; }, "cavity");
         m.check(
             [&] {
               return p.modes_file && !p.mesh && p.number
@@ -160,7 +160,7 @@ void declare_loads(config::Section& s, Parameters& p) {
       .unit("m/s^2")
       .plausible(1e-3, 2000)
       .size(3)
-      .doc("acceleration of gravity in space, three numbers");
+      .doc("acceleration of gravity, three numbers");
   s.optional_section<Load>(
       "load", p.load,
       [](config::Section& l, Load& v) {
@@ -232,9 +232,8 @@ void check_together(config::Section& s, Parameters& p) {
   needed("material.youngs-modulus", [&p] { return !(p.material.youngs_modulus > 0); });
   s.check(
       [&] {
-        return p.contact && p.analysis != Analysis::dynamic
-                   ? "contact requires a dynamic analysis; remove it"
-                   : "";
+        return p.contact && p.analysis != Analysis::dynamic ? "contact requires a dynamic analysis; remove it"
+                                                            : "";
       },
       "contact");
   s.check(
@@ -262,8 +261,8 @@ void check_together(config::Section& s, Parameters& p) {
   s.check(
       [&] {
         return p.mesh && std::ssize(p.initial_amplitudes) > p.n_modes()
-                   ? fmt::format("{} amplitudes are given, but there are {} modes", p.initial_amplitudes.size(),
-                                 p.n_modes())
+                   ? fmt::format("{} amplitudes are given, but there are {} modes",
+                                 p.initial_amplitudes.size(), p.n_modes())
                    : "";
       },
       "initial-amplitudes");

@@ -22,8 +22,9 @@ double speed_in(const SolidMaterial& m) {
 WallImpedance impedance_of(const SolidBody& body, const Interface& interface) {
   const Mesh& mesh = body.mesh();
   if (body.boundaries().interface_patches().empty())
-    throw Error("interface: surface-density: no patch has 'type: interface', so there is no face to give it "
-                "at.");
+    throw Error(
+        "interface: surface-density: no patch has 'type: interface', so there is no face to give it "
+        "at.");
   if (!body.is_dynamic())
     throw Error(
         "interface: surface-density: the response of a static solid does not depend on its mass; use "
@@ -55,8 +56,10 @@ SolidInterface::SolidInterface(const SolidBody& body) : body_(body) {
     description_.gives.push_back({"surface-density", "kg/m^2", Interface::Place::faces, 1});
   }
   if (!parameters.interface_data || !parameters.interface_data->temperature) return;
-  if (!map_) throw Error("interface: no patch has 'type: interface', so there is no face to receive a "
-                         "temperature at.");
+  if (!map_)
+    throw Error(
+        "interface: no patch has 'type: interface', so there is no face to receive a "
+        "temperature at.");
   takes_temperature_ = true;
   for (const auto& effect : body.effects())
     if (effect->wants_temperature()) effect->set_interface(description_.face_centres);

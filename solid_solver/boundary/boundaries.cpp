@@ -49,8 +49,7 @@ SolidBoundaries::SolidBoundaries(const Mesh& mesh, const SolidParameters& parame
     for (const SolidPart& part : boundary.parts) holds_.back() |= !is_load(part.type);
     if (boundary.type == Type::interface_) {
       if (!boundary.parts.empty())
-        throw Error("boundaries.{}: an interface cannot have parts; make them separate patches.",
-                    patch.name);
+        throw Error("boundaries.{}: an interface cannot have parts; make them separate patches.", patch.name);
       interface_patches_.push_back(patch.name);
     }
     choose_faces(patch, boundary);

@@ -37,8 +37,7 @@ V verdict(double number, double threshold, std::string sentence, std::string rec
 
 V judge_inertia(const P& p, const E& e) {
   if (!is_elastic(p) || has_finite_strain(p)) return {};  // whose static steps are load steps: t is no time
-  return verdict(e.inertia_over_load, 0.01,
-                 fmt::format("inertia / load = {:.2g}", e.inertia_over_load),
+  return verdict(e.inertia_over_load, 0.01, fmt::format("inertia / load = {:.2g}", e.inertia_over_load),
                  "use 'analysis: dynamic'");
 }
 
@@ -52,8 +51,7 @@ V judge_geometry(const P& p, const E& e) {
                                 : fmt::format(" (last: strain {:.2g}, rotation {:.2g} degrees)",
                                               e.largest_strain, 57.29578 * e.largest_rotation);
   const std::string change = e.large_strain.empty() ? "" : "; " + e.large_strain;
-  return verdict(g, 0.02,
-                 fmt::format("max |grad u| = {:.2g}{}{}", g, parts, change),
+  return verdict(g, 0.02, fmt::format("max |grad u| = {:.2g}{}{}", g, parts, change),
                  g < 0.1 ? "expect errors of a few per cent"
                          : "the result holds for linear theory, not for the body: use 'kinematics: "
                            "finite-strain'");
@@ -62,8 +60,7 @@ V judge_geometry(const P& p, const E& e) {
 V judge_yield(const P& p, const E& e) {
   if (!is_elastic(p)) return {};
   return verdict(
-      e.share_of_yield, 1,
-      fmt::format("max equivalent stress / yield strength = {:.2g}", e.share_of_yield),
+      e.share_of_yield, 1, fmt::format("max equivalent stress / yield strength = {:.2g}", e.share_of_yield),
       "the body would yield: the result is that of an elastic body; use a program with plasticity");
 }
 
@@ -136,11 +133,11 @@ const std::array cards{
     SolidCard{"gravity",
               "`gravity`",
               [](const P& p) { return when(!p.gravity.empty(), "gravity"); },
-              {"a load a cell", 21, 0.05}},
+              {"a load per cell", 21, 0.05}},
     SolidCard{"body force",
               "`body-force`",
               [](const P& p) { return when(!p.body_force.empty(), "body-force"); },
-              {"a load a cell", 21, 0.05}},
+              {"a load per cell", 21, 0.05}},
     SolidCard{"structural damping",
               "`damping`",
               [](const P& p) { return when(p.damping.has_value(), "damping"); },
@@ -153,7 +150,7 @@ const std::array cards{
     SolidCard{"thermal strain",
               "`thermal-expansion`",
               [](const P& p) { return when(p.expansion.has_value(), "thermal-expansion"); },
-              {"a temperature a face", 130, 0.15},
+              {"a temperature per face", 130, 0.15},
               "strain of a free body over the displacement gradient, 0.02",
               judge_thermal_strain},
     SolidCard{"thermoelastic coupling",

@@ -33,11 +33,10 @@ void SolidJudge::look() {
          .severity = strain.severity(),
          .number = strain.mismatch(),
          .limit = StrainAudit::most_mismatch,
-         .sentence =
-             fmt::format("t = {:g} s: error indicator: {}: displacement not reliable", state.time, strain.text()),
-         .advice =
-             "refine the mesh, above all across the bending direction; typical causes: cells elongated "
-             "along it, few tetrahedra or prisms across, nu near 0.5"});
+         .sentence = fmt::format("t = {:g} s: error indicator: {}: displacement not reliable", state.time,
+                                 strain.text()),
+         .advice = "refine the mesh, above all across the bending direction; typical causes: cells elongated "
+                   "along it, few tetrahedra or prisms across, nu near 0.5"});
   }
   if (!body_.is_dynamic() || !body_.effects().empty() || !body_.prescribed().is_zero()) return;
   judge_energy(
@@ -76,18 +75,18 @@ void SolidJudge::judge_energy(double strain, const char* cure) {
   energy_audit_.held = sum(mesh_.comm, stepper_.ledger().kinetic(state)) + strain;
   energy_audit_.scale = std::max(energy_audit_.scale, std::abs(energy_audit_.given));
   if (energy_audit_.is_hopeless())
-    throw Error(
-        "t = {:g} s: energy balance: {}: spurious growth has replaced the solution; {}.",
-        state.time, energy_audit_.text(), cure);
+    throw Error("t = {:g} s: energy balance: {}: spurious growth has replaced the solution; {}.", state.time,
+                energy_audit_.text(), cure);
   if (!energy_audit_.is_doubtful() || energy_audit_.severity() <= energy_told_) return;
   energy_told_ = energy_audit_.severity();
-  log::finding(comm_rank(mesh_.comm),
-               {.id = "energy-growth",
-                .severity = energy_told_,
-                .number = energy_audit_.created(),
-                .limit = energy_audit_.limit(),
-                .sentence = fmt::format("t = {:g} s: energy balance: {} (limit {:+.2g} %): spurious growth; {}", state.time,
-                                        energy_audit_.text(), 100 * energy_audit_.limit(), cure)});
+  log::finding(
+      comm_rank(mesh_.comm),
+      {.id = "energy-growth",
+       .severity = energy_told_,
+       .number = energy_audit_.created(),
+       .limit = energy_audit_.limit(),
+       .sentence = fmt::format("t = {:g} s: energy balance: {} (limit {:+.2g} %): spurious growth; {}",
+                               state.time, energy_audit_.text(), 100 * energy_audit_.limit(), cure)});
 }
 
 void SolidJudge::see_gradient(std::span<const double> points) {
@@ -146,8 +145,8 @@ SolidEvidence SolidJudge::evidence() const {
 std::vector<std::string> SolidJudge::sentences() const {
   std::vector<std::string> sentences;
   if (audit_)
-    sentences.push_back(fmt::format("error indicator: {}{}.", audit_->text(),
-                                    audit_->is_doubtful() ? "; NOT reliable" : ""));
+    sentences.push_back(
+        fmt::format("error indicator: {}{}.", audit_->text(), audit_->is_doubtful() ? "; NOT reliable" : ""));
   if (large_strain_) sentences.push_back(large_strain_->text() + ".");
   if (energy_audit_.scale > 0) sentences.push_back(fmt::format("energy balance: {}.", energy_audit_.text()));
   if (body_.is_dynamic() && !body_.parameters().damping && !body_.kernel().is_symmetric())

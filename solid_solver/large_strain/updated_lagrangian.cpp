@@ -58,7 +58,7 @@ UpdatedLagrangian::UpdatedLagrangian(const Mesh& mesh, const ElasticOperator& ro
 UpdatedLagrangian::~UpdatedLagrangian() = default;
 
 std::string UpdatedLagrangian::name() const {
-  return segregated_name(method_) + " at large strain, updated Lagrangian, thesis's face gradient";
+  return segregated_name(method_) + " at large strain, updated Lagrangian, least-squares face gradient";
 }
 
 UpdatedFrame& UpdatedLagrangian::frame() {
@@ -198,8 +198,8 @@ SolveStatistics UpdatedLagrangian::solve(const LargeStrainLoad& load, std::span<
     accelerator_.advance(u, step);
     size = residual(load, u, r);
     if (!std::isfinite(size))
-      throw SolveFailure("The segregated method inverted a cell in iteration {}. {}",
-                         statistics.iterations, where_worst());
+      throw SolveFailure("The segregated method inverted a cell in iteration {}. {}", statistics.iterations,
+                         where_worst());
   }
   statistics.residual = scale > 0 ? size / scale : 0;
   statistics.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

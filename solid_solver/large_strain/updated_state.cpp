@@ -63,8 +63,7 @@ std::vector<Vec3> UpdatedLagrangian::holding_forces(std::span<const double> unkn
 }
 
 void UpdatedLagrangian::end_step(std::span<const double> unknowns, std::span<const double> known) {
-  if (!look(unknowns, known))
-    throw SolveFailure("The end of the step inverts a cell. {}", where_worst());
+  if (!look(unknowns, known)) throw SolveFailure("The end of the step inverts a cell. {}", where_worst());
   const std::size_t dim = mesh_.dim;
   const auto [u, g] = since_start(unknowns, known);
   std::vector<double> moved(std::size_t(mesh_.points.n_local()) * dim, 0);

@@ -80,8 +80,9 @@ SolveStatistics BlockCoupled::solve(std::span<const double> b, std::span<double>
     throw SolveFailure("{} The method is {}. If the loads are correct, try 'solution-method: {}'{}.",
                        e.what(), name(),
                        linear_ == LinearMethod::direct ? "{type: newton-krylov}" : "{linear-solver: direct}",
-                       linear_ == LinearMethod::direct ? "" : ", the most robust option, at the highest "
-                                                              "memory cost");
+                       linear_ == LinearMethod::direct ? ""
+                                                       : ", the most robust option, at the highest "
+                                                         "memory cost");
   }
 }
 

@@ -182,7 +182,7 @@ void NewtonKrylov::choose_factors() {
   LinearOptions options;
   options.method = LinearMethod::direct;
   factors_ = std::make_unique<LinearSolver>("displacement", *matrix_, options);
-  name_ = "newton-krylov (BiCGStab, factors of the thesis's operator)";
+  name_ = "newton-krylov (BiCGStab, factors of the least-squares operator)";
 }
 
 void NewtonKrylov::project(std::span<double> unknowns) const {

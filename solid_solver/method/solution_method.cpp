@@ -151,7 +151,7 @@ std::unique_ptr<SolutionMethod> make_solution_method(const SolidProblem& problem
   if (!why.empty()) method->name_ += fmt::format(" (auto: {})", why);
   method->name_ += problem.is_symmetric()   ? ", symmetric face gradient"
                    : problem.is_corrected() ? ", corrected face gradient"
-                                            : ", thesis's face gradient";
+                                            : ", least-squares face gradient";
   if (asked.face_gradient == MethodParameters::FaceGradient::automatic)
     method->name_ += problem.elastic.is_anisotropic() ? " (auto: orthotropic)"
                      : problem.is_symmetric()

@@ -41,9 +41,8 @@ void SolidStepper::judge_step() {
   if (step_.scheme != Scheme::standalone) return;
   const double tolerance = share_of_a_step * parameters_.step_control->tolerance;
   if (trial_.error > tolerance)
-    throw SolveFailure(
-        "The estimated step error, {:.2g} m, exceeds a tenth of the tolerance, {:g} m.", trial_.error,
-        tolerance);
+    throw SolveFailure("The estimated step error, {:.2g} m, exceeds a tenth of the tolerance, {:g} m.",
+                       trial_.error, tolerance);
 }
 
 double SolidStepper::suggest_dt() const {

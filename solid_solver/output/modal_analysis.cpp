@@ -140,8 +140,7 @@ EigenModes solid_modes(const SolidProblem& problem, MethodParameters method,
                        : search(problem, method, cell_mass, n, shift_part * scale);
   } catch (const SolveFailure& e) {
     if (!chooses) throw;
-    log::info("modes: {} did not succeed: {}", by_factors ? "the factorised search" : "multigrid",
-              e.what());
+    log::info("modes: {} did not succeed: {}", by_factors ? "the factorised search" : "multigrid", e.what());
     method.preconditioner =
         by_factors ? MethodParameters::Preconditioner::multigrid : MethodParameters::Preconditioner::factors;
     modes = search(problem, method, cell_mass, n, shift_part * scale);

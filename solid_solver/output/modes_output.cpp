@@ -76,11 +76,10 @@ void SolidOutput::write_vibrations(const SolidProblem& problem, const EigenModes
     series.row(row);
   }
   if (mesh.dim == 3) couplet::write_modes(context_.output_folder / "modes.h5", model, "");
-  log::info(
-      "modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv{}; max residual {:.1e}{}",
-      model.n_modes(), of, model.frequency.front(), model.frequency.back(),
-      mesh.dim == 3 ? ", their surface shapes in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
-      found.worst_residual, errs);
+  log::info("modes: {} free vibrations{} from {:.6g} to {:.6g} Hz in modes.csv{}; max residual {:.1e}{}",
+            model.n_modes(), of, model.frequency.front(), model.frequency.back(),
+            mesh.dim == 3 ? ", their surface shapes in modes.h5 (plate_modal: 'modes: {file: ...}')" : "",
+            found.worst_residual, errs);
 }
 
 void SolidOutput::write_preloaded_modes() {

@@ -55,8 +55,9 @@ void declare_plate(config::Section& s, SolidCondition& c, const int& dimension) 
   s.value("plate-normal", c.plate_normal).doc("normal of the plate, any length");
   s.check([&c] { return c.plate_normal.norm() > 0 ? "" : "a direction is needed, not the zero vector"; },
           "plate-normal");
-  declare_vector(s, "traction", c.traction, dimension, "Pa", "force per area on the remaining free "
-                                                             "components");
+  declare_vector(s, "traction", c.traction, dimension, "Pa",
+                 "force per area on the remaining free "
+                 "components");
 }
 
 void declare_spring(config::Section& s, SolidCondition& c, const int& dimension) {

@@ -34,8 +34,7 @@ void declare_boundary(config::Section& s, HeatBoundary& b) {
         }},
        {"flux", Type::flux,
         [&b, expression](config::Section& v) {
-          expression(v, {"value", "W/m^2", 1e-6, 1e11}, b.value,
-                     "heat flux into the solid, of x, y, z, t");
+          expression(v, {"value", "W/m^2", 1e-6, 1e11}, b.value, "heat flux into the solid, of x, y, z, t");
         }},
        {"convection", Type::convection,
         [&b, expression](config::Section& v) {
@@ -87,8 +86,7 @@ void declare(config::Section& s, HeatParameters& h) {
   s.check([&h] { return problem_of(h.source); }, "source");
   s.map<HeatBoundary>(
       "boundaries", h.boundaries, [](config::Section& b, HeatBoundary& v) { declare_boundary(b, v); },
-      "patch",
-      "patches that are not adiabatic; mechanical symmetry planes are thermal ones as well");
+      "patch", "patches that are not adiabatic; mechanical symmetry planes are thermal ones as well");
   s.value("tolerance", h.tolerance)
       .range(1e-14, 1e-2)
       .doc(

@@ -17,9 +17,10 @@ using Texts = std::vector<config::ExpressionText>;
 std::string problem_of_total(const config::ExpressionText& text) {
   if (std::string problem = problem_of(text); !problem.empty()) return problem;
   return Expression(text).uses_space()
-             ? fmt::format("'{}' depends on x, y or z, but a total load has no position; it may depend on t "
-                           "only",
-                           text.text)
+             ? fmt::format(
+                   "'{}' depends on x, y or z, but a total load has no position; it may depend on t "
+                   "only",
+                   text.text)
              : "";
 }
 

@@ -11,9 +11,10 @@ namespace couplet {
 namespace {
 
 void declare_law(config::Section& s, SolidMaterial& m) {
-  std::string doc = "material law at finite strain, with Young's modulus and Poisson's ratio as its "
-                    "small-strain values: " +
-                    join(laws::names());
+  std::string doc =
+      "material law at finite strain, with Young's modulus and Poisson's ratio as its "
+      "small-strain values: " +
+      join(laws::names());
   s.value("law", m.law).doc(doc);
   s.check(
       [&m]() -> std::string {
@@ -60,9 +61,8 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
   needed(
       s.value("poissons-ratio", m.poissons_ratio)
           .range(-0.99, 0.49999)
-          .doc(
-              "Poisson's ratio, needed without 'orthotropic'; from 0.4 the symmetric face gradient is the "
-              "default"));
+          .doc("Poisson's ratio, needed without 'orthotropic'; from 0.4 the symmetric face gradient is the "
+               "default"));
   s.check(
       [&m] {
         return m.orthotropic && (m.youngs_modulus != 0 || m.poissons_ratio != 0)
@@ -82,8 +82,9 @@ void declare(config::Section& s, SolidMaterial& m, bool is_elastic) {
 
 void declare(config::Section& s, ZoneMaterial& m, bool is_elastic) {
   s.value("zones", m.zones)
-      .doc("physical volumes (2-D: surfaces) of the mesh made of this material; absent: the one with this "
-           "name");
+      .doc(
+          "physical volumes (2-D: surfaces) of the mesh made of this material; absent: the one with this "
+          "name");
   declare(s, static_cast<SolidMaterial&>(m), is_elastic);
 }
 

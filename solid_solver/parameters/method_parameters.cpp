@@ -61,8 +61,9 @@ void declare(config::Section& s, MethodParameters& m) {
             {"direct", LinearSolver::direct},
             {"bicgstab-ilu", LinearSolver::bicgstab_ilu},
             {"gmres-multigrid", LinearSolver::gmres_multigrid}})
-      .doc("linear solver of block-coupled; auto: direct up to 60 000 unknowns (static: 200 000), otherwise "
-           "bicgstab-ilu");
+      .doc(
+          "linear solver of block-coupled; auto: direct up to 60 000 unknowns (static: 200 000), otherwise "
+          "bicgstab-ilu");
   s.choice("preconditioner", m.preconditioner,
            {{"auto", Preconditioner::automatic},
             {"multigrid", Preconditioner::multigrid},
@@ -80,7 +81,7 @@ void declare(config::Section& s, MethodParameters& m) {
       .doc("for the outer iterations of segregated");
   s.value("aitken-interval", m.aitken_interval)
       .range(2, 100)
-      .doc("apply Aitken's formula every so many iterations");
+      .doc("number of iterations between applications of Aitken's formula");
   s.value("anderson-history", m.anderson_history)
       .range(1, 30)
       .doc("number of iterations combined by Anderson's method");
@@ -92,15 +93,18 @@ void declare(config::Section& s, MethodParameters& m) {
   s.value("corrections-kept", m.corrections_kept)
       .range(0, ResidualProjection::most)
       .doc(
-          "for newton-krylov in dynamic analyses: the last so many corrections of the predictor are "
-          "combined to minimise the initial residual; 0: off");
+          "for newton-krylov in dynamic analyses: number of latest predictor corrections that are combined to "
+          "minimise the initial residual; 0: off");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc(
           "relative residual tolerance; for symmetric newton-krylov (and any in 2-D with more than 5000 "
           "cells) in steps so small that inertia dominates stiffness, relative to its elastic part");
-  s.value("max-iterations", m.max_iterations).range(1, 1e6).doc("maximum number of iterations; beyond it a "
-                                                                "step fails");
+  s.value("max-iterations", m.max_iterations)
+      .range(1, 1e6)
+      .doc(
+          "maximum number of iterations; beyond it a "
+          "step fails");
 }
 
 }  // namespace couplet

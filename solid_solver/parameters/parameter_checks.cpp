@@ -43,14 +43,12 @@ void check_updated_lagrangian(config::Section& s, SolidParameters& p) {
       "solution-method", p.method.face_gradient == Method::FaceGradient::symmetric,
       "'type: segregated' at finite strain is the updated-Lagrangian method on 'face-gradient: thesis' with "
       "the volume strain of the faces; the symmetric gradient requires 'type: newton-krylov' (or 'auto')");
-  refuse(
-      "materials", p.materials.size() > 1,
-      "'solution-method: {type: segregated}' at finite strain supports one material only; use 'type: "
-      "newton-krylov' (or 'auto')");
-  refuse(
-      "energy-momentum", p.energy_momentum,
-      "'solution-method: {type: segregated}' at finite strain has no energy-momentum stress; use 'type: "
-      "newton-krylov'");
+  refuse("materials", p.materials.size() > 1,
+         "'solution-method: {type: segregated}' at finite strain supports one material only; use 'type: "
+         "newton-krylov' (or 'auto')");
+  refuse("energy-momentum", p.energy_momentum,
+         "'solution-method: {type: segregated}' at finite strain has no energy-momentum stress; use 'type: "
+         "newton-krylov'");
   refuse(
       "output", p.output.energies,
       "'solution-method: {type: segregated}' at finite strain writes no energies; use 'type: newton-krylov' "
@@ -161,13 +159,12 @@ void check_finite_strain(config::Section& s, SolidParameters& p) {
       "energy-momentum");
   refuse("time-step-control", p.step_control.has_value(), "it estimates the error of the linear solid only");
   const bool is_segregated = p.method.type == Method::Type::segregated;
-  refuse(
-      "solution-method",
-      p.method.type == Method::Type::block_coupled ||
-          p.method.face_gradient == Method::FaceGradient::corrected ||
-          (!is_segregated && p.method.face_gradient == Method::FaceGradient::thesis),
-      "finite strain is solved by Newton's method on 'face-gradient: symmetric' ('type: newton-krylov' or "
-      "'auto'), or by 'type: segregated' on 'face-gradient: thesis'");
+  refuse("solution-method",
+         p.method.type == Method::Type::block_coupled ||
+             p.method.face_gradient == Method::FaceGradient::corrected ||
+             (!is_segregated && p.method.face_gradient == Method::FaceGradient::thesis),
+         "finite strain is solved by Newton's method on 'face-gradient: symmetric' ('type: newton-krylov' or "
+         "'auto'), or by 'type: segregated' on 'face-gradient: thesis'");
   check_updated_lagrangian(s, p);
   bool has_tables = false;
   for (const SolidMaterial& m : materials_of(p))
@@ -223,12 +220,11 @@ void check_rigid_patches(config::Section& s, SolidParameters& p) {
                            p.method.face_gradient == Method::FaceGradient::automatic;
   const bool is_method =
       p.method.type == Method::Type::newton_krylov || p.method.type == Method::Type::automatic;
-  refuse(
-      "solution-method",
-      !is_gradient || !is_method || p.method.preconditioner == Method::Preconditioner::mixed ||
-          !symmetric_suits(p),
-      "a remote-load with 'coupling: rigid' requires 'face-gradient: symmetric' and 'type: newton-krylov' "
-      "(or 'auto') without 'preconditioner: mixed' and 'zero-normal-gradient'");
+  refuse("solution-method",
+         !is_gradient || !is_method || p.method.preconditioner == Method::Preconditioner::mixed ||
+             !symmetric_suits(p),
+         "a remote-load with 'coupling: rigid' requires 'face-gradient: symmetric' and 'type: newton-krylov' "
+         "(or 'auto') without 'preconditioner: mixed' and 'zero-normal-gradient'");
   refuse("output", p.output.spectrum || p.output.modes > 0 || p.output.large_strain_estimate,
          "'spectrum', 'modes' and 'large-strain-estimate' do not support a remote-load with 'coupling: "
          "rigid'");
@@ -263,17 +259,17 @@ void check_orthotropic(config::Section& s, SolidParameters& p) {
   };
   refuse("kinematics", has_finite_strain(p),
          "an orthotropic material is linear; finite strain supports only the laws of docs/large-strain.md");
-  refuse("thermal-expansion", p.expansion.has_value(), "an orthotropic material does not support thermal "
-                                                       "strain");
-  refuse(
-      "solution-method",
-      p.method.type == Method::Type::segregated || p.method.type == Method::Type::block_coupled ||
-          p.method.face_gradient == Method::FaceGradient::thesis ||
-          p.method.face_gradient == Method::FaceGradient::corrected ||
-          p.method.volume_strain == Method::VolumeStrain::cells ||
-          p.method.volume_strain == Method::VolumeStrain::shared,
-      "an orthotropic material requires 'face-gradient: symmetric' (or 'auto'), 'type: newton-krylov' (or "
-      "'auto') and the volume strain of the faces");
+  refuse("thermal-expansion", p.expansion.has_value(),
+         "an orthotropic material does not support thermal "
+         "strain");
+  refuse("solution-method",
+         p.method.type == Method::Type::segregated || p.method.type == Method::Type::block_coupled ||
+             p.method.face_gradient == Method::FaceGradient::thesis ||
+             p.method.face_gradient == Method::FaceGradient::corrected ||
+             p.method.volume_strain == Method::VolumeStrain::cells ||
+             p.method.volume_strain == Method::VolumeStrain::shared,
+         "an orthotropic material requires 'face-gradient: symmetric' (or 'auto'), 'type: newton-krylov' (or "
+         "'auto') and the volume strain of the faces");
   s.check(
       [&p]() -> std::string {
         for (const SolidMaterial& m : materials_of(p))

@@ -60,9 +60,7 @@ void declare_heat(config::Section& s, SolidParameters& p) {
       },
       "interface");
   s.check(
-      [&] {
-        return p.heat && p.temperature ? "'heat' computes the temperature; remove one of the two" : "";
-      },
+      [&] { return p.heat && p.temperature ? "'heat' computes the temperature; remove one of the two" : ""; },
       "temperature");
   s.check(
       [&] {
@@ -103,9 +101,8 @@ void declare(config::Section& s, SolidParameters& p) {
       .doc("assumption of a 2-D scene");
   s.check(
       [&p] {
-        return p.dimension == 3 && p.plane == Plane::stress
-                   ? "only for 2-dimensional scenes; remove this key"
-                   : "";
+        return p.dimension == 3 && p.plane == Plane::stress ? "only for 2-dimensional scenes; remove this key"
+                                                            : "";
       },
       "plane");
   s.choice("analysis", p.analysis,

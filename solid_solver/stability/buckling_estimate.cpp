@@ -38,8 +38,8 @@ void tell_buckling(MPI_Comm comm, double factor, const char* how) {
        .severity = holds ? Severity::warning : Severity::wrong,
        .number = factor,
        .limit = holds ? BucklingEstimate::low : 1,
-       .sentence = fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how,
-                               factor, holds ? BucklingEstimate::low : 1,
+       .sentence = fmt::format("buckling: load factor {}{:.3g} (limit {:g}): {}", how, factor,
+                               holds ? BucklingEstimate::low : 1,
                                holds ? "linear theory neglects the softening by these loads"
                                      : "the computed equilibrium is unstable"),
        .advice =

@@ -33,8 +33,9 @@ void declare(config::Section& s, ReportParameters& p) {
       .unit("K difference")
       .plausible(0.1, 500)
       .positive()
-      .doc("the thermocline is the region between the cold temperature plus this margin and the hot "
-           "temperature minus it");
+      .doc(
+          "the thermocline is the region between the cold temperature plus this margin and the hot "
+          "temperature minus it");
   s.value("outlet-margin", p.outlet_margin)
       .unit("K difference")
       .plausible(0.1, 500)
@@ -222,8 +223,7 @@ void DayReport::restore(std::span<const double> state) {
     throw Error("report: the checkpoint is from another version of this program; its sums are incompatible.");
   constexpr double most_days = 1e6;
   for (const double days : {state[0], state[1]})
-    if (!(days >= 0 && days <= most_days))
-      throw Error("report: the checkpoint's day counts are damaged.");
+    if (!(days >= 0 && days <= most_days)) throw Error("report: the checkpoint's day counts are damaged.");
   days_seen_ = static_cast<int>(state[0]);
   days_counted_ = static_cast<int>(state[1]);
   int counted = 0;

@@ -19,13 +19,11 @@ void declare(config::Section& s, EconomicsParameters& p) {
       .not_negative()
       .doc("price per kilowatt of pump or fan, by the largest power in the run");
   s.value("fluid", p.fluid).not_negative().doc("price per kilogram of the fluid in the bed");
-  s.value("insulation", p.insulation)
-      .not_negative()
-      .doc("price per square metre of insulated wall and roof");
+  s.value("insulation", p.insulation).not_negative().doc("price per square metre of insulated wall and roof");
   s.value("foundation", p.foundation).not_negative().doc("price per square metre of the tank's ground");
   s.value("operation", p.operation).range(0, 1).doc("annual cost, as a share of the capital");
-  s.value("interest", p.interest).range(0, 1).doc("a year");
-  s.value("lifetime", p.lifetime).range(1, 200).doc("years");
+  s.value("interest", p.interest).range(0, 1).doc("annual interest rate");
+  s.value("lifetime", p.lifetime).range(1, 200).doc("lifetime in years");
   s.check(
       [&] {
         return p.field + p.block + p.fixed + p.steel + p.filler + p.capsules.value_or(0) + p.pump + p.fluid +

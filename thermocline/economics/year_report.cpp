@@ -56,14 +56,15 @@ std::vector<std::string> DayReport::doubts() const {
         days_seen_, p_.run_in,
         days > 0 ? fmt::format("covers its last {:.3g} h", 24 * days) : std::string("contains no numbers")));
   if (p_.profile_day && *p_.profile_day * seconds_a_day >= last_time_)
-    sentences.push_back(fmt::format(
-        "report: the run ended before profile-day {:g}: profiles.csv is empty", *p_.profile_day));
+    sentences.push_back(
+        fmt::format("report: the run ended before profile-day {:g}: profiles.csv is empty", *p_.profile_day));
   if (const double sold = results_[Sums::electricity] / megawatt_hour;
       days > 0 && p_.economics && !(sold > 0))
     sentences.push_back(fmt::format(
         "report: the levelised cost is infinite: net electricity (power block minus pump and fan) = {:.3g} "
         "MWh{}",
-        sold, sold < 0 ? "; they consume more than it produces" : ", no hour of the counted days produced any"));
+        sold,
+        sold < 0 ? "; they consume more than it produces" : ", no hour of the counted days produced any"));
   if (days <= 0 || whole_years() || !(p_.economics || !plant_.parameters().tariff.empty())) return sentences;
   const double period = weather_.period_length() / seconds_a_day;
   if (period < 0.98 * year && days > period)

@@ -44,9 +44,8 @@ V judge_bending(const P&, const E& e) {
   if (std::isnan(e.share_with_bending)) return {};
   return EffectVerdict{
       "", e.share_with_bending - e.share_as_rings, 0.1,
-      fmt::format(
-          "max equivalent stress / yield strength of the wall: {:.3g} as rings, {:.3g} as a shell",
-          e.share_as_rings, e.share_with_bending),
+      fmt::format("max equivalent stress / yield strength of the wall: {:.3g} as rings, {:.3g} as a shell",
+                  e.share_as_rings, e.share_with_bending),
       "reduce the factors of safety accordingly, or compute the wall as a solid ('external-wall')"};
 }
 
@@ -75,9 +74,8 @@ V judge_pressure(const P&, const E& e) {
   if (std::isnan(e.pumping_share)) return {};
   return EffectVerdict{
       "", e.pumping_share, 0.02,
-      fmt::format(
-          "pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
-          1e-3 * e.pressure_loss, e.pumping_share),
+      fmt::format("pressure loss of {:.3g} kPa at the largest flow: {:.2g} of the transported heat",
+                  1e-3 * e.pressure_loss, e.pumping_share),
       "add 'pump: {}', or check flow and grains: no real store is driven this hard"};
 }
 
@@ -87,9 +85,8 @@ V judge_driving(const P&, const E& e) {
   if (std::isnan(e.driving_power)) return {};
   return EffectVerdict{
       "", e.driving_power / e.carried_heat, 0.1,
-      fmt::format(
-          "pump or fan {:.3g} MW / transported heat {:.3g} MW = {:.2g} at the largest flow",
-          1e-6 * e.driving_power, 1e-6 * e.carried_heat, e.driving_power / e.carried_heat),
+      fmt::format("pump or fan {:.3g} MW / transported heat {:.3g} MW = {:.2g} at the largest flow",
+                  1e-6 * e.driving_power, 1e-6 * e.carried_heat, e.driving_power / e.carried_heat),
       "they consume half of the electricity or more: use less flow, a wider or lower bed, or larger grains"};
 }
 

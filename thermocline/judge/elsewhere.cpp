@@ -226,8 +226,9 @@ void declare(config::Section& s, GroundElementParameters& p) {
       .doc("inner diameter of the tank");
   s.section(
       "ground", [&p](config::Section& q) { declare(q, p.ground); }, "foundation and soil under the tank");
-  declare_surroundings(s, p.initial_temperature, p.ambient, "temperature of the tank's bottom; the ground "
-                                                            "starts steady");
+  declare_surroundings(s, p.initial_temperature, p.ambient,
+                       "temperature of the tank's bottom; the ground "
+                       "starts steady");
   s.check([&p] { return slip_in_ground(p.ground); }, "ground");
 }
 
@@ -242,8 +243,9 @@ void declare(config::Section& s, BlanketElementParameters& p) {
   s.value("sections", p.sections).range(1, 100000).doc("along the wall");
   s.section(
       "insulation", [&p](config::Section& q) { declare(q, p.insulation); }, "blanket around the wall");
-  declare_surroundings(s, p.initial_temperature, p.ambient, "temperature of the wall; the blanket starts "
-                                                            "steady");
+  declare_surroundings(s, p.initial_temperature, p.ambient,
+                       "temperature of the wall; the blanket starts "
+                       "steady");
   s.check([&p] { return slip_in_insulation(p.insulation, p.diameter); }, "insulation");
 }
 

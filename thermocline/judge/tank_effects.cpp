@@ -18,9 +18,8 @@ void energy(const TankModel& m, double t, Lines& lines) {
   const double turnover = m.ledger().turnover,
                hair = 1e-12 * m.bed().heat_capacity() * m.fluid_range().second;
   if (turnover <= hair) {
-    lines.push_back(fmt::format(
-        "energy: no heat moved; energy balance error: bed {:.1e} J, tank {:.1e} J",
-        std::abs(m.bed_imbalance()), std::abs(m.imbalance(t))));
+    lines.push_back(fmt::format("energy: no heat moved; energy balance error: bed {:.1e} J, tank {:.1e} J",
+                                std::abs(m.bed_imbalance()), std::abs(m.imbalance(t))));
     return;
   }
   lines.push_back(fmt::format(
@@ -125,9 +124,8 @@ void wall(const TankModel& m, const BendingSeen& bending, Lines& lines) {
     // beta^4 = 3 (1 - nu^2)/(a^2 e^2): edge effects of a cylinder fade as exp(-beta z).
     const double nu = m.setup().steel->poissons_ratio;
     const double e = *std::max_element(rings->thickness.begin(), rings->thickness.end());
-    std::string line =
-        fmt::format("bending of the wall neglected: it smooths variations within {:.2f} m",
-                    std::sqrt(diameter / 2 * e) / std::pow(3 * (1 - nu * nu), 0.25));
+    std::string line = fmt::format("bending of the wall neglected: it smooths variations within {:.2f} m",
+                                   std::sqrt(diameter / 2 * e) / std::pow(3 * (1 - nu * nu), 0.25));
     if (bending.rings > 0)
       line += fmt::format(
           "; the largest hoop stress of {:.0f} MPa becomes {:.0f} at z = {:.2f} m, with a max bending "

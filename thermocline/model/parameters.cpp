@@ -51,7 +51,9 @@ std::string problem_of_profile(const BedParameters& p) {
 void check_together(config::Section& s, TankParameters& p) {
   s.check([&p] { return p.mechanics && !p.shell ? "requires a shell; add one" : ""; }, "filler-mechanics");
   s.check(
-      [&p] { return p.external_wall && !(p.shell && p.mechanics) ? "requires shell and filler-mechanics" : ""; },
+      [&p] {
+        return p.external_wall && !(p.shell && p.mechanics) ? "requires shell and filler-mechanics" : "";
+      },
       "external-wall");
   s.check(
       [&p] {
@@ -75,8 +77,9 @@ void check_together(config::Section& s, TankParameters& p) {
   s.check(
       [&p]() -> std::string {
         if (!p.elsewhere) return "";
-        if (p.elsewhere->ground && p.ground) return "specifies that the ground is elsewhere; remove "
-                                                    "'ground' here";
+        if (p.elsewhere->ground && p.ground)
+          return "specifies that the ground is elsewhere; remove "
+                 "'ground' here";
         if (p.elsewhere->insulation && p.insulation)
           return "specifies that the insulation is elsewhere; remove 'insulation' here";
         return p.elsewhere->insulation && !p.shell ? "requires a shell inside the insulation" : "";
@@ -112,8 +115,12 @@ void declare(config::Section& section, BedParameters& p) {
       "layers", p.layers,
       [](config::Section& s, BedLayer& l) {
         s.value("height", l.height).unit("m").plausible(0.01, 100).positive().required().doc("height");
-        s.value("porosity", l.porosity).range(0.01, 1).required().doc("volume fraction of the fluid; 1: no "
-                                                                      "filler");
+        s.value("porosity", l.porosity)
+            .range(0.01, 1)
+            .required()
+            .doc(
+                "volume fraction of the fluid; 1: no "
+                "filler");
         s.value("diameter", l.diameter)
             .unit("m")
             .plausible(1e-4, 1)
@@ -244,7 +251,7 @@ void declare(config::Section& section, GroundParameters& p) {
               const auto known = foundation_materials();
               return std::find(known.begin(), known.end(), l.material) != known.end()
                          ? std::string()
-                         : "'" + l.material + "' is none of: " + join(known);
+                         : "'" + l.material + "' is not one of: " + join(known);
             },
             "material");
       },
@@ -287,8 +294,7 @@ void declare(config::Section& section, TankParameters& p) {
   section.section(
       "fluid", [&p](config::Section& s) { declare(s, p.fluid); }, "heat-transfer fluid");
   section.section(
-      "filler", [&p](config::Section& s) { declare(s, p.filler); },
-      "grains of the bed; default: quartzite");
+      "filler", [&p](config::Section& s) { declare(s, p.filler); }, "grains of the bed; default: quartzite");
   section.section(
       "bed", [&p](config::Section& s) { declare(s, p.bed); }, "fluid and filler");
   section.optional_section<ShellParameters>(

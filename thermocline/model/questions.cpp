@@ -122,8 +122,7 @@ std::vector<std::string> prices_for_nothing(const EconomicsParameters& p, const 
   std::vector<std::string> all;
   const auto look = [&](const char* name, double price, double amount, const char* why) {
     if (price > 0 && amount == 0)
-      all.push_back(
-          fmt::format("report.economics.{} is {:g}, but has no effect: {}", name, price, why));
+      all.push_back(fmt::format("report.economics.{} is {:g}, but has no effect: {}", name, price, why));
   };
   look("steel", p.steel, i.steel, "the tank has no section 'shell'");
   look("insulation", p.insulation, i.insulated, "the tank has no sections 'shell' and 'insulation'");

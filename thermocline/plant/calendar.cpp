@@ -35,7 +35,7 @@ std::string problem_of_days(const std::vector<std::string>& days) {
   std::vector<std::string> known(weekday_names.begin(), weekday_names.end());
   known.insert(known.end(), {"weekdays", "weekend"});
   for (const std::string& day : days)
-    if (bits_of(day) == 0) return fmt::format("'{}' is none of: {}", day, join(known));
+    if (bits_of(day) == 0) return fmt::format("'{}' is not one of: {}", day, join(known));
   return "";
 }
 
@@ -69,8 +69,11 @@ std::string problem_of_day(const std::vector<double>& values, bool share) {
     return fmt::format("has {} values; give one, or 24 for the hours of the day from 00:00 on",
                        values.size());
   for (const double v : values)
-    if (share && !(v >= 0 && v <= 1)) return fmt::format("{:g} is not a valid share of the load; expected 0 "
-                                                         "to 1", v);
+    if (share && !(v >= 0 && v <= 1))
+      return fmt::format(
+          "{:g} is not a valid share of the load; expected 0 "
+          "to 1",
+          v);
   return "";
 }
 

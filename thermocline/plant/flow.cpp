@@ -15,7 +15,12 @@ namespace couplet::thermocline {
 void declare(config::Section& section, FlowParameters& p) {
   using Type = FlowParameters::Type;
   const auto row = [](config::Section& s, ScheduleRow& r) {
-    s.value("at", r.at).unit("s").plausible(1e-3, 1e11).not_negative().required().doc("start time of the row");
+    s.value("at", r.at)
+        .unit("s")
+        .plausible(1e-3, 1e11)
+        .not_negative()
+        .required()
+        .doc("start time of the row");
     s.value("mass-flow", r.mass_flow)
         .unit("kg/s")
         .plausible(1e-6, 1e5)
@@ -147,9 +152,8 @@ std::vector<std::string> Schedule::doubts() const {
   const auto flows = [](const ScheduleRow& row) { return row.mass_flow != 0; };
   const auto first = std::ranges::find_if(rows_, flows);
   if (first != rows_.end() && !(current_ >= first->at))
-    sentences.push_back(fmt::format(
-        "no flow: the first row with a flow, flow.rows[{}], starts at {:g} s",
-        first - rows_.begin(), first->at));
+    sentences.push_back(fmt::format("no flow: the first row with a flow, flow.rows[{}], starts at {:g} s",
+                                    first - rows_.begin(), first->at));
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (!began_[i] || flowed_[i]) continue;
     std::string limits;

@@ -43,8 +43,8 @@ class FlowColumns {
     }
     for (std::size_t c = 0; c < known.size(); ++c)
       if (known[c].required && !at_[c])
-        throw Error("{}: the column '{}' is missing. A flow file has the columns {}.", place,
-                    known[c].name, join(names));
+        throw Error("{}: the column '{}' is missing. A flow file has the columns {}.", place, known[c].name,
+                    join(names));
   }
 
   /// Value [SI] of a column in a row; nothing where it is empty.
@@ -57,8 +57,8 @@ class FlowColumns {
   /// Heads without a unit would leave open whether 290 is in K or degC.
   static Unit unit_of(const FlowColumn& column, const std::string& text, const std::string& place) {
     if (text.empty())
-      throw Error("{}: the unit of the column '{}' is missing; write for example '{} [{}]'.", place, column.name,
-                  column.name, column.example);
+      throw Error("{}: the unit of the column '{}' is missing; write for example '{} [{}]'.", place,
+                  column.name, column.name, column.example);
     const auto wanted = parse_unit(column.unit);
     try {
       const Unit unit = parse_unit(text);
@@ -66,7 +66,8 @@ class FlowColumns {
     } catch (const Error& error) {
       throw Error("{}: column '{}': {}", place, column.name, error.what());
     }
-    throw Error("{}: the unit '{}' of the column '{}' is not one of {}.", place, text, column.name, column.unit);
+    throw Error("{}: the unit '{}' of the column '{}' is not one of {}.", place, text, column.name,
+                column.unit);
   }
 
   std::array<std::optional<std::size_t>, known.size()> at_;
@@ -93,9 +94,8 @@ ScheduleRow row_of(const FlowColumns& columns, const csv::CsvReader& row) {
 std::vector<ScheduleRow> read_flow_file(const std::filesystem::path& file) {
   csv::CsvReader reader(file, "flow file");
   if (reader.names().empty())
-    throw Error(
-        "{}: the first line of a flow file must name its columns with units, such as 'time [h]'.",
-        file.string());
+    throw Error("{}: the first line of a flow file must name its columns with units, such as 'time [h]'.",
+                file.string());
   const FlowColumns columns(reader.names(), reader.place_of_names());
   std::vector<ScheduleRow> rows;
   while (reader.next()) {

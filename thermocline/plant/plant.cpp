@@ -80,8 +80,7 @@ void declare(config::Section& s, PlantParameters& p) {
           "its top is at "
           "most this much too cold");
   s.value("load", p.load)
-      .doc(
-          "requested share of electric-power, one value or 24 for the hours of the day from 00:00");
+      .doc("requested share of electric-power, one value or 24 for the hours of the day from 00:00");
   s.value("tariff", p.tariff)
       .doc("electricity price per MWh, one value or 24; with it the report includes the revenue");
   s.value("first-weekday", p.start.weekday)
@@ -103,8 +102,11 @@ void declare(config::Section& s, PlantParameters& p) {
       "tariff");
   s.check([&] { return p.hot > p.cold ? "" : "'hot' must be above 'cold'."; }, "hot");
   s.check(
-      [&] { return p.cut_off < p.hot - p.cold ? "" : "must be smaller than the difference between 'hot' and "
-                                                     "'cold'."; },
+      [&] {
+        return p.cut_off < p.hot - p.cold ? ""
+                                          : "must be smaller than the difference between 'hot' and "
+                                            "'cold'.";
+      },
       "cut-off");
 }
 

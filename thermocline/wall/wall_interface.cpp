@@ -12,8 +12,12 @@ void declare(config::Section& s, ExternalWallParameters& p) {
   s.value("sections", p.sections)
       .range(2, 100000)
       .doc("number of faces along the wall, equal to that of the other program's inner surface");
-  s.value("angle", p.angle).unit("rad").range(1e-6, 3).doc("angle of the wedge that the other program "
-                                                           "computes");
+  s.value("angle", p.angle)
+      .unit("rad")
+      .range(1e-6, 3)
+      .doc(
+          "angle of the wedge that the other program "
+          "computes");
 }
 
 WallInterface::WallInterface(const ExternalWallParameters& p, const Rings& rings)

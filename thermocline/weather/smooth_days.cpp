@@ -48,14 +48,16 @@ std::string problem_of(const SmoothDays& d, std::string& key) {
   for (const double sum : d.daily_sums)
     if (sum < 0 || sum > 24 * 1412 * seconds_an_hour)
       return fmt::format(
-          "{:g} J/m^2 is not a plausible daily sum; expected 0 to 33 kWh/m^2 (with its unit: 7.2 kWh/m^2)", sum);
+          "{:g} J/m^2 is not a plausible daily sum; expected 0 to 33 kWh/m^2 (with its unit: 7.2 kWh/m^2)",
+          sum);
   for (const auto& [name, values] :
        {std::pair{"form-n", &d.n}, {"form-p", &d.p}, {"day-length", &d.length}}) {
     key = name;
     if (values->size() != 1 && values->size() != months)
       return fmt::format("has {} values; expected one, or one for each of the 12 months", values->size());
     for (const double v : *values)
-      if (!(v > 0 && v <= 100)) return fmt::format("{:g} is out of range; expected above 0 and at most 100", v);
+      if (!(v > 0 && v <= 100))
+        return fmt::format("{:g} is out of range; expected above 0 and at most 100", v);
   }
   return "";
 }
@@ -70,8 +72,8 @@ double day_length(double latitude, int day) {
 
 WeatherHours with_smooth_days(WeatherHours record, const SmoothDays& d) {
   if (record.days() != days_a_year)
-    throw Error("{}: smooth days need air data of a whole year; this file has {} days.",
-                record.source, record.days());
+    throw Error("{}: smooth days need air data of a whole year; this file has {} days.", record.source,
+                record.days());
   for (int day = 0; day < days_a_year; ++day) {
     const auto month = std::size_t(month_of_day(day));
     const double sum = d.daily_sums[month];

@@ -32,8 +32,8 @@ std::vector<std::size_t> chosen_hours(const WeatherHours& record, const WeatherP
   for (int d = 0; d < count; ++d) {
     const int day = (begin + d) % days_a_year;
     if (day < first || day >= first + days)
-      throw Error("{}: this file has no weather for {}; it covers {} to {}.", record.source,
-                  date_of_day(day), date_of_day(first), date_of_day(first + days - 1));
+      throw Error("{}: this file has no weather for {}; it covers {} to {}.", record.source, date_of_day(day),
+                  date_of_day(first), date_of_day(first + days - 1));
   }
   const int n = days * hours_a_day;
   std::vector<std::size_t> chosen;

@@ -57,8 +57,8 @@ WeatherColumns::WeatherColumns(const std::vector<std::string>& head, const Names
     if (column_[q] || (q == humidity && dew_point_)) continue;
     std::vector<std::string> known(names.of[q].begin(), names.of[q].end());
     if (q == humidity) known.insert(known.end(), names.dew_point.begin(), names.dew_point.end());
-    throw Error("{}: the column for the {} is missing; it may be named {}.", place, weather_quantities[q].name,
-                join(known));
+    throw Error("{}: the column for the {} is missing; it may be named {}.", place,
+                weather_quantities[q].name, join(known));
   }
 }
 

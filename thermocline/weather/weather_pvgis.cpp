@@ -55,7 +55,8 @@ double number_behind(const std::vector<std::string>& lines, std::size_t end, std
         return number_in(lines[i].substr(colon + 1), word, hours.place(int(i) + 1));
     }
   if (without) return *without;
-  throw Error("{}: the first lines of a PVGIS file must contain '{} (decimal degrees): ...'.", hours.place(1), word);
+  throw Error("{}: the first lines of a PVGIS file must contain '{} (decimal degrees): ...'.", hours.place(1),
+              word);
 }
 
 }  // namespace
@@ -93,8 +94,8 @@ WeatherHours read_weather_pvgis(const std::filesystem::path& file) {
                                          stamp.substr(11, 2)};
     const int minute = whole_number(parts, 3, "the minute", place);
     if (minute < 0 || minute > 59 || minute != minutes.value_or(minute))
-      throw Error("{}: the minute is {}; all records of a PVGIS file must have the same, from 0 to 59.", place,
-                  minute);
+      throw Error("{}: the minute is {}; all records of a PVGIS file must have the same, from 0 to 59.",
+                  place, minute);
     minutes = minute;
     const auto number =
         hour_of_year(whole_number(parts, 0, "the month", place), whole_number(parts, 1, "the day", place),

@@ -13,8 +13,7 @@ namespace couplet::thermocline {
 std::vector<std::string> doubts_about_sun(const WeatherHours& record) {
   constexpr std::size_t fortnight = 14 * hours_a_day;
   if (record.dni.size() >= fortnight && *std::max_element(record.dni.begin(), record.dni.end()) <= 0)
-    return {fmt::format("{}: no direct irradiance in any of its {} days", record.source,
-                        record.days())};
+    return {fmt::format("{}: no direct irradiance in any of its {} days", record.source, record.days())};
   if (!record.site) return {};
   constexpr double hour = 3600, day = hours_a_day * hour;  // [s]
   constexpr double farthest_clock = 3;                     // [h]: 45 degrees

@@ -155,8 +155,7 @@ WeatherHours HourCollector::finish(double state_offset) {
       refuse_other_unit(file_, quantity, highest, 5.1,  // the solar constant in MJ/m^2 an hour
                         "too low for the sun; expected W/m^2, not kW/m^2 or MJ/m^2 per hour.");
     if (quantity.target == &WeatherHours::humidity)
-      refuse_other_unit(file_, quantity, highest, 1,
-                        "too dry for air; expected percent, not a fraction.");
+      refuse_other_unit(file_, quantity, highest, 1, "too dry for air; expected percent, not a fraction.");
     for (double& value : columns_[q]) value *= weather_quantities[q].factor;
     result.*weather_quantities[q].target = std::move(columns_[q]);
   }

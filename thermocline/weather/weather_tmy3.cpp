@@ -47,7 +47,8 @@ WeatherHours read_weather_tmy3(const std::filesystem::path& file) {
       throw Error("{}: {} values, but the file has {} columns.", place, fields.size(), head.size());
     const std::vector<std::string> day = split(fields[*date], '/'), clock = split(fields[*time], ':');
     if (day.size() != 3 || clock.size() != 2)
-      throw Error("{}: '{},{}' is not a date MM/DD/YYYY and time HH:MM.", place, fields[*date], fields[*time]);
+      throw Error("{}: '{},{}' is not a date MM/DD/YYYY and time HH:MM.", place, fields[*date],
+                  fields[*time]);
     const int hour = whole_number(clock, 0, "the hour", place);
     if (hour < 1 || hour > 24 || whole_number(clock, 1, "the minute", place) != 0)
       throw Error("{}: the time is {}; a TMY3 file has full hours from 01:00 to 24:00.", place,

@@ -69,8 +69,7 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
     if (!command_line.participant.empty() && command_line.participant != coupler_name)
       throw Error("The coupler takes no --participant: it couples the participants named in {}.", source);
     if (!file.coupled)
-      throw Error("{}:1:1: the `coupling` section is missing, so the coupler has nothing to do.",
-                  source);
+      throw Error("{}:1:1: the `coupling` section is missing, so the coupler has nothing to do.", source);
     return coupler_name;
   }
   std::vector<std::string> names, mine;
@@ -88,10 +87,11 @@ std::string find_participant(const CommandLine& command_line, const ProgramKind&
       throw Error("--participant {}: {} has no participant with this name. {}", wanted, source,
                   did_you_mean(wanted, names, "participants"));
     if (std::find(mine.begin(), mine.end(), wanted) == mine.end())
-      throw Error("--participant {}: this participant is run by the program '{}', but '{}' was started for "
-                  "it.", wanted,
-                  config::text_of(*file.document, "participants." + wanted + ".program").value_or("?"),
-                  kind.name);
+      throw Error(
+          "--participant {}: this participant is run by the program '{}', but '{}' was started for "
+          "it.",
+          wanted, config::text_of(*file.document, "participants." + wanted + ".program").value_or("?"),
+          kind.name);
     return wanted;
   }
   if (mine.empty()) {

@@ -117,10 +117,9 @@ class Cast {
           type == "interface")
         continue;
       say(key,
-          fmt::format(
-              "'{}' holds the wall '{}' fixed by `type: {}`, but in '{}' it is an interface that the "
-              "structure moves, so the mesh would not follow. Set `type: interface`",
-              *mover, patch, *type, *fluid));
+          fmt::format("'{}' holds the wall '{}' fixed by `type: {}`, but in '{}' it is an interface that the "
+                      "structure moves, so the mesh would not follow. Set `type: interface`",
+                      *mover, patch, *type, *fluid));
     }
   }
 

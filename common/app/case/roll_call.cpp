@@ -130,8 +130,7 @@ std::string attendance(const std::vector<Attendant>& attendants, const std::vect
     const bool known =
         std::any_of(expected.begin(), expected.end(),
                     [&name = participant](const Expected& e) { return e.participant == name; });
-    if (!known)
-      text += fmt::format("\n  '{}' was started, but the YAML file does not list it.", participant);
+    if (!known) text += fmt::format("\n  '{}' was started, but the YAML file does not list it.", participant);
   }
   return text;
 }
@@ -186,10 +185,10 @@ void check_hands(std::span<const std::int64_t> all) {
       fail(fmt::format(
           "Process {} of the job ({}) uses version {} of the protocol; the Couplet programs here use "
           "version {}. Use programs and the client library from one version of Couplet.",
-          r, kind == 0 ? "a program of Couplet" : "a guest", version, protocol_version));
+          r, kind == 0 ? "a program of Couplet" : "an external program", version, protocol_version));
     if (kind != 0 && kind != 1)
       fail(fmt::format(
-          "Process {} of the job reports kind {}; expected 0 (a Couplet program) or 1 (a guest).",
+          "Process {} of the job reports kind {}; expected 0 (a Couplet program) or 1 (an external program).",
           r, kind));
   }
 }
@@ -199,8 +198,7 @@ MPI_Comm shake_hands(MPI_Comm world) {
   std::vector<std::int64_t> all(4 * std::size_t(comm_size(world)));
   MPI_Request request;
   MPI_Iallgather(mine.data(), 4, MPI_INT64_T, all.data(), 4, MPI_INT64_T, world, &request);
-  wait_politely(request,
-                "every process of the job to join (docs/protocol.md, handshake)");
+  wait_politely(request, "every process of the job to join (docs/protocol.md, handshake)");
   check_hands(all);
   MPI_Comm natives;
   MPI_Comm_split(world, 0, comm_rank(world), &natives);
@@ -222,7 +220,7 @@ std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self) {
     attendants.push_back(introduced(one, int(attendants.size())));
   if (attendants.size() != std::size_t(comm_size(world)))
     throw Error(
-        "{} processes introduce themselves, but the job has {}: a guest's handshake must contain exactly "
+        "{} processes introduce themselves, but the job has {}: the handshake of an external program must contain exactly "
         "one end-of-text character (0x1e).",
         attendants.size(), comm_size(world));
   return attendants;

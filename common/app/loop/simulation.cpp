@@ -70,9 +70,7 @@ void declare(config::Section& section, SimulationParameters& p) {
             .plausible(1e-12, 1e10)
             .not_negative()
             .doc("time between checkpoints; 0: only at the end of the run");
-        s.value("keep", p.checkpoints_kept)
-            .range(1, 1000000)
-            .doc("number of latest checkpoints to keep");
+        s.value("keep", p.checkpoints_kept).range(1, 1000000).doc("number of latest checkpoints to keep");
       },
       "files for --restart");
   section.check(

@@ -20,8 +20,8 @@ void doubt_mesh_scale(const Mesh& mesh, std::span<const Vec3> places) {
                  {.id = "questionable-mesh-scale",
                   .number = size,
                   .limit = size < smallest ? smallest : largest,
-                  .sentence = fmt::format("mesh size: {:.3g} m (usual: {:g} to {:g} m): implausible",
-                                          size, smallest, largest),
+                  .sentence = fmt::format("mesh size: {:.3g} m (usual: {:g} to {:g} m): implausible", size,
+                                          smallest, largest),
                   .advice = "check 'mesh-scale' (0.001 for a mesh in millimetres)"});
   double farthest = 0;
   for (const Vec3& place : places) farthest = std::max(farthest, place.norm());

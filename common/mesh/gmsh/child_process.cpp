@@ -101,8 +101,7 @@ ProgramEnd run_child(const ChildProcess& child) {
   int error = 0;
   const bool failed = id > 0 && read(pipe[0], &error, sizeof error) == sizeof error;
   close(pipe[0]);
-  if (id < 0)
-    throw Error("Cannot start the program '{}': {}.", child.command[0], std::strerror(fork_error));
+  if (id < 0) throw Error("Cannot start the program '{}': {}.", child.command[0], std::strerror(fork_error));
   int status = 0;
   while (waitpid(id, &status, 0) < 0 && errno == EINTR) {
   }

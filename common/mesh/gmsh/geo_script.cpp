@@ -26,8 +26,7 @@ std::string read_file(const fs::path& file) {
   std::ifstream in;
   if (fs::is_regular_file(file, ignored)) in.open(file, std::ios::binary);
   if (!in.is_open())
-    throw Error("Cannot open the geometry file '{}'. Check the path and the permissions.",
-                file.string());
+    throw Error("Cannot open the geometry file '{}'. Check the path and the permissions.", file.string());
   if (fs::file_size(file, ignored) > largest)
     throw Error("The geometry file '{}' is larger than {} MB.", file.string(), largest >> 20);
   std::ostringstream text;

@@ -60,9 +60,7 @@ void write_files(const GmshInput& input, const fs::path& folder) {
     std::ofstream out(folder / file.name, std::ios::binary);
     out << file.text;
     out.close();
-    if (!out)
-      throw Error("Cannot write the file '{}'. Check the disk space.",
-                  (folder / file.name).string());
+    if (!out) throw Error("Cannot write the file '{}'. Check the disk space.", (folder / file.name).string());
   }
 }
 

@@ -63,12 +63,14 @@ Mesh load_mesh(MPI_Comm comm, const std::filesystem::path& file, int dim, const 
     raw = kind == ".geo" ? read_geo_mesh(file, dim, parameters) : read_finished_mesh(file);
     for (Vec3& x : raw.points) x *= scale;
     if (raw.cell_type.empty())
-      throw Error("The mesh '{}' has no cells. Put the {} into a physical group; otherwise gmsh does not "
-                  "save {}.",
-                  file.string(), dim == 2 ? "surface" : "volume", dim == 2 ? "its triangles" : "its cells");
+      throw Error(
+          "The mesh '{}' has no cells. Put the {} into a physical group; otherwise gmsh does not "
+          "save {}.",
+          file.string(), dim == 2 ? "surface" : "volume", dim == 2 ? "its triangles" : "its cells");
     if (raw.dim != dim)
       throw Error(
-          "The mesh '{}' is {}-dimensional, but the case sets 'dimension: {}'.{}", file.string(), raw.dim, dim,
+          "The mesh '{}' is {}-dimensional, but the case sets 'dimension: {}'.{}", file.string(), raw.dim,
+          dim,
           dim == 3 ? " Put the volume into a physical group; otherwise gmsh does not save its cells." : "");
     raw.periodic = periodic;
     raw.materials = materials;

@@ -25,8 +25,8 @@ void check_names(const std::filesystem::path& geo, const std::vector<std::string
           "The geometry file '{}' defines no parameters, so 'mesh-parameters' cannot set '{}'. Declare "
           "names that are set from outside as 'DefineConstant [ {} = {} ];'.",
           geo.string(), name, name, value);
-    throw Error("The geometry file '{}' defines no parameter '{}' with DefineConstant. {}", geo.string(), name,
-                did_you_mean(name, known, "names"));
+    throw Error("The geometry file '{}' defines no parameter '{}' with DefineConstant. {}", geo.string(),
+                name, did_you_mean(name, known, "names"));
   }
 }
 

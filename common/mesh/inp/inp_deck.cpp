@@ -19,10 +19,11 @@ constexpr std::size_t most_members = 20000000;
 
 /// Keywords that make or move nodes and elements, or part the deck: what they do is not done here.
 constexpr std::pair<std::string_view, std::string_view> refused[] = {
-    {"NGEN", "it generates nodes"},          {"NFILL", "it generates nodes"},   {"NCOPY", "it generates nodes"},
-    {"NMAP", "it transforms nodes"},          {"SYSTEM", "it transforms nodes"},  {"ELGEN", "it generates elements"},
-    {"ELCOPY", "it generates elements"},     {"SUBMODEL", "it is not a mesh"}, {"IMPORT", "it reads another file"},
-    {"MANIFEST", "it reads other files"}};
+    {"NGEN", "it generates nodes"},      {"NFILL", "it generates nodes"},
+    {"NCOPY", "it generates nodes"},     {"NMAP", "it transforms nodes"},
+    {"SYSTEM", "it transforms nodes"},   {"ELGEN", "it generates elements"},
+    {"ELCOPY", "it generates elements"}, {"SUBMODEL", "it is not a mesh"},
+    {"IMPORT", "it reads another file"}, {"MANIFEST", "it reads other files"}};
 
 class DeckReader {
  public:
@@ -41,9 +42,10 @@ class DeckReader {
     const InpKeyword k = lines_.keyword();
     for (const auto& [word, reason] : refused)
       if (k.word == word)
-        lines_.fail(fmt::format("*{} is not supported: {}. Export the mesh with all nodes and elements "
-                                "written out.",
-                                word, reason));
+        lines_.fail(
+            fmt::format("*{} is not supported: {}. Export the mesh with all nodes and elements "
+                        "written out.",
+                        word, reason));
     if (k.word == "INCLUDE") {
       const std::string* name = k.find("INPUT");
       lines_.include(name ? *name : "");
@@ -212,7 +214,8 @@ class DeckReader {
       lines_.fail("surfaces composed of other surfaces are not supported; list the faces.");
     const std::string type = k.find("TYPE") ? upper(*k.find("TYPE")) : "ELEMENT";
     if (type != "ELEMENT" && type != "NODE")
-      lines_.fail(fmt::format("surfaces of TYPE={} are not supported; use ELEMENT or NODE.", type.substr(0, 40)));
+      lines_.fail(
+          fmt::format("surfaces of TYPE={} are not supported; use ELEMENT or NODE.", type.substr(0, 40)));
     while (lines_.next() && !lines_.is_keyword()) {
       csv::split_cells(lines_.text(), ',', cells_);
       const auto cells = cells_;
@@ -224,9 +227,8 @@ class DeckReader {
       }
       const std::string face = cells.size() > 1 ? upper(cells[1]) : "";
       if (face.size() != 2 || face[0] != 'S' || face[1] < '1' || face[1] > '6')
-        lines_.fail(
-            fmt::format("expected a face of an element or of an ELSET, such as 'beam, S3', not '{}'.",
-                        lines_.text().substr(0, 60)));
+        lines_.fail(fmt::format("expected a face of an element or of an ELSET, such as 'beam, S3', not '{}'.",
+                                lines_.text().substr(0, 60)));
       add_named(members, cells[0], deck_.element_sets, "ELSET");
       surface.parts.push_back({std::move(members.members), face[1] - '1', lines_.mark()});
     }
@@ -237,7 +239,8 @@ class DeckReader {
   bool section(const InpKeyword& k) {
     const std::string& name = required(k, "ELSET");
     const InpSet* set = deck_.element_sets.find(name);
-    if (!set) lines_.fail(fmt::format("*SOLID SECTION: no ELSET '{}' is defined before.", name.substr(0, 60)));
+    if (!set)
+      lines_.fail(fmt::format("*SOLID SECTION: no ELSET '{}' is defined before.", name.substr(0, 60)));
     deck_.sections.emplace_back(set->name, set->members);
     return skip();
   }

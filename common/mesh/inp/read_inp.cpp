@@ -35,8 +35,8 @@ class InpMesh {
   Index point_of(const InpElements::Element& e, std::int64_t node) const {
     const auto found = deck_.point_of_node.find(node);
     if (found == deck_.point_of_node.end())
-      throw Error("{}: element {} has node {}, which the deck does not define.", lines_.place_of(e.mark), e.id,
-                  node);
+      throw Error("{}: element {} has node {}, which the deck does not define.", lines_.place_of(e.mark),
+                  e.id, node);
     return found->second;
   }
 
@@ -108,8 +108,7 @@ class InpMesh {
     std::vector<std::string> words;
     for (const auto& [word, n] : deck_.passed_over)
       if (words.size() < most_words) words.push_back(word);
-    if (!words.empty())
-      log::info("'{}': only the mesh is read; skipped: {}.", lines_.name(), join(words));
+    if (!words.empty()) log::info("'{}': only the mesh is read; skipped: {}.", lines_.name(), join(words));
   }
 
   InpLines& lines_;

@@ -11,8 +11,7 @@ namespace {
 
 std::string read_all(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary | std::ios::ate);
-  if (!in)
-    throw Error("Cannot open the mesh file '{}'. Check the path and the permissions.", file.string());
+  if (!in) throw Error("Cannot open the mesh file '{}'. Check the path and the permissions.", file.string());
   std::string text(static_cast<std::size_t>(in.tellg()), '\0');
   in.seekg(0);
   in.read(text.data(), static_cast<std::streamsize>(text.size()));

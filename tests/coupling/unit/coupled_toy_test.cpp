@@ -314,7 +314,7 @@ TEST(CoupledToy, a_run_that_cannot_go_on_says_when_who_and_why) {
   run();
   EXPECT_EQ(run.problem,
             "The step from t = 0 s could not be solved, also not with dt = 0.0125 s after 2 halvings: "
-            "'fluid' says: dt = "
+            "'fluid' reports: dt = "
             "0.0125 s is above 1e-06 s, the largest this piston can do. The state at t = 0 s was saved in " +
                 (run.folder / "checkpoints").string() + ".");
 }
@@ -324,7 +324,7 @@ TEST(CoupledToy, a_failed_mesh_motion_is_reported_with_the_movers_reason) {
   run.with_mover = run.mover_fails = true;
   run.simulation.max_step_halvings = 0;
   run();
-  EXPECT_THAT(run.problem, testing::HasSubstr("'mover' says: cell 7 is inverted."));
+  EXPECT_THAT(run.problem, testing::HasSubstr("'mover' reports: cell 7 is inverted."));
 }
 
 TEST(CoupledToy, no_convergence_within_the_allowed_iterations_halves_the_step) {
