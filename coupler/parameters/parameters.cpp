@@ -89,7 +89,7 @@ std::string problem_of_sub_steps(const CouplingParameters& p) {
   const std::vector<std::string> names = partners_of(p);
   for (const auto& [name, n] : p.sub_steps) {
     if (std::ranges::find(names, name) == names.end())
-      return fmt::format("no participant '{}' that supports sub-steps", name);
+      return fmt::format("there is no participant '{}' that supports sub-steps", name);
     if (n != std::round(n) || n < 1 || n > 10000)
       return fmt::format("'{}' needs a whole number of sub-steps from 1 to 10000", name);
     if (n == 1 || !p.fluid || name != p.fluid->participant) continue;

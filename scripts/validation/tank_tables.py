@@ -145,7 +145,7 @@ def bending_verdicts(job):
                                                         "participants.tank.report.run-in=1 day"])[1]
         line = [text for text in log.splitlines() if "bending of the wall left out:" in text][-1]
         rings, shell = map(float, re.search(r"reached ([\d.e-]+) of its yield strength as rings, and ([\d.e-]+) as a shell", line).groups())
-        said[case] = rings, shell, "leaving it out was sound" in line
+        said[case] = rings, shell, "justified" in line
     text = "; ".join(f"{case}: {rings:g} as rings, {shell:g} as a shell, {'sound' if sound else 'doubted'}" for case, (rings, shell, sound) in said.items())
     return text, said["A"][2] and not said["G"][2]
 

@@ -37,7 +37,7 @@ MISTAKES = [
      {"message": "the time step must not be longer than the run ('end-time')."}),
     ("a number that no computer holds", "solid", [("[1 MPa, 0]", "[1e400, 0]")], "refused", {"message": "1e400"}),
     ("Celsius without a unit", "heat", [("20 degC", "20")], "refused",
-     {"message": "initial-temperature: '20' has no unit, and this number needs one: write 20 degC or 20 K."}),
+     {"message": "initial-temperature: '20' has no unit, but one is required: write 20 degC or 20 K."}),
     ("Celsius written as Kelvin", "heat", [("20 degC", "20 K")], "flagged", {"message": "initial-temperature: 20 K (usual: 70 to 5000 K): implausible"}),
     ("below absolute zero", "heat", [("100 degC", "-300 degC")], "refused", {"message": "'-300 degC' is -26.85 K, below absolute zero."}),
     ("a table of temperatures without units", "heat", [("50 W/(m K)", "{of: T, at: [300, 600], values: [50, 40]}")], "refused",
@@ -48,5 +48,5 @@ MISTAKES = [
     ("per cent without its sign", "tank", [("porosity: 0.22", "porosity: 22")], "refused", {"message": "porosity: 22 is out of range"}),
     ("hot and cold the wrong way round", "tank", [("hot: 390 degC", "hot: 280 degC")], "refused", {"message": "'hot' must be above 'cold'."}),
     ("degrees for radians", "tank", [("    flow:\n", "    filler: {friction-angle: 30}\n    flow:\n")], "refused",
-     {"message": "friction-angle: '30' has no unit, and this number needs one: write 30 deg or 30 rad."}),
+     {"message": "friction-angle: '30' has no unit, but one is required: write 30 deg or 30 rad."}),
 ]

@@ -94,14 +94,14 @@ for strength, code in (("30 kPa", 0), ("9 kPa", 1)):
 # `effects: auto` decides what the case leaves open and says why; what the case says wins; without it nothing is decided.
 automatic = ("--set", "simulation.effects=auto")
 text = ask("solid_solver", cantilever, "--explain", *automatic, "--set", "participants.solid.analysis=")
-assert "auto: analysis: static (no load changes in time)" in text and not effects(text)["inertia"], text
+assert "auto: analysis: static (no load varies in time)" in text and not effects(text)["inertia"], text
 assert "auto: dimension: as given; auto would take 3" in text, text
 text = ask("solid_solver", cantilever, "--explain", *automatic, "--set", "participants.solid.analysis=dynamic")
 assert "auto: analysis: as given; auto would take static" in text and effects(text)["inertia"], text
 assert "auto:" not in ask("solid_solver", cantilever, "--explain")
 cavity = root / "configs/cavity/case.yaml"
 text = ask("fluid_solver", cavity, "--explain", *automatic, "--set", "participants.fluid.dimension=")
-assert "auto: dimension: 2 (the mesh has cells in the plane only)" in text and "auto: turbulence: none, laminar" in text, text
+assert "auto: dimension: 2 (the mesh has two-dimensional cells only)" in text and "auto: turbulence: none, laminar" in text, text
 with tempfile.TemporaryDirectory() as folder:
     out = subprocess.run([str(programs / "solid_solver"), str(cantilever), *automatic, "--set", "participants.solid.analysis=", "--set",
                           "participants.solid.dimension=", "--set", f"simulation.output.folder={folder}"], capture_output=True, text=True, timeout=100)

@@ -82,7 +82,7 @@ def scenes_():
     check("the same mesh without the fold does", code == 0, (code, text[-300:]))
     code, text, found = in_folder(scenes.explicit_step, "fluid_solver")
     check("an explicit step far beyond its limit ends the run with its cause",
-          code == 1 and "10 halvings of steps for one cause did not cure it: The flow diverges" in text, (code, text[-400:]))
+          code == 1 and "10 halvings of the step for one cause did not help: The flow diverges" in text, (code, text[-400:]))
     code, text, found = in_folder(lambda f: scenes.explicit_step(f, 0.002), "fluid_solver")
     check("a step below its limit runs", code == 0 and not found["fluid"], (code, found, text[-300:]))
     for case in ("oscillating-cylinder", "pitching-plate"):

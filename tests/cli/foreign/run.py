@@ -87,7 +87,7 @@ with tempfile.TemporaryDirectory() as top:
     for how, name, n, words in (("attribute", "mass", 6, "holds 6 values (float64); one number is expected"),
                                 ("attribute", "mass", 2000, "holds 2000 values (float64); one number is expected"),
                                 ("attribute", "format", 3, "one text of a fixed length"),
-                                ("table", "frequency", 3, "the table 'shape/vertices' has 150 rows of 4 values; 150 of 3 are expected"),
+                                ("table", "frequency", 3, "the table 'shape/vertices' has 150 rows of 4 values; expected 150 of 3"),
                                 ("external", "frequency", 1, "a link to another file"),
                                 ("cut", "participation", 1, "it has no 'participation'")):
         folder = fresh(f"{how}-{name}-{n}")

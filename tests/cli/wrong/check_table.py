@@ -25,46 +25,39 @@ def cases(Case):
         solid("3e9 steps", "", ("time-step: 0.5 s", "time-step: 3e-10 s"), exit_code=0),
     ]
     wrong = [
-        fluid("an expression of an inlet with an unknown name", "case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 1 of "
-              "the list: the expression '6*y*(1-Y)' cannot be read at column 8: unknown name 'Y'. " + KNOWN,
+        fluid("an expression of an inlet with an unknown name", "case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 1 of the list: the expression cannot parse '6*y*(1-Y)' at column 8: unknown name 'Y'. " + KNOWN,
               ("[1 m/s, 0 m/s]", '["6*y*(1-Y)", 0]')),
-        fluid("components of an inlet", "case.yaml:11:27: participants.fluid.boundaries.left.velocity: 3 components are given where the "
-              "2-dimensional scene needs 2.", ("[1 m/s, 0 m/s]", "[1, 0, 0]")),
+        fluid("components of an inlet", "case.yaml:11:27: participants.fluid.boundaries.left.velocity: 3 components are given, but the 2-dimensional scene needs 2.", ("[1 m/s, 0 m/s]", "[1, 0, 0]")),
         fluid("--check: patch of a fluid that the mesh has not", """
-case.yaml:12:7: participants.fluid.boundaries.rigth: the mesh has no patch of this name. Did you mean 'right'?
+case.yaml:12:7: participants.fluid.boundaries.rigth: the mesh has no patch with this name. Did you mean 'right'?
 case.yaml:10:5: participants.fluid.boundaries: the patch 'right' of the mesh has no entry here.
 """, ("right: {type", "rigth: {type")),
         solid("--check: patch without an entry", "case.yaml:13:5: participants.solid.boundaries: the patch 'top' of the mesh has no entry "
               "here.", ("      top: {type: free}\n", "")),
-        solid("--check: no such mesh", "case.yaml:6:5: participants.solid.mesh: there is no file 'circle.msh'.", ("square.msh", "circle.msh")),
+        solid("--check: no such mesh", "case.yaml:6:5: participants.solid.mesh: the file 'circle.msh' does not exist.", ("square.msh", "circle.msh")),
         solid("--check: patches of a .geo", """
-case.yaml:16:7: participants.solid.boundaries.bottom: the mesh has no patch of this name. Valid patches: left, right.
-case.yaml:17:7: participants.solid.boundaries.top: the mesh has no patch of this name. Valid patches: left, right.
+case.yaml:16:7: participants.solid.boundaries.bottom: the mesh has no patch with this name. Valid patches: left, right.
+case.yaml:17:7: participants.solid.boundaries.top: the mesh has no patch with this name. Valid patches: left, right.
 """, ("square.msh", "square.geo"), files={"square.geo": GEO}),
-        solid("--check: parameter of a .geo", "--set participants.solid.mesh-parameters.m=3: participants.solid.mesh-parameters.m: the .geo "
-              "defines no such name by DefineConstant. Did you mean 'n'?", ("square.msh", "square.geo"),
+        solid("--check: parameter of a .geo", "--set participants.solid.mesh-parameters.m=3: participants.solid.mesh-parameters.m: the .geo defines no such name with DefineConstant. Did you mean 'n'?", ("square.msh", "square.geo"),
               ("      bottom: {type: free}\n", ""), ("      top: {type: free}\n", ""), files={"square.geo": GEO},
               **with_set("participants.solid.mesh-parameters.m=3")),
         solid("a .geo that runs a command", """
-[solid 0] error: The geometry has 'SystemCall' in line 1 of square.geo, which is not passed to gmsh: a .geo can run commands and write files with your rights. Allowed are the statements that draw and mesh: numbers, points, curves, surfaces, volumes, loops, OpenCASCADE shapes and booleans, Extrude and other motions, Physical, Transfinite, Recombine, Periodic, sizes and Fields, For, If, Macro, DefineConstant, Include and Merge of files in the folder of the case, Printf to the terminal (docs/formats.md). If you trust the case, start with --allow-commands.
+[solid 0] error: The geometry has 'SystemCall' in line 1 of square.geo, which is not passed to gmsh, because a .geo can run commands and write files with your permissions. Allowed are statements for drawing and meshing: numbers, points, curves, surfaces, volumes, loops, OpenCASCADE shapes and booleans, Extrude and other transformations, Physical, Transfinite, Recombine, Periodic, sizes and Fields, For, If, Macro, DefineConstant, Include and Merge of files in the folder of the case, Printf to the terminal (docs/formats.md). If you trust the case, start with --allow-commands.
 """, ("square.msh", "square.geo"), files={"square.geo": 'SystemCall "touch pwned";\n' + GEO}, arguments=["case.yaml"]),
         solid("--check: a .geo that runs a command by a Field", """
-case.yaml:6:5: participants.solid.mesh: The geometry has a Field of the kind 'ExternalProcess' in line 1 of square.geo, which is not passed to gmsh: a .geo can run commands and write files with your rights. Allowed are the statements that draw and mesh: numbers, points, curves, surfaces, volumes, loops, OpenCASCADE shapes and booleans, Extrude and other motions, Physical, Transfinite, Recombine, Periodic, sizes and Fields, For, If, Macro, DefineConstant, Include and Merge of files in the folder of the case, Printf to the terminal (docs/formats.md). If you trust the case, start with --allow-commands.
+case.yaml:6:5: participants.solid.mesh: The geometry has a Field of type 'ExternalProcess' in line 1 of square.geo, which is not passed to gmsh, because a .geo can run commands and write files with your permissions. Allowed are statements for drawing and meshing: numbers, points, curves, surfaces, volumes, loops, OpenCASCADE shapes and booleans, Extrude and other transformations, Physical, Transfinite, Recombine, Periodic, sizes and Fields, For, If, Macro, DefineConstant, Include and Merge of files in the folder of the case, Printf to the terminal (docs/formats.md). If you trust the case, start with --allow-commands.
 """, ("square.msh", "square.geo"), ("      bottom: {type: free}\n", ""), ("      top: {type: free}\n", ""),
               files={"square.geo": "Field[1] = ExternalProcess;\n" + GEO}),
-        solid("--check: nothing holds the solid", "case.yaml:13:5: participants.solid.boundaries: nothing holds the solid of this static "
-              "analysis: at least one patch must be fixed, supported, sprung or on a plane of symmetry.",
+        solid("--check: nothing holds the solid", "case.yaml:13:5: participants.solid.boundaries: no patch supports the solid in this static analysis: at least one must be fixed, supported, sprung or a plane of symmetry.",
               ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: free}")),
-        solid("a table with a column out of range", "case.yaml:15:31: participants.solid.boundaries.right.value: profile.csv: the "
-              "table's values stand in a column from 2 to 2, not in '1e300'.",
+        solid("a table with a column out of range", "case.yaml:15:31: participants.solid.boundaries.right.value: profile.csv: the table's values must be in a column from 2 to 2, not in '1e300'.",
               ("{type: traction, value: [1000, 0]}", "{type: pressure, value: {of: t, file: profile.csv, column: 1e300}}"),
               files={"profile.csv": "0 1\n1 2\n"}),
         solid("a participant with a folder's name", "case.yaml:3:1: participants: '../up': the name becomes a folder: no '/', '\\', '.' or "
               "blank in it, no '-' in front.", ("  solid:\n", "  ../up:\n")),
         solid("a participant without a name", "case.yaml:3:1: participants: '': a participant needs a name.", ("  solid:\n", '  "":\n')),
-        solid("a participant called like the checkpoints", "case.yaml:3:1: participants: 'checkpoints': the run itself has a folder or file of "
-              "this name; take another.", ("  solid:\n", "  checkpoints:\n")),
-        solid("more steps than can be counted", "case.yaml:2:29: simulation.time-step: the run would take 1e+15 steps; at most 1e+12 are "
-              "possible.", ("time-step: 0.5 s", "time-step: 1e-15 s")),
+        solid("a participant called like the checkpoints", "case.yaml:3:1: participants: 'checkpoints': this name is reserved for a folder or file of the run; choose another.", ("  solid:\n", "  checkpoints:\n")),
+        solid("more steps than can be counted", "case.yaml:2:29: simulation.time-step: the run would take 1e+15 steps; at most 1e+12 are allowed.", ("time-step: 0.5 s", "time-step: 1e-15 s")),
     ]
     return right, wrong

@@ -5,7 +5,7 @@
 def cases(fluid, RUN):
     return [
     fluid("viscosity of the other kind", """
-case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' does not convert to Pa s; expected Pa s or a unit that converts to it.
+case.yaml:9:5: participants.fluid.viscosity: '1e-6 m^2/s': the unit 'm^2/s' is not convertible to Pa s; expected Pa s or a unit convertible to it.
 """, ("1e-3 Pa s", "1e-6 m^2/s")),
     fluid("boundary of a fluid without type", """
 case.yaml:13:7: participants.fluid.boundaries.bottom.type: this required key is missing (one of: inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface, body).
@@ -17,48 +17,48 @@ case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity'
 case.yaml:11:14: participants.fluid.boundaries.left.type: give either 'velocity', 'mean-speed' or 'table'.
 """, (", velocity: [1 m/s", ", mean-speed: 1, velocity: [1 m/s")),
     fluid("velocity from a file that is not there", """
-case.yaml:11:35: participants.fluid.boundaries.left.table.file: there is no file 'none.csv'.
+case.yaml:11:35: participants.fluid.boundaries.left.table.file: the file 'none.csv' does not exist.
 """, (", velocity: [1 m/s, 0 m/s]", ", table: {file: none.csv}")),
     fluid("velocity from a file with a gap", """
-[fluid 0] error: in.csv: the grid has no value at y = 1, t = 1; each place of an axis needs one at each place of the others.
+[fluid 0] error: in.csv: the grid has no value at y = 1, t = 1; a table must be a full grid.
 """, (", velocity: [1 m/s, 0 m/s]", ", table: {file: in.csv}"), files={"in.csv": "y,t,u,v\n0,0,1,0\n0,1,1,0\n1,0,1,0\n"}, **RUN),
     fluid("line of a single point", """
-case.yaml:10:57: participants.fluid.output.samples.a.to: 'from' and 'to' are one point.
+case.yaml:10:57: participants.fluid.output.samples.a.to: 'from' and 'to' coincide.
 """, ("    boundaries:\n", "    output: {samples: {a: {type: line, from: [0, 0, 0], to: [0, 0, 0]}}}\n    boundaries:\n")),
     fluid("turbulence model that is not there", """
 case.yaml:10:18: participants.fluid.turbulence.model: 'smagorinski' is not one of: smagorinsky, wale. Did you mean 'smagorinsky'?
 """, ("    boundaries:\n", "    turbulence: {model: smagorinski}\n    boundaries:\n")),
     fluid("immersed body without a level", """
-case.yaml:10:14: participants.fluid.bodies.ball.level: this required key is missing (expression of x, y, z [m] and t [s]: below zero inside, near the surface about the distance to it: number or expression in m).
+case.yaml:10:14: participants.fluid.bodies.ball.level: this required key is missing (expression of x, y, z [m] and t [s]: negative inside, approximately the distance near the surface: number or expression in m).
 """, ("    boundaries:\n", "    bodies: {ball: {velocity: [1, 0]}}\n    boundaries:\n")),
     fluid("periodic without partner", """
-case.yaml:12:7: participants.fluid.boundaries.right.partner: this required key is missing (the patch that is the translated copy of this one: text).
+case.yaml:12:7: participants.fluid.boundaries.right.partner: this required key is missing (the patch that is a translated copy of this one: text).
 """, ("{type: outlet, pressure: 0}", "{type: periodic}")),
     fluid("component with a wrong unit", """
-case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 2 of the list: '0 Pa': the unit 'Pa' does not convert to m/s; expected m/s or a unit that converts to it.
+case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 2 of the list: '0 Pa': the unit 'Pa' is not convertible to m/s; expected m/s or a unit convertible to it.
 """, ("0 m/s]", "0 Pa]")),
     fluid("parabola of a velocity that is given", """
-case.yaml:11:14: participants.fluid.boundaries.left.type: 'profile: parabolic' is that of 'mean-speed'; give 'mean-speed' in place of the other, or leave 'profile' out.
+case.yaml:11:14: participants.fluid.boundaries.left.type: 'profile: parabolic' requires 'mean-speed'; use 'mean-speed', or remove 'profile'.
 """, (", velocity: [1 m/s, 0 m/s]", ", profile: parabolic, velocity: [1 m/s, 0 m/s]")),
     fluid("moment about an axis in the plane", """
-[fluid 0] error: output.coefficients.a.axis: a plane scene turns about z, [0, 0, 1]; to turn the other way give the negative angle or speed.
+[fluid 0] error: output.coefficients.a.axis: a 2-D scene rotates about z, [0, 0, 1]; for the opposite direction use a negative angle or speed.
 """, ("    boundaries:\n", "    output: {coefficients: {a: {patches: [top], speed: 1, area: 1, axis: [1, 0, 0]}}}\n    boundaries:\n"), **RUN),
     fluid("forces without a direction", """
 case.yaml:10:68: participants.fluid.output.coefficients.a.drag: a direction must not be zero.
 """, ("    boundaries:\n", "    output: {coefficients: {a: {patches: [top], speed: 1, area: 1, drag: [0, 0, 0]}}}\n    boundaries:\n")),
     fluid("bound of implicit steps where steps are explicit", """
-case.yaml:11:5: participants.fluid.implicit-stretch: it bounds steps with an implicit viscous term, and 'viscous' is explicit; remove it.
+case.yaml:11:5: participants.fluid.implicit-stretch: it bounds steps with an implicit viscous term, but 'viscous' is explicit; remove it.
 """, ("    boundaries:\n", "    viscous: explicit\n    implicit-stretch: 4\n    boundaries:\n")),
     fluid("inner radius without an outer one", """
 case.yaml:10:5: participants.fluid.motion.outer-radius: 'inner-radius' has no effect without 'outer-radius'; give both or neither.
 """, ("    boundaries:\n", "    motion: {angle: 0.1*t, inner-radius: 0.1}\n    boundaries:\n")),
     fluid("outlet with a velocity", """
-case.yaml:12:29: participants.fluid.boundaries.right.velocity: this key does not belong here; it goes with type: inlet or type: moving-wall.
+case.yaml:12:29: participants.fluid.boundaries.right.velocity: this key is not valid here; it requires type: inlet or type: moving-wall.
 """, ("pressure: 0", "velocity: [1, 0]")),
     fluid("unknown treatment", """
 case.yaml:10:5: participants.fluid.viscous: 'implizit' is not one of: auto, explicit, implicit. Did you mean 'implicit'?
 """, ("    boundaries", "    viscous: implizit\n    boundaries")),
     fluid("true or false", """
-case.yaml:10:14: participants.fluid.output.vorticity: '2' is not one of: true, false.
+case.yaml:10:14: participants.fluid.output.vorticity: '2' is not valid; expected true or false.
 """, ("    boundaries", "    output: {vorticity: 2}\n    boundaries")),
 ]

@@ -13,7 +13,7 @@ case.yaml:9:5: participants.solid.material: give either 'material' (of the whole
 """, ("    boundaries:", "    materials: {rubber: {density: 1000, youngs-modulus: 1e7, "
                                            "poissons-ratio: 0.4}}\n    boundaries:")),
         solid("orthotropic constants of no body", """
-case.yaml:11:54: participants.solid.material.orthotropic.poissons-ratios: with these moduli the strain energy would not be positive: |nu_ij| must be below sqrt(E_i / E_j), and 1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 positive (nu_ji = nu_ij E_j / E_i).
+case.yaml:11:54: participants.solid.material.orthotropic.poissons-ratios: these moduli violate positive strain energy: |nu_ij| must be below sqrt(E_i / E_j), and 1 - nu12 nu21 - nu23 nu32 - nu13 nu31 - 2 nu21 nu32 nu13 positive (nu_ji = nu_ij E_j / E_i).
 """, ("      youngs-modulus: 1 MPa\n      poissons-ratio: 0.3\n",
           "      orthotropic: {youngs-moduli: [15e6, 1e6, 1e6], poissons-ratios: [4, 0.3, 0.3], shear-moduli: [1e6, 1e6, 1e6]}\n")),
         solid("orthotropic and isotropic", """
@@ -22,7 +22,7 @@ case.yaml:11:7: participants.solid.material.orthotropic: give either 'orthotropi
           "      orthotropic: {youngs-moduli: [1e6, 1e6, 1e6], poissons-ratios: [0.3, 0.3, 0.3], shear-moduli: [1e6, 1e6, 1e6]}\n"
           "      youngs-modulus: 1 MPa\n")),
         solid("orthotropic at large strain", """
-case.yaml:6:5: participants.solid.kinematics: an orthotropic material is linear; finite strain knows the laws of docs/large-strain.md only.
+case.yaml:6:5: participants.solid.kinematics: an orthotropic material is linear; finite strain supports only the laws of docs/large-strain.md.
 """, ("      youngs-modulus: 1 MPa\n      poissons-ratio: 0.3\n",
           "      orthotropic: {youngs-moduli: [1e6, 1e6, 1e6], poissons-ratios: [0.3, 0.3, 0.3], shear-moduli: [1e6, 1e6, 1e6]}\n"),
               ("    mesh:", "    kinematics: finite-strain\n    mesh:")),

@@ -66,30 +66,30 @@ FILE = [
 """, arguments=[".", "--check"]),
     solid("empty file", """
 case.yaml:1:1: this file is empty.
-case.yaml:1:1: there is no `participants` section, which says what solid_solver is to run.
+case.yaml:1:1: the `participants` section, which defines what solid_solver runs, is missing.
 """, text=""),
     solid("a list instead of a mapping", """
 case.yaml:1:1: expected a mapping (keys with values), found a list.
-case.yaml:1:1: there is no `participants` section, which says what solid_solver is to run.
+case.yaml:1:1: the `participants` section, which defines what solid_solver runs, is missing.
 """, text="- a\n- b\n"),
-    solid("tab", "case.yaml:5:2: this is not valid YAML: a tab cannot indent a line; use spaces.", ("    program", "\tprogram")),
+    solid("tab", "case.yaml:5:2: this is not valid YAML: tabs cannot be used for indentation; use spaces.", ("    program", "\tprogram")),
     solid("list that is not closed", """
-case.yaml:14:52: this is not valid YAML: this bracket closes something that is not open; check '[', ']', '{' and '}'.
+case.yaml:14:52: this is not valid YAML: this bracket closes nothing; check '[', ']', '{' and '}'.
 """, ("value: [0, 0]}", "value: [0, 0}")),
     solid("mapping that is not closed", """
-case.yaml:3:13: this is not valid YAML: a mapping that was opened with '{' before this place is not closed by '}'.
+case.yaml:3:13: this is not valid YAML: a mapping opened with '{' before this position is not closed by '}'.
 """, ("time-step: 0.5 s}", "time-step: 0.5 s")),
     solid("indented too little", """
-case.yaml:9:4: this is not valid YAML: this line does not fit the mapping above; check its indentation and its ':'.
+case.yaml:9:4: this is not valid YAML: this line does not match the mapping above; check its indentation and its ':'.
 """, ("    material", "   material")),
     solid("two colons in a line", """
-case.yaml:5:26: this is not valid YAML: a ':' stands where no key can be; check the indentation above, and quote a text that has ': '.
+case.yaml:5:26: this is not valid YAML: a ':' is not allowed here; check the indentation above, and quote text that contains ': '.
 """, ("program: solid_solver", "program: solid_solver: 2")),
     solid("duplicate key", """
-case.yaml:8:5: participants.solid.mesh: this key stands here twice (first at 6:5); remove one of the two.
+case.yaml:8:5: participants.solid.mesh: this key appears twice (first at 6:5); remove one of the two.
 """, ("    analysis", "    mesh: other.msh\n    analysis")),
     coupler("duplicate participant", """
-case.yaml:16:3: participants.fluid: this key stands here twice (first at 5:3); remove one of the two.
+case.yaml:16:3: participants.fluid: this key appears twice (first at 5:3); remove one of the two.
 """, ("  solid:", "  fluid:")),
     solid("unknown section", """
 case.yaml:2:1: simulations: unknown section. Did you mean 'simulation'?
@@ -103,16 +103,16 @@ case.yaml:11:23: this is not valid YAML: this '*name' refers to an anchor '&name
 SIMULATION = [
     solid("no simulation", "case.yaml:1:1: simulation: this section is missing.", ("simulation: {end-time: 1 s, time-step: 0.5 s}\n", "")),
     solid("no end time", """
-case.yaml:2:1: simulation.end-time: this required key is missing (the run ends at this time: number in s).
+case.yaml:2:1: simulation.end-time: this required key is missing (end time of the run: number in s).
 """, ("end-time: 1 s, ", "")),
     solid("unit of another quantity", """
-case.yaml:2:14: simulation.end-time: '1 m': the unit 'm' does not convert to s; expected s or a unit that converts to it.
+case.yaml:2:14: simulation.end-time: '1 m': the unit 'm' is not convertible to s; expected s or a unit convertible to it.
 """, ("end-time: 1 s", "end-time: 1 m")),
     solid("unknown unit", """
-case.yaml:2:14: simulation.end-time: '1 sec': unknown unit 'sec'. Expected s or a unit that converts to it.
+case.yaml:2:14: simulation.end-time: '1 sec': unknown unit 'sec'. Expected s or a unit convertible to it.
 """, ("end-time: 1 s", "end-time: 1 sec")),
     solid("decimal comma", """
-case.yaml:2:14: simulation.end-time: '1,5 s' has a decimal comma; write a point.
+case.yaml:2:14: simulation.end-time: '1,5 s' has a decimal comma; use a decimal point.
 """, ("end-time: 1 s", 'end-time: "1,5 s"')),
     solid("not a number", """
 case.yaml:2:14: simulation.end-time: 'long' is not a number; expected a number in s or with its unit.
@@ -137,37 +137,37 @@ case.yaml:2:47: simulation.output: expected a mapping (keys with values), found 
 """, ("time-step: 0.5 s", "time-step: 0.5 s, output: all")),
 ]
 
-OURS = "the run itself has a folder or file of this name; take another"
+OURS = "this name is reserved for a folder or file of the run; choose another"
 NO_FOLDER = "the name becomes a folder: no '/', '\\', '.' or blank in it, no '-' in front"
 PARTICIPANTS = [
     solid("no participants", """
-case.yaml:1:1: there is no `participants` section, which says what solid_solver is to run.
+case.yaml:1:1: the `participants` section, which defines what solid_solver runs, is missing.
 """, text="simulation: {end-time: 1 s, time-step: 0.5 s}\n"),
     solid("no program", """
-case.yaml:4:3: participants.solid: the key 'program' is missing: the name of the program that runs this participant, for instance solid_solver.
-case.yaml:3:1: participants: none of them is run by the program 'solid_solver': 'solid' (?).
+case.yaml:4:3: participants.solid: the key 'program' is missing: the program that runs this participant, for example solid_solver.
+case.yaml:3:1: participants: no participant is run by the program 'solid_solver': 'solid' (?).
 """, ("    program: solid_solver\n", "")),
     solid("misspelt program", """
-case.yaml:3:1: participants: none of them is run by the program 'solid_solver': 'solid' (solid_slover).
+case.yaml:3:1: participants: no participant is run by the program 'solid_solver': 'solid' (solid_slover).
 """, ("program: solid_solver", "program: solid_slover")),
     solid("no such participant", """
---participant sold: case.yaml has no participant of this name. Did you mean 'solid'?
+--participant sold: case.yaml has no participant with this name. Did you mean 'solid'?
 """, arguments=["case.yaml", "--check", "--participant", "sold"]),
     fluid("program of another participant", """
-case.yaml:2:1: participants: none of them is run by the program 'fluid_solver': 'solid' (solid_solver).
+case.yaml:2:1: participants: no participant is run by the program 'fluid_solver': 'solid' (solid_solver).
 """, arguments=["case.yaml", "--check"], text="""\
 simulation: {end-time: 1 s, time-step: 0.5 s}
 participants:
   solid: {program: solid_solver}
 """),
     solid("two participants with this program", """
-case.yaml:3:1: participants: 2 of them are run by the program 'solid_solver' (other, solid): say which one with --participant.
+case.yaml:3:1: participants: 2 participants are run by the program 'solid_solver' (other, solid): select one with --participant.
 """, ("  solid:", "  other: {program: solid_solver}\n  solid:")),
     *[solid(f"participant named '{name}'", f"case.yaml:3:1: participants: '{name}': {why}.", ("  solid:", f'  "{name}":'))
       for name, why in (("", "a participant needs a name"), ("coupler", "the coupler is not a participant; its keys are in `coupling`"),
                         ("checkpoints", OURS), ("run", OURS), ("a/b", NO_FOLDER), ("..", NO_FOLDER), ("-o", NO_FOLDER),
-                        ("a" * 51, "the name has 51 characters; at most 50 are possible"))],
-    coupler("no coupling", "case.yaml:1:1: there is no `coupling` section, so there is nothing for the coupler to do.", text="simulation: {end-time: 1 s, time-step: 0.5 s}\nparticipants:\n  a: {program: b}\n"),
+                        ("a" * 51, "the name has 51 characters; at most 50 are allowed"))],
+    coupler("no coupling", "case.yaml:1:1: the `coupling` section is missing, so the coupler has nothing to do.", text="simulation: {end-time: 1 s, time-step: 0.5 s}\nparticipants:\n  a: {program: b}\n"),
 ]
 
 SOLID = [
@@ -176,10 +176,10 @@ case.yaml:4:3: participants.solid.material: give either 'material' (of the whole
 """, ("    material:\n      density: 1000 kg/m^3\n      youngs-modulus: 1 MPa\n"
                                       "      poissons-ratio: 0.3\n", "")),
     solid("modulus in kilograms", """
-case.yaml:11:7: participants.solid.material.youngs-modulus: '1 kg': the unit 'kg' does not convert to Pa; expected Pa or a unit that converts to it.
+case.yaml:11:7: participants.solid.material.youngs-modulus: '1 kg': the unit 'kg' is not convertible to Pa; expected Pa or a unit convertible to it.
 """, ("1 MPa", "1 kg")),
     solid("misspelt unit", """
-case.yaml:11:7: participants.solid.material.youngs-modulus: '1 Mpa': unknown unit 'Mpa'. Did you mean 'MPa'? Expected Pa or a unit that converts to it.
+case.yaml:11:7: participants.solid.material.youngs-modulus: '1 Mpa': unknown unit 'Mpa'. Did you mean 'MPa'? Expected Pa or a unit convertible to it.
 """, ("1 MPa", "1 Mpa")),
     solid("incompressible", """
 case.yaml:12:7: participants.solid.material.poissons-ratio: 0.5 is out of range; expected a value from -0.99 to 0.49999.
@@ -188,7 +188,7 @@ case.yaml:12:7: participants.solid.material.poissons-ratio: 0.5 is out of range;
 case.yaml:12:7: participants.solid.material.poisson-ratio: unknown key. Did you mean 'poissons-ratio'?
 """, ("poissons-ratio", "poisson-ratio")),
     solid("unit where there is none", """
-case.yaml:12:7: participants.solid.material.poissons-ratio: '0.3 m' has more than a number in it ('m'); expected a plain number.
+case.yaml:12:7: participants.solid.material.poissons-ratio: '0.3 m' contains more than a number ('m'); expected a plain number.
 """, ("poissons-ratio: 0.3", "poissons-ratio: 0.3 m")),
     solid("unknown word", """
 case.yaml:8:5: participants.solid.analysis: 'dynamics' is not one of: dynamic, static, thermal, buckling. Did you mean 'dynamic'?
@@ -204,10 +204,10 @@ case.yaml:15:15: participants.solid.boundaries.right.type: 'tractions' is not on
 case.yaml:16:7: participants.solid.boundaries.bottom.type: this required key is missing (one of: fixed-displacement, traction, pressure, force, remote-load, bearing-load, hydrostatic-pressure, symmetry, frictionless, soft-support, hard-support, spring, zero-normal-gradient, free, interface).
 """, ("{type: free}\n      top", "{}\n      top")),
     solid("boundary without value", """
-case.yaml:14:7: participants.solid.boundaries.left.value: give either 'value' (all components) or 'components' (those that are known, x, y, z).
+case.yaml:14:7: participants.solid.boundaries.left.value: give either 'value' (all components) or 'components' (the prescribed ones of x, y, z).
 """, ("value: [0, 0]", "")),
     solid("key of another boundary type", """
-case.yaml:16:28: participants.solid.boundaries.bottom.value: this key does not belong here; it goes with type: fixed-displacement or type: traction or type: pressure or type: force or type: spring.
+case.yaml:16:28: participants.solid.boundaries.bottom.value: this key is not valid here; it requires type: fixed-displacement or type: traction or type: pressure or type: force or type: spring.
 """, ("bottom: {type: free}", "bottom: {type: free, value: [0, 0]}")),
     solid("boundaries as a list", """
 case.yaml:13:5: participants.solid.boundaries: expected a mapping with one entry for each patch, found a list.
@@ -230,25 +230,25 @@ case.yaml:9:5: participants.solid.damping: damping has no effect in a static ana
 case.yaml:9:5: participants.solid.time-step-control: a static analysis has no time error to control; remove it.
 """, ("analysis: dynamic", "analysis: static\n    time-step-control: {tolerance: 1 mm}")),
     solid("probe of an unknown field", """
-case.yaml:19:28: participants.solid.probes.tip.fields: there is no field 'stres'; the fields are displacement, velocity, acceleration, stress, equivalent-stress, principal-stress, strain, temperature.
+case.yaml:19:28: participants.solid.probes.tip.fields: unknown field 'stres'; the fields are displacement, velocity, acceleration, stress, equivalent-stress, principal-stress, strain, temperature.
 """, ("      top: {type: free}", "      top: {type: free}\n    probes:\n      tip: {point: [1, 1], fields: [stres]}")),
     solid("time scheme of a static analysis", """
 case.yaml:9:5: participants.solid.time-scheme: a static analysis has no inertia to integrate in time; remove it.
 """, ("analysis: dynamic", "analysis: static\n    time-scheme: {type: bathe}")),
     solid("volume strain of another gradient", """
-case.yaml:9:49: participants.solid.solution-method.volume-strain: it is of 'face-gradient: symmetric' with 'type: newton-krylov'; change these, or remove it.
+case.yaml:9:49: participants.solid.solution-method.volume-strain: it requires 'face-gradient: symmetric' with 'type: newton-krylov'; change these, or remove it.
 """, ("analysis: dynamic", "analysis: dynamic\n    solution-method: {face-gradient: corrected, volume-strain: cells}")),
     solid("initial velocity of a static analysis", """
-case.yaml:9:5: participants.solid.initial-velocity: it has an effect with 'analysis: dynamic' only; remove it.
+case.yaml:9:5: participants.solid.initial-velocity: it requires 'analysis: dynamic'; remove it.
 """, ("analysis: dynamic", "analysis: static\n    initial-velocity: [1, 0]")),
     solid("data of an interface that is not there", """
-case.yaml:9:5: participants.solid.interface: no patch is an interface: give one 'type: interface', or remove this section.
+case.yaml:9:5: participants.solid.interface: no patch is an interface: set 'type: interface' for one, or remove this section.
 """, ("analysis: dynamic", "analysis: dynamic\n    interface: {load: pressure}")),
     solid("unknown time scheme", """
 case.yaml:9:19: participants.solid.time-scheme.type: 'bath' is not one of: euler, three-point, trapezoidal, bathe, generalised-alpha. Did you mean 'bathe'?
 """, ("analysis: dynamic", "analysis: dynamic\n    time-scheme: {type: bath}")),
     solid("known components and all of them", """
-case.yaml:14:40: participants.solid.boundaries.left.value: give either 'value' (all components) or 'components' (those that are known, x, y, z).
+case.yaml:14:40: participants.solid.boundaries.left.value: give either 'value' (all components) or 'components' (the prescribed ones of x, y, z).
 """,
           ("{type: fixed-displacement, value: [0, 0]}", "{type: fixed-displacement, value: [0, 0], components: {x: 0}}")),
     solid("third component of a plane scene", """
@@ -256,10 +256,10 @@ case.yaml:14:7: participants.solid.boundaries.left.value: a 2-dimensional scene 
 """,
           ("{type: fixed-displacement, value: [0, 0]}", "{type: fixed-displacement, components: {z: 0}}")),
     solid("part without its faces", """
-case.yaml:16:36: participants.solid.boundaries.bottom.parts[0].where: this required key is missing (expression of x, y, z at the centre of a face that is not 0 on the faces of this part: number or expression).
+case.yaml:16:36: participants.solid.boundaries.bottom.parts[0].where: this required key is missing (expression of x, y, z at the face centres, nonzero on the faces of this part: number or expression).
 """, ("bottom: {type: free}", "bottom: {type: free, parts: [{type: symmetry}]}")),
     solid("part with an unknown name", """
-case.yaml:16:37: participants.solid.boundaries.bottom.parts[0].where: the expression 'abs(r) < 1' cannot be read at column 5: unknown name 'r'. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
+case.yaml:16:37: participants.solid.boundaries.bottom.parts[0].where: cannot parse the expression 'abs(r) < 1' at column 5: unknown name 'r'. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
 """,
           ("bottom: {type: free}", "bottom: {type: free, parts: [{where: abs(r) < 1, type: symmetry}]}")),
     solid("interface on a part", """
@@ -267,7 +267,7 @@ case.yaml:16:51: participants.solid.boundaries.bottom.parts[0].type: 'interface'
 """,
           ("bottom: {type: free}", "bottom: {type: free, parts: [{where: x < 1, type: interface}]}")),
     solid("spring without stiffness", """
-case.yaml:16:7: participants.solid.boundaries.bottom.stiffness: this required key is missing (force per area and displacement, of x, y, z (Winkler's bedding): number or expression in N/m^3).
+case.yaml:16:7: participants.solid.boundaries.bottom.stiffness: this required key is missing (force per area and displacement, of x, y, z (Winkler foundation): number or expression in N/m^3).
 """, ("bottom: {type: free}", "bottom: {type: spring}")),
     solid("several mistakes at once", """
 case.yaml:2:14: simulation.end-time: 0 s is out of range; expected a value above 0 s.
@@ -278,13 +278,13 @@ case.yaml:11:7: participants.solid.material.youngs-modulus: 'soft' is not a numb
 
 HEAT = [
     solid("thermal strain without a temperature", """
-case.yaml:13:5: participants.solid.thermal-expansion: thermal strain needs a temperature; give 'heat' or 'temperature'.
+case.yaml:13:5: participants.solid.thermal-expansion: thermal strain needs a temperature; add 'heat' or 'temperature'.
 """, ("    boundaries:\n", "    thermal-expansion: {reference-temperature: 20 degC}\n    boundaries:\n")),
     solid("heat without conductivity", """
 case.yaml:9:5: participants.solid.material: 'conductivity' of the material is missing; 'heat' needs it.
 """, ("    boundaries:\n", "    heat: {initial-temperature: 20 degC}\n    boundaries:\n")),
     solid("heat and a prescribed temperature", """
-case.yaml:14:5: participants.solid.temperature: 'heat' solves for the temperature; remove one of the two.
+case.yaml:14:5: participants.solid.temperature: 'heat' computes the temperature; remove one of the two.
 """, ("    boundaries:\n", "    temperature: 300 + x\n    heat: {analysis: steady}\n    boundaries:\n"),
           ("poissons-ratio: 0.3", "poissons-ratio: 0.3\n      conductivity: 50")),
     solid("thermal analysis without heat", """
@@ -294,43 +294,43 @@ case.yaml:8:5: participants.solid.analysis: a thermal analysis needs 'heat'.
 case.yaml:13:7: participants.solid.material.conductivity: '50 - 0.1*T' is neither a number nor a table of the temperature, such as {of: T, at: [300 K, 600 K], values: [210 GPa, 180 GPa]}.
 """, ("poissons-ratio: 0.3", "poissons-ratio: 0.3\n      conductivity: 50 - 0.1*T")),
     solid("table with a value too few", """
-case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: a table needs one value for each place; 2 places and 1 values are given.
+case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: a table needs one value per point; 2 points and 1 values are given.
 """, ("value: [1000, 0]", "value: [{of: t, at: [0, 1], values: [1000]}, 0]")),
     solid("places of a table that do not grow", """
-case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: the places of a table must grow, but 2 stands before 1.
+case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: the points of a table must increase, but 2 is followed by 1.
 """, ("value: [1000, 0]", "value: [{of: t, at: [0, 2, 1], values: [0, 1, 2]}, 0]")),
 ]
 
 COUPLING = [
     coupler("role of nobody", """
 case.yaml:38:15: coupling.structure.participant: there is no participant 'solids'. Did you mean 'solid'?
-case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
 """, ("structure: {participant: solid}", "structure: {participant: solids}")),
     coupler("role missing", """
-case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
 case.yaml:35:1: coupling.structure: 'structure' is missing; a coupling has 'fluid' and 'structure' (each with its participant), or 'exchange'.
 """, ("  structure: {participant: solid}\n", "")),
     coupler("participant without a role", """
-case.yaml:26:3: participants.mover: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
+case.yaml:26:3: participants.mover: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
 """, ("  mesh: {participant: mover}\n", "")),
     coupler("one participant in two roles", """
-case.yaml:38:15: coupling.structure.participant: 'fluid' is run by fluid_solver, which cannot be the structure: the role 'structure' takes a load [N or Pa] at faces and gives 'displacement' [m] at vertices and 'velocity' [m/s] at vertices; it takes no load [N or Pa] at faces (it takes 'displacement' [m] at vertices, 'velocity' [m/s] at vertices and gives 'pressure-force' [N] at faces, 'viscous-force' [N] at faces). Of this case's participants 'solid' (solid_solver) can.
-case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
+case.yaml:38:15: coupling.structure.participant: 'fluid' is run by fluid_solver, which cannot be the structure: the role 'structure' takes a load [N or Pa] at faces and gives 'displacement' [m] at vertices and 'velocity' [m/s] at vertices; it takes no load [N or Pa] at faces (it takes 'displacement' [m] at vertices, 'velocity' [m/s] at vertices and gives 'pressure-force' [N] at faces, 'viscous-force' [N] at faces). In this case 'solid' (solid_solver) can.
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
 case.yaml:38:3: coupling.structure: fluid and structure must be two different participants.
 """, ("structure: {participant: solid}", "structure: {participant: fluid}")),
     coupler("exchange beside a fluid", """
-case.yaml:40:3: coupling.exchange: an exchange has no structure beside it: it is one of its participants; take one or the other.
+case.yaml:40:3: coupling.exchange: an exchange has no separate structure: it is one of its participants; use one or the other.
 """, ("  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  exchange: {participants: [fluid, solid]}\n")),
     coupler("exchange with a stranger", """
 case.yaml:37:14: coupling.exchange.participants: there is no participant 'slid'. Did you mean 'solid'?
-case.yaml:37:14: coupling.exchange.participants: 'mover' is run by mesh_mover, which cannot be part of an exchange: it serves one fluid, and gives the coupler nothing; name it as `mesh`, and its fluid as `fluid`.
-case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): give it one or take it out.
+case.yaml:37:14: coupling.exchange.participants: 'mover' is run by mesh_mover, which cannot be part of an exchange: it serves one fluid and gives the coupler no data; name it as `mesh` and its fluid as `fluid`.
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
 """, ("  scheme: implicit\n  fluid: {participant: fluid}\n  structure: {participant: solid}\n  mesh: {participant: mover}\n", "  scheme: explicit\n  exchange: {participants: [fluid, slid, mover]}\n")),
     coupler("exchange with a fluid whose mesh nobody moves", """
-case.yaml:38:14: coupling.exchange.participants: 'mover' is run by mesh_mover, which cannot be part of an exchange: it serves one fluid, and gives the coupler nothing; name it as `mesh`, and its fluid as `fluid`.
-case.yaml:38:3: coupling.exchange: beside an exchange stand either both `fluid` and `mesh` (whose mesh is moved, and by whom) or neither.
+case.yaml:38:14: coupling.exchange.participants: 'mover' is run by mesh_mover, which cannot be part of an exchange: it serves one fluid and gives the coupler no data; name it as `mesh` and its fluid as `fluid`.
+case.yaml:38:3: coupling.exchange: with an exchange give either both `fluid` and `mesh` (whose mesh is moved, and by which participant) or neither.
 """, ("  structure: {participant: solid}\n  mesh: {participant: mover}\n", "  exchange: {participants: [fluid, solid, mover]}\n")),
-    coupler("sub-steps of nobody", "\ncase.yaml:40:3: coupling.sub-steps: there is no participant 'slid' that could take sub-steps.\n", (
+    coupler("sub-steps of nobody", "\ncase.yaml:40:3: coupling.sub-steps: there is no participant 'slid' that supports sub-steps.\n", (
         "  mesh: {participant: mover}\n", "  mesh: {participant: mover}\n  sub-steps: {slid: 2}\n")),
     coupler("unknown scheme", """
 case.yaml:36:3: coupling.scheme: 'semiimplicit' is not one of: explicit, semi-implicit, implicit. Did you mean 'semi-implicit'?
@@ -348,13 +348,13 @@ case.yaml:41:17: coupling.convergence.relative: 2 is out of range; expected a va
 case.yaml:41:17: coupling.convergence.relativ: unknown key. Did you mean 'relative'?
 """, ("relative: 1e-5", "relativ: 1e-5")),
     coupler("half an order of the predictor", """
-case.yaml:41:15: coupling.predictor.order: it is a whole number: 0, 1 or 2.
+case.yaml:41:15: coupling.predictor.order: it must be 0, 1 or 2.
 """, ("  convergence", "  predictor: {order: 1.5}\n  convergence")),
     coupler("order of the predictor", """
 case.yaml:41:15: coupling.predictor.order: 3 is out of range; expected a value from 0 to 2.
 """, ("  convergence", "  predictor: {order: 3}\n  convergence")),
     coupler("participant for the coupler", """
-The coupler takes no --participant: it couples those that case.yaml names.
+The coupler takes no --participant: it couples the participants named in case.yaml.
 """, arguments=["case.yaml", "--check", "--participant", "fluid"]),
     mover("unknown motion", """
 case.yaml:32:15: participants.mover.boundaries.right.type: 'loose' is not one of: interface, moving, fixed, slip, free, periodic.
@@ -364,7 +364,7 @@ case.yaml:32:15: participants.mover.boundaries.right.type: 'loose' is not one of
     mover("limit of the guard out of range", """
 case.yaml:27:13: participants.mover.guard.largest-angle: 100 is out of range; expected a value from 0 to 90.
 """, ("  mover:\n", "  mover:\n    guard: {largest-angle: 100}\n")),
-    mover("current volumes in the total form", "case.yaml:27:5: participants.mover.stiffening-volumes: 'stiffening-volumes: current' needs 'form: incremental'.",
+    mover("current volumes in the total form", "case.yaml:27:5: participants.mover.stiffening-volumes: 'stiffening-volumes: current' requires 'form: incremental'.",
           ("  mover:\n", "  mover:\n    stiffening-volumes: current\n")),
     mover("stiffening out of range", """
 case.yaml:27:5: participants.mover.stiffening: 5 is out of range; expected a value from 0 to 3.
@@ -376,26 +376,26 @@ COMMAND_LINE = [
 --set simulation.end-time: expected key=value, for example --set simulation.end-time='2 s'.
 """, **with_set("simulation.end-time")),
     solid("set below a section that is not there", """
---set participants.sold.dimension=3: there is no 'sold' in 'participants'. Did you mean 'solid'? (A mapping that is not there can be given as a whole: --set 'participants.sold={key: value}'.)
+--set participants.sold.dimension=3: 'sold' does not exist in 'participants'. Did you mean 'solid'? (A missing mapping can be set as a whole: --set 'participants.sold={key: value}'.)
 """, **with_set("participants.sold.dimension=3")),
     solid("set below a value", """
 --set simulation.end-time.s=3: 'simulation.end-time' is a single value, so 's' cannot be set below it.
 """, **with_set("simulation.end-time.s=3")),
     solid("set to a wrong value", """
---set simulation.end-time=2 kg: simulation.end-time: '2 kg': the unit 'kg' does not convert to s; expected s or a unit that converts to it.
+--set simulation.end-time=2 kg: simulation.end-time: '2 kg': the unit 'kg' is not convertible to s; expected s or a unit convertible to it.
 """, **with_set("simulation.end-time=2 kg")),
     solid("set of a misspelt key", """
 --set simulation.endtime=2 s: simulation.endtime: unknown key. Did you mean 'end-time'?
 """, **with_set("simulation.endtime=2 s")),
     solid("set to broken YAML", """
---set simulation={end-time: 1 s: the value is not valid YAML: a mapping that was opened with '{' before this place is not closed by '}'.
+--set simulation={end-time: 1 s: the value is not valid YAML: a mapping opened with '{' before this position is not closed by '}'.
 """, **with_set("simulation={end-time: 1 s")),
     solid("no case", """
 Give the YAML file of the case, for example: solid_solver case.yaml
 Run with --help for more information.
 """, arguments=["--check"]),
     solid("unknown option", """
-There is no option or argument '--chekc'. Did you mean '--check'?
+Unknown option or argument '--chekc'. Did you mean '--check'?
 Run with --help for more information.
 """, arguments=["case.yaml", "--chekc"]),
 ]
@@ -408,59 +408,59 @@ MESH = [
 [solid 0] error: The mesh file 'squares.msh' does not exist. The path is relative to the folder of the YAML file.
 """, ("square.msh", "squares.msh"), **RUN),
     solid("mesh of an unknown kind", """
-[solid 0] error: The mesh file 'case.yaml' is neither .msh nor .geo, .inp, .unv, .med, .exo or .cgns. Convert it with gmsh or meshio to .msh 4.1 with physical names.
+[solid 0] error: The mesh file 'case.yaml' is not a .msh, .geo, .inp, .unv, .med, .exo or .cgns file. Convert it with gmsh or meshio to .msh 4.1 with physical names.
 """, ("square.msh", "case.yaml"), **RUN),
     solid("mesh that is not one", """
 [solid 0] error: text.msh:1: Expected a section such as $Nodes here, found 'hello'.
 """, ("square.msh", "text.msh"), files={"text.msh": "hello\n"}, **RUN),
     solid("unknown patch", """
-[solid 0] error: boundaries.rigth: mesh 'square.msh' has no patch of this name. Did you mean 'right'? The patches are left, right, bottom, top.
+[solid 0] error: boundaries.rigth: mesh 'square.msh' has no patch with this name. Did you mean 'right'? The patches are left, right, bottom, top.
 """, ("right: {type", "rigth: {type"), **RUN),
     solid("patch without a boundary", """
 [solid 0] error: boundaries: patch 'top' of mesh 'square.msh' has no entry; each patch needs one (a stress-free patch: 'type: free'). The patches are left, right, bottom, top.
 """, ("      top: {type: free}\n", ""), **RUN),
     solid("part that selects no face", """
-[solid 0] error: boundaries.bottom.parts[0].where: 'y > 2' selects no face of patch 'bottom'. It is tested at the centres of the faces; widen it, for example to abs(z - 0.5) < half the height of a face.
+[solid 0] error: boundaries.bottom.parts[0].where: 'y > 2' selects no face of patch 'bottom'. It is evaluated at the face centres; widen it, for example to abs(z - 0.5) < half the height of a face.
 """, ("bottom: {type: free}", "bottom: {type: free, parts: [{where: y > 2, type: symmetry}]}"), **RUN),
     solid("spring that depends on time", """
 [solid 0] error: boundaries.bottom.stiffness: the stiffness of a spring cannot depend on the time t.
 """, ("bottom: {type: free}", "bottom: {type: spring, stiffness: 1e9*t}"), **RUN),
     solid("static body that floats", """
 couplet: The job cannot start:
-  [solid] case.yaml:13:5: participants.solid.boundaries: nothing holds the solid of this static analysis: at least one patch must be fixed, supported, sprung or on a plane of symmetry.
+  [solid] case.yaml:13:5: participants.solid.boundaries: no patch supports the solid in this static analysis: at least one must be fixed, supported, sprung or a plane of symmetry.
 """, ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: free}"), **RUN),
     solid("static body on one roller", """
-[solid 0] error: boundaries: a static analysis needs supports that hold the solid in place; these leave it free: translation along y. Hold it by 'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use 'analysis: dynamic'.
+[solid 0] error: boundaries: the supports of this static analysis leave rigid motions free: translation along y. Prevent them by 'fixed-displacement' (all or some components), 'symmetry', a 'spring' or another support, or use 'analysis: dynamic'.
 """, ("analysis: dynamic", "analysis: static"), ("{type: fixed-displacement, value: [0, 0]}", "{type: symmetry}"), **RUN),
     solid("zone that is not there", """
-[solid 0] error: The mesh 'square.msh' cannot be used. It has no zone 'insid' for a material. Did you mean 'inside'? The zones (physical surfaces of gmsh) are inside.
+[solid 0] error: Cannot use the mesh 'square.msh'. It has no zone 'insid' for a material. Did you mean 'inside'? The zones (physical surfaces of gmsh) are inside.
 """, ("    material:\n      density", "    materials: {steel: {zones: [insid], density"),
           (" kg/m^3\n      youngs-modulus: 1 MPa\n      poissons-ratio: 0.3\n", ", youngs-modulus: 1e6, poissons-ratio: 0.3}}\n"), **RUN),
     solid("folded mesh", """
-[solid 0] error: The mesh 'folded.msh' cannot be used. The mesh has a cell that crosses itself: cell 1 at (0.975, 0.25) m. Its points come in the wrong order; mesh that place anew.
+[solid 0] error: Cannot use the mesh 'folded.msh'. The mesh has a self-intersecting cell: cell 1 at (0.975, 0.25) m. Its points are in the wrong order; remesh there.
 """, ("square.msh", "folded.msh"), files={"folded.msh": FOLDED}, **RUN),
     solid("plane mesh in three dimensions", """
 couplet: The job cannot start:
-  [solid] case.yaml:14:40: participants.solid.boundaries.left.value: 2 components are given where the 3-dimensional scene needs 3.
-  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: 2 components are given where the 3-dimensional scene needs 3.
+  [solid] case.yaml:14:40: participants.solid.boundaries.left.value: 2 components are given, but the 3-dimensional scene needs 3.
+  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: 2 components are given, but the 3-dimensional scene needs 3.
 """, ("dimension: 2", "dimension: 3"), **RUN),
     solid("components of a vector", """
 couplet: The job cannot start:
-  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: 3 components are given where the 2-dimensional scene needs 2.
+  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: 3 components are given, but the 2-dimensional scene needs 2.
 """, ("value: [1000, 0]", "value: [1000, 0, 0]"), **RUN),
     solid("expression that cannot be read", """
 couplet: The job cannot start:
-  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: the expression '1000*sin(t' cannot be read at column 11: a ')' is missing. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
+  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: cannot parse the expression '1000*sin(t' at column 11: a ')' is missing. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
 """, ("value: [1000, 0]", "value: [1000*sin(t, 0]"), **RUN),
     solid("expression with an unknown name", """
 couplet: The job cannot start:
-  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: the expression '1000*time' cannot be read at column 6: unknown name 'time'. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
+  [solid] case.yaml:15:31: participants.solid.boundaries.right.value: entry 1 of the list: cannot parse the expression '1000*time' at column 6: unknown name 'time'. Known are the variables x, y, z [m] and t [s], the constant pi, the operators + - * / ^ < > == && || ?: and functions such as sin, cos, exp, sqrt, abs, min, max.
 """, ("value: [1000, 0]", "value: [1000*time, 0]"), **RUN),
     fluid("unknown patch of a fluid", """
 [fluid 0] error: boundaries.rigth: the mesh 'square.msh' has no patch 'rigth'. Did you mean 'right'?
 """, ("right: {type", "rigth: {type"), **RUN),
     fluid("patch of a fluid without a boundary", """
-[fluid 0] error: boundaries: the mesh 'square.msh' has patches without a boundary: top. Give each of them a type (inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface or body).
+[fluid 0] error: boundaries: the mesh 'square.msh' has patches without a boundary condition: top. Give each of them a type (inlet, outlet, convective-outlet, no-slip, moving-wall, slip, symmetry, periodic, interface or body).
 """, ("      top: {type: slip}\n", ""), **RUN),
     mover("mover without its coupled job", """
 couplet: The job cannot start:
@@ -468,10 +468,10 @@ couplet: The job cannot start:
   participant 'fluid' (fluid_solver) is missing: it was not started.
   participant 'solid' (solid_solver) is missing: it was not started.
   To run 'mover' alone: mesh_mover case.yaml --participant mover
-  Start it as: mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml : -n 1 solid_solver case.yaml : -n 1 mesh_mover case.yaml
+  Start it with: mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml : -n 1 solid_solver case.yaml : -n 1 mesh_mover case.yaml
 """, **RUN),
     solid("checkpoint that is not there", """
-[solid 0] error: --restart old: there is no complete checkpoint. Give a folder made by an earlier run, such as out/checkpoints/step-00000100, or the folder above it for the latest one.
+[solid 0] error: --restart old: no complete checkpoint found. Give a checkpoint folder of an earlier run, such as out/checkpoints/step-00000100, or its parent folder for the latest one.
 """, arguments=["case.yaml", "--restart", "old"]),
 ]
 

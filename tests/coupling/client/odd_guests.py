@@ -18,7 +18,7 @@ SCENES = [
     ("handshake", "3", ["(a guest) speaks version 3 of the protocol", "here speak version 4"]),
     ("handshake", "5", ["(a guest) speaks version 5 of the protocol", "here speak version 4"]),
     ("handshake", "mark", ["is no program of Couplet", "begins with 42"]),
-    ("introduction", "nothing", ["it gives 0 fields, 8 are expected"]),
+    ("introduction", "nothing", ["it has 0 fields, expected 8"]),
     ("introduction", "words", ["no whole number"]),
     ("introduction", "ends", ["it gives 0 fields"]),
     ("reply", "version", ["The reply of 'body' to initialise", "protocol version 5", "speaks version 4"]),

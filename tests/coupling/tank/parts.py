@@ -50,7 +50,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-parts-") as folder:
     refused = subprocess.run([str(c) for c in [*mpirun, "-n", "1", programs / "coupler", case, *wrong, ":", "-n", "1", *case_of, "tank", *wrong,
                                                ":", "-n", "1", *case_of, "soil", *wrong, ":", "-n", "1", *case_of, "blanket", *wrong]],
                              capture_output=True, text=True)
-    if refused.returncode == 0 or "participants.blanket.height is 12.5 m, but the tank's is 12.76 m of wall" not in refused.stderr + refused.stdout:
+    if refused.returncode == 0 or "participants.blanket.height is 12.5 m, but that of the tank is 12.76 m of wall" not in refused.stderr + refused.stdout:
         sys.exit(f"a blanket that is too low: exit code {refused.returncode}\n" + refused.stderr)
     alone = folder / "alone"
     amounts = np.genfromtxt(found[0] / "coupler" / "amounts.csv", delimiter=",", names=True)

@@ -146,8 +146,7 @@ TEST(FixedPoint, without_convergence_it_says_how_far_it_came) {
   } catch (const SolveFailure& failure) {
     EXPECT_STREQ(
         failure.what(),
-        "the coupling did not converge in 5 iterations: the relative residual is 1.33e+00 (1.0e-10 is asked "
-        "for).");
+        "the coupling did not converge in 5 iterations: the relative residual is 1.33e+00 (tolerance 1.0e-10).");
   }
 }
 

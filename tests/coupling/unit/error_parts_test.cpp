@@ -37,10 +37,10 @@ TEST(ErrorPartsTest, the_largest_part_dominates_and_what_is_a_tenth_of_it_buys_n
     return sentences.size() > 1 ? sentences[1] : "";
   };
   EXPECT_EQ(said({.mesh = 1e-2, .step = 5e-4, .linear = 5e-3}),
-            "the mesh dominates: a finer mesh would lower it; halving the step would buy nothing.");
+            "the mesh dominates: a finer mesh would reduce it; halving the step would not help.");
   EXPECT_EQ(said({.mesh = 1e-3, .step = 5e-2}),
-            "the step dominates: a shorter time step would lower it; refining the mesh would buy nothing.");
-  EXPECT_EQ(said({.mesh = 1e-3, .step = 2e-3}), "the step dominates: a shorter time step would lower it.");
+            "the step dominates: a shorter time step would reduce it; refining the mesh would not help.");
+  EXPECT_EQ(said({.mesh = 1e-3, .step = 2e-3}), "the step dominates: a shorter time step would reduce it.");
   EXPECT_EQ(said({.mesh = 1e-2}), "");  // one part alone says nothing of the others
   EXPECT_TRUE(error_sentences({{"solid", {}}}).empty());
 }
@@ -56,8 +56,7 @@ TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {
   const auto without = error_sentences({{"plate", {.step = 2e-9}}});
   EXPECT_EQ(
       without.at(0),
-      "estimated error 2e-09 of the solution: step 2e-09; what the mesh (or modes left out) leaves is not known and "
-      "not in it.");
+      "estimated error 2e-09 of the solution: step 2e-09; the error due to the mesh (or truncated modes) is unknown and not included.");
   EXPECT_EQ(sentences[1].rfind("the coupling tolerance (coupling) dominates", 0), 0u) << sentences[1];
 }
 

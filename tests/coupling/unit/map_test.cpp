@@ -248,10 +248,10 @@ TEST(Corners, are_checked) {
   bad = good;
   bad.face_vertices[3] = 11;
   EXPECT_EQ(problem(bad),
-            "The corners of the faces of 'wall' are listed wrongly: vertex 11 is none of its 11.");
+            "The face corners of 'wall' are invalid: vertex 11 is not one of its 11.");
   bad = good;
   bad.face_offset[3] = bad.face_offset[2];
-  EXPECT_THAT(problem(bad), testing::HasSubstr("face 2 has less than two corners"));
+  EXPECT_THAT(problem(bad), testing::HasSubstr("face 2 has fewer than two corners"));
   bad = good;
   bad.face_vertices.pop_back();
   EXPECT_THAT(problem(bad), testing::HasSubstr("do not go from 0"));

@@ -113,7 +113,7 @@ TEST(Messages, another_kind_or_version_is_refused) {
   } catch (const Error& error) {
     EXPECT_STREQ(
         error.what(),
-        "A reply has protocol version 99, this program speaks version 4: use programs of one version.");
+        "A reply has protocol version 99, but this program uses version 4: use programs of one version.");
   }
 }
 
@@ -173,7 +173,7 @@ TEST(Messages, values_cut_in_pieces_are_put_together_again_and_wrong_lengths_are
   } catch (const Error& error) {
     EXPECT_STREQ(
         error.what(),
-        "'solid' gave 2 values of 'displacement' where its interface has 3 vertices of 2 components.");
+        "'solid' gave 2 values of 'displacement', but its interface has 3 vertices of 2 components.");
   }
   EXPECT_THROW(present({{"colour", {}}}, i.takes, "solid"), Error);
 }

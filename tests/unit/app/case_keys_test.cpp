@@ -43,9 +43,9 @@ TEST(CaseKeys, times_and_outputs_are_harmless_and_the_rest_is_not) {
   EXPECT_THAT(changes.harmless, ElementsAre("participants.solid.output.stress: was true, is false",
                                             "simulation.end-time: was 1 s, is 2 s"));
   EXPECT_THAT(changes.physics, ElementsAre("participants.solid.material.density: was 1000, is 2000",
-                                           "participants.solid.mesh: was plate.msh, is not there any more",
-                                           "participants.solid.body-force[0]: was not there, is 0",
-                                           "participants.solid.body-force[1]: was not there, is 1"));
+                                           "participants.solid.mesh: was plate.msh, is now absent",
+                                           "participants.solid.body-force[0]: was absent, is now 0",
+                                           "participants.solid.body-force[1]: was absent, is now 1"));
 }
 
 TEST(CaseKeys, another_content_of_a_file_is_a_change) {

@@ -54,7 +54,7 @@ TEST(HalvingCauses, ten_for_one_cause_end_a_run_with_that_cause) {
   });
   EXPECT_EQ(halvings, 10);
   EXPECT_THAT(problem,
-              HasSubstr("10 halvings of steps for one cause did not cure it: energy from nothing: "));
+              HasSubstr("10 halvings of the step for one cause did not help: energy from nothing: "));
 }
 
 TEST(HalvingCauses, causes_that_differ_or_come_back_after_a_calm_time_do_not) {
@@ -78,7 +78,7 @@ TEST(HalvingCauses, causes_that_differ_or_come_back_after_a_calm_time_do_not) {
 TEST(HalvingCauses, a_run_whose_steps_never_grow_back_ends) {
   const auto [problem, halvings] =
       run(2000, [](const Step& step) { return step.dt > 0.5 ? "too long" : ""; });
-  EXPECT_THAT(problem, HasSubstr("10 halvings of steps for one cause did not cure it: too long"));
+  EXPECT_THAT(problem, HasSubstr("10 halvings of the step for one cause did not help: too long"));
   EXPECT_EQ(halvings, 10);
 }
 

@@ -33,9 +33,9 @@ TEST(SavedNumbers, counts_that_are_none_or_more_than_follow_are_refused) {
   EXPECT_THROW(SavedNumbers(two, "sums").next(5), Error);
   EXPECT_THROW(SavedNumbers({}, "sums").real(), Error);
   try {
-    SavedNumbers({}, "errors of steps").real();
+    SavedNumbers({}, "step errors").real();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "The checkpoint's errors of steps are damaged. Use an earlier one.");
+    EXPECT_STREQ(error.what(), "The checkpoint's step errors are damaged. Use an earlier one.");
   }
 }
 

@@ -76,21 +76,20 @@ std::string error_of(const char* text, const char* unit) {
 
 TEST(Units, what_does_not_convert_is_refused_with_what_was_expected) {
   EXPECT_EQ(error_of("5 kg", "Pa"),
-            "'5 kg': the unit 'kg' does not convert to Pa; expected Pa or a unit that converts to it.");
+            "'5 kg': the unit 'kg' is not convertible to Pa; expected Pa or a unit convertible to it.");
   EXPECT_EQ(error_of("5 MPaa", "Pa"),
-            "'5 MPaa': unknown unit 'MPaa'. Did you mean 'MPa'? Expected Pa or a unit that converts to it.");
+            "'5 MPaa': unknown unit 'MPaa'. Did you mean 'MPa'? Expected Pa or a unit convertible to it.");
   EXPECT_EQ(error_of("5 furlong", "m"),
-            "'5 furlong': unknown unit 'furlong'. Expected m or a unit that converts to it.");
+            "'5 furlong': unknown unit 'furlong'. Expected m or a unit convertible to it.");
   EXPECT_EQ(error_of("soft", "Pa"), "'soft' is not a number; expected a number in Pa or with its unit.");
-  EXPECT_EQ(error_of("5 s", ""), "'5 s' has more than a number in it ('s'); expected a plain number.");
-  EXPECT_EQ(error_of("1,5 m", "m"), "'1,5 m' has a decimal comma; write a point.");
+  EXPECT_EQ(error_of("5 s", ""), "'5 s' contains more than a number ('s'); expected a plain number.");
+  EXPECT_EQ(error_of("1,5 m", "m"), "'1,5 m' has a decimal comma; use a decimal point.");
   EXPECT_EQ(error_of("5 m?", "m"),
-            "'5 m?': cannot understand the unit 'm?' at '?'. Expected m or a unit that converts to it.");
+            "'5 m?': cannot parse the unit 'm?' at '?'. Expected m or a unit convertible to it.");
   EXPECT_EQ(error_of("5 m/", "m"),
-            "'5 m/': the unit 'm/' is incomplete. Expected m or a unit that converts to it.");
+            "'5 m/': the unit 'm/' is incomplete. Expected m or a unit convertible to it.");
   EXPECT_EQ(error_of("5 W/(m K", "W/(m K)"),
-            "'5 W/(m K': the unit 'W/(m K' is incomplete. Expected W/(m K) or a unit that converts "
-            "to it.");
+            "'5 W/(m K': the unit 'W/(m K' is incomplete. Expected W/(m K) or a unit convertible to it.");
   for (const char* text : {"nan", "inf", "-inf", "", "0x10", "--5", "1e999"})
     EXPECT_NE(error_of(text, ""), "no error") << text;
 }

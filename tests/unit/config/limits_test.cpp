@@ -34,7 +34,7 @@ TEST(Limits, anchors_that_multiply_are_refused_before_they_fill_the_memory) {
 
 TEST(Limits, control_characters_are_refused_with_their_place) {
   EXPECT_EQ(error_of("a: 1\n\"b\\x07\": 2\n"),
-            "case.yaml:2:1: this key holds a control character (code 7); remove it.");
+            "case.yaml:2:1: this key contains a control character (code 7); remove it.");
   EXPECT_THAT(error_of("a: \"\\e[31mred\"\n"),
               HasSubstr("a: this value holds a control character (code 27)"));
   EXPECT_EQ(error_of("a: \"two\\nlines\\tand a tab\"\n"), "");
@@ -77,7 +77,7 @@ TEST(Limits, expressions_are_checked_where_they_are_read) {
   EXPECT_THAT(
       load("dimension: 3\nflow: {velocity: [0, 1]}\n"),
       ElementsAre(
-          "case.yaml:2:8: flow.velocity: 2 components are given where the 3-dimensional scene needs 3."));
+          "case.yaml:2:8: flow.velocity: 2 components are given, but the 3-dimensional scene needs 3."));
   EXPECT_THAT(load("dimension: 2\nflow: {load: -10 MPa, velocity: [2 km/h, 0]}\n"), testing::IsEmpty());
 }
 
@@ -86,7 +86,7 @@ TEST(Limits, many_unknown_keys_are_counted_not_listed) {
   for (int i = 0; i < 20000; ++i) text += "unknown-" + std::to_string(i) + ": 1\n";
   const std::vector<std::string> messages = load(text);
   EXPECT_EQ(messages.size(), 21u);
-  EXPECT_THAT(messages, testing::Contains(HasSubstr("19980 more unknown keys stand here.")));
+  EXPECT_THAT(messages, testing::Contains(HasSubstr("19980 more unknown keys follow.")));
 }
 
 TEST(Limits, an_override_makes_the_section_that_is_not_there) {

@@ -57,7 +57,7 @@ TEST(Quantities, bare_temperatures_and_angles_are_refused_in_every_form) {
   EXPECT_THAT(
       judge("temperature: 20").errors,
       ElementsAre(
-          "case.yaml:1:1: temperature: '20' has no unit, and this number needs one: write 20 degC or 20 K."));
+          "case.yaml:1:1: temperature: '20' has no unit, but one is required: write 20 degC or 20 K."));
   EXPECT_THAT(judge("angle: 30").errors, ElementsAre(HasSubstr("write 30 deg or 30 rad.")));
   EXPECT_THAT(judge("speed: 30").errors, ElementsAre(HasSubstr("write 30 deg/s or 30 rad/s.")));
 }

@@ -148,8 +148,7 @@ TEST(InterfaceMapErrors, data_of_another_size_is_refused) {
     FAIL() << "no error";
   } catch (const Error& e) {
     EXPECT_STREQ(e.what(),
-                 "The interface data that arrived has 5 values; 3 entries of 2 components were expected. "
-                 "Check that both participants describe the interface that they use.");
+                 "The interface data received have 5 values; expected 3 entries of 2 components. Check that both participants describe the interface they use.");
   }
 }
 

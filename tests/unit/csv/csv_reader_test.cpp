@@ -63,7 +63,7 @@ TEST(CsvReader, decimal_commas_are_refused_with_their_line) {
   EXPECT_THAT(
       said("t,p\n0,0,1000,5\n"),
       HasSubstr(
-          "a.csv:2: 4 values, but the file has 2 columns (separated by commas, as its line 1 is). If commas"));
+          "a.csv:2: 4 values, but the file has 2 columns (separated by commas, as in line 1). If commas"));
   EXPECT_THAT(said("t p\n0,0 1000,5\n"), HasSubstr("a.csv:2: '0,0' has a decimal comma"));
   EXPECT_THAT(said("0,0 1000,5\n"), HasSubstr("a.csv:1"));
   EXPECT_THAT(said("t,p\n0,05\n"),
@@ -83,7 +83,7 @@ TEST(CsvReader, one_separator_and_one_width_in_the_whole_file) {
   EXPECT_THAT(
       said("t,p\n0,1\n1;2\n"),
       HasSubstr(
-          "a.csv:3: 1 values, but the file has 2 columns (separated by commas, as its line 1 is). Use one separator"));
+          "a.csv:3: 1 values, but the file has 2 columns (separated by commas, as in line 1). Use one separator"));
   EXPECT_THAT(said("0,1\n1\n"), HasSubstr("a.csv:2: 1 values, but the file has 2 columns"));
   EXPECT_THAT(said("0,1\n1,2,3\n"), HasSubstr("a.csv:2: 3 values"));
   EXPECT_THAT(said("0 1\n1 2 3\n"), HasSubstr("separated by blanks"));
@@ -94,7 +94,7 @@ TEST(CsvReader, cells_that_are_no_finite_numbers_are_refused) {
   for (const char* cell : {"nan", "NaN", "inf", "-inf", "1e999", "x", "1.2.3", "0x10", "1d5", "--1", "+-1",
                            "1 m", "", "1e", "'1'"})
     EXPECT_THAT(said(std::string("t,p\n0,1\n2,") + cell + "\n"), HasSubstr("a.csv:3: ")) << cell;
-  EXPECT_THAT(said("t,p\n0,nan\n"), EndsWith("a.csv:2: 'nan' is not a number; a finite one is needed."));
+  EXPECT_THAT(said("t,p\n0,nan\n"), EndsWith("a.csv:2: 'nan' is not a finite number."));
   EXPECT_THAT(said("t,p\n0,1e999\n"), EndsWith("a.csv:2: '1e999' is beyond the range of numbers."));
   EXPECT_THAT(said("t,p\n0,\"1\n"), EndsWith("a.csv:2: a double quote is not closed."));
 }

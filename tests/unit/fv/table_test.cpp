@@ -82,7 +82,7 @@ TEST(Table, mistakes_in_expressions_are_reported_with_their_column) {
   EXPECT_THAT([] { value_of("3 + table(t, 0, 1, 2)", Vec3::Zero(), 0); },
               ThrowsMessage<Error>(HasSubstr("a table needs pairs")));
   EXPECT_THAT([] { value_of("table(t, 0, q)", Vec3::Zero(), 0); },
-              ThrowsMessage<Error>(HasSubstr("at column 13: a table holds numbers, not 'q'")));
+              ThrowsMessage<Error>(HasSubstr("at column 13: a table contains numbers, not 'q'")));
   EXPECT_THAT([] { value_of("table(t, 0, 1, 5, 2) + u", Vec3::Zero(), 0); },
               ThrowsMessage<Error>(HasSubstr("column 24: unknown name 'u'")));
   EXPECT_THAT([] { value_of("table(t, error, 0, 1, 5, 2)", Vec3::Zero(), 6); },
@@ -106,7 +106,7 @@ TEST(Table, with_decimal_commas_is_refused_with_its_line) {
   const CsvFile file("t;p\n0,0;1000,5\n1,5;2000,5\n");
   EXPECT_THAT([&] { value_of("table(t, \"" + file.path() + "\", \"p\")", Vec3::Zero(), 1); },
               ThrowsMessage<Error>(
-                  HasSubstr(file.name() + ":2: '0,0' has a decimal comma; write 0.0; t was expected here")));
+                  HasSubstr(file.name() + ":2: '0,0' has a decimal comma; expected write 0.0; t here")));
 }
 
 TEST(Table, places_in_a_file_that_do_not_grow_are_refused_with_their_line) {

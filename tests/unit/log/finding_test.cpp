@@ -49,7 +49,7 @@ TEST(Findings, ids_are_unique_words_with_a_meaning) {
 TEST(Findings, an_unknown_id_is_refused_with_the_one_meant_and_all_allowed) {
   EXPECT_EQ(log::unknown_ids(Words{"strain-energy", "error-estimate"}), "");
   const std::string refusal = log::unknown_ids(Words{"strain-energy", "strain-enrgy"});
-  EXPECT_THAT(refusal, HasSubstr("there is no finding 'strain-enrgy', did you mean 'strain-energy'?"));
+  EXPECT_THAT(refusal, HasSubstr("unknown finding 'strain-enrgy', did you mean 'strain-energy'?"));
   EXPECT_THAT(refusal, HasSubstr("Findings: error-estimate, "));
 }
 

@@ -233,8 +233,7 @@ TEST_F(LoadMesh, tells_how_to_install_gmsh_when_it_is_missing) {
   setenv("PATH", path.c_str(), 1);
   EXPECT_EQ(
       text,
-      "A mesh that is no .msh is read by the program 'gmsh', which is not on the PATH. Install it (Debian: "
-      "apt install gmsh) or give a .msh file instead.");
+      "Meshes other than .msh are read with the program 'gmsh', which is not on the PATH. Install it (Debian: apt install gmsh) or give a .msh file.");
 }
 
 TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {
@@ -244,8 +243,7 @@ TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {
   EXPECT_EQ(text,
             size == 1
                 ? ""
-                : fmt::format("The mesh has 1 cells, fewer than the {} ranks it is to be shared by. Start "
-                              "fewer processes.",
+                : fmt::format("The mesh has 1 cells, fewer than the {} ranks that share it. Start fewer processes.",
                               size));
 }
 

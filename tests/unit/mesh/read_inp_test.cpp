@@ -154,7 +154,7 @@ TEST_F(ReadInp, mistakes_are_told_with_file_and_line) {
               AllOf(HasSubstr("(0.5, 0.5, 0)"), HasSubstr("two surfaces, 'a' and 'b'")));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4, ELSET=e\n1, 1,2,4,5\n*SURFACE, NAME=a\ne, S5\n"),
               HasSubstr("S1 to S4 alone"));
-  EXPECT_THAT(error(nodes + "*NGEN\n1, 2\n"), HasSubstr("it makes nodes"));
+  EXPECT_THAT(error(nodes + "*NGEN\n1, 2\n"), HasSubstr("it generates nodes"));
   EXPECT_THAT(error("*PART, NAME=a\n*END PART\n*PART, NAME=b\n"), HasSubstr("several parts"));
   EXPECT_THAT(error("*INSTANCE, NAME=a, PART=b\n1, 0, 0\n"), HasSubstr("is moved"));
   EXPECT_THAT(error(nodes + "*NSET, NSET=a, GENERATE\n5, 1\n"), HasSubstr("first, last and step"));

@@ -53,7 +53,7 @@ TEST(FlowFile, units_order_and_empty_cells) {
 TEST(FlowFile, what_is_wrong_is_said_with_file_and_line) {
   const std::string h = head;
   EXPECT_THAT(said(h + "0,-100,390\n1,abc,390\n"),
-              HasSubstr("flows.csv:3: 'abc' is not a number; mass-flow was expected here"));
+              HasSubstr("flows.csv:3: 'abc' is not a number; expected mass-flow here"));
   EXPECT_THAT(said(h + "0,-100,390\n1,50\n"), HasSubstr("flows.csv:3: 2 values, but the file has 3 columns"));
   EXPECT_THAT(said(h + "1,-100,390\n1,0,390\n"), HasSubstr("flows.csv:3: time 3600 s does not come after"));
   EXPECT_THAT(said(h + "0,-100,\n"), HasSubstr("flows.csv:2: inlet-temperature is missing"));
@@ -61,7 +61,7 @@ TEST(FlowFile, what_is_wrong_is_said_with_file_and_line) {
   EXPECT_THAT(said(h + "0,,390\n"), HasSubstr("flows.csv:2: mass-flow is empty"));
   EXPECT_THAT(said("time [h];mass-flow [kg/s];inlet-temperature [degC]\n0;-100,5;390\n"),
               HasSubstr("flows.csv:2: '-100,5' has a decimal comma; write -100.5"));
-  EXPECT_THAT(said("0,-100,390\n"), HasSubstr("the first line of a file of flows names its columns"));
+  EXPECT_THAT(said("0,-100,390\n"), HasSubstr("the first line of a flow file names its columns"));
   EXPECT_THAT(said(h + "0,nan,390\n"), HasSubstr("flows.csv:2: 'nan' is not a number"));
   EXPECT_THAT(said(h + "0,50,-300\n"),
               HasSubstr("flows.csv:2: inlet-temperature is -26.85 K; expected 100 to 3000 K"));
@@ -79,7 +79,7 @@ TEST(FlowFile, what_is_wrong_is_said_with_file_and_line) {
     read_flow_file("/nowhere/flows.csv");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("there is no such file of flows"));
+    EXPECT_THAT(error.what(), HasSubstr("there is no such flow file"));
   }
 }
 

@@ -173,7 +173,7 @@ TEST(Questions, a_row_that_never_ran_is_said) {
   EXPECT_THAT(
       resting.doubts()[0],
       HasSubstr(
-          "nothing has flowed: the first row of the schedule that flows, flow.rows[1], begins at 3600 s"));
+          "no flow: the first row with a flow, flow.rows[1], starts at 3600 s"));
   resting.decide(3600, 450, 450, {});
   EXPECT_TRUE(resting.doubts().empty());
   ASSERT_EQ(schedule.doubts().size(), 1u);

@@ -82,8 +82,7 @@ TEST_F(WeatherFile, short_gaps_are_closed_by_straight_lines_with_a_warning) {
   EXPECT_DOUBLE_EQ(record.temperature[10], 20);
   ASSERT_EQ(record.warnings.size(), 6u);
   EXPECT_THAT(record.warnings,
-              testing::Contains(testing::HasSubstr("gap.csv:6: the air temperature [degC] is missing for 2 "
-                                                   "hours from here; a straight line fills the gap.")));
+              testing::Contains(testing::HasSubstr("gap.csv:6: the air temperature [degC] is missing for 2 hours from here; the gap is filled linearly.")));
   EXPECT_THAT(record.warnings, testing::Contains(testing::HasSubstr(
                                    "gap.csv:11: the air temperature [degC] is missing for 1 hour from")));
 }
@@ -99,10 +98,10 @@ TEST_F(WeatherFile, what_is_wrong_is_said_with_file_and_line) {
   EXPECT_EQ(with(5, "5,0,15,3,40,990\n"),
             "w.csv:8: the pressure [Pa] is 990; it must be from 40000 to 110000.");
   EXPECT_EQ(with(5, "5,0,warm,3,40,99000\n"),
-            "w.csv:8: 'warm' is not a number; air temperature [degC] was expected here.");
+            "w.csv:8: 'warm' is not a number; expected air temperature [degC] here.");
   EXPECT_EQ(with(5, "5,0,15,3,40\n"), "w.csv:8: 5 values, but the file has 6 columns.");
   EXPECT_EQ(with(5, "4,0,15,3,40,99000\n"),
-            "w.csv:8: hour 4 of the year comes after hour 4: each hour must be there once, in order.");
+            "w.csv:8: hour 4 of the year comes after hour 4: each hour must appear once, in order.");
   EXPECT_EQ(with(5, "5.5,0,15,3,40,99000\n"),
             "w.csv:8: the hour of the year must be a whole number from 0 to 8759, not '5.5'.");
   EXPECT_EQ(with(23, ""),
@@ -124,10 +123,10 @@ TEST_F(WeatherFile, a_wrong_head_is_said) {
   EXPECT_EQ(complaint(write("w.csv", "hour,dni_W_m2,T_degC,rh_pct,p_Pa\n")),
             "w.csv:1: the column 'wind_m_s' is missing. A weather file has the columns dni_W_m2, T_degC, "
             "wind_m_s, rh_pct, p_Pa, hour.");
-  EXPECT_EQ(complaint(write("w.csv", "hour,hour\n")), "w.csv:1: the column 'hour' stands there twice.");
-  EXPECT_EQ(complaint(write("w.csv", "# nothing else\n")), "w.csv: this weather file holds no hours.");
+  EXPECT_EQ(complaint(write("w.csv", "hour,hour\n")), "w.csv:1: the column 'hour' appears twice.");
+  EXPECT_EQ(complaint(write("w.csv", "# nothing else\n")), "w.csv: this weather file contains no hours.");
   EXPECT_EQ(complaint((folder_ / "none.csv").string()),
-            "none.csv: there is no such weather file. Relative paths start at the folder of the YAML file.");
+            "none.csv: this weather file does not exist. Relative paths start at the folder of the YAML file.");
 }
 
 TEST_F(WeatherFile, a_damaged_compressed_file_is_refused) {
@@ -137,8 +136,7 @@ TEST_F(WeatherFile, a_damaged_compressed_file_is_refused) {
   fs::resize_file(folder_ / "cut.csv.gz", fs::file_size(source) / 2);
   EXPECT_EQ(
       complaint((folder_ / "cut.csv.gz").string()),
-      "cut.csv.gz: this weather file is damaged or was cut short: it cannot be decompressed to its end (its end is "
-      "missing). Copy or compress it again.");
+      "cut.csv.gz: this weather file is damaged or truncated: decompression failed (its end is missing). Copy or compress it again.");
 }
 
 /// A day as EPW: the first record is line 9.
@@ -178,11 +176,11 @@ TEST_F(WeatherFile, values_beyond_the_last_column_are_refused) {
   };
   EXPECT_EQ(
       complaint(write("w.epw", epw(with_comma))),
-      "w.epw:12: 36 values, but the file has 35 columns. If commas are decimal commas, write decimal points.");
+      "w.epw:12: 36 values, but the file has 35 columns. If commas are decimal commas, use decimal points.");
   EXPECT_EQ(
       complaint(write("w.csv",
                       csv([](int h, std::string line) { return h == 5 ? "5,0,15,5,3,40,99000\n" : line; }))),
-      "w.csv:8: 7 values, but the file has 6 columns. If commas are decimal commas, write decimal points.");
+      "w.csv:8: 7 values, but the file has 6 columns. If commas are decimal commas, use decimal points.");
 }
 
 TEST_F(WeatherFile, missing_codes_of_epw_are_gaps) {

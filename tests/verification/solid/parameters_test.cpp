@@ -78,7 +78,7 @@ TEST(SolidParameters, mistakes_are_reported_with_their_place) {
                            p);
   EXPECT_THAT(errors,
               Contains(AllOf(HasSubstr("case.yaml:5:"), HasSubstr("boundaries.root.value"),
-                             HasSubstr("3 components are given where the 2-dimensional scene needs 2"))));
+                             HasSubstr("3 components are given, but the 2-dimensional scene needs 2"))));
   EXPECT_THAT(errors, Contains(AllOf(HasSubstr("case.yaml:6:"), HasSubstr("unknown name 'q'"))));
   EXPECT_THAT(errors, Contains(AllOf(HasSubstr("case.yaml:7:"), HasSubstr("Did you mean 'symmetry'?"))));
 }
@@ -135,7 +135,7 @@ TEST(SolidParameters, rules_between_keys_are_checked) {
   SolidParameters flat, damped;
   EXPECT_THAT(read(start + "gravity: [0, -9.81]\n", flat),
               Contains(AllOf(HasSubstr("case.yaml:6:"),
-                             HasSubstr("2 components are given where the 3-dimensional scene needs 3"))));
+                             HasSubstr("2 components are given, but the 3-dimensional scene needs 3"))));
   EXPECT_THAT(read(start + "damping: {stiffness: 1e-5 s}\n", damped),
               Contains(AllOf(HasSubstr("case.yaml:6:"), HasSubstr("no effect in a static analysis"))));
 }
@@ -155,7 +155,7 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
               ::testing::IsEmpty());
   told(large + "material: {" + body + ", law: yeo}\n", "Did you mean 'yeoh'");
   told(large + "material: {" + body + ", law: neo-hookean, law-coefficients: [1]}\n",
-       "the law 'neo-hookean' takes none");
+       "the law 'neo-hookean' has no parameters");
   told(large + "material: {" + body + ", law: mooney-rivlin, law-coefficients: [1, 2]}\n",
        "c01 / (c10 + c01)");
   told("material: {" + body + ", law: yeoh}\n", "with 'kinematics: finite-strain' only");

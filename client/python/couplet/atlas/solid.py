@@ -104,7 +104,7 @@ than 0.8 is inaccurate. `auto` takes what errs less, and the run's own energies 
         Axis("Poisson's ratio", [0.3, 0.4, 0.45, 0.49, 0.499, 0.4999], log=False), Axis("cells across", [1, 2, 4, 8]), [*GRADIENTS, SHARED], poisson,
         lambda r: 0 < r < 1.15, lambda r: r > 0.8,
         about="""Mechanism: a volume strain at every face asks for more conditions than there are unknowns as nu goes to 1/2: the mesh locks, or the
-operator loses its sign. The symmetric gradient takes one volume strain a cell from nu = 0.4 up. `volume-strain: shared` leaves a tenth of the bulk
+operator loses its sign. The symmetric gradient takes one volume strain per cell from nu = 0.4 up. `volume-strain: shared` leaves a tenth of the bulk
 modulus, at most a third of the shear modulus, with the faces: it does not lock either and errs least in plane strain; its failing neighbour is the
 bar in space with two cells across, 4.3 % too soft (docs/theory.md)."""),
 ]

@@ -33,7 +33,7 @@ def options_of_programs(parser):
     parser.add_argument("--allow-commands", action="store_true", help="lets a .geo run commands and write files: it does so with your rights")
     parser.add_argument("--strict", nargs="?", const="", metavar="effects", help=FLAGS["strict"])
     parser.add_argument("--accept", action="append", default=[], metavar="ID", help="lets a finding pass (docs/findings.md); repeatable")
-    parser.add_argument("-v", "--verbose", action="store_true", help="every rank tells more")
+    parser.add_argument("-v", "--verbose", action="store_true", help="every rank logs more")
     parser.add_argument("-q", "--quiet", action="store_true", help="warnings and errors only")
 
 

@@ -85,5 +85,5 @@ def sentences(parts):
     if math.isinf(total):
         lines.append("a run beside it failed: its part is unknown and counts as the largest")
     idle = [name for name, value in parts.items() if value < NOTHING * parts[worst]]
-    lines.append(f"the {worst} dominates" + (f": improving {' or '.join(idle)} would buy nothing" if idle else ""))
+    lines.append(f"the {worst} dominates" + (f": improving {' or '.join(idle)} would not help" if idle else ""))
     return lines
