@@ -73,8 +73,7 @@ TEST(CommandLine, a_wrong_command_line_leaves_with_code_2_and_says_why) {
   };
   EXPECT_EQ(message({}), "Give the YAML file of the case, for example: solid_solver case.yaml");
   EXPECT_EQ(message({"a.yaml", "b.yaml"}), "Unknown option or argument 'b.yaml'.");
-  EXPECT_EQ(message({"a.yaml", "--chekc"}),
-            "Unknown option or argument '--chekc'. Did you mean '--check'?");
+  EXPECT_EQ(message({"a.yaml", "--chekc"}), "Unknown option or argument '--chekc'. Did you mean '--check'?");
   EXPECT_EQ(message({"a.yaml", "--set"}), "--set: 1 required a.b=v missing");
   EXPECT_EQ(message({"a.yaml", "-v", "-q"}), "Use either --verbose or --quiet, not both.");
   EXPECT_EQ(message({"a.yaml", "--check", "--docs"}),

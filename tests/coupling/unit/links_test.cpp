@@ -132,7 +132,8 @@ TEST(Links, a_datum_that_nobody_gives_or_in_other_units_is_named) {
 TEST(Links, a_load_that_nobody_takes_is_noted_and_data_of_the_wrong_length_are_refused) {
   Interface s = solid();
   s.takes.pop_back();
-  EXPECT_THAT(links(fluid(), s).notes(), testing::Contains("note: no participant takes 'viscous-force' of 'fluid'"));
+  EXPECT_THAT(links(fluid(), s).notes(),
+              testing::Contains("note: no participant takes 'viscous-force' of 'fluid'"));
   EXPECT_THROW(links(fluid(), solid()).input(1, {{{"pressure-force", {1, 2}}}, {}}), Error);
 }
 

@@ -247,8 +247,7 @@ TEST(Corners, are_checked) {
   EXPECT_THAT(problem(bad), testing::HasSubstr("10 offsets for 10 faces"));
   bad = good;
   bad.face_vertices[3] = 11;
-  EXPECT_EQ(problem(bad),
-            "The face corners of 'wall' are invalid: vertex 11 is not one of its 11.");
+  EXPECT_EQ(problem(bad), "The face corners of 'wall' are invalid: vertex 11 is not one of its 11.");
   bad = good;
   bad.face_offset[3] = bad.face_offset[2];
   EXPECT_THAT(problem(bad), testing::HasSubstr("face 2 has fewer than two corners"));

@@ -147,8 +147,9 @@ TEST(InterfaceMapErrors, data_of_another_size_is_refused) {
     InterfaceMap(mesh, {"xmax"}).scatter_faces(std::vector<double>(5), 2);
     FAIL() << "no error";
   } catch (const Error& e) {
-    EXPECT_STREQ(e.what(),
-                 "The interface data received have 5 values; expected 3 entries of 2 components. Check that both participants describe the interface they use.");
+    EXPECT_STREQ(
+        e.what(),
+        "The interface data received have 5 values; expected 3 entries of 2 components. Check that both participants describe the interface they use.");
   }
 }
 

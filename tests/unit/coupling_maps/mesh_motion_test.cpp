@@ -115,7 +115,8 @@ TEST_F(TwoPrograms, meshes_with_other_numbers_of_points_are_refused_on_both_side
 TEST_F(TwoPrograms, meshes_with_other_places_of_the_points_are_refused_on_both_sides) {
   const Mesh mesh = distribute(
       own, make_box(BoxCells::quadrilaterals, {3, 3, 0}, Vec3::Zero(), Vec3(is_mover ? 1.001 : 1, 1, 0)));
-  EXPECT_THAT(set_up_error(mesh), ::testing::HasSubstr("mesh mover differ: their points have different coordinates."));
+  EXPECT_THAT(set_up_error(mesh),
+              ::testing::HasSubstr("mesh mover differ: their points have different coordinates."));
 }
 
 }  // namespace

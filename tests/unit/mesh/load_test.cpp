@@ -240,11 +240,12 @@ TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {
   const RawMesh raw = make_box(BoxCells::quadrilaterals, {1, 1, 0}, Vec3::Zero(), Vec3::Ones());
   const int size = comm_size(MPI_COMM_WORLD);
   const std::string text = test::error_of([&] { distribute(MPI_COMM_WORLD, raw); });
-  EXPECT_EQ(text,
-            size == 1
-                ? ""
-                : fmt::format("The mesh has 1 cells, fewer than the {} ranks that share it. Start fewer processes.",
-                              size));
+  EXPECT_EQ(
+      text,
+      size == 1
+          ? ""
+          : fmt::format("The mesh has 1 cells, fewer than the {} ranks that share it. Start fewer processes.",
+                        size));
 }
 
 }  // namespace

@@ -170,10 +170,8 @@ TEST(Questions, a_row_that_never_ran_is_said) {
   Schedule resting(flow);
   resting.decide(0, 450, 450, {});
   ASSERT_EQ(resting.doubts().size(), 1u);
-  EXPECT_THAT(
-      resting.doubts()[0],
-      HasSubstr(
-          "no flow: the first row with a flow, flow.rows[1], starts at 3600 s"));
+  EXPECT_THAT(resting.doubts()[0],
+              HasSubstr("no flow: the first row with a flow, flow.rows[1], starts at 3600 s"));
   resting.decide(3600, 450, 450, {});
   EXPECT_TRUE(resting.doubts().empty());
   ASSERT_EQ(schedule.doubts().size(), 1u);

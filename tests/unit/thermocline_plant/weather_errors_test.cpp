@@ -81,8 +81,10 @@ TEST_F(WeatherFile, short_gaps_are_closed_by_straight_lines_with_a_warning) {
   EXPECT_DOUBLE_EQ(record.temperature[4], 14);
   EXPECT_DOUBLE_EQ(record.temperature[10], 20);
   ASSERT_EQ(record.warnings.size(), 6u);
-  EXPECT_THAT(record.warnings,
-              testing::Contains(testing::HasSubstr("gap.csv:6: the air temperature [degC] is missing for 2 hours from here; the gap is filled linearly.")));
+  EXPECT_THAT(
+      record.warnings,
+      testing::Contains(testing::HasSubstr(
+          "gap.csv:6: the air temperature [degC] is missing for 2 hours from here; the gap is filled linearly.")));
   EXPECT_THAT(record.warnings, testing::Contains(testing::HasSubstr(
                                    "gap.csv:11: the air temperature [degC] is missing for 1 hour from")));
 }
@@ -125,8 +127,9 @@ TEST_F(WeatherFile, a_wrong_head_is_said) {
             "wind_m_s, rh_pct, p_Pa, hour.");
   EXPECT_EQ(complaint(write("w.csv", "hour,hour\n")), "w.csv:1: the column 'hour' appears twice.");
   EXPECT_EQ(complaint(write("w.csv", "# nothing else\n")), "w.csv: this weather file contains no hours.");
-  EXPECT_EQ(complaint((folder_ / "none.csv").string()),
-            "none.csv: this weather file does not exist. Relative paths start at the folder of the YAML file.");
+  EXPECT_EQ(
+      complaint((folder_ / "none.csv").string()),
+      "none.csv: this weather file does not exist. Relative paths start at the folder of the YAML file.");
 }
 
 TEST_F(WeatherFile, a_damaged_compressed_file_is_refused) {

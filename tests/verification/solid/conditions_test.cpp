@@ -490,7 +490,8 @@ TEST_F(FreeMotions, of_bodies_that_do_not_hang_together_are_told_apart) {
   p.boundaries["xmin"] = left;
   EXPECT_THAT(
       message(p, raw),
-      HasSubstr("the body around (5.5, 0.5, 0), one of 2 unconnected ones, is free in translation along x, translation along y, rotation about (5.5, 0.5). "));
+      HasSubstr(
+          "the body around (5.5, 0.5, 0), one of 2 unconnected ones, is free in translation along x, translation along y, rotation about (5.5, 0.5). "));
   p.analysis = SolidParameters::Analysis::dynamic;
   EXPECT_EQ(message(p, raw), "held");
 }

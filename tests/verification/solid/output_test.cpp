@@ -207,12 +207,12 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
     for (const EffectVerdict& verdict : solid.audit()) texts.push_back(text(verdict));
     return texts;
   };
-  EXPECT_THAT(lines(*slow),
-              ::testing::AllOf(
-                  ::testing::Contains(::testing::AllOf(::testing::HasSubstr("geometric non-linearity"),
-                                                       ::testing::HasSubstr("justified"))),
-                  ::testing::Contains(::testing::AllOf(::testing::HasSubstr("inertia left out"),
-                                                       ::testing::HasSubstr("justified")))));
+  EXPECT_THAT(
+      lines(*slow),
+      ::testing::AllOf(::testing::Contains(::testing::AllOf(::testing::HasSubstr("geometric non-linearity"),
+                                                            ::testing::HasSubstr("justified"))),
+                       ::testing::Contains(::testing::AllOf(::testing::HasSubstr("inertia left out"),
+                                                            ::testing::HasSubstr("justified")))));
   EXPECT_THAT(lines(*fast), ::testing::Contains(::testing::HasSubstr("use 'analysis: dynamic'")));
 }
 
