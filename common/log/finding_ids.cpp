@@ -30,9 +30,7 @@ constexpr std::array ids{
     // fluid_solver
     FindingId{answer, "flow-through-openings", "fluid leaves through an inlet or enters through an outlet"},
     FindingId{answer, "given-step", "a prescribed time step far too long for the viscous term on this mesh"},
-    FindingId{answer, "balance-of-the-kinetic-energy",
-              "the flow has kinetic energy not explained by any "
-              "work"},
+    FindingId{answer, "balance-of-the-kinetic-energy", "the flow has kinetic energy that no work explains"},
     FindingId{answer, "resolved-walls", "a turbulence model on walls that the mesh does not resolve"},
     FindingId{answer, "walls-that-move-along-themselves", "fluid crosses a moving wall on a mesh at rest"},
     FindingId{answer, "gaps-that-close", "gaps block most of the cells"},
@@ -60,9 +58,7 @@ constexpr std::array ids{
     FindingId{answer, "step-that-resolves-the-load", "the load changes within a step"},
     FindingId{answer, "step-that-resolves-the-contact", "an impact is shorter than ten steps"},
     FindingId{answer, "deflection-beyond-the-modes", "the loads excite truncated modes"},
-    FindingId{answer, "load-faster-than-the-modes",
-              "the load oscillates faster than the highest retained "
-              "mode"},
+    FindingId{answer, "load-faster-than-the-modes", "the load oscillates faster than the highest mode kept"},
     FindingId{answer, "initial-velocity-beyond-the-modes", "the modes cannot represent the initial velocity"},
     FindingId{answer, "load-between-the-faces-or-steps", "the load falls between faces or steps"},
     FindingId{answer, "load-that-moves-no-mode", "the load excites no mode"},

@@ -34,7 +34,7 @@ def flap(job, rho, mu, scheme="semi-implicit", dt=0.01, end=END, more=()):
         try:
             job.coupled(job.root / FLAP, name, arguments)
         except RunFailed as failure:
-            found = re.search(r"from t = ([\d.e-]+) s makes cell \d+ at \([^)]*\) cross itself", str(failure))
+            found = re.search(r"from t = ([\d.e-]+) s makes cell \d+ at \([^)]*\) intersect itself", str(failure))
             if not found:
                 raise
             ended = f"to {found[1]} s, where the mesh crosses itself: "
@@ -93,7 +93,7 @@ def renewals(rho):
                                 f"--set=simulation.output.folder={folder}", "--set=simulation.end-time=0.3",
                                 f"--set=participants.solid.material.density={rho}"]
              for i, program in enumerate(("coupler", "fluid_solver", "solid_solver", "mesh_mover"))), []))
-        sentence = next((l for l in result.stdout.splitlines() if "friction was computed anew" in l), "")
+        sentence = next((l for l in result.stdout.splitlines() if "friction was recomputed" in l), "")
         words = sentence.split(" in ", 1)[-1].split(";")[0]
         return words or "nothing said", result.returncode == 0 and words.startswith("0 of 30")
     return measure

@@ -293,15 +293,15 @@ TEST_F(CraftedFiles, each_fault_has_its_sentence) {
          [](CraftedValue& v) { v.size = {6}; });
   expect("mass", "a compound type", [](CraftedValue& v) { v.type = Type::compound; });
   expect("format", "text of variable length", [](CraftedValue& v) { v.type = Type::text_of_any_length; });
-  expect("format", "of at most 256 bytes is expected", [](CraftedValue& v) { v.text.assign(4000, 'x'); });
+  expect("format", "of at most 256 bytes", [](CraftedValue& v) { v.text.assign(4000, 'x'); });
   expect("frequency", "is a soft link", [](CraftedValue& v) { v.link = Link::soft_loop; });
   expect("frequency", "is a link to another file", [](CraftedValue& v) { v.link = Link::external; });
-  expect("frequency", "a table is expected", [](CraftedValue& v) { v.link = Link::cycle; });
-  expect("frequency", "lie in another file",
+  expect("frequency", "expected a table", [](CraftedValue& v) { v.link = Link::cycle; });
+  expect("frequency", "are stored in another file",
          [](CraftedValue& v) { v.store = CraftedValue::Store::other_file; });
-  expect("frequency", "made up of tables of other files",
+  expect("frequency", "composed of tables in other files",
          [](CraftedValue& v) { v.store = CraftedValue::Store::virtual_table; });
-  expect("frequency", "is stored by filter 32000",
+  expect("frequency", "uses filter 32000",
          [](CraftedValue& v) { v.store = CraftedValue::Store::unknown_filter; });
   expect("frequency", "declares 8589934592 bytes of values",
          [](CraftedValue& v) { v.size = {1u << 30}, v.store = CraftedValue::Store::unwritten; });

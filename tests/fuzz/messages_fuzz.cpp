@@ -206,7 +206,7 @@ TEST(GuestsBytes, another_version_names_both) {
       EXPECT_NE(text.find(fmt::format("process 0 of the job (a guest) speaks version {} ", version)),
                 std::string::npos)
           << text;
-      EXPECT_NE(text.find(fmt::format("here speak version {}", protocol_version)), std::string::npos) << text;
+      EXPECT_NE(text.find(fmt::format("here use version {}", protocol_version)), std::string::npos) << text;
       EXPECT_EQ(failure.speaker, 1);
     }
   }

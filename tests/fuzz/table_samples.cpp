@@ -250,7 +250,7 @@ std::vector<Bomb> bombs() {
   all.push_back({"a million empty members", repeated(support::gzip(""), 1000000)});
   const std::string whole = support::gzip(measured);
   for (const double part : {0.0002, 0.01, 0.5, 0.9999})
-    all.push_back({"cut short", whole.substr(0, std::size_t(part * double(whole.size())))});
+    all.push_back({"truncated", whole.substr(0, std::size_t(part * double(whole.size())))});
   all.push_back({"rubbish behind", whole + "rubbish"});
   std::string other = whole;
   other[other.size() - 6] = char(other[other.size() - 6] ^ 1);

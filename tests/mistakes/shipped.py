@@ -8,7 +8,7 @@ import sys
 import yaml
 
 # Second stages: what they read another case of the folder writes.
-NEEDS_A_RUN = {"bracket-modes/modal.yaml": "modes.file: there is no file 'out/bracket/modes.h5'"}
+NEEDS_A_RUN = {"bracket-modes/modal.yaml": "modes.file: the file 'out/bracket/modes.h5' does not exist"}
 
 
 def participants(case):

@@ -53,10 +53,10 @@ optimise.search(lambda todo: [(p[0] - 0.3) ** 2 for p in todo], 1, 4, -1, 1, say
 check(said[-1] == "optimise: ends because all 4 runs are used (study.optimise.runs)", f"why it ended: {said[-1]}")
 with tempfile.TemporaryDirectory() as folder:
     logs = [pathlib.Path(folder) / name for name in ("a.log", "b.log", "c.log", "none.log")]
-    logs[0].write_text("[tank 0] warning: 8 days stand for a year\n[tank 0] warning: 8 days stand for a year\n[tank 0] all is well\n")
-    logs[1].write_text("[tank 0] warning: 9.5 days stand for a year\n")
+    logs[0].write_text("[tank 0] warning: 8 days represent a year\n[tank 0] warning: 8 days represent a year\n[tank 0] all is well\n")
+    logs[1].write_text("[tank 0] warning: 9.5 days represent a year\n")
     logs[2].write_text("[tank 0] warning: the wall is hot\n")
-    check(warnings_of(logs) == ["warning in 2 of 4 runs, for example: 8 days stand for a year",
+    check(warnings_of(logs) == ["warning in 2 of 4 runs, for example: 8 days represent a year",
                                 "warning in 1 of 4 runs, for example: the wall is hot"], f"warnings: {warnings_of(logs)}")
     check(warnings_of(logs[3:]) == [], "no warnings")
 

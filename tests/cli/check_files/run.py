@@ -144,7 +144,7 @@ def look_at_keys():
         docs = subprocess.run([BIN / program, "--docs"], env=ENVIRONMENT, capture_output=True, text=True, check=True).stdout
         own = docs.split("\n## `simulation`")[0]
         rows = re.findall(r"^\| `([\w-]+)` \| (?:text|list of texts) \|(.*)$", own, flags=re.M)
-        declared = {key for key, rest in rows if re.search(r"\bfiles?\b|csv|\.h5|modes that another", rest) or key in ("mesh", "file", "air", "path")}
+        declared = {key for key, rest in rows if re.search(r"\bfiles?\b|csv|\.h5|modes written by", rest) or key in ("mesh", "file", "air", "path")}
         declared -= {"to", "from", "folder"}  # days of the weather's file; where a run writes
         tried = {scene.word for scene in SCENES if scene.program == program and scene.word}
         expect(f"{program}: keys of files are {sorted(declared)}, tried are {sorted(tried)}",

@@ -52,8 +52,8 @@ def broken_texts(right):
         "zero bytes": (right.replace(b"\n", b"\n\0", 1), [":2: ", "zero bytes"]),
         "UTF-16": (right.decode().encode("utf-16"), ["zero bytes"]),
         "a line without end": (right + b"1" * 70000, ["more than 65536 bytes"]),
-        "gzip that was cut": (gzip.compress(right)[:-9], ["damaged or was cut short"]),
-        "gzip with a flipped bit": (bytes([*gzip.compress(right)[:-6], 0, *gzip.compress(right)[-5:]]), ["damaged or was cut short"]),
+        "gzip that was cut": (gzip.compress(right)[:-9], ["damaged or truncated"]),
+        "gzip with a flipped bit": (bytes([*gzip.compress(right)[:-6], 0, *gzip.compress(right)[-5:]]), ["damaged or truncated"]),
         "a gzip bomb": (gzip.compress(right) + BOMB, ["expands to more than 100 times"]),
         "nothing": (b"", [""]),
     }
@@ -67,7 +67,7 @@ LOAD = table()
 COMMAS = {"decimal commas": (table(";", comma=True), [":2: '1,5' has a decimal comma; write 1.5"]),
           "decimal commas, tabs": (table("\t", comma=True), [":2: '1,5' has a decimal comma"]),
           "decimal commas among commas": (table(",", comma=True), [":2: 3 values, but the file has 2 columns"]),
-          "places that do not grow": (table(rows=((0, 1.5), (2, 1), (1, 3))), [":4: ", "must grow"]),
+          "places that do not grow": (table(rows=((0, 1.5), (2, 1), (1, 3))), [":4: ", "must increase"]),
           "numbers beyond doubles": (table(rows=((0, "1e999"), (1, 1))), [":2: '1e999' is beyond the range"])}
 GRID = b"y,t,u,v\n0,0,1.5,0\n0,1,1,0\n1,0,1,0\n1,1,1,0\n"
 BROKEN_GRID = {"decimal commas": (GRID.replace(b",", b";").replace(b".", b","), [":2: '1,5' has a decimal comma"]),

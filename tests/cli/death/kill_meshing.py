@@ -176,6 +176,6 @@ if starts("bwrap"):
     scene("bubblewrap, under mpirun", True, mpirun)
     children("bubblewrap, children of gmsh")
 else:
-    print("bubblewrap does not start here: that part is not tested")
+    print("bubblewrap cannot start here: that part is not tested")
 print(f"{len(failed)} of the checks failed" if failed else "all checks passed")
 sys.exit(1 if failed else 0)

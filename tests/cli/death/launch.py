@@ -5,7 +5,7 @@ from jobs import Suite, case_text, mpmd
 suite = Suite()
 text = case_text()
 case = {"case.yaml": text}
-right = "Start it as: mpirun -n 1 coupler case.yaml : -n 1 toy_piston case.yaml : -n 1 toy_spring case.yaml"
+right = "Start it with: mpirun -n 1 coupler case.yaml : -n 1 toy_piston case.yaml : -n 1 toy_spring case.yaml"
 coupler, piston, spring = "1 coupler case.yaml", "1 toy_piston case.yaml", "1 toy_spring case.yaml"
 
 suite.scenario("all there", mpmd(coupler, "3 toy_piston case.yaml", "2 toy_spring case.yaml"), case, 0,
@@ -24,26 +24,26 @@ suite.scenario("one program alone on purpose", ["toy_spring", "case.yaml", "--pa
 suite.scenario("same participant twice", mpmd(coupler, piston, spring, spring), case, 2,
                ["2 programs were started as participant 'solid' (toy_spring)", right])
 suite.scenario("one too many", mpmd(coupler, piston, spring, "1 toy_spring case.yaml --participant extra"), case, 2,
-               ["--participant extra: case.yaml has no participant of this name.", right])
+               ["--participant extra: case.yaml has no participant with this name.", right])
 suite.scenario("wrong program", mpmd(coupler, piston, "1 toy_piston case.yaml --participant solid"), case, 2,
-               ["--participant solid: it is run by the program 'toy_spring', but 'toy_piston' was started"])
+               ["--participant solid: this participant is run by the program 'toy_spring', but 'toy_piston' was started"])
 suite.scenario("program that nobody asked for", mpmd(coupler, spring, piston),
                {"case.yaml": text.replace("toy_piston", "fluid_solver")}, 2,
-               ["none of them is run by the program 'toy_piston'"])
+               ["no participant is run by the program 'toy_piston'"])
 suite.scenario("a coupler of two ranks", mpmd("2 coupler case.yaml", piston, spring), case, 0, ["t=1/1 s  step 10"])
 suite.scenario("two couplers", mpmd(coupler, coupler, piston, spring), case, 2,
                ["2 programs were started as participant 'coupler' (coupler)"])
 suite.scenario("different YAML files", mpmd(coupler, piston, "1 toy_spring other.yaml"),
                {"case.yaml": text, "other.yaml": case_text(solid=", vertices: 3")}, 2,
-               ["'coupler' reads case.yaml and 'solid' reads other.yaml, and what they read differs."])
+               ["'coupler' reads case.yaml and 'solid' reads other.yaml, and the contents differ."])
 suite.scenario("different overrides",
                mpmd(coupler, piston, "1 toy_spring case.yaml --set participants.solid.mass=2"), case, 2,
-               ["and what they read differs. All programs of a job need the same YAML file and the same --set"])
+               ["and the contents differ. All programs of a job need the same YAML file and the same --set"])
 suite.scenario("restart of some only", mpmd(coupler, piston, "1 toy_spring case.yaml --restart out/checkpoints"), case,
                2, ["'coupler' starts afresh and 'solid' was given --restart out/checkpoints."])
 suite.scenario("restart without a checkpoint",
                mpmd(*(p + " --restart nowhere" for p in (coupler, piston, spring))), case, 2,
-               ["--restart nowhere: there is no complete checkpoint."])
+               ["--restart nowhere: no complete checkpoint found."])
 suite.scenario("no coupling section", mpmd(piston, spring), {"case.yaml": text.split("coupling:")[0]}, 2,
                ["case.yaml has no `coupling` section, so its participants cannot run as one job"])
 suite.scenario("configuration error in one part", mpmd(coupler, piston, spring),
@@ -70,5 +70,5 @@ suite.scenario("exception in a step", mpmd(coupler, "2 toy_piston case.yaml", sp
                ["error: The piston broke, as it was told to."], not_lines=["was killed"])
 suite.scenario("a step that no halving saves", mpmd(coupler, piston, spring),
                {"case.yaml": case_text(fluid=", fails-above: 0.1 ms")}, 1,
-               ["The step from t = 0 s could not be solved, also not with dt = 0.0015625 s after 6 halvings: 'fluid'"])
+               ["The step from t = 0 s failed, even with dt = 0.0015625 s after 6 halvings: 'fluid'"])
 suite.finish()

@@ -26,7 +26,7 @@ def scenario(name, fault, timeout, code, lines, seconds=None, **more):
         suite.failed.append(name + " in time")
 
 
-circle = ["all programs of the job wait for each other, and none is left to send:", "'coupler' waits for 'fluid' to answer solve",
+circle = ["deadlock: all programs of the job wait for each other:", "'coupler' waits for 'fluid' to answer solve",
           "'fluid' waits for a message that is never sent", "'solid' waits for the next command"]
 for timeout in (None, "0 s", "1 h"):
     scenario(f"a wait in a circle, hang-timeout {timeout or 'by default'}", "fluid:solve:4:0:wait", timeout, 1, circle, seconds=15,

@@ -39,7 +39,7 @@ def accept():
     useless = beam(10, 200)
     code, text, found = run("solid_solver", "vibrating-cantilever", sets=useless)
     finding = found["solid"].get("error-estimate", {})
-    check("a useless answer ends with exit code 4", code == 4 and "The answer is useless (error-estimate" in text, code)
+    check("a useless answer ends with exit code 4", code == 4 and "The result is useless (error-estimate" in text, code)
     check("run.json lists it", finding.get("severity") == "wrong" and finding["number"] >= finding["limit"] == 1 and not finding["accepted"], finding)
     code, text, found = run("solid_solver", "vibrating-cantilever", "--accept", "error-estimate", sets=useless)
     check("--accept lets it pass", code == 0 and found["solid"]["error-estimate"]["accepted"] and "[error-estimate, accepted]" in text, code)
@@ -88,7 +88,7 @@ def scenes_():
     for case in ("oscillating-cylinder", "pitching-plate"):
         text = subprocess.run([str(programs / "fluid_solver"), str(configs / case / "case.yaml"), "--explain"], capture_output=True, text=True,
                               timeout=60).stdout
-        check(f"--explain: {case} moves its mesh", "on   mesh motion: asked for by motion" in text and "off  mesh motion" not in text, text[-300:])
+        check(f"--explain: {case} moves its mesh", "on   mesh motion: enabled by motion" in text and "off  mesh motion" not in text, text[-300:])
 
 
 def sound():

@@ -84,9 +84,9 @@ with tempfile.TemporaryDirectory() as top:
     folder = fresh("sound")
     expect("--check of sound modes", run(folder, "--check"), [0], "valid")
     expect("a run on them", run(folder), [0])
-    for how, name, n, words in (("attribute", "mass", 6, "holds 6 values (float64); one number is expected"),
-                                ("attribute", "mass", 2000, "holds 2000 values (float64); one number is expected"),
-                                ("attribute", "format", 3, "one text of a fixed length"),
+    for how, name, n, words in (("attribute", "mass", 6, "contains 6 values (float64); expected one number"),
+                                ("attribute", "mass", 2000, "contains 2000 values (float64); expected one number"),
+                                ("attribute", "format", 3, "one fixed-length text"),
                                 ("table", "frequency", 3, "the table 'shape/vertices' has 150 rows of 4 values; expected 150 of 3"),
                                 ("external", "frequency", 1, "a link to another file"),
                                 ("cut", "participation", 1, "it has no 'participation'")):
@@ -94,8 +94,8 @@ with tempfile.TemporaryDirectory() as top:
         spoiled(folder, "modes.h5", how, name, n)
         expect(f"--check of modes.h5, {how} {name} {n}", run(folder, "--check"), [2], "modes.file", "modes.h5", words)
         expect(f"the run on modes.h5, {how} {name} {n}", run(folder), [2], "modes.h5", words)
-    for how, name, n, words in (("attribute", "version", 6, "holds 6 values (float64); one number is expected"),
-                                ("attribute", "set", 500, "one text of a fixed length"),
+    for how, name, n, words in (("attribute", "version", 6, "contains 6 values (float64); expected one number"),
+                                ("attribute", "set", 500, "one fixed-length text"),
                                 ("table", "arrays/q", 900, "values"),
                                 ("table", "scalars/dt", 900, "900 rows"),
                                 ("table", "layout/q", 900, "layout/q"),

@@ -139,7 +139,7 @@ def judge(name, victim, ended, finished, said, left):
         problems.append(f"not ended within {WITHIN:g} s")
     if left:
         problems.append(f"processes left: {left}")
-    asked = "as asked by a signal" in said
+    asked = "by a signal; the state is saved" in said
     named = f"participant '{victim}'" in said or asked
     due = victim != "mpirun" and not finished and "t=" in said  # after the start-up
     return problems, due, named
@@ -198,7 +198,7 @@ def main():
             code = job.process.returncode
             if code == 0:
                 finished = True
-            stopped += "as asked by a signal" in said
+            stopped += "by a signal; the state is saved" in said
             problems, due, named = judge(which, victim, ended, finished, said, left)
             due_count, named_count = due_count + due, named_count + (due and named)
             if finished:

@@ -54,8 +54,8 @@ case.yaml:6:5: participants.solid.mesh: The geometry has a Field of type 'Extern
         solid("a table with a column out of range", "case.yaml:15:31: participants.solid.boundaries.right.value: profile.csv: the table's values must be in a column from 2 to 2, not in '1e300'.",
               ("{type: traction, value: [1000, 0]}", "{type: pressure, value: {of: t, file: profile.csv, column: 1e300}}"),
               files={"profile.csv": "0 1\n1 2\n"}),
-        solid("a participant with a folder's name", "case.yaml:3:1: participants: '../up': the name becomes a folder: no '/', '\\', '.' or "
-              "blank in it, no '-' in front.", ("  solid:\n", "  ../up:\n")),
+        solid("a participant with a folder's name", "case.yaml:3:1: participants: '../up': the name becomes a folder name: it must not contain '/', '\\', "
+              "'.' or blanks, nor start with '-'.", ("  solid:\n", "  ../up:\n")),
         solid("a participant without a name", "case.yaml:3:1: participants: '': a participant needs a name.", ("  solid:\n", '  "":\n')),
         solid("a participant called like the checkpoints", "case.yaml:3:1: participants: 'checkpoints': this name is reserved for a folder or file of the run; choose another.", ("  solid:\n", "  checkpoints:\n")),
         solid("more steps than can be counted", "case.yaml:2:29: simulation.time-step: the run would take 1e+15 steps; at most 1e+12 are allowed.", ("time-step: 0.5 s", "time-step: 1e-15 s")),

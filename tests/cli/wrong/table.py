@@ -138,7 +138,7 @@ case.yaml:2:47: simulation.output: expected a mapping (keys with values), found 
 ]
 
 OURS = "this name is reserved for a folder or file of the run; choose another"
-NO_FOLDER = "the name becomes a folder: no '/', '\\', '.' or blank in it, no '-' in front"
+NO_FOLDER = "the name becomes a folder name: it must not contain '/', '\\', '.' or blanks, nor start with '-'"
 PARTICIPANTS = [
     solid("no participants", """
 case.yaml:1:1: the `participants` section, which defines what solid_solver runs, is missing.

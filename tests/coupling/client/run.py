@@ -130,7 +130,7 @@ def handshake():
         for language, body in body_of.items():
             if language != "python" or python_is_there():
                 said = run(folder, body, sets=["coupling.sub-steps={body: 2}"], code=1)
-                check(f"{language}: sub-steps that nobody would take are refused", "takes one step a coupling step" in said.stderr + said.stdout)
+                check(f"{language}: sub-steps that nobody would take are refused", "takes one step per coupling step" in said.stderr + said.stdout)
 
     if not python_is_there():
         return

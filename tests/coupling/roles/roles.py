@@ -108,7 +108,7 @@ def by_check(folder):
     code, output = run([binaries / "coupler", "case.yaml", "--check", *options(role_sets(("mover", "solid", "fluid")))], folder)
     for line in ("coupling.fluid.participant: 'mover' is run by mesh_mover, which cannot be the fluid: the role 'fluid' takes "
                  "'displacement' [m] at vertices and gives a load [N] at faces; it gives no load [N] at faces",
-                 "Of this case's participants 'fluid' (fluid_solver) can.",
+                 "In this case 'fluid' (fluid_solver) can.",
                  "coupling.mesh.participant: 'fluid' is run by fluid_solver, which cannot be the mesh"):
         check(f"--check says: {line}", line in output, output)
 

@@ -14,7 +14,7 @@ import yaml
 binaries, configs = (pathlib.Path(p).resolve() for p in sys.argv[1:3])
 root = configs.parent
 PATIENCE = 600  # [s] with one job
-FINDINGS = ("surfaces that move together differ", "mesh motion: '", "0 m at every vertex", "would stand still")
+FINDINGS = ("surfaces that move together differ", "mesh motion: '", "0 m at every interface vertex", "would not follow")
 COARSE = ["participants.fluid.mesh-parameters={n_side: 10, n_tip: 1, growth: 1.5, wall_growth: 1.5, wall_cells: 3}",
           "participants.mover.mesh-parameters={n_side: 10, n_tip: 1, growth: 1.5, wall_growth: 1.5, wall_cells: 3}",
           "participants.solid.mesh-parameters={n_side: 20, n_tip: 2}", "simulation.end-time=0.12 s", "simulation.output.interval=1 s"]

@@ -87,7 +87,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-robin-") as folder:
     _, second = run("second-told", 0.05, *TOLD, restart="first-told/checkpoints")
     check("restart bit for bit", second == motion[4:], f"{len(second)} rows")
     silent = launch(0.05, [*TOLD[:2], "simulation.output.folder=silent"], (1, 1, 1), None)
-    check("a structure that says nothing: refused", silent.returncode != 0 and "takes 'surface-density', which nobody gives" in silent.stdout,
+    check("a structure that says nothing: refused", silent.returncode != 0 and "takes 'surface-density', which no participant gives" in silent.stdout,
           f"exit code {silent.returncode}")
     light = launch(0.05, [*TOLD, "participants.fluid.boundaries.wall.surface-density=1"], (1, 1, 1), None)
     check("both keys: refused", light.returncode == 2 and "the structure says it" in light.stdout, f"exit code {light.returncode}")

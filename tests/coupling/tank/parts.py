@@ -41,7 +41,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-parts-") as folder:
                         f"--set=simulation.output.folder={folder}/{ranks}"]
         log = run(command)
         found.append(folder / str(ranks))
-        said = re.findall(r"(ground|insulation): .* taken from the tank, (\S+) MWh passed on; the books are off by (\S+) of", log)
+        said = re.findall(r"(ground|insulation): .* taken from the tank, (\S+) MWh passed on; energy balance error (\S+) of", log)
         if len(said) != 2:
             sys.exit("the elements say nothing of their books:\n" + log)
     # A blanket of another height than the wall: refused, with both.

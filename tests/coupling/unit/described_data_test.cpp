@@ -50,7 +50,7 @@ TEST(DescribedData, on_another_rank_alone_are_refused_on_all) {
     initialise(comm_rank(MPI_COMM_WORLD) == last);
     FAIL() << "nothing was refused";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr(std::to_string(last) + " describes other data"));
+    EXPECT_THAT(e.what(), testing::HasSubstr(std::to_string(last) + " describes different data"));
   }
 }
 

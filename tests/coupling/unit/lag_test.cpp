@@ -102,7 +102,7 @@ struct LagRun {
   std::pair<double, double> told() const {
     std::smatch found;
     if (!std::regex_search(text, found,
-                           std::regex("explicit coupling leaves between ([-+.e0-9]+) and ([-+.e0-9]+) of")))
+                           std::regex("the error of explicit coupling is between ([-+.e0-9]+) and ([-+.e0-9]+) of")))
       return {std::nan(""), std::nan("")};
     return {std::stod(found[1]), std::stod(found[2])};
   }
@@ -138,7 +138,7 @@ TEST(LagEstimate, is_within_a_factor_of_two_of_what_explicit_coupling_leaves) {
         << "mu " << s.mu << " drag " << s.drag << " end " << s.end << " dt " << s.dt << " order " << s.order
         << ": told " << least << ", true " << error / size;
     EXPECT_GE(most, 0.9 * error / size);
-    EXPECT_EQ(true_.text.find("explicit coupling leaves"), std::string::npos);
+    EXPECT_EQ(true_.text.find("the error of explicit coupling"), std::string::npos);
   }
 }
 
@@ -147,13 +147,13 @@ TEST(LagEstimate, is_said_to_be_unknown_where_no_step_could_be_looked_at) {
   shorter();
   EXPECT_TRUE(std::isnan(shorter.told().first)) << shorter.text;
   EXPECT_THAT(shorter.text,
-              testing::HasSubstr("what explicit coupling leaves is not known (no step could be looked at"));
+              testing::HasSubstr("the error of explicit coupling is unknown (no step was examined"));
   LagRun fails{.end = 1, .fails_below = 0.04};  // halves of 0.05
   fails();
-  EXPECT_THAT(fails.text, testing::HasSubstr("what explicit coupling leaves is not known"));
+  EXPECT_THAT(fails.text, testing::HasSubstr("the error of explicit coupling is unknown"));
   LagRun off{.end = 1, .estimates = false};
   off();
-  EXPECT_EQ(off.text.find("what explicit coupling leaves"), std::string::npos);
+  EXPECT_EQ(off.text.find("the error of explicit coupling"), std::string::npos);
 }
 
 TEST(LagEstimate, changes_nothing_and_continues_over_a_restart_bit_for_bit) {

@@ -253,7 +253,7 @@ TEST(Corners, are_checked) {
   EXPECT_THAT(problem(bad), testing::HasSubstr("face 2 has fewer than two corners"));
   bad = good;
   bad.face_vertices.pop_back();
-  EXPECT_THAT(problem(bad), testing::HasSubstr("do not go from 0"));
+  EXPECT_THAT(problem(bad), testing::HasSubstr("do not run from 0"));
 }
 
 TEST(Maps, are_set_up_in_n_log_n) {

@@ -82,7 +82,7 @@ TEST(MatchedMapping, refuses_twins_that_are_not_clear) {
   PointSet from = line("a", 5), to = line("b", 5);
   to.points[2] = to.points[3];
   from.points[2] = from.points[3];
-  EXPECT_THAT(message(from, to, {}), testing::HasSubstr("the twins are not clear"));
+  EXPECT_THAT(message(from, to, {}), testing::HasSubstr("Ambiguous matching"));
 }
 
 TEST(Mapping, refuses_an_empty_side) {

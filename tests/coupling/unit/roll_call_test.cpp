@@ -69,7 +69,7 @@ TEST(RollCall, other_file_contents_are_named_with_both_sides) {
   list[2].case_file = "old.yaml";
   list[2].case_hash = 8;
   EXPECT_THAT(judge(list, expected, true).problem,
-              HasSubstr("'coupler' reads case.yaml and 'solid' reads old.yaml, and what they read differs."));
+              HasSubstr("'coupler' reads case.yaml and 'solid' reads old.yaml, and the contents differ."));
 }
 
 TEST(RollCall, configuration_errors_come_once_with_their_senders) {

@@ -159,7 +159,7 @@ TEST(StillGuard, ten_steps_of_load_without_motion_are_flagged_once) {
   };
   ASSERT_EQ(findings(3, 0, 0).size(), 1u);
   EXPECT_THAT(findings(3, 0, 0)[0],
-              HasSubstr("'solid': 0 m at every vertex of its interface for 10 steps under a load of up "
+              HasSubstr("'solid': 0 m at every interface vertex for 10 steps under a load of up "
                         "to 3 N per face"));
   EXPECT_EQ(findings(0, 0, 0).size(), 0u) << "nothing pushes";
   EXPECT_EQ(findings(3, 1e-15, 9).size(), 0u) << "it moves in the tenth step, by however little";

@@ -135,8 +135,8 @@ TEST(WatchIntegrals, what_is_not_there_is_refused_with_what_is) {
       "pressure-force, heat, weights");
   expect_refused(sheet(false), {"sheet", "heat", "middle"}, "has no part 'middle'. It has: near, far");
   expect_refused(sheet(false), {"sheet", "five", ""}, "has 5 components");
-  expect_refused(sheet(false), {"sheet", "weights", "far"}, "is at vertices, which belong to no part");
-  expect_refused(blind, {"sheet", "velocity", ""}, "does not tell the corners of its faces");
+  expect_refused(sheet(false), {"sheet", "weights", "far"}, "is given at vertices, which belong to no part");
+  expect_refused(blind, {"sheet", "velocity", ""}, "does not provide the corners of its faces");
 }
 
 }  // namespace

@@ -76,10 +76,10 @@ with tempfile.TemporaryDirectory(prefix="couplet-cavity-") as scratch:
     check("balloon in a channel: passes a step", passes(here / "balloon") <= 6, passes(here / "balloon"))
 
     refused = run(here / "none", "closed-cavity", CAVITY, [*SMALL, "participants.fluid.volume-level=none"])
-    check("without the key: refused", refused.returncode != 0 and "give the key 'volume-level: structure'" in refused.stdout + refused.stderr,
+    check("without the key: refused", refused.returncode != 0 and "set 'volume-level: structure'" in refused.stdout + refused.stderr,
           f"exit code {refused.returncode}")
     shorter = run(here / "sub-steps", "closed-cavity", CAVITY, [*SMALL, "coupling.sub-steps={lid: 3}"])
-    check("sub-steps beside the level: refused", shorter.returncode != 0 and "leave 'sub-steps' out" in shorter.stdout + shorter.stderr,
+    check("sub-steps beside the level: refused", shorter.returncode != 0 and "remove 'sub-steps'" in shorter.stdout + shorter.stderr,
           f"exit code {shorter.returncode}")
     outlet = run(here / "outlet", "balloon", BALLOON, [*end, "participants.channel.volume-level=structure"])
     check("with the key and an outlet: refused", outlet.returncode != 0 and "this fluid has an outlet" in outlet.stdout + outlet.stderr,

@@ -19,8 +19,8 @@ struct Outcome {
 };
 
 /// What a refusal has to say: which part, and a number of the mesh.
-const char* const reasons[] = {"non-orthogonal part of the viscous term",
-                               "non-orthogonal part of the pressure", "The flow diverges at t ="};
+const char* const reasons[] = {"non-orthogonal correction of the viscous term",
+                               "non-orthogonal correction of the pressure", "The flow diverges at t ="};
 
 /// Channel flow u = 4 y (1 - y) through a box [0, 2] x [0, 1] (x [0, 0.5]) whose points were moved by `map`.
 template <int D>

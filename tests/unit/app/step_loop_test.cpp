@@ -145,7 +145,7 @@ TEST_F(Checkpoints, what_a_run_left_half_written_is_no_checkpoint_and_is_cleared
     file.close();
   }
   EXPECT_EQ(find_checkpoint(folder), folder / "step-00000002");
-  EXPECT_THAT(error_of([&] { find_checkpoint(half); }), HasSubstr("there is no complete checkpoint"));
+  EXPECT_THAT(error_of([&] { find_checkpoint(half); }), HasSubstr("no complete checkpoint found"));
   run_to(2, 9);
   EXPECT_FALSE(fs::exists(half));
 }
@@ -156,10 +156,10 @@ TEST_F(Checkpoints, files_of_two_sets_are_not_read_together) {
   EXPECT_EQ(saved_time(last), 3);
   fs::copy_file(before / "one.h5", last / "one.h5", fs::copy_options::overwrite_existing);
   EXPECT_THAT(error_of([&] { saved_time(last); }),
-              HasSubstr("is not the file that was written with this checkpoint"));
+              HasSubstr("is not the file written with this checkpoint"));
   fs::copy_file(before / "set.txt", last / "set.txt", fs::copy_options::overwrite_existing);
   EXPECT_EQ(saved_time(last), 2) << "now both are of step 2";
-  EXPECT_THAT(error_of([&] { read_run_state(last); }), HasSubstr("is not the file that was written"));
+  EXPECT_THAT(error_of([&] { read_run_state(last); }), HasSubstr("is not the file written"));
 }
 
 TEST_F(Checkpoints, a_flipped_bit_in_a_scalar_is_noticed) {

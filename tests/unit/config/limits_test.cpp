@@ -36,7 +36,7 @@ TEST(Limits, control_characters_are_refused_with_their_place) {
   EXPECT_EQ(error_of("a: 1\n\"b\\x07\": 2\n"),
             "case.yaml:2:1: this key contains a control character (code 7); remove it.");
   EXPECT_THAT(error_of("a: \"\\e[31mred\"\n"),
-              HasSubstr("a: this value holds a control character (code 27)"));
+              HasSubstr("a: this value contains a control character (code 27)"));
   EXPECT_EQ(error_of("a: \"two\\nlines\\tand a tab\"\n"), "");
 }
 

@@ -95,7 +95,7 @@ TEST(Override, control_characters_are_refused_and_not_told) {
       read_with({assignment});
       FAIL() << "accepted";
     } catch (const Error& error) {
-      EXPECT_THAT(error.what(), testing::HasSubstr("holds a control character"));
+      EXPECT_THAT(error.what(), testing::HasSubstr("contains a control character"));
       EXPECT_THAT(error.what(), testing::HasSubstr("?"));
       EXPECT_EQ(std::string(error.what()).find('\x1b'), std::string::npos);
     }

@@ -52,7 +52,7 @@ Judged judge(const std::string& text) {
 TEST(Quantities, bare_temperatures_and_angles_are_refused_in_every_form) {
   for (const std::string text : {"temperature: 20", "hot: 20", "hot: {of: t, at: [0, 1], values: [20, 30]}",
                                  "load: {of: T, at: [300, 400], values: [1, 2]}"})
-    EXPECT_THAT(judge(text).errors, ElementsAre(HasSubstr("has no unit, and this number needs one: write")))
+    EXPECT_THAT(judge(text).errors, ElementsAre(HasSubstr("has no unit, but one is required: write")))
         << text;
   EXPECT_THAT(
       judge("temperature: 20").errors,
@@ -72,7 +72,7 @@ TEST(Quantities, with_a_unit_or_where_zero_is_zero_in_both_they_are_taken) {
 TEST(Quantities, a_temperature_is_no_difference_and_a_difference_no_temperature) {
   EXPECT_THAT(judge("difference: 10 degC").errors, ElementsAre(HasSubstr("write 10 K")));
   EXPECT_THAT(judge("temperature: 10 K difference").errors,
-              ElementsAre(HasSubstr("a difference of temperatures where")));
+              ElementsAre(HasSubstr("a temperature difference, but")));
   for (const std::string text : {"difference: 10 K", "difference: 10", "difference: 10 K difference"}) {
     const Judged j = judge(text);
     EXPECT_THAT(j.errors, IsEmpty()) << text;

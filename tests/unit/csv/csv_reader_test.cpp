@@ -67,12 +67,12 @@ TEST(CsvReader, decimal_commas_are_refused_with_their_line) {
   EXPECT_THAT(said("t p\n0,0 1000,5\n"), HasSubstr("a.csv:2: '0,0' has a decimal comma"));
   EXPECT_THAT(said("0,0 1000,5\n"), HasSubstr("a.csv:1"));
   EXPECT_THAT(said("t,p\n0,05\n"),
-              HasSubstr("a.csv:2: '05' begins with a zero: are the commas decimal commas?"));
+              HasSubstr("a.csv:2: '05' starts with a zero: are the commas decimal commas?"));
 }
 
 TEST(CsvReader, separators_that_could_be_decimal_commas_need_names_or_points) {
   EXPECT_THAT(said("0,0,1000,5\n1,5,2000,5\n"),
-              HasSubstr("a.csv:1: the commas may separate 4 whole numbers or be decimal commas"));
+              HasSubstr("a.csv:1: ambiguous commas: they may separate 4 whole numbers or be decimal commas"));
   EXPECT_THAT(said("0,5,1000\n"), HasSubstr("3 whole numbers"));
   EXPECT_EQ(said("a,b,c\n0,5,1000\n"), "nothing");
   EXPECT_EQ(said("0,5,1000\n1,5,1000.5\n"), "nothing");
@@ -101,8 +101,8 @@ TEST(CsvReader, cells_that_are_no_finite_numbers_are_refused) {
 
 TEST(CsvReader, a_first_row_with_a_slip_is_not_taken_for_names) {
   EXPECT_THAT(said("O.5,1\n1,2\n"),
-              HasSubstr("a.csv:1: the first line holds both numbers ('1') and words ('O.5')"));
-  EXPECT_THAT(said("0 s,1\n1,2\n"), HasSubstr("a unit belongs in the name of the column"));
+              HasSubstr("a.csv:1: the first line contains both numbers ('1') and words ('O.5')"));
+  EXPECT_THAT(said("0 s,1\n1,2\n"), HasSubstr("a unit belongs in the column name"));
   EXPECT_THAT(said("nan,1\n1,2\n"), HasSubstr("a.csv:1: 'nan' is not a number"));
   EXPECT_THAT(said("1.2.3,0\n1,2\n"), HasSubstr("a.csv:1: '1.2.3' is not a number"));
 }

@@ -67,10 +67,10 @@ TEST(LineReader, tells_whether_the_last_line_is_whole) {
 
 TEST(LineReader, what_is_no_text_is_refused_with_its_line) {
   EXPECT_THAT(said(std::string("1,2\n3,\0\n", 8)),
-              HasSubstr("a.csv:2: this table is no plain text: it holds zero bytes"));
+              HasSubstr("a.csv:2: this table is not plain text: it contains zero bytes"));
   EXPECT_THAT(said("1,2\n3,\x01\n"),
-              HasSubstr("a.csv:2: this table is no plain text: it holds the control character 0x01"));
-  EXPECT_THAT(said("1,2\r3,4\r5,6\r"), HasSubstr("a.csv:1: a carriage return stands within this line"));
+              HasSubstr("a.csv:2: this table is not plain text: it contains the control character 0x01"));
+  EXPECT_THAT(said("1,2\r3,4\r5,6\r"), HasSubstr("a.csv:1: carriage return within this line"));
   EXPECT_THAT(said("1\n" + std::string(70000, '1') + "\n"),
               HasSubstr("a.csv:2: this line has more than 65536 bytes"));
   EXPECT_THAT(said("1\n" + std::string(70000, '1')),
@@ -81,7 +81,7 @@ TEST(LineReader, what_is_no_regular_file_is_refused_at_once) {
   const auto fifo = support::own_folder() / "fifo.csv";
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
   EXPECT_THAT([&] { read_lines(fifo, "table"); },
-              testing::ThrowsMessage<Error>(HasSubstr("cannot be read: it is a folder, a pipe")));
+              testing::ThrowsMessage<Error>(HasSubstr("is not a regular file, but a folder, pipe")));
   EXPECT_THAT([] { read_lines("/dev/zero", "table"); },
               testing::ThrowsMessage<Error>(HasSubstr("not a regular file")));
   EXPECT_THAT([] { read_lines("/nowhere/a.csv", "table"); },
@@ -90,7 +90,7 @@ TEST(LineReader, what_is_no_regular_file_is_refused_at_once) {
 
 TEST(LineReader, limits_of_size_and_of_lines_hold) {
   EXPECT_THAT(said(std::string(3 << 20, '\n'), {.bytes = 2 << 20}),
-              EndsWith("this table has 3 MB; at most 2 MB are read. Keep fewer rows or columns."));
+              EndsWith("this table has 3 MB; at most 2 MB are read. Reduce its rows or columns."));
   EXPECT_EQ(said("1\n2\n3\n", {.lines = 3}), "nothing");
   EXPECT_THAT(said("1\n2\n3\n4\n", {.lines = 3}), HasSubstr("more than 3 lines"));
 }
@@ -106,15 +106,15 @@ TEST(Gzip, that_is_cut_or_damaged_anywhere_is_refused) {
   const std::string whole = gzip(text);
   ASSERT_EQ(said(whole), "nothing");
   for (std::size_t n = 3; n < whole.size(); n += 1 + n / 7)
-    EXPECT_THAT(said(whole.substr(0, n)), HasSubstr("damaged or was cut short")) << n;
+    EXPECT_THAT(said(whole.substr(0, n)), HasSubstr("damaged or truncated")) << n;
   for (std::size_t at = whole.size() / 2; at < whole.size(); at += 97) {
     std::string bad = whole;
     bad[at] = char(bad[at] ^ 16);
-    EXPECT_THAT(said(bad), HasSubstr("damaged or was cut short")) << at;
+    EXPECT_THAT(said(bad), HasSubstr("damaged or truncated")) << at;
   }
   EXPECT_THAT(said(whole + "x"), HasSubstr("its last bytes are not part of any member"));
   EXPECT_THAT(said(whole + "rubbish"), HasSubstr("the compressed data are followed by other bytes"));
-  EXPECT_THAT(said(whole + "\x1f\x8b rubbish"), HasSubstr("damaged or was cut short"));
+  EXPECT_THAT(said(whole + "\x1f\x8b rubbish"), HasSubstr("damaged or truncated"));
 }
 
 /// 3 MB that would be 3 GB: stopped at the first megabyte.

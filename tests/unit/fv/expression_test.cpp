@@ -62,7 +62,7 @@ TEST(Expression, names_key_column_and_known_variables_of_an_error) {
                                ::testing::HasSubstr("column 7: unknown name 'q'"),
                                ::testing::HasSubstr("variables x, y, z [m] and t [s]")));
   EXPECT_THAT(message_of("2*(x + 1"), ::testing::HasSubstr("column 9: a ')' is missing"));
-  EXPECT_THAT(message_of("x + + * 2"), ::testing::HasSubstr("cannot be read at column"));
+  EXPECT_THAT(message_of("x + + * 2"), ::testing::HasSubstr("at column"));
   EXPECT_THAT(message_of(""), ::testing::HasSubstr("cannot be read"));
 }
 
@@ -70,7 +70,7 @@ TEST(Expression, refuses_values_that_are_not_finite) {
   const Expression f(config::ExpressionText{"1/x"}, "value");
   EXPECT_EQ(f(Vec3(2, 0, 0), 0), 0.5);
   EXPECT_THROW(f(Vec3(0, 0, 0), 0), Error);
-  EXPECT_THAT(message_of("1/0"), ::testing::HasSubstr("a finite number is needed"));
+  EXPECT_THAT(message_of("1/0"), ::testing::HasSubstr("it must be finite"));
 }
 
 TEST(Expression, needs_one_component_a_dimension) {

@@ -60,12 +60,12 @@ TEST(Table, integral_is_exact_inside_and_beyond_the_ends) {
 
 TEST(Table, refuses_values_outside_when_told_so_and_places_that_do_not_grow) {
   const Table table({0, 1}, {0, 1}, Outside::error, "inlet");
-  EXPECT_THAT([&] { table(1.5); }, ThrowsMessage<Error>(HasSubstr("inlet: the table goes from 0 to 1")));
+  EXPECT_THAT([&] { table(1.5); }, ThrowsMessage<Error>(HasSubstr("inlet: the table covers 0 to 1")));
   EXPECT_THAT(
       [] {
         Table({0, 1, 1}, {0, 0, 0}, Outside::clamp, "");
       },
-      ThrowsMessage<Error>(HasSubstr("must grow, but 1 stands before 1")));
+      ThrowsMessage<Error>(HasSubstr("must increase, but 1 is followed by 1")));
 }
 
 TEST(Table, is_a_function_in_expressions) {
@@ -113,10 +113,10 @@ TEST(Table, places_in_a_file_that_do_not_grow_are_refused_with_their_line) {
   const CsvFile file("t,p\n0,1\n2,2\n1,3\n");
   EXPECT_THAT([&] { read_table(file.path(), "2", Outside::clamp); },
               ThrowsMessage<Error>(HasSubstr(
-                  file.name() + ":4: the first column of a table must grow, but 2 stands before 1")));
+                  file.name() + ":4: the first column of a table must increase, but 2 is followed by 1")));
   const CsvFile names("t,p\n");
   EXPECT_THAT([&] { read_table(names.path(), "2", Outside::clamp); },
-              ThrowsMessage<Error>(HasSubstr("holds no rows of numbers")));
+              ThrowsMessage<Error>(HasSubstr("contains no rows of numbers")));
 }
 
 /// Nothing ever writes into it: a reader would wait for ever.
@@ -171,9 +171,9 @@ TEST(Table, may_be_a_mapping_in_the_yaml_with_units) {
   const Expression radial(read_loads("pressure: {of: r, at: [0, 10], values: [0, 10]}").pressure);
   EXPECT_DOUBLE_EQ(radial(Vec3(3, 4, 7), 0), 5);
   EXPECT_THAT([] { read_loads("pressure: {of: t, at: [0, 1], values: [0]}"); },
-              ThrowsMessage<Error>(HasSubstr("2 places and 1 values are given")));
+              ThrowsMessage<Error>(HasSubstr("2 points and 1 values are given")));
   EXPECT_THAT([] { read_loads("pressure: {of: s, at: [0, 1], values: [0, 1]}"); },
-              ThrowsMessage<Error>(HasSubstr("'of' one of: x, y, z, r, t, T")));
+              ThrowsMessage<Error>(HasSubstr("'of' of a table must be one of: x, y, z, r, t, T")));
   EXPECT_THAT([] { read_loads("pressure: {of: t, at: [0, 1], valus: [0, 1]}"); },
               ThrowsMessage<Error>(HasSubstr("Did you mean 'values'?")));
 }

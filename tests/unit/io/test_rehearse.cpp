@@ -41,7 +41,7 @@ TEST(Rehearse, a_crash_is_an_error_that_names_the_file) {
   for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE})
     EXPECT_EQ(
         said_of([&] { std::raise(signal); }),
-        "Cannot use the file 'a.h5': it is damaged, or made to do harm (a trial read crashed). Make it anew.");
+        "The file 'a.h5' cannot be used: it is damaged or malicious (a trial read crashed). Create it again.");
 }
 
 TEST(Rehearse, what_takes_more_memory_than_the_file_can_need_is_refused) {

@@ -82,7 +82,7 @@ TEST(Series, a_row_of_another_length_is_refused) {
   const Scratch scratch;
   Series series(own_file(scratch), columns);
   EXPECT_THAT(error_of([&] { series.row(std::vector<double>{1.0}); }),
-              HasSubstr("has 1 values, its head 2 columns"));
+              HasSubstr("has 1 values, but its header has 2 columns"));
 }
 
 }  // namespace

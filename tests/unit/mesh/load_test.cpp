@@ -111,7 +111,7 @@ TEST_F(LoadMesh, a_cache_with_another_digest_is_made_anew) {
     EXPECT_EQ(load_mesh(MPI_COMM_WORLD, geo, 2).cells.n_global(), cells);
     if (comm_rank(MPI_COMM_WORLD) == 0) {
       const std::string log = ::testing::internal::GetCapturedStdout();
-      EXPECT_THAT(log, HasSubstr("is damaged, or none that Couplet made"));
+      EXPECT_THAT(log, HasSubstr("is damaged, or not written by Couplet"));
     }
     EXPECT_EQ(content(cache), whole);
   }
@@ -147,14 +147,14 @@ TEST_F(LoadMesh, a_parameter_that_nobody_takes_is_an_error) {
                              square);
   EXPECT_EQ(error(geo, {{"sise", 1}}),
             "The geometry file '" + geo.string() +
-                "' defines no parameter 'sise' by DefineConstant. Did you mean 'size'?");
+                "' defines no parameter 'sise' with DefineConstant. Did you mean 'size'?");
   EXPECT_THAT(error(geo, {{"no", 1}}), HasSubstr("Valid names: size, k."));
   EXPECT_THAT(
       error(write("fixed.geo", "h = 0.5;\n" + square), {{"h", 1}}),
-      HasSubstr("defines no parameter, so 'mesh-parameters' cannot set 'h'. Write the names that are to be "
-                "set from outside as 'DefineConstant [ h = 1 ];'."));
+      HasSubstr("defines no parameters, so 'mesh-parameters' cannot set 'h'. Declare names that are set "
+                "from outside as 'DefineConstant [ h = 1 ];'."));
   EXPECT_THAT(error(test::data / "plane_41_ascii.msh", {{"h", 1}}),
-              HasSubstr("is finished, so 'mesh-parameters' cannot change it."));
+              HasSubstr("is already meshed, so 'mesh-parameters' cannot change it."));
 }
 
 // gmsh makes 3 cells of -3, 2 of 2.5 and triangles of 0, without a word.
@@ -181,12 +181,12 @@ TEST_F(LoadMesh, errors_on_rank_0_are_thrown_on_every_rank) {
             "The mesh file '" + (folder / "none.msh").string() +
                 "' does not exist. The path is relative to the folder of the YAML file.");
   EXPECT_THAT(error(write("mesh.stl", ""), 3),
-              HasSubstr("is neither .msh nor .geo, .inp, .unv, .med, .exo or .cgns."));
+              HasSubstr("is not a .msh, .geo, .inp, .unv, .med, .exo or .cgns file."));
   // gmsh would take both for scripts.
-  EXPECT_THAT(error(write("mesh.vtk", ""), 3), HasSubstr("its parts have no names there"));
-  EXPECT_THAT(error(write("mesh.inp", ""), 3), HasSubstr("mesh.inp: the deck has no element of a body"));
+  EXPECT_THAT(error(write("mesh.vtk", ""), 3), HasSubstr("this format does not name its parts"));
+  EXPECT_THAT(error(write("mesh.inp", ""), 3), HasSubstr("mesh.inp: the deck has no solid elements"));
   EXPECT_THAT(error(test::data / "plane_41_ascii.msh", 3),
-              HasSubstr("is 2-dimensional, but 'dimension: 3' is asked for."));
+              HasSubstr("is 2-dimensional, but the case sets 'dimension: 3'."));
   EXPECT_THAT(error(write("bad.msh", "hello"), 3),
               HasSubstr("bad.msh:1: Expected a section such as $Nodes here"));
 }

@@ -56,7 +56,7 @@ TEST(MeshErrors, patch_off_the_cells_is_refused) {
   const Index across[] = {0, 2};
   raw.boundary_points.push_row(across);
   raw.boundary_patch.push_back(3);
-  EXPECT_THAT(error_of(raw), HasSubstr("Patch 'ymax' has a face at (1, 0) that is no face of any cell."));
+  EXPECT_THAT(error_of(raw), HasSubstr("Patch 'ymax' has a face at (1, 0) that belongs to no cell."));
 }
 
 TEST(MeshErrors, third_cell_on_a_face_is_refused) {

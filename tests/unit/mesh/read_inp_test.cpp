@@ -121,32 +121,32 @@ TEST_F(ReadInp, included_files_lie_in_the_folder) {
   EXPECT_THAT(error("*INCLUDE, INPUT=../secret.txt\n"),
               AllOf(HasSubstr("deck.inp:1:"), HasSubstr("outside the folder")));
   EXPECT_THAT(error("*INCLUDE, INPUT=/etc/passwd\n"), HasSubstr("outside the folder"));
-  EXPECT_THAT(error("*INCLUDE, INPUT=none.txt\n"), HasSubstr("there is no file"));
+  EXPECT_THAT(error("*INCLUDE, INPUT=none.txt\n"), HasSubstr("does not exist"));
   EXPECT_THAT(error("*INCLUDE\n"), HasSubstr("names no file"));
-  EXPECT_THAT(error("*INCLUDE, INPUT=deck.inp\n"), HasSubstr("goes deeper than 8 files"));
+  EXPECT_THAT(error("*INCLUDE, INPUT=deck.inp\n"), HasSubstr("is nested deeper than 8 files"));
 }
 
 TEST_F(ReadInp, mistakes_are_told_with_file_and_line) {
-  EXPECT_THAT(error(""), HasSubstr("no element of a body"));
-  EXPECT_THAT(error("1, 2\n"), AllOf(HasSubstr("deck.inp:1:"), HasSubstr("begins with a keyword")));
+  EXPECT_THAT(error(""), HasSubstr("no solid elements"));
+  EXPECT_THAT(error("1, 2\n"), AllOf(HasSubstr("deck.inp:1:"), HasSubstr("begin with a keyword")));
   EXPECT_THAT(error("*NODE\n1, 0, x, 0\n"), AllOf(HasSubstr("deck.inp:2:"), HasSubstr("'x'")));
   EXPECT_THAT(error("*NODE\n1, 0, 1e999, 0\n"), HasSubstr("deck.inp:2:"));
-  EXPECT_THAT(error("*NODE\n-1, 0, 0, 0\n"), HasSubstr("a node has a whole number above 0"));
+  EXPECT_THAT(error("*NODE\n-1, 0, 0, 0\n"), HasSubstr("a node needs a whole number above 0"));
   EXPECT_THAT(error("*NODE\n1, 0, 0, 0\n1, 1, 0, 0\n"),
-              AllOf(HasSubstr("deck.inp:3:"), HasSubstr("node 1 is given twice")));
+              AllOf(HasSubstr("deck.inp:3:"), HasSubstr("node 1 is defined twice")));
   EXPECT_THAT(error("*NODE, SYSTEM=C\n1, 0, 0, 0\n"), HasSubstr("rectangular"));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=S4\n1, 1,2,3,4\n"),
               AllOf(HasSubstr("deck.inp:14:"), HasSubstr("shells")));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=CAX4\n1, 1,2,3,4\n"), HasSubstr("axisymmetric"));
   EXPECT_THAT(error(nodes + "*ELEMENT\n1, 1,2,3,4\n"), HasSubstr("*ELEMENT needs TYPE=..."));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3\n"),
-              AllOf(HasSubstr("deck.inp:15:"), HasSubstr("5 whole numbers are expected")));
+              AllOf(HasSubstr("deck.inp:15:"), HasSubstr("expected 5 whole numbers")));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,4,5\n"), HasSubstr("here are 6 numbers"));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,77\n"),
               AllOf(HasSubstr("deck.inp:15:"), HasSubstr("node 77")));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D8\n1, 1,2,3,3,5,6,7,7\n"), HasSubstr("node 3 twice"));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,5\n1, 1,2,4,5\n"),
-              AllOf(HasSubstr("deck.inp:16:"), HasSubstr("given twice")));
+              AllOf(HasSubstr("deck.inp:16:"), HasSubstr("defined twice")));
   EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\n10, S7\n"), HasSubstr("'beam, S3'"));
   EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\n10\n"), HasSubstr("'beam, S3'"));
   EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\nnone, S1\n"), HasSubstr("no ELSET given before"));

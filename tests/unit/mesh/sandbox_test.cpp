@@ -65,7 +65,7 @@ TEST_F(Sandbox, its_folder_is_its_home_and_goes_with_it) {
 }
 
 TEST_F(Sandbox, with_bubblewrap_only_its_folder_can_be_written_to_and_there_is_no_network) {
-  if (!has_bubblewrap()) GTEST_SKIP() << "bubblewrap does not start here";
+  if (!has_bubblewrap()) GTEST_SKIP() << "bubblewrap cannot start here";
   run("touch inside; touch " + (own_.path / "outside").string() + "; grep -c : /proc/net/dev");
   EXPECT_TRUE(fs::exists(folder_.path() / "inside"));
   EXPECT_FALSE(fs::exists(own_.path / "outside"));

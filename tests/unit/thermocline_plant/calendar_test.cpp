@@ -62,7 +62,7 @@ TEST(Calendar, rules_that_never_hold_are_said) {
   p.calendar.insert(p.calendar.begin(), {{}, "", "", {}, {10}});
   const auto covered = Calendar(p.calendar, p.start).doubts();
   ASSERT_EQ(covered.size(), 2u);
-  EXPECT_THAT(covered[0], HasSubstr("flow.calendar[1] holds on no day"));
+  EXPECT_THAT(covered[0], HasSubstr("flow.calendar[1] applies on no day"));
   p = working_week();
   p.start.period = 30;  // to 28 June: winter never comes
   ASSERT_EQ(Calendar(p.calendar, p.start).doubts().size(), 1u);

@@ -157,7 +157,7 @@ TEST(Economics, pump_and_fan_take_their_work_from_what_is_sold) {
       << "it eats more than it gives";
   EXPECT_NE(
       doubts.find(
-          "the levelised cost is infinite: the block's electricity less what pump and fan take is -24 MWh"),
+          "the levelised cost is infinite: net electricity (power block minus pump and fan) = -24 MWh"),
       std::string::npos)
       << doubts;
 }

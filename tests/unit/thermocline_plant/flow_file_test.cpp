@@ -55,26 +55,26 @@ TEST(FlowFile, what_is_wrong_is_said_with_file_and_line) {
   EXPECT_THAT(said(h + "0,-100,390\n1,abc,390\n"),
               HasSubstr("flows.csv:3: 'abc' is not a number; expected mass-flow here"));
   EXPECT_THAT(said(h + "0,-100,390\n1,50\n"), HasSubstr("flows.csv:3: 2 values, but the file has 3 columns"));
-  EXPECT_THAT(said(h + "1,-100,390\n1,0,390\n"), HasSubstr("flows.csv:3: time 3600 s does not come after"));
+  EXPECT_THAT(said(h + "1,-100,390\n1,0,390\n"), HasSubstr("flows.csv:3: time 3600 s is not after"));
   EXPECT_THAT(said(h + "0,-100,\n"), HasSubstr("flows.csv:2: inlet-temperature is missing"));
   EXPECT_THAT(said(h + "-1,-100,390\n"), HasSubstr("flows.csv:2: time -3600 s is before the start"));
   EXPECT_THAT(said(h + "0,,390\n"), HasSubstr("flows.csv:2: mass-flow is empty"));
   EXPECT_THAT(said("time [h];mass-flow [kg/s];inlet-temperature [degC]\n0;-100,5;390\n"),
               HasSubstr("flows.csv:2: '-100,5' has a decimal comma; write -100.5"));
-  EXPECT_THAT(said("0,-100,390\n"), HasSubstr("the first line of a flow file names its columns"));
+  EXPECT_THAT(said("0,-100,390\n"), HasSubstr("the first line of a flow file must name its columns"));
   EXPECT_THAT(said(h + "0,nan,390\n"), HasSubstr("flows.csv:2: 'nan' is not a number"));
   EXPECT_THAT(said(h + "0,50,-300\n"),
               HasSubstr("flows.csv:2: inlet-temperature is -26.85 K; expected 100 to 3000 K"));
   EXPECT_THAT(said(h + "0,50,1e6\n"), HasSubstr("flows.csv:2: inlet-temperature is 1.00027e+06 K"));
-  EXPECT_THAT(said(h), HasSubstr("there is no row"));
+  EXPECT_THAT(said(h), HasSubstr("has no rows"));
   EXPECT_THAT(said("time [h],mass-flow [kg/s]\n0,1\n"),
               HasSubstr("flows.csv:1: the column 'inlet-temperature' is missing"));
   EXPECT_THAT(said("time [h],mass-flow [kg/s],inlet-temperature\n0,1,390\n"),
-              HasSubstr("flows.csv:1: say the unit of the column 'inlet-temperature'"));
+              HasSubstr("flows.csv:1: the unit of the column 'inlet-temperature' is missing"));
   EXPECT_THAT(said("time [h],mass-flow [m^3/s],inlet-temperature [K]\n0,1,390\n"),
-              HasSubstr("flows.csv:1: the unit 'm^3/s' of the column 'mass-flow' is none of kg/s"));
+              HasSubstr("flows.csv:1: the unit 'm^3/s' of the column 'mass-flow' is not one of kg/s"));
   EXPECT_THAT(said("time [h],massflow [kg/s]\n"), HasSubstr("Did you mean 'mass-flow'?"));
-  EXPECT_THAT(said("time [h],time [s]\n"), HasSubstr("the column 'time' stands there twice"));
+  EXPECT_THAT(said("time [h],time [s]\n"), HasSubstr("the column 'time' appears twice"));
   try {
     read_flow_file("/nowhere/flows.csv");
     FAIL();

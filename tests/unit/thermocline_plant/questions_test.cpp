@@ -63,7 +63,7 @@ TEST(Questions, a_schedule_that_is_stopped_at_once_is_said) {
   p.flow.type = FlowParameters::Type::schedule;
   p.flow.rows = {{0, 70, kelvin(290), {}, kelvin(380)}};
   ASSERT_EQ(asked(p).size(), 1u);
-  EXPECT_THAT(asked(p)[0], HasSubstr("the outlet is at 290.0 degC and the row stops below 380.0 degC"));
+  EXPECT_THAT(asked(p)[0], HasSubstr("the outlet is at 290.0 degC, but the row stops below 380.0 degC"));
   p.flow.rows = {{0, -70, kelvin(390), kelvin(300), {}}};
   EXPECT_TRUE(asked(p).empty());
   p.flow.rows[0].at = 3600;  // what will be then is not known yet
@@ -148,7 +148,7 @@ TEST(Questions, prices_for_what_is_not_there_are_said) {
   Inventory nothing;
   EXPECT_EQ(prices_for_nothing(prices, nothing, false).size(), 3u);
   EXPECT_THAT(prices_for_nothing(prices, nothing, false)[0],
-              HasSubstr("report.economics.steel is 6, but there is nothing to pay for"));
+              HasSubstr("report.economics.steel is 6, but has no effect"));
   EXPECT_TRUE(prices_for_nothing(prices, {.steel = 1, .filler = 1, .insulated = 1}, false).empty());
   EXPECT_TRUE(prices_for_nothing({}, nothing, false).empty());
   EconomicsParameters more;

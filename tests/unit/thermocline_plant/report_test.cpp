@@ -239,7 +239,7 @@ TEST(DayReport, a_part_of_a_year_is_doubted_and_no_day_is_no_answer) {
   for (const int hours : {0, 5}) {
     const auto [doubts, lines] = report(3, hours);
     ASSERT_EQ(doubts.size(), 1u);
-    EXPECT_NE(doubts[0].find("no day counts: the run has 3 whole days, the first 4 are the run-in"),
+    EXPECT_NE(doubts[0].find("no day counts: the run has 3 whole days, but the first 4 are the run-in"),
               std::string::npos)
         << doubts[0];
     EXPECT_EQ(std::isnan(lines[0].value), hours == 0);
@@ -248,11 +248,11 @@ TEST(DayReport, a_part_of_a_year_is_doubted_and_no_day_is_no_answer) {
   p.economics.emplace().field = 1;
   const auto part = report(6, 0).first;
   ASSERT_EQ(part.size(), 1u);
-  EXPECT_NE(part[0].find("2 days stand for a year"), std::string::npos) << part[0];
+  EXPECT_NE(part[0].find("2 days represent a year"), std::string::npos) << part[0];
   EXPECT_TRUE(report(4 + 365, 0).first.empty());
   const auto odd = report(4 + 400, 0).first;
   ASSERT_EQ(odd.size(), 1u);
-  EXPECT_NE(odd[0].find("400 days that count are no whole number of years"), std::string::npos) << odd[0];
+  EXPECT_NE(odd[0].find("400 counted days are not a whole number of years"), std::string::npos) << odd[0];
   EXPECT_TRUE(report(4 + 2 * 365, 0).first.empty());
 }
 
@@ -267,7 +267,7 @@ TEST(DayReport, a_run_in_that_would_undo_what_was_counted_is_refused) {
       ADD_FAILURE() << run_in;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what())
-                    .find("report.run-in: the run to be continued has lived through 5 days and counted 3"),
+                    .find("report.run-in: the run to be continued has completed 5 days and counted 3"),
                 std::string::npos)
           << error.what();
     }
@@ -286,7 +286,7 @@ TEST(DayReport, a_profile_day_beyond_the_run_is_said) {
   DayReport report = ideal.report(p);
   for (int h = 0; h < 48; ++h) ideal.hour(report, h);
   ASSERT_EQ(report.doubts().size(), 1u);
-  EXPECT_NE(report.doubts()[0].find("before its profile-day 2 began"), std::string::npos);
+  EXPECT_NE(report.doubts()[0].find("before profile-day 2"), std::string::npos);
   ideal.hour(report, 48);
   EXPECT_TRUE(report.doubts().empty());
 }

@@ -77,7 +77,7 @@ TEST(SmoothDays, what_cannot_be_is_said) {
   EXPECT_EQ(key, "daily-sums");
   d = granada();
   d.daily_sums[3] = 500 * kwh;
-  EXPECT_THAT(problem_of(d, key), testing::HasSubstr("no sum of a day"));
+  EXPECT_THAT(problem_of(d, key), testing::HasSubstr("not a plausible daily sum"));
   d = granada();
   d.n = {1, 2};
   EXPECT_THAT(problem_of(d, key), testing::HasSubstr("has 2 values"));

@@ -120,7 +120,7 @@ TEST_F(ForeignWeather, a_sun_at_night_is_doubted) {
   ASSERT_EQ(other.size(), 2u);
   EXPECT_THAT(other[0], HasSubstr("solar time of its longitude is 12.0 h behind its time zone"));
   EXPECT_THAT(other[1],
-              HasSubstr("100 % of the irradiation falls into hours in which the sun is below the horizon"));
+              HasSubstr("100 % of the irradiation is in hours with the sun below the horizon"));
   EXPECT_THAT(doubts("-7", "-105.26", SiteParameters{40.01, -105.26, -7}), testing::IsEmpty());
   const auto moved = doubts("-7", "-105.26", SiteParameters{37, -105.26, -7});
   ASSERT_EQ(moved.size(), 1u);
@@ -150,7 +150,7 @@ TEST_F(ForeignWeather, other_units_and_separators_are_told_by_what_they_give) {
   for (int h = 0; h < 24; ++h)
     own += fmt::format("{},500,10,1,40,90000\n", h), dry += fmt::format("{},500,10,1,0.4,90000\n", h);
   EXPECT_EQ(complaint("\xEF\xBB\xBF" + own), "nothing") << "a byte order mark";
-  EXPECT_THAT(complaint(dry), HasSubstr("it is read in percent"));
+  EXPECT_THAT(complaint(dry), HasSubstr("expected percent"));
   std::replace(own.begin(), own.end(), ',', ';');
   EXPECT_THAT(complaint(own), HasSubstr("weather.csv:1: the columns are separated by ';'"));
 }
@@ -217,9 +217,9 @@ TEST_F(ForeignWeather, wrong_nsrdb_files_are_said_with_their_line) {
               HasSubstr("weather.csv:7: the minute is 60"));
   std::string twice = nsrdb();
   twice.replace(twice.find(",GHI,Surface"), 4, ",DNI");
-  EXPECT_THAT(complaint(twice), HasSubstr("weather.csv:3: the column 'DNI' stands there twice"));
+  EXPECT_THAT(complaint(twice), HasSubstr("weather.csv:3: the column 'DNI' appears twice"));
   EXPECT_THAT(complaint(nsrdb() + std::string(1, '\0')),
-              HasSubstr("weather.csv:52: this weather file is no plain text"));
+              HasSubstr("weather.csv:52: this weather file is not plain text"));
   EXPECT_THAT(complaint(nsrdb(same, "Pa")),
               HasSubstr("weather.csv:2: 'Pressure Units' is 'Pa'; only mbar is read"));
   EXPECT_THAT(complaint(nsrdb([](int h, std::string line) {
@@ -243,7 +243,7 @@ TEST_F(ForeignWeather, wrong_nsrdb_files_are_said_with_their_line) {
   EXPECT_THAT(
       complaint(
           "Source,Latitude,Longitude,Time Zone\nNSRDB,40,-105,-7\nYear,Month,Day,Hour,GHI,Temperature\n"),
-      HasSubstr("weather.csv:3: there is no column for the direct normal irradiance"));
+      HasSubstr("weather.csv:3: the column for the direct normal irradiance is missing"));
   EXPECT_THAT(complaint("Source,Latitude,Longitude,Time Zone\nNSRDB,140,-105,-7\nYear,Month,Day,Hour\n"),
               HasSubstr("weather.csv:2: latitude 140"));
   EXPECT_THAT(complaint("Source,Latitude,Longitude,Time Zone\nNSRDB,40,-105,-7\n"),
@@ -376,14 +376,14 @@ TEST_F(ForeignWeather, wrong_pvgis_files_are_said_with_their_line) {
   EXPECT_THAT(complaint(pvgis([](int h, std::string line) {
                 return h == 2 ? "2009-01-01,1,90,0,0,0,320,2,334,99573\n" : line;
               })),
-              HasSubstr("weather.csv:20: '2009-01-01' is no time"));
+              HasSubstr("weather.csv:20: '2009-01-01' is not a time"));
   EXPECT_THAT(
       complaint(pvgis([](int h, std::string line) { return h == 2 ? "20090101:0200,1,90,0\n" : line; })),
       HasSubstr("weather.csv:20: 4 values"));
   EXPECT_THAT(complaint("Latitude (decimal degrees):\t45\nLongitude (decimal "
                         "degrees):\t8\n\ntime,G(i),H_sun,T2m\n20050101:0010,0,0,1\n"),
-              HasSubstr("weather.csv:1: there is no line 'time(UTC)"));
-  EXPECT_THAT(complaint("{}", "year.json"), HasSubstr("year.json:1: JSON is not read"));
+              HasSubstr("weather.csv:1: the line 'time(UTC)"));
+  EXPECT_THAT(complaint("{}", "year.json"), HasSubstr("year.json:1: JSON is not supported"));
 }
 
 }  // namespace

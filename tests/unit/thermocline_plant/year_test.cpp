@@ -91,7 +91,7 @@ TEST(DayReport, a_year_of_a_month_that_goes_round_is_no_year) {
     return doubts;
   };
   ASSERT_EQ(said(june, 365).size(), 1u);
-  EXPECT_NE(said(june, 365)[0].find("the weather's 30 days went round 12.2 times"), std::string::npos);
+  EXPECT_NE(said(june, 365)[0].find("the weather's 30 days repeated 12.2 times"), std::string::npos);
   EXPECT_TRUE(said({}, 365).empty());
 }
 

@@ -167,7 +167,7 @@ TEST(Periodic, patches_that_do_not_fit_are_refused_with_the_place) {
   RawMesh raw = make_box(BoxCells::quadrilaterals, {4, 4, 1}, Vec3::Zero(), Vec3::Ones());
   raw.periodic = {{"xmin", "ymax"}};
   EXPECT_THAT([&] { distribute(MPI_COMM_SELF, raw); },
-              ::testing::ThrowsMessage<Error>(::testing::HasSubstr("has no partner on 'ymax'")));
+              ::testing::ThrowsMessage<Error>(::testing::HasSubstr("has no match on 'ymax'")));
 }
 
 TEST(BodyForce, is_balanced_by_the_pressure_of_a_fluid_at_rest) {

@@ -186,7 +186,7 @@ TEST(PrescribedMotion, an_impulse_at_the_start_is_said) {
   };
   const std::string moving = said("0.3*t", false);
   if (comm_rank(MPI_COMM_WORLD) == 0) {
-    EXPECT_THAT(moving, testing::HasSubstr("its bodies move with 0.3 m/s already"));
+    EXPECT_THAT(moving, testing::HasSubstr("its bodies already move at 0.3 m/s"));
   }
   EXPECT_THAT(said("0.3*t^2", false), testing::Not(testing::HasSubstr("already")));
   EXPECT_THAT(said("0.3*t", true), testing::Not(testing::HasSubstr("already")));
@@ -257,7 +257,7 @@ TEST(PrescribedMotion, of_periodic_sides_repeats_itself) {
   p.motion->angle = {"0.1*t"};
   Alone torn(p);
   EXPECT_THAT([&] { torn.step(0.02); },
-              testing::ThrowsMessage<Error>(testing::HasSubstr("parts the two sides")));
+              testing::ThrowsMessage<Error>(testing::HasSubstr("separates the two sides")));
 }
 
 TEST(PrescribedMotion, that_turns_cells_over_fails_in_solve) {

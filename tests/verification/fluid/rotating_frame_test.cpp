@@ -249,7 +249,7 @@ TEST(RotatingFrame, what_does_not_go_with_it_is_refused_by_name) {
   EXPECT_THAT(refusal(p), testing::HasSubstr("use 'scheme: adams-bashforth'"));
   p = good;
   p.rotating_frame->speed.text = "x";
-  EXPECT_THAT(refusal(p), testing::HasSubstr("rotating-frame.speed: it may depend on t alone"));
+  EXPECT_THAT(refusal(p), testing::HasSubstr("rotating-frame.speed: it may depend on t only"));
   p = good;
   for (const auto& [side, other] : {std::pair{"xmin", "xmax"}, {"xmax", "xmin"}}) {
     p.boundaries[side] = boundary(BoundaryType::periodic);

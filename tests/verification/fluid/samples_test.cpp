@@ -109,15 +109,15 @@ TEST(VelocityTable, what_is_wrong_is_said_with_file_and_place) {
   EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,1\n"),
               HasSubstr("in.csv:3: 2 values, but the file has 3 columns"));
   EXPECT_THAT(refusal(file, "y,u\n0,0\n"), HasSubstr("in.csv:1: the column 'v' is missing"));
-  EXPECT_THAT(refusal(file, "q,u,v\n0,0,0\n"), HasSubstr("in.csv:1: a column 'q' has no meaning here"));
+  EXPECT_THAT(refusal(file, "q,u,v\n0,0,0\n"), HasSubstr("in.csv:1: unknown column 'q'"));
   EXPECT_EQ(refusal(file, "y [m],u [m/s],v\n0,0,0\n1,1,0\n"), "");
   EXPECT_THAT(refusal(file, "y [mm],u,v\n0,0,0\n1,1,0\n"),
               HasSubstr("the column 'y' is in 'mm'; only m is read"));
-  EXPECT_THAT(refusal(file, "y,u [cm/s],v\n0,0,0\n1,1,0\n"), HasSubstr("'u' is in 'cm/s'; only m/s is read"));
+  EXPECT_THAT(refusal(file, "y,u [cm/s],v\n0,0,0\n1,1,0\n"), HasSubstr("'u' is in 'cm/s'; only m/s is accepted"));
   EXPECT_THAT(refusal(file, "u,v\n0,0\n"), HasSubstr("no column is an axis"));
   EXPECT_THAT(refusal(file, "y,t,u,v\n0,0,1,0\n0,1,1,0\n1,0,1,0\n"), HasSubstr("no value at y = 1, t = 1"));
   EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n0,0,0\n"),
-              HasSubstr("in.csv:3: this place of the grid stands in a line before, too"));
+              HasSubstr("in.csv:3: duplicate grid point"));
   EXPECT_THAT(refusal(file.parent_path() / "none" / "in.csv", ""), HasSubstr("there is no such table"));
 }
 
@@ -274,7 +274,7 @@ TEST(Samples, places_that_all_lie_outside_are_refused_and_none_are_written_unles
     run(p, "far-samples", 0, 0);
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("output.samples.far: none of its places lies in the mesh"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("output.samples.far: none of its points is in the mesh"));
   }
 }
 

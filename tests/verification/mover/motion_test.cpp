@@ -297,7 +297,7 @@ TEST(MovingPatches, a_translation_that_depends_on_the_place_is_refused_by_key) {
     Mover mover(p, context());
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("motion.translation: 'x*t' depends on the place"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("motion.translation: 'x*t' depends on the position"));
   }
 }
 

@@ -155,7 +155,7 @@ std::string refusal_of_ends(BoundaryMotion at_one_end) {
 TEST(Periodic, ends_that_are_not_held_alike_are_refused) {
   EXPECT_EQ(refusal_of_ends(BoundaryMotion::interface), "accepted");
   EXPECT_THAT(refusal_of_ends(BoundaryMotion::free),
-              testing::HasSubstr("are not held alike: the patches that meet them"));
+              testing::HasSubstr("are supported differently: the adjacent patches"));
 }
 
 TEST(Periodic, copies_of_points) {
@@ -247,7 +247,7 @@ TEST(Periodic, what_cannot_be_is_refused_by_name) {
   p = good;  // the floor's two ends are one point
   p.boundaries["floor"].motion = BoundaryMotion::moving;
   p.boundaries["floor"].prescribed.displacement = {{"0"}, {"0.01*x*t"}};
-  EXPECT_THAT(refusal(p), testing::HasSubstr("parts the two sides of periodic patches by 0.0"));
+  EXPECT_THAT(refusal(p), testing::HasSubstr("separates the two sides of periodic patches by 0.0"));
 }
 
 }  // namespace

@@ -237,7 +237,7 @@ TEST(SolidInterface, data_it_does_not_know_are_refused_by_name) {
       [&] {
         solid->solve({{"temperature", {}}});
       },
-      ::testing::ThrowsMessage<Error>(::testing::HasSubstr("The solid was given 'temperature'")));
+      ::testing::ThrowsMessage<Error>(::testing::HasSubstr("The solid received 'temperature'")));
 }
 
 }  // namespace

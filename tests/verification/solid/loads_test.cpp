@@ -283,7 +283,7 @@ TEST(SolidLoads, that_cannot_be_are_refused) {
   PointLoad& load = p.point_loads["pin"];
   load.force = {{"1"}, {"0"}, {"0"}};
   load.point = {500, 400, 1000};
-  EXPECT_THAT(refusal(box, p), AllOf(HasSubstr("point-loads.pin.point"), HasSubstr("beside the surface")));
+  EXPECT_THAT(refusal(box, p), AllOf(HasSubstr("point-loads.pin.point"), HasSubstr("off the surface")));
   load.radius = 1;
   EXPECT_THAT(refusal(box, p), AllOf(HasSubstr("point-loads.pin.radius"), HasSubstr("nearest face is")));
   load.radius = 0;

@@ -296,7 +296,7 @@ TEST(SolidMaterials, each_zone_needs_one_material) {
   p.materials["rubber"].zones = {"sof"};
   EXPECT_THAT(message(p), HasSubstr("no zone 'sof' for a material. Did you mean 'soft'?"));
   p.materials["rubber"].zones = {"hard"};
-  EXPECT_THAT(message(p), HasSubstr("zone 'hard' is given to two materials"));
+  EXPECT_THAT(message(p), HasSubstr("zone 'hard' is assigned to two materials"));
   p.materials.erase("rubber");
   EXPECT_THAT(message(p), HasSubstr("zone 'soft' has no material"));
 }

@@ -114,7 +114,7 @@ TEST(SolidParameters, loads_that_cannot_be_are_told_with_their_line) {
   };
   told("  lug: {type: force}", "lug.value: this required key is missing");
   told("  lug: {type: force, value: [1 Pa, 0, 0]}", "Pa");
-  told("  lug: {type: force, value: [x, 0, 0]}", "a total has no place");
+  told("  lug: {type: force, value: [x, 0, 0]}", "a total load has no position");
   told("  lug: {type: force, value: [1, 0]}", "2 components are given");
   told("  lug: {type: remote-load, force: [1, 0, 0]}", "lug.point: this required key is missing");
   told("  lug: {type: remote-load, point: [1, 0, 0]}", "give a 'force', a 'moment' or both");
@@ -124,9 +124,9 @@ TEST(SolidParameters, loads_that_cannot_be_are_told_with_their_line) {
   told("  dam: {type: hydrostatic-pressure, density: 1000, gravity: [0, 0, 0], level: 1}", "the zero vector");
   told("  dam: {type: hydrostatic-pressure, density: 1000, gravity: [0, -9.81], level: 1}", "2 components");
   told("  dam: {type: hydrostatic-pressure, density: 1000, gravity: [0, 0, 1], level: z}",
-       "a total has no place");
+       "a total load has no position");
   told("  dam: {type: hydrostatic-pressure, density: -1, gravity: [0, 0, 1], level: 1}", "density");
-  told("point-loads:\n  pin: {point: [1, 2, 3], moment: [1, 0, 0]}", "one face takes no moment", "8");
+  told("point-loads:\n  pin: {point: [1, 2, 3], moment: [1, 0, 0]}", "a single face cannot take a moment", "8");
 }
 
 TEST(SolidParameters, rules_between_keys_are_checked) {
@@ -158,8 +158,8 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
        "the law 'neo-hookean' has no parameters");
   told(large + "material: {" + body + ", law: mooney-rivlin, law-coefficients: [1, 2]}\n",
        "c01 / (c10 + c01)");
-  told("material: {" + body + ", law: yeoh}\n", "with 'kinematics: finite-strain' only");
-  told("energy-momentum: true\nmaterial: {" + body + "}\n", "it needs 'kinematics: finite-strain'");
+  told("material: {" + body + ", law: yeoh}\n", "requires 'kinematics: finite-strain'");
+  told("energy-momentum: true\nmaterial: {" + body + "}\n", "it requires 'kinematics: finite-strain'");
   told(large + "damping: {stiffness: 1}\nmaterial: {" + body + "}\n", "damps rigid rotations");
   told(large + "solution-method: {type: block-coupled}\nmaterial: {" + body + "}\n", "Newton's method");
   told(large + "solution-method: {face-gradient: thesis}\nmaterial: {" + body + "}\n", "Newton's method");
@@ -169,13 +169,13 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
   EXPECT_THAT(read(start + thesis + of, segregated), ::testing::IsEmpty());
   told(large + "solution-method: {type: segregated, face-gradient: symmetric}\n" + of, "updated-Lagrangian");
   told(large + "solution-method: {type: segregated, volume-strain: cells}\n" + of,
-       "it is of 'face-gradient: symmetric'");
-  told(thesis + "energy-momentum: true\n" + of, "has no conserving stress");
+       "it requires 'face-gradient: symmetric'");
+  told(thesis + "energy-momentum: true\n" + of, "has no energy-momentum stress");
   told(thesis + "output: {energies: true}\n" + of, "writes no energies");
   told(thesis + "materials: {a: {zones: [a], " + body + "}, b: {zones: [b], " + body + "}}\n",
-       "knows one material");
+       "supports one material only");
   told(large + "output: {spectrum: true}\nmaterial: {" + body + "}\n", "use small-strain");
-  told(large + "solution-method: {volume-strain: shared}\nmaterial: {" + body + "}\n", "no share of both");
+  told(large + "solution-method: {volume-strain: shared}\nmaterial: {" + body + "}\n", "but not 'shared'");
   const std::string estimate = "output: {large-strain-estimate: true}\n";
   told(large + estimate + "material: {" + body + "}\n", "of a linear static analysis");
   told(estimate + "material: {" + body + "}\n", "of a linear static analysis");

@@ -117,7 +117,7 @@ TEST(SolidBoundaries, wrong_patch_names_are_reported_with_those_that_exist) {
   p.boundaries["y-max"] = boundary(Type::free);
   EXPECT_THAT([&] { make_solid(raw, p); },
               ::testing::ThrowsMessage<Error>(::testing::AllOf(
-                  ::testing::HasSubstr("boundaries.y-max: mesh 'box' has no patch of this name"),
+                  ::testing::HasSubstr("boundaries.y-max: mesh 'box' has no patch with this name"),
                   ::testing::HasSubstr("Did you mean 'ymax'?"))));
 }
 

@@ -183,10 +183,10 @@ TEST(RigidPatches, say_what_they_cannot_have) {
         "", [&](config::Section& s) { declare(s, p); });
     EXPECT_THAT(errors, ::testing::Contains(HasSubstr(wanted))) << text;
   };
-  told("kinematics: finite-strain\n", "turns by small angles");
-  told("solution-method: {face-gradient: thesis}\n", "goes with 'face-gradient: symmetric'");
-  told("solution-method: {type: block-coupled}\n", "goes with 'face-gradient: symmetric'");
-  told("output: {modes: 3}\n", "know no remote-load");
+  told("kinematics: finite-strain\n", "is limited to small rotations");
+  told("solution-method: {face-gradient: thesis}\n", "requires 'face-gradient: symmetric'");
+  told("solution-method: {type: block-coupled}\n", "requires 'face-gradient: symmetric'");
+  told("output: {modes: 3}\n", "do not support a remote-load");
   SolidParameters p;
   EXPECT_THAT(config::load(
                   config::Document::parse(

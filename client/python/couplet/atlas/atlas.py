@@ -93,11 +93,11 @@ class Runner:
         (folder / "run.log").write_text(text)
         if result.returncode == 2 and " is beyond " not in text:  # what a program says of values that it cannot compute with
             raise RuntimeError(f"{folder}: the case is wrong: {text.strip().splitlines()[-1]}")
-        told = ("--strict: the result is in doubt", "The answer is useless (")
+        told = ("--strict: the result is questionable", "The result is useless (")
         failed = any("error:" in line and not any(t in line for t in told) for line in text.splitlines())
         strict = result.returncode in (1, 4) and any(t in text for t in told) and not failed
         # That a mesh does not resolve turbulence is no word about the scheme.
-        words = [line for line in text.splitlines() if "warning:" in line and "turbulence model left out" not in line]
+        words = [line for line in text.splitlines() if "warning:" in line and "turbulence model neglected" not in line]
         return (0 if strict else result.returncode), strict and bool(words)
 
 

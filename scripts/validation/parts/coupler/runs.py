@@ -114,7 +114,7 @@ def explicit_light(job):
 
 def viscous_swing(job):
     code, steps, text = refused(job, "participants.solid.material.density=1", "participants.fluid.boundaries.inlet.ramp=0.4")
-    named = "wall shear at the guessed velocity" in text
+    named = "wall shear at the predicted velocity" in text
     return f"exit code {code} after {steps} steps, {'named' if named else 'not named'}", code == 0 or (code == 1 and named)
 
 

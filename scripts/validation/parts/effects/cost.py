@@ -66,7 +66,7 @@ def claim(job, own):
     if not line:
         raise RuntimeError(f"{own.program} --explain does not say that '{own.effect}' is on")
     number = lambda pattern: float(m[1]) if (m := re.search(pattern, line[1])) else 0.0
-    return number(r"([\d.]+) B a cell"), number(r"([+-][\d.]+) % of a step") / 100
+    return number(r"([\d.]+) B per cell"), number(r"([+-][\d.]+) % of a step") / 100
 
 
 def compare(job, own):
@@ -78,7 +78,7 @@ def compare(job, own):
     said_bytes, said_share = claim(job, own)
     holds = lambda said, got, part, least: abs(said - got) <= max(part * abs(got), least)
     result = (bytes_, share, said_bytes, said_share, holds(said_bytes, bytes_, 0.2, LEAST_BYTES), holds(said_share, share, 0.5, LEAST_SHARE))
-    print(f"  {own.program}, {own.effect}: {bytes_:.1f} B a cell (card {said_bytes:g}), {100 * share:+.1f} % (card {100 * said_share:+g})", flush=True)
+    print(f"  {own.program}, {own.effect}: {bytes_:.1f} B per cell (card {said_bytes:g}), {100 * share:+.1f} % (card {100 * said_share:+g})", flush=True)
     return result
 
 

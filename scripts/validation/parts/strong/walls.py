@@ -59,7 +59,7 @@ def refused_without_key(job):
         job.case_run(job.root / "configs" / "closed-cavity" / "case.yaml", job.scratch / "no-level",
                      [*CAVITY, "participants.fluid.volume-level=none"], {}, 300)
     except RunFailed:
-        said = "give the key 'volume-level: structure'" in (job.scratch / "no-level" / "run.log").read_text()
+        said = "set 'volume-level: structure'" in (job.scratch / "no-level" / "run.log").read_text()
         return "refused by name" if said else "failed otherwise", said
     return "not refused", False
 
