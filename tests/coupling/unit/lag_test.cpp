@@ -101,8 +101,9 @@ struct LagRun {
   /// The lower and the upper number of the sentence; NaN: none.
   std::pair<double, double> told() const {
     std::smatch found;
-    if (!std::regex_search(text, found,
-                           std::regex("the error of explicit coupling is between ([-+.e0-9]+) and ([-+.e0-9]+) of")))
+    if (!std::regex_search(
+            text, found,
+            std::regex("the error of explicit coupling is between ([-+.e0-9]+) and ([-+.e0-9]+) of")))
       return {std::nan(""), std::nan("")};
     return {std::stod(found[1]), std::stod(found[2])};
   }

@@ -155,8 +155,7 @@ TEST_F(Checkpoints, files_of_two_sets_are_not_read_together) {
   const fs::path last = folder / "step-00000003", before = folder / "step-00000002";
   EXPECT_EQ(saved_time(last), 3);
   fs::copy_file(before / "one.h5", last / "one.h5", fs::copy_options::overwrite_existing);
-  EXPECT_THAT(error_of([&] { saved_time(last); }),
-              HasSubstr("is not the file written with this checkpoint"));
+  EXPECT_THAT(error_of([&] { saved_time(last); }), HasSubstr("is not the file written with this checkpoint"));
   fs::copy_file(before / "set.txt", last / "set.txt", fs::copy_options::overwrite_existing);
   EXPECT_EQ(saved_time(last), 2) << "now both are of step 2";
   EXPECT_THAT(error_of([&] { read_run_state(last); }), HasSubstr("is not the file written"));

@@ -330,7 +330,8 @@ TEST(EffectCards, tank_verdicts_turn_at_their_thresholds) {
 
 TEST(EffectCards, a_verdict_says_number_threshold_and_cure) {
   const EffectVerdict bad{"inertia", 0.3, 0.01, "inertia / load = 0.3", "use 'analysis: dynamic'"};
-  EXPECT_EQ(text(bad), "inertia neglected: inertia / load = 0.3 (limit 0.01): not justified; use 'analysis: dynamic'");
+  EXPECT_EQ(text(bad),
+            "inertia neglected: inertia / load = 0.3 (limit 0.01): not justified; use 'analysis: dynamic'");
   const EffectVerdict good{"inertia", 0.003, 0.01, "inertia / load = 0.003", ""};
   EXPECT_THAT(text(good), HasSubstr("; justified."));
   EXPECT_FALSE((EffectVerdict{"x", std::nan(""), 1, "", ""}.sound()));

@@ -155,10 +155,9 @@ TEST(Economics, pump_and_fan_take_their_work_from_what_is_sold) {
   EXPECT_EQ(sound.find("infinite"), std::string::npos) << sound;
   EXPECT_TRUE(std::isinf(sunny_day(41e6, nullptr, &doubts).at("levelised cost")))
       << "it eats more than it gives";
-  EXPECT_NE(
-      doubts.find(
-          "the levelised cost is infinite: net electricity (power block minus pump and fan) = -24 MWh"),
-      std::string::npos)
+  EXPECT_NE(doubts.find(
+                "the levelised cost is infinite: net electricity (power block minus pump and fan) = -24 MWh"),
+            std::string::npos)
       << doubts;
 }
 

@@ -119,8 +119,7 @@ TEST_F(ForeignWeather, a_sun_at_night_is_doubted) {
   const auto other = doubts("5", "-105.26");
   ASSERT_EQ(other.size(), 2u);
   EXPECT_THAT(other[0], HasSubstr("solar time of its longitude is 12.0 h behind its time zone"));
-  EXPECT_THAT(other[1],
-              HasSubstr("100 % of the irradiation is in hours with the sun below the horizon"));
+  EXPECT_THAT(other[1], HasSubstr("100 % of the irradiation is in hours with the sun below the horizon"));
   EXPECT_THAT(doubts("-7", "-105.26", SiteParameters{40.01, -105.26, -7}), testing::IsEmpty());
   const auto moved = doubts("-7", "-105.26", SiteParameters{37, -105.26, -7});
   ASSERT_EQ(moved.size(), 1u);

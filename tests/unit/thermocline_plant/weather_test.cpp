@@ -105,10 +105,14 @@ TEST(Weather, a_day_that_the_record_lacks_is_refused) {
     return "nothing";
   };
   const char* holds = " it covers 04-11 to 04-20";
-  EXPECT_THAT(complaint({98, 105}), testing::HasSubstr(std::string("this file has no weather for 04-09") + holds));
-  EXPECT_THAT(complaint({105, 112}), testing::HasSubstr(std::string("this file has no weather for 04-21") + holds));
-  EXPECT_THAT(complaint({0, {}}), testing::HasSubstr(std::string("this file has no weather for 01-01") + holds));
-  EXPECT_THAT(complaint({300, {}}), testing::HasSubstr(std::string("this file has no weather for 10-28") + holds));
+  EXPECT_THAT(complaint({98, 105}),
+              testing::HasSubstr(std::string("this file has no weather for 04-09") + holds));
+  EXPECT_THAT(complaint({105, 112}),
+              testing::HasSubstr(std::string("this file has no weather for 04-21") + holds));
+  EXPECT_THAT(complaint({0, {}}),
+              testing::HasSubstr(std::string("this file has no weather for 01-01") + holds));
+  EXPECT_THAT(complaint({300, {}}),
+              testing::HasSubstr(std::string("this file has no weather for 10-28") + holds));
 }
 
 TEST(Weather, the_clock_can_be_shifted) {

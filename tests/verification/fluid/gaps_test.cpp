@@ -163,7 +163,8 @@ TEST(Gaps, that_cut_an_inlet_off_are_refused_with_the_cause) {
   EXPECT_THAT(end_of(p),
               testing::HasSubstr("the closed gap separates 'xmin' from every outlet, but 0.005 m^3/s are"));
   p.boundaries["xmin"] = boundary(BoundaryType::inlet, {"0.01*max(0,1-t/0.8)", "0"});
-  EXPECT_THAT(end_of(p), testing::HasSubstr("A closed gap has separated 1")) << "the lid presses what is shut off";
+  EXPECT_THAT(end_of(p), testing::HasSubstr("A closed gap has separated 1"))
+      << "the lid presses what is shut off";
 }
 
 TEST(Gaps, wrong_ones_are_refused_by_name) {

@@ -113,11 +113,11 @@ TEST(VelocityTable, what_is_wrong_is_said_with_file_and_place) {
   EXPECT_EQ(refusal(file, "y [m],u [m/s],v\n0,0,0\n1,1,0\n"), "");
   EXPECT_THAT(refusal(file, "y [mm],u,v\n0,0,0\n1,1,0\n"),
               HasSubstr("the column 'y' is in 'mm'; only m is read"));
-  EXPECT_THAT(refusal(file, "y,u [cm/s],v\n0,0,0\n1,1,0\n"), HasSubstr("'u' is in 'cm/s'; only m/s is accepted"));
+  EXPECT_THAT(refusal(file, "y,u [cm/s],v\n0,0,0\n1,1,0\n"),
+              HasSubstr("'u' is in 'cm/s'; only m/s is accepted"));
   EXPECT_THAT(refusal(file, "u,v\n0,0\n"), HasSubstr("no column is an axis"));
   EXPECT_THAT(refusal(file, "y,t,u,v\n0,0,1,0\n0,1,1,0\n1,0,1,0\n"), HasSubstr("no value at y = 1, t = 1"));
-  EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n0,0,0\n"),
-              HasSubstr("in.csv:3: duplicate grid point"));
+  EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n0,0,0\n"), HasSubstr("in.csv:3: duplicate grid point"));
   EXPECT_THAT(refusal(file.parent_path() / "none" / "in.csv", ""), HasSubstr("there is no such table"));
 }
 

@@ -182,7 +182,8 @@ TEST(HeatBoundaries, a_steady_temperature_without_level_is_refused) {
         HeatCase scene(make_box(BoxCells::quadrilaterals, {2, 2, 1}, Vec3::Zero(), Vec3(1, 1, 0)), {steel},
                        steady());
       },
-      ::testing::ThrowsMessage<Error>(::testing::HasSubstr("a steady temperature is undetermined without a level")));
+      ::testing::ThrowsMessage<Error>(
+          ::testing::HasSubstr("a steady temperature is undetermined without a level")));
 }
 
 TEST(HeatBoundaries, a_wrong_patch_name_is_reported) {
@@ -193,9 +194,9 @@ TEST(HeatBoundaries, a_wrong_patch_name_is_reported) {
         HeatCase scene(make_box(BoxCells::quadrilaterals, {2, 2, 1}, Vec3::Zero(), Vec3(1, 1, 0)), {steel},
                        p);
       },
-      ::testing::ThrowsMessage<Error>(
-          ::testing::AllOf(::testing::HasSubstr("heat.boundaries.x-min: the mesh has no patch with this name"),
-                           ::testing::HasSubstr("Did you mean 'xmin'?"))));
+      ::testing::ThrowsMessage<Error>(::testing::AllOf(
+          ::testing::HasSubstr("heat.boundaries.x-min: the mesh has no patch with this name"),
+          ::testing::HasSubstr("Did you mean 'xmin'?"))));
 }
 
 }  // namespace

@@ -252,8 +252,7 @@ TEST_F(PlateModesFile, a_surface_turned_inside_out_is_refused_unless_it_is_a_cav
     of_file.cavity = true;
     EXPECT_EQ(text_of(of_file), "") << held;
     write_modes(folder_ / "other.h5", built.model, "");
-    EXPECT_NE(text_of(of_file).find("those of a cavity wall"), std::string::npos)
-        << held << text_of(of_file);
+    EXPECT_NE(text_of(of_file).find("those of a cavity wall"), std::string::npos) << held << text_of(of_file);
   }
   // A sheet has no other side.
   Parameters p = parameters();
@@ -307,8 +306,7 @@ TEST_F(PlateModesFile, turned_faces_are_found_wherever_parts_share_no_vertices) 
   const auto half = [&](Index f) { return face_centres(body)[std::size_t(f)].x() > 0.5; };
   // A seam of vertices that are there twice, and vertices of its own for each face.
   EXPECT_EQ(facing_problem_of(surface_of(body, half)), "");
-  EXPECT_NE(facing_problem_of(surface_of(turned(body, half), half)).find("share an edge"),
-            std::string::npos);
+  EXPECT_NE(facing_problem_of(surface_of(turned(body, half), half)).find("share an edge"), std::string::npos);
   const auto second = [](Index f) { return f % 2 == 1; };
   EXPECT_EQ(facing_problem_of(surface_of(body, all)), "");
   EXPECT_NE(facing_problem_of(surface_of(turned(body, second), all)).find("share an edge"),

@@ -423,13 +423,15 @@ class FreeMotions : public ::testing::Test {
 };
 
 TEST_F(FreeMotions, of_a_body_without_supports_are_all) {
-  EXPECT_THAT(message(box_parameters(3), box(3)),
-              HasSubstr("leave rigid motions free: translation along x, translation along y, translation along z, "
-                        "rotation about x through (0.5, 0.5, 0.5), rotation about y through (0.5, 0.5, 0.5), "
-                        "rotation about z through (0.5, 0.5, 0.5). Prevent them"));
-  EXPECT_THAT(message(box_parameters(2), box(2)),
-              HasSubstr("leave rigid motions free: translation along x, translation along y, rotation about (0.5, "
-                        "0.5). Prevent them"));
+  EXPECT_THAT(
+      message(box_parameters(3), box(3)),
+      HasSubstr("leave rigid motions free: translation along x, translation along y, translation along z, "
+                "rotation about x through (0.5, 0.5, 0.5), rotation about y through (0.5, 0.5, 0.5), "
+                "rotation about z through (0.5, 0.5, 0.5). Prevent them"));
+  EXPECT_THAT(
+      message(box_parameters(2), box(2)),
+      HasSubstr("leave rigid motions free: translation along x, translation along y, rotation about (0.5, "
+                "0.5). Prevent them"));
 }
 
 TEST_F(FreeMotions, on_symmetry_planes_are_those_within_them) {

@@ -126,7 +126,8 @@ TEST(SolidParameters, loads_that_cannot_be_are_told_with_their_line) {
   told("  dam: {type: hydrostatic-pressure, density: 1000, gravity: [0, 0, 1], level: z}",
        "a total load has no position");
   told("  dam: {type: hydrostatic-pressure, density: -1, gravity: [0, 0, 1], level: 1}", "density");
-  told("point-loads:\n  pin: {point: [1, 2, 3], moment: [1, 0, 0]}", "a single face cannot take a moment", "8");
+  told("point-loads:\n  pin: {point: [1, 2, 3], moment: [1, 0, 0]}", "a single face cannot take a moment",
+       "8");
 }
 
 TEST(SolidParameters, rules_between_keys_are_checked) {
