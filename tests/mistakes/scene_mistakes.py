@@ -49,7 +49,7 @@ MISTAKES = [
                                                 ("      top: {type: interface}", "      top: {type: fixed-displacement, value: [0, 0]}")],
      "refused", {"message": "match none of", "run": True}),
     ("interface forgotten on one side", "coupled", [("      top: {type: interface}", "      top: {type: free}")], "refused",
-     {"message": "There are 0 vertices of 'solid' and 3 vertices of 'mover': an interface needs some on both sides.", "run": True}),
+     {"message": "There are 0 vertices of 'solid' and 3 vertices of 'mover', but an interface needs some on both sides.", "run": True}),
     ("one of two meshes in millimetres", "coupled", [("mesh: below.msh", "mesh: below.msh\n    mesh-scale: 1e-3")], "refused",
      {"message": "match none of", "run": True}),
     ("one participant in two roles", "coupled", [("structure: {participant: solid}", "structure: {participant: fluid}")], "refused",

@@ -144,7 +144,7 @@ class Client:
                     return None
             self._receive_command()
             if self.operation == INITIALISE and self.sub_steps > 1:
-                self._end(f"'coupling.sub-steps' of '{self.participant}': this library takes one step a coupling step; remove it, and cut the "
+                self._end(f"'coupling.sub-steps' of '{self.participant}': this library takes one step per coupling step; remove it, and subdivide the "
                           "step in your own program.")
             if self.operation in EVENTS:
                 return EVENTS[self.operation]

@@ -90,7 +90,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-robin-") as folder:
     check("a structure that says nothing: refused", silent.returncode != 0 and "takes 'surface-density', which no participant gives" in silent.stdout,
           f"exit code {silent.returncode}")
     light = launch(0.05, [*TOLD, "participants.fluid.boundaries.wall.surface-density=1"], (1, 1, 1), None)
-    check("both keys: refused", light.returncode == 2 and "the structure says it" in light.stdout, f"exit code {light.returncode}")
+    check("both keys: refused", light.returncode == 2 and "the structure gives it" in light.stdout, f"exit code {light.returncode}")
 
     few, motion = run("closed", 0.5, *robin(0.5), CLOSED, PUMP, WATCH)
     check("closed and pumped: passes a step at most 4.5", few <= 4.5, few)

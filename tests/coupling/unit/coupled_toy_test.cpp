@@ -313,7 +313,7 @@ TEST(CoupledToy, a_run_that_cannot_go_on_says_when_who_and_why) {
   run.simulation.max_step_halvings = 2;
   run();
   EXPECT_EQ(run.problem,
-            "The step from t = 0 s could not be solved, also not with dt = 0.0125 s after 2 halvings: "
+            "The step from t = 0 s failed, even with dt = 0.0125 s after 2 halvings: "
             "'fluid' reports: dt = "
             "0.0125 s is above 1e-06 s, the largest this piston can do. The state at t = 0 s was saved in " +
                 (run.folder / "checkpoints").string() + ".");

@@ -159,7 +159,7 @@ TEST(EffectCards, compressibility_is_judged_by_what_it_does) {
   reed.pressure_volume = 0.101 * reed.stroke * rho_c2;
   const auto compliance = verdict("waves of pressure", air, reed);
   EXPECT_FALSE(compliance->sound());
-  EXPECT_THAT(compliance->sentence, HasSubstr("0.1 of the volume that the walls move"));
+  EXPECT_THAT(compliance->sentence, HasSubstr("volume displaced by the walls = 0.1"));
   reed.pressure_volume = 0;
   reed.size = 0.29 * 346.1 / reed.wall_rate;
   EXPECT_TRUE(verdict("waves of pressure", air, reed)->sound());

@@ -201,7 +201,7 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
         (*part)[i] = both;
       }
   });
-  says("face 2 names vertex", [](ModalModel& m) { m.faces.index[4] = m.faces.index[3]; });
+  says("face 2 refers to vertex", [](ModalModel& m) { m.faces.index[4] = m.faces.index[3]; });
   says("is inside out", [](ModalModel& m) { std::swap(m.faces.index[3], m.faces.index[4]); });
   says("mode 1 has 0 Hz, but its shape is not a rigid motion", [](ModalModel& m) { m.frequency[0] = 0; });
   EXPECT_EQ(damaged([](ModalModel& m) { m.face_density.clear(); }), "");
@@ -209,8 +209,8 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
             std::string::npos);
   EXPECT_NE(damaged([](ModalModel& m) { m.frequency[3] = 0.5 * m.frequency[2]; }).find("lower frequency"),
             std::string::npos);
-  EXPECT_NE(damaged([](ModalModel& m) { m.vertex_shape[5] = NAN; }).find("no number"), std::string::npos);
-  EXPECT_NE(damaged([](ModalModel& m) { m.faces.index[4] = 999; }).find("names vertex 999"),
+  EXPECT_NE(damaged([](ModalModel& m) { m.vertex_shape[5] = NAN; }).find("not finite"), std::string::npos);
+  EXPECT_NE(damaged([](ModalModel& m) { m.faces.index[4] = 999; }).find("refers to vertex 999"),
             std::string::npos);
   EXPECT_NE(damaged([](ModalModel& m) { m.participation.resize(12); }).find("participation"),
             std::string::npos);

@@ -18,7 +18,7 @@ def run(arguments):
             print(complaint or answer, end="")
             return code
         for line in answer.splitlines():
-            if not line.startswith(("all of the case:", "  off")) and "] [info]" not in line or arguments.all and line.startswith("  off"):
+            if not line.startswith(("whole case:", "  off")) and "] [info]" not in line or arguments.all and line.startswith("  off"):
                 print(line)
     print("launch line:     " + Job(Case(arguments.case, build_of(arguments.bin)), sets=arguments.set).line())
     return 0
