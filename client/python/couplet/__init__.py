@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Couplet from Python: reads what a run left, composes and starts runs, and takes part in a job as a program of one's own.
+"""Couplet from Python: reads the results of a run, starts runs, and takes part in a job as an external program.
 
     run = couplet.Results("out")                        # after a run
     run.probes("solid")["tip displacement x [m]"]       # columns of probes.csv: numpy arrays
     run.fields("fluid").field(-1, "velocity")           # of the last output: (cells, components)
-    run.findings(), run.budget()                        # what the run doubts; what made its error
+    run.findings(), run.budget()                        # its warnings; the parts of its error
 
     run = couplet.run("case.yaml", ranks={"fluid": 2}, changes={"simulation.end-time": "1 s"})
 
     job = couplet.Client("solid", "my_solver")          # in a program of a job: couplet/participant.py
 
-Names are loaded when they are first asked for: a participant needs mpi4py and numpy alone."""
+Names are loaded on first use: a participant needs only mpi4py and numpy."""
 from couplet import lazy
 from couplet.transports import choose
 

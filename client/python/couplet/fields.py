@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of fields by matplotlib: cells of the plane at their moved places, in space the outer faces."""
+"""Pictures of fields by matplotlib: displaced two-dimensional cells, in three dimensions the outer faces."""
 import pathlib
 
 import numpy as np
@@ -30,8 +30,8 @@ def series_of(folder, name):
 
 
 def values_of(series, i, name, component):
-    """One number a cell: a component, or the magnitude of a vector; of points the mean over the cell."""
-    expect(name in series.names(i), f"there is no field '{name}'; there is: {', '.join(series.names(i))}")
+    """One number per cell: a component, or the magnitude of a vector; of points the mean over the cell."""
+    expect(name in series.names(i), f"no field '{name}'; fields: {', '.join(series.names(i))}")
     field = np.asarray(series.field(i, name), float)
     field = field[:, None] if field.ndim == 1 else field
     if component is None:

@@ -118,12 +118,12 @@ class Client:
         self._xyz, self._dimension = numpy.asarray(xyz, float).reshape(-1, 3), dimension
 
     def faces(self, centres, areas, corners=None):
-        """centres [m], areas out of this participant [m^2]: (n, 3); corners: a list of positions of vertices a face."""
+        """centres [m], areas out of this participant [m^2]: (n, 3); corners: a list of vertex positions per face."""
         self._centres, self._areas = (numpy.asarray(a, float).reshape(-1, 3) for a in (centres, areas))
         self._corners = corners or [[] for _ in self._centres]
 
     def takes(self, datum, unit, place, components=0):
-        """place: "vertices" or "faces"; components: values a place, 0: one a dimension."""
+        """place: "vertices" or "faces"; components: values per location, 0: one per dimension."""
         self._takes.append((datum, unit, ("vertices", "faces").index(place), components))
 
     def gives(self, datum, unit, place, components=0):

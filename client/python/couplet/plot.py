@@ -22,7 +22,7 @@ MOST_LINES = 12  # with names of their own
 
 
 def read(file):
-    """Columns by name; rows that are cut off (a run that is still writing) are left out."""
+    """Columns by name; truncated rows (of a run that is still writing) are skipped."""
     try:
         with open(file, newline="") as stream:
             rows = list(csv.reader(stream))
@@ -148,7 +148,7 @@ def declare(parser):
     parser.add_argument("--to", dest="high", type=float, metavar="T", help="only up to this time [s]")
     parser.add_argument("--at", type=float, metavar="T", help="of lines and planes: the output nearest to this time (the last one)")
     parser.add_argument("--log", action="store_true", help="logarithmic values; residuals always have them")
-    parser.add_argument("--field", metavar="NAME", help="draws this field of the run in FOLDER (or FOLDER/PARTICIPANT): in the plane its cells, in space the outer faces")
+    parser.add_argument("--field", metavar="NAME", help="draws this field of the run in FOLDER (or FOLDER/PARTICIPANT): its two-dimensional cells, or in three dimensions the outer faces")
     parser.add_argument("--mode", type=int, metavar="N", help="draws this mode of modes.h5 in FOLDER")
     parser.add_argument("--component", choices=("x", "y", "z"), help="of --field: a component in place of the magnitude")
     parser.add_argument("--warp", type=float, default=1.0, metavar="F", help="of --field: a body is drawn with its displacement times F (1)")

@@ -108,7 +108,7 @@ def result_of(case, program):
     Ends the script where the case has no result."""
     out = case / "out"
     if not (out / program).exists():
-        sys.exit(f"There is no result in {out}. Run the case first; the README says how.")
+        sys.exit(f"There is no result in {out}. Run the case first (see its README).")
     return out, pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else out / f"{case.name}.png"
 
 

@@ -71,7 +71,7 @@ class Runner:
         return file if file.exists() else self.build / "bin" / "tests" / name
 
     def alone(self, program, folder, files, sets=()):
-        """Exit code, and whether the run doubts its answer. `files`: {name: text}, with case.yaml among them."""
+        """Exit code, and whether the run flags its own result. `files`: {name: text}, with case.yaml among them."""
         for name, text in files.items():
             (folder / name).write_text(text)
         return self.command([self.program(program), "case.yaml", "--strict=effects", *(w for s in sets for w in ("--set", s))], folder)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The hard cases and the tests that hold them: mechanism, criterion, and the neighbour that fails. All stand in tests/stability and bear its
-label; `missing` says which of the names are not there (any more)."""
+"""The hard cases and their tests: mechanism, criterion, and the neighbouring case that fails. All are in tests/stability and have its
+label; `missing` lists the names that do not exist (any more)."""
 import dataclasses
 import re
 
@@ -21,10 +21,10 @@ CASES = [
          "energy within 1e-7 of the start's (4000 steps; 1e5 in the row)",
          (f"{SOLID}: SlowSwings.at_a_courant_number_of_a_hundredth_keep_their_energy_with_the_symmetric_gradient",),
          (f"{SOLID}: SlowSwings.grow_with_the_trapezoidal_rule_and_the_corrected_gradient",)),
-    Case("structure", "very long steps (1000), Bathe", "a step that resolves nothing must not make what it cannot see",
+    Case("structure", "very long steps (1000), Bathe", "a step that resolves nothing must not generate energy",
          "energy never above the start's by 0.1 %", (f"{SOLID}: FastSwings.at_a_courant_number_of_a_thousand_do_not_grow_with_bathes_scheme",),
          (f"{SOLID}: FastSwings.at_a_courant_number_of_ten_grow_with_the_trapezoidal_rule_and_the_thesiss_gradient",)),
-    Case("structure", "steps that jump by 100", "an acceleration carried along belongs to a step that is gone", "energy kept to 1e-8",
+    Case("structure", "steps that jump by 100", "the stored acceleration belongs to a past step", "energy kept to 1e-8",
          (f"{SOLID}: StepsThatJumpByAHundred.leave_the_energy_of_the_other_schemes_alone",),
          (f"{SOLID}: StepsThatJumpByAHundred.make_generalised_alpha_grow_and_the_run_ends_with_the_cause",)),
     Case("structure", "cells of aspect 1000", "differences along the long side miss the bending between two cells",
@@ -39,7 +39,7 @@ CASES = [
     Case("structure", "thermal shock", "a rule without damping turns what it does not resolve round in each step", "no temperature outside of its bounds",
          (f"{SOLID}: ThermalShock.does_not_oscillate_with_eulers_scheme_whatever_the_step",),
          (f"{SOLID}: ThermalShock.swings_by_half_and_more_with_the_trapezoidal_rule_and_that_is_told_once",)),
-    Case("fluid", "under-resolved vortices of Taylor and Green", "energy that reaches the finest cells has nowhere to go",
+    Case("fluid", "under-resolved vortices of Taylor and Green", "energy at the finest cells is not dissipated",
          "never gains energy in 20 turnovers (eighth of 16^3 and less; 32^3 in the rows)",
          ("stability_fluid_under_resolved: UnderResolved.vortices_never_gain_energy_in_twenty_turnovers_at_any_reynolds_number",),
          ("stability_fluid_under_resolved: UnderResolved.vortices_with_steps_beyond_the_limit_are_refused_by_name",)),
@@ -49,7 +49,7 @@ CASES = [
     Case("fluid", "Courant number just under its limit, closed cavity", "explicit convection outside of the scheme's region",
          "steady flow, slower than the lid; at 1.3 of the limit it is not", (f"{FLUID}: StepLimit.of_a_cavity_keeps_it_steady_and_leaves_less_than_a_third_unused",),
          (f"{FLUID}: FixedStep.beyond_the_stability_limit_is_a_failure_that_names_the_place",)),
-    Case("fluid", "backflow through an outlet", "what comes in brings kinetic energy that nobody pays for", "speed below that of the pressure's work",
+    Case("fluid", "backflow through an outlet", "inflow brings kinetic energy that no work supplies", "speed below that of the pressure's work",
          ("stability_fluid_under_resolved: Backflow.stays_bounded_by_the_work_of_the_pressure",),
          ("stability_fluid_under_resolved: Backflow.goes_beyond_it_without_the_stabilisation",)),
     Case("coupling", "closed fluid whose wall must displace volume", "only the wall can give way to what is pumped in",
@@ -61,10 +61,10 @@ CASES = [
     Case("coupling", "implicit, mass over added mass 0.01 to 100", "the iteration grows by the mass ratio where nothing relaxes it",
          "Aitken and quasi-Newton converge in each step (200 passes at most)", ("coupling_added_mass: AddedMass.map_of_mass_ratio_and_scheme",),
          ("coupling_added_mass: AddedMass.plain_iteration_diverges_above_a_mass_ratio_of_one",)),
-    Case("coupling", "light wall in a viscous fluid", "friction at a guessed velocity swings with a period of two steps", "moves smoothly",
+    Case("coupling", "light wall in a viscous fluid", "friction at a predicted velocity oscillates with a period of two steps", "moves smoothly",
          ("stability_fluid_light_wall: LightWall.of_a_fortieth_of_the_added_mass_moves_smoothly", "stability_fluid_light_wall: Renewal.holds_a_wall_of_less_mass_than_the_layer_that_it_drags"),
          ("stability_fluid_light_wall: Renewal.such_a_wall_grows_without_it_and_with_one_only",)),
-    Case("tank", "10 years of hourly weather", "errors of the books add up", "books to 1e-9, a year like the one before to 1e-3 (long)",
+    Case("tank", "10 years of hourly weather", "errors of the energy balance accumulate", "energy balance to 1e-9, a year like the one before to 1e-3 (long)",
          ("stability_thermocline_ten_years", "stability_thermocline_hard_cases: Books.three_months_of_daily_cycles_close"), ()),
     Case("tank", "sharp front, reversal in each step, rest", "a scheme of higher order overshoots at a front", "within the temperatures that went in, heat kept to 1e-10",
          tuple(f"stability_thermocline_hard_cases: HardCase.{name}" for name in ("sharp_front", "reversal_every_step", "rest_with_a_sharp_profile")),
@@ -95,8 +95,8 @@ def missing(root):
 
 
 def page():
-    text = "\n## Hard cases\n\nAs tests in `tests/stability` (label `stability`), each with what could break it, how it is judged, and the neighbour that fails beside it.\n\n"
-    text += "| part | case | mechanism | criterion | held by | failing neighbour |\n|---|---|---|---|---|---|\n"
+    text = "\n## Hard cases\n\nAs tests in `tests/stability` (label `stability`), each with its failure mechanism, its criterion, and a neighbouring case that fails.\n\n"
+    text += "| part | case | mechanism | criterion | tested by | failing neighbour |\n|---|---|---|---|---|---|\n"
     tests = lambda names: "<br>".join(f"`{n.split(': ')[-1]}`" for n in names)
     for c in CASES:
         text += f"| {c.part} | {c.name} | {c.mechanism} | {c.criterion} | {tests(c.holds)} | {tests(c.fails)} |\n"

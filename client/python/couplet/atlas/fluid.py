@@ -61,7 +61,7 @@ def diffusion(panel, number, lean, runner):
 
 
 def convection(panel, courant, lean, runner):
-    """A shear layer of noise carried by a uniform stream, almost inviscid: largest kinetic energy over the first."""
+    """A shear layer of noise advected by a uniform stream, almost inviscid: largest kinetic energy over the first."""
     start = '["1+0.1*sin(44*y)*cos(19*x)", "0.1*sin(38*x)"]'
     code, doubted, folder = run(runner, ("convection", panel, courant, lean), panel, courant * H / 1.1, 1e-5, lean, 1, start)
     return (growth(folder) if code == 0 else float("nan")), code, doubted
@@ -82,16 +82,16 @@ MAPS = [
         lambda g: g < 1.05,
         theory=[(["explicit, Adams-Bashforth"], "1/(4 (2 + tan^2))", [(1 / (4 * (2 + s * s)), s) for s in np.linspace(0, 3, 61)]),
                 (["explicit, Runge-Kutta"], "2.51/(4 (2 + tan^2))", [(2.51 / (4 * (2 + s * s)), s) for s in np.linspace(0, 3, 61)])],
-        about="""Mechanism: explicit diffusion beyond the largest eigenvalue, 4 nu (2 + tan^2)/h^2 on cells sheared by that angle: Adams-Bashforth 2 holds
-to 1, three stages to 2.51 of it. The energy guard of the fluid ends such a run. The implicit term has no limit on these quadrilaterals; on triangles, tetrahedra and prisms it is bounded (theory, oblique cells)."""),
+        about="""Mechanism: explicit diffusion beyond the largest eigenvalue, 4 nu (2 + tan^2)/h^2 on cells sheared by that angle: Adams-Bashforth 2 is stable
+up to 1, three stages up to 2.51 of it. The energy guard of the fluid ends unstable runs. The implicit term has no limit on these quadrilaterals; on triangles, tetrahedra and prisms it is bounded (theory, oblique cells)."""),
     Map("fluid-convection", "Fluid: Courant number on sheared cells", "largest kinetic energy over the first, 300 steps",
         Axis("Courant number", [0.2, 0.5, 1, 1.5, 2, 3]), Axis("tangent of the shear angle", LEANS[:4], log=False), list(PANELS), convection,
         lambda g: g < 1.05,
-        about="""Mechanism: Adams-Bashforth 2 grows slowly on the imaginary axis and at once beyond its region; three Runge-Kutta stages hold to
+        about="""Mechanism: Adams-Bashforth 2 grows slowly on the imaginary axis and at once beyond its region; three Runge-Kutta stages are stable up to
 1.73 of the sum over the directions. The fluid's energy guard ends what grows."""),
     Map("fluid-aspect", "Fluid: flat cells", "largest kinetic energy over the first, noise in 300 steps",
         Axis("length over height of a cell", [1, 10, 100, 1000]), Axis("nu dt over height squared", [0.1, 0.2, 1, 10]), list(PANELS)[:2], aspect,
         lambda g: g < 1.05,
         about="""Mechanism: the flat side alone decides the explicit viscous step (1/4 in one direction); the pressure matrix becomes stiff by the square
-of the ratio. The implicit term holds at any step on these boxes."""),
+of the ratio. The implicit term is stable at any step on these boxes."""),
 ]

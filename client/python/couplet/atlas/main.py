@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The atlas of stability: where each scheme holds and where it stops, from runs of the programs. Writes MAP.csv and MAP.png and,
-for docs/stability, docs/stability.md. Exit code 1 if a square is a wrong answer that no guard or warning has noticed."""
+"""The atlas of stability: where each scheme is stable and where it fails, from runs of the programs. Writes MAP.csv and MAP.png and,
+for docs/stability, docs/stability.md. Exit code 1 if a square is a wrong result without a guard or warning."""
 import pathlib
 import tempfile
 import time
@@ -10,17 +10,17 @@ from couplet.places import ROOT, build
 from couplet.runs import expect
 
 MAPS = [*solid.MAPS, *large.MAPS, *fluid.MAPS, *moving.MAPS, *coupling.MAPS, *viscous.MAPS, *strong.MAPS, *tank.MAPS, *plate.MAPS]
-HEAD = """# Where each scheme holds
+HEAD = """# Where each scheme is stable
 
-Written by `couplet atlas` from runs of the programs; do not edit. In each square stands the number of the map's criterion; a table lies
-beside each picture.
+Written by `couplet atlas` from runs of the programs; do not edit. Each square shows the number of the map's criterion; each picture has
+its table.
 
 | colour | meaning |
 |---|---|
 | green | the criterion is met; pale: met, but inaccurate |
-| yellow | not met, and the run said so (`--strict` makes it a failed run) |
+| yellow | not met, and the run warned (`--strict` makes it a failed run) |
 | blue | a guard ended the run: exit code 1 |
-| red | a wrong answer with exit code 0 and without a word: there must be none |
+| red | a wrong result with exit code 0 and no warning: there must be none |
 """
 
 
@@ -53,14 +53,14 @@ def price(out, programs):
 
 
 def declare(parser):
-    parser.add_argument("maps", nargs="*", metavar="MAP", help="names of maps (--list tells them); all if none are given")
-    parser.add_argument("--build", type=pathlib.Path, default=build(), metavar="FOLDER", help="the folder whose bin/ holds the programs")
+    parser.add_argument("maps", nargs="*", metavar="MAP", help="names of maps (listed by --list); default: all")
+    parser.add_argument("--build", type=pathlib.Path, default=build(), metavar="FOLDER", help="the folder with bin/ of the programs")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "stability", metavar="FOLDER", help="where tables and pictures go (docs/stability)")
-    parser.add_argument("--fresh", action="store_true", help="runs every square anew; else the table of a map is completed only")
+    parser.add_argument("--fresh", action="store_true", help="reruns every square; otherwise only missing ones")
     parser.add_argument("--list", action="store_true", help="lists the maps")
-    parser.add_argument("--prices", action="store_true", help="in place of maps: what each effect adds to five scenes; on a quiet machine")
-    parser.add_argument("--page", action="store_true", help="no runs: docs/stability.md alone, from the tables that are there")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="so many at a time")
+    parser.add_argument("--prices", action="store_true", help="instead of maps: cost of each effect in five scenes; on a quiet machine")
+    parser.add_argument("--page", action="store_true", help="no runs: only docs/stability.md, from existing tables")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="number of concurrent runs")
 
 
 def run(arguments):

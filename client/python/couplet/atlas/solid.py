@@ -39,7 +39,7 @@ STEPS, CELL = 2000, 0.5
 
 
 def energy(panel, courant, lean, runner):
-    """Free swing of a beam: largest energy in 2000 steps over that of the start, minus 1."""
+    """Free oscillation of a beam: largest energy in 2000 steps over that of the start, minus 1."""
     scheme, gradient = panel.split(", ")
     dt = courant * CELL / np.sqrt(1.35)  # c^2 = (lambda + 2 mu)/rho, nu 0.3, plane strain
     folder = runner.folder("energy", scheme, gradient, courant, lean)
@@ -84,7 +84,7 @@ def poisson(gradient, nu, across, runner):
 
 
 MAPS = [
-    Map("solid-energy", "Solid: energy of a free swing", "growth of the energy in 2000 steps",
+    Map("solid-energy", "Solid: energy of a free oscillation", "growth of the energy in 2000 steps",
         Axis("elastic Courant number", [0.1, 1, 10, 100]), Axis("lean of the cells (45 degrees at 0.5)", [0, 0.25, 0.5, 1, 2], log=False),
         ["trapezoidal, thesis", "trapezoidal, corrected", "trapezoidal, symmetric", "bathe, thesis", "bathe, corrected",
          "generalised-alpha, corrected"],
@@ -92,12 +92,12 @@ MAPS = [
         about="""Mechanism: an operator that is not symmetric on oblique cells has eigenvalues off the axis; a time scheme without damping lets such
 modes grow. Criterion: energy (kinetic, and the smaller of strain energy and work of the
 stresses) beyond that of the start. More than 0.1 is growth,
-which is also where the program begins to doubt (tenfold energy ends the run); a few per cent are the difference of work and strain energy. The symmetric gradient comes from an energy: the
+which is also where the program warns (tenfold energy ends the run); a few per cent are the difference of work and strain energy. The symmetric gradient comes from an energy: the
 trapezoidal rule keeps it on every mesh. Damping schemes hide the others' growth where the step does not resolve the mode."""),
     Map("solid-stretch", "Solid: long cells", "tip deflection of a bent beam over the converged one",
         Axis("length over height of a cell", [1, 2, 5, 10, 20]), Axis("cells across", [1, 2, 4, 8]), [*GRADIENTS, SHARED], stretch,
         lambda r: 0 < r < 1.15, lambda r: r > 0.8,
-        about="""Mechanism: face gradients from differences along the long side miss the bending between two cells: too stiff (the thesis's), or too
+        about="""Mechanism: face gradients from differences along the long side miss the bending between two cells: too stiff (least squares), or too
 soft and, far enough, of the wrong sign (the corrected one on few, long cells). Criterion: above 0 and below 1.15 of the converged deflection; less
 than 0.8 is inaccurate. `auto` takes what errs less, and the run's own energies judge it (warned)."""),
     Map("solid-nu", "Solid: near incompressibility", "tip deflection of a bent beam over the converged one",
@@ -106,5 +106,5 @@ than 0.8 is inaccurate. `auto` takes what errs less, and the run's own energies 
         about="""Mechanism: a volume strain at every face asks for more conditions than there are unknowns as nu goes to 1/2: the mesh locks, or the
 operator loses its sign. The symmetric gradient takes one volume strain per cell from nu = 0.4 up. `volume-strain: shared` leaves a tenth of the bulk
 modulus, at most a third of the shear modulus, with the faces: it does not lock either and errs least in plane strain; its failing neighbour is the
-bar in space with two cells across, 4.3 % too soft (docs/theory.md)."""),
+three-dimensional bar with two cells across, 4.3 % too soft (docs/theory.md)."""),
 ]

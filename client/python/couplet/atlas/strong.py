@@ -35,7 +35,7 @@ WALL_STEPS = 8
 
 
 def wall(panel, inverse, dt, runner):
-    """Passes a step."""
+    """Passes per step."""
     kind, share = WALL[panel]
     folder = runner.folder("wall", panel, inverse, dt)
     here = ROOT / "tests" / "coupling" / "string"
@@ -56,7 +56,7 @@ LID_STEPS = 8
 
 
 def lid(panel, modulus, dt, runner):
-    """Passes a step; infinite where the volume is not held."""
+    """Passes per step; infinite where the volume is not held."""
     level, kind = LID[panel]
     folder = runner.folder("lid", panel, modulus, dt)
     case = ROOT / "configs" / "closed-cavity"
@@ -76,13 +76,13 @@ def lid(panel, modulus, dt, runner):
 
 
 MAPS = [
-    Map("strong-robin", "Strong coupling: Robin interface, mass of the wall and step", "passes a step",
+    Map("strong-robin", "Strong coupling: Robin interface, mass of the wall and step", "passes per step",
         Axis("rho_s h / (rho_f mu_1)", [0.05, 0.3, 1, 5, 20]), Axis("step [s]", [1e-4, 1e-3, 1e-2]), list(WALL)[:4], wall, math.isfinite,
         accurate=lambda k: k <= 4.5,
         about="""Mechanism: the pressure equation foresees what the wall will answer, with its mass per area; what is left over is what springs and neighbours
 change in that. The neighbours: Aitken without it, whose passes grow with the added mass, and a mass that is given four times too large: above the true
 one the error is thrown over, and with much added mass it grows. Pale squares hold but take over 4.5 passes; first steps, with nothing learnt, count."""),
-    Map("strong-cavity", "Strong coupling: closed box, stiffness of its lid and step", "passes a step",
+    Map("strong-cavity", "Strong coupling: closed box, stiffness of its lid and step", "passes per step",
         Axis("Young's modulus of the lid [Pa]", [1e5, 1e7, 1e9]), Axis("step [s]", [2e-3, 2e-2, 2e-1]), list(LID), lid, math.isfinite, accurate=lambda k: k <= 6,
         about="""Mechanism: nothing but the lid can give way to what is pumped in. The pressure level that makes it do so is found from its answer to a pressure;
 what is iterated then keeps the volume. Without the level the fluid refuses to start. Pale: over 6 passes."""),

@@ -74,6 +74,6 @@ divides the exchange step by its own Courant limit; `implicit` takes it whole.""
         Axis("exchange step [s]", [1, 10, 60, 300, 1000]), Axis("Biot number", [0.01, 0.1, 1, 10, 100]), ["1 shell", "5 shells", "10 shells"],
         grains, lambda v: v < 0.02, lambda v: v < 0.005,
         about="""Mechanism: heat goes between film and grain faster than a step follows. The grains are eliminated implicitly: no step is too long. One
-shell takes a parabola inside a grain: good to 0.1 % up to a Biot number of 10; a run says so from 20 up.
+shell takes a parabola inside a grain: good to 0.1 % up to a Biot number of 10; a run warns from 20.
 Criterion: within the bounds, and within 2 % of 20 shells at the shortest step."""),
 ]

@@ -43,8 +43,8 @@ MAPS = [
         Axis("rho_s / mu [s/m^2]", [1, 10, 100, 1000, 10000]), Axis("step [s]", [1e-4, 1e-3, 1e-2]), list(PANELS), run, lambda v: v < 2,
         accurate=lambda v: v < 1,
         about="""Mechanism: friction drags a layer of fluid along with the wall, of the thickness sqrt(nu dt) at most that of a cell. What takes it at a guessed
-velocity (explicit, and semi-implicit before its friction followed the wall's velocity of the pass) swings with a period of two steps
-where that layer weighs more than the wall: light structures, viscous fluids; a smaller step is no cure. Criterion: below 2 no swing from
+velocity (explicit, and semi-implicit before its friction followed the wall's velocity of the pass) oscillates with a period of two steps
+where that layer weighs more than the wall: light structures, viscous fluids; a smaller step is no cure. Criterion: below 2 no oscillation from
 step to step (one that turns round in each has 4); from 1 up it is inaccurate. rho_f = 1, mu = 1. In short steps the explicit scheme ends
 whatever the density: between the wall and the first cell's centre lies half a cell h of solid without mass, which gives way at once, and
 rho_f L h/(2 (lambda + 2 mu_s) dt^2) takes the place of the mass ratio (the run measures 2.3 at 1e-4 s and 1e4 s/m^2)."""),

@@ -11,25 +11,25 @@ import sys
 # name: (module, one line)
 SUBCOMMANDS = {
     "run": ("command.run", "runs a case: all its programs, to the end"),
-    "resume": ("command.resume", "goes on with a run that was stopped"),
-    "stop": ("command.stop", "ends a run after its step, with a checkpoint"),
-    "watch": ("command.watch", "shows how a run goes on"),
+    "resume": ("command.resume", "continues a stopped run"),
+    "stop": ("command.stop", "stops a run after the current step, with a checkpoint"),
+    "watch": ("command.watch", "shows the progress of a run"),
     "check": ("command.check", "finds all mistakes of a case without running it"),
-    "explain": ("command.explain", "tells what a case computes and leaves out, and what it needs"),
-    "new": ("command.new", "makes a case of one's own from one of the gallery"),
-    "gallery": ("command.gallery", "lists the cases that come along"),
-    "docs": ("command.docs", "shows the documents, searchable, with a gallery of all cases"),
-    "plot": ("plot", "makes pictures of what a run wrote"),
-    "compare": ("command.compare", "tells in what two runs differ"),
+    "explain": ("command.explain", "lists what a case computes and neglects, and its expected cost"),
+    "new": ("command.new", "creates your own case from one of the gallery"),
+    "gallery": ("command.gallery", "lists the cases of the gallery"),
+    "docs": ("command.docs", "shows the documentation, searchable, with a gallery of all cases"),
+    "plot": ("plot", "plots the results of a run"),
+    "compare": ("command.compare", "lists the differences of two runs"),
     "study": ("study.main", "runs the study of a case: variants, error against time, the best of some variables"),
     "export": ("command.export", "writes a case as input of CalculiX or OpenFOAM"),
     "accuracy": ("study.accuracy", "measures error against time of a case of the gallery"),
-    "atlas": ("atlas.main", "maps where each scheme holds"),
+    "atlas": ("atlas.main", "maps where each scheme is stable"),
     "validate": ("command.validate", "measures the project's bars (in a checkout)"),
-    "doctor": ("command.doctor", "looks whether this machine runs coupled cases"),
+    "doctor": ("command.doctor", "checks whether this machine can run coupled cases"),
 }
 ALIASES = {"stability": "atlas"}  # scripts/stability
-GUIDE = "couplet COMMAND --help tells more of each. Exit codes are those of the programs: 0 done, 1 failed, 2 the case or the command is wrong, 3 stopped with a checkpoint, 4 done, but useless."
+GUIDE = "couplet COMMAND --help describes each command. Exit codes, as of the programs: 0 done, 1 failed, 2 invalid case or command, 3 stopped with a checkpoint, 4 done, but useless."
 
 
 def module_of(name):
@@ -68,7 +68,7 @@ def dispatch(name, words, prog):
         print(f"{prog}: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
-        print(f"{prog}: interrupted" + ("; started again it goes on from here" if name in ("study", "atlas", "accuracy") else ""), file=sys.stderr)
+        print(f"{prog}: interrupted" + ("; start it again to continue" if name in ("study", "atlas", "accuracy") else ""), file=sys.stderr)
         return 128 + signal.SIGINT
     except BrokenPipeError:  # `| head` has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)

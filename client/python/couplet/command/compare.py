@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tells in what two runs differ: values in force, each column of their tables, each field at each output, findings. What they cost
-(seconds, iterations so far, logs) is left out. Exit code 0 if all else is equal bit for bit, or within --tolerance; 1 if not."""
+"""Lists the differences of two runs: values in effect, each column of their tables, each field at each output, findings. Their cost
+(seconds, iterations, logs) is ignored. Exit code 0 if all else is equal bit for bit, or within --tolerance; 1 if not."""
 import pathlib
 import re
 
@@ -13,8 +13,8 @@ CLOCK = re.compile(r"seconds|waiting|working|processor|clock|so far")
 def declare(parser):
     parser.add_argument("first", type=pathlib.Path, metavar="RUN", help="output folder of a run")
     parser.add_argument("second", type=pathlib.Path, metavar="RUN", help="output folder of another")
-    parser.add_argument("--tolerance", type=float, default=0.0, metavar="SHARE", help="differences up to this share of the largest value count as none (0)")
-    parser.add_argument("--all", action="store_true", help="also lists what is equal")
+    parser.add_argument("--tolerance", type=float, default=0.0, metavar="SHARE", help="ignores differences up to this share of the largest value (0)")
+    parser.add_argument("--all", action="store_true", help="also lists equal values")
 
 
 def flat(node, name=""):
@@ -43,7 +43,7 @@ def apart(a, b):
 
 
 def arrays(folder):
-    """{name: array} of all tables and field series of a run, without what the clock says."""
+    """{name: array} of all tables and field series of a run, without times."""
     import h5py
     import numpy as np
     found = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shows the documents as a site with search and a gallery of all cases: builds it once, then serves it on the loopback address."""
+"""Shows the documentation as a site with search and a gallery of all cases: builds it once, then serves it on the loopback address."""
 import functools
 import http.server
 import os
@@ -11,8 +11,8 @@ from couplet.documents import site
 
 def declare(parser):
     parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="only builds the site into this folder")
-    parser.add_argument("--port", type=int, default=0, metavar="N", help="of the loopback address (any that is free)")
-    parser.add_argument("--again", action="store_true", help="builds it anew although it is there")
+    parser.add_argument("--port", type=int, default=0, metavar="N", help="port on the loopback address (default: any free one)")
+    parser.add_argument("--again", action="store_true", help="rebuilds it even if it exists")
 
 
 def built(again):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Looks whether this machine runs coupled cases: programs and their versions, MPI, Python's packages, gmsh, cores, memory, and a coupled
-self-test of two seconds. Exit code 0 if cases can be run, 1 if not; each line that is wrong says what to do."""
+"""Checks whether this machine can run coupled cases: programs and their versions, MPI, Python's packages, gmsh, cores, memory, and a coupled
+self-test of two seconds. Exit code 0 if cases can be run, 1 if not; each failing line names the fix."""
 import importlib.util
 import os
 import pathlib
@@ -77,5 +77,5 @@ def run(arguments):
     if not arguments.quick and good:
         text, good = self_test()
         print(f"{'ok ' if good else 'NO '} {'self-test':14} {text}")
-    print("This machine runs coupled cases." if good else "This machine does not run coupled cases yet: see the lines with NO.")
+    print("This machine can run coupled cases." if good else "This machine cannot run coupled cases yet: see the lines with NO.")
     return 0 if good else 1

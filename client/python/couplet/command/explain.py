@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tells what a case computes: the effects that each part has and, with --all, those it leaves out; how many cells, what memory and time
-are expected, and the launch line. Runs nothing."""
+"""Lists what a case computes: the effects of each participant and, with --all, those it neglects; cells, expected memory and time,
+and the launch line. Runs nothing."""
 from couplet.command import check
 from couplet.command.run import build_of
 from couplet.runs.case import Case
@@ -9,7 +9,7 @@ from couplet.runs.job import Job
 
 def declare(parser):
     check.declare(parser)
-    parser.add_argument("--all", action="store_true", help="also the effects that are left out, and what would switch them on")
+    parser.add_argument("--all", action="store_true", help="also lists neglected effects and the keys that enable them")
 
 
 def run(arguments):

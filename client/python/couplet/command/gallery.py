@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Lists the cases that come along: name, programs and what each shows. `couplet new` makes one's own of one of them."""
+"""Lists the cases of the gallery: name, programs and what each shows. `couplet new` copies one."""
 import textwrap
 
 from couplet.runs import gallery
@@ -7,8 +7,8 @@ from couplet.runs.case import expect
 
 
 def declare(parser):
-    parser.add_argument("words", nargs="*", metavar="WORD", help="only cases whose name, text or programs hold all of these words")
-    parser.add_argument("-l", "--long", action="store_true", help="also what each is about")
+    parser.add_argument("words", nargs="*", metavar="WORD", help="only cases whose name, text or programs contain all of these words")
+    parser.add_argument("-l", "--long", action="store_true", help="also a description of each")
 
 
 def run(arguments):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes a case of one's own: copies one of the gallery with all files that it names into a new folder. The case runs at once; comments
-and order of the YAML stay as they are."""
+"""Creates your own case: copies one of the gallery, with all files that it names, into a new folder. The case runs as it is; comments
+and order of the YAML are kept."""
 import pathlib
 
 from couplet.runs import gallery

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One page that shows how a run goes on, served on the loopback address to who has its token."""
+"""One page with the progress of a run, served on the loopback address and protected by a token."""
 import http.server
 import json
 import secrets
@@ -75,7 +75,7 @@ def handler_of(progress, token):
             # Another name that leads here is a page of somebody else that tries to read this one.
             mine = self.headers.get("Host", "") == f"127.0.0.1:{self.server.server_port}"
             if not mine or not secrets.compare_digest(given.encode(), token.encode()):
-                self.answer(403, "text/plain", "The token is missing or wrong: take the address that couplet watch has printed.\n")
+                self.answer(403, "text/plain", "The token is missing or wrong: use the address printed by couplet watch.\n")
             elif address.path == "/":
                 self.answer(200, "text/html", PAGE)
             elif address.path == "/state":

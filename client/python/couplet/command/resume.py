@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Goes on with a run that was stopped or broke off, from its last complete checkpoint, with the ranks and settings it was started
-with. A continued run equals the uninterrupted one bit for bit."""
+"""Continues a stopped or interrupted run from its last complete checkpoint, with its original ranks and
+settings. A continued run equals the uninterrupted one bit for bit."""
 import pathlib
 
 from couplet.command.run import shown_run
@@ -12,7 +12,7 @@ from couplet.runs.job import Job
 def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="the output folder of the run")
     parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="a further change, such as simulation.end-time='10 s'")
-    parser.add_argument("--print", action="store_true", help="shows the launch line and runs nothing")
+    parser.add_argument("--print", action="store_true", help="prints the launch line only")
 
 
 def without_restart(flags):
@@ -25,8 +25,8 @@ def run(arguments):
     folder = arguments.folder.absolute()
     expect(folder.is_dir(), f"{arguments.folder}: there is no such folder")
     record = folders.read_record(folder)
-    expect(record, f"{arguments.folder}: was not started by couplet run (there is no {folders.RECORD}). Go on with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
-    expect(folders.checkpoint(folder), f"{arguments.folder}: there is no complete checkpoint to go on from; `simulation.checkpoint.interval` makes them. Start anew: couplet run {record['case']}")
+    expect(record, f"{arguments.folder}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
+    expect(folders.checkpoint(folder), f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes them. Start again: couplet run {record['case']}")
     flags = [*without_restart(record["flags"]), "--restart", str(folder / "checkpoints")]
     job = Job(Case(record["case"], pathlib.Path(record["bin"]).parent), record["ranks"], [*record["sets"], f"simulation.output.folder={folder}", *arguments.set],
               flags, record["alone"], record["with"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a case: composes the launch line of all its programs from the YAML, starts it, passes on what they say, and tells at the end
+"""Runs a case: composes the launch line of all its programs from the YAML, starts it, passes on their output, and reports at the end
 where the results lie. The results are bit for bit those of the same line typed by hand (--print shows it). Ctrl-C ends the run
 after the step under way, with a checkpoint; a second one at once."""
 import os
@@ -11,14 +11,14 @@ from couplet.runs import folder as folders
 from couplet.runs.case import Case, expect
 from couplet.runs.job import Job
 
-FLAGS = {"strict": "a run with warnings about its own answer fails; --strict=effects: also about neglected effects"}
+FLAGS = {"strict": "fail on warnings about the run's own result; --strict=effects: also about neglected effects"}
 
 
 def declare(parser):
     parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
     parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help="ranks of participants (fluid=4,solid=2), or one number for all together, divided by measured or expected work")
     parser.add_argument("--participant", metavar="NAME", help="this participant alone, without the others")
-    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="the command of a participant that is a program of somebody else")
+    parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="the command of an external participant")
     parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
     parser.add_argument("--print", action="store_true", help="shows the launch line and runs nothing")
     parser.add_argument("--slurm", nargs="?", const="", metavar="OPTIONS", help="hands the run to Slurm as a batch job, with these options of sbatch; with --print shows the script")
@@ -28,9 +28,9 @@ def declare(parser):
 
 def options_of_programs(parser):
     parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets one value; repeatable")
-    parser.add_argument("--restart", type=pathlib.Path, metavar="FOLDER", help="goes on from the checkpoints in this folder")
-    parser.add_argument("--restart-with-changes", action="store_true", help="goes on although keys that change what is solved are others now")
-    parser.add_argument("--allow-commands", action="store_true", help="lets a .geo run commands and write files: it does so with your rights")
+    parser.add_argument("--restart", type=pathlib.Path, metavar="FOLDER", help="continues from the checkpoints in this folder")
+    parser.add_argument("--restart-with-changes", action="store_true", help="continues although keys that change the solution differ")
+    parser.add_argument("--allow-commands", action="store_true", help="allows a .geo to run commands and write files, with your permissions")
     parser.add_argument("--strict", nargs="?", const="", metavar="effects", help=FLAGS["strict"])
     parser.add_argument("--accept", action="append", default=[], metavar="ID", help="lets a finding pass (docs/findings.md); repeatable")
     parser.add_argument("-v", "--verbose", action="store_true", help="every rank logs more")
@@ -105,7 +105,7 @@ def span(seconds):
 
 
 def picture_of(job):
-    """Makes the picture of the case; gives what the last line says about it."""
+    """Makes the picture of the case; gives its part of the last line."""
     import subprocess
     done = subprocess.run([sys.executable, "-m", "couplet", "plot", str(job.case.file)], capture_output=True, text=True, env={
         **os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[2])})
@@ -123,13 +123,13 @@ def finish(job, code, picture):
     if code == 0 or code == 4:
         has_plot = (job.case.file.parent / "plot.py").is_file()
         look = picture_of(job) if picture else f"picture: couplet plot {shlex.quote(shown(job.case.file) if has_plot else out)}"
-        doubt = ", but the answer is proved useless (above; docs/findings.md)" if code == 4 else ""
+        doubt = ", but the result is provably useless (above; docs/findings.md)" if code == 4 else ""
         print(f"done in {took}{doubt}: results in {out}, {look}", flush=True)
         return code
     if code == 3 or (job.asked and job.recorded and folders.checkpoint(job.output)):
-        print(f"stopped after {took}, saved as {folders.checkpoint(job.output)}; go on: {again}", file=sys.stderr)
+        print(f"stopped after {took}, saved as {folders.checkpoint(job.output)}; continue: {again}", file=sys.stderr)
         return 3 if code == 3 else code
-    what = {2: f"mend what is named above; all mistakes of the file at once: couplet check {shlex.quote(shown(job.case.file))}"}.get(
+    what = {2: f"fix the errors above; all mistakes of the file at once: couplet check {shlex.quote(shown(job.case.file))}"}.get(
         code, f"from the last checkpoint: {again}" if job.recorded and folders.checkpoint(job.output) else f"logs in {out}")
     why = "" if code == 2 else f": {job.last_words()}"  # what is wrong with a case stands just above
     print(f"failed after {took}, exit code {code}{why}\n{what}", file=sys.stderr)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Ends the run that is at work in an output folder after the step under way, with a checkpoint to go on from. Finds it on this machine,
+"""Stops the active run of an output folder after the current step, with a checkpoint to continue from. Finds it on this machine,
 however it was started."""
 import pathlib
 import sys
@@ -19,5 +19,5 @@ def run(arguments):
     if not folders.wait_for_end(arguments.folder, arguments.within):
         print(f"couplet stop: not at its end after {arguments.within:g} s; it ends after the step under way", file=sys.stderr)
         return 1
-    print(f"stopped, saved as {folders.checkpoint(arguments.folder)}; go on: couplet resume {arguments.folder}")
+    print(f"stopped, saved as {folders.checkpoint(arguments.folder)}; continue: couplet resume {arguments.folder}")
     return 0

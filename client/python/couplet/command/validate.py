@@ -8,7 +8,7 @@ from couplet.runs.case import expect
 
 
 def declare(parser):
-    parser.add_argument("words", nargs=argparse.REMAINDER, metavar="NAME ...", help="as of scripts/validate; without any it tells them")
+    parser.add_argument("words", nargs=argparse.REMAINDER, metavar="NAME ...", help="as of scripts/validate; without any it lists them")
 
 
 def run(arguments):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shows how a run goes on, from the files that it writes anyway: time, step, iterations, residual, time to go, and findings as they
+"""Shows the progress of a run, from its output files: time, step, iterations, residual, time to go, and findings as they
 come; with --web as one page with curves of residuals, probes and step size, for a browser on this machine. Ends with the run; Ctrl-C ends
 the watching alone."""
 import pathlib
@@ -16,7 +16,7 @@ from couplet.runs.terminal import Screen
 def declare(parser):
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER", help="the output folder of the run")
     parser.add_argument("--every", type=float, default=0.5, metavar="SECONDS", help="looks so often (0.5)")
-    parser.add_argument("--once", action="store_true", help="tells how it stands and ends")
+    parser.add_argument("--once", action="store_true", help="prints the current state and exits")
     parser.add_argument("--web", action="store_true", help="serves a page on the loopback address, to who has the token of its address")
     parser.add_argument("--port", type=int, default=0, metavar="N", help="of the page (any that is free)")
 
@@ -27,7 +27,7 @@ def ending(folder):
     reports = {name: results.report(name) for name in results.participants()}
     driver = reports.get("coupler") or next(iter(reports.values()), {})
     if not driver:
-        return "there is no run at work here, and none has come to its end"
+        return "no run is active here, and none has finished"
     findings = results.findings()
     text = f"{driver.get('state', 'ended')} at t = {driver.get('time', 0):g} s after {driver.get('steps', 0)} steps, {driver.get('wall', 0):.1f} s"
     text += f": {driver['reason']}" if driver.get("reason") else ""

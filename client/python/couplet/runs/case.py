@@ -21,7 +21,7 @@ LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 class Wrong(Exception):
-    """Something the user can mend."""
+    """Something the user can fix."""
 
 
 def expect(condition, text):
@@ -30,7 +30,7 @@ def expect(condition, text):
 
 
 def load(text, file=None):
-    """What a YAML text says; a mistake in it is said with the file and its line."""
+    """The content of a YAML text; a mistake in it is reported with file and line."""
     try:
         return yaml.load(text, Loader=LOADER)
     except yaml.YAMLError as error:
@@ -116,7 +116,7 @@ class Case:
         return self.build / "bin" / str(entry.get("program", "?"))
 
     def guest(self, participant, played_by=None):
-        """The words that start a program of somebody else, which does not read the case: those given, else a file of the program's name
+        """The words that start an external program, which does not read the case: those given, else a file of the program's name
         beside the case, or one on the PATH, with the participant's name; None for a program of ours."""
         if played_by and participant in played_by:
             return played_by[participant]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The cases that come along, and how one of them becomes a case of somebody's own."""
+"""The cases of the gallery, and how one of them becomes your own."""
 import csv
 import dataclasses
 import pathlib

@@ -35,7 +35,7 @@ def output_of(case, sets):
 
 
 def surroundings():
-    """Environment of the programs: one thread a rank, no pages of the launcher about exit codes, this package for participants in Python."""
+    """Environment of the programs: one thread per rank, no pages of the launcher about exit codes, this package for participants in Python."""
     env = environment()
     env.setdefault("OMPI_MCA_orte_execute_quiet", "1")
     env["PYTHONPATH"] = os.pathsep.join([str(places.PACKAGE.parent), *filter(None, [env.get("PYTHONPATH")])])
@@ -49,7 +49,7 @@ def ends_with_us():
 
 class Job:
     """`ranks`: {participant or coupler: number}; `sets`: KEY=VALUE as on the command line; `flags`: further arguments of all programs;
-    `played_by`: {participant: words of the program of somebody else}; `alone`: this participant without the others."""
+    `played_by`: {participant: words of the external program}; `alone`: this participant without the others."""
 
     def __init__(self, case: Case, ranks=None, sets=(), flags=(), alone=None, played_by=None):
         self.case, self.ranks, self.sets, self.flags = case, dict(ranks or {}), list(sets), list(flags)

@@ -14,7 +14,7 @@ PATIENCE = 5.0            # [s] between SIGTERM and SIGKILL
 
 
 class RunFailed(RuntimeError):
-    """A program ended badly; the text says how."""
+    """A program failed; the text states how."""
 
 
 @dataclasses.dataclass
@@ -31,7 +31,7 @@ def environment():
 
 
 def last_words(text):
-    """What a program said at its end, without the frames that MPI draws around it."""
+    """The last output of a program, without MPI's frames around it."""
     lines = [line.strip() for line in text.strip().splitlines() if line.strip() and not set(line.strip()) <= set("-=")]
     # "error:" before other mentions: the estimate of the error is written at a failed run's end, too.
     named = [line for line in lines if "error:" in line.lower()] or [line for line in lines if "error" in line.lower()]

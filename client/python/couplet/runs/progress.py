@@ -48,7 +48,7 @@ class Logs:
 
 
 def tail(file, rows=ROWS):
-    """{head: last numbers} of a table that may be growing; what is no number is left out."""
+    """{head: last numbers} of a table that may be growing; values that are not numbers are skipped."""
     try:
         with open(file, "rb") as stream:
             head = stream.readline().decode(errors="replace")
@@ -89,7 +89,7 @@ def curves(folder):
 
 
 def by_tables(folder):
-    """A status of what was told to be quiet."""
+    """A status of a quiet run."""
     for file in [folder / "coupler" / "participants.csv", *sorted(folder.glob("*/steps.csv"))]:
         if (times := next(iter(tail(file, 1).values()), [])):
             return f"t={times[-1]:.6g} s"

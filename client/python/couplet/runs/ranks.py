@@ -15,7 +15,7 @@ def measured(case, folder):
 
 
 def expected(case):
-    """{participant: ms a step on one rank}, by --explain of the programs; a guest counts as nothing."""
+    """{participant: ms per step on one rank}, by --explain of the programs; an external program counts as zero."""
     found = {}
     for name in case.participants:
         if case.guest(name):

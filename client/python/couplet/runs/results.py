@@ -6,7 +6,7 @@ import pathlib
 
 
 def read_csv(file):
-    """Columns of a CSV by their heads; text stays text, and a row that is cut off (a run that is still writing) is left out."""
+    """Columns of a CSV by their heads; text stays text, and a truncated row (of a run that is still writing) is skipped."""
     import numpy as np  # late: who only starts runs needs none
     with open(file, newline="") as lines:
         rows = list(csv.reader(line for line in lines if not line.startswith("#")))
@@ -31,7 +31,7 @@ class Results:
                       and any(f.glob("*.log")))
 
     def table(self, participant, file):
-        """Columns of <participant>/<file>; files are read once they are asked for."""
+        """Columns of <participant>/<file>; files are read on first use."""
         path = self.folder / participant / file
         if not path.exists():
             raise LookupError(f"there is no {participant}/{file}")
@@ -53,11 +53,11 @@ class Results:
         return self.table(participant, "probes.csv")
 
     def findings(self):
-        """What the run doubts: [{participant, id, severity, ...}] as in run.json."""
+        """The run's findings: [{participant, id, severity, ...}] as in run.json."""
         return [{"participant": name, **found} for name in self.participants() for found in self.report(name).get("findings", ())]
 
     def budget(self):
-        """{participant: {mesh, step, linear: share of the solution}}: what made the error, as far as the run could tell."""
+        """{participant: {mesh, step, linear: share of the solution}}: parts of the error, as far as the run could estimate them."""
         told = {name: {k: v for k, v in self.report(name).get("errors", {}).items() if v is not None} for name in self.participants()}
         return {name: parts for name, parts in told.items() if parts}
 
@@ -71,7 +71,7 @@ class Results:
         return self.table(participant, "steps.csv")
 
     def costs(self):
-        """Over all participants: steps, iterations, memory [MB], processor seconds at work (waiting left out), phases {name: seconds}."""
+        """Over all participants: steps, iterations, memory [MB], processor seconds at work (without waiting), phases {name: seconds}."""
         found = {"steps": 0, "iterations": 0, "memory": 0.0, "work": 0.0, "phases": {}}
         for name in self.participants():
             report = self.report(name)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a run shows on a terminal: who takes part, one line that renews itself, findings above it as they come, and at the end who worked how
-much, what made the error, and what the run doubts. In a file, or with --verbose, the programs' own lines stand as they are."""
+much, the parts of the error, and the warnings of the run. In a file, or with --verbose, the programs' own lines stand as they are."""
 import re
 import shutil
 import sys

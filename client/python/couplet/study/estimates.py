@@ -2,9 +2,9 @@
 """Error of a run as it can be known without the truth, from it and what was run no finer, beside the true one.
 
 The first guess is that of the change from the next coarser run of its series, over r^p - 1 with r the ratio of their sizes and p
-the order of the schemes (2, or what `orders` of the quantity says of a series by a word in its name). Where two coarser runs
+the order of the schemes (2, or by `orders` of the quantity for a series with a word in its name). Where two coarser runs
 are known, the guess with the order they show is made, too (from 1/2 to 3), and the geometric mean of both counts: a
-fixed order says too little on meshes that are too coarse for it, an observed one too much where changes happen to be alike.
+fixed order underestimates on meshes that are too coarse for it, an observed one too much where changes happen to be alike.
 What a series cannot see of itself (a time step that stays) other series show: an error is not less than the distance to a run no
 finer that guesses less of itself, less what that run guesses (triangle inequality)."""
 import math
@@ -49,7 +49,7 @@ def guesses(series, orders=None):
 
 
 def uncertainty(rows, quantity):
-    """Of the reference over its size, where it is the study's own best value or a number that says what it is good to; else 0."""
+    """Of the reference over its size, where it is the study's own best value or a number with a stated accuracy; else 0."""
     if quantity.is_error or isinstance(quantity.reference, (int, float)):
         return float(quantity.given.get("good-to", 0))
     limits = [(max(r.point.size for r in some), limit.gci / abs(limit.value or 1)) for some, limit in

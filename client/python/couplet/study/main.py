@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs what the `study` section of a case asks for and says what it shows: named variants (their summaries in one table), axes
-(error against time), or the best of some variables. A study that was interrupted goes on where it stopped; two at once share
+"""Runs what the `study` section of a case asks for and reports the result: named variants (their summaries in one table), axes
+(error against time), or the best of some variables. An interrupted study continues where it stopped; two at once share
 their work. docs/studies.md shows the sections."""
 import fnmatch
 import os
@@ -92,7 +92,7 @@ def run_axes(case, arguments):
 def declare(parser):
     parser.add_argument("cases", nargs="+", type=pathlib.Path, metavar="CASE", help="case files; several: studies of variants alone")
     parser.add_argument("--only", default="*", metavar="NAMES", help="only these runs, with commas; a name with * stands for many (diameter-*)")
-    parser.add_argument("--jobs", type=int, metavar="N", help="so many at a time (as many as there are processors; by axes, whose times count: 1)")
+    parser.add_argument("--jobs", type=int, metavar="N", help="number of concurrent runs (default: the number of processors; for axes, whose times count: 1)")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a further change, the same for all runs")
     parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="where runs and tables are written (out/study or out/optimise beside the case)")
     parser.add_argument("--build", type=pathlib.Path, metavar="FOLDER", help="the folder whose bin/ holds the programs")
@@ -100,9 +100,9 @@ def declare(parser):
     parser.add_argument("--repeats", type=int, metavar="N", help="runs of each point by axes, of which the median counts")
     parser.add_argument("--publish", type=pathlib.Path, metavar="FOLDER", help="copies the report, its pictures and the table there")
     parser.add_argument("--again", action="store_true", help="runs are made again although they are there")
-    parser.add_argument("--peers", action="store_true", help="writes the case for CalculiX or OpenFOAM, runs those that are installed, and puts them on the same pictures and fronts; reports why where it cannot")
-    parser.add_argument("--allow-commands", action="store_true", help="of --peers: lets a .geo run commands and write files: it does so with your rights")
-    parser.add_argument("--for-error", metavar="SHARE", help="predicts from few cheap runs the cheapest setting that meets this error (1%%), runs it, and says how far that was right")
+    parser.add_argument("--peers", action="store_true", help="writes the case for CalculiX or OpenFOAM, runs those that are installed, and puts them on the same pictures and fronts; reports the reason where it cannot")
+    parser.add_argument("--allow-commands", action="store_true", help="of --peers: allows a .geo to run commands and write files, with your permissions")
+    parser.add_argument("--for-error", metavar="SHARE", help="predicts from few cheap runs the cheapest setting that meets this error (1%%), runs it, and reports the accuracy of the prediction")
     parser.add_argument("--quantity", metavar="NAME", help="of --for-error and --parts")
     parser.add_argument("--parts", action="store_true", help="what the error at the setting of the section `sources` is made of, and which part dominates")
     parser.add_argument("--optimise", action="store_true", help="the best of some variables in few runs")

@@ -12,7 +12,7 @@ The section of the case:
         diameter: {from: 34, to: 50, unit: m}
         cut-off: {key: flow.cut-off, from: 5, to: 30, unit: K}
         height: {from: 8, to: 16, unit: m, sets: {bed.layers.0.height: 0.01, bed.layers.1.height: 0.99}}   # key: share
-A surface of cubic radial functions through the runs so far says where the best is expected; the next runs go there, as many at a
+A surface of cubic radial functions through the runs so far predicts where the best is; the next runs go there, as many at a
 time as there are processors, the others of a round to where the surface is known least. optimise.csv has all runs so far; a
 search that was interrupted and is started again finds the runs that are done. --again makes them anew."""
 import csv
@@ -81,8 +81,8 @@ def next_points(points, values, count, nearest):
 
 
 def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
-    """Least value of a function on the unit cube. `evaluate(points)` gives a value a point (inf: failed), `together` at a time.
-    Gives (best point, its value, all points, all values). Says values times `sign`, and at the end why it ended."""
+    """Least value of a function on the unit cube. `evaluate(points)` gives a value per point (inf: failed), `together` at a time.
+    Gives (best point, its value, all points, all values). Reports values times `sign`, and at the end why it ended."""
     points, values = [], []
     todo = first_points(dimensions)[:runs]
     quiet = 0
@@ -90,7 +90,7 @@ def search(evaluate, dimensions, runs, tolerance, together, say=print, sign=1):
         values += list(evaluate(todo))
         points += todo
         finite = [v for v in values if np.isfinite(v)]
-        expect(finite, f"optimise: none of the first {len(points)} runs gave a value; what each says stands above.")
+        expect(finite, f"optimise: none of the first {len(points)} runs gave a value; see their messages above.")
         best = min(finite)
         say(f"optimise: {len(points)} runs, best so far {sign * best:.6g}")
         left = runs - len(points)
@@ -188,7 +188,7 @@ class Search:
 
 
 class Runs:
-    """Runs of a case, one a point; each in a folder of its own, found again if it was made before. `table`: written after each
+    """Runs of a case, one per point; each in a folder of its own, found again if it was made before. `table`: written after each
     round."""
 
     def __init__(self, search, folder, jobs, further=None, again=False, say=print):

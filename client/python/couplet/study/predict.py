@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The cheapest setting for an error that is asked for, predicted from few cheap runs, then run.
+"""The cheapest setting for a requested error, predicted from few cheap runs, then run.
 
 Of each series (combination of all axes but the refinement) up to three of the smallest sizes are run. A fit of its values over the
 sizes (fits.py) gives the size that meets the target with a bound of the error, seconds(n) = a + b n^q its cost. The series of the
-least predicted cost goes on with larger sizes until a run meets the target. Series without a fit go on, too, where that costs less than
+least predicted cost continues with larger sizes until a run meets the target. Series without a fit continue as well where that costs less than
 what is predicted for the best. Of each series that is not chosen the reason is reported."""
 import json
 import math

@@ -102,7 +102,7 @@ class Study:
     def about(self, report, rows, quantity, against, others):
         name, safe = quantity.name, "".join(c if c.isalnum() else "-" for c in quantity.name)
         report.head(name)
-        report.text(f"Errors are measured against: {against}.")
+        report.text("The quantity is already an error." if against == table.ITSELF else f"Errors are measured against: {against}.")
         costs = [(getattr(r.record, self.clock), r.errors[name], r) for r in rows if name in r.errors]
         if costs:
             named = {**{point: who for who, points in others for point in map(tuple, points)}, **{c[:2]: c[2].point.name for c in costs}}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""One row a run: its axes, what it gave, how far off that is, what it cost."""
+"""One row per run: its axes, what it gave, how far off that is, what it cost."""
 import csv
 import math
 import re
@@ -10,6 +10,7 @@ from couplet.study.axes import Point
 
 COSTS = ("wall", "cpu", "work", "memory", "steps", "iterations", "spread")
 HEADS = {"wall": "wall [s]", "cpu": "processor [s]", "work": "work [s]", "memory": "memory [MB]", "spread": "spread of processor [1]"}
+ITSELF = "itself"  # a quantity that is an error already
 
 
 class Row:
@@ -66,7 +67,7 @@ def set_errors(rows, quantities, others=()):
             for row in (*rows, *others):
                 if row.good:
                     row.errors[name] = abs(row.values[name])
-            against[name] = "itself an error"
+            against[name] = ITSELF
             continue
         reference, word = quantity.reference, "the reference"
         good = [r for r in rows if r.good]
