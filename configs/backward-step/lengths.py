@@ -33,6 +33,6 @@ def lengths(folder):
 if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here / "out" / "fluid"
     if not (folder / "sample-near-floor.csv").exists():
-        sys.exit(f"There is no result in {folder}. Run the case first; the README says how.")
+        sys.exit(f"There is no result in {folder}. Run the case first (see its README).")
     for name, value in lengths(folder).items():
         print(f"{name} {value:.3f}, Gartling {GARTLING[name]:.2f} ({100 * (value / GARTLING[name] - 1):+.1f} %)")

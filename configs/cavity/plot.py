@@ -59,7 +59,7 @@ def main():
     arguments = parser.parse_args()
     out = arguments.out
     if not (out / "fluid").exists():
-        sys.exit(f"There is no result in {out}. Run the case first; the README says how.")
+        sys.exit(f"There is no result in {out}. Run the case first (see its README).")
     picture = arguments.picture or out / "cavity.png"
     s, u, v = centre_lines(couplet.find_series(out / "fluid"))
     figure, axes = plt.subplots(1, 2, figsize=(9, 4), dpi=130, constrained_layout=True)

@@ -43,7 +43,7 @@ def reference():
 def main():
     out = here / "out"
     if not (out / "fluid" / "forces.csv").exists():
-        sys.exit(f"There is no result in {out}. Run the case first; the README says how.")
+        sys.exit(f"There is no result in {out}. Run the case first (see its README).")
     rows, wanted = coefficients.couplet.read_csv(out / "fluid" / "forces.csv"), reference()
     figure, axes = plt.subplots(2, 1, figsize=(8, 6), dpi=130, sharex=True, constrained_layout=True)
     for ax, name, axis in ((axes[0], "drag", "x"), (axes[1], "lift", "y")):

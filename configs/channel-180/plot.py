@@ -41,7 +41,7 @@ def profiles(folder):
 def main():
     out = here / "out"
     if not (out / "fluid").exists():
-        sys.exit(f"There is no result in {out}. Run the case first; the README says how.")
+        sys.exit(f"There is no result in {out}. Run the case first (see its README).")
     yplus, over = profiles(out / "fluid")
     figure, axes = plt.subplots(1, 2, figsize=(10, 4), dpi=130, constrained_layout=True)
     axes[0].semilogx(yplus, over["U"], label="Couplet")

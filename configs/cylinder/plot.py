@@ -15,7 +15,7 @@ import coefficients
 here = pathlib.Path(__file__).resolve().parent
 out = here / "out"
 if not (out / "fluid" / "forces.csv").exists():
-    sys.exit(f"There is no result in {out}. Run the case first; the README says how.")
+    sys.exit(f"There is no result in {out}. Run the case first (see its README).")
 rows = coefficients.couplet.read_csv(out / "fluid" / "forces.csv")
 with open(here / "reference" / "schaefer_turek.csv", newline="") as file:
     wanted = {r["quantity"]: float(r["accurate"] or r["low"]) for r in csv.DictReader(file) if r["case"] == "2D-2"}

@@ -22,7 +22,7 @@ def main():
     picture = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here / "out" / "plate-reed.png"
     folder = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else here / "out" / "reed"
     if not (folder / "modes-shapes.h5").exists():
-        sys.exit(f"There are no modes in {folder}. Run the case first; the README says how.")
+        sys.exit(f"There are no modes in {folder}. Run the case first (see its README).")
     shapes = couplet.FieldSeries(folder / "modes-shapes.h5")
     frequency = couplet.read_csv(folder / "frequencies.csv")["frequency [Hz]"]
     points = shapes.coordinates(0)

@@ -16,7 +16,7 @@ here = pathlib.Path(__file__).resolve().parent
 def main():
     file = here / "out" / "tank" / "wall.csv"
     if not file.exists():
-        sys.exit(f"There is no {file}. Run the case first; the README says how.")
+        sys.exit(f"There is no {file}. Run the case first (see its README).")
     picture = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here / "out" / "solar-one.png"
     rows = np.genfromtxt(file, delimiter=",", skip_header=1)
     times = np.unique(rows[:, 0])

@@ -22,7 +22,7 @@ def main():
     ax.plot(t, y, "k--", lw=1, label="finite elements (3-D, trapezoidal, 0.02 s)")
     for folder in folders:
         if not (folder / "probes.csv").exists():
-            sys.exit(f"There is no result in {folder}. Run the case first; the README says how.")
+            sys.exit(f"There is no result in {folder}. Run the case first (see its README).")
         t, y = vibration.history(folder)
         period, decay, _ = vibration.fit(t, y)
         ax.plot(t, y, lw=1.2, label=f"Couplet ({folder.parent.name}): {period:.3f} s, decay {100 * decay:.3f} % a period")

@@ -57,7 +57,7 @@ def reference():
 if __name__ == "__main__":
     place = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here / "out" / "solid"
     if not (place / "probes.csv").exists():
-        sys.exit(f"There is no result in {place}. Run the case first; the README says how.")
+        sys.exit(f"There is no result in {place}. Run the case first (see its README).")
     for what, (t, y) in (("run", history(place)), ("finite elements", reference())):
         period, decay, amplitude = fit(t, y)
         print(f"{what}: period {period:.4f} s, amplitude {amplitude:.5f} m, decay {100 * decay:.4f} % a period")

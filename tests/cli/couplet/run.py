@@ -107,7 +107,7 @@ def stop(folder):
         else:
             job.send_signal(getattr(signal, how))
         _, said = job.communicate(timeout=60)
-        check(f"{how}: exit code 3, and how to go on", job.returncode == 3 and "go on: couplet resume" in said, f"{job.returncode} {said[-300:]}")
+        check(f"{how}: exit code 3, and how to go on", job.returncode == 3 and "continue: couplet resume" in said, f"{job.returncode} {said[-300:]}")
         check(f"{how}: nobody is left", not left_behind(folder / "a"), left_behind(folder / "a"))
     resumed = call(bin_, "resume", folder / "a/out")
     check("resume goes on to the end", resumed.returncode == 0 and "done in" in resumed.stdout, resumed.stdout[-200:] + resumed.stderr)
