@@ -93,8 +93,8 @@ void declare(config::Section& s, MethodParameters& m) {
   s.value("corrections-kept", m.corrections_kept)
       .range(0, ResidualProjection::most)
       .doc(
-          "for newton-krylov in dynamic analyses: number of latest predictor corrections that are combined to "
-          "minimise the initial residual; 0: off");
+          "for newton-krylov in dynamic analyses: number of latest predictor corrections that are combined "
+          "to minimise the initial residual; 0: off");
   s.value("relative-tolerance", m.relative_tolerance)
       .range(1e-15, 1e-2)
       .doc(

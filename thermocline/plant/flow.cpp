@@ -162,7 +162,8 @@ std::vector<std::string> Schedule::doubts() const {
       limits +=
           fmt::format("{} below {:g} degC", limits.empty() ? "" : " and", celsius(*rows_[i].stop_below));
     sentences.push_back(fmt::format(
-        "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond that whenever it started",
+        "flow.rows[{}] never ran: it stops{}, and the outlet (the {} of the tank) was beyond that whenever "
+        "it started",
         i, limits, rows_[i].mass_flow > 0 ? "top" : "bottom"));
   }
   return sentences;

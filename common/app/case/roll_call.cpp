@@ -220,8 +220,8 @@ std::vector<Attendant> roll_call(MPI_Comm world, const Attendant& self) {
     attendants.push_back(introduced(one, int(attendants.size())));
   if (attendants.size() != std::size_t(comm_size(world)))
     throw Error(
-        "{} processes introduce themselves, but the job has {}: the handshake of an external program must contain exactly "
-        "one end-of-text character (0x1e).",
+        "{} processes introduce themselves, but the job has {}: the handshake of an external program must "
+        "contain exactly one end-of-text character (0x1e).",
         attendants.size(), comm_size(world));
   return attendants;
 }

@@ -146,7 +146,8 @@ TEST(FixedPoint, without_convergence_it_says_how_far_it_came) {
   } catch (const SolveFailure& failure) {
     EXPECT_STREQ(
         failure.what(),
-        "the coupling did not converge in 5 iterations: the relative residual is 1.33e+00 (tolerance 1.0e-10).");
+        "the coupling did not converge in 5 iterations: the relative residual is 1.33e+00 (tolerance "
+        "1.0e-10).");
   }
 }
 

@@ -56,7 +56,8 @@ TEST(ErrorPartsTest, of_a_job_the_largest_of_each_kind_counts_and_is_named) {
   const auto without = error_sentences({{"plate", {.step = 2e-9}}});
   EXPECT_EQ(
       without.at(0),
-      "estimated error 2e-09 of the solution: step 2e-09; the error due to the mesh (or truncated modes) is unknown and not included.");
+      "estimated error 2e-09 of the solution: step 2e-09; the error due to the mesh (or truncated modes) is "
+      "unknown and not included.");
   EXPECT_EQ(sentences[1].rfind("the coupling tolerance (coupling) dominates", 0), 0u) << sentences[1];
 }
 

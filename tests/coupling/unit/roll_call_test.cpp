@@ -38,7 +38,10 @@ TEST(RollCall, passes_when_all_are_there_in_any_order) {
 TEST(RollCall, names_who_is_missing_and_how_to_start) {
   EXPECT_EQ(
       judge(come({"coupler", "fluid"}), expected, true).problem,
-      "The job cannot start:\n  participant 'solid' (solid_solver) is missing: it was not started.\n  Start it with: mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml : -n 1 solid_solver case.yaml");
+      "The job cannot start:\n"
+      "  participant 'solid' (solid_solver) is missing: it was not started.\n"
+      "  Start it with: mpirun -n 1 coupler case.yaml : -n 1 fluid_solver case.yaml : -n 1 solid_solver "
+      "case.yaml");
 }
 
 TEST(RollCall, launch_line_keeps_the_ranks_that_have_come) {

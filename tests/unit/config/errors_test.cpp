@@ -51,7 +51,8 @@ const Case cases[] = {
     {"load: 5 m/s",
      "3:1: load: '5 m/s': the unit 'm/s' is not convertible to Pa; expected Pa or a unit convertible to it."},
     {"load: [1]",
-     "3:1: load: expected a number in , with its unit, or an expression in x, y, z, t that yields Pa, found a list."},
+     "3:1: load: expected a number in Pa, with its unit, or an expression in x, y, z, t that yields Pa, found "
+     "a list."},
     {"gravity: 9.81",
      "3:1: gravity: expected a list of 2 or 3 numbers in m/s^2 or with their units, found '9.81'."},
     {"gravity: [1]",
@@ -107,19 +108,21 @@ std::string parse_error(const std::string& text) {
 TEST(WrongFile, duplicate_keys_are_refused_with_both_places_at_any_depth) {
   EXPECT_EQ(parse_error("a: 1\nb: 2\na: 3\n"),
             "case.yaml:3:1: a: this key appears twice (first at 1:1); remove one of the two.");
-  EXPECT_EQ(
-      parse_error("l:\n  - x: {k: 1, k: 2}\n  - y: {k: 1}\nl: 4\n"),
-      "case.yaml:2:15: l[0].x.k: this key appears twice (first at 2:9); remove one of the two.\ncase.yaml:4:1: l: this key appears twice (first at 1:1); remove one of the two.");
+  EXPECT_EQ(parse_error("l:\n  - x: {k: 1, k: 2}\n  - y: {k: 1}\nl: 4\n"),
+            "case.yaml:2:15: l[0].x.k: this key appears twice (first at 2:9); remove one of the two.\n"
+            "case.yaml:4:1: l: this key appears twice (first at 1:1); remove one of the two.");
   EXPECT_EQ(parse_error("a: &x {k: 1}\nb: *x\n"), "no error");
 }
 
 TEST(WrongFile, broken_yaml_is_refused_with_its_place) {
   EXPECT_EQ(
       parse_error("a: [1, 2\nb: 3\n"),
-      "case.yaml:2:2: this is not valid YAML: a list opened with '[' before this position is not closed by ']'.");
+      "case.yaml:2:2: this is not valid YAML: a list opened with '[' before this position is not closed by "
+      "']'.");
   EXPECT_EQ(
       parse_error("a: {b: 3\n"),
-      "case.yaml:2:1: this is not valid YAML: a mapping opened with '{' before this position is not closed by '}'.");
+      "case.yaml:2:1: this is not valid YAML: a mapping opened with '{' before this position is not closed "
+      "by '}'.");
   EXPECT_EQ(
       parse_error("a: [1, 2}\n"),
       "case.yaml:1:9: this is not valid YAML: this bracket closes nothing; check '[', ']', '{' and '}'.");
@@ -127,12 +130,14 @@ TEST(WrongFile, broken_yaml_is_refused_with_its_place) {
             "case.yaml:2:3: this is not valid YAML: tabs cannot be used for indentation; use spaces.");
   EXPECT_EQ(
       parse_error("a: b: 3\n"),
-      "case.yaml:1:5: this is not valid YAML: a ':' is not allowed here; check the indentation above, and quote text that contains ': '.");
-  EXPECT_EQ(
-      parse_error("a:\n  - 1\n b: 2\n"),
-      "case.yaml:3:2: this is not valid YAML: this line does not match the mapping above; check its indentation and its ':'.");
+      "case.yaml:1:5: this is not valid YAML: a ':' is not allowed here; check the indentation above, and "
+      "quote text that contains ': '.");
+  EXPECT_EQ(parse_error("a:\n  - 1\n b: 2\n"),
+            "case.yaml:3:2: this is not valid YAML: this line does not match the mapping above; check its "
+            "indentation and its ':'.");
   const std::string second =
-      "case.yaml:2:1: this line does not belong to the mapping above; check its indentation (and remove '---').";
+      "case.yaml:2:1: this line does not belong to the mapping above; check its indentation (and remove "
+      "'---').";
   EXPECT_EQ(parse_error(" a: 1\nb: 2\n"), second);
   EXPECT_EQ(parse_error("a: 1\n---\nb: 2\n"), second);
   EXPECT_EQ(

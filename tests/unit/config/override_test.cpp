@@ -77,17 +77,20 @@ TEST(Override, a_path_that_leads_nowhere_is_refused) {
   EXPECT_EQ(error_of("a..b=3"), "--set a..b=3: the path 'a..b' has an empty part.");
   EXPECT_EQ(
       error_of("materials.density=3"),
-      "--set materials.density=3: 'materials' does not exist at the top level. Did you mean 'material'? (A missing mapping can be set as a whole: --set 'materials={key: value}'.)");
+      "--set materials.density=3: 'materials' does not exist at the top level. Did you mean 'material'? (A "
+      "missing mapping can be set as a whole: --set 'materials={key: value}'.)");
   EXPECT_EQ(error_of("mesh.x=3"), "--set mesh.x=3: 'mesh' is a single value, so 'x' cannot be set below it.");
   EXPECT_EQ(
       error_of("probes.2.name=x"),
-      "--set probes.2.name=x: 'probes' is a list of 2 entries; expected an entry number, counted from 0, instead of '2'.");
+      "--set probes.2.name=x: 'probes' is a list of 2 entries; expected an entry number, counted from 0, "
+      "instead of '2'.");
   EXPECT_EQ(
       error_of("damping={mass: 1, mass: 2}"),
-      "--set damping={mass: 1, mass: 2}: damping.mass: this key appears twice (first at 1:2); remove one of the two.");
-  EXPECT_EQ(
-      error_of("mesh=[1"),
-      "--set mesh=[1: the value is not valid YAML: a list opened with '[' before this position is not closed by ']'.");
+      "--set damping={mass: 1, mass: 2}: damping.mass: this key appears twice (first at 1:2); remove one of "
+      "the two.");
+  EXPECT_EQ(error_of("mesh=[1"),
+            "--set mesh=[1: the value is not valid YAML: a list opened with '[' before this position is not "
+            "closed by ']'.");
 }
 
 TEST(Override, control_characters_are_refused_and_not_told) {

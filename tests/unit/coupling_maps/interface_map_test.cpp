@@ -149,7 +149,8 @@ TEST(InterfaceMapErrors, data_of_another_size_is_refused) {
   } catch (const Error& e) {
     EXPECT_STREQ(
         e.what(),
-        "The interface data received have 5 values; expected 3 entries of 2 components. Check that both participants describe the interface they use.");
+        "The interface data received have 5 values; expected 3 entries of 2 components. Check that both "
+        "participants describe the interface they use.");
   }
 }
 

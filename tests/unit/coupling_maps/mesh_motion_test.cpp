@@ -108,7 +108,8 @@ TEST_F(TwoPrograms, meshes_with_other_numbers_of_points_are_refused_on_both_side
   EXPECT_EQ(
       set_up_error(mesh),
       fmt::format(
-          "The meshes of the fluid and the mesh mover differ: {} points in 2-D on this side, {} points in 2-D on the other. Both participants must read the same mesh file.",
+          "The meshes of the fluid and the mesh mover differ: {} points in 2-D on this side, {} points in "
+          "2-D on the other. Both participants must read the same mesh file.",
           is_mover ? 16 : 20, is_mover ? 20 : 16));
 }
 

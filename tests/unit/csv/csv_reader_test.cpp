@@ -82,8 +82,8 @@ TEST(CsvReader, separators_that_could_be_decimal_commas_need_names_or_points) {
 TEST(CsvReader, one_separator_and_one_width_in_the_whole_file) {
   EXPECT_THAT(
       said("t,p\n0,1\n1;2\n"),
-      HasSubstr(
-          "a.csv:3: 1 values, but the file has 2 columns (separated by commas, as in line 1). Use one separator"));
+      HasSubstr("a.csv:3: 1 values, but the file has 2 columns (separated by commas, as in line 1). Use one "
+                "separator"));
   EXPECT_THAT(said("0,1\n1\n"), HasSubstr("a.csv:2: 1 values, but the file has 2 columns"));
   EXPECT_THAT(said("0,1\n1,2,3\n"), HasSubstr("a.csv:2: 3 values"));
   EXPECT_THAT(said("0 1\n1 2 3\n"), HasSubstr("separated by blanks"));

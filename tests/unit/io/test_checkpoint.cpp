@@ -94,8 +94,7 @@ TEST(Checkpoint, the_last_good_file_stays_until_the_new_one_is_closed) {
 
 TEST(Checkpoint, a_missing_file_is_named_on_every_rank) {
   const Scratch scratch;
-  EXPECT_THAT(error_of([&] { CheckpointReader(world, scratch / "b.h5"); }),
-              HasSubstr("does not exist."));
+  EXPECT_THAT(error_of([&] { CheckpointReader(world, scratch / "b.h5"); }), HasSubstr("does not exist."));
 }
 
 TEST(Checkpoint, a_truncated_file_is_refused_on_every_rank) {

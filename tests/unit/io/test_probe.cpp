@@ -98,7 +98,8 @@ TEST(Probe, far_outside_is_an_error_with_the_distance_on_every_rank) {
   const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
   EXPECT_EQ(
       error_of([&] { Probe(mesh, "tip", Vec3(1.5, 1.25, 0)); }),
-      "The probe 'tip' at (1.5, 1.25, 0) is outside the mesh: the nearest point of the mesh is (1.5, 1, 0), 0.25 m away. Move the probe there or into the mesh.");
+      "The probe 'tip' at (1.5, 1.25, 0) is outside the mesh: the nearest point of the mesh is (1.5, 1, 0), "
+      "0.25 m away. Move the probe there or into the mesh.");
 }
 
 TEST(Probe, lives_on_exactly_one_rank) {

@@ -231,9 +231,9 @@ TEST_F(LoadMesh, tells_how_to_install_gmsh_when_it_is_missing) {
   setenv("PATH", folder.c_str(), 1);
   const std::string text = error(write("square.geo", "h = 0.3;\n" + square), 2);
   setenv("PATH", path.c_str(), 1);
-  EXPECT_EQ(
-      text,
-      "Meshes other than .msh are read with the program 'gmsh', which is not on the PATH. Install it (Debian: apt install gmsh) or give a .msh file.");
+  EXPECT_EQ(text,
+            "Meshes other than .msh are read with the program 'gmsh', which is not on the PATH. Install it "
+            "(Debian: apt install gmsh) or give a .msh file.");
 }
 
 TEST_F(LoadMesh, more_ranks_than_cells_are_refused) {

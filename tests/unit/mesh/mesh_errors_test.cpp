@@ -23,7 +23,9 @@ TEST(MeshErrors, boundary_face_without_patch_is_named_by_its_centre) {
   raw.boundary_patch.pop_back();
   EXPECT_EQ(
       error_of(raw),
-      "1 boundary face is in no patch, with centre (1.5, 1). Every boundary face must be in exactly one patch: add the curve (Physical Curve) to a physical group (for a location inside the domain: the mesh has two coincident points there that should be one).");
+      "1 boundary face is in no patch, with centre (1.5, 1). Every boundary face must be in exactly one "
+      "patch: add the curve (Physical Curve) to a physical group (for a location inside the domain: the "
+      "mesh has two coincident points there that should be one).");
   raw = make_box(BoxCells::hexahedra, {2, 1, 1}, {0, 0, 0}, {2, 1, 1});
   raw.boundary_points = {};
   raw.boundary_patch = {};
@@ -38,7 +40,8 @@ TEST(MeshErrors, boundary_face_in_two_patches_is_named_with_both) {
   EXPECT_EQ(raw.patches[raw.boundary_patch[0]], "ymin");
   EXPECT_EQ(
       error_of(raw),
-      "The boundary face at (0.5, 0) is in two patches, 'ymin' and 'xmax'. Every boundary face must be in exactly one patch.");
+      "The boundary face at (0.5, 0) is in two patches, 'ymin' and 'xmax'. Every boundary face must be in "
+      "exactly one patch.");
 }
 
 TEST(MeshErrors, patch_between_cells_is_refused) {
@@ -48,7 +51,8 @@ TEST(MeshErrors, patch_between_cells_is_refused) {
   raw.boundary_patch.push_back(3);
   EXPECT_EQ(
       error_of(raw),
-      "Patch 'ymax' has a face at (1, 0.5) that lies between two cells. A patch must lie on the boundary; remove the inner surface from the physical group (or the mesh contains every cell twice).");
+      "Patch 'ymax' has a face at (1, 0.5) that lies between two cells. A patch must lie on the boundary; "
+      "remove the inner surface from the physical group (or the mesh contains every cell twice).");
 }
 
 TEST(MeshErrors, patch_off_the_cells_is_refused) {
@@ -66,9 +70,9 @@ TEST(MeshErrors, third_cell_on_a_face_is_refused) {
   raw.cell_points.push_row(third);
   raw.cell_type.push_back(CellType::quadrilateral);
   raw.cell_zone.push_back(0);
-  EXPECT_EQ(
-      error_of(raw),
-      "3 cells share the face at (1, 0.5), but a face has at most two cells; the mesh has duplicate or overlapping cells.");
+  EXPECT_EQ(error_of(raw),
+            "3 cells share the face at (1, 0.5), but a face has at most two cells; the mesh has duplicate or "
+            "overlapping cells.");
 }
 
 TEST(MeshErrors, plane_mesh_out_of_its_plane_is_refused) {
@@ -108,10 +112,13 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"empty", "", ":1: This is not a gmsh .msh file: it does not start with $MeshFormat."},
         BadFile{
             "other_version", "$MeshFormat\n4 0 8\n$EndMeshFormat\n",
-            ":2: Version 4 of the .msh format is not supported. Save the mesh as version 4.1 (gmsh -format msh41) or 2.2 (gmsh -format msh22)."},
+            ":2: Version 4 of the .msh format is not supported. Save the mesh as version 4.1 (gmsh -format "
+            "msh41) or 2.2 (gmsh -format msh22)."},
         BadFile{
             "second_order", head + nodes + "$Elements\n1\n1 9 2 1 1 1 2 3 4 5 6\n$EndElements\n",
-            ":12: Element type 9 is not supported: expected a first-order line, triangle, quadrilateral, tetrahedron, hexahedron, prism or pyramid. For curved elements, remesh with Mesh.ElementOrder = 1."},
+            ":12: Element type 9 is not supported: expected a first-order line, triangle, quadrilateral, "
+            "tetrahedron, hexahedron, prism or pyramid. For curved elements, remesh with Mesh.ElementOrder "
+            "= 1."},
         BadFile{"unknown_node", head + nodes + "$Elements\n1\n1 2 2 1 1 1 2 4\n$EndElements\n",
                 ":12: An element uses node 4, which is not in $Nodes."},
         BadFile{"node_twice", head + "$Nodes\n2\n1 0 0 0\n1 1 0 0\n$EndNodes\n", ":7: Duplicate node 1."},
@@ -121,9 +128,9 @@ INSTANTIATE_TEST_SUITE_P(
                 ":5: Expected a whole number, found '1.5'."},
         BadFile{"truncated", head + "$Nodes\n2\n1 0 0 0\n",
                 ":6: The file ends here in the middle of its data. It is incomplete."},
-        BadFile{
-            "wrong_count", head + "$Nodes\n1\n1 0 0 0\n2 0 0 0\n$EndNodes\n",
-            ":7: Expected $EndNodes here, found '2 0 0 0'. The counts in the section do not match its content, or the file is incomplete."},
+        BadFile{"wrong_count", head + "$Nodes\n1\n1 0 0 0\n2 0 0 0\n$EndNodes\n",
+                ":7: Expected $EndNodes here, found '2 0 0 0'. The counts in the section do not match its "
+                "content, or the file is incomplete."},
         BadFile{"no_elements", head + nodes,
                 ":9: The file has no $Nodes or no $Elements. It is incomplete."}),
     [](const auto& info) { return info.param.name; });

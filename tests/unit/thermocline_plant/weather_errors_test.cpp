@@ -81,10 +81,10 @@ TEST_F(WeatherFile, short_gaps_are_closed_by_straight_lines_with_a_warning) {
   EXPECT_DOUBLE_EQ(record.temperature[4], 14);
   EXPECT_DOUBLE_EQ(record.temperature[10], 20);
   ASSERT_EQ(record.warnings.size(), 6u);
-  EXPECT_THAT(
-      record.warnings,
-      testing::Contains(testing::HasSubstr(
-          "gap.csv:6: the air temperature [degC] is missing for 2 hours from here; the gap is filled linearly.")));
+  EXPECT_THAT(record.warnings,
+              testing::Contains(testing::HasSubstr(
+                  "gap.csv:6: the air temperature [degC] is missing for 2 hours from here; the gap is filled "
+                  "linearly.")));
   EXPECT_THAT(record.warnings, testing::Contains(testing::HasSubstr(
                                    "gap.csv:11: the air temperature [degC] is missing for 1 hour from")));
 }
@@ -139,7 +139,8 @@ TEST_F(WeatherFile, a_damaged_compressed_file_is_refused) {
   fs::resize_file(folder_ / "cut.csv.gz", fs::file_size(source) / 2);
   EXPECT_EQ(
       complaint((folder_ / "cut.csv.gz").string()),
-      "cut.csv.gz: this weather file is damaged or truncated: decompression failed (its end is missing). Copy or compress it again.");
+      "cut.csv.gz: this weather file is damaged or truncated: decompression failed (its end is missing). "
+      "Copy or compress it again.");
 }
 
 /// A day as EPW: the first record is line 9.
