@@ -47,14 +47,14 @@ class Terminal final : public spdlog::sinks::base_sink<std::mutex> {
     if (message.level == spdlog::level::warn) return above(fmt::format("warning: {}", text));
     if (text.starts_with("t=")) return renew(text);
     if (!steps_) {
-      if (told_++ < most_at_start)
-        print(shortened(text.substr(0, std::min(text.find("; left out: "), text.find("; neglected: ")))));
+      if (told_++ < most_at_start) print(shortened(text.substr(0, text.find("; neglected: "))));
     } else if (text.find('\n') != text.npos) {
       table(text);
     } else if (text.starts_with("estimated error") || text.find(" dominates: ") != text.npos) {
       above(text);
-    } else if (text.starts_with("peak memory") || (!text.starts_with("t = ") && !text.ends_with("sound.") &&
-                                                   !text.ends_with("justified") && told_++ < most_later)) {
+    } else if (text.starts_with("peak memory") ||
+               (!text.starts_with("t = ") && !text.ends_with(": justified") &&
+                !text.ends_with(": adequate") && told_++ < most_later)) {
       print(shortened(text));
       fmt::print("{}", shortened(status_));
     }
@@ -133,7 +133,7 @@ spdlog::sink_ptr terminal_sink() { return std::make_shared<Terminal>(); }
 void tell_where(const std::string& folder, const std::string& file) {
   const auto& sinks = spdlog::default_logger()->sinks();
   if (!sinks.empty() && dynamic_cast<Terminal*>(sinks.front().get()) != nullptr)
-    fmt::print("\r\033[Kresults in {}, all that was said in {}\n", folder, file);
+    fmt::print("\r\033[Kresults in {}, full log in {}\n", folder, file);
 }
 
 }  // namespace couplet::log

@@ -69,11 +69,11 @@ def program(folder):
         check(f"{name}: it ends with where results lie", code == 0 and text.rstrip("\n").split("\n")[-1].startswith(f"{RENEW}results in {folder / name}"), text[-300:] + errors)
         statuses = looks_right(name, text)
         check(f"{name}: a status line that renews itself", len(statuses) >= (2 if name == "fluid" else 1) and (name != "fluid" or "to go" in statuses[-1] and "steps/s" in statuses[-1]), statuses)
-        check(f"{name}: what was left out is for --explain", "; left out: " not in text)
+        check(f"{name}: what was left out is for --explain", "; neglected: " not in text)
         piped = subprocess.run([*map(str, words), "--set", out + "piped"], capture_output=True, text=True, env=environment(bin_)).stdout
         (log,) = (folder / name).glob("*/*.log")
         check(f"{name}: the log has every line, and so has a file", all(f"] {kind}" in log.read_text() and f" 0] {kind}" in piped for kind in ("effects: ", "t=", "time of ")) and "\x1b" not in piped
-              and log.read_text().count("; left out: ") == piped.count("; left out: ") >= 1, piped)
+              and log.read_text().count("; neglected: ") == piped.count("; neglected: ") >= 1, piped)
     loud = on_terminal(bin_ / "solid_solver", ROOT / "configs/cantilever/case.yaml", "--verbose", "--set", out + "loud")[1]
     check("--verbose: lines", "\x1b" not in loud and "[solid 0] t=1/1 s" in loud, loud)
     launched = on_terminal("mpirun", "--oversubscribe", "-n", 2, bin_ / "solid_solver", ROOT / "configs/cantilever/case.yaml", "--set", out + "two")[1]
@@ -81,7 +81,7 @@ def program(folder):
     code, text, errors = on_terminal(bin_ / "solid_solver", ROOT / "configs/vibrating-cantilever/case.yaml", "--set", "simulation.time-step=0", "--set", out + "wrong")
     check("an error stands alone", code == 2 and "time-step" in errors and RENEW not in text, text + errors)
     code, text, errors = on_terminal(bin_ / "solid_solver", ROOT / "configs/cantilever/case.yaml", "--set", "participants.solid.material.youngs-modulus=1e4 Pa", "--set", out + "doubt")
-    check("a finding stands above the status, whole", "warning: t = 1 s: geometric non-linearity left out: the largest displacement gradient seen is 11 " in text.replace(RENEW, "").replace("\n  ", " "), text)
+    check("a finding stands above the status, whole", "warning: t = 1 s: geometric non-linearity neglected: max |grad u| = 11 " in text.replace(RENEW, "").replace("\n  ", " "), text)
 
 
 with tempfile.TemporaryDirectory(prefix="couplet-terminal-") as scratch:

@@ -77,9 +77,9 @@ def flap(folder):
           "('fluid'), 4.8 % apart" in output, output[-2000:])
     held = "participants.mover.boundaries.flap.type=fixed"
     code, output = run([binaries / "coupler", "case.yaml", "--check", "--set", held], folder)
-    check("the mover's patch fixed: refused by --check", code == 2 and "holds the wall 'flap' by `type: fixed`" in output, output)
+    check("the mover's patch fixed: refused by --check", code == 2 and "holds the wall 'flap' fixed by `type: fixed`" in output, output)
     code, output = couple(folder, "case.yaml", [*COARSE, held])
-    check("... and at the roll call", code == 2 and "holds the wall 'flap' by `type: fixed`" in output and "step 1" not in output, output)
+    check("... and at the roll call", code == 2 and "holds the wall 'flap' fixed by `type: fixed`" in output and "step 1" not in output, output)
 
 
 def shipped(folder):

@@ -21,7 +21,7 @@ def expected(case):
         if case.guest(name):
             continue
         said = subprocess.run([case.program(name), case.file, "--explain", "--participant", name], capture_output=True, text=True).stdout
-        number = re.search(r"^expected: .*?([\d.e+-]+) (ms|s) a step", said, flags=re.M)
+        number = re.search(r"^expected: .*?([\d.e+-]+) (ms|s) per step", said, flags=re.M)
         found[name] = float(number[1]) * (1 if number[2] == "ms" else 1000) if number else 0.0
     return found
 

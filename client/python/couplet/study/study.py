@@ -60,7 +60,7 @@ class Study:
             try:
                 found.setdefault(quantity, []).extend(getattr(module(str(self.case.file.parent / file)), function)(self.out / "peers"))
             except ImportError as error:  # an installation has no benchmarks/
-                print(f"peers of '{quantity}' are left out: {error}")
+                print(f"peers of '{quantity}' are omitted: {error}")
         return {quantity: [(name, points) for name, points in some if points] for quantity, some in found.items()}
 
     def report(self, rows, peers=(), why=None):
