@@ -305,7 +305,7 @@ TEST_F(CraftedFiles, each_fault_has_its_sentence) {
          [](CraftedValue& v) { v.store = CraftedValue::Store::unknown_filter; });
   expect("frequency", "declares 8589934592 bytes of values",
          [](CraftedValue& v) { v.size = {1u << 30}, v.store = CraftedValue::Store::unwritten; });
-  expect("shape/vertices", "has 75 rows of 4 values; 75 of 3 are expected", [](CraftedValue& v) {
+  expect("shape/vertices", "has 75 rows of 4 values; expected 75 of 3", [](CraftedValue& v) {
     v.size = {75, 4};
   });
   expect("surface/face-vertex", "of integers are expected", [](CraftedValue& v) { v.type = Type::f64; });

@@ -166,7 +166,7 @@ TEST(Checkpoint, a_missing_name_or_another_size_is_told_on_every_rank) {
   // Only rank 0 asks for a wrong size: all must hear of it.
   std::vector<double> values(awkward_values().size() + (comm_rank(world) == 0 ? 1 : 0));
   EXPECT_THAT(error_of([&] { reader.read("solid/displacement", values); }),
-              HasSubstr("holds 1000 values of 'solid/displacement' on rank 0, but 1001 are expected"));
+              HasSubstr("has 1000 values of 'solid/displacement' on rank 0, but 1001 are expected"));
   EXPECT_EQ(reader.read_scalar("time"), 1.25);
 }
 

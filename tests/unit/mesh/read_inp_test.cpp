@@ -141,7 +141,7 @@ TEST_F(ReadInp, mistakes_are_told_with_file_and_line) {
   EXPECT_THAT(error(nodes + "*ELEMENT\n1, 1,2,3,4\n"), HasSubstr("*ELEMENT needs TYPE=..."));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3\n"),
               AllOf(HasSubstr("deck.inp:15:"), HasSubstr("expected 5 whole numbers")));
-  EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,4,5\n"), HasSubstr("here are 6 numbers"));
+  EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,4,5\n"), HasSubstr("found 6 numbers"));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,77\n"),
               AllOf(HasSubstr("deck.inp:15:"), HasSubstr("node 77")));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D8\n1, 1,2,3,3,5,6,7,7\n"), HasSubstr("node 3 twice"));

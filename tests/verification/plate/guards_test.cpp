@@ -80,7 +80,7 @@ TEST(PlateGuards, all_rigid_motions_are_kept_or_none) {
     Parameters p = plate_held();
     p.number = n;
     const std::string text = message_of([&] { Structure(p, PlateContext{}, &raw); });
-    EXPECT_NE(text.find("against 3 rigid motions"), std::string::npos) << text;
+    EXPECT_NE(text.find("3 free rigid motions"), std::string::npos) << text;
     EXPECT_NE(text.find("Keep at least 3"), std::string::npos) << text;
   }
   Parameters p = plate_held();
