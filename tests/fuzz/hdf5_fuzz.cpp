@@ -308,7 +308,7 @@ TEST_F(CraftedFiles, each_fault_has_its_sentence) {
   expect("shape/vertices", "has 75 rows of 4 values; expected 75 of 3", [](CraftedValue& v) {
     v.size = {75, 4};
   });
-  expect("surface/face-vertex", "of integers are expected", [](CraftedValue& v) { v.type = Type::f64; });
+  expect("surface/face-vertex", "dimensions of integers", [](CraftedValue& v) { v.type = Type::f64; });
 }
 
 }  // namespace
