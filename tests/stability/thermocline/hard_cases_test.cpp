@@ -154,7 +154,7 @@ TEST(Implicit, ten_times_the_advective_limit_stays_bounded_and_keeps_the_heat) {
   }
 }
 
-TEST(Books, three_months_of_daily_cycles_close) {
+TEST(EnergyBalance, three_months_of_daily_cycles_close) {
   for (const Advection advection : {Advection::upwind, Advection::tvd}) {
     BedParameters p = plain_bed(120, 12, 0.22, 0.0046);
     p.closures.conduction = Conduction::wakao;

@@ -18,7 +18,7 @@
 namespace couplet::thermocline {
 namespace {
 
-TEST(Books, the_whole_tank_closes_over_a_week) {
+TEST(EnergyBalance, the_whole_tank_closes_over_a_week) {
   TankRun run(solar_one_parameters());
   run.until(7 * 86400, 900);
   const double moved = run.model().ledger().turnover;

@@ -65,7 +65,7 @@ CASES = [
          ("stability_fluid_light_wall: LightWall.of_a_fortieth_of_the_added_mass_moves_smoothly", "stability_fluid_light_wall: Renewal.holds_a_wall_of_less_mass_than_the_layer_that_it_drags"),
          ("stability_fluid_light_wall: Renewal.such_a_wall_grows_without_it_and_with_one_only",)),
     Case("tank", "10 years of hourly weather", "errors of the energy balance accumulate", "energy balance to 1e-9, a year like the one before to 1e-3 (long)",
-         ("stability_thermocline_ten_years", "stability_thermocline_hard_cases: Books.three_months_of_daily_cycles_close"), ()),
+         ("stability_thermocline_ten_years", "stability_thermocline_hard_cases: EnergyBalance.three_months_of_daily_cycles_close"), ()),
     Case("tank", "sharp front, reversal in each step, rest", "a scheme of higher order overshoots at a front", "within the temperatures that went in, heat kept to 1e-10",
          tuple(f"stability_thermocline_hard_cases: HardCase.{name}" for name in ("sharp_front", "reversal_every_step", "rest_with_a_sharp_profile")),
          ("stability_thermocline_hard_cases: Overstepped.upwind_far_beyond_its_limit_leaves_the_bounds",)),
