@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a case as input of another program into a folder: CalculiX (static, linear elastic solids) or OpenFOAM (incompressible, laminar
-flow for icoFoam and pimpleFoam; static solids for solidDisplacementFoam). What has no counterpart there is refused by the name of its
+flow for icoFoam and pimpleFoam; static solids for solidDisplacementFoam). Settings without a counterpart there are rejected, naming the
 key. `couplet study --peers` runs them beside ours."""
 import pathlib
 import shutil
@@ -13,13 +13,13 @@ TO = ("calculix", "openfoam")
 
 def declare(parser):
     parser.add_argument("case", type=pathlib.Path, metavar="CASE", help="a YAML file, or a folder with case.yaml")
-    parser.add_argument("--to", required=True, choices=TO, help="the program that is to read it")
-    parser.add_argument("--folder", type=pathlib.Path, metavar="FOLDER", help="where it is written (PROGRAM beside the case)")
-    parser.add_argument("--participant", metavar="NAME", help="which one, where the case has several")
+    parser.add_argument("--to", required=True, choices=TO, help="the target program")
+    parser.add_argument("--folder", type=pathlib.Path, metavar="FOLDER", help="output folder (default: PROGRAM next to the case)")
+    parser.add_argument("--participant", metavar="NAME", help="participant to export, if the case has several")
     parser.add_argument("--element", metavar="KIND", help="of CalculiX, such as C3D20R (the one that fits the cells of the mesh; of second order)")
     parser.add_argument("--solver", choices=("icoFoam", "pimpleFoam"), default="icoFoam", help="of OpenFOAM and a flow (icoFoam)")
     parser.add_argument("--set", action="append", default=[], metavar="a.b=v", help="sets one value; repeatable")
-    parser.add_argument("--allow-commands", action="store_true", help="lets a .geo run commands and write files: it does so with your rights")
+    parser.add_argument("--allow-commands", action="store_true", help="allows a .geo to run commands and write files, with your permissions")
 
 
 def made(case, arguments, work):

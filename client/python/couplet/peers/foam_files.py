@@ -138,6 +138,6 @@ def read_field(file, count):
 
 
 def read_rows(file):
-    """Numbers of a table of a function object, brackets left out: (rows, columns)."""
+    """Numbers of a table of a function object, without brackets: (rows, columns)."""
     lines = pathlib.Path(file).read_text().splitlines()
     return np.array([re.sub(r"[()]", " ", line).split() for line in lines if line.strip() and not line.startswith("#")], float)

@@ -88,7 +88,7 @@ def check_patches(mesh, boundaries, where):
 
 
 def normals(corners):
-    """(m, 3), not of unit length: of edges in the plane those to the right of their direction."""
+    """(m, 3), not of unit length: for two-dimensional edges those to the right of their direction."""
     if corners.shape[1] == 2:
         along = corners[:, 1] - corners[:, 0]
         return np.stack([along[:, 1], -along[:, 0], 0 * along[:, 0]], axis=1)
@@ -219,7 +219,7 @@ def of_participant(section, folder, where, work, order=1, trusted=False):
         refuse(f"{where}.mesh", f"'{file.name}' cannot be exported, only .geo and .msh")
     danger = DANGER.search(re.sub(r"//.*|/\*.*?\*/", "", file.read_text()))
     if danger and not trusted:
-        refuse(f"{where}.mesh", f"'{danger[0]}' in {file.name} may run commands or write files: --allow-commands lets it")
+        refuse(f"{where}.mesh", f"'{danger[0]}' in {file.name} may run commands or write files; --allow-commands permits it")
     made = pathlib.Path(work) / f"mesh-{order}.msh"
     made.parent.mkdir(parents=True, exist_ok=True)
     options = [w for name, value in (section.get("mesh-parameters") or {}).items() for w in ("-setnumber", name, repr(number(value, f"{where}.mesh-parameters.{name}")))]

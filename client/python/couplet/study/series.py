@@ -36,7 +36,7 @@ class Refusal:
 
 
 def telling(seconds):
-    """Which runs tell of larger ones: not those that cost more than a larger one, with another solver or on a busy machine."""
+    """Which runs predict larger ones: not those that cost more than a larger one, with another solver or on a busy machine."""
     return [i for i, t in enumerate(seconds) if all(t <= 1.05 * later for later in seconds[i + 1:])]
 
 
