@@ -34,7 +34,7 @@ def rows_of(job, name):
 
 
 def committed(name):
-    """What the committed study says: its runs and their least error."""
+    """The committed study: its runs and their least error."""
     def measure(job):
         folder, rows = job.root / "docs/validation/studies" / name, rows_of(job, name)
         errors = [k for k in rows[0] if k.startswith("error of")] or [k for k in rows[0] if k in ("displacement", "velocity", "hoop stress", "fluid", "u minimum")]
@@ -156,7 +156,7 @@ TABLE_3_3 = {0.1: {"euler": 580, "three-point": 404, "trapezoidal": 313, "bathe"
 
 
 def table_3_3(job):
-    """Processor seconds a step by scheme over those of the trapezoidal rule. Reproduced where within a factor of 1.5 of the thesis's."""
+    """Processor seconds per step by scheme, over those of the trapezoidal rule. Reproduced where within a factor of 1.5 of the thesis."""
     sys.path.insert(0, str(job.root / "benchmarks/peers"))
     import race
     parts, met = [], True

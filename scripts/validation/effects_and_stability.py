@@ -132,7 +132,7 @@ participants:
 
 # -- structure: energies over many steps --------------------------------------------------------------------------------
 def swing(job, name, scheme, gradient, courant, steps, lean=0.5, method=""):
-    """Growth of the energy of the atlas's swinging beam."""
+    """Growth of the energy of the atlas's oscillating beam."""
     from couplet.atlas import solid
     from couplet.atlas.atlas import Runner
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of meshes that move far and of bodies that move as told."""
+"""Bars of meshes that move far and of bodies with prescribed motion."""
 import math
 import re
 
@@ -52,7 +52,7 @@ def end_of(rows):
 
 
 def plate(motion, method, chi, holds=True, form="incremental", volumes="current"):
-    """One mesh of the thesis's table: valid to the end or not."""
+    """One mesh of the table of the thesis: valid to the end or not."""
     def measure(job):
         name = f"{motion} {method} {form} {chi} {volumes}"
         rows, valid, _ = move(job, name, MOTIONS[motion], keys(method, form, chi, volumes))
@@ -102,7 +102,7 @@ def back(method, form, chi, limit=None):
 
 
 def cycles(method, form, degrees, n=100, chi=0.5, limit=1e-6):
-    """Least scaled Jacobian at the outer ends of the first and the last swing."""
+    """Least scaled Jacobian at the outer ends of the first and the last oscillation."""
     def measure(job):
         angle = f"{math.radians(degrees)}*sin(2*pi*t)"
         volumes = "current" if form == "incremental" else "reference"
@@ -286,7 +286,7 @@ def cavity_5000(job):
 
 
 def speed(n):
-    """benchmarks/mover: processor time of a step of mesh motion, set-up left out, over that of a step of the fluid (one pressure equation and the predictor)."""
+    """benchmarks/mover: processor time of a step of mesh motion, without set-up, over that of a step of the fluid (one pressure equation and the predictor)."""
     def measure(job):
         result = job.run([job.root / "benchmarks/mover", "--build", job.build, "--n", n], timeout=7200)
         if result.returncode != 0:

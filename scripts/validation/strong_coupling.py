@@ -19,7 +19,7 @@ END = 0.2  # s; long rows go on to 0.6 s
 
 
 def flap(job, rho, mu, scheme="semi-implicit", dt=0.01, end=END, more=()):
-    """One rung: tip displacements, coupling iterations a step, cpu seconds of all programs, which hold about 0.5 s of start-up (not
+    """One rung: tip displacements, coupling iterations per step, cpu seconds of all programs, which hold about 0.5 s of start-up (not
     known of a run that failed), and where it ended if the mesh did not allow more."""
     def make():
         name = f"ladder-{rho}-{mu}-{scheme}-{dt}-{end}-{zlib.crc32(' '.join(more).encode())}"  # runs are kept by their folder

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The committed table of a validation: docs/validation/NAME.md. Rows carry the commit that was measured; what no longer counts
-is said: a row whose commit is not in the history of the one at hand, or whose bar reads differently now, is 'stale'."""
+is reported: a row whose commit is not in the history of the one at hand, or whose bar reads differently now, is 'stale'."""
 import dataclasses
 import datetime
 import platform
@@ -17,7 +17,7 @@ SOURCES = {  # folders whose change may change the rows of a table; a validation
 
 
 def verdict_of(wanted, met):
-    """`met` is True, False, or None. A row that only reports is not met where its measure says that it went wrong."""
+    """`met` is True, False, or None. A row that only reports is not met where its measure reports a failure."""
     if met is None or met and re.match(r"reported\b", wanted):
         return "reported"
     return "met" if met else "not met"
@@ -77,7 +77,7 @@ def read(file):
 
 
 def renewed(bar, row, history):
-    """An earlier row as it stands now: with its commit's name in this history, 'stale' where it says nothing any more."""
+    """An earlier row as it stands now: with its commit's name in this history, 'stale' where it is no longer valid."""
     if row is None:
         return Row(bar.text, "-", "not measured", "-")
     verdict, commit, cell = re.sub(r"^stale \((.*)\)$", r"\1", row.verdict), commit_of(row.commit), row.commit

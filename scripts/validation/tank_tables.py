@@ -138,7 +138,7 @@ def optimise(job):
 
 
 def bending_verdicts(job):
-    """Three days of both cases: what the programs say of the bending that rings leave out."""
+    """Three days of both cases: the verdict of the programs on the bending that rings neglect."""
     said = {}
     for case in CASES:
         log = job.solve("thermocline", CASES[case][0], ["simulation.end-time=3 day", "simulation.output.interval=1 day",

@@ -34,7 +34,7 @@ def flap(job, name, *sets, ranks=(1, 1, 1, 1)):
 
 
 def length(job):
-    """What a quick run leaves out is said in its row."""
+    """The row of a quick run states what it omits."""
     return "to 0.2 s" if job.quick else "to 1 s"
 
 

@@ -15,7 +15,7 @@ ADDED = ("fits.py", "series.py")  # --for-error with bounds of its fits, series 
 
 
 def lines(job):
-    """Of what studies, accuracy, atlas, plots and the runner were and are, the schema of studies left out."""
+    """Of what studies, accuracy, atlas, plots and the runner were and are, without the schema of studies."""
     names = job.run(["git", "-C", job.root, "ls-tree", "-r", "--name-only", BEFORE, "--", *SAME_WORK_BEFORE], check=True).stdout.split()
     before = sum(job.run(["git", "-C", job.root, "show", f"{BEFORE}:{name}"], check=True).stdout.count("\n") for name in names)
     places = [job.root / "client/python/couplet" / name for name in SAME_WORK]
@@ -34,7 +34,7 @@ def readmes(job):
 
 
 def names_of_programs(job):
-    """That no program says one thing in its reference and another in the schema: scripts/docs finds nothing to write."""
+    """No program differs between its reference and the schema: scripts/docs finds nothing to write."""
     done = subprocess.run([job.root / "scripts/docs", "--check", "--bin", job.build / "bin"], capture_output=True, text=True)
     return (done.stdout + done.stderr).strip().splitlines()[-1][:200], done.returncode == 0
 

@@ -57,20 +57,20 @@ def weigh(job, program, keys, steps):
 
 
 def claim(job, own):
-    """(bytes a cell, share of a step) of the card, as --explain prints it with the effect on."""
+    """(bytes per cell, share of a step) of the card, as --explain prints it with the effect on."""
     folder = watched(job, own.program, own.keys, "massif", CELLS, (FEW.get(own.effect) or STEPS[own.program])[0])
     command = [job.build / "bin" / own.program, "case.yaml", "--explain"]
     for key in own.keys:
         command += ["--set", f"participants.it.{key}"]
     line = re.search(rf"^  on +{re.escape(own.effect)}: (.*)$", job.run(command, cwd=folder).stdout, re.M)
     if not line:
-        raise RuntimeError(f"{own.program} --explain does not say that '{own.effect}' is on")
+        raise RuntimeError(f"{own.program} --explain does not list '{own.effect}' as on")
     number = lambda pattern: float(m[1]) if (m := re.search(pattern, line[1])) else 0.0
     return number(r"([\d.]+) B per cell"), number(r"([+-][\d.]+) % of a step") / 100
 
 
 def compare(job, own):
-    """(measured bytes a cell, measured share, claimed, claimed, memory right, time right)."""
+    """(measured bytes per cell, measured share, claimed, claimed, memory right, time right)."""
     steps = FEW.get(own.effect) or STEPS[own.program]
     off, on = weigh(job, own.program, own.needs, steps), weigh(job, own.program, own.keys, steps)
     cells = 200 if own.program == "thermocline" else CELLS**2

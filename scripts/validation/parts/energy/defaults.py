@@ -8,7 +8,7 @@ SCENES = ("LE10", "LE11, hexahedra, refine 4", "LE1, quadrilaterals 64x96", "cyl
 
 
 def default(name):
-    """Stress (or displacement) by the default and by the corrected gradient at equal meshes; the symmetric one's factor is said."""
+    """Stress (or displacement) by the default and by the corrected gradient at equal meshes; the symmetric one's factor is reported."""
     scene = next(s for s in solid_gradients.SCENES if s[0].startswith(name))
 
     def measure(job):

@@ -50,7 +50,7 @@ def displacement(limits, shape=0):
 
 
 def stress(limits):
-    """Von Mises stress without the layers of cells at the clamped rim, whose edges are singular: one layer counts, two are told."""
+    """Von Mises stress without the layers of cells at the clamped rim, whose edges are singular: one layer counts, two are reported."""
     def measure(job):
         von_mises, words, met = nine_points(job).von_mises, [], True
         for layers in (1, 2):

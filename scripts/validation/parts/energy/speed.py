@@ -40,7 +40,7 @@ def ranks(job):
 
 
 def product(job):
-    """Nanoseconds a cell of one product K u: the least of three runs."""
+    """Nanoseconds per cell of one product K u: the least of three runs."""
     best = None
     for i in range(3):
         run = job.case_run(job.root / "configs/elliptic-plate/case.yaml", job.scratch / f"product-{i}",

@@ -110,7 +110,7 @@ def cook(law, wanted):
 
 
 def cook_incompressible(job):
-    """nu 0.4999, mu 0.4225 MPa: against the value extrapolated from 16, 32 and 64 cells a side, one load step each."""
+    """nu 0.4999, mu 0.4225 MPa: against the value extrapolated from 16, 32 and 64 cells per side, one load step each."""
     values, newton = [], []
     for n in (16, 32, 64):
         run = job.solve_run("solid_solver", "cook", (

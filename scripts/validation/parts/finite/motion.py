@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of large strain in time: the swinging column, rigid rotation, restart and ranks."""
+"""Bars of large strain in time: the oscillating column, rigid rotation, restart and ranks."""
 import math
 
 import numpy as np

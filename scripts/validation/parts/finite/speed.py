@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Large strain beside CalculiX and the thesis's own method: case E on the same mesh, whole processes on one core, processor seconds turn by turn."""
+"""Large strain beside CalculiX and the updated-Lagrangian method: case E on the same mesh, whole processes on one core, processor seconds turn by turn."""
 import csv
 import math
 import re
@@ -42,7 +42,7 @@ def best(job):
 
 
 def growth(job):
-    """Processor seconds a cell and Newton iteration, large over small."""
+    """Processor seconds per cell and Newton iteration, large over small."""
     peers, each = job.beside("benchmarks/peers/race.py"), {}
     for across in (8, 16):
         runs = [peers.our_beam(job, across, 10 * across, 1.6) for _ in range(3 if across == 8 else 1)]
@@ -55,7 +55,7 @@ THESIS = {(2, 1.6): 0.3922, (4, 1.6): 0.4206}  # table 3.6, meshes 1 and 2
 
 
 def segregated(job):
-    """The thesis's method against its own table, in one load step (total Lagrangian) and in four, and Newton's time on the same mesh."""
+    """The updated-Lagrangian method against table 3.6 of the thesis, in one load step (total Lagrangian) and in four, and Newton's time on the same mesh."""
     words, agrees, factor = [], True, 0
     for (n, K), wanted in THESIS.items():
         aitken = (f"{S}solution-method={{type: segregated, acceleration: aitken, max-iterations: 40000, relative-tolerance: 1e-6}}",)
@@ -77,7 +77,7 @@ def segregated(job):
 
 
 def pairs(job):
-    """What `output: {large-strain-estimate: true}` tells and what `kinematics: finite-strain` changes, 7 bodies."""
+    """The estimate of `output: {large-strain-estimate: true}` and what `kinematics: finite-strain` changes, 7 bodies."""
     tests, _ = job.gtest("verification_solid_large_strain_estimate")
     found = {t.rsplit("/", 1)[-1]: (float(v["told"]), float(v["found"])) for t, v in tests.items() if "told" in v}
     text = "; ".join(f"{name.replace('_', ' ')}: {100 * told:.1f} of {100 * true:.1f} %" for name, (told, true) in found.items())

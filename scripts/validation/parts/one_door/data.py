@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of "one door": binary foreign data (HDF5, checkpoints, messages of guests)."""
+"""Bars of "one door": binary foreign data (HDF5, checkpoints, messages of external programs)."""
 import json
 import os
 

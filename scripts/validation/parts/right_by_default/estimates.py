@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a static run says of the error of its displacement, beside the error: committed bodies, several meshes each, default settings, against
+"""The estimated error of the displacement of a static run, compared with the true error: committed bodies, several meshes each, default settings, against
 a mesh several times as fine."""
 import csv
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motion by default settings: a beam of two tetrahedra across, an undamped strip of triangles, and what a step costs beside the thesis's
+"""Motion by default settings: a beam of two tetrahedra across, an undamped strip of triangles, and what a step costs compared with the least-squares
 gradient, which was the default of motion."""
 import csv
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the thesis's cases A, B and D and of LE10: solid_solver on configs/, meshes and methods chosen by --set."""
+"""Bars of cases A, B and D of the thesis and of LE10: solid_solver on configs/, meshes and methods chosen by --set."""
 import math
 
 import couplet
@@ -38,7 +38,7 @@ LE11 = -105.67e6  # [Pa], converged p-FEM
 
 
 def le11(job, gradient):
-    """Axial stress at A on the thesis's four meshes."""
+    """Axial stress at A on the four meshes of the thesis."""
     return [probe(job, "le11", ("participants.solid.mesh-parameters={refine: %d}" % n, method(gradient)), "A stress-zz [Pa]")
             for n in (1, 2, 4, 8)]
 

@@ -63,7 +63,7 @@ def refined_period(job):
 
 
 def energy_drift(gradient, scheme, *more):
-    """Kinetic plus strain energy at 100 s over that at 10 s on the thesis's mesh at 0.01 s."""
+    """Kinetic plus strain energy at 100 s over that at 10 s on the mesh of the thesis at 0.01 s."""
     def measure(job):
         folder = beam(job, scheme, 0.01, "participants.solid.output={energies: true}", *more, gradient=gradient)
         rows = couplet.read_csv(folder / "energies.csv")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the porous body (thesis 3.4): convergence, iterations by ranks, memory, scaling. The issue sets no numbers but
-asks that they are measured; what must hold is said with each line."""
+asks that they are measured; each line states what must hold."""
 from validation.job import Bar
 
 RANKS = (1, 2, 4, 8, 16)

@@ -67,7 +67,7 @@ def beside(error, mesh, rivals):
 
 
 def beam(job):
-    """10^4 steps of 0.01 s; three-point backward as the thesis's table 3.4."""
+    """10^4 steps of 0.01 s; three-point backward as in table 3.4 of the thesis."""
     mine, iterations = race(job).beam(job, "type: auto", steps=10000, times=1)
     other, others = race(job).beam(job, race(job).METHODS["C"], steps=10000, times=1)
     ratio = other / mine
@@ -81,8 +81,8 @@ BEAM_CAUSE = ("By the numbers an outer iteration of S costs 1/56 and 1/120 of a 
 
 
 def table_3_1(job):
-    """Case B, meshes 2 to 4 (the first is over before a clock can tell), S/SA, SA/C, and newton-krylov beside C. Reproduced
-    where each ratio is within a factor of 1.5 of the thesis's."""
+    """Case B, meshes 2 to 4 (the first is too short for the clock), S/SA, SA/C, and newton-krylov beside C. Reproduced
+    where each ratio is within a factor of 1.5 of the thesis."""
     parts, met = [], True
     thesis = ((2.1, 5.7), (3.8, 4.3), (4.3, 3.4))
     for n, wanted in zip(((8, 12, 6), (16, 24, 12), FINE), thesis):
@@ -95,7 +95,7 @@ def table_3_1(job):
 
 
 def table_3_4(job):
-    """Case C, steps of 0.01 and 0.1 s: seconds a step over C's. Reproduced where within a factor of 1.5 of the thesis's."""
+    """Case C, steps of 0.01 and 0.1 s: seconds per step over C's. Reproduced where within a factor of 1.5 of the thesis."""
     parts, met = [], True
     for step, wanted in ((0.01, {"S": 10, "SA": 7.9}), (0.1, {"S": 12, "SA": 5.9})):
         c, _ = race(job).beam(job, race(job).METHODS["C"], step=step)

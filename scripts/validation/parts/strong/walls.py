@@ -33,7 +33,7 @@ def volume_of_a_step(name, fluid, bound, overrides=()):
 
 
 def nearly_closed(kind, holds):
-    """Passes a step of the box with an opening of one cell, in boxes of 8, 16 and 32 cells a side, 10 steps."""
+    """Passes per step of the box with an opening of one cell, in boxes of 8, 16 and 32 cells per side, 10 steps."""
     def measure(job):
         found = []
         for n in (8, 16, 32):

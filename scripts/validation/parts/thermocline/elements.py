@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Bars of the thermocline's elements: closed forms, books, Solar One, Pacheco's tank, hard cases, cost."""
+"""Bars of the thermocline's elements: closed forms, energy balances, Solar One, Pacheco's tank, hard cases, cost."""
 import re
 
 from validation.job import Bar

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The 23 things to mend of "nothing wrong leaves with exit code 0", each with the rows of this table and the tests that hold it.
-`table()` is docs/validation/trust-items.md; a row says whether every name in it is there."""
+"""The 23 things to fix of "nothing wrong leaves with exit code 0", each with the rows of this table and the tests that hold it.
+`table()` is docs/validation/trust-items.md; a row states whether every name in it exists."""
 import re
 
 from validation.job import Bar

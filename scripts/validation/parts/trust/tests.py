@@ -18,7 +18,7 @@ GUARDS = re.compile(r"error:|grow|diverge|oscillat|spurious|not reliable|increas
 
 
 def heard(job, case):
-    """What guards said in the first seconds of a committed case, and the exit code (3: it was ended by SIGTERM and has saved)."""
+    """Messages of guards in the first seconds of a committed case, and the exit code (3: it was ended by SIGTERM and has saved)."""
     out = job.scratch / "alarms" / case.parent.name / case.stem
     out.mkdir(parents=True, exist_ok=True)
     command = Case(case, job.build).command({"simulation.output.folder": str(out)})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The load on walls: a cylinder that starts to swing in a viscous fluid, refined in time and in space."""
+"""The load on walls: a cylinder that starts to oscillate in a viscous fluid, refined in time and in space."""
 import csv
 import math
 
