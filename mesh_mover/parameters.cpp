@@ -92,7 +92,7 @@ void declare(config::Section& section, Parameters& p) {
           "keys remain in metres");
   section.value("mesh-parameters", p.mesh_parameters)
       .doc("values for names that the .geo defines with DefineConstant; the same as the fluid's");
-  section.value("dimension", p.dimension).range(2, 3).required().doc("2 or 3");
+  section.value("dimension", p.dimension).range(2, 3).required().doc("2 or 3 dimensions");
   declare_method(section, p);
   section.value("smallest-volume-ratio", p.smallest_volume_ratio)
       .range(0, 1)
@@ -116,7 +116,9 @@ void declare(config::Section& section, Parameters& p) {
         s.value("relative-tolerance", p.linear.relative_tolerance)
             .range(1e-14, 1e-1)
             .doc("relative residual tolerance, for cg-multigrid");
-        s.value("max-iterations", p.linear.max_iterations).range(1, 100000).doc("for cg-multigrid");
+        s.value("max-iterations", p.linear.max_iterations)
+            .range(1, 100000)
+            .doc("maximum number of iterations, for cg-multigrid");
       },
       "solution of the motion equations");
 }

@@ -24,11 +24,8 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
   s.value("length", c.length).unit("m").plausible(1e-9, 1e4).positive().doc("L: moment over q A L");
   s.value("drag", c.drag).doc("direction of the first coefficient; need not be of length 1");
   s.value("lift", c.lift).doc("direction of the second coefficient");
-  s.value("centre", c.centre)
-      .unit("m")
-      .plausible(1e-9, 1e4)
-      .doc("point about which the moment is taken; it rests");
-  s.value("axis", c.axis).size(3).doc("axis of the moment; a 2-D scene rotates about z");
+  s.value("centre", c.centre).unit("m").plausible(1e-9, 1e4).doc("fixed reference point of the moment");
+  s.value("axis", c.axis).size(3).doc("axis of the moment; in 2-D z");
   const auto needs_direction = [&s](const char* key, const auto& value) {
     s.check([&value] { return value.norm() > 0 ? "" : "a direction must not be zero"; }, key);
   };

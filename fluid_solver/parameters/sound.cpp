@@ -77,14 +77,18 @@ std::vector<std::string> substances() {
 }
 
 void declare(config::Section& s, CompressibilityParameters& p) {
-  s.value("speed-of-sound", p.speed_of_sound).unit("m/s").plausible(10, 2e4).positive().doc("of the fluid");
+  s.value("speed-of-sound", p.speed_of_sound)
+      .unit("m/s")
+      .plausible(10, 2e4)
+      .positive()
+      .doc("speed of sound of the fluid");
   s.value("substance", p.substance)
       .doc("alternative: a gas or liquid with known speed of sound: " + join(substances()));
   s.value("temperature", p.temperature)
       .unit("K")
       .plausible(70, 5000)
       .positive()
-      .doc("of the substance, absolute (20 degC or 293.15 K); absent: 20 degC");
+      .doc("temperature of the substance, absolute (20 degC or 293.15 K); absent: 20 degC");
   s.value("pressure", p.pressure)
       .unit("Pa")
       .plausible(1, 1e10)
@@ -94,7 +98,8 @@ void declare(config::Section& s, CompressibilityParameters& p) {
           "pressure/density)");
   s.value("heat-capacity-ratio", p.heat_capacity_ratio)
       .range(1, 2)
-      .doc("of a gas; absent: of the substance, or of the gas with the nearest density");
+      .doc(
+          "heat capacity ratio of a gas; absent: that of the substance, or of the gas with the nearest density");
   s.value("upstream-volume", p.upstream_volume)
       .unit("m^3")
       .plausible(1e-15, 1e6)

@@ -43,7 +43,7 @@ void declare_body(config::Section& s, Parameters& p) {
       .unit("m")
       .plausible(1e-7, 10)
       .not_negative()
-      .doc("of the plate; needed with 'mesh'");
+      .doc("thickness of the plate; needed with 'mesh'");
   s.map<Zone>(
       "zones", p.zones,
       [](config::Section& z, Zone& v) {
@@ -167,11 +167,11 @@ void declare_loads(config::Section& s, Parameters& p) {
         l.value("upper-pressure", v.upper)
             .unit("Pa")
             .plausible(1e-9, 1e11)
-            .doc("on the side the normal points to (with 'modes.file': +z), of x, y, z, t");
+            .doc("pressure on the side the normal points to (with 'modes.file': +z), of x, y, z, t");
         l.value("lower-pressure", v.lower)
             .unit("Pa")
             .plausible(1e-9, 1e11)
-            .doc("on the opposite side (with 'modes.file': -z), of x, y, z, t");
+            .doc("pressure on the opposite side (with 'modes.file': -z), of x, y, z, t");
         l.check([&] { return v.upper ? problem_of(*v.upper) : ""; }, "upper-pressure");
         l.check([&] { return v.lower ? problem_of(*v.lower) : ""; }, "lower-pressure");
       },
@@ -278,7 +278,7 @@ void declare(config::Section& s, ContactParameters& c) {
   s.value("where", c.where).doc("the seat exists where this expression of x, y, z is above 0");
   s.value("direction", c.direction)
       .size(3)
-      .doc("from the seat to the structure, of any length; absent: the plate's normal");
+      .doc("direction from the seat to the structure, of any length; absent: the plate's normal");
   s.value("scale", c.scale).positive().doc("f_SI of thesis (4.33): kappa = f_SI K S / h");
   s.value("stiffness", c.stiffness)
       .unit("N/m^3")

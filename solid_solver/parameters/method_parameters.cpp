@@ -78,7 +78,7 @@ void declare(config::Section& s, MethodParameters& m) {
   s.choice(
        "acceleration", m.acceleration,
        {{"none", Acceleration::none}, {"aitken", Acceleration::aitken}, {"anderson", Acceleration::anderson}})
-      .doc("for the outer iterations of segregated");
+      .doc("convergence acceleration of the outer iterations, for segregated");
   s.value("aitken-interval", m.aitken_interval)
       .range(2, 100)
       .doc("number of iterations between applications of Aitken's formula");

@@ -239,8 +239,8 @@ void declare(config::Section& s, BlanketElementParameters& p) {
       .positive()
       .required()
       .doc("outer diameter of the wall");
-  s.value("height", p.height).unit("m").plausible(0.01, 300).positive().required().doc("of the wall");
-  s.value("sections", p.sections).range(1, 100000).doc("along the wall");
+  s.value("height", p.height).unit("m").plausible(0.01, 300).positive().required().doc("height of the wall");
+  s.value("sections", p.sections).range(1, 100000).doc("number of sections along the wall");
   s.section(
       "insulation", [&p](config::Section& q) { declare(q, p.insulation); }, "blanket around the wall");
   declare_surroundings(s, p.initial_temperature, p.ambient,

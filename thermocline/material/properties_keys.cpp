@@ -112,12 +112,12 @@ void declare(config::Section& s, Filler& f) {
       .unit("J/(kg K)")
       .plausible(10, 1e5)
       .positive()
-      .doc("of the grains");
+      .doc("specific heat of the grains");
   s.value("conductivity", f.conductivity)
       .unit("W/(m K)")
       .plausible(1e-3, 1e7)
       .positive()
-      .doc("of the grains");
+      .doc("conductivity of the grains");
   s.value("friction-angle", f.friction_angle)
       .unit("rad")
       .range(0.01, 1.5)

@@ -26,7 +26,7 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
       .unit("W/(m K)")
       .plausible(1e-3, 1e4)
       .not_negative()
-      .doc("with conduction: constant");
+      .doc("conductivity, with conduction: constant");
   s.choice("wall-film", p.wall_film,
            {{"beek", WallFilm::beek}, {"yagi-wakao", WallFilm::yagi_wakao}, {"constant", WallFilm::constant}})
       .doc("heat transfer between fluid and wall; the correlations add to 2 k0/d of the stagnant bed");
@@ -34,7 +34,7 @@ void declare_closures(config::Section& s, ClosureParameters& p) {
       .unit("W/(m^2 K)")
       .plausible(1e-3, 1e7)
       .not_negative()
-      .doc("with wall-film: constant");
+      .doc("wall film coefficient, with wall-film: constant");
   s.value("film-coefficient", p.film_coefficient)
       .unit("W/(m^2 K)")
       .plausible(1e-3, 1e7)
@@ -110,7 +110,9 @@ void check_together(config::Section& s, TankParameters& p) {
 }  // namespace
 
 void declare(config::Section& section, BedParameters& p) {
-  section.value("cells", p.cells).range(1, 1e6).doc("height along z; layers begin and end at cell faces");
+  section.value("cells", p.cells)
+      .range(1, 1e6)
+      .doc("number of cells along z; layers begin and end at cell faces");
   section.list<BedLayer>(
       "layers", p.layers,
       [](config::Section& s, BedLayer& l) {
@@ -226,10 +228,10 @@ void declare(config::Section& section, InsulationParameters& p) {
       .plausible(1e-4, 30)
       .positive()
       .required()
-      .doc("on the side, and on the roof above an ullage");
+      .doc("thickness on the side, and on the roof above an ullage");
   section.value("cells", p.cells).range(1, 200).doc("number of cells through the thickness");
   section.value("step", p.step).unit("s").plausible(0.1, 1e5).positive().doc("time step of the insulation");
-  section.value("cover-emissivity", p.outside.emissivity).range(0, 1).doc("of the metal cover");
+  section.value("cover-emissivity", p.outside.emissivity).range(0, 1).doc("emissivity of the metal cover");
   section.value("solar-absorptance", p.outside.solar_absorptance)
       .range(0, 1)
       .doc("solar absorptance of the cover; 0: sun neglected");
@@ -273,10 +275,16 @@ void declare(config::Section& section, UllageParameters& p) {
   section.value("gauge-pressure", p.gauge_pressure)
       .unit("Pa")
       .plausible(1, 1e6)
-      .doc("of the gas above that of the air");
-  section.value("emissivity-liquid", p.emissivity_liquid).range(0.01, 1).doc("of the liquid's surface");
-  section.value("emissivity-roof", p.emissivity_roof).range(0.01, 1).doc("of the roof's inner surface");
-  section.value("emissivity-wall", p.emissivity_wall).range(0.01, 1).doc("of the wall above the liquid");
+      .doc("gauge pressure of the gas");
+  section.value("emissivity-liquid", p.emissivity_liquid)
+      .range(0.01, 1)
+      .doc("emissivity of the liquid's surface");
+  section.value("emissivity-roof", p.emissivity_roof)
+      .range(0.01, 1)
+      .doc("emissivity of the roof's inner surface");
+  section.value("emissivity-wall", p.emissivity_wall)
+      .range(0.01, 1)
+      .doc("emissivity of the wall above the liquid");
 }
 
 void declare(config::Section& section, TankParameters& p) {
@@ -334,7 +342,7 @@ void declare(config::Section& section, TankParameters& p) {
   section.optional_section<PumpParameters>(
       "pump", p.pump,
       [](config::Section& s, PumpParameters& v) {
-        s.value("efficiency", v.efficiency).range(0.01, 1).doc("of pump or fan with its motor");
+        s.value("efficiency", v.efficiency).range(0.01, 1).doc("efficiency of pump or fan with its motor");
       },
       "pressure loss of the bed by Ergun's equation, and the required pump work");
   section.optional_section<Present>(

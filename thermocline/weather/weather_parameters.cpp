@@ -61,7 +61,7 @@ void declare_air(config::Section& s, ClearSky& sky) {
   s.value("altitude", sky.altitude).unit("m").range(0, 2500).doc("altitude of the site");
   s.value("coldest", sky.coldest).unit("K").range(200, 340).doc("temperature of the air at 03:00");
   s.value("warmest", sky.warmest).unit("K").range(200, 340).doc("temperature of the air at 15:00");
-  s.value("wind", sky.wind).unit("m/s").range(0, 80).doc("speed of the wind");
+  s.value("wind", sky.wind).unit("m/s").range(0, 80).doc("wind speed");
   s.value("humidity", sky.humidity).range(0, 1).doc("relative humidity of the air");
 }
 
@@ -107,10 +107,10 @@ void declare_clear_sky(config::Section& s, WeatherParameters& p) {
 void declare_constant(config::Section& s, WeatherParameters& p) {
   Ambient& a = p.constant;
   s.value("dni", a.dni).unit("W/m^2").range(0, 1412).doc("direct normal irradiance, day and night");
-  s.value("temperature", a.temperature).unit("K").range(200, 340).doc("of the air");
-  s.value("wind", a.wind).unit("m/s").range(0, 80).doc("speed of the wind");
+  s.value("temperature", a.temperature).unit("K").range(200, 340).doc("temperature of the air");
+  s.value("wind", a.wind).unit("m/s").range(0, 80).doc("wind speed");
   s.value("humidity", a.humidity).range(0, 1).doc("relative humidity of the air");
-  s.value("pressure", a.pressure).unit("Pa").range(40000, 110000).doc("of the air");
+  s.value("pressure", a.pressure).unit("Pa").range(40000, 110000).doc("pressure of the air");
 }
 
 WeatherHours constant_year(const WeatherParameters& p) {
