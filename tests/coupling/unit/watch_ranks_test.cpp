@@ -131,9 +131,9 @@ TEST(WatchIntegrals, what_is_not_there_is_refused_with_what_is) {
   expect_refused(sheet(false), {"shet", "heat", ""}, "'shet' is no participant");
   expect_refused(
       sheet(false), {"sheet", "heath", ""},
-      "neither gives nor takes 'heath'. It has: displacement, velocity, temperature, five, mass-flux, "
+      "neither gives nor takes 'heath'. Its data are: displacement, velocity, temperature, five, mass-flux, "
       "pressure-force, heat, weights");
-  expect_refused(sheet(false), {"sheet", "heat", "middle"}, "has no part 'middle'. It has: near, far");
+  expect_refused(sheet(false), {"sheet", "heat", "middle"}, "has no part 'middle'. Its parts are: near, far");
   expect_refused(sheet(false), {"sheet", "five", ""}, "has 5 components");
   expect_refused(sheet(false), {"sheet", "weights", "far"}, "is given at vertices, which belong to no part");
   expect_refused(blind, {"sheet", "velocity", ""}, "does not provide the corners of its faces");

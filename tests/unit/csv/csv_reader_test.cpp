@@ -103,7 +103,7 @@ TEST(CsvReader, a_first_row_with_a_slip_is_not_taken_for_names) {
   EXPECT_THAT(said("O.5,1\n1,2\n"),
               HasSubstr("a.csv:1: the first line contains both numbers ('1') and words ('O.5')"));
   EXPECT_THAT(said("0 s,1\n1,2\n"), HasSubstr("a unit belongs in the column name"));
-  EXPECT_THAT(said("nan,1\n1,2\n"), HasSubstr("a.csv:1: 'nan' is not a number"));
+  EXPECT_THAT(said("nan,1\n1,2\n"), HasSubstr("a.csv:1: 'nan' is not a finite number"));
   EXPECT_THAT(said("1.2.3,0\n1,2\n"), HasSubstr("a.csv:1: '1.2.3' is not a number"));
 }
 

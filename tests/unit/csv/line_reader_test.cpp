@@ -85,7 +85,7 @@ TEST(LineReader, what_is_no_regular_file_is_refused_at_once) {
   EXPECT_THAT([] { read_lines("/dev/zero", "table"); },
               testing::ThrowsMessage<Error>(HasSubstr("not a regular file")));
   EXPECT_THAT([] { read_lines("/nowhere/a.csv", "table"); },
-              testing::ThrowsMessage<Error>(HasSubstr("there is no such table")));
+              testing::ThrowsMessage<Error>(HasSubstr("this table does not exist")));
 }
 
 TEST(LineReader, limits_of_size_and_of_lines_hold) {

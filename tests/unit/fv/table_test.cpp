@@ -98,7 +98,7 @@ TEST(Table, is_read_from_a_file_by_name_or_number_of_its_column) {
   EXPECT_THAT([&] { read_table(path, "temprature", Outside::clamp); },
               ThrowsMessage<Error>(HasSubstr("Did you mean 'temperature'?")));
   EXPECT_THAT([] { read_table("nowhere.csv", "2", Outside::clamp); },
-              ThrowsMessage<Error>(HasSubstr("nowhere.csv: there is no such table")));
+              ThrowsMessage<Error>(HasSubstr("nowhere.csv: this table does not exist")));
 }
 
 /// A load of 5 in place of 2000.5 Pa.

@@ -79,7 +79,7 @@ TEST(FlowFile, what_is_wrong_is_said_with_file_and_line) {
     read_flow_file("/nowhere/flows.csv");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("there is no such flow file"));
+    EXPECT_THAT(error.what(), HasSubstr("this flow file does not exist"));
   }
 }
 

@@ -118,7 +118,7 @@ TEST(VelocityTable, what_is_wrong_is_said_with_file_and_place) {
   EXPECT_THAT(refusal(file, "u,v\n0,0\n"), HasSubstr("no column is an axis"));
   EXPECT_THAT(refusal(file, "y,t,u,v\n0,0,1,0\n0,1,1,0\n1,0,1,0\n"), HasSubstr("no value at y = 1, t = 1"));
   EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n0,0,0\n"), HasSubstr("in.csv:3: duplicate grid point"));
-  EXPECT_THAT(refusal(file.parent_path() / "none" / "in.csv", ""), HasSubstr("there is no such table"));
+  EXPECT_THAT(refusal(file.parent_path() / "none" / "in.csv", ""), HasSubstr("this table does not exist"));
 }
 
 TEST(RotatingInlet, adds_omega_cross_r_and_a_ring_between_turning_walls_carries_it) {
