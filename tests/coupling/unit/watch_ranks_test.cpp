@@ -128,7 +128,7 @@ void expect_refused(const Interface& whole, const WatchParameters& p, const std:
 TEST(WatchIntegrals, what_is_not_there_is_refused_with_what_is) {
   Interface blind = sheet(false);
   blind.face_offset.clear(), blind.face_vertices.clear();
-  expect_refused(sheet(false), {"shet", "heat", ""}, "'shet' is no participant");
+  expect_refused(sheet(false), {"shet", "heat", ""}, "'shet' is not a participant");
   expect_refused(
       sheet(false), {"sheet", "heath", ""},
       "neither gives nor takes 'heath'. Its data are: displacement, velocity, temperature, five, mass-flux, "
