@@ -243,7 +243,7 @@ TEST(RotatingFrame, what_does_not_go_with_it_is_refused_by_name) {
   EXPECT_THAT(refusal(p), testing::HasSubstr("rotating-frame: the mesh rests in the frame"));
   p = good;
   p.boundaries["xmin"] = boundary(BoundaryType::interface);
-  EXPECT_THAT(refusal(p), testing::HasSubstr("boundary of type interface"));
+  EXPECT_THAT(refusal(p), testing::HasSubstr("boundaries of type interface"));
   p = good;
   p.scheme = ExplicitScheme::runge_kutta;
   EXPECT_THAT(refusal(p), testing::HasSubstr("use 'scheme: adams-bashforth'"));
