@@ -86,7 +86,7 @@ case.yaml:23:5: participants.tank.flow.first-weekday: is missing: the rules of '
         - {days: [weekend], load: [0.5]}
 """)),
         tank("rule of a calendar: a day that is none", """
-case.yaml:33:12: participants.tank.flow.calendar[0].days: 'week-end' is none of: monday, tuesday, wednesday, thursday, friday, saturday, sunday, weekdays, weekend.
+case.yaml:33:12: participants.tank.flow.calendar[0].days: 'week-end' is not one of: monday, tuesday, wednesday, thursday, friday, saturday, sunday, weekdays, weekend.
 """, with_plant("""      first-weekday: monday
       calendar:
         - {days: [week-end], load: [0.5]}
@@ -150,7 +150,7 @@ case.yaml:14:5: participants.tank.filler-mechanics: requires a shell; add one.
 """, ("    shell:\n      material: {type: a387-grade-91}\n      plates:\n        - {height: 5 m, thickness: 20 mm}\n", ""),
              ("    insulation: {thickness: 0.3 m}\n", "")),
         tank("foundation of an unknown material", """
-case.yaml:22:12: participants.tank.ground.layers[0].material: 'soils' is none of: concrete, dry-sand, foam-glass, hard-firebrick, insulating-concrete, insulating-firebrick, soil, steel-plate.
+case.yaml:22:12: participants.tank.ground.layers[0].material: 'soils' is not one of: concrete, dry-sand, foam-glass, hard-firebrick, insulating-concrete, insulating-firebrick, soil, steel-plate.
 """, ("material: soil", "material: soils")),
         tank("rows of the schedule out of order", """
 case.yaml:25:7: participants.tank.flow.rows: each row must come after the one before it.

@@ -135,7 +135,7 @@ TEST_F(ForeignWeather, other_units_and_separators_are_told_by_what_they_give) {
   EXPECT_THAT(complaint(nsrdb([](int h, std::string line) {
                 return h % 24 == 12 ? line.replace(line.find(",960,"), 5, ",3.4,") : line;
               })),
-              HasSubstr("is 3.4: no sun gives so little"));
+              HasSubstr("is 3.4: too low for the sun"));
   WeatherParameters p;
   p.kind = WeatherKind::file;
   for (const bool sun : {false, true}) {

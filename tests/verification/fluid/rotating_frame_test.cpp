@@ -240,7 +240,7 @@ TEST(RotatingFrame, what_does_not_go_with_it_is_refused_by_name) {
   EXPECT_EQ(refusal(good), "accepted");
   FluidParameters p = good;
   p.motion.emplace();
-  EXPECT_THAT(refusal(p), testing::HasSubstr("rotating-frame: the mesh rests in the frame"));
+  EXPECT_THAT(refusal(p), testing::HasSubstr("rotating-frame: the mesh is at rest in the frame"));
   p = good;
   p.boundaries["xmin"] = boundary(BoundaryType::interface);
   EXPECT_THAT(refusal(p), testing::HasSubstr("boundaries of type interface"));
