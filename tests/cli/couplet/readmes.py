@@ -65,8 +65,8 @@ def in_copy(root):
 
 
 def may_stop(command, leader, said):
-    """It is a study or another script, or a program of ours has made a step."""
-    return command.startswith("scripts/") or not at_work(leader) or re.search(r"\] t ?= ?[\d.e+-]+(/| s)", said.read_text(errors="replace")) is not None
+    """It is a study, or a program of ours has made a step; scripts that draw pictures come to their end."""
+    return command.startswith("scripts/") or at_work(leader) and re.search(r"\] t ?= ?[\d.e+-]+(/| s)", said.read_text(errors="replace")) is not None
 
 
 def run(settings, command, root, home):
@@ -80,7 +80,7 @@ def run(settings, command, root, home):
             time.sleep(0.1)
         if job.poll() is None:
             ours = at_work(job.pid)
-            how = "SIGINT" if command.startswith("scripts/") or not ours else "SIGTERM"
+            how = "SIGINT" if command.startswith("scripts/") else "SIGTERM"
             if how == "SIGINT":
                 os.killpg(job.pid, signal.SIGINT)  # as a terminal does
             for pid in ours if how == "SIGTERM" else ():

@@ -66,7 +66,7 @@ with tempfile.TemporaryDirectory(prefix="couplet-site-") as scratch:
     while not address and (line := server.stdout.readline()):
         address = (re.search(r"http://127.0.0.1:\d+/", line) or [None])[0]
     try:
-        check("couplet docs serves it", b"Couplet couples" in urllib.request.urlopen(address).read(), address)
+        check("couplet docs serves it", b"couplet run configs/perpendicular-flap" in urllib.request.urlopen(address).read(), address)
         check("on the loopback address alone", set(listening(server.pid)) == {"0100007F"}, listening(server.pid))
         with browser() as driver:
             if driver:
