@@ -60,7 +60,7 @@ def seconds_of(case, build, limit):
     with tempfile.TemporaryDirectory(prefix="couplet-gallery-") as scratch:
         out = pathlib.Path(scratch) / "out"
         job = subprocess.Popen([command(), "run", case, "--bin", build / "bin", "--set", f"simulation.output.folder={out}"], stdout=subprocess.PIPE,
-                               stderr=subprocess.DEVNULL, text=True)
+                               stderr=subprocess.DEVNULL, text=True, cwd=scratch)
         timer = threading.Timer(limit, lambda: folder.stop(out) or job.terminate())
         timer.start()
         said = job.communicate()[0]
