@@ -14,6 +14,7 @@ from couplet.study import table
 from couplet.study.series import ENOUGH, GROWTH, ROUNDS, Prediction, Refusal, Series
 
 NEAR = 1.5       # the final size over the largest that was tried, at most, before it is run
+LEAP = 3.0       # ... the same, at most, where a run between costs too much
 AT_ONCE = 1.15   # no run between for less
 SHORT = 1.0      # [s]; finals that take less may cost many runs before them
 BEFORE = 3.0     # seconds spent before the final run over its own, where that is over SHORT ...
@@ -49,7 +50,7 @@ class Search:
 
     def affords(self, seconds, final):
         """Whether a run before the final one may take so long."""
-        return self.spent() + seconds <= RESERVE * max(final, SHORT)
+        return self.spent() + seconds <= max(RESERVE * final, BEFORE * SHORT)
 
     def following(self, series):
         return self.refining.round(GROWTH * series.sizes()[-1], up=True)
@@ -118,7 +119,8 @@ class Search:
         if best.size <= NEAR * largest:
             return best.size
         between = self.refining.round(min(best.size / NEAR, 2 * largest), up=True)
-        if between <= largest or between * AT_ONCE >= best.size or best.seconds > SHORT and not self.affords(series.seconds(between), best.seconds):
+        costly = best.size <= LEAP * largest and best.seconds > SHORT and not self.affords(series.seconds(between), best.seconds)
+        if between <= largest or between * AT_ONCE >= best.size or costly:
             return best.size
         return between
 

@@ -66,6 +66,7 @@ class Series:
         self.formal = estimates.order_of(self.name, quantity.given.get("orders"))
         self.failed = ""   # why it is not run any more
         self.short = ""    # why its third size was not run
+        self.fitted = {}   # by the number of runs
         self.misses = 0    # runs of a predicted size that left too much
 
     # -- runs
@@ -112,6 +113,11 @@ class Series:
         return (value - reference) / (1 if self.quantity.given.get("absolute") or reference == 0 else abs(reference))
 
     def fit(self):
+        if len(self.rows) not in self.fitted:
+            self.fitted = {len(self.rows): self.fit_of_all()}
+        return self.fitted[len(self.rows)]
+
+    def fit_of_all(self):
         """(Fit, "") or (None, reason), of relative errors where the quantity has them."""
         if self.known:
             return fits.of_errors(self.sizes(), self.values(), self.formal)
@@ -150,7 +156,7 @@ class Series:
             return Prediction(there.point.size, *self.left(there), *[self.cost(there)] * 3) if there else Refusal(self.failed, False)
         fit, reason = self.fit()
         if fit is None:
-            return Refusal(self.short if self.short and len(self.rows) < 3 else reason, not self.short)
+            return Refusal(self.short if self.short and len(self.rows) < 3 else reason)
         largest, timeout = self.sizes()[-1], float(self.study.section.get("timeout", 3600))
         wanted = fit.size_for(target, lambda n: max(fit.error(n) * fit.factor / AIM, fit.bound(n) / AIM_BOUND))
         if wanted is None or self.scatter() > NOISE * target:
