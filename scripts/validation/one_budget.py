@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Bars of the error budget, the predictions and the atlas. Built so far: other programs on a case by one command, pictures that can be
-read. The bars of the budget with the model in it, of periodic flow, of --for-error and of the atlas have no rows yet."""
+read, --for-error beside ladders of runs. The bars of the budget with the model in it, of periodic flow and of the atlas have no rows yet."""
 import csv
 import re
 import sys
 
 from validation.job import Bar
+from validation.parts.prediction import rows as prediction
 
-NOTE = ("Built so far: other programs on a case by one command, and pictures that can be read. The bars of the budget with the model in it, of periodic flow, "
-        "of `--for-error` and of the atlas have no rows yet.")
+NOTE = ("Built so far: other programs on a case by one command, pictures that can be read, and `--for-error`. The bars of the budget with the model in it, "
+        "of periodic flow and of the atlas have no rows yet.")
 SOURCES = ("client/python/couplet/peers", "client/python/couplet/study", "configs/elliptic-plate", "configs/le1", "configs/cook", "configs/cavity", "configs/cylinder")
 FOAM = "solidDisplacementFoam"
 # What of a study is run (--only: the sizes that a busy machine allows), its quantity, and the error that each program's best run has at most.
@@ -66,3 +67,4 @@ BARS = [
     Bar("couplet export: CalculiX input of LE1 runs, OpenFOAM patches and cells, refusals by the name of the key", "all pass", checks("peers.py")),
     Bar("pictures of studies: at most eight series in a panel, no word cut, processor seconds, other programs in the front", "all pass", checks("pictures.py")),
 ]
+BARS += prediction.BARS

@@ -19,7 +19,7 @@ AT_ONCE = 1.15   # no run between for less
 SHORT = 1.0      # [s]; finals that take less may cost many runs before them
 BEFORE = 3.0     # seconds spent before the final run over its own, where that is over SHORT ...
 RESERVE = 1.6    # ... of which pilots and runs between may take so much: the rest is for a final run that leaves too much
-TRY = 0.7        # of the best predicted cost: a series without a fit that has a larger run for less goes on
+TRY = 0.7        # of the best predicted cost: a series that may be cheaper than that, and has a larger run for less, goes on
 TOO_GOOD = 0.4   # of the target: a run that leaves less is no answer where a smaller size would do ...
 TOO_MUCH = 1.4   # ... nor one that takes so much longer than that
 FREE = 10.0      # [s] that are spent in any case before a search without any prediction ends
@@ -82,21 +82,28 @@ class Search:
         return row
 
     # -- larger ones
-    def candidates(self, best):
-        """Series without a prediction that may still show to be cheaper."""
-        open_ = [s for s in self.every if s.rows and len(s.rows) < ROUNDS and isinstance(p := s.predict(self.target), Refusal) and p.hopeful]
-        priced = sorted((s.seconds(self.following(s)), i, s) for i, s in enumerate(open_))
-        if best is None:
-            return [(t, s) for t, _, s in priced if t <= max(FREE, self.spent())]
-        return [(t, s) for t, _, s in priced if t < TRY * best.seconds and self.affords(t, best.seconds)]
+    def candidates(self, best, chosen):
+        """[(seconds, series)] that may still show to be cheaper: without a prediction, or with one from few runs that may be too high."""
+        found = []
+        for i, series in enumerate(self.every):
+            if series is chosen or series.failed or not series.rows or len(series.rows) >= ROUNDS:
+                continue
+            guess, seconds = series.predict(self.target), series.seconds(self.following(series))
+            if best is None and isinstance(guess, Refusal) and guess.hopeful and seconds <= max(FREE, self.spent()):
+                found.append((seconds, i, series))
+            elif best is not None and seconds < TRY * best.seconds and self.affords(seconds, best.seconds):
+                found += [(seconds, i, series)] if getattr(guess, "hopeful", False) or getattr(guess, "cheap", math.inf) < TRY * best.seconds else []
+        return [(seconds, series) for seconds, _, series in sorted(found, key=lambda f: f[:2])]
 
     def step(self):
         """One run more. True: the search has ended, with (series, row, prediction) in `found`."""
         series, best = next(iter(self.predictions()), (None, None))
-        others = self.candidates(best)
+        others = self.candidates(best, series)
         if others:
             seconds, other = others[0]
-            self.say(f"{other.name}: {other.predict(self.target).reason}; a larger size may show more, in about {seconds:.2g} s")
+            guess = other.predict(self.target)
+            why = guess.reason if isinstance(guess, Refusal) else f"size {guess.size:g} should do in {guess.seconds:.2g} s, at best {guess.cheap:.2g} s"
+            self.say(f"{other.name}: {why}; a larger size may show more, in about {seconds:.2g} s")
             self.run(other, self.following(other))
             return False
         if series is None:
@@ -118,7 +125,7 @@ class Search:
         largest = series.sizes()[-1]
         if best.size <= NEAR * largest:
             return best.size
-        between = self.refining.round(min(best.size / NEAR, 2 * largest), up=True)
+        between = self.refining.round(min(best.size / NEAR, (2 if best.bound < 2 * best.error else GROWTH) * largest), up=True)
         costly = best.size <= LEAP * largest and best.seconds > SHORT and not self.affords(series.seconds(between), best.seconds)
         if between <= largest or between * AT_ONCE >= best.size or costly:
             return best.size
@@ -213,7 +220,7 @@ def said(search, series, row, predicted):
              f"error: {reached:.3g} {how} (predicted {predicted.error:.3g})" + (f"; seen from {who}" if elsewhere > error else ""),
              f"time: {seconds:.3g} s (predicted {predicted.seconds:.3g} s); the runs before it took {spent - seconds:.3g} s"]
     return {"met": reached <= ENOUGH * target, "target": target, "quantity": quantity.name, "series": series.name, "size": row.point.size,
-            "predicted error": predicted.error, "predicted seconds": predicted.seconds, "error": reached, "bound": bound, "estimate": error,
+            "value": row.values[quantity.name], "predicted error": predicted.error, "predicted seconds": predicted.seconds, "error": reached, "bound": bound, "estimate": error,
             "seconds": seconds, "before": spent - seconds, "others": rest, "lines": first + lines}
 
 

@@ -14,6 +14,7 @@ FARTHEST = 64    # times the largest size that was run: beyond it there is no pr
 GROWTH = 1.4     # of the sizes tried
 NOISE = 0.5      # of the target: the standard deviation of values from their fit, at most
 STRIDE = 1.25    # of the size after two predictions that left too much
+FEW = 4          # runs, up to which an order may be that of coarse runs
 ROUNDS = 12      # runs of one series
 
 
@@ -24,7 +25,7 @@ class Prediction:
     error: float    # expected
     bound: float
     seconds: float
-    cheap: float    # seconds of the size whose expected error is the target, and ...
+    cheap: float    # seconds of the size whose expected error is the target, by the formal order where that is less, and ...
     costly: float   # ... of the size whose threefold expected error is
 
 
@@ -169,7 +170,15 @@ class Series:
             return Refusal(f"size {size:g} would take about {seconds:.2g} s, more than a run may ({timeout:g} s, `timeout`)")
         ends = fit.size_for(target, fit.error), fit.size_for(target, lambda n: fits.POOR * fit.error(n) + fit.deviation)
         cheap, costly = (self.seconds(n) if n and n <= FARTHEST * largest else math.inf for n in ends)
-        return Prediction(size, fit.error(size), fit.bound(size), seconds, min(cheap, seconds), max(costly, seconds))
+        return Prediction(size, fit.error(size), fit.bound(size), seconds, min(cheap, seconds, self.at_best(target, fit.scale)), max(costly, seconds))
+
+    def at_best(self, target, scale):
+        """Seconds, were the formal order that of the two finest of few runs: coarse runs may show less than there is."""
+        if self.known or len(self.rows) > FEW:
+            return math.inf
+        (n1, n2), (v1, v2) = self.sizes()[-2:], self.values()[-2:]
+        constant = abs(v2 - v1) / scale / abs(n1**-self.formal - n2**-self.formal)
+        return self.seconds(max((constant / target) ** (1 / self.formal), self.rows[0].point.size))
 
     def size_between(self, wanted, target):
         """A size that may be run: that of a run which meets the target, or one above all that do not."""

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of --for-error: what it chooses beside ladders of runs (FILE.csv, by ladders.py) of every series and size. The study files of this
+folder give no reference, so that errors are extrapolated; they are judged afterwards by the truth named here. Costs are compared
+by those of the ladder, at the size chosen by interpolation, so that both were measured at one time."""
+import json
+import math
+import pathlib
+import sys
+
+import numpy as np
+
+from validation.job import Bar
+from validation.parts.prediction.ladders import read
+
+HERE = pathlib.Path(__file__).resolve().parent
+# File: quantity, three targets, truth: a number, or the series whose finest run of the ladder is the truth, or whose finest runs' fit is its limit.
+CASES = {
+    "tank": ("thickness", ("6%", "2%", "1%"), ("finest", "tvd")),
+    "tank-other-flow": ("thickness", ("6%", "2%", "1%"), ("finest", "tvd")),
+    "cantilever": ("tip", ("5%", "2%", "1%"), 0.10008),          # [m], converged three-dimensional finite elements
+    "plate": ("deflection", ("5%", "2%", "1%"), ("limit", "corrected")),
+    "beam-with-hole": ("tip", ("0.5%", "0.2%", "0.1%"), ("limit", "corrected")),
+    "le11": ("stress at A", ("8%", "4%", "2%"), -105.67e6),      # [Pa], NAFEMS LE11 with converged p-FEM
+    "square": ("drag", ("4%", "3%", "2%"), ("limit", "default")),
+    "cylinder": ("drag", ("1.5%", "0.8%", "0.5%"), 5.57953523384),  # Schaefer and Turek, 2D-1
+    "cavity": ("u minimum", ("20%", "10%", "5%"), 0),            # an error itself
+    "flap": ("tip at 0.4 s", ("5%", "2%", "1%"), ("limit", "explicit")),
+}
+LONG = ("flap", "cylinder", "square", "cavity")
+
+
+def ladder(name):
+    return [(r["series"], float(r["size"]), float(r["value"]), float(r["seconds"])) for r in read(HERE / f"{name}.csv") if r["value"]]
+
+
+def truth_of(name, rows):
+    given = CASES[name][2]
+    if not isinstance(given, tuple):
+        return given
+    from couplet.study import fits
+    how, series = given
+    own = sorted((n, v) for s, n, v, _ in rows if s == series)
+    if how == "finest":
+        return own[-1][1]
+    return fits.of_values(*zip(*own[-5:]))[0].limit
+
+
+def wrong(value, truth):
+    return abs(value - truth) / (abs(truth) or 1)
+
+
+def cost_of(rows, series, size):
+    """Seconds of the ladder at this size, by powers between its sizes; None outside of it."""
+    own = sorted((n, t) for s, n, _, t in rows if s == series)
+    if not own or not own[0][0] <= size <= own[-1][0]:
+        return None
+    return math.exp(np.interp(math.log(size), *np.log(np.array(own)).T))
+
+
+def asked(job, name, target):
+    quantity, out = CASES[name][0], job.scratch / f"prediction-{name}"
+    done = job.run([sys.executable, job.root / "scripts/study", HERE / f"{name}.yaml", f"--build={job.build}", f"--out={out}", f"--for-error={target}"], timeout=3600)
+    file = out / f"for-error-{quantity.replace(' ', '-')}-{target.replace('%', 'pc')}.json"
+    if not file.exists():
+        raise RuntimeError((done.stderr or done.stdout)[-300:])
+    return json.loads(file.read_text())
+
+
+def judged(rows, truth, r):
+    """(text, all four bars of the case are met)."""
+    if "error" not in r:
+        return "none found", False
+    error, cheapest = wrong(r["value"], truth), min((t for _, _, v, t in rows if wrong(v, truth) <= r["target"]), default=math.inf)
+    price = (cost_of(rows, r["series"], r["size"]) or r["seconds"]) / cheapest
+    share, time, before = error / r["target"], r["seconds"] / r["predicted seconds"], r["before"] / r["seconds"]
+    text = (f"{r['series']} {r['size']:g}: true error {share:.2f} of it, reported {r['error'] / r['target']:.2f}; {price:.2f} times the cheapest; "
+            f"time {time:.2f} of the predicted; before it {before:.1f} times {r['seconds']:.2g} s")
+    return text, 0.3 <= share <= 1.1 and price <= 1.5 and 0.7 <= time <= 1.3 and (before <= 3 or r["seconds"] <= 1)
+
+
+def predicted(name):
+    def measure(job):
+        rows = ladder(name)
+        truth, parts = truth_of(name, rows), []
+        for target in CASES[name][1]:
+            text, met = judged(rows, truth, asked(job, name, target))
+            parts.append((f"{target}: {text}" + ("" if met else " (not met)"), met))
+        return "; ".join(p for p, _ in parts), all(met for _, met in parts)
+    return measure
+
+
+BARS = [Bar(f"--for-error without a reference, {name}: {CASES[name][0]} at three targets",
+            "true error 0.3 to 1.1 of the target, at most 1.5 times the cheapest by brute force, time within 30 %, runs before it at most 3 times it where it takes over 1 s",
+            predicted(name), long=name in LONG) for name in CASES if (HERE / f"{name}.csv").exists()]
