@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""OpenFOAM's icoFoam on the same cells and steps for the picture of scripts/study: (processor seconds, error of the velocity); left
-out where it is not installed."""
+"""OpenFOAM's icoFoam on the same cells and steps for the picture of scripts/study: (processor seconds, error of the velocity); omitted
+where it is not installed."""
 import math
 import pathlib
 import re

@@ -151,7 +151,7 @@ def non_matching(factor, shift=0.0):
     return measure
 
 
-SAME = "the run beside it is the case itself, whose fluid vertices all have twins"
+SAME = "the run beside it is the case itself, whose fluid vertices all match"
 MAPPING = [
     Bar("maps: linear fields, flaps 2:1, 1:2, 3:1, 1:3, shifted, plates of all faces", "exact (1e-12)", recorded("linear_fields", "linear", 1e-12)),
     Bar("maps: force kept, the same pairs", "1e-12", recorded("keep_force", "force", 1e-12)),

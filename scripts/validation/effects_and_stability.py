@@ -216,7 +216,7 @@ def implicit_range(job):
 
 BARS = [
     Bar("effects: verdicts just inside and just outside of validity", "right for at least 12 effects", pairs),
-    Bar("effects: a verdict that turns bad is told once, in the midst of the run; --strict=effects fails the run", "pass", ctest("^cli_effects$")),
+    Bar("effects: a verdict that turns bad is reported once, during the run; --strict=effects fails the run", "pass", ctest("^cli_effects$")),
     Bar("effects: off, the plate's seat, damping and gravity allocate nothing and take no step of their own", "tests pass",
         tests("verification_plate_effects", "Effects")),
     *effects_off.BARS,
@@ -244,5 +244,5 @@ BARS = [
     *stability_cases.BARS,
     Bar("tests of label stability", "pass", ctest("^stability_", 4), long=True),
     Bar("maps: each a picture and a table", "all", pictures),
-    Bar("maps: wrong answers with exit code 0 and without a word", "none", no_red),
+    Bar("maps: wrong answers with exit code 0 and no warning", "none", no_red),
 ]

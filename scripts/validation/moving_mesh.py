@@ -248,7 +248,7 @@ def saves(job):
     with_gap, without = pinch(job, True)[0], pinch(job, False)[0]
     shut = [r["sub-steps [-]"][(r["time [s]"] > 2.9) & (r["time [s]"] < 3.5)].mean() for r in (with_gap, without)]
     iterations = [r["pressure iterations so far [-]"][-1] for r in (with_gap, without)]
-    return f"{shut[0]:.1f} sub-steps a step while it is shut, {shut[1]:.1f} without; {iterations[0]:.0f} iterations of the pressure, {iterations[1]:.0f} without", None
+    return f"{shut[0]:.1f} sub-steps per step while it is shut, {shut[1]:.1f} without; {iterations[0]:.0f} iterations of the pressure, {iterations[1]:.0f} without", None
 
 
 def hard_mesh(test):
@@ -335,7 +335,7 @@ def off_is_nothing(job):
             len(called["with"]) >= 8 and not called["without"])
 
 
-STATED = ("E of the volumes that cells have now, the thesis's V^n, on the mesh of the last step: form incremental, "
+STATED = ("E of the volumes that cells have now, V^n of [thesis], on the mesh of the last step: form incremental, "
           "stiffening-volumes current")
 BARS = [
     *(Bar(f"plate in a square, {motion}: pseudo-solid, chi {chi}", "all cells valid in 50 steps", plate(motion, "pseudo-solid", chi))
@@ -377,7 +377,7 @@ BARS = [
         "laplacian under 1.5, pseudo-solid under 5 times a pressure solve", instructions(32), long=True,
         but="instructions in place of time; on a smaller mesh; geometry, guard and monitors, which a step needs besides, stand in brackets"),
     Bar("2D-3 on 11 k cells: largest lift", "within 3 % of 0.47795", pulse, long=True,
-        but="10 772 cells, of which more lie along the wake than in the case's own mesh, whose 10 880 are 5.0 % off"),
+        but="10 772 cells, of which more lie along the wake than in the case's mesh, whose 10 880 are 5.0 % off"),
     Bar("oscillating cylinder: Morison coefficients by least squares", "within 2 % of c_d 2.09, c_m 1.45", least_squares),
     Bar("a plate that pitches through +-60 degrees in a stream", "completes two periods", pitching),
     Bar("a channel closes by 99 % without remeshing and opens again", "completes; shut, the boundaries let in what they let out to 1e-6 m^3/s", closes),
@@ -404,7 +404,7 @@ BARS = [
         but="cells at the walls about a tenth of those in the middle, chosen for this row; with the case's own quarter 1.64 % off"),
     *(Bar(f"speed: {what}", f">= {wanted} times", ratio(only, wanted), long=True, but=but) for what, only, wanted, but in (
         ("cavity 128^2 against icoFoam, one core", "cavity-2d", 13, ""), ("cavity 64^3 against icoFoam, one core", "cavity-3d", 5, ""),
-        ("24 000 cells around a swinging cylinder against pimpleFoam, one core", "moving-cylinder", 8,
+        ("24 000 cells around an oscillating cylinder against pimpleFoam, one core", "moving-cylinder", 8,
          "by a test program, fluid and mover in one process"))),
     Bar("speed: second core on 64^3", ">= 1.7 times", second_core(1.7), long=True),
 ]

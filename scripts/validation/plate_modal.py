@@ -151,7 +151,7 @@ def contact_costs_nothing(job):
 
 
 BARS = [
-    *[Bar(f"frequencies: {words}, 32 cells a side or rings, from 16", "worst <= 0.5 %, slope >= 1.8",
+    *[Bar(f"frequencies: {words}, 32 cells per side or rings, from 16", "worst <= 0.5 %, slope >= 1.8",
           lambda job, n=name: frequencies(job, n)) for words, name in PLATES],
     Bar("frequencies: reed, 15 modes against table 4.1", "rms <= 1 %, worst <= 2 %", reed),
     Bar("statics: constant curvature on distorted meshes, forces inside", "<= 1e-10 of the largest",
@@ -167,7 +167,7 @@ BARS = [
     Bar("time: trapezoidal and Bathe, with and without damping", "order >= 1.9", passes(DYNAMICS, "second_order")),
     Bar("time: 15 modes against direct integration of the same plate", "<= 1 %",
         recorded(DYNAMICS, "fifteen", "apart", 0.01)),
-    Bar("time: energy balances to rounding; Bathe's loss is seen", "1e-12; audit says so", passes(DYNAMICS, "balances")),
+    Bar("time: energy balances to rounding; Bathe's loss is seen", "1e-12; the audit reports it", passes(DYNAMICS, "balances")),
     Bar("contact: rebound speed, conserving rule, 7 steps a contact", "<= 1e-12",
         recorded(CONTACT, "rebound", "conserving", 1e-12)),
     Bar("contact: rebound speed, midpoint rule, order of its error", ">= 1.7",

@@ -95,7 +95,7 @@ def renewals(rho):
              for i, program in enumerate(("coupler", "fluid_solver", "solid_solver", "mesh_mover"))), []))
         sentence = next((l for l in result.stdout.splitlines() if "friction was recomputed" in l), "")
         words = sentence.split(" in ", 1)[-1].split(";")[0]
-        return words or "nothing said", result.returncode == 0 and words.startswith("0 of 30")
+        return words or "silent", result.returncode == 0 and words.startswith("0 of 30")
     return measure
 
 
@@ -143,10 +143,10 @@ BARS = [
     *WALLS,
     *ROBIN_TUBE,
     *FLAP_3D,
-    Bar("order in the step, flap, mu 1, default settings", "slope >= 1.8", order(1, mesh=COARSE), but="20 cells a side, rho_s 3000, to 0.2 s"),
-    Bar("order in the step, flap, mu 0.1, default settings", "slope >= 1.8", order(0.1, mesh=COARSE), but="20 cells a side, rho_s 3000, to 0.2 s"),
+    Bar("order in the step, flap, mu 1, default settings", "slope >= 1.8", order(1, mesh=COARSE), but="20 cells per side, rho_s 3000, to 0.2 s"),
+    Bar("order in the step, flap, mu 0.1, default settings", "slope >= 1.8", order(0.1, mesh=COARSE), but="20 cells per side, rho_s 3000, to 0.2 s"),
     *(Bar(f"order in the step, flap, mu {mu}, implicit-stretch 4", "slope >= 1.8",
-          order(mu, ("participants.fluid.implicit-stretch=4",), COARSE), but="20 cells a side, rho_s 3000, to 0.2 s; not the default")
+          order(mu, ("participants.fluid.implicit-stretch=4",), COARSE), but="20 cells per side, rho_s 3000, to 0.2 s; not the default")
       for mu in (1, 0.1)),
     Bar("order in the step, flap, mu 1, default settings, mesh of the case", "slope >= 1.8", order(1), long=True, but="to 0.2 s"),
     Bar("implicit at rho_s 1, mu 10, mesh on the guess", "15 steps", implicit_at_its_edge(True), long=True),

@@ -234,7 +234,7 @@ BARS = [
     Bar("phase change: case A with layers of capsules at both ends", "stores and delivers more", melting_layers, long=True),
     Bar("sizing: search against a full grid of case A, coarse (60 cells, 12 days)", "within 1 % of its best in a fifth of its runs", optimise, long=True),
     Bar("levelised cost by hand, load and tariff by the hour", "<= 1e-6", all_pass(UNIT, "Economics|Load", 4)),
-    Bar("weather: NSRDB/SAM, TMY3, PVGIS: real heads, gaps, units, wrong files", "each said with file and line", all_pass(UNIT, "ForeignWeather", 9)),
+    Bar("weather: NSRDB/SAM, TMY3, PVGIS: real heads, gaps, units, wrong files", "each reported with file and line", all_pass(UNIT, "ForeignWeather", 9)),
     Bar("weather: smooth days, sums, lengths, forms", "exact", all_pass(UNIT, "SmoothDays", 4)),
     Bar("rings: bending estimate of a step of 100 K against its closed form", "79.2 MPa within 0.5 %", lambda job: (
         lambda p: (f"{p:.2f} MPa", abs(p / 79.2 - 1) <= 0.005))(job.recorded(MECHANICS, "step_in_temperature", "peak")[0][0]),

@@ -49,7 +49,7 @@ def jacobi_against_gauss_seidel(job):
     other = flap(job, "parallel", *acceleration, "coupling.order=parallel")
     gap = np.abs(tips(one) - tips(other)).max() / np.abs(tips(one)).max()
     counts = [steps_of(f)[:, 0].mean() for f in (one, other)]
-    return f"{gap:.1e} apart; {counts[0]:.2f} and {counts[1]:.2f} passes a step, {length(job)}", bool(gap <= 1e-4)
+    return f"{gap:.1e} apart; {counts[0]:.2f} and {counts[1]:.2f} passes per step, {length(job)}", bool(gap <= 1e-4)
 
 
 def coupler_ranks(job):
@@ -127,7 +127,7 @@ def exchanged(kind, judge):
         runs = job.once("exchange", make)
         passes, ms = min((found[kind] for found, _ in runs), key=lambda f: f[1])
         plain = min(p for _, p in runs)
-        return f"{ms:.2f} ms a pass, {passes:.1f} passes a step; MPI alone {plain:.2f} ms there and back: {ms / plain:.1f} times", bool(judge(ms, plain))
+        return f"{ms:.2f} ms per pass, {passes:.1f} passes per step; MPI alone {plain:.2f} ms there and back: {ms / plain:.1f} times", bool(judge(ms, plain))
     return measure
 
 
@@ -137,14 +137,14 @@ PRECICE_PLAIN = 2 * 2.4e6 / 15.4e9 * 1e3
 RUNS = [
     Bar("exchange of 1e5 3-vectors, Aitken, over MPI's own time for the same bytes", "< 2 times", exchanged("aitken", lambda ms, plain: ms < 2 * plain), long=True,
         but="a pass takes each vector to the coupler and on, so that 2.0 is the floor: not to be met by this way of exchange"),
-    Bar("the same beside preCICE 3.4.1 over MPI, Aitken", f"at most {11.9 / PRECICE_PLAIN:.0f} times (11.9 ms a pass)",
+    Bar("the same beside preCICE 3.4.1 over MPI, Aitken", f"at most {11.9 / PRECICE_PLAIN:.0f} times (11.9 ms per pass)",
         exchanged("aitken", lambda ms, plain: ms / plain <= 11.9 / PRECICE_PLAIN), long=True),
-    Bar("the same, IQN-ILS of 6 passes beside preCICE's 106 ms a pass", f"at most {53 / PRECICE_PLAIN:.0f} times (half of 106 ms)",
+    Bar("the same, IQN-ILS of 6 passes beside preCICE's 106 ms per pass", f"at most {53 / PRECICE_PLAIN:.0f} times (half of 106 ms)",
         exchanged("iqn-ils, changing", lambda ms, plain: ms / plain <= 53 / PRECICE_PLAIN), long=True,
         but="the dummies' map is another one in each step and 1e-2 the tolerance, which make a step 6 passes; before, six of our passes stood beside one of preCICE's"),
     Bar("flap explicit, rho_s 3000", "holds, tip within 1 %", explicit_heavy),
     Bar("flap explicit, rho_s 42", "refused within 10 steps with the reason", explicit_light),
-    Bar("flap semi-implicit, rho_s 1, mu 1, ramp 0.4 s: holds since friction is renewed, or the swing is named",
+    Bar("flap semi-implicit, rho_s 1, mu 1, ramp 0.4 s: stable since friction is renewed, or the oscillation is named",
         "end reached, or refused with the reason", viscous_swing),
     Bar("guards: each fires and does not", "all tests", passed("unit_coupler", "Guard")),
     Bar("sub-steps 7 and 4, waveform linear: order in time", ">= 1.8",
@@ -164,7 +164,7 @@ RUNS = [
         unit("coupling_groups", "set_up_of_a_large", "setup_seconds_1e5", lambda v: max(v) < 2)),
     Bar("mapping of 1e5 3-vectors, one rank [ms]", "reported", unit("coupling_groups", "set_up_of_a_large", "map_milliseconds_1e5")),
     Bar("maps over 1, 2, 3 ranks", "as on one", registered("^unit_coupler_maps")),
-    Bar("strangers: C++, C, Python with the real fluid; ranks of fluid and coupler; restart bit for bit", "all", registered("^client_examples$")),
-    Bar("strangers: installed library by CMake and pkg-config, Python module", "all", registered("^client_install$")),
-    Bar("strangers: a wrong guest is named, the job ends", "named", registered("^client_handshake$")),
+    Bar("external programs: C++, C, Python with the real fluid; ranks of fluid and coupler; restart bit for bit", "all", registered("^client_examples$")),
+    Bar("external programs: installed library by CMake and pkg-config, Python module", "all", registered("^client_install$")),
+    Bar("external programs: a wrong external program is named, the job ends", "named", registered("^client_handshake$")),
 ]

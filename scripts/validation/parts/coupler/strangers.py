@@ -67,8 +67,8 @@ def fenicsx(job):
 
 
 STRANGERS = [
-    Bar("strangers: spring-mounted cylinder let go in fluid at rest: frequency", "Stokes' within 2 %", stokes(0), long=True),
-    Bar("strangers: the same: decay", "Stokes' within 2 %", stokes(1), long=True),
-    Bar("strangers: vibration by vortices, Re 150, 2 rho D^2, U/(f_n D) 4", "reported beside 0.55 D", vortices, long=True),
-    Bar("strangers: flap of FEniCSx", "within 3 % of solid_solver's tip", fenicsx, long=True),
+    Bar("external programs: spring-mounted cylinder let go in fluid at rest: frequency", "Stokes' within 2 %", stokes(0), long=True),
+    Bar("external programs: the same: decay", "Stokes' within 2 %", stokes(1), long=True),
+    Bar("external programs: vibration by vortices, Re 150, 2 rho D^2, U/(f_n D) 4", "reported beside 0.55 D", vortices, long=True),
+    Bar("external programs: flap of FEniCSx", "within 3 % of solid_solver's tip", fenicsx, long=True),
 ]

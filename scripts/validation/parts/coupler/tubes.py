@@ -62,7 +62,7 @@ def step(job):
     gap = np.abs(at[0] - at[2]).max()
     first, second = (100 * np.sqrt(np.mean((a - b) ** 2)) / y.max() for a, b in zip(at, at[1:]))
     return (f"{100 * gap / y.max():.2f} % of the largest motion apart at most, {len(then)} times; root mean square of 0.1 to 0.05 ms {first:.2f} %, "
-            f"of 0.05 to 0.025 ms {second:.2f} %: order {np.log2(first / second):.2f}. The wave that runs ahead in the wall, 8 steps a period, "
+            f"of 0.05 to 0.025 ms {second:.2f} %: order {np.log2(first / second):.2f}. The wave that runs ahead in the wall, 8 steps per period, "
             "lags by the second-order error of the step"), len(then) == 11 and bool(gap <= 0.01 * y.max())
 
 

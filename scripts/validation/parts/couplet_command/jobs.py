@@ -46,6 +46,6 @@ BARS = [
     Bar("watch --web during a run, in a headless browser", "values change, no error, nothing beyond loopback, a wrong token refused", tests("^command_watch_web$")),
     Bar("couplet run --slurm, the README's sbatch and srun lines on a Slurm of one node; scancel, then resume", "the same results, bit for bit",
         tests("^command_slurm_long$"), long=True),
-    Bar("check, explain, new, gallery, doctor, plot, one participant alone", "as told", tests("^command_tell$")),
-    Bar("import couplet: starts a run, reads probes, fields, findings, budget", "as told", tests("^command_python$")),
+    Bar("check, explain, new, gallery, doctor, plot, one participant alone", "as documented", tests("^command_tell$")),
+    Bar("import couplet: starts a run, reads probes, fields, findings, budget", "as documented", tests("^command_python$")),
 ]

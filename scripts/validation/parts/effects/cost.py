@@ -103,10 +103,10 @@ def claims(kind):
     return measure
 
 
-BUT = "in the plane, one rank, on the square of 32 x 32 cells (a bed of 200) of the row, {}"
+BUT = "two-dimensional, one rank, on the square of 32 x 32 cells (a bed of 200) of the row, {}"
 BARS = [
     Bar("a card's claimed memory against the heap of the run (massif)", "within 20 %", claims("memory"), long=True,
-        but=BUT.format("without a number below 16 B a cell, and but for what does not go by cells: large strain's other solver, the ground's column")),
+        but=BUT.format("without a number below 16 B per cell, except what is not proportional to cells: large strain's other solver, the ground's column")),
     Bar("a card's claimed share of a step against the instructions of the run (massif)", "within 50 %", claims("time"), long=True,
         but=BUT.format("whose step is what the share is of, in instructions, and without a number below 3 %")),
 ]

@@ -176,5 +176,5 @@ def off_is_free(job):
 
 BARS = [
     Bar("an effect that is off executes no instruction of its own files (callgrind)", "0, and more than 0 with it on", off_is_free, long=True,
-        but="the release build, for any x86-64: the preset v3 compiles the same functions, but its whole build was too dear for this row"),
+        but="the release build, for any x86-64: the preset v3 compiles the same functions, but its whole build was too expensive for this row"),
 ]

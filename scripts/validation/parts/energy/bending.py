@@ -75,7 +75,7 @@ BARS = [
     Bar("mixed displacement-pressure form: Krylov iterations at 0.4999 over those at 1/3, Cook 32x32 quadrilaterals", "<= 1.5",
         krylov("mixed", COOK[:1], "cells")),
     Bar("the same, 32x32 pairs of triangles", "<= 1.5", krylov("mixed", COOK[1:], "cells")),
-    Bar("the same in space: plate B, 16x24x12 hexahedra", "<= 1.5", krylov("mixed", PLATE[:1], "cells")),
+    Bar("the same in three dimensions: plate B, 16x24x12 hexahedra", "<= 1.5", krylov("mixed", PLATE[:1], "cells")),
     Bar("the same: 16x24x12 hexahedra cut in two prisms", "<= 1.5", krylov("mixed", PLATE[1:2], "cells")),
     Bar("the same: 8x12x6 hexahedra cut in six tetrahedra", "<= 1.5", krylov("mixed", PLATE[2:], "cells")),
     Bar("the program's own choice for small bodies, Cholesky factors of the whole operator", "<= 1.5", krylov("auto", COOK)),

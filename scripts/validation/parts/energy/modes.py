@@ -49,7 +49,7 @@ def free_plate(job):
 
 
 BARS = [
-    Bar("first period of cantilever C on 20x2, 40x4, 80x8 hexahedra a side", "within 0.5 % of 20.03 s, slope >= 1.8", first_period),
+    Bar("first period of cantilever C on 20x2, 40x4, 80x8 hexahedra per side", "within 0.5 % of 20.03 s, slope >= 1.8", first_period),
     Bar("free square plate, a/h = 100, first three frequencies on 32 x 32 x 4", "within 0.5 % of 13.468, 19.596, 24.271, slope >= 1.8",
         free_plate, long=True),
     Bar("free vibrations without factors are those of the dense problem, five kinds of bodies, 1 to 3 ranks", "tests pass",

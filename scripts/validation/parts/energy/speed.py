@@ -66,7 +66,7 @@ def porous(job):
 SHARED = "volume-strain: shared, which is not the default below nu 0.4"
 BARS = [
     Bar("plate B 32x48x24 to 1e-8: cells per second over solidDisplacementFoam's", ">= 20", cells_per_second("symmetric", 20)),
-    Bar("plate B 64x96x48: memory of the whole process a cell", "<= 2.0 kB", memory("symmetric"), long=True),
+    Bar("plate B 64x96x48: memory of the whole process per cell", "<= 2.0 kB", memory("symmetric"), long=True),
     Bar("plate B, u to 1 %, beside CalculiX's quadratic elements at 1 %", ">= 6 times sooner",
         beside(0.01, (12, 18, 9), "symmetric", (8, 12, 6), "C3D20", "SPOOLES", 6)),
     Bar("plate B, u to 0.3 %, beside CalculiX at 0.2 to 0.3 %", ">= 15 times sooner",
@@ -77,7 +77,7 @@ BARS = [
         beside(0.001, (40, 60, 30), "symmetric", FINE, "C3D20", "ITERATIVE CHOLESKY", 25, times=1), long=True),
     Bar("u to 0.1 % with volume-strain: shared on 16x24x12", ">= 25 times sooner",
         beside(0.001, COARSE, "symmetric, shared", FINE, "C3D20", "ITERATIVE CHOLESKY", 25), but=SHARED, long=True),
-    Bar("plate B 64x96x48: one product", "< 100 ns a cell", product, long=True),
+    Bar("plate B 64x96x48: one product", "< 100 ns per cell", product, long=True),
     Bar("porous body, 1.3 million tetrahedra: solve with the symmetric gradient beside the corrected one", "no slower", porous, long=True),
     Bar("plate B 64x96x48 on two ranks over one, solve alone", ">= 1.8 times", ranks, long=True),
 ]

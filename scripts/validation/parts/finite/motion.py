@@ -97,7 +97,7 @@ BARS = [
         vibration((f"{S}energy-momentum=true",), 1e-8), long=True),
     Bar("the same with the trapezoidal rule", "reported", vibration((), None), long=True),
     Bar("the same with Bathe's scheme", "reported", vibration(("%stime-scheme={type: bathe}" % S,), None), long=True),
-    Bar("a free body that spins and swings, conserving stress: momenta", "within 1e-10",
+    Bar("a free body that spins and oscillates, conserving stress: momenta", "within 1e-10",
         tested("conserving_stress_keeps_energy_and_momenta", MOTION)),
     Bar("tangent is the derivative of the forces, all cell kinds, pressure included", "differences agree to 1e-6",
         tested("tangent_is_the_derivative_of_the_forces_on_all_cells")),

@@ -133,7 +133,7 @@ BARS = [
     Bar("E, K 1.6: CalculiX C3D8I and C3D20 at the same error, 0.1 %, each on its own best mesh of those tried", "no slower", best, long=True),
     Bar("E, K 1.6: time a cell and Newton iteration, 16x16x160 over 8x8x80", "< 2 times", growth, long=True),
     Bar("segregated updated-Lagrangian solver with Aitken (thesis 2.39-2.40), agreement on case E and speed", "agree; >= 20x faster",
-        segregated, but="2x2x20 and 4x4x40 cells against the thesis's table 3.6 within 0.1 %; wall seconds of the solves"),
+        segregated, but="2x2x20 and 4x4x40 cells against table 3.6 of [thesis] within 0.1 %; wall seconds of the solves"),
     Bar("the linear run's verdict on geometric non-linearity against the true difference, 7 pairs", "within a factor of 1.5", pairs),
     Bar("flap at U = 20 m/s coupled, finite strain beside linear; semi-implicit and implicit", "printed; within 1 %", flap, long=True,
         but="to 0.4 s, before the first maximum: the linear flap, which grows longer as it turns, makes the fluid's mesh cross itself at 0.44 s, "

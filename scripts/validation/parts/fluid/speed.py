@@ -26,8 +26,8 @@ def ratio(only, wanted):
 
 
 def memory(job):
-    found = re.search(r"([\d.]+) kB a cell", benchmark(job, "cavity-3d"))
-    return f"{found[1]} kB a cell", float(found[1]) <= 1.5
+    found = re.search(r"([\d.]+) kB per cell", benchmark(job, "cavity-3d"))
+    return f"{found[1]} kB per cell", float(found[1]) <= 1.5
 
 
 def second_core(wanted):
@@ -40,9 +40,9 @@ def second_core(wanted):
 BARS = [
     Bar("speed: cavity 128^2 against icoFoam, one core", ">= 8 times", ratio("cavity-2d", 8), long=True),
     Bar("speed: cavity 64^3 against icoFoam, one core", ">= 3 times", ratio("cavity-3d", 3), long=True),
-    Bar("speed: 24 000 cells around a swinging cylinder against pimpleFoam, one core", ">= 8 times", ratio("moving-cylinder", 8), long=True),
+    Bar("speed: 24 000 cells around an oscillating cylinder against pimpleFoam, one core", ">= 8 times", ratio("moving-cylinder", 8), long=True),
     Bar("time to equal error: cavity Re 1000, icoFoam on 128^2", ">= 10 times", ratio("equal-error", 10), long=True),
     Bar("time to equal error: vortex street 2D-2, icoFoam on 24 330 cells", ">= 5 times", ratio("shedding", 5), long=True),
     Bar("speed: second core on 64^3", ">= 1.5 times", second_core(1.5), long=True),
-    Bar("memory on 64^3", "<= 1.5 kB a cell", memory, long=True),
+    Bar("memory on 64^3", "<= 1.5 kB per cell", memory, long=True),
 ]

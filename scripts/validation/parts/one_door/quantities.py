@@ -16,7 +16,7 @@ def mistakes(*names, least):
         bad = re.findall(r"^FAILED +(\w+) +(.*)$", result.stdout, re.M)
         kinds = ", ".join(f"{good.count(kind)} {kind}" for kind in ("refused", "flagged", "right") if kind in good)
         lost = f"; another outcome: {', '.join(name for _, name in bad[:4])}" if bad else ""
-        return f"{len(good)} of {len(good) + len(bad)} as the table says: {kinds}{lost}", result.returncode == 0 and len(good) >= least
+        return f"{len(good)} of {len(good) + len(bad)} as in the table: {kinds}{lost}", result.returncode == 0 and len(good) >= least
     return measure
 
 
@@ -26,7 +26,7 @@ BARS = [
     Bar("scene: flow.restart: 10 degC where a difference is meant", "refused", mistakes("a temperature for a difference", least=1)),
     Bar("scene: an explicit step far beyond its limit in a duct of oil", "refused",
         mistakes("a step far beyond the explicit limit", least=1)),
-    Bar("the mistakes of a user: refused, flagged or right, with the message", "at least 30, each as the table says", mistakes(least=30)),
+    Bar("the mistakes of a user: refused, flagged or right, with the message", "at least 30, each as in the table", mistakes(least=30)),
     Bar("keys with a unit, of all programs: a range or a written reason", "all", script("tests/mistakes/keys.py", "{bin}")),
     Bar("cases of configs/: none refused or flagged by the ranges (--check of each participant)", "0",
         script("tests/mistakes/shipped.py", "{bin}", "{root}/configs")),

@@ -21,9 +21,9 @@ CONDITIONS_EXACT = ("by_component|springs_with_displaced|zero_normal_gradient|so
 
 BARS = [
     *(bar for name in MESHES for bar in (
-        Bar(f"MMS {name.replace('_', ' ')}: slope of the displacement, thesis's and corrected gradient", ">= 1.9",
+        Bar(f"MMS {name.replace('_', ' ')}: slope of the displacement, least-squares and corrected gradient", ">= 1.9",
             at_least(ORDER, f"/{name}_(thesis|corrected)", "displacement_slope", 1.9)),
-        Bar(f"MMS {name.replace('_', ' ')}: slope of the stress (all cells), thesis's and corrected gradient", ">= 0.95",
+        Bar(f"MMS {name.replace('_', ' ')}: slope of the stress (all cells), least-squares and corrected gradient", ">= 0.95",
             at_least(ORDER, f"/{name}_(thesis|corrected)", "stress_slope", 0.95, also="inner_stress_slope")))),
     Bar("Lame cylinder, plane strain and stress, quadrilaterals and triangles: slope of the displacement", ">= 1.9",
         at_least(CLOSED, "lame_cylinder_converges", "displacement_slope", 1.9, also="stress_slope")),
@@ -36,7 +36,7 @@ BARS = [
         at_most(MATERIALS, "piecewise_linear", "relative_error", 1e-10)),
     Bar("Two materials: jump of the traction at the bonded faces", "<= 1e-10 of the stress",
         at_most(MATERIALS, "piecewise_linear", "relative_traction_jump", 1e-10)),
-    Bar("Two materials in series: forces at both ends, thesis's gradient", "equal to 1e-9",
+    Bar("Two materials in series: forces at both ends, least-squares gradient", "equal to 1e-9",
         all_pass(MATERIALS, "both_ends.*thesis", 6)),
     Bar("Two materials in series: forces at both ends, corrected gradient", "equal to 1e-8",
         all_pass(MATERIALS, "both_ends.*corrected", 6)),

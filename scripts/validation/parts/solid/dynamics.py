@@ -116,7 +116,7 @@ BARS = [
         "Euler >= 0.9, all others >= 1.9", orders),
     Bar("energy balance of the trapezoidal rule, undamped", "round-off", imbalance),
     Bar("step size control: error below the tolerance with fewer steps", "all schemes", step_control),
-    *(Bar(f"C: period elongation / amplitude decay [%], dt = {dt} s", f"reported beside the thesis's {thesis_row(dt)}",
+    *(Bar(f"C: period elongation / amplitude decay [%], dt = {dt} s", f"reported beside the published {thesis_row(dt)}",
           table(dt), long=True) for dt in THESIS),
     Bar("C: period on a refined mesh (160x16x16)", "20.03 s within 0.3 %", refined_period, long=True),
     *(bar for g in GRADIENTS for kind, key in (("", ""), (", perturbed mesh", "_perturbed")) for bar in (

@@ -40,8 +40,8 @@ def scaled(method, sizes, ranks):
 def memory(n):
     def measure(job):
         one, two = (study(job).run(job, n, r) for r in (1, 2))
-        return (f"{one['memory']:.0f} MB on 1 rank ({1e3 * one['memory'] / one['cells']:.1f} kB a cell), "
-                f"{two['memory']:.0f} MB a rank on 2"), two["memory"] < one["memory"]
+        return (f"{one['memory']:.0f} MB on 1 rank ({1e3 * one['memory'] / one['cells']:.1f} kB per cell), "
+                f"{two['memory']:.0f} MB per rank on 2"), two["memory"] < one["memory"]
     return measure
 
 
@@ -73,7 +73,7 @@ BARS = [
     Bar("porous body: outer iterations, segregated (thesis: 111, 89, 82, 117, 86)", SAME, iterations("segregated", 28, RANKS), long=True),
     Bar("porous body: iterations, block-coupled (thesis: 854, 868, 871 on 16, 32, 64)", SAME,
         iterations("block-coupled", 28, RANKS), long=True),
-    Bar("porous body: iterations at a fixed number of cells a rank, newton-krylov (thesis's table 3.10)", "reported",
+    Bar("porous body: iterations at a fixed number of cells per rank, newton-krylov (table 3.10 of [thesis])", "reported",
         scaled("newton-krylov", (18, 22, 28, 35), (2, 4, 8, 16))),
     Bar("porous body: the same, segregated (thesis: 108, 112, 117, 96)", "reported", scaled("segregated", (18, 22, 28, 35), (2, 4, 8, 16)), long=True),
     Bar("porous body: the same, block-coupled (thesis: 850, 1046, 1226, 1558)", "reported",
@@ -81,6 +81,6 @@ BARS = [
     Bar("porous body: memory, 1.3 million cells", "less on each of 2 ranks than on 1", memory(69), long=True),
     Bar("porous body: strong scaling, 96 000 cells on 1 and 2 ranks", "2 ranks faster", strong(28)),
     Bar("porous body: strong scaling, 1.3 million cells", "2 ranks faster", strong(69), long=True),
-    Bar("porous body: weak scaling, 46 000 cells a rank", "efficiency above 50 %", weak(22, 28)),
-    Bar("porous body: weak scaling, 650 000 cells a rank", "efficiency above 50 %", weak(55, 69), long=True),
+    Bar("porous body: weak scaling, 46 000 cells per rank", "efficiency above 50 %", weak(22, 28)),
+    Bar("porous body: weak scaling, 650 000 cells per rank", "efficiency above 50 %", weak(55, 69), long=True),
 ]

@@ -39,7 +39,7 @@ def robin(job):
     tip, passes = flap(job, 10, *ROBIN, *IQN)
     other, without = flap(job, 10, *IQN)
     gap = np.abs(tip - other).max() / np.abs(other).max()
-    return f"{gap:.1e} apart; {passes.mean():.2f} passes a step, {without.mean():.2f} without Robin", len(tip) == 20 and gap <= 1e-3
+    return f"{gap:.1e} apart; {passes.mean():.2f} passes per step, {without.mean():.2f} without Robin", len(tip) == 20 and gap <= 1e-3
 
 
 COARSE = "2460 cells, to 0.2 s"

@@ -33,14 +33,14 @@ def passes(job):
 def cheaper(than, times):
     def measure(job):
         (few, seconds, _), (many, other, _) = tube(job, "Robin"), tube(job, than)
-        return f"{other / seconds:.2f} times ({other:.1f} and {seconds:.1f} cpu s; {many.mean():.1f} and {few.mean():.1f} passes a step)", \
+        return f"{other / seconds:.2f} times ({other:.1f} and {seconds:.1f} cpu s; {many.mean():.1f} and {few.mean():.1f} passes per step)", \
             bool(other >= times * seconds)
     return measure
 
 
 SHORT = "20 steps of 0.1 ms to 1e-6, whose residual is the load's with Robin; seconds with the programs' start"
 ROBIN_TUBE = [
-    Bar("3-D tube at 1e-4 s, Robin and IQN-ILS (history of 15 steps): passes a step", "<= 4.5", passes, long=True, but="20 steps"),
+    Bar("3-D tube at 1e-4 s, Robin and IQN-ILS (history of 15 steps): passes per step", "<= 4.5", passes, long=True, but="20 steps"),
     Bar("3-D tube: Robin and IQN-ILS beside implicit with Aitken", ">= 3 times cheaper", cheaper("implicit Aitken", 3), long=True, but=SHORT),
     Bar("3-D tube: Robin and IQN-ILS beside implicit with IQN-ILS", ">= 1.5 times cheaper", cheaper("implicit IQN-ILS", 1.5), long=True, but=SHORT),
 ]

@@ -142,7 +142,7 @@ BARS = [
     Bar("exergy factors 0.480 and 0.540, kelvin in the logarithm", "to rounding", all_pass(TESTS, "exergy")),
     Bar("day report: every row by hand, factors of safety with place and time, checkpoint bit for bit", "exact", all_pass(TESTS, "DayReport", 5)),
     Bar("table 5.3: masses and capacities", "0.5 %", table_5_3),
-    Bar("weather files: gaps, columns, hours, ranges, damage, EPW codes", "each said with file and line", all_pass(TESTS, "WeatherFile", 8)),
+    Bar("weather files: gaps, columns, hours, ranges, damage, EPW codes", "each reported with file and line", all_pass(TESTS, "WeatherFile", 8)),
     Bar("clear sky: worked example of Duffie and Beckman, day length, seasons", "830 W/m^2 within 5", all_pass(TESTS, "ClearSky", 5)),
     *(bar for case in CASES for bar in (
         row(case, "Q_SF", points=0.5),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The 23 things to fix of "nothing wrong leaves with exit code 0", each with the rows of this table and the tests that hold it.
+"""The 23 things to fix of "nothing wrong leaves with exit code 0", each with the rows of this table and the tests that check it.
 `table()` is docs/validation/trust-items.md; a row states whether every name in it exists."""
 import re
 
@@ -14,7 +14,7 @@ ITEMS = {
     4: ("sheared, skewed and flat cells", ("sheared 55 to 75 degrees",), ("HardMeshes.sheared_by_seventy_degrees", "HardMeshes.needle_tetrahedra")),
     5: ("a mesh report; folded cells refused", ("every program with a mesh", "mesh report"), ("cli_mesh_report",)),
     6: ("closed fluids that must displace volume", ("a closed fluid whose interface",), ("coupling_cavity",)),
-    7: ("divergence is named within a few passes", ("growth of the iteration", "two-step swings", "work of fluid and structure", "explicit flap at rho_s 42"),
+    7: ("divergence is named within a few passes", ("growth of the iteration", "two-step oscillations", "work of fluid and structure", "explicit flap at rho_s 42"),
         ("flap_explicit_added_mass_is_named", "flap_viscous_swing_holds_or_is_named")),
     8: ("interfaces elsewhere, staircases", ("surfaces elsewhere",), ()),
     9: ("balance of the explicit scheme", ("explicit balance",), ()),
@@ -28,7 +28,7 @@ ITEMS = {
          ("stop_and_go_on", "signals_on_the_flap")),
     15: ("only what this run wrote is overwritten or deleted", ("only what this run wrote", "participants named"), ()),
     16: ("geometry files that run commands; a case is code", ("a .geo that runs", "docs: a case is code"), ("Geo.commands_and_written_files_are_found",)),
-    17: ("crashes and hangs of input", ("alias bombs", "a table from a FIFO", "a number of cells that is none", "a mesh cache that was cut", "hundreds of kilobytes of .geo"),
+    17: ("crashes and hangs of input", ("alias bombs", "a table from a FIFO", "an invalid number of cells", "a mesh cache that was cut", "hundreds of kilobytes of .geo"),
          ("Limits.anchors_that_multiply_are_refused_before_they_fill_the_memory", "Limits.brackets_in_units_are_counted",
           "Limits.control_characters_are_refused_with_their_place", "Limits.many_unknown_keys_are_counted_not_listed", "Table.from_a_fifo_is_refused_at_once",
           "LoadMesh.a_truncated_cache_is_made_anew", "LoadMesh.a_number_of_cells_that_is_none_is_refused",
@@ -77,4 +77,4 @@ def complete(bars):
 
 
 def rows(bars):
-    return [Bar("each of the 23 items to mend has a row or a test (docs/validation/trust-items.md)", "all", complete(bars))]
+    return [Bar("each of the 23 items to fix has a row or a test (docs/validation/trust-items.md)", "all", complete(bars))]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The load on walls: a cylinder that starts to oscillate in a viscous fluid, refined in time and in space."""
+"""The load on walls: a cylinder that starts to oscillate in a viscous fluid, refined in step and mesh."""
 import csv
 import math
 
@@ -21,7 +21,7 @@ def force(job, step, cells):
         found = {round(float(row[0]) / step): sum(float(row[i]) for i in parts) for row in rows[1:]}
         n = round(AT / step)
         return (found[n] + found[n + 1]) / 2
-    return job.once(("swinging cylinder", step, cells), make)
+    return job.once(("oscillating cylinder", step, cells), make)
 
 
 def in_time(job):
@@ -36,7 +36,7 @@ def near(job):
 
 
 BARS = [
-    Bar("swinging cylinder, viscosity 1, 48 cells around: order of the force at 0.025, 0.0125, 0.00625 s", ">= 1.9", in_time,
+    Bar("oscillating cylinder, viscosity 1, 48 cells around: order of the force at 0.025, 0.0125, 0.00625 s", ">= 1.9", in_time,
         but="steps of 0.025 to 0.00625 s in place of 0.02 to 0.005 s, so that 1.25 s is the end of one in all"),
     Bar("... at 0.01 s, beside 192 cells and 0.0025 s", "within 0.1 %", near, long=True),
 ]
