@@ -182,10 +182,11 @@ def of_values(sizes, values, formal=2.0):
     if reason:
         return None, reason
     best = fit_runs(n, values, formal)
-    steep = beyond(n, values, formal)  # three runs show it as well
-    for first in range(1, min(len(n) - (3 if steep else LEAST), len(n) // 2) + 1):  # runs that are too coarse for their order
-        if best.deviation <= TIE * np.ptp(values) or diverges(n[first:], values[first:]):
-            break
+    unclear = best.safety > SAFETY or beyond(n, values, formal)
+    for first in range(1, len(n) // 2 + 1):  # runs that are too coarse for their order
+        least = 3 if unclear and beyond(n[first:], values[first:], formal) else LEAST  # changes that fall so fast three runs show as well
+        if len(n) - first < least or best.deviation <= TIE * np.ptp(values) or diverges(n[first:], values[first:]):
+            continue
         fewer = fit_runs(n[first:], values[first:], formal)
         if fewer.deviation < DROP * best.deviation:
             best = fewer

@@ -46,7 +46,7 @@ def main():
     target = arguments.file.with_suffix(".csv")
     kept = {(r["series"], r["size"]): r for r in (read(target) if target.exists() else [])} | {(r["series"], r["size"]): r for r in rows}
     with open(target, "w", newline="") as out:
-        writer = csv.DictWriter(out, HEAD)
+        writer = csv.DictWriter(out, HEAD, lineterminator="\n")
         writer.writeheader()
         writer.writerows(sorted(kept.values(), key=lambda r: (r["series"], float(r["size"]))))
 
