@@ -92,7 +92,7 @@ def finish(made, axes, file, xlabel="", ylabel=""):
         one.grid(which="both", alpha=0.25)
         plain(one.xaxis), plain(one.yaxis)
         handles, labels = one.get_legend_handles_labels()
-        if len(labels) > 1:  # of several panels below each, where it hides nothing
+        if len(labels) > 1 or labels and len(axes) > 1:  # of several panels below each, where it hides nothing
             one.legend(fontsize=7, framealpha=0.7, **({"loc": "upper center", "bbox_to_anchor": (0.5, -0.08), "ncols": 1 + (max(map(len, labels)) < 36)} if len(axes) > 1 else {}))
     made.supxlabel(xlabel, fontsize=10), made.supylabel(ylabel, fontsize=10)
     made.savefig(file)
