@@ -56,7 +56,7 @@ def main():
         imbalance = max(map(abs, column(out / "tank.csv", "imbalance [J]"))) / moved  # the column sums up since the start
     assert len(days) == 365 * years, len(days)
     first, last = differ(days, 2), differ(days, years)
-    print(f"{years} years: books within {imbalance:.1e} of the heat moved; year {years} differs from the one before by {last[0]:.1e} of its "
+    print(f"{years} years: energy balance within {imbalance:.1e} of the heat moved; year {years} differs from the one before by {last[0]:.1e} of its "
           f"discharge, in a day by {last[1]:.1e} at most (year 2: {first[0]:.1e}, {first[1]:.1e})")
     sound = imbalance < MOST_IMBALANCE and last[0] < MOST_DRIFT < first[0]
     return 0 if sound else 1

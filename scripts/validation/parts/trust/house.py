@@ -160,7 +160,7 @@ BARS = [
     Bar("house: clang-tidy runs (scripts/tidy)", "exit code 0", tidy, long=True),
     Bar("tables: what only reports is not counted, what is stale is listed, other questions are marked", "tests pass",
         tests("^cases_validation_tables", 1)),
-    Bar("docs: a case is code", "said", documented),
+    Bar("docs: a case is code", "documented", documented),
     Bar("sanitizer build: the whole quick suite", "clean", sanitized, long=True, but="timings and leaks of MPI do not count; needs " + SANITIZER),
     Bar("sanitizer build: the corpora", "clean", corpora, long=True, but="timings and leaks of MPI do not count, the 1 000 real runs are left to the release build"),
 ]
