@@ -57,7 +57,7 @@ struct couplet_client {
 namespace {
 
 std::size_t entries(const couplet_client& c, const Datum& d) {
-  const std::size_t places = d.place == COUPLET_VERTICES ? c.surface.vertices() : c.surface.faces();
+  const std::size_t places = d.place == COUPLET_FACES ? c.surface.faces() : c.surface.vertices();
   return places * std::size_t(d.size(c.surface.dim));
 }
 
@@ -81,8 +81,8 @@ std::vector<std::int64_t> cut(MPI_Comm comm, std::size_t n) {
 void part_of(const couplet_client& c, const Peer& p, const Datum& d, std::vector<double>& values,
              std::vector<Stretch>& parts) {
   const auto n = std::size_t(d.size(c.surface.dim));
-  const std::size_t first = n * (d.place == COUPLET_VERTICES ? p.first_vertex : p.first_face),
-                    count = n * (d.place == COUPLET_VERTICES ? p.vertices : p.faces);
+  const std::size_t first = n * (d.place == COUPLET_FACES ? p.first_face : p.first_vertex),
+                    count = n * (d.place == COUPLET_FACES ? p.faces : p.vertices);
   if (count > 0) parts.push_back({values.data() + first, count});
 }
 
@@ -120,7 +120,7 @@ void send_reply(couplet_client& c) {
   }
   if (first)
     for (const Peer& p : c.peers) send(c.coupler, p.rank, places_tag, c.surface.cut_out(p), MPI_BYTE);
-  if (c.command.op == solve && c.status == 0)
+  if ((c.command.op == solve || first) && c.status == 0)
     for (const Peer& p : c.peers) {
       std::vector<Stretch> parts;
       for (auto& [name, values] : c.output) part_of(c, p, *find(c.gives, name), values, parts);  // by name
@@ -168,7 +168,7 @@ void receive_command(couplet_client& c) {
   c.iterations = 0;
   c.error = c.energy = NAN;
   c.checkpoint = c.command.folder + "/" + c.participant;
-  if (c.command.op == solve) receive_input(c);
+  if (c.command.op == solve || c.command.op == start) receive_input(c);
   c.pending = true;
 }
 
@@ -212,6 +212,10 @@ MPI_Comm couplet_comm(const couplet_client* c) { return c->comm; }
 void couplet_vertices(couplet_client* c, int dimension, int n, const double* xyz) {
   c->surface.dim = dimension;
   c->surface.xyz.assign(xyz, xyz + 3 * n);
+}
+
+void couplet_surfaces(couplet_client* c, const int* surface_of_vertex) {
+  c->surface.surface.assign(surface_of_vertex, surface_of_vertex + c->surface.vertices());
 }
 
 void couplet_faces(couplet_client* c, int n, const double* centres, const double* areas, const int64_t* first,

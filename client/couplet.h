@@ -21,7 +21,8 @@ extern "C" {
 
 typedef struct couplet_client couplet_client;
 
-enum couplet_place { COUPLET_VERTICES = 0, COUPLET_FACES = 1 };
+/* COUPLET_SURFACE + s: the vertices of surface s alone (couplet_surfaces). */
+enum couplet_place { COUPLET_VERTICES = 0, COUPLET_FACES = 1, COUPLET_SURFACE = 2 };
 
 enum couplet_event {
   COUPLET_END = 0,    /* the job is over */
@@ -30,7 +31,8 @@ enum couplet_event {
   COUPLET_ACCEPT = 4, /* what was solved last is state n now */
   COUPLET_OUTPUT = 5, /* write fields for couplet_time, number couplet_output */
   COUPLET_SAVE = 6,   /* save state n in the file couplet_checkpoint */
-  COUPLET_LOAD = 7    /* load it from there */
+  COUPLET_LOAD = 7,   /* load it from there */
+  COUPLET_START = 9   /* only after initial values of its own: couplet_read has those of the others */
 };
 
 /* Takes part in the start of the job, collective over all its processes; calls MPI_Init if the program has not, with the
@@ -44,6 +46,9 @@ MPI_Comm couplet_comm(const couplet_client* c);
 /* The interface, before the first couplet_next: what this process owns. `xyz`: 3 n coordinates [m], reference
  * configuration. `dimension`: 2 (z = 0, areas per metre of depth) or 3. */
 void couplet_vertices(couplet_client* c, int dimension, int n, const double* xyz);
+/* Vertices may belong to several surfaces, each with data of its own, which are carried between that surface's vertices
+ * alone: of each vertex the number of its surface, from 0. Values are given and taken for all vertices all the same. */
+void couplet_surfaces(couplet_client* c, const int* surface_of_vertex);
 /* `areas`: vectors out of this participant [m^2]. `first` (n + 1) and `vertices` (first[n]): the vertices of face f
  * are vertices[first[f]] up to vertices[first[f + 1]], positions in the list of all processes' vertices, process by
  * process; both may be NULL, there is no work in the coupler's balance then. */
@@ -63,7 +68,8 @@ const char* couplet_checkpoint(const couplet_client* c); /* SAVE, LOAD: folder o
 /* SOLVE: values of a datum that is taken, place by place, this process's; NULL if nobody has given it yet or this
  * process owns no such place. Valid until the next couplet_next. */
 const double* couplet_read(const couplet_client* c, const char* datum);
-/* SOLVE: values of a datum that is given. */
+/* SOLVE: values of a datum that is given. Before the first couplet_next: its value before the first step; all data or
+ * none, by all processes. */
 void couplet_write(couplet_client* c, const char* datum, const double* values);
 /* SOLVE: instead of writing: the step could not be solved; `halving_helps`: a shorter one may be. */
 void couplet_fail(couplet_client* c, const char* why, int halving_helps);

@@ -113,6 +113,9 @@ std::vector<char> Surface::cut_out(const Peer& p) const {
     out.integers({0, first[f + 1] - first[f]});  // part, number of vertices
     for (std::int64_t k = first[f]; k < first[f + 1]; ++k) out.integers({corners[std::size_t(k)]});
   }
+  out.integers({surface.empty() ? 0 : std::int64_t(p.vertices)});
+  for (std::size_t v = p.first_vertex; !surface.empty() && v < p.first_vertex + p.vertices; ++v)
+    out.integers({surface[v]});
   return out.bytes();
 }
 
@@ -172,7 +175,7 @@ Command unpack(const std::vector<char>& head) {
                              " of the protocol, this client version " + std::to_string(version) + ".");
   Command c;
   c.op = in.integer();
-  if (c.op < 1 || c.op > 8)
+  if (c.op < 1 || c.op > 9)
     throw std::runtime_error("the coupler sent command " + std::to_string(c.op) +
                              ", which is unknown to this client.");
   c.time = in.real();

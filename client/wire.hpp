@@ -19,11 +19,11 @@
 
 namespace couplet::wire {
 
-constexpr std::int64_t version = 4, command_mark = 0x434f4d4d, reply_mark = 0x5245504c,
+constexpr std::int64_t version = 5, command_mark = 0x434f4d4d, reply_mark = 0x5245504c,
                        hello_mark = 0x434f55504c4554;
 constexpr int join_tag = 100, command_tag = 101, reply_tag = 102, input_tag = 103, places_tag = 104,
               output_tag = 105;
-enum Operation : std::int64_t { initialise = 1, begin = 2, solve = 3, accept = 4, finalise = 8 };
+enum Operation : std::int64_t { initialise = 1, begin = 2, solve = 3, accept = 4, finalise = 8, start = 9 };
 
 struct Datum {
   std::string name, unit;
@@ -43,6 +43,7 @@ struct Surface {
   int dim = 3;
   std::vector<double> xyz, centres, areas;
   std::vector<std::int64_t> first{0}, corners;
+  std::vector<int> surface;  // of each vertex; empty: all are of one
   std::size_t vertices() const { return xyz.size() / 3; }
   std::size_t faces() const { return centres.size() / 3; }
   std::vector<char> cut_out(const Peer& p) const;

@@ -91,7 +91,8 @@ void Coupler::initialise() {
   enter_(Phase::initialise, {});
   std::vector<Interface> interfaces = initialise_all(everyone());
   for (std::size_t i = 0; i < partners_.size(); ++i)
-    sides_.emplace_back(comm_, partners_[i].name(), std::move(interfaces[i]));
+    sides_.emplace_back(comm_, partners_[i].name(), std::move(interfaces[i])).surfaces =
+        std::move(partners_[i].surfaces);
   check_roles(parameters_, sides_);
   links_.emplace(comm_, sides_, parameters_.mapping);
   for (const std::string& note : links_->notes()) log::info("{}", note);
@@ -104,7 +105,7 @@ void Coupler::initialise() {
   audit_.emplace(comm_, sides_, *links_);
   if (simulation_.error_estimate && schedule_.iterates) errors_.emplace();
   mechanics_.emplace(comm_, sides_, *links_, labels_of(parameters_, partners_));
-  if (unknown_->start_at_rest(given_)) history_.now = unknown_->gather(given_);
+  exchange_initial_values();
   volume_level_.emplace(comm_, sides_, *links_, schedule_, group_);
   if (volume_level_->empty()) volume_level_.reset();
   if (!parameters_.watch.empty()) watched_.emplace(comm_, sides_, parameters_.watch);
@@ -183,6 +184,11 @@ void Coupler::solve(const Step& step) {
     };
     last_ =
         solve_fixed_point(std::move(last_.x), map, measure, parameters_.convergence, *accelerator_, observer);
+    if (!last_.converged)
+      log::warn(
+          "the step from t = {:g} s is accepted after {} coupling iterations with a relative residual of {:.2e} ({:.1e} is "
+          "asked for): `convergence.at-max-iterations: accept`.",
+          step.time, last_.iterations, last_.residual.relative, parameters_.convergence.relative);
   }
   give_back(std::exchange(given_, std::move(outputs)));
   last_dt_ = step.dt;

@@ -71,6 +71,8 @@ class Coupler {
   std::size_t index_of(const std::string& name) const;
   std::vector<Partner*> everyone();
   void initialise();
+  /// Values before the first step: from those that gave any, to those, and as the first guess.
+  void exchange_initial_values();
   void load();
   void save(const std::filesystem::path& folder);
   std::optional<StepFailure> attempt(const Step& step);

@@ -38,6 +38,20 @@ void Coupler::answer(std::size_t i, Exchange& given, bool move_mesh) {
   data_guard_->answered(i, taken_[i], given);
 }
 
+void Coupler::exchange_initial_values() {
+  for (std::size_t i = 0; i < partners_.size(); ++i) {
+    given_[i] = std::move(partners_[i].initial);
+    require_finite(comm_, given_[i], sides_[i].interface, sides_[i].interface.gives, partners_[i].name());
+  }
+  const std::vector<Exchange> initial = given_;
+  for (std::size_t i = 0; i < partners_.size(); ++i) {
+    if (initial[i].empty()) continue;
+    partners_[i].send({Op::start, {}, links_->input(i, initial), 0, -1, ""});
+    partners_[i].receive();
+  }
+  if (unknown_->complete(given_) || unknown_->start_at_rest(given_)) history_.now = unknown_->gather(given_);
+}
+
 /// After `i` has answered, where fluids are closed.
 void Coupler::hold_volume(std::size_t i, std::vector<Exchange>& known) {
   volume_level_->loaded(i, taken_[i], known[i]);

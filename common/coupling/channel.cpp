@@ -28,7 +28,7 @@ void MpiChannel::send(const Command& command) {
   const std::string what = fmt::format("'{}' to take {}", name_, couplet::name(pending_));
   const int rank = comm_rank(comm_);
   if (rank == 0) send_bytes(peers_, 0, command_tag, pack(command), what);
-  if (command.op != Op::solve || command.data.empty()) return;
+  if ((command.op != Op::solve && command.op != Op::start) || command.data.empty()) return;
   const auto data = present(command.data, takes_, name_);
   SendAll sending(peers_);
   for (const auto& [other, slice] : exchanged(mine_, rank, theirs_))
@@ -108,17 +108,21 @@ Reply MpiChannel::receive() {
              even_starts(theirs_.faces.back(), comm_size(comm_))};
     dim_ = reply.interface.dim;
     takes_ = reply.interface.takes, gives_ = reply.interface.gives;
-    receive_places(reply.interface);
+    receive_places(reply.interface, reply.surfaces);
   }
-  if (pending_ == Op::solve) receive_values(reply.data);
+  if (pending_ == Op::solve || pending_ == Op::initialise) receive_values(reply.data);
   return reply;
 }
 
-void MpiChannel::receive_places(Interface& interface) {
+void MpiChannel::receive_places(Interface& interface, Surfaces& surfaces) {
   for (const auto& [other, slice] : exchanged(mine_, comm_rank(comm_), theirs_))
-    put_back(receive_bytes(peers_, other, places_tag, "the interface geometry of '" + name_ + "'"),
-             interface);
+    put_back(receive_bytes(peers_, other, places_tag, "the interface geometry of '" + name_ + "'"), interface,
+             surfaces.of_vertex);
   check_places(interface, mine_, comm_rank(comm_), name_);
+  if ((!surfaces.of_vertex.empty() || !surfaces.takes.empty() || !surfaces.gives.empty()) &&
+      surfaces.of_vertex.size() != interface.vertices.size())
+    throw Error("'{}' gave the surfaces of {} of the {} vertices of its interface.", name_,
+                surfaces.of_vertex.size(), interface.vertices.size());
   if (interface.face_vertices.empty()) interface.face_offset.clear();  // not known
 }
 

@@ -42,7 +42,7 @@ class MpiChannel final : public Channel {
 
  private:
   Reply unpacked(const std::vector<char>& head, Cut& cut) const;
-  void receive_places(Interface& interface);
+  void receive_places(Interface& interface, Surfaces& surfaces);
   void receive_values(Exchange& data);
 
   std::string name_;

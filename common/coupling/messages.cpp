@@ -75,6 +75,8 @@ const char* name(Op op) {
       return "load";
     case Op::finalise:
       return "finalise";
+    case Op::start:
+      return "start";
   }
   return "unknown command";
 }
@@ -100,7 +102,7 @@ std::vector<char> pack(const Command& c) {
 Command unpack_command(std::span<const char> bytes) {
   Unpacker in(bytes, command_mark, "command");
   Command c;
-  c.op = Op(in.integer(1, 8, "the operation"));
+  c.op = Op(in.integer(1, 9, "the operation"));
   c.step.time = in.real();
   c.step.dt = in.real();
   c.step.scheme = Scheme(in.integer(0, 3, "the scheme"));
@@ -153,8 +155,8 @@ Reply unpack_reply(std::span<const char> bytes, Cut& cut) {
   r.interface.dim = int(in.integer(2, 3, "the dimension"));
   r.anew = in.integer(0, 1, "the flag for a recomputed reply") != 0;
   r.interface.parts = in.names();
-  r.interface.takes = in.data();
-  r.interface.gives = in.data();
+  r.interface.takes = in.data(r.surfaces.takes);
+  r.interface.gives = in.data(r.surfaces.gives);
   cut.vertices = in.cut("vertices");
   cut.faces = in.cut("faces");
   in.finish();
@@ -206,7 +208,7 @@ std::vector<std::span<double>> places_in(Exchange& data, const std::vector<Inter
 }
 
 // Vertices: number, ids, places. Faces: number, ids, centres, areas, parts, numbers of vertices, their
-// positions.
+// positions. Last the surfaces of the vertices, or none.
 std::vector<char> cut_out(const Interface& i, const Slice& s) {
   Packer out;
   out.put(std::int64_t(s.vertices));
@@ -228,10 +230,11 @@ std::vector<char> cut_out(const Interface& i, const Slice& s) {
     for (Index k = i.face_offset[f]; k < i.face_offset[f + 1]; ++k)
       out.put(std::int64_t(i.face_vertices[std::size_t(k)]));
   }
+  out.put(std::int64_t(0));  // our participants have no surfaces of their own
   return out.take();
 }
 
-void put_back(std::span<const char> bytes, Interface& i) {
+void put_back(std::span<const char> bytes, Interface& i, std::vector<int>& surface_of_vertex) {
   Unpacker in(bytes, "description of an interface");
   for (std::size_t n = in.count(4); n > 0; --n) {
     i.vertex_ids.push_back(in.integer());
@@ -248,6 +251,8 @@ void put_back(std::span<const char> bytes, Interface& i) {
       i.face_vertices.push_back(Index(in.integer(0, most, "a vertex of a face")));
     i.face_offset.push_back(Index(i.face_vertices.size()));
   }
+  for (std::size_t n = in.count(1); n > 0; --n)
+    surface_of_vertex.push_back(int(in.integer(0, most_surfaces, "the surface of a vertex")));
   in.finish();
 }
 

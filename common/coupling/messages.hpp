@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ enum class Op : std::int64_t {
   save = 6,
   load = 7,
   finalise = 8,
+  start = 9,
 };
 const char* name(Op op);
 
@@ -29,10 +31,17 @@ const char* name(Op op);
 struct Command {
   Op op = Op::initialise;
   Step step;           ///< begin_step
-  Exchange data;       ///< solve: the input, this rank's entries
+  Exchange data;       ///< solve, start: the input, this rank's entries
   double time = 0;     ///< accept_step, write_output: the accepted time t^{n+1} [s]
   int output = -1;     ///< accept_step, write_output: number of the output that is due; -1: none
   std::string folder;  ///< save, load: of the checkpoint, with <name>.h5; finalise: why the run failed
+};
+
+/// Vertices that belong to surfaces of their own (a guest's meshes), and which data are theirs alone.
+struct Surfaces {
+  std::vector<int> of_vertex{};  ///< of this rank; empty: there are no such surfaces
+  std::map<std::string, int> takes{},
+      gives{};  ///< by datum at vertices; one that is not here is at all of them
 };
 
 /// Participant to coupler. Every command has exactly one reply.
@@ -47,9 +56,10 @@ struct Reply {
   double seconds = 0;                                             ///< spent on the command
   double suggested_dt = std::numeric_limits<double>::infinity();  ///< initialise, accept_step, load
   StepReport report;                                              ///< accept_step
-  Exchange data;                                                  ///< solve: the output, this rank's entries
-  bool anew = false;                                              ///< solve: Participant::answered_anew()
-  Interface interface;                                            ///< initialise: this rank's entries
+  Exchange data;        ///< solve: the output, initialise: values before the first step; this rank's entries
+  bool anew = false;    ///< solve: Participant::answered_anew()
+  Interface interface;  ///< initialise: this rank's entries
+  Surfaces surfaces;    ///< initialise
 };
 
 /// How a participant's surface is cut over its ranks: part of the reply to initialise.
@@ -84,9 +94,9 @@ std::vector<Interface::Datum> present(const Exchange& data, const std::vector<In
 
 /// The places themselves, once, the same way.
 std::vector<char> cut_out(const Interface& interface, const Slice& slice);
-void put_back(std::span<const char> bytes, Interface& interface);
+void put_back(std::span<const char> bytes, Interface& interface, std::vector<int>& surface_of_vertex);
 
-inline constexpr std::int64_t protocol_version = 4;
+inline constexpr std::int64_t protocol_version = 5;
 inline constexpr int command_tag = 101, reply_tag = 102, input_tag = 103, places_tag = 104, output_tag = 105;
 
 }  // namespace couplet

@@ -75,6 +75,8 @@ void dispatch(const Command& command, Participant& participant, const std::strin
     }
     case Op::finalise:
       return;
+    case Op::start:  // is for those that give values before the first step
+      break;
   }
   throw Error("The coupler sent command {}, which is unknown to this program.",
               static_cast<long>(command.op));

@@ -15,7 +15,7 @@
 namespace couplet {
 
 inline constexpr std::int64_t largest_integer = std::numeric_limits<std::int64_t>::max();
-inline constexpr std::int64_t most_sub_steps = 1000000;
+inline constexpr std::int64_t most_sub_steps = 1000000, most_surfaces = 1000;
 
 /// The one reader of messages between programs, of which a guest's may hold anything: every length is compared with the
 /// bytes that are there before anything is made of it, every number with what it may be. Throws Error. messages.cpp
@@ -88,13 +88,15 @@ class Unpacker {
     for (std::size_t n = count(1); n > 0; --n) data[name()];
     return data;
   }
-  std::vector<Interface::Datum> data() {
+  /// `surfaces`: of data at the vertices of one surface alone (place 2 + surface).
+  std::vector<Interface::Datum> data(std::map<std::string, int>& surfaces) {
     std::vector<Interface::Datum> list;
     for (std::size_t n = count(4); n > 0; --n) {
       Interface::Datum datum{name(), "", Interface::Place::vertices};
       datum.unit = name();
-      datum.place = integer(0, 1, "the location of a datum") == 0 ? Interface::Place::vertices
-                                                                  : Interface::Place::faces;
+      const std::int64_t place = integer(0, 2 + most_surfaces, "the location of a datum");
+      datum.place = place == 1 ? Interface::Place::faces : Interface::Place::vertices;
+      if (place >= 2) surfaces[datum.name] = int(place - 2);
       datum.components = static_cast<int>(integer(0, 9, "the number of components of a datum"));
       list.push_back(datum);
     }

@@ -35,7 +35,11 @@ FixedPointResult solve_fixed_point(Iterate x, const FixedPointMap& map, const Re
     observer(k, result.residual, accelerator.relaxation());
     if (!std::isfinite(result.residual.absolute))
       throw SolveFailure("the interface values are not finite after {} coupling iterations.", k);
-    if (std::ranges::all_of(residuals, [&](const Residual& r) { return converged(r, parameters); })) {
+    result.converged =
+        std::ranges::all_of(residuals, [&](const Residual& r) { return converged(r, parameters); });
+    const bool as_it_is =
+        k == parameters.max_iterations && parameters.at_maximum == ConvergenceParameters::AtMaximum::accept;
+    if ((result.converged && k >= parameters.min_iterations) || as_it_is) {
       accelerator.accept(x, image);
       result.x = std::move(x);
       result.image = std::move(image);

@@ -25,6 +25,7 @@ struct FixedPointResult {
   Iterate x, image;  ///< of the last pass: x and H(x)
   Residual residual;
   int iterations = 0;
+  bool converged = true;  ///< false: accepted as it is
 };
 
 /// x = H(x) by passes and accelerated updates from the guess x, until the residual of every unknown is below

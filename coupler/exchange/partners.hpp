@@ -18,6 +18,8 @@ struct Partner {
   double seconds_since_accepted = 0;
   StepReport report;  ///< of the last accepted step
   double advised_dt = 0;
+  Surfaces surfaces;  ///< of its vertices
+  Exchange initial;   ///< values before the first step that it gave at its start; none: it gave no values
 
   const std::string& name() const { return channel->name(); }
   void send(Command&& command) { send(command); }
@@ -33,7 +35,7 @@ struct Partner {
 /// The command to everyone at once, then all replies; failures are collected and thrown together as one
 /// SolveFailure.
 void ask_all(const std::vector<Partner*>& partners, const Command& command);
-/// The interface of each, in their order.
+/// The interface of each, in their order; their initial values go to the partners.
 std::vector<Interface> initialise_all(const std::vector<Partner*>& partners);
 /// Last words, one after the other, so that they do not mix; what each knows of its error. `problem`: why the run stopped before its
 /// end; empty: it did not.

@@ -33,6 +33,8 @@ struct PointSet {
   std::vector<GlobalIndex> ids{};        ///< the same on any number of ranks: decide between equals
   Starts starts{};                       ///< of the whole list
   Interface::Place place = Interface::Place::vertices;
+  bool own_surface =
+      false;  ///< a surface of their own among those of `surface`: what goes by faces does not see it
 };
 /// Fills in positions, ids and starts of a list that lives on one rank.
 PointSet whole_set(PointSet set);

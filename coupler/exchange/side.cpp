@@ -35,4 +35,26 @@ PointSet Side::places(Interface::Place place) const {
   return set;
 }
 
+PointSet Side::places_of(const Interface::Datum& datum, const std::map<std::string, int>& surface_of) const {
+  PointSet all = places(datum.place);
+  const auto surface = surface_of.find(datum.name);
+  if (surface == surface_of.end()) return all;
+  PointSet part{all.what + " on the mesh of '" + datum.name + "'",
+                {},
+                {},
+                all.surface,
+                {},
+                {},
+                all.starts,
+                all.place,
+                true};
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    if (surfaces.of_vertex[i] != surface->second) continue;
+    part.points.push_back(all.points[i]);
+    part.positions.push_back(all.positions[i]);
+    part.ids.push_back(all.ids[i]);
+  }
+  return part;
+}
+
 }  // namespace couplet

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "common/coupling/participant.hpp"
+#include "common/coupling/messages.hpp"
 #include "coupler/exchange/search.hpp"
 
 namespace couplet {
@@ -16,6 +16,7 @@ struct Side {
   std::string name;
   Interface interface;
   Starts vertices, faces;
+  Surfaces surfaces;
 
   /// Collective; fills in ids where there are none.
   Side(MPI_Comm comm, std::string name, Interface interface);
@@ -24,8 +25,12 @@ struct Side {
   }
   /// All places of a kind.
   PointSet places(Interface::Place place) const;
+  /// Those where a datum is given, or taken.
+  PointSet places_given(const Interface::Datum& datum) const { return places_of(datum, surfaces.gives); }
+  PointSet places_taken(const Interface::Datum& datum) const { return places_of(datum, surfaces.takes); }
 
  private:
+  PointSet places_of(const Interface::Datum& datum, const std::map<std::string, int>& surface_of) const;
   std::size_t rank_ = 0;
 };
 

@@ -58,7 +58,7 @@ void check_same(const Datum& wanted, const Side& taker, const Datum& given, cons
 }
 
 PointSet part_of(const PointSet& set, const std::vector<std::size_t>& choice, std::size_t chosen) {
-  PointSet part{set.what, {}, {}, set.surface, {}, {}, set.starts, set.place};
+  PointSet part{set.what, {}, {}, set.surface, {}, {}, set.starts, set.place, set.own_surface};
   for (std::size_t i = 0; i < set.points.size(); ++i) {
     if (choice[i] != chosen) continue;
     part.points.push_back(set.points[i]);
@@ -108,7 +108,7 @@ PointSet share_of(MPI_Comm comm, const PointSet& places, const Datum& given, std
   std::size_t here = 0;
   for (const std::size_t other : takers) {
     if (other == t) here = theirs.size();
-    theirs.push_back(sides[other].places(find(sides[other].interface.takes, given.name)->place));
+    theirs.push_back(sides[other].places_taken(*find(sides[other].interface.takes, given.name)));
   }
   const auto taker_of =
       nearest_of(comm, places, theirs,
@@ -183,11 +183,11 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
   for (std::size_t t = 0; t < sides.size(); ++t)
     for (const Datum& wanted : sides[t].interface.takes) {
       const std::vector<Source> sources = sources_of(wanted, t, sides);
-      const PointSet to = sides[t].places(wanted.place);
+      const PointSet to = sides[t].places_taken(wanted);
       std::vector<PointSet> from;
       for (const auto& [g, given] : sources) {
         check_same(wanted, sides[t], *given, sides[g]);
-        from.push_back(sides[g].places(given->place));
+        from.push_back(sides[g].places_given(*given));
       }
       const std::string both =
           sources.size() < 2
@@ -202,7 +202,8 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
         PointSet mine = from[s];
         const auto takers = is_own(wanted) ? std::vector<std::size_t>{t} : takers_of(*given, sides);
         if (is_amount(*given) && takers.size() > 1) mine = share_of(comm, mine, *given, g, t, takers, sides);
-        const bool whole = sources.size() == 1 && !(is_amount(*given) && takers.size() > 1);
+        const bool own = to.own_surface || mine.own_surface;
+        const bool whole = sources.size() == 1 && !own && !(is_amount(*given) && takers.size() > 1);
         const auto same = std::ranges::find_if(links_, [&, g = g, given = given](const Link& l) {
           return whole && l.whole && l.giver == g && l.taker == t && l.datum.place == given->place &&
                  l.to == wanted.place && of_one_kind(l.datum, *given);
@@ -215,7 +216,7 @@ Links::Links(MPI_Comm comm, const std::vector<Side>& sides, const MappingParamet
         }
         const auto kind = is_amount(*given) ? Mapping::Kind::conservative : Mapping::Kind::consistent;
         const PointSet theirs = part_of(to, giver_of, s);
-        auto map = walls.of(g, t, *given, mine, theirs);
+        auto map = own ? nullptr : walls.of(g, t, *given, mine, theirs);
         if (!map)
           map = std::make_shared<const Mapping>(comm, kind, mine, theirs,
                                                 is_own(wanted) ? MappingParameters{} : mapping);

@@ -134,10 +134,11 @@ std::vector<Transfer::Entry> second_order(MPI_Comm comm, Mapping::Kind kind, con
   const int dim = from.surface != nullptr ? from.surface->dim : 3;
   const std::size_t k = dim == 2 ? (projection ? 3 : 5) : (projection ? 5 : 10);
   const bool consistent = kind == Mapping::Kind::consistent;
-  if (!consistent && from.surface && to.surface && Surroundings(comm, *from.surface).has_corners() &&
-      Surroundings(comm, *to.surface).has_corners())
+  const bool by_faces = !from.own_surface && !to.own_surface;
+  if (!consistent && by_faces && from.surface && to.surface &&
+      Surroundings(comm, *from.surface).has_corners() && Surroundings(comm, *to.surface).has_corners())
     return transposed(faces_to_faces(comm, *to.surface, *from.surface, type));
-  if (consistent && projection && from.surface && from.place == Interface::Place::vertices)
+  if (consistent && projection && by_faces && from.surface && from.place == Interface::Place::vertices)
     return projected(comm, from, to);
   const PointSet &ask = consistent ? to : from, &among = consistent ? from : to;
   const Nearby near = nearby(comm, ask.points, {}, k, among);

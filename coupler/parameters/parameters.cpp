@@ -150,6 +150,18 @@ void declare(config::Section& section, ConvergenceParameters& p) {
   section.value("max-iterations", p.max_iterations)
       .range(1, 10000)
       .doc("maximum number of iterations; a step that needs more fails and is halved");
+  section.value("min-iterations", p.min_iterations)
+      .range(1, 10000)
+      .doc("minimum number of iterations, converged or not");
+  section.check(
+      [&p] { return p.min_iterations <= p.max_iterations ? "" : "it is more than `max-iterations`"; },
+      "min-iterations");
+  using AtMaximum = ConvergenceParameters::AtMaximum;
+  section
+      .choice("at-max-iterations", p.at_maximum, {{"fail", AtMaximum::fail}, {"accept", AtMaximum::accept}})
+      .doc(
+          "after `max-iterations` without convergence: fail: the step is halved; accept: the step is accepted, with a "
+          "warning that reports its residual");
 }
 
 void declare(config::Section& section, MappingParameters& p) {

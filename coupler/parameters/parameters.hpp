@@ -23,7 +23,8 @@ struct AccelerationParameters {
 struct ConvergenceParameters {
   double relative = 1e-5;  // |r|_2 / |H(x)|_2
   double absolute = 0;     // rms of |r| over the vertices [m]
-  int max_iterations = 50;
+  int min_iterations = 1, max_iterations = 50;
+  enum class AtMaximum { fail, accept } at_maximum = AtMaximum::fail;
 };
 
 struct MappingParameters {

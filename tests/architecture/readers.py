@@ -13,6 +13,8 @@ READERS = {
     "client/examples/spring_cylinder.cpp": "an example of a program of somebody else, which reads its own checkpoint",
     "client/transports.cpp": "the client knows nothing of common: the system's settings of MPI",
     "client/wire.cpp": "the client knows nothing of common: fields of messages",
+    "client/precice/configuration.cpp": "the first lines of a case, which name the XML that it was made of",
+    "client/precice/xml.cpp": "the client knows nothing of common: the one reader of preCICE's configuration in a program",
     "common/app/case/case_keys.cpp": "lines of keys.txt, which its set's digest covers; bytes of files for their digest",
     "common/app/watch/fault_injection.cpp": "an environment variable of the tests",
     "common/app/job.cpp": "the lock of an output folder",

@@ -113,7 +113,8 @@ void read_reply(const std::string& bytes) {
 
 void read_places(const std::string& bytes) {
   Interface i;
-  put_back(bytes, i);
+  std::vector<int> surfaces;
+  put_back(bytes, i, surfaces);
   ASSERT_EQ(i.face_offset.size(), i.face_centres.size() + 1);
   ASSERT_EQ(std::size_t(i.face_offset.back()), i.face_vertices.size());
   for (const Vec3& x : i.vertices) ASSERT_TRUE(x.allFinite());

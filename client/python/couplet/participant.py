@@ -17,7 +17,7 @@ import time
 import numpy
 from mpi4py import MPI  # MPI starts here
 
-VERSION, COMMAND, REPLY, HELLO = 4, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
+VERSION, COMMAND, REPLY, HELLO = 5, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
 JOIN_TAG, COMMAND_TAG, REPLY_TAG, INPUT_TAG, PLACES_TAG, OUTPUT_TAG = 100, 101, 102, 103, 104, 105
 EVENTS = {2: "begin", 3: "solve", 4: "accept", 5: "output", 6: "save", 7: "load"}
 INITIALISE, SOLVE, FINALISE = 1, 3, 8
@@ -250,7 +250,7 @@ class Client:
         out += _integers(faces.stop - faces.start)
         for f in range(faces.start, faces.stop):
             out += _integers(f) + _reals(*self._centres[f], *self._areas[f]) + _integers(0) + _list(self._corners[f])
-        return out
+        return out + _integers(0)
 
     def _send_reply(self):
         first = self.operation == INITIALISE

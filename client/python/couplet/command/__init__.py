@@ -17,6 +17,7 @@ SUBCOMMANDS = {
     "check": ("command.check", "finds all mistakes of a case without running it"),
     "explain": ("command.explain", "lists what a case computes and neglects, and its expected cost"),
     "new": ("command.new", "creates your own case from one of the gallery"),
+    "import": ("command.import_precice", "creates a case from a configuration of preCICE"),
     "gallery": ("command.gallery", "lists the cases of the gallery"),
     "docs": ("command.docs", "shows the documentation, searchable, with a gallery of all cases"),
     "plot": ("plot", "plots the results of a run"),

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "session.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+#include "couplet_precice.h"
+
+namespace couplet::dropin {
+
+void end_the_job(const std::string& text) {
+  std::fprintf(stderr, "preCICE interface of Couplet: ERROR: %s\n", text.c_str());
+  std::fflush(nullptr);
+  int up = 0, down = 0;
+  MPI_Initialized(&up);
+  MPI_Finalized(&down);
+  if (up && !down) MPI_Abort(MPI_COMM_WORLD, 1);
+  std::_Exit(1);
+}
+
+couplet_client* joined(const std::string& participant) {
+  static std::map<std::string, couplet_client*> clients;
+  const auto found = clients.find(participant);
+  if (found != clients.end()) return found->second;
+  return clients[participant] = couplet_join(participant.c_str(), "precice");
+}
+
+}  // namespace couplet::dropin
+
+extern "C" MPI_Comm couplet_precice_comm(const char* participant) {
+  return couplet_comm(couplet::dropin::joined(participant));
+}
+
+namespace couplet::dropin {
+
+Session::Session(Configuration c, int rank, int size, void* communicator) : configuration(std::move(c)) {
+  job = joined(configuration.participant);
+  int its_rank = 0, its_size = 0;
+  MPI_Comm_rank(couplet_comm(job), &its_rank);
+  MPI_Comm_size(couplet_comm(job), &its_size);
+  if (rank != its_rank || size != its_size)
+    end_the_job("The participant \"" + configuration.participant + "\" was constructed as process " +
+                std::to_string(rank) + " of " + std::to_string(size) + ", but is process " +
+                std::to_string(its_rank) + " of " + std::to_string(its_size) +
+                " of its participant: MPI_COMM_WORLD holds all programs of the job. Take rank and size from "
+                "couplet_precice_comm(\"" +
+                configuration.participant + "\") of couplet_precice.h.");
+  if (communicator != nullptr) {
+    int given = 0;
+    MPI_Comm_size(*static_cast<MPI_Comm*>(communicator), &given);
+    if (given != its_size)
+      end_the_job("The communicator given for the participant \"" + configuration.participant + "\" has " +
+                  std::to_string(given) + " processes, the participant has " + std::to_string(its_size) +
+                  ".");
+  }
+  for (const Configuration::Mesh& m : configuration.meshes)
+    if (m.provided) meshes.push_back({m.name, m.dimensions, {}, {}});
+  initial_data_due = configuration.writes_initial_data();
+  written.resize(configuration.data.size());
+}
+
+Session::~Session() {
+  if (finalised) return;
+  if (!initialised || ongoing)
+    end_the_job("The participant \"" + configuration.participant + "\" ended before the coupling was over." +
+                (last_error.empty() ? "" : " Before that: " + last_error));
+  leave();
+}
+
+void Session::leave() {
+  finalised = true;
+  couplet_leave(job);
+}
+
+Mesh* Session::mesh(const std::string& name) {
+  const auto found =
+      std::find_if(meshes.begin(), meshes.end(), [&](const Mesh& m) { return m.name == name; });
+  return found == meshes.end() ? nullptr : &*found;
+}
+
+std::size_t Session::first_vertex(const std::string& name) const {
+  std::size_t first = 0;
+  for (const Mesh& m : meshes) {
+    if (m.name == name) break;
+    first += std::size_t(m.vertices());
+  }
+  return first;
+}
+
+std::size_t Session::components(const Configuration::Data& d) const {
+  return d.vector ? std::size_t(configuration.mesh(d.mesh)->dimensions) : 1;
+}
+
+const Sample* Session::sample(const Configuration::Data& d) const {
+  for (std::size_t w = 0; w < configuration.wires.size(); ++w)
+    if (!configuration.wires[w].given && &configuration.data[configuration.wires[w].data] == &d)
+      return &samples_[w];
+  return nullptr;
+}
+
+/// Whether sums are kept is the unit's affair on the way: an amount is a force or a heat.
+static const char* unit_of(const Configuration::Wire& w, const Configuration::Data& d) {
+  return !w.conservative ? "1" : d.vector ? "N" : "W";
+}
+
+/// All meshes one after the other as one surface.
+void Session::describe() {
+  std::vector<double> xyz, centres, areas;
+  std::vector<std::int64_t> first{0}, corners;
+  long long mine = 0, before = 0;
+  for (const Mesh& m : meshes) mine += m.vertices();
+  MPI_Exscan(&mine, &before, 1, MPI_LONG_LONG, MPI_SUM, couplet_comm(job));
+  for (const Mesh& m : meshes) {
+    const auto offset = before + std::int64_t(xyz.size() / 3);
+    for (std::size_t f = 0; f < m.faces.size(); ++f) {
+      const auto c = m.centre(f), a = m.area(f);
+      centres.insert(centres.end(), c.begin(), c.end());
+      areas.insert(areas.end(), a.begin(), a.end());
+      for (const std::int64_t v : m.faces[f]) corners.push_back(offset + v);
+      first.push_back(std::int64_t(corners.size()));
+    }
+    xyz.insert(xyz.end(), m.xyz.begin(), m.xyz.end());
+  }
+  couplet_vertices(job, meshes.front().dimensions, int(xyz.size() / 3), xyz.data());
+  if (meshes.size() > 1) {
+    std::vector<int> surface;
+    for (std::size_t i = 0; i < meshes.size(); ++i)
+      surface.insert(surface.end(), std::size_t(meshes[i].vertices()), int(i));
+    couplet_surfaces(job, surface.data());
+  }
+  couplet_faces(job, int(centres.size() / 3), centres.data(), areas.data(), first.data(), corners.data());
+  for (const Configuration::Wire& w : configuration.wires) {
+    const Configuration::Data& d = configuration.data[w.data];
+    const auto own = std::size_t(mesh(d.mesh) - meshes.data());
+    const auto place = meshes.size() > 1 ? couplet_place(COUPLET_SURFACE + own) : COUPLET_VERTICES;
+    (w.given ? couplet_gives : couplet_takes)(job, w.name.c_str(), unit_of(w, d), place, d.vector ? 0 : 1);
+  }
+}
+
+/// What was written, zero where nothing was; `initial`: before the first step, only what the configuration asks for.
+void Session::hand_over(bool initial) {
+  std::size_t all = 0;
+  for (const Mesh& m : meshes) all += std::size_t(m.vertices());
+  for (const Configuration::Wire& w : configuration.wires) {
+    if (!w.given) continue;
+    const Configuration::Data& d = configuration.data[w.data];
+    const std::size_t n = components(d);
+    std::vector<double> values(n * all);
+    const std::vector<double>& from = written[w.data];
+    if (!initial || w.initialised)
+      std::copy(from.begin(), from.end(), values.begin() + std::ptrdiff_t(n * first_vertex(d.mesh)));
+    couplet_write(job, w.name.c_str(), values.data());
+  }
+}
+
+void Session::begin() {
+  describe();
+  samples_.resize(configuration.wires.size());
+  std::size_t all = 0;
+  for (const Mesh& m : meshes) all += std::size_t(m.vertices());
+  for (std::size_t w = 0; w < samples_.size(); ++w)
+    samples_[w].start.assign(all * components(configuration.data[configuration.wires[w].data]), 0);
+  for (Sample& s : samples_) s.end = s.start;
+  for (std::size_t i = 0; i < written.size(); ++i) {
+    const Configuration::Data& d = configuration.data[i];
+    written[i].resize(components(d) * std::size_t(mesh(d.mesh)->vertices()));
+  }
+  hand_over(true);
+  bool accepted = false;
+  initialised = true;
+  ongoing = wait_for_window(accepted);
+  if (ongoing) take(true);
+  writing_due = ongoing && configuration.implicit;
+  for (auto& values : written) std::fill(values.begin(), values.end(), 0.);
+}
+
+bool Session::wait_for_window(bool& accepted) {
+  for (;;) switch (couplet_next(job)) {
+      case COUPLET_SOLVE:
+        window = couplet_dt(job);
+        at = 0;
+        return true;
+      case COUPLET_END:
+        return false;
+      case COUPLET_START:
+        for (std::size_t w = 0; w < samples_.size(); ++w)
+          if (const auto& wire = configuration.wires[w]; !wire.given)
+            if (const double* values = couplet_read(job, wire.name.c_str()))
+              std::copy_n(values, samples_[w].end.size(), samples_[w].end.begin());
+        break;
+      case COUPLET_ACCEPT:
+        accepted = true;
+        break;
+      case COUPLET_LOAD:
+        end_the_job(
+            "The participant \"" + configuration.participant +
+            "\" cannot continue from a checkpoint: a program on preCICE's interface has no file of its state.");
+      default:
+        break;  // a step begins; outputs and checkpoints are the program's own affair
+    }
+}
+
+void Session::take(bool new_window) {
+  for (std::size_t w = 0; w < samples_.size(); ++w) {
+    const Configuration::Wire& wire = configuration.wires[w];
+    if (wire.given) continue;
+    Sample& s = samples_[w];
+    if (new_window) s.start = s.end;
+    const double* values = couplet_read(job, wire.name.c_str());
+    if (values == nullptr)
+      std::fill(s.end.begin(), s.end.end(), 0.);
+    else
+      std::copy_n(values, s.end.size(), s.end.begin());
+    // What is iterated on is guessed, in the first pass, by its value at the start of the window.
+    if (wire.held || (wire.iterated && new_window)) s.start = s.end;
+  }
+}
+
+void Session::go_on(double dt) {
+  at += dt;
+  window_complete = writing_due = reading_due = false;
+  if (window - at > 1e-12 * window) return;  // within the window: the values at its end go over
+  hand_over(false);
+  for (auto& values : written) std::fill(values.begin(), values.end(), 0.);
+  bool accepted = false;
+  ongoing = wait_for_window(accepted);
+  if (!ongoing) {
+    window_complete = true;
+    return;
+  }
+  if (!accepted && !configuration.implicit)
+    end_the_job("The coupler asks the participant \"" + configuration.participant +
+                "\" to repeat a step of explicit coupling, which it cannot do: give it `sub-steps: {" +
+                configuration.participant + ": 1}` under `coupling`.");
+  take(accepted);
+  window_complete = accepted;
+  writing_due = accepted && configuration.implicit;
+  reading_due = !accepted;
+}
+
+}  // namespace couplet::dropin

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace couplet::dropin {
+
+/// An element of an XML file: its name as written ("data:scalar"), where it stands, what it holds. Texts between
+/// elements are not kept.
+struct Element {
+  std::string name;
+  int line = 0;
+  std::vector<std::pair<std::string, std::string>> attributes;
+  std::vector<Element> children;
+
+  /// Empty if there is none.
+  std::string attribute(const std::string& key) const;
+  std::vector<const Element*> all(const std::string& name) const;
+};
+
+/// The outermost element. Throws precice::Error with file and line.
+Element read_xml(const std::string& file);
+
+}  // namespace couplet::dropin

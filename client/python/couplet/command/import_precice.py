@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Creates a case from a configuration of preCICE: writes the YAML for a job whose participants are programs on preCICE's interface
+(docs/precice.md). The programs still read the XML themselves. Differences are listed. An unsupported element is named with its line,
+and no case is written (exit code 2)."""
+import json
+import os
+import pathlib
+
+from couplet.precice.configuration import Import
+from couplet.precice.elements import read
+from couplet.runs.case import Wrong, expect
+
+
+def declare(parser):
+    parser.add_argument("configuration", type=pathlib.Path, metavar="XML", help="precice-config.xml")
+    parser.add_argument("-o", "--output", type=pathlib.Path, metavar="YAML", help="the case; default: the XML's name with .yaml, beside it")
+    parser.add_argument("--check", action="store_true", help="writes nothing, only lists differences and unsupported elements")
+    parser.add_argument("--force", action="store_true", help="overwrites an existing case")
+
+
+def scalar(value):
+    return value if isinstance(value, str) and value.replace(" ", "").replace(".", "").replace("-", "").isalnum() else json.dumps(value)
+
+
+def yaml_of(node, depth=0):
+    lines = []
+    for key, value in node.items():
+        if isinstance(value, dict) and depth == 0:
+            lines += [f"{key}:", *yaml_of(value, 1), ""]
+        elif isinstance(value, dict):
+            lines.append("  " * depth + f"{scalar(key)}: {{{', '.join(f'{scalar(k)}: {inline(v)}' for k, v in value.items())}}}")
+        else:
+            lines.append("  " * depth + f"{key}: {inline(value)}")
+    return lines
+
+
+def inline(value):
+    return f"[{', '.join(map(scalar, value))}]" if isinstance(value, list) else scalar(value)
+
+
+def text_of(found, file, output):
+    case = {"simulation": {"name": file.resolve().parent.name or "precice", **found.case["simulation"], "output": {"folder": "precice-run", "interval": 0}, "checkpoint": {"interval": 0}},
+            "participants": found.case["participants"], "coupling": found.case["coupling"]}
+    source = os.path.relpath(file, output.parent)
+    lines = [f"# precice-config: {source}", "# A job of programs on preCICE's interface, made by couplet import. Each program is given that file, or this one:",
+             f"#   mpirun -n 1 coupler {output.name} : -n 1 ./program {source} : ...", *(f"# Line {line}: {note}." for line, note in sorted(found.notes))]
+    return "\n".join([*lines, *yaml_of(case)]).rstrip() + "\n"
+
+
+def run(arguments):
+    file = arguments.configuration
+    found = Import(read(file))
+    if found.refusals:
+        raise Wrong("\n".join(f"{file}:{line}: {why}." for line, why in sorted(set(found.refusals))))
+    for line, note in sorted(found.notes):
+        print(f"{file}:{line}: note: {note}.")
+    if arguments.check:
+        return 0
+    output = arguments.output or file.with_suffix(".yaml")
+    expect(arguments.force or not output.exists(), f"{output}: the file exists; --force overwrites it.")
+    output.write_text(text_of(found, file, output))
+    print(f"{output}: a case of {', '.join(found.case['participants'])}. couplet run {output} --with NAME='./program {file.name}' ... starts it")
+    return 0

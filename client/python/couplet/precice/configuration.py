@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The case that a configuration of preCICE asks for, what of it differs here (notes), and what is not supported (refusals), each
+with its line."""
+from couplet.precice.elements import MAPPED, REFUSED, SILENT, WITHOUT_EFFECT, listed
+
+TRUE = ("true", "1", "yes", "on")
+KINDS = {"nearest-neighbor": ("nearest", 0), "nearest-projection": ("projection", 1), "rbf": ("rbf", 2)}
+MEASURES = ("relative-convergence-measure", "absolute-convergence-measure", "absolute-or-relative-convergence-measure")
+ACCELERATIONS = {"constant": "constant", "aitken": "aitken", "IQN-ILS": "iqn-ils", "IQN-IMVJ": "iqn-mvj"}
+
+
+class Import:
+    def __init__(self, root):
+        self.root, self.notes, self.refusals, self.case = root, [], [], {}
+        self.schemes = root.starting("coupling-scheme:")
+        for element in root.walk():
+            self._look_at(element)
+        self._participants()
+        if self.schemes:
+            self._scheme()
+        else:
+            self._refuse(root, "there is no <coupling-scheme:...>")
+        self._mapping()
+
+    def _refuse(self, element, why):
+        self.refusals.append((element.line, why))
+
+    def _note(self, element, text):
+        if text not in [t for _, t in self.notes]:
+            self.notes.append((element.line, text))
+
+    def _look_at(self, element):
+        """One element by itself."""
+        name = element.name
+        if key := listed(name, REFUSED):
+            self._refuse(element, f"<{name}> is not supported: {REFUSED[key]}")
+        elif key := listed(name, WITHOUT_EFFECT):
+            self._note(element, f"<{name}> has no effect here: {WITHOUT_EFFECT[key]}")
+        elif name in MAPPED or name.startswith("mapping:rbf"):
+            self._look_at_attributes(element)
+        elif not listed(name, SILENT):
+            self._refuse(element, f"<{name}> is not known")
+
+    def _look_at_attributes(self, e):
+        if e.name == "receive-mesh" and (e.get("api-access") in TRUE or e.get("direct-access") in TRUE):
+            self._refuse(e, f"direct access to the received mesh '{e.get('name')}' is not supported")
+        if e.name.startswith("mapping:") and not (e.get("from") and e.get("to")):
+            self._refuse(e, f"<{e.name}> without from or to is not supported: just-in-time mapping")
+        if e.get("constraint").startswith("scaled"):
+            self._refuse(e, f"the constraint '{e.get('constraint')}' is not supported")
+        if e.name == "time-window-size" and e.get("method") == "first-participant":
+            self._refuse(e, "time windows by the first participant are not supported")
+        if e.name.startswith("data:") and e.get("waveform-degree", "1") not in ("0", "1"):
+            self._note(e, f"'{e.get('name')}' is read as a line in time within a window, not with waveform-degree {e.get('waveform-degree')}")
+        if e.name == "exchange" and e.get("substeps") in TRUE:
+            self._note(e, f"'{e.get('data')}' goes over with its value at the end of the window, without those of sub-steps")
+
+    # -- who takes part -----------------------------------------------------------------------------------------------
+    def _participants(self):
+        for p in self.root.all("participant"):
+            if not p.all("provide-mesh"):
+                self._refuse(p, f"the participant '{p.get('name')}' provides no mesh, which is not supported")
+            received = {m.get("name") for m in p.all("receive-mesh")}
+            for d in p.all("read-data", "write-data"):
+                if d.get("mesh") in received:
+                    self._refuse(d, f"data on the received mesh '{d.get('mesh')}' are not supported: direct access and just-in-time mapping")
+            sizes = {m.get("dimensions") for m in self.root.all("mesh") if m.get("name") in {q.get("name") for q in p.all("provide-mesh")}}
+            if len(sizes) > 1:
+                self._refuse(p, f"meshes of two and of three dimensions in one participant ('{p.get('name')}') are not supported")
+        self.case["participants"] = {p.get("name"): {"program": "precice"} for p in self.root.all("participant")}
+
+    # -- the scheme ---------------------------------------------------------------------------------------------------
+    def _scheme(self):
+        first = self.schemes[0]
+        kinds = {s.name.split(":")[1] for s in self.schemes}
+        if len(kinds) > 1:
+            self._refuse(self.schemes[1], f"schemes of several kinds together are not supported: {', '.join(sorted(kinds))}")
+        if len(self.schemes) > 1 and "implicit" in first.name:
+            self._refuse(self.schemes[1], "several implicit schemes are not supported; <coupling-scheme:multi> is")
+        implicit = "explicit" not in first.name
+        order = "serial" if "serial" in first.name else "parallel"
+        members = self._members()
+        self.case["simulation"] = self._times()
+        self.case["coupling"] = coupling = {"scheme": "implicit" if implicit else "explicit", "exchange": {"participants": members, "order": order}}
+        if implicit:
+            self._convergence(first, coupling)
+            self._acceleration(first, coupling)
+        else:
+            # The coupler would try steps a second time to judge its own error: these programs cannot repeat one.
+            coupling["sub-steps"] = dict.fromkeys(members, 1)
+            self.case["simulation"]["max-step-halvings"] = 0
+        coupling["predictor"] = {"order": 0}
+
+    def _members(self):
+        """In the order of a step: whoever is first in a scheme before its second."""
+        before, names = [], []
+        for s in self.schemes:
+            pair, list_ = s.one("participants"), [p.get("name") for p in s.all("participant")]
+            if pair:
+                list_ = [pair.get("first"), pair.get("second")]
+                before.append(tuple(list_))
+            names += [n for n in list_ if n not in names]
+        ordered = []
+        while len(ordered) < len(names):
+            free = [n for n in names if n not in ordered and not any(b == n and a not in ordered for a, b in before)]
+            if not free:
+                self._refuse(self.schemes[-1], "the serial schemes have no common order of their participants")
+                return names
+            ordered.append(free[0])
+        return ordered
+
+    def _number(self, element, otherwise=None):
+        try:
+            return float(element.get("value"))
+        except (AttributeError, ValueError):
+            if element is not None:
+                self._refuse(element, f"<{element.name}>: '{element.get('value')}' is no number")
+            return otherwise
+
+    def _times(self):
+        sizes = {self._number(s.one("time-window-size")) for s in self.schemes}
+        if len(sizes) > 1 or None in sizes:
+            self._refuse(self.schemes[0], "one <time-window-size> is expected, the same in all schemes")
+            return {}
+        step, ends = sizes.pop(), []
+        for s in self.schemes:
+            windows, time = self._number(s.one("max-time-windows"), -1), self._number(s.one("max-time"), -1)
+            ends += [e for e in (windows * step if windows > 0 else -1, time) if e > 0]
+        if not ends:
+            self._refuse(self.schemes[0], "neither <max-time> nor <max-time-windows> says when the run ends")
+        if step <= 0:
+            self._refuse(self.schemes[0].one("time-window-size"), f"a time window of {step:g} is not supported")
+        end = min(ends, default=0)
+        return {"end-time": f"{end:.15g} s", "time-step": f"{step:.15g} s"}
+
+    def _convergence(self, scheme, coupling):
+        measures, limits, absolute = scheme.all(*MEASURES), [], []
+        for m in measures:
+            kind = m.name.removesuffix("-convergence-measure")
+            if kind != "absolute":
+                limits.append(float(m.get("limit" if kind == "relative" else "rel-limit", "1e-5")))
+            if kind != "relative":
+                absolute.append(float(m.get("limit" if kind == "absolute" else "abs-limit", "1e-12")))
+                self._note(m, f"<{m.name}> is judged by the root mean square over the vertices, and either limit is enough")
+        if len(set(limits)) > 1 or len(set(absolute)) > 1:
+            self._note(measures[0], "one limit holds for all data that are iterated on: the strictest")
+        if not measures:
+            self._note(scheme, "without a convergence measure each window takes max-iterations")
+        iterations = self._number(scheme.one("max-iterations"), 0)
+        coupling["convergence"] = {"relative": min(limits, default=1e-14)}
+        if absolute:
+            coupling["convergence"]["absolute"] = f"{min(absolute):g} m"
+        if iterations > 0:
+            coupling["convergence"] |= {"max-iterations": int(iterations), "at-max-iterations": "accept"}
+        else:
+            coupling["convergence"]["max-iterations"] = 10000
+        if (least := self._number(scheme.one("min-iterations"), 0)) > 1:
+            coupling["convergence"]["min-iterations"] = int(least)
+
+    def _acceleration(self, scheme, coupling):
+        found = scheme.starting("acceleration:")
+        if not found:
+            coupling["acceleration"] = {"type": "constant", "initial-relaxation": 1}
+            return
+        a = found[0]
+        kind = a.name.split(":")[1]
+        values = {"type": ACCELERATIONS.get(kind, kind)}
+        for element, key, whole in (("relaxation", "initial-relaxation", False), ("initial-relaxation", "initial-relaxation", False),
+                                    ("max-used-iterations", "maximum-columns", True), ("time-windows-reused", "reused-steps", True)):
+            if (e := a.one(element)) and (number := self._number(e)) is not None:
+                values[key] = int(number) if whole else number
+        if (f := a.one("filter")) and f.get("limit"):
+            values["filter"] = float(f.get("limit"))
+            if f.get("type") != "QR2":
+                self._note(f, f"the filter {f.get('type')} is taken as QR2: a column goes by its own size")
+        coupling["acceleration"] = values
+
+    # -- maps ---------------------------------------------------------------------------------------------------------
+    def _mapping(self):
+        kinds = {}
+        for p in self.root.all("participant"):
+            for m in p.starting("mapping:"):
+                for word, kind in KINDS.items():
+                    if m.name.split(":")[1].startswith(word) and not listed(m.name, REFUSED):
+                        kinds[kind] = m
+        if not kinds:
+            return
+        kind = max(kinds, key=lambda k: k[1])
+        if len(kinds) > 1:
+            self._note(kinds[kind], f"maps of several kinds: all go by '{kind[0]}'")
+        self.case.setdefault("coupling", {})["mapping"] = {"type": kind[0]}

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Elements of an XML file with their lines, and what becomes of each element of preCICE's configuration."""
+import xml.parsers.expat
+
+from couplet.runs.case import expect
+
+LARGEST = 4 << 20  # bytes; configurations have a few thousand
+
+
+class Element:
+    def __init__(self, name, attributes, line):
+        self.name, self.attributes, self.line, self.children = name, attributes, line, []
+
+    def get(self, key, otherwise=""):
+        return self.attributes.get(key, otherwise)
+
+    def all(self, *names):
+        return [c for c in self.children if c.name in names]
+
+    def one(self, name):
+        return next(iter(self.all(name)), None)
+
+    def starting(self, *words):
+        return [c for c in self.children if c.name.startswith(words)]
+
+    def walk(self):
+        yield self
+        for child in self.children:
+            yield from child.walk()
+
+
+def read(file):
+    """The outermost element. Document types (and with them entities) are refused."""
+    expect(file.is_file(), f"{file}: this file does not exist.")
+    data = file.read_bytes()
+    expect(len(data) <= LARGEST, f"{file}: {len(data)} bytes are no configuration of preCICE (at most {LARGEST}).")
+    parser, stack, roots = xml.parsers.expat.ParserCreate(), [], []
+
+    def begin(name, attributes):
+        element = Element(name, attributes, parser.CurrentLineNumber)
+        (stack[-1].children if stack else roots).append(element)
+        stack.append(element)
+        expect(len(stack) < 64, f"{file}:{element.line}: elements are nested too deeply.")
+
+    def document_type(*_):
+        expect(False, f"{file}:{parser.CurrentLineNumber}: document types are not read.")
+
+    parser.StartElementHandler, parser.EndElementHandler = begin, lambda _: stack.pop()
+    parser.StartDoctypeDeclHandler = document_type
+    try:
+        parser.Parse(data, True)
+    except xml.parsers.expat.ExpatError as error:
+        expect(False, f"{file}:{error.lineno}: {xml.parsers.expat.errors.messages[error.code]}.")
+    expect(roots[0].name == "precice-configuration", f"{file}:{roots[0].line}: <precice-configuration> of preCICE's version 3 is expected, this is <{roots[0].name}>.")
+    return roots[0]
+
+
+# Mapped by configuration.py, or read by the library itself (meshes, data, who maps what).
+MAPPED = {
+    "precice-configuration", "data:scalar", "data:vector", "mesh", "use-data", "participant", "provide-mesh", "receive-mesh", "write-data", "read-data", "exchange",
+    "mapping:nearest-neighbor", "mapping:nearest-projection", "mapping:rbf", "mapping:rbf-global-direct", "mapping:rbf-global-iterative", "mapping:rbf-pum-direct",
+    "coupling-scheme:serial-explicit", "coupling-scheme:parallel-explicit", "coupling-scheme:serial-implicit", "coupling-scheme:parallel-implicit", "coupling-scheme:multi",
+    "participants", "max-time", "max-time-windows", "time-window-size", "max-iterations", "min-iterations", "relative-convergence-measure", "absolute-convergence-measure",
+    "absolute-or-relative-convergence-measure", "acceleration:constant", "acceleration:aitken", "acceleration:IQN-ILS", "acceleration:IQN-IMVJ", "relaxation",
+    "initial-relaxation", "max-used-iterations", "time-windows-reused", "filter",
+}
+# Has no part in the answer, and no use here.
+SILENT = {"log", "sink", "profiling", "m2n:", "intra-comm:", "master:", "data", "executor:", "imvj-restart-mode"}
+# Has no part in the answer: what there is in its place.
+WITHOUT_EFFECT = {
+    "export:": "`coupling.interface-output: true` writes the data of all interfaces for ParaView",
+    "watch-point": "no watch at a point: `coupling.watch` has integrals", "watch-integral": "`coupling.watch` has integrals over interfaces",
+    "preconditioner": "data of several kinds are scaled once by their first size", "basis-function:": "`rbf` takes a local interpolant through the nearest vertices",
+}
+# What the library and the coupler do not do, by element.
+REFUSED = {
+    "action:": "actions on data", "mapping:nearest-neighbor-gradient": "mapping with gradients of data", "mapping:linear-cell-interpolation": "interpolation inside cells of a volume",
+    "mapping:axial-geometric-multiscale": "mapping between dimensions", "mapping:radial-geometric-multiscale": "mapping between dimensions",
+    "residual-relative-convergence-measure": "convergence against the first residual of a window", "min-iteration-convergence-measure": "a least number of iterations",
+    "coupling-scheme:compositional": "schemes composed by hand", "use-mesh": "preCICE's version 2",
+    "acceleration:broyden": "Broyden's acceleration", "extrapolation-order": "extrapolation of preCICE's version 2",
+}
+
+
+def listed(name, table):
+    """The key of a table that stands for an element, or None; one that ends in a colon stands for all that begin with it."""
+    if name in table:
+        return name
+    return next((key for key in table if key.endswith(":") and name.startswith(key)), None)

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Programs of preCICE's own, unchanged: its tutorials and solver dummies as they were fetched, never in this repository. The folders are
+named by COUPLET_PRECICE_TUTORIALS and COUPLET_PRECICE_DUMMIES (examples/solverdummies); without them the rows say so."""
+import os
+import pathlib
+import re
+import shlex
+import shutil
+
+from validation.job import Bar
+
+PUBLISHED = 223.52, -223.00  # elastic-tube-1d with preCICE: largest and smallest pressure in the middle, 100 steps
+NOTE = "not measured: {} does not name the fetched programs"
+
+
+def folder(name):
+    place = os.environ.get(name)
+    return pathlib.Path(place).resolve() if place and pathlib.Path(place).is_dir() else None
+
+
+def commit_of(place, job):
+    done = job.run(["git", "-C", place, "rev-parse", "--short=8", "HEAD"])
+    return f", commit {done.stdout.strip()}" if done.returncode == 0 else ""
+
+
+def flags(job):
+    lib = job.build / "precice/lib"
+    return [f"-I{job.root / 'client/precice/include'}", f"-L{lib}", "-lprecice", f"-Wl,-rpath,{lib}"]
+
+
+def coupled(job, where, configuration, words):
+    """Runs a job of programs, {name: shell command}; gives all that they print."""
+    case = where / "case.yaml"
+    job.run([job.root / "scripts/couplet", "import", configuration, "-o", case, "--force"], check=True)
+    job.environment |= {"PYTHONPATH": str(job.root / "client/precice/python"), "COUPLET_PRECICE_LIBRARY": str(job.build / "precice/lib/libprecice.so.3")}
+    line = ["mpirun", "--oversubscribe", *(["--allow-run-as-root"] if os.geteuid() == 0 else []), "-n", "1", job.build / "bin/coupler", case]
+    for command in words:
+        line += [":", "-n", "1", "sh", "-c", command]
+    done = job.run(line, cwd=where)
+    if done.returncode:
+        raise RuntimeError((done.stdout + done.stderr).strip().splitlines()[-1][:200])
+    return done.stdout + done.stderr
+
+
+def passes(text):
+    return float(re.search(r"coupling iterations: ([\d.]+) on average", text)[1])
+
+
+# -- elastic-tube-1d ----------------------------------------------------------------------------------------------------
+def middle_pressures(output):
+    values = []
+    for file in output.glob("out_fluid_*.vtk"):
+        lines = [line for line in file.read_text().splitlines() if line.strip()]
+        first = next(i for i, line in enumerate(lines) if line.startswith("SCALARS pressure")) + 2
+        values.append(float(lines[first + 50]))
+    return max(values), min(values)
+
+
+def tube(fluid, solid):
+    def measure(job):
+        source = folder("COUPLET_PRECICE_TUTORIALS")
+        if source is None:
+            return NOTE.format("COUPLET_PRECICE_TUTORIALS"), None
+        where = job.scratch / f"tube-{fluid}-{solid}"
+        shutil.copytree(source / "elastic-tube-1d", where)
+        for side, kind, name in (("fluid", fluid, "FluidSolver"), ("solid", solid, "SolidSolver")):
+            if kind == "cpp":
+                job.run(["g++", "-O2", "-std=c++17", *sorted((where / f"{side}-cpp/src").glob("*.cpp")), "-o", where / f"{side}-cpp/{name}", *flags(job), "-llapack"], check=True)
+        (where / f"fluid-{fluid}/output").mkdir(exist_ok=True)
+        command = lambda side, kind, name: f"cd {shlex.quote(str(where))}/{side}-{kind} && exec {f'./{name}' if kind == 'cpp' else f'/usr/bin/python3 {name}.py'} ../precice-config.xml"  # noqa: E731
+        said = coupled(job, where, where / "precice-config.xml", [command("fluid", fluid, "FluidSolver"), command("solid", solid, "SolidSolver")])
+        high, low = middle_pressures(where / f"fluid-{fluid}/output")
+        off = max(abs(high / PUBLISHED[0] - 1), abs(low / PUBLISHED[1] - 1))
+        return f"{high:.2f}, {low:.2f} ({100 * off:.2f} % off), {passes(said):.2f} passes a step{commit_of(source, job)}", off < 0.005
+    return measure
+
+
+def oscillator(job):
+    source = folder("COUPLET_PRECICE_TUTORIALS")
+    if source is None:
+        return NOTE.format("COUPLET_PRECICE_TUTORIALS"), None
+    where = job.scratch / "oscillator"
+    shutil.copytree(source / "oscillator", where)
+    words = [f"cd {where}/mass-{side.lower()}-python && exec /usr/bin/python3 ../solver-python/oscillator.py Mass-{side}" for side in ("Left", "Right")]
+    said = coupled(job, where, where / "precice-config.xml", words)
+    errors = [float(e) for e in re.findall(r"^0\.0025,([\d.e-]+)", said, flags=re.M)]
+    return f"errors {', '.join(f'{e:.2e}' for e in sorted(errors))} (a line in time; the tutorial asks for degree 3), {passes(said):.2f} passes", None if len(errors) == 2 else False
+
+
+# -- solver dummies -----------------------------------------------------------------------------------------------------
+def dummies(job):
+    source = folder("COUPLET_PRECICE_DUMMIES")
+    if source is None:
+        return NOTE.format("COUPLET_PRECICE_DUMMIES"), None
+    where, ran = job.scratch / "dummies", []
+    shutil.copytree(source, where)
+    commands = {"c++": ["g++", "-std=c++17", where / "cpp/solverdummy.cpp"], "c": ["gcc", where / "c/solverdummy.c"], "fortran": ["gfortran", "-J", where, where / "fortran/solverdummy.f90"]}
+    for kind, command in commands.items():
+        job.run([*command, "-o", where / kind, *flags(job)], check=True)
+    for one, two in (("c++", "c++"), ("c", "c++"), ("c++", "c"), ("fortran", "c++"), ("c++", "fortran")):
+        coupled(job, where, where / "precice-config.xml", [f"exec {where}/{kind} {where}/precice-config.xml {name}" for kind, name in ((one, "SolverOne"), (two, "SolverTwo"))])
+        ran.append(f"{one}/{two}")
+    return f"{', '.join(ran)}: exit code 0", len(ran) == 5
+
+
+# -- configurations -----------------------------------------------------------------------------------------------------
+def configurations(job):
+    source = folder("COUPLET_PRECICE_TUTORIALS")
+    if source is None:
+        return NOTE.format("COUPLET_PRECICE_TUTORIALS"), None
+    files = sorted(f for f in source.rglob("precice-config*.xml") if f.is_file() and not f.is_symlink())
+    valid, refused, wrong = 0, 0, []
+    for file in files:
+        case = job.scratch / "import.yaml"
+        done = job.run([job.root / "scripts/couplet", "import", file, "-o", case, "--force"])
+        if done.returncode == 2 and "not supported" in done.stderr:
+            refused += 1
+        elif done.returncode == 0 and job.run([job.build / "bin/coupler", case, "--check"]).returncode == 0:
+            valid += 1
+        else:
+            wrong.append(file.parent.name)
+    return f"{len(files)} read: {valid} valid cases, {refused} refused by a feature's name{'; wrong: ' + ', '.join(wrong) if wrong else ''}{commit_of(source, job)}", bool(files) and not wrong
+
+
+BARS = [
+    *(Bar(f"elastic-tube-1d of preCICE's tutorials, unchanged, fluid {fluid}, solid {solid}: p(5)", f"{PUBLISHED[0]}, {PUBLISHED[1]} within 0.5 %", tube(fluid, solid), long=True)
+      for fluid, solid in (("cpp", "cpp"), ("cpp", "python"), ("python", "cpp"), ("python", "python"))),
+    Bar("oscillator of the tutorials, unchanged, Newmark, 4 sub-steps", "reported", oscillator),
+    Bar("preCICE's solver dummies in C, C++ and Fortran, unchanged, each against the C++ one", "run to the end", dummies),
+    Bar("couplet import of every precice-config.xml of the tutorials", "a valid case, or refused by the name of the feature", configurations),
+]

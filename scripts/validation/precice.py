@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Bars of programs on preCICE's interface: own ones by the tests, those of others as they were fetched (parts/precice/programs.py)."""
+from validation.job import Bar
+from validation.parts.precice import programs
+from validation.parts.trust.runs import tests
+
+OWN = [
+    Bar("own programs in C++, C, Python and Fortran against each other, serial implicit", "the monolithic trapezoidal rule, 1e-10", tests("^precice_languages$")),
+    Bar("serial and parallel, explicit and implicit, 3 and 2 sub-steps a window, with and without initial data", "the same scheme computed by itself: 1e-13 explicit, 1e-9 implicit", tests("^precice_schemes$")),
+    Bar("1 to 3 processes of each, 1 and 2 of the coupler", "the same motion, 1e-9", tests("^precice_ranks$")),
+    Bar("two meshes of one participant in the same place", "each datum stays on its mesh; sums kept", tests("^precice_meshes$")),
+    Bar("wrong calls, an error that nobody catches, a program that leaves early", "each named; the job ends", tests("^precice_wrong$")),
+    Bar("couplet import: a good configuration and bad ones", "a valid case; each bad one refused with its line", tests("^precice_import$")),
+]
+BARS = [*OWN, *programs.BARS]
+SOURCES = ("client", "coupler", "common/coupling", "tests/coupling/precice", "scripts/validation/parts/precice")

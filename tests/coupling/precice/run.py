@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Programs on preCICE's interface in a job: C++, C, Python and Fortran against each other, all schemes and sub-steps against the same
+scheme computed here, several processes, wrong calls, and the import of configurations.
+Usage: run.py PROJECT BUILD MPIRUN... -- languages | schemes | ranks | meshes | wrong | import"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+project, build = map(pathlib.Path, sys.argv[1:3])
+mpirun, what = sys.argv[3:sys.argv.index("--")], sys.argv[-1]
+sys.path[:0] = [str(project / "client/python")]
+from couplet.command import main  # noqa: E402
+
+here, python = project / "tests/coupling/precice", "/usr/bin/python3"
+environment = dict(os.environ, PYTHONPATH=str(project / "client/precice/python"), COUPLET_PRECICE_LIBRARY=str(build / "precice/lib/libprecice.so.3"))
+programs = {"c++": [build / "bin/tests/precice_oscillators"], "c": [build / "bin/tests/precice_oscillators_c"], "python": [python, here / "oscillators.py"]}
+failed = []
+
+
+def check(claim, holds, detail=""):
+    print(f"{'ok' if holds else 'not ok'}  {claim}  {detail}", flush=True)
+    if not holds:
+        failed.append(claim)
+
+
+EXCHANGES = """
+    <max-time value="{end}" />
+    <time-window-size value="0.1" />
+    <exchange data="Displacement-Left" mesh="Left-Mesh" from="Left" to="Right" initialize="{initialize}" />
+    <exchange data="Displacement-Right" mesh="Right-Mesh" from="Right" to="Left" initialize="{initialize}" />"""
+IMPLICIT = """
+    <max-iterations value="{iterations}" />
+    <relative-convergence-measure limit="1e-12" data="Displacement-Right" mesh="Right-Mesh" />
+    <acceleration:IQN-ILS><data name="Displacement-Right" mesh="Right-Mesh" /><initial-relaxation value="0.5" /></acceleration:IQN-ILS>"""
+
+
+def configuration(scheme, initialize="true", end=1, iterations=50):
+    body = EXCHANGES + (IMPLICIT if "implicit" in scheme else "")
+    sides = "".join(f"""
+  <participant name="{me}">
+    <provide-mesh name="{me}-Mesh" />
+    <receive-mesh name="{other}-Mesh" from="{other}" />
+    <write-data name="Displacement-{me}" mesh="{me}-Mesh" />
+    <read-data name="Displacement-{other}" mesh="{me}-Mesh" />
+    <mapping:nearest-neighbor direction="read" from="{other}-Mesh" to="{me}-Mesh" constraint="consistent" />
+  </participant>""" for me, other in (("Left", "Right"), ("Right", "Left")))
+    meshes = "".join(f'\n  <mesh name="{s}-Mesh" dimensions="2"><use-data name="Displacement-Left" /><use-data name="Displacement-Right" /></mesh>' for s in ("Left", "Right"))
+    return f"""<?xml version="1.0" encoding="UTF-8" ?>
+<!-- pairs of masses -->
+<precice-configuration>
+  <log><sink filter="%Severity% > debug" /></log>
+  <data:scalar name="Displacement-Left" />
+  <data:scalar name="Displacement-Right" />{meshes}{sides}
+  <m2n:sockets acceptor="Left" connector="Right" />
+  <coupling-scheme:{scheme}>
+    <participants first="Left" second="Right" />{body.format(initialize=initialize, end=end, iterations=iterations)}
+  </coupling-scheme:{scheme}>
+</precice-configuration>
+"""
+
+
+def imported(folder, text):
+    """The configuration and, of it, case.yaml in a folder."""
+    (folder / "precice-config.xml").write_text(text)
+    with open(os.devnull, "w") as nothing:
+        out, sys.stdout = sys.stdout, nothing
+        try:
+            code = main(["couplet", "import", str(folder / "precice-config.xml"), "-o", str(folder / "case.yaml"), "--force"])
+        finally:
+            sys.stdout = out
+    check("the configuration is imported", code == 0) if code else None
+
+
+def launch(folder, words, sets=(), ranks=None):
+    """words: of each participant."""
+    command = [*mpirun, "-n", (ranks or {}).get("coupler", 1), build / "bin/coupler", "case.yaml", "-q", *(f"--set={s}" for s in sets)]
+    for name, line in words.items():
+        command += [":", "-n", (ranks or {}).get(name, 1), *line]
+    return subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True, timeout=60, env=environment)
+
+
+def motion(folder, name, ranks=1):
+    """Rows (t, u of the pairs from left to right)."""
+    parts = [np.atleast_2d(np.loadtxt(folder / f"{name}-{r}.txt")) for r in range(ranks)]
+    u = np.hstack([p[:, 1:] for p in parts])
+    return np.column_stack((parts[0][:, 0], u if name == "Left" else u[:, ::-1]))
+
+
+def run(scheme, left="c++", right="c++", steps=(1, 1), ranks=None, initialize="true", sets=(), iterations=50):
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        imported(folder, configuration(scheme, initialize, iterations=iterations))
+        words = {name: [*programs[kind], name, "precice-config.xml", n, *(["parallel"] if ranks else [])]
+                 for name, kind, n in (("Left", left, steps[0]), ("Right", right, steps[1]))}
+        done = launch(folder, words, sets, ranks)
+        if done.returncode:
+            print(done.stdout[-2000:], done.stderr[-2000:])
+        check(f"{scheme}, {left} and {right}, {steps[0]} and {steps[1]} steps a window: runs", done.returncode == 0, done.returncode or "")
+        return {name: motion(folder, name, (ranks or {}).get(name, 1)) for name in words}
+
+
+# -- the same schemes, computed here ------------------------------------------------------------------------------------
+X, SPRING, WINDOW = np.arange(6.0), 15.0, 0.1
+START = {"Left": 1 - 0.1 * X, "Right": 0.3 * X - 0.5}
+STIFFNESS = {"Left": 40 + 4 * X, "Right": 30 + 2 * X}
+
+
+def window(name, state, w_start, w_end, steps):
+    (u, v), h, k = state, WINDOW / steps, STIFFNESS[name] + SPRING
+    at = lambda n: w_start + n / steps * (w_end - w_start)  # noqa: E731
+    for n in range(steps):
+        v_new = (v + h * (SPRING * (at(n) + at(n + 1)) / 2 - k * (u + h / 4 * v))) / (1 + h * h / 4 * k)
+        u, v = u + h / 2 * (v + v_new), v_new
+    return u, v
+
+
+def expected(scheme, steps=(1, 1), initialize="true", windows=10):
+    state = {name: (u, 0 * u) for name, u in START.items()}
+    seen = {name: (u if initialize == "true" else 0 * u) for name, u in START.items()}  # at the start of the window, by the others
+    rows = {name: [] for name in START}
+    for _ in range(windows):
+        end = dict(seen)
+        for _ in range(200 if "implicit" in scheme else 1):
+            held = "explicit" in scheme
+            left = window("Left", state["Left"], end["Right"] if held else seen["Right"], end["Right"], steps[0])
+            taken = left[0] if "serial" in scheme else end["Left"]
+            right = window("Right", state["Right"], taken if held and "parallel" in scheme else seen["Left"], taken, steps[1])
+            end = {"Left": left[0], "Right": right[0]}
+        state, seen = {"Left": left, "Right": right}, end
+        for name, (u, _) in state.items():
+            rows[name].append(u)
+    return {name: np.array(r) for name, r in rows.items()}
+
+
+def apart(found, wanted):
+    return max(np.abs(found[name][:, 1:] - wanted[name]).max() if len(found[name]) == len(wanted[name]) else np.inf for name in wanted)
+
+
+def exact(windows=10):
+    """The two masses of each pair, by their modes."""
+    ends = {"Left": np.zeros((windows, 6)), "Right": np.zeros((windows, 6))}
+    for i in range(6):
+        squares, modes = np.linalg.eigh([[STIFFNESS["Left"][i] + SPRING, -SPRING], [-SPRING, STIFFNESS["Right"][i] + SPRING]])
+        for n in range(windows):
+            ends["Left"][n, i], ends["Right"][n, i] = modes @ (np.cos(np.sqrt(squares) * WINDOW * (n + 1)) * (modes.T @ [START["Left"][i], START["Right"][i]]))
+    return ends
+
+
+# -- the tests ----------------------------------------------------------------------------------------------------------
+def languages():
+    wanted = expected("serial-implicit")
+    pairs = [("c++", "c++"), ("c", "python"), ("python", "c")]
+    with tempfile.TemporaryDirectory() as folder:
+        if shutil.which("gfortran"):
+            made = subprocess.run(["gfortran", "-O1", project / "client/precice/fortran/precice.f90", here / "oscillators.f90", "-o", f"{folder}/oscillators", f"-L{build}/precice/lib",
+                                   "-lprecice", f"-Wl,-rpath,{build}/precice/lib"], cwd=folder, capture_output=True, text=True)
+            check("Fortran's module and program compile", made.returncode == 0, made.stderr[-500:])
+            programs["fortran"] = [f"{folder}/oscillators"]
+            pairs.append(("fortran", "c++"))
+        else:
+            print("skipped: Fortran, there is no gfortran")
+        for left, right in pairs:
+            off = apart(run("serial-implicit", left, right), wanted)
+            check(f"{left} and {right}: the motion of the monolithic trapezoidal rule", off < 1e-10, f"{off:.1e}")
+
+
+def schemes():
+    for scheme in ("serial-explicit", "parallel-explicit", "serial-implicit", "parallel-implicit"):
+        off = apart(run(scheme, steps=(3, 2)), expected(scheme, (3, 2)))
+        check(f"{scheme}: as computed", off < (1e-9 if "implicit" in scheme else 1e-13), f"{off:.1e}")
+    off = apart(run("parallel-explicit", initialize="false"), expected("parallel-explicit", initialize="false"))
+    check("without initial data the first window reads zeros", off < 1e-13, f"{off:.1e}")
+    computed, true = expected("serial-implicit", (20, 20)), exact()
+    off = max(np.abs(computed[name] - true[name]).max() for name in true)
+    check("the scheme computed here is the physics (a line in time within a window)", off < 0.1, f"{off:.1e}")
+    few = apart(run("serial-implicit", iterations=2), expected("serial-implicit"))
+    check("a window is accepted at max-iterations", 1e-9 < few < 0.3, f"{few:.1e} from the converged motion")
+
+
+def ranks():
+    wanted = expected("serial-implicit", (2, 1))
+    for left, right, coupler in ((3, 2, 2), (1, 3, 1)):
+        off = apart(run("serial-implicit", steps=(2, 1), ranks={"Left": left, "Right": right, "coupler": coupler}), wanted)
+        check(f"{left} and {right} processes, coupler on {coupler}: the same motion", off < 1e-9, f"{off:.1e}")
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        imported(folder, configuration("serial-implicit"))
+        done = launch(folder, {name: [*programs["c++"], name, file, 1] for name, file in (("Left", "case.yaml"), ("Right", "./case.yaml"))})
+        check("programs find the configuration by the case", done.returncode == 0, done.stderr[-300:])
+        words = {name: [*programs["c++"], name, "precice-config.xml", 1] for name in ("Left", "Right")}
+        done = launch(folder, words, ranks={"Left": 2})
+        check("rank and size of another communicator are refused", done.returncode != 0 and "was constructed as process 0 of 1, but is process" in done.stderr, done.stderr[-300:])
+
+
+MESHES = """<precice-configuration>
+  <data:scalar name="Pressure" /> <data:vector name="Heat" /> <data:scalar name="Temperature" />
+  <mesh name="Nodes" dimensions="2"><use-data name="Pressure" /><use-data name="Temperature" /></mesh>
+  <mesh name="Centres" dimensions="2"><use-data name="Heat" /></mesh>
+  <mesh name="Solid" dimensions="2"><use-data name="Pressure" /><use-data name="Temperature" /><use-data name="Heat" /></mesh>
+  <participant name="Fluid">
+    <provide-mesh name="Nodes" /> <provide-mesh name="Centres" /> <receive-mesh name="Solid" from="Solid" />
+    <write-data name="Pressure" mesh="Nodes" /> <write-data name="Heat" mesh="Centres" /> <read-data name="Temperature" mesh="Nodes" />
+    <mapping:KIND direction="read" from="Solid" to="Nodes" constraint="consistent" />
+    <mapping:KIND direction="write" from="Centres" to="Solid" constraint="conservative" />
+  </participant>
+  <participant name="Solid">
+    <provide-mesh name="Solid" /> <receive-mesh name="Nodes" from="Fluid" />
+    <read-data name="Pressure" mesh="Solid" /> <read-data name="Heat" mesh="Solid" /> <write-data name="Temperature" mesh="Solid" />
+    <mapping:KIND direction="read" from="Nodes" to="Solid" constraint="consistent" />
+  </participant>
+  <m2n:sockets acceptor="Fluid" connector="Solid" />
+  <coupling-scheme:serial-explicit>
+    <participants first="Fluid" second="Solid" /> <max-time-windows value="5" /> <time-window-size value="0.1" />
+    <exchange data="Pressure" mesh="Nodes" from="Fluid" to="Solid" /> <exchange data="Heat" mesh="Solid" from="Fluid" to="Solid" />
+    <exchange data="Temperature" mesh="Solid" from="Solid" to="Fluid" />
+  </coupling-scheme:serial-explicit>
+</precice-configuration>
+"""
+
+
+def meshes():
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        imported(folder, MESHES.replace("KIND", "nearest-neighbor"))
+        for coupler in (1, 2):
+            done = launch(folder, {name: [python, here / "meshes.py", name, "precice-config.xml"] for name in ("Fluid", "Solid")}, ranks={"coupler": coupler})
+            check(f"two meshes in one place keep their data apart, coupler on {coupler}", done.returncode == 0 and done.stdout.count("has seen what it should") == 2, done.stderr[-800:])
+
+
+SAID = {"unknown participant": '"Middle" is not defined', "no configuration": '"none.xml" cannot be opened', "rank": "The process index is 1", "advance first": "initialize() has to be called",
+        "read first": "cannot be called before initialize()", "unknown mesh": 'The mesh named "Mesh" is unknown', "received mesh": "does not provide the mesh", "coordinates": "2 coordinates and 6 ids",
+        "no vertex": "the vertex id 0 is invalid", "edge": "the vertex id 0 is invalid", "twice in an edge": "stands twice", "initial data": "Initial data has to be written",
+        "initialize twice": "may only be called once", "mesh is locked": "is locked", "unknown data": 'The data "Force" is unknown', "data is read": "does not write the data",
+        "data is written": "does not read the data", "sizes": "1 values where 6 vertices need 6", "id": "the vertex id 6 is invalid", "not finite": "not finite", "read time": "after the end of the time window",
+        "negative read time": "negative", "step": "exceeds the maximum allowed time step size 0.1", "no step": "time step size of 0", "checkpoint": "A checkpoint must be written",
+        "direct access": "not supported", "just-in-time": "just-in-time mapping", "gradients": "gradients of data", "resetMesh": "meshes that change"}
+
+
+def wrong():
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        imported(folder, configuration("serial-implicit"))
+        bad, good = [build / "bin/tests/precice_wrong_calls", "Left", "precice-config.xml"], [*programs["c++"], "Right", "precice-config.xml", 1]
+        done = launch(folder, {"Left": bad, "Right": good})
+        answers = dict(line.split(" | ", 1) for line in done.stdout.splitlines() if " | " in line)
+        for call, text in SAID.items():
+            check(f"wrong call '{call}' is refused", text in answers.get(call, ""), answers.get(call, "no answer"))
+        check("no other call was tried", set(answers) == set(SAID), set(answers) ^ set(SAID))
+        check("an error that nobody catches ends the job", done.returncode != 0 and "time step size of -1" in done.stderr, done.returncode)
+        done = launch(folder, {"Left": [*bad, "leave"], "Right": good})
+        check("a program that leaves early ends the job with its name", done.returncode != 0 and 'The participant "Left" ended before the coupling was over' in done.stderr, done.stderr[-300:])
+        words = {name: [*programs["c++"], name, "precice-config.xml", 1] for name in ("Left", "Right")}
+        imported(folder, configuration("serial-explicit"))
+        done = launch(folder, words, sets=["coupling.scheme=implicit"])
+        check("a case that is not that of the configuration is refused", done.returncode != 0 and "repeat a step of explicit coupling" in done.stderr, done.stderr[-300:])
+
+
+GOOD = configuration("serial-implicit")
+BAD = {  # replaced, by what, what is said
+    "direct access": ('from="Right" />\n    <write', 'from="Right" api-access="true" />\n    <write', ":11: direct access to the received mesh 'Right-Mesh'"),
+    "just-in-time mapping": ('from="Right-Mesh" to="Left-Mesh" constraint', 'from="Right-Mesh" constraint', "just-in-time mapping"),
+    "actions": ("<m2n:sockets", '<action:summation /><m2n:sockets', "<action:summation> is not supported: actions on data"),
+    "gradients": ("mapping:nearest-neighbor direction", "mapping:nearest-neighbor-gradient direction", "mapping with gradients"),
+    "scaled": ('constraint="consistent"', 'constraint="scaled-consistent-surface"', "the constraint 'scaled-consistent-surface' is not supported"),
+    "another element": ("<m2n:sockets", "<shape><m2n:sockets", ":34: mismatched tag"),
+    "an unknown element": ("<m2n:sockets", "<shape /><m2n:sockets", "<shape> is not known"),
+    "version 2": ("precice-configuration", "solver-interface", "<precice-configuration> of preCICE's version 3 is expected"),
+    "no end": ('<max-time value="1" />', "", "neither <max-time> nor <max-time-windows>"),
+    "windows by the first": ('<time-window-size value="0.1" />', '<time-window-size value="-1" method="first-participant" />', "time windows by the first participant"),
+    "entities": ("<!-- pairs", '<!DOCTYPE a [<!ENTITY b "c">]><!-- pairs', "document types are not read"),
+}
+
+
+def imports():
+    environment["PYTHONPATH"] = str(project / "client/python")
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder) / "precice-config.xml"
+        ask = lambda *more: subprocess.run([python, "-m", "couplet", "import", file, *more], capture_output=True, text=True, env=environment)  # noqa: E731
+        file.write_text(GOOD)
+        done, case = ask(), file.with_suffix(".yaml")
+        check("a case is written beside the configuration", done.returncode == 0 and case.exists(), done.stderr)
+        valid = subprocess.run([build / "bin/coupler", case, "--check"], capture_output=True, text=True)
+        check("the coupler finds it valid", valid.returncode == 0, valid.stderr[-500:])
+        check("it is not written over", ask().returncode == 2)
+        for name, (old, new, said) in BAD.items():
+            file.write_text(GOOD.replace(old, new))
+            done = ask("--force")
+            check(f"{name}: refused with the line", GOOD != file.read_text() and done.returncode == 2 and said in done.stderr, done.stderr[-300:])
+        file.write_text(GOOD.replace("<data:scalar name", '<data:scalar waveform-degree="3" name'))
+        check("what differs is said", "not with waveform-degree 3" in ask("--force").stdout)
+
+
+{"languages": languages, "schemes": schemes, "ranks": ranks, "meshes": meshes, "wrong": wrong, "import": imports}[what]()
+sys.exit(1 if failed else 0)
