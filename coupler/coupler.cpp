@@ -186,8 +186,8 @@ void Coupler::solve(const Step& step) {
         solve_fixed_point(std::move(last_.x), map, measure, parameters_.convergence, *accelerator_, observer);
     if (!last_.converged)
       log::warn(
-          "the step from t = {:g} s is accepted after {} coupling iterations with a relative residual of {:.2e} ({:.1e} is "
-          "asked for): `convergence.at-max-iterations: accept`.",
+          "the step from t = {:g} s is accepted after {} coupling iterations with a relative residual of {:.2e} (limit "
+          "{:.1e}): `convergence.at-max-iterations: accept`.",
           step.time, last_.iterations, last_.residual.relative, parameters_.convergence.relative);
   }
   give_back(std::exchange(given_, std::move(outputs)));

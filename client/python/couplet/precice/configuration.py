@@ -127,7 +127,7 @@ class Import:
             windows, time = self._number(s.one("max-time-windows"), -1), self._number(s.one("max-time"), -1)
             ends += [e for e in (windows * step if windows > 0 else -1, time) if e > 0]
         if not ends:
-            self._refuse(self.schemes[0], "neither <max-time> nor <max-time-windows> says when the run ends")
+            self._refuse(self.schemes[0], "neither <max-time> nor <max-time-windows> states when the run ends")
         if step <= 0:
             self._refuse(self.schemes[0].one("time-window-size"), f"a time window of {step:g} is not supported")
         end = min(ends, default=0)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Programs of preCICE's own, unchanged: its tutorials and solver dummies as they were fetched, never in this repository. The folders are
-named by COUPLET_PRECICE_TUTORIALS and COUPLET_PRECICE_DUMMIES (examples/solverdummies); without them the rows say so."""
+named by COUPLET_PRECICE_TUTORIALS and COUPLET_PRECICE_DUMMIES (examples/solverdummies); without them the rows report that."""
 import os
 import pathlib
 import re
@@ -71,7 +71,7 @@ def tube(fluid, solid):
         said = coupled(job, where, where / "precice-config.xml", [command("fluid", fluid, "FluidSolver"), command("solid", solid, "SolidSolver")])
         high, low = middle_pressures(where / f"fluid-{fluid}/output")
         off = max(abs(high / PUBLISHED[0] - 1), abs(low / PUBLISHED[1] - 1))
-        return f"{high:.2f}, {low:.2f} ({100 * off:.2f} % off), {passes(said):.2f} passes a step{commit_of(source, job)}", off < 0.005
+        return f"{high:.2f}, {low:.2f} ({100 * off:.2f} % off), {passes(said):.2f} passes per step{commit_of(source, job)}", off < 0.005
     return measure
 
 
