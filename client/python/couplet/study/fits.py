@@ -4,7 +4,8 @@
 Least squares over the runs after Eca and Hoekstra, J. Comput. Phys. 262 (2014) 104 (doi 10.1016/j.jcp.2014.01.006), here in h = 1/n:
 value(n) = limit + c n^-p with 0.5 <= p <= the formal order + 0.1, each run weighted alike or by n; where the order ends at the lower border or
 the values turn, also limit + c1 n^-1 + c2 n^-2. The fit with the smallest standard deviation counts. Bound of the error:
-F e(n) + s with F = 1.25, or 3 where the order lies outside its borders; where the standard deviation s is not below the mean change
+F e(n) + s with F = 1.25, or 3 where the order lies below its border or values turn, or 2 where it lies above by over 1 (the formal order
+overestimates there); where the standard deviation s is not below the mean change
 between neighbouring runs, 3 s / change (e(n) + s). The error e(n) is at least the run's own distance from the limit, which holds
 |value - fit| of the paper."""
 import dataclasses
@@ -14,7 +15,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 LOWEST, ABOVE = 0.5, 0.1  # orders: the lowest, and how far above the formal one they may lie
-SAFETY, POOR = 1.25, 3.0
+SAFETY, STEEP, POOR = 1.25, 2.0, 3.0
 DROP = 0.4       # a coarsest run is not used where the standard deviation of the others is below so much of that of all ...
 LEAST = 4        # ... and so many remain, half of all at least
 APART = 1.25     # ratio of two sizes that show a change, at least
@@ -150,8 +151,9 @@ def fit_runs(n, values, formal):
         deviation, limit, terms = 0.0, values[-1] - constant * n[-1]**-formal, [(float(constant), formal)]
     change = (values.max() - values.min()) / (len(n) - 1)
     poor = deviation / change if deviation >= change > 0 else 0.0
-    doubtful = border < 0 or turns(n, values) or len(terms) > 1 or (border > 0 and beyond(n, values, formal + 1))
-    return Fit(float(limit), terms, deviation, POOR if doubtful else SAFETY, poor, len(n))
+    doubtful = border < 0 or turns(n, values) or len(terms) > 1
+    safety = POOR if doubtful else STEEP if border > 0 and beyond(n, values, formal + 1) else SAFETY
+    return Fit(float(limit), terms, deviation, safety, poor, len(n))
 
 
 def diverges(n, values):
