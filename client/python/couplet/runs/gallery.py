@@ -66,7 +66,9 @@ def seconds_of(case, build, limit):
         said = job.communicate()[0]
         timer.cancel()
         ways = re.findall(r"\] t ?= ?([\d.e+-]+)/([\d.e+-]+) s", said)
-        worked = Results(out).costs()["work"] if out.is_dir() else 0
+        results = Results(out)
+        reports = [results.report(name) for name in results.participants()] if out.is_dir() else []
+        worked = sum(r.get("processor-working" if len(reports) > 1 else "processor", 0) for r in reports)
     return f"{float(f'{worked * float(ways[-1][1]) / float(ways[-1][0]):.1g}'):g}" if ways and worked > 0 else ""
 
 
