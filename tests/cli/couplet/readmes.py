@@ -86,7 +86,7 @@ def run(settings, command, root, home):
             for pid in ours if how == "SIGTERM" else ():
                 os.kill(pid, signal.SIGTERM)
             try:
-                job.wait(300)
+                job.wait(900)
             except subprocess.TimeoutExpired:
                 how += ", to no effect"
         left = at_work(job.pid) | in_copy(root)
