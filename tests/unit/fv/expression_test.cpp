@@ -63,7 +63,7 @@ TEST(Expression, names_key_column_and_known_variables_of_an_error) {
                                ::testing::HasSubstr("variables x, y, z [m] and t [s]")));
   EXPECT_THAT(message_of("2*(x + 1"), ::testing::HasSubstr("column 9: a ')' is missing"));
   EXPECT_THAT(message_of("x + + * 2"), ::testing::HasSubstr("at column"));
-  EXPECT_THAT(message_of(""), ::testing::HasSubstr("cannot be read"));
+  EXPECT_THAT(message_of(""), ::testing::HasSubstr("cannot parse"));
 }
 
 TEST(Expression, refuses_values_that_are_not_finite) {
