@@ -170,6 +170,21 @@ TEST(Periodic, patches_that_do_not_fit_are_refused_with_the_place) {
               ::testing::ThrowsMessage<Error>(::testing::HasSubstr("has no match on 'ymax'")));
 }
 
+TEST(BodyForce, that_grows_with_time_moves_a_fluid_without_walls_to_rounding) {
+  FluidParameters p;
+  p.density = 2;
+  p.viscosity = 0.5;
+  p.pressure_tolerance = 1e-12;
+  all_sides(p, 2, boundary(BoundaryType::periodic));
+  p.boundaries["ymin"] = p.boundaries["ymax"] = boundary(BoundaryType::slip);
+  p.body_force = {{"3*t"}, {"0"}};
+  RawMesh raw = make_box(BoxCells::quadrilaterals, {6, 4, 1}, Vec3::Zero(), Vec3::Ones());
+  raw.periodic = {{"xmin", "xmax"}};
+  FluidCase<2> c(MPI_COMM_WORLD, raw, p);
+  c.run(1, 8);  // the middle of a step has the mean of the force
+  EXPECT_LT(c.largest_velocity_error([](const Vec3&) { return Vec3(1.5, 0, 0); }), 1e-9);
+}
+
 TEST(BodyForce, is_balanced_by_the_pressure_of_a_fluid_at_rest) {
   FluidParameters p = duct();
   p.boundaries["xmin"] = p.boundaries["xmax"] = boundary(BoundaryType::no_slip);

@@ -75,6 +75,17 @@ TEST(Slab, two_layers_pass_the_heat_of_resistances_in_series) {
   EXPECT_NEAR(wool.conductivity(323.15), 0.040, 1e-12);
 }
 
+TEST(Slab, a_steady_start_is_linear_in_the_resistance_passed) {
+  const Insulator brick{2000, 800, 1.2}, sand{1500, 800, 0.3};
+  Column column({{brick, 0.4, 4}, {sand, 0.2, 3}}, 2);
+  column.set_steady(600, 300);
+  const double whole = 0.4 / 1.2 + 0.2 / 0.3;
+  for (int i = 0; i < 7; ++i) {
+    const double passed = i < 4 ? 0.1 * (i + 0.5) / 1.2 : 0.4 / 1.2 + 0.2 / 3 * (i - 4 + 0.5) / 0.3;
+    EXPECT_NEAR(column.temperature()[i], 600 - 300 * passed / whole, 1e-9) << i;
+  }
+}
+
 TEST(Slab, keeps_its_books) {
   Column column({{mineral_wool(), 0.3, 10}}, 2);
   column.set_steady(600, 300);

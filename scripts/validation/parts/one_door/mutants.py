@@ -31,7 +31,7 @@ def nine(job):
 
 def campaign(job):
     """Continues the results in the file that COUPLET_MUTANTS names, if one is given (a whole run takes hours of one core)."""
-    file = pathlib.Path(os.environ.get("COUPLET_MUTANTS", job.scratch / "mutants.jsonl"))
+    file = pathlib.Path(os.environ.get("COUPLET_MUTANTS", job.root / "tests/mutants/judged.jsonl"))
     result = tool(job, "campaign.py", job.build, file)
     last = (result.stdout.strip() or result.stderr.strip()).splitlines()[-1]
     counts = re.search(r"(\d+) of (\d+) mutants survive", last)
