@@ -312,6 +312,7 @@ void FluidParticipant<D>::write_output(double time, int) {
     statistics =
         &none.emplace(RunningStatistics<D>::nothing_yet(statistics->cells(), mesh_.boundary.n_owned()));
   output_.write_fields(time, statistics);
+  output_.write_surfaces(time);
   output_.write_samples(time, statistics);
 }
 

@@ -14,6 +14,8 @@ ThermalSolid::ThermalSolid(Mesh mesh, SolidParameters parameters, SolidContext c
       context_(std::move(context)),
       heat_(make_heat(mesh_, parameters_)) {
   for (const auto& [name, probe] : parameters_.probes) probes_.emplace_back(mesh_, name, probe.point);
+  if (!parameters_.output.surfaces.empty())
+    surfaces_.emplace(mesh_, parameters_.output.surfaces, "output.surfaces");
 }
 
 Interface ThermalSolid::initialise() {
@@ -50,6 +52,17 @@ void ThermalSolid::write_output(double time, int) {
   fields_->write(time, mesh_.reference_points,
                  {{"temperature", "K", OutputField::Place::points, 1, points},
                   {"cell-temperature", "K", OutputField::Place::cells, 1, heat_->accepted().cells}});
+  if (surfaces_) write_surfaces(time, points);
+}
+
+void ThermalSolid::write_surfaces(double time, std::span<const double> points) {
+  if (!surfaces_open_) surfaces_->open(context_.output_folder, false, context_.restart_time);
+  surfaces_open_ = true;
+  const std::vector<double> inflow = heat_->boundary_inflow();
+  for (std::size_t i = 0; i < surfaces_->patches().size(); ++i)
+    surfaces_->write(i, time, mesh_.reference_points,
+                     {{"temperature", "K", OutputField::Place::points, 1, points},
+                      {"heat-flux", "W/m^2", OutputField::Place::cells, 1, inflow}});
 }
 
 void ThermalSolid::write_monitors(double time) {

@@ -11,6 +11,7 @@
 #include "common/io/field_writer.hpp"
 #include "common/io/probes/probe.hpp"
 #include "common/io/series.hpp"
+#include "common/io/surface_series.hpp"
 #include "common/mesh/mesh.hpp"
 #include "solid_solver/body/solid_context.hpp"
 #include "solid_solver/parameters/parameters.hpp"
@@ -49,6 +50,7 @@ class ThermalSolid final : public Participant, public EstimatesError {
  private:
   void write_probes(double time);
   void write_heat(double time);
+  void write_surfaces(double time, std::span<const double> points);
 
   const Mesh mesh_;
   const SolidParameters parameters_;
@@ -58,6 +60,8 @@ class ThermalSolid final : public Participant, public EstimatesError {
   Step step_;
   std::vector<Probe> probes_;
   std::optional<FieldWriter> fields_;
+  std::optional<SurfaceSeries> surfaces_;
+  bool surfaces_open_ = false;
   std::optional<Series> probe_series_, heat_series_;  // on rank 0
 };
 

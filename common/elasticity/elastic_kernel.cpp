@@ -58,9 +58,9 @@ double ElasticKernel::product(ElasticPart part, const ElasticField& u, const Ela
   return implementation_->product(part, u, v);
 }
 
-std::vector<Vec3> ElasticKernel::holding_forces(std::span<const double> unknowns,
-                                                std::span<const double> known,
-                                                const ElasticLoads& loads) const {
+std::vector<Wrench> ElasticKernel::holding_forces(std::span<const double> unknowns,
+                                                  std::span<const double> known,
+                                                  const ElasticLoads& loads) const {
   return implementation_->holding_forces(unknowns, known, loads);
 }
 

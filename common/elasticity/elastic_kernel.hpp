@@ -8,6 +8,7 @@
 
 #include "common/base/types.hpp"
 #include "common/elasticity/elasticity.hpp"
+#include "common/elasticity/wrench.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet {
@@ -90,10 +91,10 @@ class ElasticKernel {
                        bool with_stiffness, std::span<double> result) const;
   /// v . A u of this rank, known values included. Of the symmetric kernel alone. Collective.
   double product(ElasticPart part, const ElasticField& u, const ElasticField& v) const;
-  /// Force [N] on the body at each patch, from what the stress leaves there and the loads that act there;
+  /// Force on the body at each patch, from what the stress leaves there and the loads that act there;
   /// this rank's part. Of the symmetric kernel alone. Collective.
-  std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                   const ElasticLoads& loads) const;
+  std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                     const ElasticLoads& loads) const;
   /// The mixed form [boffi2013], whose unknowns are also the mean stresses p [Pa] of the owned cells, with supports
   /// that rest:
   ///   result = K' u + mass_factor M u + B^T p,   defect = B u - (V / K_P) p [m^3],   B u = V theta of the cells,

@@ -34,8 +34,9 @@ class ElasticKernel::Implementation {
   }
   virtual void add_cell_forces(std::span<const double> /*forces*/, std::span<double> /*rhs*/) {}
   virtual void add_pressure(std::span<const double> /*pressure*/, std::span<double> /*rhs*/) {}
-  virtual std::vector<Vec3> holding_forces(std::span<const double> /*unknowns*/,
-                                           std::span<const double> /*known*/, const ElasticLoads& /*loads*/) {
+  virtual std::vector<Wrench> holding_forces(std::span<const double> /*unknowns*/,
+                                             std::span<const double> /*known*/,
+                                             const ElasticLoads& /*loads*/) {
     return {};
   }
   virtual void apply_mixed(std::span<const double> /*unknowns*/, std::span<const double> /*pressure*/,

@@ -12,7 +12,7 @@
 namespace couplet {
 namespace {
 
-constexpr const char* fields_format = "couplet fields";
+constexpr const char *fields_format = "couplet fields", *surface_format = "couplet surface";
 constexpr std::size_t most_fields = 1000;  // of one kind in one output
 
 std::string step_name(int number) { return fmt::format("steps/{:06d}", number); }
@@ -25,12 +25,16 @@ struct Topology {
   std::vector<std::int64_t> values;
 };
 
+std::int64_t code_of(const Mesh& mesh, Index cell) {
+  return mesh.cell_points[cell].size() == 2 ? xdmf::edge_code : xdmf::cell_code(mesh.cell_type[cell]);
+}
+
 Topology make_topology(const Mesh& mesh) {
   const Index n = mesh.cells.n_owned();
   std::int64_t lowest = std::numeric_limits<std::int64_t>::max(), highest = 0;
   for (Index c = 0; c < n; ++c) {
-    lowest = std::min(lowest, xdmf::cell_code(mesh.cell_type[c]));
-    highest = std::max(highest, xdmf::cell_code(mesh.cell_type[c]));
+    lowest = std::min(lowest, code_of(mesh, c));
+    highest = std::max(highest, code_of(mesh, c));
   }
   MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT64_T, MPI_MIN, mesh.comm);
   MPI_Allreduce(MPI_IN_PLACE, &highest, 1, MPI_INT64_T, MPI_MAX, mesh.comm);
@@ -40,7 +44,7 @@ Topology make_topology(const Mesh& mesh) {
     topology.width = xdmf::points_of(lowest);
   }
   for (Index c = 0; c < n; ++c) {
-    if (topology.kind == 0) topology.values.push_back(xdmf::cell_code(mesh.cell_type[c]));
+    if (topology.kind == 0) topology.values.push_back(code_of(mesh, c));
     const auto points = mesh.cell_points[c];
     // VTK's prism stands on its head: the normal of its first triangle looks outwards, ours looks inwards.
     constexpr int prism[6] = {0, 2, 1, 3, 5, 4};
@@ -58,6 +62,7 @@ struct FieldWriter::State {
   std::filesystem::path folder;
   std::string name;
   bool moving;
+  std::string format;
   xdmf::Series index;  // complete on rank 0 only
   int number = 0;      // of the next entry
   hdf5::Rows point_rows, cell_rows;
@@ -91,6 +96,7 @@ struct FieldWriter::State {
     hdf5::write_table(id, path, rows, padded.data());
   }
 
+  void begin(double restart_time);
   void start();
   bool continue_from(double restart_time);
   /// What the file of an earlier run holds up to `restart_time`, and the names of the outputs behind it.
@@ -100,7 +106,7 @@ struct FieldWriter::State {
 
 void FieldWriter::State::start() {
   const hdf5::Handle id = hdf5::create_file(mesh.comm, file());
-  hdf5::write_attribute(id, "format", std::string(fields_format));
+  hdf5::write_attribute(id, "format", format);
   hdf5::write_attribute(id, "ranks", double(comm_size(mesh.comm)));
   const Topology topology = make_topology(mesh);
   const hdf5::Rows rows =
@@ -141,9 +147,10 @@ void FieldWriter::State::read_entries(const hdf5::Reader& file, const std::vecto
 
 std::vector<std::string> FieldWriter::State::read_index(double restart_time) {
   const hdf5::Reader in(file(), "output", "Move it away or restart without it.");
-  if (in.text("/", "format") != fields_format) in.refuse("it is not a field output file");
+  if (in.text("/", "format") != format)
+    in.refuse(format == surface_format ? "it is not a surface output file" : "it is not a field output file");
   const double kind = in.number("/", "kind");
-  const auto known = {0, 4, 5, 6, 7, 8, 9};
+  const auto known = {0, int(xdmf::edge_code), 4, 5, 6, 7, 8, 9};
   if (std::ranges::find(known, kind) == known.end())
     in.refuse(fmt::format("its cells are of the unknown kind {}", kind));
   index = {file().filename().string(), std::int64_t(kind), 0, cell_rows.total, point_rows.total, moving, {}};
@@ -182,23 +189,34 @@ bool FieldWriter::State::continue_from(double restart_time) {
   return true;
 }
 
-FieldWriter::FieldWriter(const Mesh& mesh, std::filesystem::path folder, std::string name, bool moving,
-                         double restart_time)
-    : state_(
-          std::make_unique<State>(State{mesh, std::move(folder), std::move(name), moving, {}, 0, {}, {}})) {
-  State& s = *state_;
-  s.point_rows = hdf5::distribute_rows(mesh.comm, mesh.points.n_owned(), 1);
-  s.cell_rows = hdf5::distribute_rows(mesh.comm, mesh.cells.n_owned(), 1);
+/// Makes the folder; continues the series that is there or begins one. Collective.
+void FieldWriter::State::begin(double restart_time) {
+  point_rows = hdf5::distribute_rows(mesh.comm, mesh.points.n_owned(), 1);
+  cell_rows = hdf5::distribute_rows(mesh.comm, mesh.cells.n_owned(), 1);
   std::string trouble;
   if (comm_rank(mesh.comm) == 0) {
     std::error_code code;
-    std::filesystem::create_directories(s.folder, code);
-    if (!std::filesystem::is_directory(s.folder))
-      trouble = fmt::format("Cannot create the output folder '{}' ({}).", s.folder.string(), code.message());
+    std::filesystem::create_directories(folder, code);
+    if (!std::filesystem::is_directory(folder))
+      trouble = fmt::format("Cannot create the output folder '{}' ({}).", folder.string(), code.message());
   }
   hdf5::throw_together(mesh.comm, trouble);
-  if (std::isnan(restart_time) || !s.continue_from(restart_time)) s.start();
-  if (comm_rank(mesh.comm) == 0) xdmf::write(s.folder / (s.name + ".xdmf"), s.index);
+  if (std::isnan(restart_time) || !continue_from(restart_time)) start();
+  if (comm_rank(mesh.comm) == 0) xdmf::write(folder / (name + ".xdmf"), index);
+}
+
+FieldWriter::FieldWriter(const Mesh& mesh, std::filesystem::path folder, std::string name, bool moving,
+                         double restart_time)
+    : state_(std::make_unique<State>(
+          State{mesh, std::move(folder), std::move(name), moving, fields_format, {}, 0, {}, {}})) {
+  state_->begin(restart_time);
+}
+
+FieldWriter::FieldWriter(const SurfaceMesh& surface, std::filesystem::path folder, std::string name,
+                         bool moving, double restart_time)
+    : state_(std::make_unique<State>(
+          State{surface.mesh, std::move(folder), std::move(name), moving, surface_format, {}, 0, {}, {}})) {
+  state_->begin(restart_time);
 }
 
 FieldWriter::~FieldWriter() = default;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/surface_mesh.hpp"
 #include "common/mesh/mesh.hpp"
 
 namespace couplet {
@@ -28,6 +29,9 @@ class FieldWriter {
  public:
   /// restart_time: entries later than this in an existing series are dropped; NaN starts a new series.
   FieldWriter(const Mesh& mesh, std::filesystem::path folder, std::string name, bool moving,
+              double restart_time);
+  /// Of a surface, which `cells` are the faces of.
+  FieldWriter(const SurfaceMesh& surface, std::filesystem::path folder, std::string name, bool moving,
               double restart_time);
   ~FieldWriter();
   FieldWriter(const FieldWriter&) = delete;

@@ -28,6 +28,8 @@ std::string escaped(const std::string& text) {
 
 const char* kind_name(std::int64_t code) {
   switch (code) {
+    case edge_code:
+      return "Polyline";
     case 4:
       return "Triangle";
     case 5:
@@ -48,12 +50,13 @@ const char* kind_name(std::int64_t code) {
 std::string topology(const Series& s) {
   const std::string size =
       s.kind == 0 ? fmt::format("{}", s.topology_size) : fmt::format("{} {}", s.n_cells, points_of(s.kind));
+  const char* width = s.kind == edge_code ? " NodesPerElement=\"2\"" : "";
   return fmt::format(
-      "        <Topology TopologyType=\"{}\" NumberOfElements=\"{}\">\n"
+      "        <Topology TopologyType=\"{}\" NumberOfElements=\"{}\"{}>\n"
       "          <DataItem Format=\"HDF\" NumberType=\"Int\" Precision=\"8\" "
       "Dimensions=\"{}\">{}:/mesh/cells</DataItem>\n"
       "        </Topology>\n",
-      kind_name(s.kind), s.n_cells, size, escaped(s.file));
+      kind_name(s.kind), s.n_cells, width, size, escaped(s.file));
 }
 
 std::string attribute(const Series& s, const Entry& entry, const Field& field) {
@@ -106,6 +109,7 @@ std::int64_t cell_code(CellType type) {
 }
 
 std::uint64_t points_of(std::int64_t code) {
+  if (code == edge_code) return 2;
   constexpr std::uint64_t points[] = {3, 4, 4, 5, 6, 8};
   return points[code - 4];
 }

@@ -13,6 +13,8 @@ namespace couplet::xdmf {
 
 /// XDMF's own number of a cell type in a mixed topology; its points go in VTK order.
 std::int64_t cell_code(CellType type);
+/// Of the edges of a 2-D mesh's surface.
+inline constexpr std::int64_t edge_code = 2;
 /// Points of a cell with this code.
 std::uint64_t points_of(std::int64_t code);
 

@@ -12,9 +12,9 @@
 #include "common/base/text.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/output/derived.hpp"
+#include "fluid_solver/output/fluxes.hpp"
 
 namespace couplet::fluid {
-namespace {}  // namespace
 
 template <int D>
 FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, FluidContext context)
@@ -23,6 +23,7 @@ FluidOutput<D>::FluidOutput(const Fluid<D>& fluid, FluidContext context)
   for (const Patch& patch : mesh_.patches)
     if (is_wall(fluid.parameters().boundaries.at(patch.name).type)) walls_.push_back(&patch);
   check_coefficients();
+  if (!fluid.parameters().output.surfaces.empty()) surfaces_.emplace(fluid);
 }
 
 template <int D>
@@ -105,11 +106,40 @@ void FluidOutput<D>::write_series(double time) {
   if (!fluid_.parameters().output.coefficients.empty()) write_coefficients(time);
   if (!walls_.empty() && (fluid_.parameters().turbulence || fluid_.parameters().output.walls))
     write_walls(time);
+  if (fluid_.parameters().output.fluxes) write_fluxes(time);
   write_balance(time);
   if (fluid_.parameters().output.energy_budget) write_energy(time);
   if (fluid_.bodies()) write_bodies(time);
   if (fluid_.gaps()) write_gaps(time);
   if (!probes_.empty()) write_probes(time);
+}
+
+template <int D>
+void FluidOutput<D>::write_surfaces(double time) {
+  if (surfaces_ && !context_.output_folder.empty()) surfaces_->write(time, context_);
+}
+
+template <int D>
+void FluidOutput<D>::write_fluxes(double time) {
+  const std::vector<PatchFlux<D>> all = patch_fluxes(fluid_);
+  if (all.empty() || !root_) return;
+  std::vector<double> row{time};
+  for (const PatchFlux<D>& flux : all) {
+    row.push_back(flux.volume);
+    row.insert(row.end(), flux.momentum.data(), flux.momentum.data() + D);
+    row.push_back(flux.mean_pressure);
+  }
+  if (!fluxes_) {
+    std::vector<std::string> columns{"time [s]"};
+    for (const PatchFlux<D>& flux : all) {
+      columns.push_back(flux.patch + " volume [m^3/s]");
+      for (int c = 0; c < D; ++c)
+        columns.push_back(fmt::format("{} momentum {} [N]", flux.patch, axis_letters[c]));
+      columns.push_back(flux.patch + " mean pressure [Pa]");
+    }
+    fluxes_.emplace(open("fluxes.csv", columns));
+  }
+  fluxes_->row(row);
 }
 
 template <int D>

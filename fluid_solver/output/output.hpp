@@ -10,6 +10,7 @@
 #include "common/io/field_writer.hpp"
 #include "common/io/series.hpp"
 #include "fluid_solver/output/samples.hpp"
+#include "fluid_solver/output/surfaces.hpp"
 #include "fluid_solver/step/fluid.hpp"
 #include "fluid_solver/turbulence/statistics.hpp"
 
@@ -22,8 +23,8 @@ struct FluidContext {
   double restart_time = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, balance.csv, energy.csv,
-/// bodies.csv, probes.csv, sample-NAME.csv. They are opened when first written to.
+/// The files of a fluid: fields, forces.csv, coefficients.csv, walls.csv, fluxes.csv, balance.csv, energy.csv,
+/// bodies.csv, probes.csv, sample-NAME.csv, surface-PATCH.h5. They are opened when first written to.
 template <int D>
 class FluidOutput {
  public:
@@ -31,6 +32,8 @@ class FluidOutput {
   /// `statistics` may be null.
   void write_fields(double time, const RunningStatistics<D>* statistics);
   void write_series(double time);
+  /// Of patches, where they are asked for. Collective.
+  void write_surfaces(double time);
   /// Lines and planes. `statistics` may be null. Collective.
   void write_samples(double time, const RunningStatistics<D>* statistics);
 
@@ -39,6 +42,7 @@ class FluidOutput {
   void write_forces(double time);
   void write_walls(double time);
   void write_coefficients(double time);
+  void write_fluxes(double time);
   void check_coefficients() const;
   void write_energy(double time);
   void write_bodies(double time);
@@ -56,8 +60,9 @@ class FluidOutput {
   std::optional<PointValues<D>> point_values_;  // only with probes or samples
   std::vector<const Patch*> walls_;
   std::optional<FieldWriter> fields_;
+  std::optional<FluidSurfaces<D>> surfaces_;
   std::vector<double> divergence_;
-  std::optional<Series> forces_, coefficients_, walls_series_, balance_, energy_, bodies_, gaps_,
+  std::optional<Series> forces_, coefficients_, walls_series_, fluxes_, balance_, energy_, bodies_, gaps_,
       probe_series_;                                  // on rank 0
   std::vector<std::optional<Series>> sample_series_;  // one a sample, on rank 0
 };

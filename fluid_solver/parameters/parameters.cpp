@@ -2,6 +2,7 @@
 #include "fluid_solver/parameters/parameters.hpp"
 
 #include "common/config/pairs.hpp"
+#include "common/io/surface_series.hpp"
 #include "common/mesh/periodic_points.hpp"
 
 namespace couplet::fluid {
@@ -322,7 +323,11 @@ void declare(config::Section& s, FluidParameters& p) {
       "compressibility of the fluid, for the judgement whether neglecting it is justified; absent: the "
       "speed of sound of a gas at 1 atm or of a liquid, by density and viscosity");
   s.section(
-      "output", [&p](config::Section& o) { declare_output(o, p.output); },
+      "output",
+      [&p](config::Section& o) {
+        declare_output(o, p.output);
+        o.check([&p] { return wrong_surfaces(p.output.surfaces, p.boundaries); }, "surfaces");
+      },
       "output in addition to velocity, pressure, forces and balance");
   s.map<ProbeParameters>(
       "probes", p.probes,

@@ -103,6 +103,7 @@ struct StatisticsParameters {
 struct CoefficientParameters {
   std::vector<std::string> patches;
   double speed = 1, area = 1, length = 1;  // [m/s], [m^2] (2-D: m of depth 1 m), [m]
+  double pressure = 0;                     // [Pa], that of Cp = 0
   Vec3 drag = Vec3::UnitX(), lift = Vec3::UnitY(), axis = Vec3::UnitZ(), centre = Vec3::Zero();
 };
 
@@ -117,7 +118,8 @@ struct SampleParameters {
 
 /// Fields and series beyond velocity, pressure, forces and balance.
 struct FluidOutputParameters {
-  bool vorticity = false, q_criterion = false, energy_budget = false, walls = false;
+  bool vorticity = false, q_criterion = false, energy_budget = false, walls = false, fluxes = false;
+  std::vector<std::string> surfaces;  // patches, or "all"
   std::map<std::string, CoefficientParameters> coefficients;
   std::map<std::string, SampleParameters> samples;
 };

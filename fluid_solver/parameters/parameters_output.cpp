@@ -22,6 +22,10 @@ void declare_coefficients(config::Section& s, CoefficientParameters& c) {
       .required()
       .doc("A: force over q A; in 2-D a length times 1 m");
   s.value("length", c.length).unit("m").plausible(1e-9, 1e4).positive().doc("L: moment over q A L");
+  s.value("pressure", c.pressure)
+      .unit("Pa")
+      .plausible(1e-9, 1e9)
+      .doc("p_ref of Cp = (p - p_ref) / q at these walls, written where 'surfaces' names them");
   s.value("drag", c.drag).doc("direction of the first coefficient; need not be of length 1");
   s.value("lift", c.lift).doc("direction of the second coefficient");
   s.value("centre", c.centre).unit("m").plausible(1e-9, 1e4).doc("fixed reference point of the moment");
@@ -69,6 +73,14 @@ void declare_output(config::Section& s, FluidOutputParameters& p) {
   s.value("q-criterion", p.q_criterion).doc("field of Q = (|W|^2 - |S|^2)/2 [1/s^2]: positive in vortices");
   s.value("walls", p.walls)
       .doc("walls.csv: shear and y+ of each wall; with a turbulence model it is always written");
+  s.value("fluxes", p.fluxes)
+      .doc(
+          "fluxes.csv: volume and momentum that pass through each patch out of the fluid (a load is a flux of momentum), mean "
+          "pressure");
+  s.value("surfaces", p.surfaces)
+      .doc(
+          "patches, or [all]: surface-<patch>.xdmf with pressure, traction, wall shear, y+ at walls, and Cp at walls that "
+          "'coefficients' names, at each output");
   s.map<CoefficientParameters>(
       "coefficients", p.coefficients, declare_coefficients, "name",
       "coefficients.csv: force and moment coefficients of some walls, means over the step");

@@ -14,10 +14,10 @@
 
 namespace couplet {
 
-/// Force on the solid at a constrained patch [N].
-struct PatchForce {
+/// Force on the solid at a constrained patch [N], its moment about the origin [N m]: of the undeformed places, at large strain of
+/// the deformed ones.
+struct PatchForce : Wrench {
   std::string patch;
-  Vec3 force = Vec3::Zero();
 };
 
 /// What follows from the accepted state. `points`: as point_displacement() gives them. All is collective.
@@ -36,6 +36,10 @@ class SolidFields final {
   /// points, empty: all; others may hold anything.
   std::vector<double> point_stress(std::span<const double> points,
                                    std::span<const std::uint8_t> wanted = {}) const;
+  /// On boundary faces of owned cells, `dim` values each, out of the body [Pa]: as the loads have it where it is known (at
+  /// small strain), else sigma n of the mean of `point_stress` over the face's points, of which those on a patch suffice for
+  /// its faces. `places`: where the local points are; the normal is that of the deformed face at large strain.
+  std::vector<double> traction(std::span<const Vec3> places, std::span<const double> point_stress) const;
   std::vector<double> point_strain(std::span<const double> points) const;
   /// Stress of the local faces first, first + 1, ... (`count` of them) [Pa].
   std::vector<Tensor3> face_stress(Index first, Index count, std::span<const double> points) const;

@@ -7,6 +7,19 @@
 #include "solid_solver/body/solid_fields.hpp"
 
 namespace couplet {
+namespace {
+
+/// Over the ranks. Collective.
+Wrench sum_of(const Wrench& here, MPI_Comm comm) {
+  Wrench total;
+  double numbers[6];
+  for (int a = 0; a < 3; ++a) numbers[a] = here.force[a], numbers[3 + a] = here.moment[a];
+  MPI_Allreduce(MPI_IN_PLACE, numbers, 6, MPI_DOUBLE, MPI_SUM, comm);
+  for (int a = 0; a < 3; ++a) total.force[a] = numbers[a], total.moment[a] = numbers[3 + a];
+  return total;
+}
+
+}  // namespace
 
 std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) const {
   if (body_.kernel().is_symmetric() || body_.finite()) return reactions_by_trial_functions();
@@ -23,11 +36,11 @@ std::vector<PatchForce> SolidFields::reactions(std::span<const double> points) c
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     if (!body_.boundaries().holds(p)) continue;
     const Patch& patch = mesh_.patches[p];
-    Vec3 force = Vec3::Zero();
+    Wrench held;
     for (Index f = patch.first; f < patch.first + patch.count; ++f)
-      force += elastic_.holding_force(f, stress[f - first], state_.face_u, state_.known);
-    for (int a = 0; a < 3; ++a) force[a] = sum(mesh_.comm, force[a]);
-    forces.push_back({mesh_.patches[p].name, force});
+      held.add(elastic_.holding_force(f, stress[f - first], state_.face_u, state_.known),
+               mesh_.reference.face_centre[f]);
+    forces.push_back({sum_of(held, mesh_.comm), patch.name});
   }
   return forces;
 }
@@ -37,13 +50,12 @@ std::vector<PatchForce> SolidFields::reactions_by_trial_functions() const {
   std::vector<PatchForce> forces;
   const std::vector<double> u = body_.unknowns_of(state_.cell_u, state_.face_u);
   if (body_.finite()) body_.finite()->set_pressure(body_.boundaries().pressures(state_.time));
-  const std::vector<Vec3> held = body_.finite() ? body_.finite()->holding_forces(u, state_.known, loads_now())
-                                                : body_.kernel().holding_forces(u, state_.known, loads_now());
+  const std::vector<Wrench> held = body_.finite()
+                                       ? body_.finite()->holding_forces(u, state_.known, loads_now())
+                                       : body_.kernel().holding_forces(u, state_.known, loads_now());
   for (std::size_t p = 0; p < mesh_.patches.size(); ++p) {
     if (!body_.boundaries().holds(p)) continue;
-    Vec3 force = held[p];
-    for (int a = 0; a < 3; ++a) force[a] = sum(mesh_.comm, force[a]);
-    forces.push_back({mesh_.patches[p].name, force});
+    forces.push_back({sum_of(held[p], mesh_.comm), mesh_.patches[p].name});
   }
   return forces;
 }

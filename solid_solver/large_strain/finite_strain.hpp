@@ -51,8 +51,8 @@ class FiniteStrain final : public LargeStrain {
   double lowest_stiffness(std::span<const double> unknowns, std::span<const double> known,
                           const LinearMap& elastic, std::vector<double> start);
   Vec3 pressure_force() override { return kernel_->pressure_force(); }
-  std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                   const ElasticLoads& loads) override {
+  std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                     const ElasticLoads& loads) override {
     return kernel_->holding_forces(unknowns, known, loads);
   }
   /// Of the last solve.

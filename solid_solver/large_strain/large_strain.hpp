@@ -48,9 +48,9 @@ class LargeStrain {
   virtual void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) = 0;
   /// Resultant of the pressure at the state that was looked at last, this rank's [N].
   virtual Vec3 pressure_force() = 0;
-  /// Force [N] on the body at each patch at a state under these loads; this rank's part.
-  virtual std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                           const ElasticLoads& loads) = 0;
+  /// Force on the body at each patch at a state under these loads, with its moment where the body has moved to; this rank's part.
+  virtual std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                             const ElasticLoads& loads) = 0;
   /// The end of the step under way, which accept() makes the state that the next one begins at. Throws SolveFailure.
   virtual void end_step(std::span<const double>, std::span<const double>) {}
   virtual void accept() {}

@@ -32,8 +32,8 @@ class UpdatedLagrangian final : public LargeStrain {
   double energy(std::span<const double> unknowns, std::span<const double> known) override;
   void visit(std::span<const double> unknowns, std::span<const double> known, const Take& take) override;
   Vec3 pressure_force() override { return pressure_force_; }
-  std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                   const ElasticLoads& loads) override;
+  std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                     const ElasticLoads& loads) override;
   void end_step(std::span<const double> unknowns, std::span<const double> known) override;
   void accept() override;
   void save(CheckpointWriter& file) const override;

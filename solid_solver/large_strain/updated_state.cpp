@@ -45,17 +45,20 @@ void UpdatedLagrangian::visit(std::span<const double> unknowns, std::span<const 
 }
 
 /// Loads need not be taken off: faces that are held take none.
-std::vector<Vec3> UpdatedLagrangian::holding_forces(std::span<const double> unknowns,
-                                                    std::span<const double> known, const ElasticLoads&) {
+std::vector<Wrench> UpdatedLagrangian::holding_forces(std::span<const double> unknowns,
+                                                      std::span<const double> known, const ElasticLoads&) {
   look(unknowns, known);
-  std::vector<Vec3> forces;
+  std::vector<Wrench> forces;
   for (const Patch& patch : mesh_.patches) {
-    Vec3 force = Vec3::Zero();
+    Wrench force;
     for (Index f = patch.first; f < patch.first + patch.count; ++f) {
       const Vec3& S = frame().area()[f];
-      if (rows_.condition(f) == ElasticCondition::prescribed) force += force_through(f);
+      Vec3 centre = Vec3::Zero();
+      for (const Index v : mesh_.face_points[f])
+        centre += now_.points[v] / double(mesh_.face_points[f].size());
+      if (rows_.condition(f) == ElasticCondition::prescribed) force.add(force_through(f), centre);
       if (rows_.condition(f) == ElasticCondition::symmetry)
-        force += S.dot(force_through(f)) / S.squaredNorm() * S;
+        force.add(S.dot(force_through(f)) / S.squaredNorm() * S, centre);
     }
     forces.push_back(force);
   }

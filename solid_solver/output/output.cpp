@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <numbers>
 #include <string>
@@ -16,34 +15,13 @@
 #include "common/parallel/collective.hpp"
 #include "common/time/amplification.hpp"
 #include "solid_solver/material/stress.hpp"
+#include "solid_solver/output/field_list.hpp"
 #include "solid_solver/output/spectrum.hpp"
 
 namespace couplet {
 namespace {
 
 using Place = OutputField::Place;
-
-/// Fields together with the values that were made for them.
-class Fields {
- public:
-  void add(std::string name, const char* unit, Place place, int components, std::vector<double> values) {
-    values_.push_back(std::move(values));
-    list.push_back({std::move(name), unit, place, components, values_.back()});
-  }
-  /// One field a component; a 2-D scene has no shear across it. `packed`: tensor after tensor.
-  void add_tensor(const std::string& name, const char* unit, Place place, int dim,
-                  std::span<const double> packed) {
-    for (std::size_t i = 0; i < (dim == 2 ? 4 : tensor_size); ++i) {
-      std::vector<double> values(packed.size() / tensor_size);
-      for (std::size_t e = 0; e < values.size(); ++e) values[e] = packed[e * tensor_size + i];
-      add(name + "-" + tensor_component[i], unit, place, 1, std::move(values));
-    }
-  }
-  std::vector<OutputField> list;
-
- private:
-  std::deque<std::vector<double>> values_;
-};
 
 /// Of all local cells; ghosts, which are not written, hold zeros.
 std::vector<double> packed_cells(const Mesh& mesh, std::span<const Tensor3> owned) {
@@ -54,7 +32,7 @@ std::vector<double> packed_cells(const Mesh& mesh, std::span<const Tensor3> owne
 }
 
 void add_cell_stress(const SolidBody& body, const SolidFields& derived, std::span<const double> points,
-                     Fields& fields) {
+                     FieldList& fields) {
   const SolidOutputParameters& chosen = body.parameters().output;
   if (!chosen.stress && !chosen.principal_stress) return;
   const Mesh& mesh = body.mesh();
@@ -77,7 +55,9 @@ void add_cell_stress(const SolidBody& body, const SolidFields& derived, std::spa
 
 SolidOutput::SolidOutput(const SolidFields& derived, const SolidStepper& stepper, const SolidBody& body,
                          const SolidContext& context)
-    : derived_(derived), stepper_(stepper), body_(body), context_(context), probes_(body, derived) {}
+    : derived_(derived), stepper_(stepper), body_(body), context_(context), probes_(body, derived) {
+  if (!body.parameters().output.surfaces.empty()) surfaces_.emplace(derived, body, context);
+}
 
 void SolidOutput::write_fields(double time, std::span<const double> points) {
   if (context_.output_folder.empty()) return;
@@ -90,7 +70,7 @@ void SolidOutput::write_fields(double time, std::span<const double> points) {
   std::vector<Vec3> places = mesh.reference_points;
   for (std::size_t v = 0; v < places.size(); ++v)
     for (int a = 0; a < dim; ++a) places[v][a] += points[v * dim + a];
-  Fields fields;
+  FieldList fields;
   fields.list.push_back({"displacement", "m", Place::points, dim, points});
   if (body_.parameters().analysis == SolidParameters::Analysis::dynamic)
     fields.add("velocity", "m/s", Place::points, dim, derived_.point_velocity());
@@ -106,6 +86,7 @@ void SolidOutput::write_fields(double time, std::span<const double> points) {
     fields.add_tensor("point-stress", "Pa", Place::points, dim, derived_.point_stress(points));
   for (const auto& effect : body_.effects()) effect->add_fields(fields.list);
   fields_->write(time, places, fields.list);
+  if (surfaces_) surfaces_->write(time, points, places);
 }
 
 void SolidOutput::write_series(double time, std::span<const double> points) {
@@ -176,12 +157,21 @@ void SolidOutput::write_reactions(double time, std::span<const double> points) {
   const Vec3 load = derived_.total_load();
   if (comm_rank(body_.mesh().comm) != 0) return;
   std::vector<double> row{time};
-  for (const PatchForce& r : reactions) row.insert(row.end(), r.force.data(), r.force.data() + dim);
+  const SolidOutputParameters& chosen = body_.parameters().output;
+  const int first = dim == 2 ? 2 : 0;  // a plane scene turns about z
+  for (const PatchForce& r : reactions) {
+    row.insert(row.end(), r.force.data(), r.force.data() + dim);
+    const Vec3 moment = r.moment_about(chosen.moment_centre);
+    if (chosen.moments) row.insert(row.end(), moment.data() + first, moment.data() + 3);
+  }
   row.insert(row.end(), load.data(), load.data() + dim);
   if (!reaction_series_) {
     std::vector<std::string> columns{"time [s]"};
-    for (const PatchForce& r : reactions)
+    for (const PatchForce& r : reactions) {
       for (int a = 0; a < dim; ++a) columns.push_back(r.patch + " " + axis_letters[a] + " [N]");
+      for (int a = first; chosen.moments && a < 3; ++a)
+        columns.push_back(r.patch + " moment " + axis_letters[a] + " [N m]");
+    }
     for (int a = 0; a < dim; ++a) columns.push_back(std::string("load ") + axis_letters[a] + " [N]");
     reaction_series_.emplace(context_.output_folder / "reactions.csv", columns, context_.restart_time);
   }

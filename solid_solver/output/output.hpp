@@ -13,10 +13,11 @@
 #include "solid_solver/body/solid_fields.hpp"
 #include "solid_solver/motion/solid_stepper.hpp"
 #include "solid_solver/output/probes.hpp"
+#include "solid_solver/output/surfaces.hpp"
 
 namespace couplet {
 
-/// The files of a solid: fields, probes.csv, reactions.csv, solver.csv. They are opened when first written
+/// The files of a solid: fields, surfaces, probes.csv, reactions.csv, solver.csv. They are opened when first written
 /// to.
 class SolidOutput {
  public:
@@ -51,6 +52,7 @@ class SolidOutput {
   SolidProbes probes_;
   bool spectrum_written_ = false, modes_written_ = false;
   std::optional<FieldWriter> fields_;
+  std::optional<SolidSurfaces> surfaces_;
   // On rank 0.
   std::optional<Series> probe_series_, reaction_series_, solver_series_, energy_series_;
 };

@@ -39,6 +39,17 @@ void declare(config::Section& s, SolidOutputParameters& o) {
   s.value("principal-stress", o.principal_stress).doc("write the principal stresses, largest first");
   s.value("point-stress", o.point_stress).doc("also write stress components at the points");
   s.value("acceleration", o.acceleration).doc("write the acceleration of a dynamic analysis");
+  s.value("surfaces", o.surfaces)
+      .doc(
+          "patches, or [all]: surface-<patch>.xdmf with displacement, stress and traction, temperature and heat flux of a "
+          "scene that has them, at each output");
+  s.value("moments", o.moments)
+      .doc(
+          "reactions.csv also has the moment of each patch's force, of large strain that of the deformed body");
+  s.value("moment-centre", o.moment_centre)
+      .unit("m")
+      .plausible(1e-9, 1e4)
+      .doc("point about which 'moments' are taken; it rests");
   s.value("energies", o.energies).doc("write the energies after each step to energies.csv");
   s.value("large-strain-estimate", o.large_strain_estimate)
       .doc(

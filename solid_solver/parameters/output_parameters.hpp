@@ -25,8 +25,11 @@ struct SolidOutputParameters {
   bool energies = false;
   bool large_strain_estimate = false;
   bool spectrum = false;
-  int modes = 0;     // frequencies and shapes that are asked for
-  int buckling = 0;  // load factors and shapes
+  bool moments = false;
+  Vec3 moment_centre = Vec3::Zero();  // [m]
+  std::vector<std::string> surfaces;  // patches, or "all"
+  int modes = 0;                      // frequencies and shapes that are asked for
+  int buckling = 0;                   // load factors and shapes
 };
 
 void declare(config::Section& section, SolidProbe& probe);

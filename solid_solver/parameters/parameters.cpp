@@ -2,6 +2,7 @@
 #include "solid_solver/parameters/parameters.hpp"
 
 #include <fmt/format.h>
+#include "common/io/surface_series.hpp"
 
 #include "common/fv/expression.hpp"
 #include "solid_solver/parameters/parameter_checks.hpp"
@@ -179,7 +180,13 @@ void declare(config::Section& s, SolidParameters& p) {
       "probes", p.probes, [](config::Section& q, SolidProbe& v) { declare(q, v); }, "probe",
       "points whose displacement is written to probes.csv at each step");
   s.section(
-      "output", [&](config::Section& o) { declare(o, p.output); }, "fields written at the output interval");
+      "output",
+      [&](config::Section& o) {
+        declare(o, p.output);
+        // Patches that conduct heat alone need no entry: SurfaceSeries looks at those.
+        if (!p.heat) o.check([&] { return wrong_surfaces(p.output.surfaces, p.boundaries); }, "surfaces");
+      },
+      "fields written at the output interval");
   check_together(s, p);
   check_finite_strain(s, p);
   check_orthotropic(s, p);

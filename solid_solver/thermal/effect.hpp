@@ -51,6 +51,9 @@ class SolidEffect {
   virtual void add_face_stress(Index /*first*/, std::span<Tensor3> /*stress*/) const {}
   /// Appends fields at the accepted time; their values must live until the next call.
   virtual void add_fields(std::vector<OutputField>& /*fields*/) {}
+  /// Appends fields of the boundary at the accepted time: of all local points, or (place "cells") of the boundary faces of
+  /// owned cells; their values must live until the next call. Collective.
+  virtual void add_surface_fields(std::vector<OutputField>& /*fields*/) {}
   /// Adds what it has seen, for the verdicts on what was left out. Collective.
   virtual void add_evidence(SolidEvidence& /*evidence*/) const {}
   /// Before the first step, if the run is to end with an estimate of its error; else nothing is collected.

@@ -274,10 +274,26 @@ std::vector<double> Heat::face_temperature(const HeatState& state) const {
   return values;
 }
 
-std::vector<PatchHeat> Heat::patch_heat() const {
+std::vector<double> Heat::face_heat() const {
   std::vector<double> conductivity(mesh_->n_faces()), heat(mesh_->n_flux_faces());
   set_conductivity(state_, conductivity);
   conduction_.face_heat(conductivity, state_.cells, state_.boundary, point_temperature(state_), heat);
+  return heat;
+}
+
+std::vector<double> Heat::boundary_inflow() const {
+  const std::vector<double> heat = face_heat();
+  std::vector<double> inflow(mesh_->boundary.n_owned(), 0);
+  for (std::size_t b = 0; b < inflow.size(); ++b) {
+    const Index f = mesh_->n_interior + Index(b);
+    if (conduction_.condition(f) != HeatCondition::symmetry)
+      inflow[b] = heat[f] / mesh_->reference.face_area[f].norm();
+  }
+  return inflow;
+}
+
+std::vector<PatchHeat> Heat::patch_heat() const {
+  const std::vector<double> heat = face_heat();
   std::vector<PatchHeat> result;
   for (const Patch& patch : mesh_->patches) {
     if (patch.bonded) continue;

@@ -70,6 +70,8 @@ class Heat final {
   std::vector<double> face_temperature(const HeatState& state) const;
   /// Heat through each patch at the accepted time. Collective.
   std::vector<PatchHeat> patch_heat() const;
+  /// Heat flux through each boundary face of owned cells into the solid at the accepted time [W/m^2]. Collective.
+  std::vector<double> boundary_inflow() const;
   /// Heat stored in the whole solid, from an arbitrary level on [J]. Collective.
   double stored_heat() const;
   /// What was left out, for Participant::finish(). Collective.
@@ -80,6 +82,7 @@ class Heat final {
   bool is_steady() const { return parameters_.analysis == HeatParameters::Analysis::steady; }
   void start();
   Coefficients coefficients(double dt) const;
+  std::vector<double> face_heat() const;  // of the flux faces, into their owners [W]
   void set_conductivity(const HeatState& state, std::span<double> conductivity) const;
   std::vector<double> sources(double t, std::span<const double> further) const;
   void assemble(const Coefficients& c, std::span<const double> source);

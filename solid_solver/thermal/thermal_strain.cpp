@@ -351,6 +351,14 @@ void ThermalStrain::add_fields(std::vector<OutputField>& fields) {
   fields.push_back({"cell-temperature", "K", OutputField::Place::cells, 1, cells_});
 }
 
+void ThermalStrain::add_surface_fields(std::vector<OutputField>& fields) {
+  points_ = point_temperature();
+  fields.push_back({"temperature", "K", OutputField::Place::points, 1, points_});
+  if (!heat_) return;
+  inflow_ = heat_->boundary_inflow();
+  fields.push_back({"heat-flux", "W/m^2", OutputField::Place::cells, 1, inflow_});
+}
+
 void ThermalStrain::save(CheckpointWriter& file) const {
   if (heat_)
     heat_->save(file), file.write("temperature-errors", errors_ ? errors_->state() : std::vector<double>{});

@@ -46,6 +46,7 @@ class ThermalStrain final : public SolidEffect {
   void add_cell_stress(std::span<Tensor3> stress) const override;
   void add_face_stress(Index first, std::span<Tensor3> stress) const override;
   void add_fields(std::vector<OutputField>& fields) override;
+  void add_surface_fields(std::vector<OutputField>& fields) override;
   void add_evidence(SolidEvidence& evidence) const override;
   void judge(std::vector<std::string>& sentences) const override;
   void collect_errors() override;
@@ -103,12 +104,12 @@ class ThermalStrain final : public SolidEffect {
   std::vector<double> dilation_, dilation_rate_;  // tr(eps) and its rate, per owned cell; when coupled
 
   Step step_;
-  double time_ = 0;                      // of the accepted state
-  std::vector<double> start_, end_;      // face temperatures at both ends of the step
-  std::vector<double> accepted_strain_;  // per flux face of the mesh, at the accepted time
-  std::vector<double> accepted_stress_;  // the same times B [Pa]: see stress_of(); if by_cells()
-  std::vector<double> points_, cells_;   // of the last fields written
-  double lowest_ = 0, highest_ = 0;      // temperatures seen on this rank
+  double time_ = 0;                              // of the accepted state
+  std::vector<double> start_, end_;              // face temperatures at both ends of the step
+  std::vector<double> accepted_strain_;          // per flux face of the mesh, at the accepted time
+  std::vector<double> accepted_stress_;          // the same times B [Pa]: see stress_of(); if by_cells()
+  std::vector<double> points_, cells_, inflow_;  // of the last fields written
+  double lowest_ = 0, highest_ = 0;              // temperatures seen on this rank
 };
 
 }  // namespace couplet

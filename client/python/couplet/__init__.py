@@ -4,6 +4,7 @@
     run = couplet.Results("out")                        # after a run
     run.probes("solid")["tip displacement x [m]"]       # columns of probes.csv: numpy arrays
     run.fields("fluid").field(-1, "velocity")           # of the last output: (cells, components)
+    run.surface("fluid", "wall").integral("traction")   # of output.surfaces: the force [N]
     run.findings(), run.budget()                        # its warnings; the parts of its error
 
     run = couplet.run("case.yaml", ranks={"fluid": 2}, changes={"simulation.end-time": "1 s"})
@@ -19,6 +20,7 @@ choose()  # before anybody starts MPI
 _PLACES = {
     "participant": ("Client",),
     "series": ("FieldSeries", "WIDTH", "extrema", "find_series", "passes_a_step", "result_of"),
+    "surfaces": ("Surface", "find_surface", "surface_names"),
     "runs": ("Case", "Results", "RunFailed", "Wrong", "read_csv", "run"),
 }
 __getattr__ = lazy.names(__name__, _PLACES)

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of fields by matplotlib: displaced two-dimensional cells, in three dimensions the outer faces."""
+"""Pictures of fields by matplotlib: displaced two-dimensional cells, in three dimensions the outer faces; patches over the arc length,
+in three dimensions their faces."""
 import pathlib
 
 import numpy as np
 
 from couplet.runs.case import Wrong, expect
 from couplet.series import SHAPES, find_series
+from couplet.surfaces import find_surface, surface_names
 
 # Faces of a cell by its number of points, as positions in the cell (VTK order).
 FACES = {4: ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3)), 5: ((0, 1, 2, 3), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
@@ -27,6 +29,16 @@ def series_of(folder, name):
         except FileNotFoundError:
             continue
     raise Wrong(f"{folder}: there is no field series (.h5) in it")
+
+
+def surface_of(folder, patch):
+    """Of a participant's folder or of the first participant below an output folder that wrote this patch."""
+    places = [folder, *sorted(p for p in folder.iterdir() if p.is_dir())]
+    for place in places:
+        if patch in surface_names(place):
+            return find_surface(place, patch)
+    there = sorted({name for place in places for name in surface_names(place)})
+    raise Wrong(f"{folder}: there is no surface '{patch}'; " + (f"there is: {', '.join(there)}" if there else "`output.surfaces` of a case names what is written"))
 
 
 def values_of(series, i, name, component):
@@ -77,9 +89,22 @@ def in_plane(figure, points, series, values):
     return drawn
 
 
-def in_space(figure, points, series, values):
+def along(figure, points, surface, values, i):
+    """A line over the arc length of the patch, one for each part of it."""
+    axes = figure.add_subplot()
+    begin = 0.0
+    for edges, corners in surface.chains(i):
+        way = begin + np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points[corners], axis=0), axis=1))])
+        axes.plot(0.5 * (way[1:] + way[:-1]), values[edges], lw=1.2, marker="." if len(edges) < 60 else None)
+        begin = way[-1]
+    axes.set(xlabel=f"arc length along {surface.name} [m]")
+    axes.grid(alpha=0.3)
+    return axes
+
+
+def in_space(figure, points, series, values, faces=None):
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
-    faces = outer_faces(series)
+    faces = faces or outer_faces(series)
     expect(len(faces) <= MOST_FACES, f"{len(faces)} outer faces are too many for matplotlib: open the .xdmf in ParaView")
     import matplotlib
     shown = np.array([values[cell] for _, cell in faces])
@@ -90,6 +115,38 @@ def in_space(figure, points, series, values):
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]), xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
     axes.set_box_aspect(np.maximum(high - low, 0.05 * (high - low).max()))
     return scale
+
+
+def label_of(series, i, name, component):
+    place = "cells" if not series.is_at_points(i, name) else "points"
+    unit = series.file["steps"][series.steps[i]][place][name].attrs.get("unit", "")
+    unit = unit.decode() if isinstance(unit, bytes) else unit
+    return f"{name}{f' {component}' if component else ''} [{unit or '-'}]"
+
+
+def draw_surface(folder, name, patch, picture=None, at=None, component=None, warp=1.0, dpi=110):
+    """Draws a field on a patch (`output.surfaces`) at one output: in 2-D over the arc length, in 3-D on its faces."""
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    surface = surface_of(pathlib.Path(folder), patch)
+    expect(surface.steps, f"{surface.file.filename}: there is no output in it yet")
+    i = len(surface.times) - 1 if at is None else surface.nearest(at)
+    values = values_of(surface, i, name, component)
+    plane = surface.is_plane()
+    figure = plt.figure(figsize=(8, 4 if plane else 6), dpi=dpi, constrained_layout=True)
+    label = label_of(surface, i, name, component)
+    if plane:
+        along(figure, places_of(surface, i, 0, name), surface, values, i).set_ylabel(label)
+    else:
+        faces = [(list(map(int, face)), number) for number, face in enumerate(surface.cells)]
+        scale = in_space(figure, places_of(surface, i, warp, name), surface, values, faces)
+        figure.colorbar(scale, ax=figure.axes[0], shrink=0.8, label=label)
+    figure.axes[0].set_title(f"{patch}, t = {surface.times[i]:.4g} s", fontsize=10)
+    picture = pathlib.Path(picture or pathlib.Path(surface.file.filename).with_name(f"{surface.name}-{name}.png"))
+    figure.savefig(picture)
+    plt.close(figure)
+    return picture
 
 
 def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110):
@@ -104,10 +161,7 @@ def draw(folder, name, picture=None, at=None, component=None, warp=1.0, dpi=110)
     size = np.ptp(points, axis=0)
     figure = plt.figure(figsize=(8, min(8, max(2.4, 1.2 + 7 * size[1] / size[0])) if flat else 6), dpi=dpi, constrained_layout=True)
     drawn = (in_plane if flat else in_space)(figure, points, series, values)
-    place = "cells" if not series.is_at_points(i, name) else "points"
-    unit = series.file["steps"][series.steps[i]][place][name].attrs.get("unit", "")
-    unit = unit.decode() if isinstance(unit, bytes) else unit
-    figure.colorbar(drawn, ax=figure.axes[0], shrink=0.8, label=f"{name}{f' {component}' if component else ''} [{unit or '-'}]")
+    figure.colorbar(drawn, ax=figure.axes[0], shrink=0.8, label=label_of(series, i, name, component))
     figure.axes[0].set_title(f"t = {series.times[i]:.4g} s", fontsize=10)
     picture = pathlib.Path(picture or pathlib.Path(series.file.filename).with_name(f"{name}.png"))
     figure.savefig(picture)

@@ -149,6 +149,7 @@ def declare(parser):
     parser.add_argument("--at", type=float, metavar="T", help="of lines and planes: the output nearest to this time (the last one)")
     parser.add_argument("--log", action="store_true", help="logarithmic values; residuals always have them")
     parser.add_argument("--field", metavar="NAME", help="draws this field of the run in FOLDER (or FOLDER/PARTICIPANT): its two-dimensional cells, or in three dimensions the outer faces")
+    parser.add_argument("--surface", metavar="PATCH", help="of --field: on this patch (output.surfaces of the case), in 2-D over the arc length")
     parser.add_argument("--mode", type=int, metavar="N", help="draws this mode of modes.h5 in FOLDER")
     parser.add_argument("--component", choices=("x", "y", "z"), help="of --field: a component in place of the magnitude")
     parser.add_argument("--warp", type=float, default=1.0, metavar="F", help="of --field: a body is drawn with its displacement times F (1)")
@@ -175,9 +176,13 @@ def run(options):
         from couplet import fields
         print(fields.draw_mode(options.files[0], options.mode, options.picture))
         return 0
+    expect(options.field or not options.surface, "--surface: name the field that is drawn on it with --field NAME")
     if options.field:
         folder_of_run("--field", options.files)
         from couplet import fields
+        if options.surface:
+            print(fields.draw_surface(options.files[0], options.field, options.surface, options.picture, options.at, options.component, options.warp))
+            return 0
         print(fields.draw(options.files[0], options.field, options.picture, options.at, options.component, options.warp))
         return 0
     if options.files[0].suffix in (".yaml", ".yml"):

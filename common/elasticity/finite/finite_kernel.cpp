@@ -308,9 +308,9 @@ void FiniteKernelOf<D>::visit(const Take& take) {
 }
 
 template <int D>
-std::vector<Vec3> FiniteKernelOf<D>::holding_forces(std::span<const double> unknowns,
-                                                    std::span<const double> known,
-                                                    const ElasticLoads& loads) {
+std::vector<Wrench> FiniteKernelOf<D>::holding_forces(std::span<const double> unknowns,
+                                                      std::span<const double> known,
+                                                      const ElasticLoads& loads) {
   has_start_ = false;
   set_own_pressures(false);
   space_.clear_forces();
@@ -321,7 +321,7 @@ std::vector<Vec3> FiniteKernelOf<D>::holding_forces(std::span<const double> unkn
   internal_forces();
   pressure_force_ = pressure_.add_forces(space_, 1);
   space_.add_springs(known);
-  return space_.held(known);
+  return space_.held(known, true);
 }
 
 template class FiniteKernelOf<2>;

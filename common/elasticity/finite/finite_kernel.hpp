@@ -80,8 +80,8 @@ class FiniteKernel {
   /// Of a local node (cells, then boundary faces) at the last linearise(), or what was applied since.
   virtual Vec3 displacement(Index node) const = 0;
   /// As ElasticKernel::holding_forces(), of displacements `unknowns`. Collective.
-  virtual std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                           const ElasticLoads& loads) = 0;
+  virtual std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                             const ElasticLoads& loads) = 0;
 };
 
 /// `of_materials`: one law a material of the mesh (one: of all); kept by reference like mesh and rows.

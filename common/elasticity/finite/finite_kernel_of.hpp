@@ -46,8 +46,8 @@ class FiniteKernelOf final : public FiniteKernel {
     for (int a = 0; a < D; ++a) u[a] = space_.nodes()[std::size_t(node) * SymmetricSpace<D>::stride + a];
     return u;
   }
-  std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                   const ElasticLoads& loads) override;
+  std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                     const ElasticLoads& loads) override;
 
  private:
   void make_group(std::size_t material, bool shares, std::span<const Index> edge_index);

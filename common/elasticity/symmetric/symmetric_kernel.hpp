@@ -42,8 +42,8 @@ class SymmetricKernel final : public ElasticKernel::Implementation {
   Vec3 add_face_forces(std::span<const double> forces, std::span<double> rhs) override;
   void add_cell_forces(std::span<const double> forces, std::span<double> rhs) override;
   void add_pressure(std::span<const double> pressure, std::span<double> rhs) override;
-  std::vector<Vec3> holding_forces(std::span<const double> unknowns, std::span<const double> known,
-                                   const ElasticLoads& loads) override;
+  std::vector<Wrench> holding_forces(std::span<const double> unknowns, std::span<const double> known,
+                                     const ElasticLoads& loads) override;
   void apply_mixed(std::span<const double> unknowns, std::span<const double> pressure, double mass_factor,
                    std::span<double> result, std::span<double> defect) override;
 

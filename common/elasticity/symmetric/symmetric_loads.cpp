@@ -98,9 +98,9 @@ double SymmetricKernel<D>::product(ElasticPart part, const ElasticField& u, cons
 }
 
 template <int D>
-std::vector<Vec3> SymmetricKernel<D>::holding_forces(std::span<const double> unknowns,
-                                                     std::span<const double> known,
-                                                     const ElasticLoads& loads) {
+std::vector<Wrench> SymmetricKernel<D>::holding_forces(std::span<const double> unknowns,
+                                                       std::span<const double> known,
+                                                       const ElasticLoads& loads) {
   space_.clear_forces();
   if (!loads.faces.empty()) space_.spread_face_forces(loads.faces);
   if (!loads.cells.empty()) space_.spread_cell_forces(loads.cells);
@@ -110,7 +110,7 @@ std::vector<Vec3> SymmetricKernel<D>::holding_forces(std::span<const double> unk
   internal_forces();
   space_.add_springs(
       known);  // at a vertex that a support shares the support takes their part along what it knows
-  return space_.held(known);
+  return space_.held(known, false);
 }
 
 template void SymmetricKernel<2>::spread_pressure(std::span<const double>);
@@ -121,8 +121,8 @@ template bool SymmetricKernel<2>::set_density(std::span<const double>);
 template void SymmetricKernel<2>::apply_with_mass(std::span<const double>, std::span<const double>, double,
                                                   bool, std::span<double>);
 template double SymmetricKernel<2>::product(ElasticPart, const ElasticField&, const ElasticField&);
-template std::vector<Vec3> SymmetricKernel<2>::holding_forces(std::span<const double>,
-                                                              std::span<const double>, const ElasticLoads&);
+template std::vector<Wrench> SymmetricKernel<2>::holding_forces(std::span<const double>,
+                                                                std::span<const double>, const ElasticLoads&);
 
 template void SymmetricKernel<3>::spread_pressure(std::span<const double>);
 template Vec3 SymmetricKernel<3>::add_face_forces(std::span<const double>, std::span<double>);
@@ -132,7 +132,7 @@ template bool SymmetricKernel<3>::set_density(std::span<const double>);
 template void SymmetricKernel<3>::apply_with_mass(std::span<const double>, std::span<const double>, double,
                                                   bool, std::span<double>);
 template double SymmetricKernel<3>::product(ElasticPart, const ElasticField&, const ElasticField&);
-template std::vector<Vec3> SymmetricKernel<3>::holding_forces(std::span<const double>,
-                                                              std::span<const double>, const ElasticLoads&);
+template std::vector<Wrench> SymmetricKernel<3>::holding_forces(std::span<const double>,
+                                                                std::span<const double>, const ElasticLoads&);
 
 }  // namespace couplet

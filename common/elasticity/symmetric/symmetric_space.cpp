@@ -281,69 +281,6 @@ double SymmetricSpace<D>::work() const {
   return sum;
 }
 
-/// At the points, by the sources of what is known there and the symmetry planes.
-template <int D>
-void SymmetricSpace<D>::held_at_points(std::span<const Index> patch_of, std::vector<Vec3>& result) {
-  std::vector<std::vector<std::pair<Index, Vec3>>> planes(mesh_.points.n_local());
-  for (Index f = mesh_.n_interior; f < mesh_.n_faces(); ++f) {
-    if (rows_.condition(f) != ElasticCondition::symmetry) continue;
-    const Vec3 n = mesh_.reference.face_area[f].normalized();
-    for (const Index v : mesh_.face_points[f]) {
-      const auto same = [&](const auto& plane) { return std::abs(plane.second.dot(n)) > 0.9994; };
-      if (std::ranges::none_of(planes[v], same)) planes[v].emplace_back(patch_of[f - mesh_.n_interior], n);
-    }
-  }
-  const VertexConstraints& constraints = rows_.constraints();
-  for (const Index v : vertices_.constrained) {
-    const Vec3 whole = vector(point_force(v));
-    Vec3 held = whole - constraints.free_part(v) * whole;
-    if (const Index column = constraints.column(v); column >= 0)
-      for (const auto& [face, share] : constraints.sources(column)) {
-        const Vec3 here = share.transpose() * whole;
-        result[patch_of[face]] += here;
-        held -= here;
-      }
-    for (const auto& [patch, n] : planes[v]) {
-      result[patch] += n.dot(held) * n;
-      held -= n.dot(held) * n;
-    }
-  }
-}
-
-/// dE/du of all that is held: at the points, at the faces' own nodes and at the mirror images of symmetry planes.
-template <int D>
-std::vector<Vec3> SymmetricSpace<D>::held(std::span<const double> known) {
-  std::vector<Vec3> result(mesh_.patches.size(), Vec3::Zero());
-  const std::vector<Index> patch_of = mesh_.patch_of_boundary();
-  held_at_points(patch_of, result);
-  // What the free part of the points' forces leaves at nodes that are held.
-  points_to_nodes();
-  for (Index b = 0; b < mesh_.boundary.n_local(); ++b) {
-    const Index f = mesh_.n_interior + b;
-    const Vec3 here = vector(force(mesh_.cells.n_local() + b));
-    switch (rows_.condition(f)) {
-      case ElasticCondition::prescribed:
-        result[patch_of[b]] += here;
-        break;
-      case ElasticCondition::support:
-        result[patch_of[b]] += rows_.support(f).known * here;
-        break;
-      case ElasticCondition::symmetry: {
-        const Vec3 n = mesh_.reference.face_area[f].normalized();
-        result[patch_of[b]] += 2 * n.dot(here) * n;
-        break;
-      }
-      default:
-        break;
-    }
-  }
-  for (const Index f : rows_.known_faces())
-    if (rows_.condition(f) == ElasticCondition::support)
-      visit_spring(f, known,
-                   [&](double*, const Vec3& pull) { result[patch_of[f - mesh_.n_interior]] -= pull; });
-  return result;
-}
-
 template class SymmetricSpace<2>;
 template class SymmetricSpace<3>;
 

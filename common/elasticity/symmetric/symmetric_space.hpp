@@ -74,8 +74,9 @@ class SymmetricSpace {
   void add_collected(std::span<double> rhs);
   /// Sum of those forces of this rank's boundary faces that act; see ElasticKernel::add_face_forces.
   Vec3 acting(std::span<const double> forces) const;
-  /// Of the forces there are (inner ones less the loads), what is held at each patch; this rank's part.
-  std::vector<Vec3> held(std::span<const double> known);
+  /// Of the forces there are (inner ones less the loads), what is held at each patch, with the moment of the nodes where they
+  /// are, or `moved` by their displacement; this rank's part.
+  std::vector<Wrench> held(std::span<const double> known, bool moved);
 
   // The loops; public for the clones by processor.
   [[gnu::always_inline]] inline void interpolate_free();
@@ -85,7 +86,8 @@ class SymmetricSpace {
   void constrain_point_forces();
   void points_to_nodes();
   void spread_over_base(Index f, const Vec3& force_on_base);
-  void held_at_points(std::span<const Index> patch_of, std::vector<Vec3>& result);
+  void held_at_points(std::span<const Index> patch_of, bool moved, std::vector<Wrench>& result);
+  Vec3 place_of(const double* force, bool moved) const;
   /// Force k (u - g) of the springs on the mean of the trace of a face, in which its node has the part 1/dim
   /// and its points the rest; back to them by the same parts: take(place of the force, value).
   template <class Take>

@@ -50,6 +50,25 @@ def interpreter():
     return None
 
 
+def compared(python, series, folder, wanted):
+    """How many fields of three outputs are the same in ParaView and in the file."""
+    subprocess.run([python, "-c", INSIDE, f"{series}.xdmf", str(folder / "read.npz")], check=True)
+    read, count = dict(numpy.load(folder / "read.npz")), 0
+    with h5py.File(f"{series}.h5") as file:
+        steps = sorted(file["steps"])
+        numpy.testing.assert_array_equal(read["times"], [float(file["steps"][s].attrs["time"]) for s in steps])
+        assert len(steps) == wanted, steps
+        for i, step in enumerate(steps):
+            group = file["steps"][step]
+            points = group["coordinates"] if "coordinates" in group else file["mesh/coordinates"]
+            numpy.testing.assert_array_equal(read[f"{i}/coordinates"], points[...])
+            for place in ("cells", "points"):
+                for field in group.get(place, {}):
+                    numpy.testing.assert_array_equal(read[f"{i}/{place}/{field}"], group[place][field][...])
+                    count += 1
+    return count
+
+
 program, cases, name = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
 python = interpreter()
 if python is None:
@@ -59,22 +78,9 @@ with tempfile.TemporaryDirectory(prefix="couplet-paraview-") as folder:
     folder = pathlib.Path(folder)
     shutil.copy(cases / "square.msh", folder)
     shutil.copy(cases / f"{name}.yaml", folder / "case.yaml")
-    subprocess.run([program, "case.yaml", "--set", "simulation.output.interval=0.5"], cwd=folder, check=True, capture_output=True)
-    series = folder / "out" / name / name
-    subprocess.run([python, "-c", INSIDE, f"{series}.xdmf", str(folder / "read.npz")], check=True)
-    read = dict(numpy.load(folder / "read.npz"))
-    compared = 0
-    with h5py.File(f"{series}.h5") as file:
-        steps = sorted(file["steps"])
-        numpy.testing.assert_array_equal(read["times"], [float(file["steps"][s].attrs["time"]) for s in steps])
-        assert len(steps) == 3, steps
-        for i, step in enumerate(steps):
-            group = file["steps"][step]
-            points = group["coordinates"] if "coordinates" in group else file["mesh/coordinates"]
-            numpy.testing.assert_array_equal(read[f"{i}/coordinates"], points[...])
-            for place in ("cells", "points"):
-                for field in group.get(place, {}):
-                    numpy.testing.assert_array_equal(read[f"{i}/{place}/{field}"], group[place][field][...])
-                    compared += 1
-    assert compared >= 6, compared
-    print(f"{name}: {len(steps)} times, {compared} fields as they stand in the file")
+    subprocess.run([program, "case.yaml", "--set", "simulation.output.interval=0.5", "--set", f"participants.{name}.output.surfaces=[bottom]"],
+                   cwd=folder, check=True, capture_output=True)
+    out = folder / "out" / name
+    count, on_surface = compared(python, out / name, folder, 3), compared(python, out / "surface-bottom", folder, 2 if name == "fluid" else 3)
+    assert count >= 6 and on_surface >= 6, (count, on_surface)
+    print(f"{name}: {count} fields as they stand in the file, {on_surface} of a surface")

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// What holds a body at its patches: the forces that the trial functions leave where displacements are known.
+#include <algorithm>
+#include <cmath>
+
+#include "common/elasticity/symmetric/symmetric_space.hpp"
+
+namespace couplet {
+
+/// Of an entry of point_force_ or of force_; the face's node at a symmetry plane is the mirror image of the cell's centre.
+template <int D>
+Vec3 SymmetricSpace<D>::place_of(const double* force, bool moved) const {
+  const auto entry = [force](const std::vector<double>& all) { return Index((force - all.data()) / stride); };
+  if (force < force_.data() || force >= force_.data() + force_.size()) {
+    const Index v = entry(point_force_);
+    const Vec3& at = mesh_.reference_points[v];
+    return moved ? Vec3(at + vector(points_.data() + std::size_t(v) * stride)) : at;
+  }
+  const Index node = entry(force_), f = mesh_.n_interior + node - mesh_.cells.n_local();
+  const bool is_cell = node < mesh_.cells.n_local();
+  Vec3 at = is_cell ? mesh_.reference.cell_centre[node] : mesh_.reference.face_centre[f];
+  if (!is_cell && rows_.condition(f) == ElasticCondition::symmetry) {
+    const Vec3 n = mesh_.reference.face_area[f].normalized(),
+               &cell = mesh_.reference.cell_centre[mesh_.owner[f]];
+    at = cell - 2 * n.dot(cell - at) * n;
+  }
+  return moved ? Vec3(at + vector(nodes_[node])) : at;
+}
+
+/// At the points, by the sources of what is known there and the symmetry planes. The nodes of a point on a symmetry plane lie
+/// to one side of it, so that their images hold the couple that its free force makes with its parts at the nodes.
+template <int D>
+void SymmetricSpace<D>::held_at_points(std::span<const Index> patch_of, bool moved,
+                                       std::vector<Wrench>& result) {
+  std::vector<std::vector<std::pair<Index, Vec3>>> planes(mesh_.points.n_local());
+  for (Index f = mesh_.n_interior; f < mesh_.n_faces(); ++f) {
+    if (rows_.condition(f) != ElasticCondition::symmetry) continue;
+    const Vec3 n = mesh_.reference.face_area[f].normalized();
+    for (const Index v : mesh_.face_points[f]) {
+      const auto same = [&](const auto& plane) { return std::abs(plane.second.dot(n)) > 0.9994; };
+      if (std::ranges::none_of(planes[v], same)) planes[v].emplace_back(patch_of[f - mesh_.n_interior], n);
+    }
+  }
+  const VertexConstraints& constraints = rows_.constraints();
+  for (const Index v : vertices_.constrained) {
+    const Vec3 whole = vector(point_force(v)), at = place_of(point_force(v), moved);
+    Vec3 held = whole - constraints.free_part(v) * whole;
+    if (const Index column = constraints.column(v); column >= 0)
+      for (const auto& [face, share] : constraints.sources(column)) {
+        const Vec3 here = share.transpose() * whole;
+        result[patch_of[face]].add(here, at);
+        held -= here;
+      }
+    for (const auto& [patch, n] : planes[v]) {
+      result[patch].add(n.dot(held) * n, at);
+      held -= n.dot(held) * n;
+    }
+    const auto nodes = rows_.vertices().nodes(v);
+    if (planes[v].empty() || constraints.is_fixed(v) || nodes.empty()) continue;
+    const auto weights = rows_.vertices().weights(v);
+    Vec3 lever = at;
+    for (std::size_t i = 0; i < nodes.size(); ++i) lever -= weights[i] * place_of(force(nodes[i]), moved);
+    result[planes[v].front().first].moment += lever.cross(constraints.free_part(v) * whole);
+  }
+}
+
+/// dE/du of all that is held: at the points, at the faces' own nodes and at the mirror images of symmetry planes, whose forces go
+/// back to the cells mirrored, so that the plane takes the difference.
+template <int D>
+std::vector<Wrench> SymmetricSpace<D>::held(std::span<const double> known, bool moved) {
+  std::vector<Wrench> result(mesh_.patches.size());
+  const std::vector<Index> patch_of = mesh_.patch_of_boundary();
+  held_at_points(patch_of, moved, result);
+  // What the free part of the points' forces leaves at nodes that are held.
+  points_to_nodes();
+  for (Index b = 0; b < mesh_.boundary.n_local(); ++b) {
+    const Index f = mesh_.n_interior + b;
+    const double* node = force(mesh_.cells.n_local() + b);
+    const Vec3 here = vector(node);
+    Wrench& patch = result[patch_of[b]];
+    switch (rows_.condition(f)) {
+      case ElasticCondition::prescribed:
+        patch.add(here, place_of(node, moved));
+        break;
+      case ElasticCondition::support:
+        patch.add(rows_.support(f).known * here, place_of(node, moved));
+        break;
+      case ElasticCondition::symmetry: {
+        const Vec3 n = mesh_.reference.face_area[f].normalized();
+        Vec3 cell = mesh_.reference.cell_centre[mesh_.owner[f]];
+        if (moved) cell += vector(nodes_[mesh_.owner[f]]);
+        patch.force += 2 * n.dot(here) * n;
+        patch.moment += place_of(node, moved).cross(here) - cell.cross(here - 2 * n.dot(here) * n);
+        break;
+      }
+      default:
+        break;
+    }
+  }
+  for (const Index f : rows_.known_faces())
+    if (rows_.condition(f) == ElasticCondition::support)
+      visit_spring(f, known, [&](double* where, const Vec3& pull) {
+        result[patch_of[f - mesh_.n_interior]].add(-pull, place_of(where, moved));
+      });
+  return result;
+}
+
+template std::vector<Wrench> SymmetricSpace<2>::held(std::span<const double>, bool);
+template std::vector<Wrench> SymmetricSpace<3>::held(std::span<const double>, bool);
+
+}  // namespace couplet

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "common/mesh/mesh.hpp"
+
+namespace couplet {
+
+/// The faces of one patch as a mesh, for what is written of them. Its cells are the patch's faces on this rank in their
+/// order (edges in 2-D), its points those of these faces, each owned by the rank that owns it in the body.
+struct SurfaceMesh {
+  Mesh mesh;  ///< dim: that of the body less 1; cell_id: boundary_id of the body; no faces, no geometry
+  std::vector<Index> points;  ///< per local point: the local point of the body
+};
+
+/// Collective.
+SurfaceMesh make_surface(const Mesh& body, const Patch& patch);
+
+}  // namespace couplet

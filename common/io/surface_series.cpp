@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/surface_series.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <optional>
+
+#include "common/base/error.hpp"
+#include "common/base/text.hpp"
+#include "common/io/surface_mesh.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet {
+namespace {
+
+/// Patches of the boundary that have faces, in the order of the mesh. Collective.
+std::vector<const Patch*> patches_with_faces(const Mesh& body) {
+  std::vector<const Patch*> found;
+  for (const Patch& patch : body.patches)
+    if (!patch.bonded && sum(body.comm, GlobalIndex(patch.count)) > 0) found.push_back(&patch);
+  return found;
+}
+
+std::string file_name(std::string patch) {
+  std::ranges::replace(patch, '/', '_');
+  return "surface-" + patch;
+}
+
+bool is_all(const std::vector<std::string>& names) { return names.size() == 1 && names.front() == "all"; }
+
+}  // namespace
+
+std::string wrong_surfaces(const std::vector<std::string>& names, const std::vector<std::string>& patches) {
+  if (is_all(names)) return "";
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (std::ranges::find(patches, *name) == patches.end())
+      return fmt::format("'{}' is no patch of the boundary. {} The one word 'all' stands for all of them",
+                         *name, did_you_mean(*name, patches, "patches"));
+    if (std::find(names.begin(), name, *name) != name) return fmt::format("'{}' is given twice", *name);
+  }
+  return "";
+}
+
+struct SurfaceSeries::Surface {
+  SurfaceMesh surface;
+  std::optional<FieldWriter> writer{};
+
+  std::vector<double> pick(const OutputField& field) const {
+    const std::size_t n = field.components;
+    std::vector<double> values;
+    values.reserve(surface.points.size() * n);
+    for (const Index v : surface.points)
+      for (std::size_t c = 0; c < n; ++c) values.push_back(field.values[std::size_t(v) * n + c]);
+    return values;
+  }
+};
+
+SurfaceSeries::SurfaceSeries(const Mesh& body, const std::vector<std::string>& names, const std::string& key)
+    : body_(body) {
+  std::vector<std::string> known;
+  const std::vector<const Patch*> there = patches_with_faces(body);
+  for (const Patch* patch : there) known.push_back(patch->name);
+  if (const std::string trouble = wrong_surfaces(names, known); !trouble.empty())
+    throw Error("{}: {}.", key, trouble);
+  if (is_all(names))
+    patches_ = there;
+  else
+    for (const std::string& name : names)
+      patches_.push_back(there[std::size_t(std::ranges::find(known, name) - known.begin())]);
+  for (const Patch* patch : patches_)
+    surfaces_.push_back(std::make_unique<Surface>(make_surface(body, *patch)));
+}
+
+SurfaceSeries::~SurfaceSeries() = default;
+
+void SurfaceSeries::open(std::filesystem::path folder, bool moving, double restart_time) {
+  for (std::size_t i = 0; i < patches_.size(); ++i)
+    surfaces_[i]->writer.emplace(surfaces_[i]->surface, folder, file_name(patches_[i]->name), moving,
+                                 restart_time);
+}
+
+std::vector<std::uint8_t> SurfaceSeries::points() const {
+  std::vector<double> flags(body_.points.n_local(), 0);
+  for (const auto& one : surfaces_)
+    for (const Index v : one->surface.points) flags[v] = 1;
+  body_.points.update_ghosts(flags);
+  return {flags.begin(), flags.end()};
+}
+
+void SurfaceSeries::write(std::size_t i, double time, std::span<const Vec3> places,
+                          const std::vector<OutputField>& fields) {
+  const Patch& patch = *patches_[i];
+  Surface& one = *surfaces_[i];
+  std::vector<Vec3> points;
+  for (const Index v : one.surface.points) points.push_back(places[v]);
+  std::deque<std::vector<double>> picked;
+  std::vector<OutputField> here = fields;
+  for (OutputField& field : here) {
+    const std::size_t n = field.components;
+    if (field.place == OutputField::Place::cells)
+      field.values = field.values.subspan(std::size_t(patch.first - body_.n_interior) * n, patch.count * n);
+    else
+      field.values = picked.emplace_back(one.pick(field));
+  }
+  one.writer->write(time, points, here);
+}
+
+}  // namespace couplet
