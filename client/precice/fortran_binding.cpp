@@ -80,6 +80,29 @@ void precicef_set_mesh_tetrahedra_(const char* mesh, const int* size, const int*
   precicec_setMeshTetrahedra(trimmed(mesh, n).c_str(), *size, ids);
 }
 
+// The same under the names of preCICE's later releases.
+void precicef_set_mesh_vertex_(const char* mesh, const double* position, int* id, int n) {
+  precicef_set_vertex_(mesh, position, id, n);
+}
+void precicef_set_mesh_vertices_(const char* mesh, const int* size, const double* positions, int* ids,
+                                 int n) {
+  precicef_set_vertices_(mesh, size, positions, ids, n);
+}
+void precicef_set_mesh_edge_(const char* mesh, const int* a, const int* b, int n) {
+  precicef_set_edge_(mesh, a, b, n);
+}
+void precicef_set_mesh_triangle_(const char* mesh, const int* a, const int* b, const int* c, int n) {
+  precicef_set_triangle_(mesh, a, b, c, n);
+}
+void precicef_set_mesh_quad_(const char* mesh, const int* a, const int* b, const int* c, const int* d,
+                             int n) {
+  precicef_set_quad_(mesh, a, b, c, d, n);
+}
+void precicef_set_mesh_tetrahedron_(const char* mesh, const int* a, const int* b, const int* c, const int* d,
+                                    int n) {
+  precicef_set_tetrahedron_(mesh, a, b, c, d, n);
+}
+
 void precicef_write_data_(const char* mesh, const char* data, const int* size, const int* ids,
                           const double* values, int n, int k) {
   precicec_writeData(trimmed(mesh, n).c_str(), trimmed(data, k).c_str(), *size, ids, values);

@@ -145,7 +145,8 @@ class Import:
         if len(set(limits)) > 1 or len(set(absolute)) > 1:
             self._note(measures[0], "one limit holds for all data that are iterated on: the strictest")
         if not measures:
-            self._note(scheme, "without a convergence measure each window takes max-iterations")
+            self._note(scheme, "without a convergence measure each window takes max-iterations, and the estimate of its error is accepted")
+            self.case["simulation"]["accept"] = ["error-estimate"]
         iterations = self._number(scheme.one("max-iterations"), 0)
         coupling["convergence"] = {"relative": min(limits, default=1e-14)}
         if absolute:

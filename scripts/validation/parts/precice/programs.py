@@ -81,9 +81,10 @@ def oscillator(job):
         return NOTE.format("COUPLET_PRECICE_TUTORIALS"), None
     where = job.scratch / "oscillator"
     shutil.copytree(source / "oscillator", where)
-    words = [f"cd {where}/mass-{side.lower()}-python && exec /usr/bin/python3 ../solver-python/oscillator.py Mass-{side}" for side in ("Left", "Right")]
+    sides = ("Left", "Right")
+    words = [f"cd {where}/mass-{side.lower()}-python && exec /usr/bin/python3 ../solver-python/oscillator.py Mass-{side} > {where}/{side}.txt" for side in sides]
     said = coupled(job, where, where / "precice-config.xml", words)
-    errors = [float(e) for e in re.findall(r"^0\.0025,([\d.e-]+)", said, flags=re.M)]
+    errors = [float(re.search(r"^0\.0025,([\d.e-]+)", (where / f"{side}.txt").read_text(), flags=re.M)[1]) for side in sides]
     return f"errors {', '.join(f'{e:.2e}' for e in sorted(errors))} (a line in time; the tutorial asks for degree 3), {passes(said):.2f} passes", None if len(errors) == 2 else False
 
 
@@ -96,11 +97,49 @@ def dummies(job):
     shutil.copytree(source, where)
     commands = {"c++": ["g++", "-std=c++17", where / "cpp/solverdummy.cpp"], "c": ["gcc", where / "c/solverdummy.c"], "fortran": ["gfortran", "-J", where, where / "fortran/solverdummy.f90"]}
     for kind, command in commands.items():
-        job.run([*command, "-o", where / kind, *flags(job)], check=True)
+        job.run([*command, "-o", where / f"dummy-{kind}", *flags(job)], check=True)
     for one, two in (("c++", "c++"), ("c", "c++"), ("c++", "c"), ("fortran", "c++"), ("c++", "fortran")):
-        coupled(job, where, where / "precice-config.xml", [f"exec {where}/{kind} {where}/precice-config.xml {name}" for kind, name in ((one, "SolverOne"), (two, "SolverTwo"))])
+        coupled(job, where, where / "precice-config.xml", [f"exec {where}/dummy-{kind} {where}/precice-config.xml {name}" for kind, name in ((one, "SolverOne"), (two, "SolverTwo"))])
         ran.append(f"{one}/{two}")
     return f"{', '.join(ran)}: exit code 0", len(ran) == 5
+
+
+# -- against the client -------------------------------------------------------------------------------------------------
+VERTICES, WINDOWS = 100000, 22
+TWO = """<precice-configuration>
+  <data:vector name="Data-One" /> <data:vector name="Data-Two" />
+  <mesh name="One-Mesh" dimensions="3"><use-data name="Data-One" /><use-data name="Data-Two" /></mesh>
+  <mesh name="Two-Mesh" dimensions="3"><use-data name="Data-One" /><use-data name="Data-Two" /></mesh>
+  <participant name="One">
+    <provide-mesh name="One-Mesh" /> <receive-mesh name="Two-Mesh" from="Two" /> <write-data name="Data-One" mesh="One-Mesh" /> <read-data name="Data-Two" mesh="One-Mesh" />
+    <mapping:nearest-neighbor direction="read" from="Two-Mesh" to="One-Mesh" constraint="consistent" />
+  </participant>
+  <participant name="Two">
+    <provide-mesh name="Two-Mesh" /> <receive-mesh name="One-Mesh" from="One" /> <write-data name="Data-Two" mesh="Two-Mesh" /> <read-data name="Data-One" mesh="Two-Mesh" />
+    <mapping:nearest-neighbor direction="read" from="One-Mesh" to="Two-Mesh" constraint="consistent" />
+  </participant>
+  <m2n:sockets acceptor="One" connector="Two" />
+  <coupling-scheme:serial-explicit>
+    <participants first="One" second="Two" /> <max-time-windows value="%d" /> <time-window-size value="1" />
+    <exchange data="Data-One" mesh="One-Mesh" from="One" to="Two" /> <exchange data="Data-Two" mesh="Two-Mesh" from="Two" to="One" />
+  </coupling-scheme:serial-explicit>
+</precice-configuration>
+""" % WINDOWS
+
+
+def cost(job):
+    """The least of three runs each, in turn: others use the machine, too."""
+    where, seconds, sums = job.scratch / "cost", {"precice": [], "native": []}, set()
+    where.mkdir(exist_ok=True)
+    (where / "two.xml").write_text(TWO)
+    for kind in ("native", "precice") * 3:
+        said = coupled(job, where, where / "two.xml", [f"exec {job.build}/bin/tests/precice_cost {kind} {name} two.xml {VERTICES}" for name in ("One", "Two")])
+        found = re.findall(r"([\d.]+) s a window, sum (\S+)", said)
+        seconds[kind].append(max(float(s) for s, _ in found))
+        sums.add(tuple(sorted(total for _, total in found)))
+    native, by_precice = min(seconds["native"]), min(seconds["precice"])
+    same = "the same sums of all values" if len(sums) == 1 else "other sums of all values"
+    return f"{1e3 * by_precice:.1f} ms, client {1e3 * native:.1f} ms: {by_precice / native:.2f}x (load {os.getloadavg()[0]:.0f}); {same}", len(sums) == 1 and by_precice <= 1.2 * native
 
 
 # -- configurations -----------------------------------------------------------------------------------------------------
@@ -127,5 +166,6 @@ BARS = [
       for fluid, solid in (("cpp", "cpp"), ("cpp", "python"), ("python", "cpp"), ("python", "python"))),
     Bar("oscillator of the tutorials, unchanged, Newmark, 4 sub-steps", "reported", oscillator),
     Bar("preCICE's solver dummies in C, C++ and Fortran, unchanged, each against the C++ one", "run to the end", dummies),
+    Bar(f"a window of {VERTICES} vertices, 3 components each way, against the client itself", "at most 1.2x, values equal bit for bit", cost),
     Bar("couplet import of every precice-config.xml of the tutorials", "a valid case, or refused by the name of the feature", configurations),
 ]
