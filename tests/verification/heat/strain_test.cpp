@@ -221,7 +221,9 @@ TEST(ThermoelasticCoupling, a_stretched_body_cools_and_a_compressed_one_warms) {
     // (3 K alpha)^2 T / ((lambda + 2 mu) rho c), thesis (2.27); here 3 K alpha = E alpha / (1 - 2 nu).
     const double stress_per_kelvin = modulus * alpha / (1 - 2 * nu),
                  stiffness = modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
-    EXPECT_NEAR(effect.coupling_number(),
+    SolidEvidence evidence;
+    effect.add_evidence(evidence);
+    EXPECT_NEAR(evidence.coupling_number,
                 stress_per_kelvin * stress_per_kelvin * 300 / (stiffness * 7800 * 480), 1e-4);
     const double rate = modulus / (1 - 2 * nu) * alpha / (7800 * 480);
     const double exact = 300 * (std::exp(-rate * strain) - 1);
