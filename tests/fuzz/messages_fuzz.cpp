@@ -204,8 +204,9 @@ TEST(GuestsBytes, another_version_names_both) {
       FAIL() << "accepted";
     } catch (const HandshakeFailure& failure) {
       const std::string text = failure.what();
-      EXPECT_NE(text.find(fmt::format("process 0 of the job (a guest) speaks version {} ", version)),
-                std::string::npos)
+      EXPECT_NE(
+          text.find(fmt::format("Process 0 of the job (an external program) uses version {} ", version)),
+          std::string::npos)
           << text;
       EXPECT_NE(text.find(fmt::format("here use version {}", protocol_version)), std::string::npos) << text;
       EXPECT_EQ(failure.speaker, 1);

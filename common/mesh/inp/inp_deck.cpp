@@ -175,7 +175,8 @@ class DeckReader {
     if (const std::int64_t id = identifier_of(cell); id > 0) return add(set, {id, id, 1});
     const InpSet* other = sets.find(std::string(cell));
     if (!other)
-      lines_.fail(fmt::format("'{}' is neither a number nor a {} defined before.", cell.substr(0, 60), kind));
+      lines_.fail(
+          fmt::format("'{}' is neither a number nor the name of an earlier {}.", cell.substr(0, 60), kind));
     if (other == &set) return;
     const std::vector<InpRange> members = other->members;
     for (const InpRange& r : members) add(set, r);

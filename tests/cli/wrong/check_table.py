@@ -25,7 +25,7 @@ def cases(Case):
         solid("3e9 steps", "", ("time-step: 0.5 s", "time-step: 3e-10 s"), exit_code=0),
     ]
     wrong = [
-        fluid("an expression of an inlet with an unknown name", "case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 1 of the list: the expression cannot parse '6*y*(1-Y)' at column 8: unknown name 'Y'. " + KNOWN,
+        fluid("an expression of an inlet with an unknown name", "case.yaml:11:27: participants.fluid.boundaries.left.velocity: entry 1 of the list: cannot parse the expression '6*y*(1-Y)' at column 8: unknown name 'Y'. " + KNOWN,
               ("[1 m/s, 0 m/s]", '["6*y*(1-Y)", 0]')),
         fluid("components of an inlet", "case.yaml:11:27: participants.fluid.boundaries.left.velocity: 3 components are given, but the 2-dimensional scene needs 2.", ("[1 m/s, 0 m/s]", "[1, 0, 0]")),
         fluid("--check: patch of a fluid that the mesh has not", """

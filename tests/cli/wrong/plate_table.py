@@ -113,7 +113,7 @@ case.yaml:7:5: participants.plate.contact: with 'modes.file' the material is unk
 [plate 0] error: The modes file 'modes.h5' does not exist. The path is relative to the folder of the YAML file.
 """, *file_alone("modes.h5"), ("    contact: {height: -1 cm}\n", ""), **run),
         plate("modes of a file of another kind", """
-[plate 0] error: Cannot use the file of modes 'square.msh': it is not an HDF5 file, or its beginning is damaged (file signature not found). docs/formats.md describes the required content.
+[plate 0] error: Cannot use the modes file 'square.msh': it is not an HDF5 file, or its beginning is damaged (file signature not found). docs/formats.md describes the required content.
 """, *file_alone("square.msh"), ("    contact: {height: -1 cm}\n", ""), **run),
         plate("static analysis of a plate that nothing holds", """
 [plate 0] error: The structure moves as a rigid body (mode 1 has zero frequency): a static analysis needs supports that prevent this.
@@ -142,7 +142,7 @@ case.yaml:15:30: participants.plate.contact.where: the seat is at rest: use an e
         of_no_use("wetted", "wetted: upper", "the interface is the surface of the file"),
         of_no_use("placement", "placement: {origin: [0, 0, 1]}", "the file defines the position of the surface"),
         plate("number of modes beside a file of modes", """
-case.yaml:7:29: participants.plate.modes.number: it has no effect with 'modes.file': all modes of the file are taken.
+case.yaml:7:29: participants.plate.modes.number: it has no effect with 'modes.file': all modes of the file are used.
 """, *file_alone("modes.h5, number: 3", "    surface-density: true\n")),
         plate("half a mode", """
 case.yaml:14:13: participants.plate.modes.number: a whole number is needed.

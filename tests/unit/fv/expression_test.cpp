@@ -57,10 +57,11 @@ TEST(Expression, survives_being_moved) {
 }
 
 TEST(Expression, names_key_column_and_known_variables_of_an_error) {
-  EXPECT_THAT(message_of("2*sin(q)"),
-              ::testing::AllOf(::testing::StartsWith("traction.value[1]: the expression '2*sin(q)'"),
-                               ::testing::HasSubstr("column 7: unknown name 'q'"),
-                               ::testing::HasSubstr("variables x, y, z [m] and t [s]")));
+  EXPECT_THAT(
+      message_of("2*sin(q)"),
+      ::testing::AllOf(::testing::StartsWith("traction.value[1]: cannot parse the expression '2*sin(q)'"),
+                       ::testing::HasSubstr("column 7: unknown name 'q'"),
+                       ::testing::HasSubstr("variables x, y, z [m] and t [s]")));
   EXPECT_THAT(message_of("2*(x + 1"), ::testing::HasSubstr("column 9: a ')' is missing"));
   EXPECT_THAT(message_of("x + + * 2"), ::testing::HasSubstr("at column"));
   EXPECT_THAT(message_of(""), ::testing::HasSubstr("cannot parse"));

@@ -87,7 +87,7 @@ TEST(MeshErrors, cell_without_volume_is_refused) {
   RawMesh raw = squares();
   raw.points[4] = raw.points[1];
   raw.points[5] = raw.points[2];
-  EXPECT_THAT(error_of(raw), HasSubstr("Cell 1 at (1, 0) has no volume"));
+  EXPECT_THAT(error_of(raw), HasSubstr("Cell 1 at (1, 0) has zero volume"));
 }
 
 TEST(MeshErrors, mesh_without_cells_is_refused) {

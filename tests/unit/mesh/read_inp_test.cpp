@@ -149,14 +149,16 @@ TEST_F(ReadInp, mistakes_are_told_with_file_and_line) {
               AllOf(HasSubstr("deck.inp:16:"), HasSubstr("defined twice")));
   EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\n10, S7\n"), HasSubstr("'beam, S3'"));
   EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\n10\n"), HasSubstr("'beam, S3'"));
-  EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\nnone, S1\n"), HasSubstr("no ELSET given before"));
+  EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\nnone, S1\n"),
+              HasSubstr("nor the name of an earlier ELSET"));
   EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\n10, S1\n*SURFACE, NAME=b\n10, S1\n"),
               AllOf(HasSubstr("(0.5, 0.5, 0)"), HasSubstr("two surfaces, 'a' and 'b'")));
   EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4, ELSET=e\n1, 1,2,4,5\n*SURFACE, NAME=a\ne, S5\n"),
               HasSubstr("S1 to S4 only"));
   EXPECT_THAT(error(nodes + "*NGEN\n1, 2\n"), HasSubstr("it generates nodes"));
   EXPECT_THAT(error("*PART, NAME=a\n*END PART\n*PART, NAME=b\n"), HasSubstr("several parts"));
-  EXPECT_THAT(error("*INSTANCE, NAME=a, PART=b\n1, 0, 0\n"), HasSubstr("is moved"));
+  EXPECT_THAT(error("*INSTANCE, NAME=a, PART=b\n1, 0, 0\n"),
+              HasSubstr("transformed instances are not supported"));
   EXPECT_THAT(error(nodes + "*NSET, NSET=a, GENERATE\n5, 1\n"), HasSubstr("first, last and step"));
   EXPECT_THAT(
       error(

@@ -62,7 +62,7 @@ TEST(FlowFile, what_is_wrong_is_said_with_file_and_line) {
   EXPECT_THAT(said("time [h];mass-flow [kg/s];inlet-temperature [degC]\n0;-100,5;390\n"),
               HasSubstr("flows.csv:2: '-100,5' has a decimal comma; write -100.5"));
   EXPECT_THAT(said("0,-100,390\n"), HasSubstr("the first line of a flow file must name its columns"));
-  EXPECT_THAT(said(h + "0,nan,390\n"), HasSubstr("flows.csv:2: 'nan' is not a number"));
+  EXPECT_THAT(said(h + "0,nan,390\n"), HasSubstr("flows.csv:2: 'nan' is not a finite number"));
   EXPECT_THAT(said(h + "0,50,-300\n"),
               HasSubstr("flows.csv:2: inlet-temperature is -26.85 K; expected 100 to 3000 K"));
   EXPECT_THAT(said(h + "0,50,1e6\n"), HasSubstr("flows.csv:2: inlet-temperature is 1.00027e+06 K"));

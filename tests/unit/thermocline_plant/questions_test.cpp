@@ -241,7 +241,10 @@ TEST(Questions, the_sun_on_the_cover_needs_to_know_where_it_stands) {
     require_sun(0.4, *nowhere, "participants.tank.insulation.solar-absorptance");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("participants.tank.insulation.solar-absorptance: the sun's height"));
+    EXPECT_THAT(
+        error.what(),
+        HasSubstr(
+            "participants.tank.insulation.solar-absorptance: solar heating of the cover needs the sun's height"));
   }
   WeatherParameters file;
   file.kind = WeatherKind::file;

@@ -84,7 +84,7 @@ TEST(SmoothDays, what_cannot_be_is_said) {
   EXPECT_EQ(key, "form-n");
   d = granada();
   d.p = {0};
-  EXPECT_THAT(problem_of(d, key), testing::HasSubstr("0 is not"));
+  EXPECT_THAT(problem_of(d, key), testing::HasSubstr("0 is out of range"));
   EXPECT_EQ(key, "form-p");
   d = granada();
   d.latitude = 80;

@@ -220,7 +220,7 @@ TEST_F(ForeignWeather, wrong_nsrdb_files_are_said_with_their_line) {
   EXPECT_THAT(complaint(nsrdb() + std::string(1, '\0')),
               HasSubstr("weather.csv:52: this weather file is not plain text"));
   EXPECT_THAT(complaint(nsrdb(same, "Pa")),
-              HasSubstr("weather.csv:2: 'Pressure Units' is 'Pa'; only mbar is read"));
+              HasSubstr("weather.csv:2: 'Pressure Units' is 'Pa'; only mbar is supported"));
   EXPECT_THAT(complaint(nsrdb([](int h, std::string line) {
                 return h == 3 ? "2003,1,1,3,30,warm,-6,30,0,1,0.8,840,298,0.5\n" : line;
               })),
@@ -242,7 +242,7 @@ TEST_F(ForeignWeather, wrong_nsrdb_files_are_said_with_their_line) {
   EXPECT_THAT(
       complaint(
           "Source,Latitude,Longitude,Time Zone\nNSRDB,40,-105,-7\nYear,Month,Day,Hour,GHI,Temperature\n"),
-      HasSubstr("weather.csv:3: the column for the direct normal irradiance is missing"));
+      HasSubstr("weather.csv:3: the column for the direct normal irradiance [W/m^2] is missing"));
   EXPECT_THAT(complaint("Source,Latitude,Longitude,Time Zone\nNSRDB,140,-105,-7\nYear,Month,Day,Hour\n"),
               HasSubstr("weather.csv:2: latitude 140"));
   EXPECT_THAT(complaint("Source,Latitude,Longitude,Time Zone\nNSRDB,40,-105,-7\n"),

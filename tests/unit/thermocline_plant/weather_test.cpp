@@ -104,7 +104,7 @@ TEST(Weather, a_day_that_the_record_lacks_is_refused) {
     }
     return "nothing";
   };
-  const char* holds = " it covers 04-11 to 04-20";
+  const char* holds = "; it covers 04-11 to 04-20";
   EXPECT_THAT(complaint({98, 105}),
               testing::HasSubstr(std::string("this file has no weather for 04-09") + holds));
   EXPECT_THAT(complaint({105, 112}),

@@ -104,7 +104,7 @@ TEST(VelocityTable, what_is_wrong_is_said_with_file_and_place) {
   const fs::path file = folder_of("wrong-table") / "in.csv";
   EXPECT_EQ(refusal(file, "y,u,v\n0,0,0\n1,1,0\n"), "");
   EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,1,0\n", 1.5),
-              HasSubstr("from y = 0 m to 1 m, but its value at 1.5 m"));
+              HasSubstr("covers y = 0 m to 1 m, but its value at 1.5 m"));
   EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,one,0\n"), HasSubstr("in.csv:3: 'one' is not a number"));
   EXPECT_THAT(refusal(file, "y,u,v\n0,0,0\n1,1\n"),
               HasSubstr("in.csv:3: 2 values, but the file has 3 columns"));
@@ -112,7 +112,7 @@ TEST(VelocityTable, what_is_wrong_is_said_with_file_and_place) {
   EXPECT_THAT(refusal(file, "q,u,v\n0,0,0\n"), HasSubstr("in.csv:1: unknown column 'q'"));
   EXPECT_EQ(refusal(file, "y [m],u [m/s],v\n0,0,0\n1,1,0\n"), "");
   EXPECT_THAT(refusal(file, "y [mm],u,v\n0,0,0\n1,1,0\n"),
-              HasSubstr("the column 'y' is in 'mm'; only m is read"));
+              HasSubstr("the column 'y' is in 'mm'; only m is accepted"));
   EXPECT_THAT(refusal(file, "y,u [cm/s],v\n0,0,0\n1,1,0\n"),
               HasSubstr("'u' is in 'cm/s'; only m/s is accepted"));
   EXPECT_THAT(refusal(file, "u,v\n0,0\n"), HasSubstr("no column is an axis"));

@@ -139,7 +139,7 @@ TEST(WallOutput, coefficients_of_what_is_no_wall_are_refused_by_name) {
     run(p, "refused", 0);
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("output.coefficients.floor.patches: 'xmin' is no wall"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("output.coefficients.floor.patches: 'xmin' is not a wall"));
   }
 }
 

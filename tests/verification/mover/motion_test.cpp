@@ -163,7 +163,7 @@ TEST(Rotations, a_body_without_room_is_refused_by_name) {
     Mover mover(p, context());
     FAIL() << "accepted";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("patch 'floor' reaches"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("patch 'floor' extends"));
   }
 }
 

@@ -145,7 +145,7 @@ TEST_F(PlateModesFile, what_is_wrong_with_a_file_is_said) {
   };
   EXPECT_NE(message().find("does not exist"), std::string::npos);
   std::ofstream(file) << "no HDF5";
-  EXPECT_NE(message().find("cannot be used"), std::string::npos);
+  EXPECT_NE(message().find("Cannot use the modes file"), std::string::npos);
   const ModalModel model = read_modes(good);
   const auto damaged = [&](auto&& change) {
     ModalModel copy = model;

@@ -211,7 +211,7 @@ TEST(SolidOutput, left_out_effects_are_judged_by_numbers) {
       lines(*slow),
       ::testing::AllOf(::testing::Contains(::testing::AllOf(::testing::HasSubstr("geometric non-linearity"),
                                                             ::testing::HasSubstr("justified"))),
-                       ::testing::Contains(::testing::AllOf(::testing::HasSubstr("inertia left out"),
+                       ::testing::Contains(::testing::AllOf(::testing::HasSubstr("inertia neglected"),
                                                             ::testing::HasSubstr("justified")))));
   EXPECT_THAT(lines(*fast), ::testing::Contains(::testing::HasSubstr("use 'analysis: dynamic'")));
 }

@@ -178,8 +178,8 @@ TEST(SolidParameters, finite_strain_says_what_it_cannot_have) {
   told(large + "output: {spectrum: true}\nmaterial: {" + body + "}\n", "use small-strain");
   told(large + "solution-method: {volume-strain: shared}\nmaterial: {" + body + "}\n", "but not 'shared'");
   const std::string estimate = "output: {large-strain-estimate: true}\n";
-  told(large + estimate + "material: {" + body + "}\n", "of a linear static analysis");
-  told(estimate + "material: {" + body + "}\n", "of a linear static analysis");
+  told(large + estimate + "material: {" + body + "}\n", "requires a linear static analysis");
+  told(estimate + "material: {" + body + "}\n", "requires a linear static analysis");
   SolidParameters sheet, sound;
   EXPECT_THAT(
       read(
