@@ -28,7 +28,7 @@ def run(ranks, *settings):
             check(f"ranks {ranks}: exit code 0", False, done.returncode)
             return (float("nan"),) * 4
         folder = pathlib.Path(folder)
-        steps, halvings, mean = re.search(r"(\d+) steps, (\d+) halvings.*iterations: ([\d.]+)", done.stdout).groups()
+        steps, halvings, mean = re.search(r"(\d+) steps, (\d+) halvings.*iterations: mean ([\d.]+)", done.stdout).groups()
         return last(folder / "solid/probes.csv")["face x"], last(folder / "fluid/balance.csv")["volume"], int(steps) * float(mean), int(halvings)
 
 
