@@ -43,7 +43,7 @@ def coupled(job, where, configuration, words):
 
 
 def passes(text):
-    return float(re.search(r"coupling iterations: ([\d.]+) on average", text)[1])
+    return float(re.search(r"coupling iterations: mean ([\d.]+)", text)[1])
 
 
 # -- elastic-tube-1d ----------------------------------------------------------------------------------------------------
