@@ -15,7 +15,7 @@ namespace couplet {
 struct EffectVerdict {
   std::string effect;          ///< the name on its card
   double number = 0;           ///< how large what was left out would have been, of the whole run so far
-  double threshold = 0;        ///< leaving it out was sound up to here
+  double threshold = 0;        ///< neglecting it is justified up to here
   std::string sentence;        ///< what the number is, with its unit, without verdict: "max |grad u| = 0.29"
   std::string recommendation;  ///< what to switch on, or to do, where it was not sound
   bool left_out = true;        ///< false: a verdict on an effect that the scene has

@@ -9,30 +9,11 @@
 #include <sstream>
 
 #include "common/parallel/collective.hpp"
+#include "tests/support/shared_folder.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
 namespace {
-
-/// A folder that all ranks share; rank 0 removes it at the end.
-class SharedFolder {
- public:
-  SharedFolder() {
-    const bool root = comm_rank(MPI_COMM_WORLD) == 0;
-    const GlobalIndex process = sum(MPI_COMM_WORLD, GlobalIndex(root ? getpid() : 0));
-    path_ = std::filesystem::temp_directory_path() / fmt::format("couplet-solid-output-{}", process);
-    if (root) std::filesystem::create_directories(path_);
-    MPI_Barrier(MPI_COMM_WORLD);
-  }
-  ~SharedFolder() {
-    MPI_Barrier(MPI_COMM_WORLD);
-    if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(path_);
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
   std::ifstream in(file);

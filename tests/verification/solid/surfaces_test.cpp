@@ -13,34 +13,13 @@
 #include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/thermal_solid.hpp"
+#include "tests/support/shared_folder.hpp"
 #include "tests/support/surface_file.hpp"
 #include "tests/verification/solid/loads_support.hpp"
 #include "tests/verification/solid/support.hpp"
 
 namespace couplet::testing {
 namespace {
-
-/// A folder that all ranks share; rank 0 removes it at the end.
-class SharedFolder {
- public:
-  SharedFolder() {
-    std::string test = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::ranges::replace(test, '/', '-');
-    path_ = std::filesystem::temp_directory_path() /
-            fmt::format("couplet-solid-surfaces-{}-{}", test, comm_size(MPI_COMM_WORLD));
-    if (comm_rank(MPI_COMM_WORLD) == 0)
-      std::filesystem::remove_all(path_), std::filesystem::create_directories(path_);
-    MPI_Barrier(MPI_COMM_WORLD);
-  }
-  ~SharedFolder() {
-    MPI_Barrier(MPI_COMM_WORLD);
-    if (comm_rank(MPI_COMM_WORLD) == 0) std::filesystem::remove_all(path_);
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// One step, then all output.
 std::unique_ptr<Solid> write(const RawMesh& raw, const SolidParameters& p, const SharedFolder& folder) {
@@ -244,7 +223,7 @@ TEST(SolidSurfaces, are_not_written_unless_asked_for_and_only_of_patches) {
   p.output.surfaces = {"xmim"};
   EXPECT_THAT([&] { make_solid(comm_rank(MPI_COMM_WORLD) == 0 ? raw : RawMesh{}, p); },
               ::testing::ThrowsMessage<Error>(::testing::HasSubstr(
-                  "output.surfaces: 'xmim' is no patch of the boundary. Did you mean 'xmin'?")));
+                  "output.surfaces: 'xmim' is not a patch of the boundary. Did you mean 'xmin'?")));
 }
 
 }  // namespace
