@@ -184,11 +184,7 @@ void Coupler::solve(const Step& step) {
     };
     last_ =
         solve_fixed_point(std::move(last_.x), map, measure, parameters_.convergence, *accelerator_, observer);
-    if (!last_.converged)
-      log::warn(
-          "the step from t = {:g} s is accepted after {} coupling iterations with a relative residual of {:.2e} (limit "
-          "{:.1e}): `convergence.at-max-iterations: accept`.",
-          step.time, last_.iterations, last_.residual.relative, parameters_.convergence.relative);
+    if (!last_.converged) report_unconverged(step.time);
   }
   give_back(std::exchange(given_, std::move(outputs)));
   last_dt_ = step.dt;

@@ -90,6 +90,8 @@ class Coupler {
   void give_back(std::vector<Exchange> given);
   void hold_volume(std::size_t i, std::vector<Exchange>& known);
   void accept(double time, int output);
+  /// A step that `at-max-iterations: accept` takes as it is: the first one, and each that is ten times worse, is a finding.
+  void report_unconverged(double time);
   void watch(double time, const std::vector<SideBalance>& balances);
   void finalise(const std::string& problem);
   void tell_work() const;
@@ -126,6 +128,7 @@ class Coupler {
   std::optional<LagEstimate> lag_;               // none: not wanted, not explicit, or it could not tell
   std::optional<LagEstimate::Look> half_;        // of the step under way; none: it is not looked at
   std::string diverged_;                         // empty: no guard has fired
+  double worst_accepted_ = 0;                    // relative residual of a step that was accepted unconverged
   bool warned_ = false;
   bool answered_anew_ = false;  // somebody in the last pass
   double last_dt_ = 0;

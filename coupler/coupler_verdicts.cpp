@@ -20,7 +20,30 @@ double energy_of_structures(const std::vector<Side>& sides, const std::vector<Pa
   return total;
 }
 
+// Of the motion: a step that leaves more is no solution of the coupled problem.
+constexpr double useless_residual = 0.5;
+
 }  // namespace
+
+void Coupler::report_unconverged(double time) {
+  const double residual = last_.residual.relative;
+  const std::string text = fmt::format(
+      "t = {:g} s: coupling: relative residual = {:.2e} (limit {:.1e}) after {} iterations: the step is accepted "
+      "unconverged",
+      time, residual, parameters_.convergence.relative, last_.iterations);
+  if (worst_accepted_ > 0 && residual < 10 * worst_accepted_) {
+    log::info("{}", text);
+    return;
+  }
+  worst_accepted_ = residual;
+  log::finding(comm_rank(comm_),
+               {.id = "unconverged-step",
+                .severity = residual < useless_residual ? Severity::warning : Severity::wrong,
+                .number = residual,
+                .limit = parameters_.convergence.relative,
+                .sentence = text,
+                .advice = "raise `convergence.max-iterations`, or leave `at-max-iterations: accept` out"});
+}
 
 void Coupler::watch(double time, const std::vector<SideBalance>& balances) {
   double given = 0, taken = 0;

@@ -165,7 +165,8 @@ Exchange FluidParticipant<D>::forces() const {
 }
 
 /// Share of what a pass changes that the pressure's solver may leave. A pass of the semi-implicit scheme begins where the last
-/// one ended, so that what is left shrinks with the passes; one of the implicit scheme begins anew.
+/// one ended, so that what is left shrinks with the passes; one of the implicit scheme begins anew. Explicit coupling has no
+/// further pass but the audit's, which measures how much of a change comes back: it must not miss it (1 % more iterations).
 template <int D>
 double FluidParticipant<D>::answer() const {
   return !interface_ || step_.scheme == Scheme::standalone ? 0

@@ -36,7 +36,7 @@ std::string wrong_surfaces(const std::vector<std::string>& names, const std::vec
   if (is_all(names)) return "";
   for (auto name = names.begin(); name != names.end(); ++name) {
     if (std::ranges::find(patches, *name) == patches.end())
-      return fmt::format("'{}' is no patch of the boundary. {} The one word 'all' stands for all of them",
+      return fmt::format("'{}' is not a patch of the boundary. {} The one word 'all' stands for all of them",
                          *name, did_you_mean(*name, patches, "patches"));
     if (std::find(names.begin(), name, *name) != name) return fmt::format("'{}' is given twice", *name);
   }

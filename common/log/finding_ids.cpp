@@ -17,6 +17,8 @@ constexpr std::array ids{
     // coupler
     FindingId{answer, "surfaces-apart", "surfaces that move together differ in size or position"},
     FindingId{answer, "structure-at-rest", "a loaded structure has not moved for ten steps"},
+    FindingId{answer, "unconverged-step",
+              "a step of an iterated coupling was accepted before it had converged"},
     FindingId{answer, "velocity-and-displacement",
               "a participant gives a velocity that is not the rate of the displacement beside it"},
     FindingId{answer, "interface-oscillation",

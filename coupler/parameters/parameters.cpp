@@ -160,8 +160,8 @@ void declare(config::Section& section, ConvergenceParameters& p) {
   section
       .choice("at-max-iterations", p.at_maximum, {{"fail", AtMaximum::fail}, {"accept", AtMaximum::accept}})
       .doc(
-          "after `max-iterations` without convergence: fail: the step is halved; accept: the step is accepted, with a "
-          "warning that reports its residual");
+          "after `max-iterations` without convergence: fail: the step is halved; accept: the step is accepted, with "
+          "the finding `unconverged-step`");
 }
 
 void declare(config::Section& section, MappingParameters& p) {

@@ -391,6 +391,31 @@ TEST(CoupledToy, a_step_that_fails_names_the_participant_that_did_not_answer) {
   EXPECT_THAT(run.problem, testing::HasSubstr("'fluid' gave the same answer in 15 of the last 15 passes"));
 }
 
+TEST(CoupledToy, a_step_that_is_accepted_unconverged_is_a_finding_and_a_useless_one_is_wrong) {
+  const auto found = [] {
+    return std::ranges::count(log::findings(), std::string("unconverged-step"), &log::Finding::id);
+  };
+  const auto accepted = [&](int iterations, double relaxation) {
+    ToyRun run;
+    run.mass_ratio(0.9);
+    run.coupling.acceleration = {AccelerationParameters::Type::constant, relaxation, 1};
+    run.coupling.convergence.max_iterations = iterations;
+    run.coupling.convergence.at_maximum = ConvergenceParameters::AtMaximum::accept;
+    const auto before = found();
+    run();
+    EXPECT_EQ(run.problem == "", iterations > 1)
+        << "one pass of 0.05 lets the motion oscillate: " << run.problem;
+    return found() - before;
+  };
+  EXPECT_EQ(accepted(100, 0.5), 0);  // 1 - 0.5 (1 + 0.9) = 0.05 a pass
+  EXPECT_GT(accepted(4, 0.5), 0);
+  EXPECT_EQ(log::findings().back().severity, Severity::warning);
+  EXPECT_GT(accepted(1, 0.05), 0);
+  EXPECT_TRUE(std::ranges::any_of(log::findings(), [](const log::Finding& f) {
+    return f.id == "unconverged-step" && f.severity == Severity::wrong && f.number >= 0.5;
+  }));
+}
+
 TEST(CoupledToy, interrupted_run_equals_uninterrupted_run_bit_for_bit) {
   const auto setup = [](ToyRun& run) {
     run.fluid.vertices = run.solid.vertices = 11;

@@ -140,7 +140,7 @@ TEST(SurfaceSeries, a_name_that_is_no_patch_or_comes_twice_is_refused) {
     return error_of([&] { SurfaceSeries(mesh, names, "output.surfaces"); });
   };
   EXPECT_THAT(refused({"ymin", "xmx"}),
-              HasSubstr("output.surfaces: 'xmx' is no patch of the boundary. Did you mean 'xmax'?"));
+              HasSubstr("output.surfaces: 'xmx' is not a patch of the boundary. Did you mean 'xmax'?"));
   EXPECT_THAT(refused({"ymin", "ymin"}), HasSubstr("output.surfaces: 'ymin' is given twice"));
 }
 

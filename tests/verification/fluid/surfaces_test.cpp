@@ -247,7 +247,7 @@ TEST(FluidSurfaces, of_what_is_no_patch_are_refused_by_name) {
     FAIL() << "accepted";
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), ::testing::HasSubstr(
-                              "output.surfaces: 'ymni' is no patch of the boundary. Did you mean 'ymin'"));
+                              "output.surfaces: 'ymni' is not a patch of the boundary. Did you mean 'ymin'"));
   }
 }
 
