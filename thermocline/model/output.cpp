@@ -30,7 +30,7 @@ TankOutputFiles::TankOutputFiles(const TankModel& model, const std::filesystem::
         folder / "wall.csv",
         std::vector<std::string>{"time [s]", "z [m]", "wall [degC]", "hoop stress [Pa]",
                                  "equivalent stress [Pa]", "yield strength [Pa]", "filler pressure [Pa]",
-                                 "contact [0 active, 1 rigid, 2 passive]"},
+                                 "contact [0 active; 1 rigid; 2 passive]"},
         restart_time);
   if (model.ground())
     ground_ = std::make_unique<Series>(

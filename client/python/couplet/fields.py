@@ -55,13 +55,14 @@ def values_of(series, i, name, component):
 
 
 def places_of(series, i, warp, name):
-    """Points where they are: of a moving mesh as it was written, of a body with the displacement times `warp`, of a shape a tenth of the
+    """Points where they are: as they were written, with a displacement the reference points and `warp` times that, of a shape a tenth of the
     body's size away."""
     points = np.array(series.coordinates(i), float)
     if is_shape(name):
         move = np.asarray(series.field(i, name), float)[:, :points.shape[1]]
         points[:, :move.shape[1]] += 0.1 * warp * np.ptp(points, axis=0).max() / np.linalg.norm(move, axis=1).max() * move
-    elif warp and "displacement" in series.names(i) and series.is_at_points(i, "displacement"):
+    elif "displacement" in series.names(i) and series.is_at_points(i, "displacement"):
+        points = np.array(series.reference(), float)  # the written ones are where the body is: with the displacement once
         move = np.asarray(series.field(i, "displacement"), float)
         points[:, :move.shape[1]] += warp * move[:, :points.shape[1]]
     return points
@@ -102,14 +103,14 @@ def along(figure, points, surface, values, i):
     return axes
 
 
-def in_space(figure, points, series, values, faces=None):
+def in_space(figure, points, series, values, faces=None, place=(1, 1, 1)):
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
     faces = faces or outer_faces(series)
     expect(len(faces) <= MOST_FACES, f"{len(faces)} outer faces are too many for matplotlib: open the .xdmf in ParaView")
     import matplotlib
     shown = np.array([values[cell] for _, cell in faces])
     scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(np.nanmin(values), np.nanmax(values)), "viridis")
-    axes = figure.add_subplot(projection="3d")
+    axes = figure.add_subplot(*place, projection="3d")
     axes.add_collection3d(Poly3DCollection([points[face] for face, _ in faces], facecolors=scale.to_rgba(shown), edgecolors=(0, 0, 0, 0.15), linewidths=0.2))
     low, high = points.min(axis=0), points.max(axis=0)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]), xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures of what a run wrote: monitors, lines and planes, residuals; of a case that has a plot.py its own picture. Columns of one
+"""Pictures of what a run wrote: monitors, lines and planes, residuals; of a case the picture that its section `plot` declares. Columns of one
 unit share a diagram. A line is drawn over the way along it, a plane as a map of each column, residuals over all coupling
 iterations. Prints the name of each picture."""
 import csv
-import os
 import pathlib
-import subprocess
 import sys
 
 import matplotlib
@@ -14,7 +12,6 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from couplet import places
 from couplet.runs.case import Wrong, expect
 
 PLACES = ("along [-]", "up [-]", "x [m]", "y [m]", "z [m]")
@@ -34,6 +31,7 @@ def read(file):
         values = np.array([[float(v) for v in row] for row in rows[1:] if len(row) == len(rows[0])])
     except ValueError as problem:
         raise Wrong(f"{file}: {problem}.") from None
+    expect(len(values), f"{file}: no row has the {len(rows[0])} values that its first line names.")
     return dict(zip(rows[0], values.T))
 
 
@@ -142,7 +140,8 @@ def draw(file, options):
 
 
 def declare(parser):
-    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE", help="a monitor, a sample-*.csv or residuals.csv, a folder with such files below it, or CASE.yaml: runs the plot.py beside it")
+    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE", help="a monitor, a sample-*.csv or residuals.csv, a folder with such files below it, or CASE.yaml: its section plot (docs/plots.md), else the plot.py beside it, else all files of its run")
+    parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="of CASE.yaml: the output folder of the run (the one that the case names)")
     parser.add_argument("--only", nargs="+", default=[], metavar="WORD", help="only the columns whose name holds one of the words")
     parser.add_argument("--from", dest="low", type=float, metavar="T", help="only from this time on [s]")
     parser.add_argument("--to", dest="high", type=float, metavar="T", help="only up to this time [s]")
@@ -154,15 +153,6 @@ def declare(parser):
     parser.add_argument("--component", choices=("x", "y", "z"), help="of --field: a component in place of the magnitude")
     parser.add_argument("--warp", type=float, default=1.0, metavar="F", help="of --field: a body is drawn with its displacement times F (1)")
     parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="by default FILE.png beside FILE.csv; for one file only")
-
-
-def of_case(case, picture):
-    """Runs the case's own plot.py, a program of whoever made the case."""
-    script = case.parent / "plot.py"
-    expect(script.is_file(), f"{case}: there is no plot.py beside it; its monitors: couplet plot {case.parent / 'out'}")
-    paths = [str(places.PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])]
-    done = subprocess.run([sys.executable, script, *([picture] if picture else [])], env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)})
-    return done.returncode
 
 
 def folder_of_run(option, files):
@@ -187,7 +177,12 @@ def run(options):
         return 0
     if options.files[0].suffix in (".yaml", ".yml"):
         expect(len(options.files) == 1, "one case at a time")
-        return of_case(*options.files, options.picture)
+        from couplet.plots.case import of_case
+        code = of_case(*options.files, options)
+        if code is not None:
+            return code
+    else:
+        expect(options.out is None, "--out: belongs to CASE.yaml; of a run give its folder alone")
     files, folders = [], 0
     for name in options.files:
         folders += name.is_dir()

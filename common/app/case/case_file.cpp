@@ -34,7 +34,7 @@ std::string problem_of_name(const std::string& name) {
 }
 
 void check_top_level(const config::Document& document, CaseFile& result) {
-  static const std::vector<std::string> known{"simulation", "participants", "coupling", "study"};
+  static const std::vector<std::string> known{"simulation", "participants", "coupling", "study", "plot"};
   for (const std::string& key : config::keys_of(document, ""))
     if (std::find(known.begin(), known.end(), key) == known.end() && result.errors.size() < most_errors)
       result.errors.push_back(fmt::format("{}: unknown section. {}", config::where(document, key),

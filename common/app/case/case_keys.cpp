@@ -49,9 +49,9 @@ std::map<std::string, std::string> lines_of(const std::string& text) {
   return result;
 }
 
-/// Keys that say how far, how often and where to, and those of a study, which runs variants of a case.
+/// Keys that say how far, how often and where to, those of a study, which runs variants of a case, and those of its picture.
 bool is_harmless(const std::string& path) {
-  if (path.starts_with("simulation.") || path.starts_with("study")) return true;
+  if (path.starts_with("simulation.") || path.starts_with("study") || path.starts_with("plot")) return true;
   if (!path.starts_with("participants.")) return false;
   const std::vector<std::string> parts = split(path, '.');
   static constexpr std::array<std::string_view, 3> sections{"output", "probes", "statistics"};

@@ -33,12 +33,27 @@ def ask(arguments, question):
         yield name, process.returncode, answer, complaint
 
 
+def problem_of_plot(case):
+    """What is wrong with the section `plot`, which the programs ignore; empty if nothing is."""
+    from couplet.plots.section import check
+    from couplet.runs.case import Wrong
+    try:
+        if "plot" in case.data:
+            check(case)
+    except Wrong as problem:
+        return str(problem)
+    return ""
+
+
 def run(arguments):
     worst, told = 0, []
     for name, code, answer, complaint in ask(arguments, "--check"):
         worst = max(worst, code if code >= 0 else 1)
         if code:  # what concerns the whole case is said by every program, but needs one reader only
             told += [line for line in (complaint or answer).rstrip().splitlines() if line not in told]
+    problem = problem_of_plot(Case(arguments.case))
+    if problem:
+        worst, told = max(worst, 2), [*told, problem]
     print(*told, sep="\n", end="\n" if told else "", file=sys.stderr)
     if worst == 0:
         print(f"{arguments.case}: valid")

@@ -9,7 +9,7 @@ import sys
 
 from couplet.runs import folder as folders
 from couplet.runs.case import Case, expect
-from couplet.runs.job import Job
+from couplet.runs.job import Job, output_of
 
 FLAGS = {"strict": "fail on warnings about the run's own result; --strict=effects: also about neglected effects"}
 
@@ -22,7 +22,7 @@ def declare(parser):
     parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
     parser.add_argument("--print", action="store_true", help="shows the launch line and runs nothing")
     parser.add_argument("--slurm", nargs="?", const="", metavar="OPTIONS", help="hands the run to Slurm as a batch job, with these options of sbatch; with --print shows the script")
-    parser.add_argument("--picture", action="store_true", help="afterwards runs the plot.py of the case")
+    parser.add_argument("--picture", action="store_true", help="afterwards draws the section plot of the case, or runs its plot.py")
     options_of_programs(parser)
 
 
@@ -104,15 +104,23 @@ def span(seconds):
     return f"{seconds:.1f} s" if seconds < 10 else f"{seconds:.0f} s" if seconds < 600 else f"{seconds / 60:.0f} min"
 
 
+def line_of_picture(job, out):
+    """The command that draws this run."""
+    from couplet.plots.case import has_picture
+    if not has_picture(job.case):
+        return f"couplet plot {shlex.quote(out)}"
+    elsewhere = job.output.absolute() != output_of(job.case, ()).absolute()
+    return f"couplet plot {shlex.quote(shown(job.case.file))}" + (f" --out {shlex.quote(out)}" if elsewhere else "")
+
+
 def picture_of(job):
     """Makes the picture of the case; gives its part of the last line."""
     import subprocess
-    done = subprocess.run([sys.executable, "-m", "couplet", "plot", str(job.case.file)], capture_output=True, text=True, env={
+    done = subprocess.run([sys.executable, "-m", "couplet", "plot", str(job.case.file), *(["--out", str(job.output)] if "plot" in job.case.data else [])], capture_output=True, text=True, env={
         **os.environ, "PYTHONPATH": str(pathlib.Path(__file__).resolve().parents[2])})
-    words = done.stdout.split()
-    name = next((w for w in reversed(words) if w.rstrip(".,").endswith(".png")), None)
+    name = next((line.removeprefix("picture: ") for line in reversed(done.stdout.splitlines()) if line.endswith(".png")), None)
     if done.returncode != 0:
-        return f"no picture ({(done.stderr.strip().splitlines() or ['plot.py failed'])[-1]})"
+        return f"no picture ({(done.stderr.strip().splitlines() or ['couplet plot failed'])[-1]})"
     return f"picture {shown(name)}" if name else "picture made"
 
 
@@ -121,8 +129,7 @@ def finish(job, code, picture):
     out, took = shown(job.output), span(job.seconds)
     again = f"couplet resume {shlex.quote(out)}"
     if code == 0 or code == 4:
-        has_plot = (job.case.file.parent / "plot.py").is_file()
-        look = picture_of(job) if picture else f"picture: couplet plot {shlex.quote(shown(job.case.file) if has_plot else out)}"
+        look = picture_of(job) if picture else f"picture: {line_of_picture(job, out)}"
         doubt = ", but the result is provably useless (above; docs/findings.md)" if code == 4 else ""
         print(f"done in {took}{doubt}: results in {out}, {look}", flush=True)
         return code

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The schemas of docs/schema: what the programs print, with units as patterns, and one for a whole case file with its sections
-`simulation` and `study`."""
+`simulation`, `study` and `plot`."""
 import json
 import re
 
 from couplet.documents import units
+from couplet.plots.section import PLOT
 from couplet.study.schema import STUDY
 
 
@@ -96,7 +97,7 @@ def case_schema(programs, simulation):
         "title": "Couplet case",
         "type": "object",
         "oneOf": [{"required": ["simulation", "participants"], "not": {"required": ["case"]}}, {"required": ["case", "study"], "maxProperties": 2}],
-        "properties": {"simulation": simulation, "participants": participants, "coupling": {"$ref": "coupler.json"}, "study": STUDY,
+        "properties": {"simulation": simulation, "participants": participants, "coupling": {"$ref": "coupler.json"}, "study": STUDY, "plot": PLOT,
                        "case": {"type": "string", "description": "another case file whose study this is"}},
         "additionalProperties": False,
     }

@@ -158,7 +158,7 @@ class Case:
         inputs = {f.resolve() for f in self.named([self.data, list((changes or {}).values())])} | {
             f.resolve() for f in self.file.parent.glob("*.geo")}
         programs = {self.program(name) for name in self.participants} | ({self.build / "bin" / COUPLER} if self.coupled else set())
-        sections = {k: v for k, v in self.data.items() if k != "study"}  # a study may grow without its runs being made again
+        sections = {k: v for k, v in self.data.items() if k not in ("study", "plot")}  # a study may grow without its runs being made again
         mark.update(json.dumps(sections, sort_keys=True, default=str).encode())
         for file in (*sorted(inputs), *sorted(programs)):
             if file.exists():

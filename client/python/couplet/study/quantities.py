@@ -142,12 +142,12 @@ def check_exact(formula, where):
         expect(False, f"{where}: exact: '{formula}' is no expression of x, y, z and t. {error}.")
 
 
-def quantities_of(case, section, participant):
+def quantities_of(case, section, participant, place="study"):
     given = section.get("quantities")
-    expect(isinstance(given, dict) and given, f"{case.file}: study.quantities: expected quantities of interest by name.")
+    expect(isinstance(given, dict) and given, f"{case.file}: {place}.quantities: expected quantities of interest by name.")
     found = []
     for name, content in given.items():
-        where = f"{case.file}: study.quantities.{name}"
+        where = f"{case.file}: {place}.quantities.{name}"
         expect(isinstance(content, dict), f"{where}: expected a mapping.")
         unknown = set(content) - KEYS
         expect(not unknown, f"{where}: unknown key '{next(iter(unknown), '')}'; valid are {', '.join(sorted(KEYS))}.")

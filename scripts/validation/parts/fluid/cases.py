@@ -35,8 +35,8 @@ def cylinder(name, low, high):
 def cfd3(name, limit):
     def measure(job):
         folder, _ = job.solve("fluid_solver", "cfd3", timeout=7200)
-        plot = job.beside("configs/cfd3/plot.py")
-        value, wanted = plot.summary(folder / "fluid")[name], plot.reference()[name]
+        case = job.beside("configs/cfd3/summary.py")
+        value, wanted = case.summary(folder / "fluid")[name], case.reference()[name]
         return f"{value:.3f} ({100 * (value / wanted - 1):+.1f} % of {wanted})", abs(value / wanted - 1) <= limit
     return measure
 

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Draws the section `plot` of a case from the output folder of a run, and prints the quantities that it names."""
+import pathlib
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection, PolyCollection
+
+from couplet import fields
+from couplet.plots.section import check, seconds
+from couplet.plots.sources import columns_of, number, points_of, series_in
+from couplet.runs.case import Wrong, expect
+from couplet.runs.results import Results
+from couplet.series import extrema
+
+LOOK = {"line": {"ls": "-", "lw": 1.2}, "points": {"ls": "", "marker": "o", "fillstyle": "none", "color": "black", "markersize": 4}, "dots": {"ls": "", "marker": "."},
+        "crosses": {"ls": "", "marker": "x", "color": "black", "markersize": 5}, "pluses": {"ls": "", "marker": "+", "color": "black", "markersize": 6}, "squares": {"ls": "", "marker": "s", "color": "black", "markersize": 6}, "dashed": {"ls": "--", "lw": 1.2}, "dotted": {"ls": ":"}}
+LABELS = 12  # of one legend
+
+
+def look_of(curve):
+    style = dict(LOOK[curve.get("style", "line" if "levels" not in curve else "dotted")])
+    return {**style, **({"color": curve["colour"]} if "colour" in curve else {}), **({"markevery": curve["every"]} if "every" in curve else {})}
+
+
+def draw_curve(axes, curve, case, out, where):
+    if "levels" in curve:
+        for i, level in enumerate(curve["levels"]):
+            axes.axhline(level, **{"color": "black", **look_of(curve)}, label=curve.get("label") if i == 0 else None)
+        return
+    found = points_of(curve, case, out, where)
+    for i, (x, y, value) in enumerate(found):
+        label = curve.get("label") if value is None else curve.get("label", "<each>").replace("<each>", f"{value:.4g}")
+        shade = {} if value is None else {"color": plt.get_cmap("viridis")(0.9 * i / max(1, len(found) - 1))}
+        order = np.argsort(x, kind="stable") if curve.get("sorted") else slice(None)
+        axes.plot(x[order], y[order], **{**look_of(curve), **shade}, label=label)
+        for t, top, kind in extrema(x, y) if curve.get("extrema") else ():
+            if kind == "max":
+                axes.annotate(f"{top:.3f}\nat {t:.2f}", (t, top), textcoords="offset points", xytext=(0, 16), ha="center", fontsize=7)
+
+
+def draw_curves(axes, panel, case, out, where):
+    for j, curve in enumerate(panel["curves"]):
+        draw_curve(axes, curve, case, out, f"{where}.curves[{j}]")
+    axes.grid(alpha=0.3)
+    labels = axes.get_legend_handles_labels()[0]
+    if labels and panel.get("legend", True) and len(labels) <= max(LABELS, 2 * len(panel["curves"])):
+        axes.legend(fontsize=7, ncol=max(1, int(panel.get("legend", 1))))
+
+
+def time_of(panel, out, where):
+    """Of a map: a time, or that of a first maximum."""
+    at = panel.get("at")
+    if not isinstance(at, dict):
+        return seconds(at, where)
+    table = columns_of(out / at["monitor"])
+    expect(at["first-maximum"] in table, f"{where}: {out / at['monitor']} has no column '{at['first-maximum']}'; it has: {', '.join(table)}.")
+    time, values = next(iter(table.values())), table[at["first-maximum"]]
+    return next((t for t, _, kind in extrema(time, values) if kind == "max"), time[-1])
+
+
+def polygons_of(series, points, plane, where):
+    """(corners, cells) of two-dimensional cells, or of the outer faces in a plane such as y = 0, in its other two axes."""
+    if is_flat(series):
+        return [points[cell][:, :2] for cell in series.cells], np.arange(len(series.cells)), "xy"
+    axis, _, level = plane.replace(" ", "").partition("=")
+    expect(axis in ("x", "y", "z") and np.isfinite(number(level or "x")), f"{where}.plane: '{plane}'; expected such as y = 0.")
+    k, still, size = "xyz".index(axis), series.reference(), np.ptp(series.reference(), axis=0).max()
+    faces = [(face, cell) for face, cell in fields.outer_faces(series) if np.abs(still[face][:, k] - float(level)).max() < 1e-6 * size]
+    expect(faces, f"{where}.plane: no outer face lies in {plane}.")
+    others = [i for i in range(3) if i != k]
+    return [points[face][:, others] for face, _ in faces], np.array([cell for _, cell in faces]), "xyz".replace(axis, "")
+
+
+def is_flat(series):
+    points = series.reference()
+    return points.shape[1] == 2 or np.ptp(points[:, 2]) == 0
+
+
+def draw_bodies(axes, panel, out, series, i):
+    """Outlines of the mesh that is drawn, and bodies in it."""
+    edges = np.array(series.coordinates(i))[series.edges_on_boundary()][:, :, :2]
+    axes.add_collection(LineCollection(edges, colors="black", linewidths=0.8))
+    for name in panel["bodies"]:
+        body = series_in(out, name)
+        corners = fields.places_of(body, body.nearest(series.times[i]), panel.get("warp", 1), "")
+        axes.add_collection(PolyCollection([corners[cell][:, :2] for cell in body.cells], facecolors="tab:red", edgecolors="none"))
+
+
+def draw_map(axes, panel, polygons, values):
+    drawn = PolyCollection(polygons, array=values, cmap=panel.get("colours", "viridis"), edgecolors="face", linewidths=0.1)
+    axes.add_collection(drawn)
+    if "mesh" in panel:
+        axes.add_collection(PolyCollection(polygons, facecolors="none", edgecolors=panel["mesh"], linewidths=0.07, alpha=0.4))
+    axes.autoscale()
+    axes.set_aspect("equal")
+    return drawn
+
+
+def draw_field(figure, axes, panel, case, out, where):
+    """A map of two-dimensional cells or of an outer plane, else the outer faces in three dimensions; gives its axes."""
+    participant = panel.get("participant", next(iter(case.participants)))
+    series, at = series_in(out, participant), time_of(panel, out, f"{where}.at")
+    i = len(series.times) - 1 if at is None else series.nearest(at)
+    values = panel.get("factor", 1) * fields.values_of(series, i, panel["field"], panel.get("component"))
+    points = fields.places_of(series, i, panel.get("warp", 1), panel["field"])
+    if is_flat(series) or "plane" in panel:
+        polygons, cells, ways = polygons_of(series, points, panel.get("plane"), where)
+        drawn = draw_map(axes, panel, polygons, values[cells])
+        axes.set(xlabel=f"{ways[0]} [m]", ylabel=f"{ways[1]} [m]")
+        if "bodies" in panel:
+            draw_bodies(axes, panel, out, series, i)
+    else:
+        place = axes.get_subplotspec()
+        axes.remove()
+        drawn = fields.in_space(figure, points, series, np.clip(values, *panel.get("range", (None, None))), place=(place,))
+        axes = figure.axes[-1]
+    if "range" in panel:
+        drawn.set_clim(*panel["range"])
+    axes.set_title(f"{panel['field']} at t = {series.times[i]:.4g} s")
+    if not panel.get("axes", True):
+        axes.set_axis_off()
+    figure.colorbar(drawn, ax=axes, label=panel.get("label", fields.label_of(series, i, panel["field"], panel.get("component"))), shrink=0.85)
+    return axes
+
+
+def finish(axes, panel):
+    for way in "xy":
+        given = panel.get(way, {})
+        if given.get("log"):
+            axes.set(**{f"{way}scale": "log"})
+        if "label" in given:
+            axes.set(**{f"{way}label": given["label"]})
+        low, high = given.get("from"), given.get("to")
+        if low is not None or high is not None:
+            axes.set(**{f"{way}lim": (low, high)})
+    if "title" in panel:
+        axes.set_title(panel["title"])
+    axes.title.set_fontsize(9)
+
+
+def print_quantities(section, case, out):
+    from couplet.study.quantities import quantities_of
+    for quantity in quantities_of(case, section, next(iter(case.participants)), "plot"):
+        try:
+            value = quantity.value(Results(out))
+        except (LookupError, OSError) as problem:
+            raise Wrong(f"{case.file}: plot.quantities.{quantity.name}: {problem}") from None
+        wanted = quantity.reference
+        beside = f", reference {wanted:.5g} ({100 * (value / wanted - 1):+.2f} %)" if isinstance(wanted, (int, float)) and wanted else ""
+        print(f"{quantity.name}: {value:.5g}{' ' + quantity.given['unit'] if 'unit' in quantity.given else ''}{beside}")
+
+
+def draw(case, out, picture=None):
+    """Draws the picture of the run in the folder `out`; gives its path."""
+    section, out = check(case), pathlib.Path(out)
+    expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {case.file}")
+    panels = section["panels"]
+    across = min(section.get("columns", min(3, len(panels))), len(panels))
+    down = -(-len(panels) // across)
+    size = section.get("size", (min(14, 5.5 * across), 4.2 * down))
+    figure, grid = plt.subplots(down, across, figsize=size, dpi=130, squeeze=False, constrained_layout=True, sharex=section.get("share-x", False))
+    for axes in grid.flat[len(panels):]:
+        axes.axis("off")
+    try:
+        for k, (axes, panel) in enumerate(zip(grid.flat, panels)):
+            where = f"{case.file}: plot.panels[{k}]"
+            if "field" in panel:
+                axes = draw_field(figure, axes, panel, case, out, where)
+            else:
+                draw_curves(axes, panel, case, out, where)
+            finish(axes, panel)
+        if "title" in section:
+            figure.suptitle(section["title"], fontsize=10)
+        picture = pathlib.Path(picture or out / section.get("file", f"{case.file.resolve().parent.name}.png"))
+        figure.savefig(picture)
+    finally:
+        plt.close(figure)
+    if "quantities" in section:
+        print_quantities(section, case, out)
+    return picture

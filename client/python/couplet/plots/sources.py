@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Values of the curves that a section `plot` names: from monitors, tables beside the case, fields of the last output, functions."""
+import csv
+import re
+
+import numpy as np
+
+from couplet.plots.section import seconds
+from couplet.runs.case import Wrong, expect
+from couplet.series import find_series
+from couplet.study.expressions import evaluate
+from couplet.study.quantities import FUNCTIONS
+
+POINTS_OF_A_FUNCTION = 200
+
+
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return np.nan
+
+
+def columns_of(file):
+    """{head: numbers}, what is no number as NaN. The head is the first line without #, or, where that is a row of numbers, the last comment."""
+    try:
+        text = file.read_text()
+    except OSError as problem:
+        raise Wrong(f"{file}: {problem.strerror}.") from None
+    lines = [line for line in text.splitlines() if line.strip()]
+    comments = [line for line in lines if line.startswith("#")]
+    rows = [[cell.strip() for cell in row] for row in csv.reader(line for line in lines if not line.startswith("#"))]
+    expect(rows, f"{file}: there is no row in it.")
+    if all(np.isfinite(number(cell)) for cell in rows[0]) and comments:
+        rows.insert(0, [cell.strip() for cell in comments[-1].lstrip("# ").split(",")])
+    head, body = rows[0], [r for r in rows[1:] if len(r) == len(rows[0])]
+    return {name: np.array([number(r[i]) for r in body]) for i, name in enumerate(head)}
+
+
+class Source:
+    """Named values of equal length; `order`: the names of a table's columns."""
+
+    def __init__(self, columns, names, place):
+        self.columns, self.names, self.place = columns, {"pi": np.pi, **names}, place
+
+    def column(self, name, where):
+        expect(name in self.columns, f"{where}: {self.place} has no '{name}'; it has: {', '.join(self.columns)}.")
+        return self.columns[name]
+
+    def value(self, text, where, functions=()):
+        """A column of that name, or an expression of the names."""
+        if str(text) in self.columns:
+            return self.columns[str(text)]
+        try:
+            size = len(next(iter(self.columns.values())))
+            return np.broadcast_to(evaluate(text, self.names, {**FUNCTIONS, **dict(functions)}), size).astype(float)
+        except ValueError as error:
+            raise Wrong(f"{where}: {error}; {self.place} has: {', '.join(self.columns)}.") from None
+
+
+def component_of(series, i, name, where):
+    """A field or, by `velocity x`, a component of it; of points the mean over each cell."""
+    field, axis = (name[:-2], "xyz".index(name[-1])) if re.search(r" [xyz]$", name) else (name, None)
+    expect(field in series.names(i), f"{where}: there is no field '{field}'; there are: {', '.join(series.names(i))}.")
+    values = np.asarray(series.field(i, field), float).reshape(-1, np.asarray(series.field(i, field)).shape[1] if np.ndim(series.field(i, field)) > 1 else 1)
+    values = values[:, axis] if axis is not None else values[:, 0] if values.shape[1] == 1 else np.linalg.norm(values, axis=1)
+    return np.array([values[cell].mean() for cell in series.cells]) if series.is_at_points(i, field) else values
+
+
+def series_in(out, participant):
+    try:
+        return find_series(out / participant)
+    except FileNotFoundError:
+        raise Wrong(f"{out / participant}: there are no fields. Run the case first.") from None
+
+
+def of_fields(curve, out, where):
+    series = series_in(out, curve["fields"])
+    at = seconds(curve.get("at"), f"{where}.at")
+    i = len(series.times) - 1 if at is None else series.nearest(at)
+    centres = series.centres()
+    names = {n: centres[:, k] if k < centres.shape[1] else 0 * centres[:, 0] for k, n in enumerate("xyz")}
+    names |= {short: component_of(series, i, name, f"{where}.with.{short}") for short, name in curve.get("with", {}).items()}
+    return Source(dict(names), {**names, "t": series.times[i]}, f"{curve['fields']}'s fields")
+
+
+def source_of(curve, case, out, where):
+    if "fields" in curve:
+        return of_fields(curve, out, where)
+    if "function" in curve:
+        x = np.linspace(curve["from"], curve["to"], POINTS_OF_A_FUNCTION)
+        return Source({"x": x}, {"x": x}, "a function")
+    if "points" in curve:
+        return Source({"x": np.array(curve["points"], float)[:, 0], "y": np.array(curve["points"], float)[:, 1]}, {}, "a list of points")
+    kind = "monitor" if "monitor" in curve else "table"
+    file = (out if kind == "monitor" else case.file.parent) / curve[kind]
+    expect(file.is_file(), f"{where}.{kind}: there is no {file}." + (" Run the case first." if kind == "monitor" else ""))
+    columns = columns_of(file)
+    if "at" in curve:
+        time, at = next(iter(columns.values())), seconds(curve["at"], f"{where}.at")
+        columns = {name: values[time == (time[-1] if at is None else time[np.abs(time - at).argmin()])] for name, values in columns.items()}
+    found = Source(columns, {}, str(file))
+    found.names |= {short: found.column(name, f"{where}.with.{short}") for short, name in curve.get("with", {}).items()}
+    found.names |= {"t": next(iter(columns.values()))}
+    return found
+
+
+def points_of(curve, case, out, where):
+    """[(x, y, value of `each` or None)]: one curve, or one for each value of `each`."""
+    source = source_of(curve, case, out, where)
+    x = source.value(curve.get("x", next(iter(source.columns))), f"{where}.x")
+
+    def mean(values):
+        """Over the rows of equal x, but for rounding."""
+        order = np.argsort(x, kind="stable")
+        group = np.empty(len(x), int)
+        group[order] = np.concatenate([[0], np.cumsum(np.diff(x[order]) > 1e-6 * np.ptp(x))])
+        return (np.bincount(group, values) / np.bincount(group))[group]
+
+    y = source.value(curve.get("y", curve.get("function", "y")), f"{where}.{'function' if 'function' in curve else 'y'}", {"mean": mean})
+    keep = np.isfinite(x) & np.isfinite(y)
+    if "where" in curve:
+        keep &= source.value(curve["where"], f"{where}.where", {"min": np.min, "max": np.max}) != 0
+    expect(keep.any(), f"{where}: no row of {source.place} is left to draw.")
+    if "each" not in curve:
+        return [(x[keep], y[keep], None)]
+    each = source.value(curve["each"], f"{where}.each")
+    return [(x[keep & (each == value)], y[keep & (each == value)], value) for value in np.unique(each[keep])]
