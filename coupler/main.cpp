@@ -4,6 +4,7 @@
 #include "common/app/job.hpp"
 #include "common/app/run_report.hpp"
 #include "common/log/log.hpp"
+#include "common/log/terminal.hpp"
 #include "coupler/coupler.hpp"
 #include "coupler/parameters/effect_cards.hpp"
 
@@ -27,6 +28,7 @@ int run(const couplet::Job& job, const couplet::CouplingParameters& parameters) 
   const std::string problem = coupler.run();
   report.total(coupler.time(), long(coupler.steps()), coupler.iterations());
   report.finish(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), problem, {});
+  log::tell_where(job.output_folder.parent_path().string(), "coupler/" + job.name + ".log");
   if (problem.empty()) return 0;
   if (job.rank == 0) log::error("{}", problem);
   return 1;

@@ -24,6 +24,7 @@
 #include "common/coupling/wait.hpp"
 #include "common/log/finding.hpp"
 #include "common/log/log.hpp"
+#include "common/log/terminal.hpp"
 #include "common/parallel/collective.hpp"
 #include "common/parallel/mpi_start.hpp"
 
@@ -100,6 +101,7 @@ void prepare(Job& job, const CommandLine& command_line, bool is_coupler) {
         "The output folder {} is in use by another job that is still running. Wait for it to end, or choose "
         "another folder with --set simulation.output.folder=....",
         job.output_folder.string());
+  log::set_driver(is_driver);
   log::setup(job.name, job.rank, command_line.verbosity, (job.output_folder / (job.name + ".log")).string());
   job.restart_time = std::numeric_limits<double>::quiet_NaN();
   if (is_driver) job.simulation.keys = case_keys(*job.document, job.case_folder);

@@ -45,8 +45,8 @@ std::string pattern(const std::string& participant, int rank) {
 
 void setup(const std::string& participant, int rank, Verbosity verbosity, const std::string& file) {
   std::vector<spdlog::sink_ptr> sinks;
-  if (verbosity == Verbosity::normal && on_terminal())
-    sinks.push_back(terminal_sink());
+  if (verbosity == Verbosity::normal && screen() != Screen::none)
+    sinks.push_back(terminal_sink(screen(), rank == 0));
   else
     sinks.push_back(std::make_shared<BelowError>());
   sinks.push_back(std::make_shared<spdlog::sinks::stderr_sink_mt>());

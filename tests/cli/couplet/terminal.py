@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A terminal of 80 by 24. Usage: terminal.py BIN PART; parts: command (couplet run), program (a program started by itself; by mpirun its lines stand)"""
+"""A terminal of 80 by 24. Usage: terminal.py BIN PART; parts: command (couplet run), program (a program started by itself; and by mpirun)"""
 import fcntl
 import os
 import pathlib
@@ -59,8 +59,27 @@ def command(folder):
     check("what is wrong with a case is shown", code == 2 and "'heavy' is not a number" in text + errors, text + errors)
 
 
+def launched(folder, out):
+    """mpirun by hand: one program of the job has the status line; where mpirun marks lines or writes to a file they stand as they are."""
+    words = ("mpirun", "--oversubscribe", "-n", 2, bin_ / "solid_solver", ROOT / "configs/cantilever/case.yaml", "--set", out + "two")
+    text = on_terminal(*words)[1]
+    statuses = looks_right("mpirun, two ranks", text)
+    check("mpirun, two ranks: one status line, once where results lie", len(statuses) == 1 and text.count("results in ") == 1 and "[solid 0]" not in text, text)
+    marked = on_terminal("mpirun", "--tag-output", *words[1:])[1]
+    check("mpirun --tag-output: lines", "\x1b" not in marked and "[solid 0] t=1/1 s" in marked, marked)
+    case = case_in(folder / "b", bin_, end_time=0.2)
+    line = call(bin_, "run", case, "--print").stdout.split()
+    code, text, _ = on_terminal(*line)
+    statuses = looks_right("mpirun, flap", text)
+    check("mpirun, flap: a status line that renews itself", code == 0 and len(statuses) >= 3 and all("to go" in s for s in statuses) and "steps/s" in statuses[-1], text)
+    check("mpirun, flap: each program says once who it is, and one where results lie", all(text.count(f"runs '{name}'") <= 1 for name in ("fluid", "solid", "mover")) and text.count(f"results in {case.parent / 'out'}") == 1, text)
+    check("mpirun, flap: the logs have every line", all("] t=" in f.read_text() or "time of" in f.read_text() for f in (case.parent / "out").glob("*/*.log")))
+    piped = subprocess.run(line, capture_output=True, text=True, env={**environment(bin_), "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}).stdout
+    check("mpirun, flap, in a file: lines", "\x1b" not in piped and "[coupler 0] t=" in piped and "[solid 0] solid_solver runs" in piped, piped[-500:])
+
+
 def program(folder):
-    """The programs themselves: the same limits, where the results lie; all lines in the log; lines as in a file with --verbose and under mpirun."""
+    """The programs themselves: the same limits, where the results lie; all lines in the log; lines as in a file with --verbose."""
     out = f"simulation.output.folder={folder}/"
     for name, words in (("solid", ("solid_solver", ROOT / "configs/cantilever/case.yaml")), ("fluid", ("fluid_solver", ROOT / "configs/cavity/case.yaml", "--set", "simulation.end-time=4")),
                         ("tank", ("thermocline", ROOT / "configs/thermocline-solar-one/case.yaml")), ("plate", ("plate_modal", ROOT / "configs/plate-square/case.yaml"))):
@@ -76,8 +95,7 @@ def program(folder):
               and log.read_text().count("; neglected: ") == piped.count("; neglected: ") >= 1, piped)
     loud = on_terminal(bin_ / "solid_solver", ROOT / "configs/cantilever/case.yaml", "--verbose", "--set", out + "loud")[1]
     check("--verbose: lines", "\x1b" not in loud and "[solid 0] t=1/1 s" in loud, loud)
-    launched = on_terminal("mpirun", "--oversubscribe", "-n", 2, bin_ / "solid_solver", ROOT / "configs/cantilever/case.yaml", "--set", out + "two")[1]
-    check("mpirun: lines", "\x1b" not in launched and "[solid 0] t=1/1 s" in launched, launched)
+    launched(folder, out)
     code, text, errors = on_terminal(bin_ / "solid_solver", ROOT / "configs/vibrating-cantilever/case.yaml", "--set", "simulation.time-step=0", "--set", out + "wrong")
     check("an error stands alone", code == 2 and "time-step" in errors and RENEW not in text, text + errors)
     code, text, errors = on_terminal(bin_ / "solid_solver", ROOT / "configs/cantilever/case.yaml", "--set", "participants.solid.material.youngs-modulus=1e4 Pa", "--set", out + "doubt")

@@ -41,7 +41,7 @@ BARS = [
         script("tests/cli/signals/strikes.py", "{bin}", "{root}/configs/perpendicular-flap", 100, "--couplet"), long=True),
     Bar("bad cases and commands", "exit code 2, what is wrong and what to do, no page of the launcher", tests("^command_wrong$")),
     Bar("terminal of 80 x 24: flap, fluid, solid, tank", "start <= 12 lines, one status line, end <= 20 lines", tests("^command_terminal_command$")),
-    Bar("terminal of 80 x 24: solid, fluid, tank, plate started by themselves; by mpirun, in a file, with --verbose", "the same; lines as they were",
+    Bar("terminal of 80 x 24: solid, fluid, tank, plate started by themselves; solid and flap by mpirun; in a file, marked by mpirun, with --verbose", "the same; lines as they were in files, marked or with --verbose",
         tests("^command_terminal_program$")),
     Bar("watch --web during a run, in a headless browser", "values change, no error, nothing beyond loopback, a wrong token refused", tests("^command_watch_web$")),
     Bar("couplet run --slurm, the README's sbatch and srun lines on a Slurm of one node; scancel, then resume", "the same results, bit for bit",
