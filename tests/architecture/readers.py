@@ -30,6 +30,7 @@ READERS = {
     "common/csv/byte_source.cpp": "the one reader of text data",
     "common/csv/byte_source.hpp": "the one reader of text data",
     "common/csv/cells.cpp": "the one reader of text data: numbers",
+    "common/log/terminal.cpp": "/proc: whose terminal it is under mpirun",
     "common/io/checkpoint_set.cpp": "set.txt, whose digest is checked; bytes of files for their digest",
     "common/io/rehearse.cpp": "/proc/self/statm, /dev/null",
     "common/mesh/gmsh/child_process.cpp": "/dev/null for gmsh",

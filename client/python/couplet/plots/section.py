@@ -87,7 +87,7 @@ def follow(value, schema, where):
 
 
 def seconds(value, where):
-    """A time as a number [s] or text such as `2 s`; `last` is None."""
+    """A time as a number [s] or text such as `2 s`; None for `last`."""
     if value in (None, "last"):
         return None
     found = re.fullmatch(r"([-+\d.eE]+)\s*(?:s)?", str(value).strip())
