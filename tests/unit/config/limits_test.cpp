@@ -45,14 +45,14 @@ TEST(Limits, brackets_in_units_are_counted) {
   EXPECT_THROW(parse_unit(std::string(19000, '(') + "m" + std::string(19000, ')')), Error);
 }
 
-struct Parameters {
+struct Limited {
   int dimension = 2;
   config::ExpressionText load{"0"};
   std::vector<config::ExpressionText> velocity;
 };
 
 std::vector<std::string> load(const std::string& text) {
-  Parameters p;
+  Limited p;
   return config::load(
       config::Document::parse(text, "case.yaml"), "",
       [&](config::Section& s) {

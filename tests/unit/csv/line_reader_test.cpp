@@ -30,7 +30,7 @@ std::vector<std::string> lines_of(const std::string& bytes, const Limits& limits
   return read_lines(file_of(bytes), "table", limits);
 }
 
-std::string said(const std::string& bytes, const Limits& limits = {}) {
+std::string said_of_lines(const std::string& bytes, const Limits& limits = {}) {
   try {
     lines_of(bytes, limits);
   } catch (const Error& error) {
@@ -66,14 +66,14 @@ TEST(LineReader, tells_whether_the_last_line_is_whole) {
 }
 
 TEST(LineReader, what_is_no_text_is_refused_with_its_line) {
-  EXPECT_THAT(said(std::string("1,2\n3,\0\n", 8)),
+  EXPECT_THAT(said_of_lines(std::string("1,2\n3,\0\n", 8)),
               HasSubstr("a.csv:2: this table is not plain text: it contains zero bytes"));
-  EXPECT_THAT(said("1,2\n3,\x01\n"),
+  EXPECT_THAT(said_of_lines("1,2\n3,\x01\n"),
               HasSubstr("a.csv:2: this table is not plain text: it contains the control character 0x01"));
-  EXPECT_THAT(said("1,2\r3,4\r5,6\r"), HasSubstr("a.csv:1: carriage return within this line"));
-  EXPECT_THAT(said("1\n" + std::string(70000, '1') + "\n"),
+  EXPECT_THAT(said_of_lines("1,2\r3,4\r5,6\r"), HasSubstr("a.csv:1: carriage return within this line"));
+  EXPECT_THAT(said_of_lines("1\n" + std::string(70000, '1') + "\n"),
               HasSubstr("a.csv:2: this line has more than 65536 bytes"));
-  EXPECT_THAT(said("1\n" + std::string(70000, '1')),
+  EXPECT_THAT(said_of_lines("1\n" + std::string(70000, '1')),
               HasSubstr("a.csv:2: this line has more than 65536 bytes"));
 }
 
@@ -89,10 +89,10 @@ TEST(LineReader, what_is_no_regular_file_is_refused_at_once) {
 }
 
 TEST(LineReader, limits_of_size_and_of_lines_hold) {
-  EXPECT_THAT(said(std::string(3 << 20, '\n'), {.bytes = 2 << 20}),
+  EXPECT_THAT(said_of_lines(std::string(3 << 20, '\n'), {.bytes = 2 << 20}),
               EndsWith("this table has 3 MB; at most 2 MB are read. Reduce its rows or columns."));
-  EXPECT_EQ(said("1\n2\n3\n", {.lines = 3}), "nothing");
-  EXPECT_THAT(said("1\n2\n3\n4\n", {.lines = 3}), HasSubstr("more than 3 lines"));
+  EXPECT_EQ(said_of_lines("1\n2\n3\n", {.lines = 3}), "nothing");
+  EXPECT_THAT(said_of_lines("1\n2\n3\n4\n", {.lines = 3}), HasSubstr("more than 3 lines"));
 }
 
 TEST(Gzip, is_known_by_its_first_bytes_and_may_have_several_members) {
@@ -104,39 +104,39 @@ TEST(Gzip, that_is_cut_or_damaged_anywhere_is_refused) {
   std::string text = "hour,value\n";
   for (int i = 0; i < 5000; ++i) text += std::to_string(i) + "," + std::to_string((i * 7919) % 1000) + "\n";
   const std::string whole = gzip(text);
-  ASSERT_EQ(said(whole), "nothing");
+  ASSERT_EQ(said_of_lines(whole), "nothing");
   for (std::size_t n = 3; n < whole.size(); n += 1 + n / 7)
-    EXPECT_THAT(said(whole.substr(0, n)), HasSubstr("damaged or truncated")) << n;
+    EXPECT_THAT(said_of_lines(whole.substr(0, n)), HasSubstr("damaged or truncated")) << n;
   for (std::size_t at = whole.size() / 2; at < whole.size(); at += 97) {
     std::string bad = whole;
     bad[at] = char(bad[at] ^ 16);
-    EXPECT_THAT(said(bad), HasSubstr("damaged or truncated")) << at;
+    EXPECT_THAT(said_of_lines(bad), HasSubstr("damaged or truncated")) << at;
   }
-  EXPECT_THAT(said(whole + "x"), HasSubstr("its last bytes are not part of any member"));
-  EXPECT_THAT(said(whole + "rubbish"), HasSubstr("the compressed data are followed by other bytes"));
-  EXPECT_THAT(said(whole + "\x1f\x8b rubbish"), HasSubstr("damaged or truncated"));
+  EXPECT_THAT(said_of_lines(whole + "x"), HasSubstr("its last bytes are not part of any member"));
+  EXPECT_THAT(said_of_lines(whole + "rubbish"), HasSubstr("the compressed data are followed by other bytes"));
+  EXPECT_THAT(said_of_lines(whole + "\x1f\x8b rubbish"), HasSubstr("damaged or truncated"));
 }
 
 /// 3 MB that would be 3 GB: stopped at the first megabyte.
 TEST(Gzip, that_expands_beyond_what_measured_data_do_is_refused) {
   std::string row = "0,20,0,50,101325\n", text;
   while (text.size() < (4 << 20)) text += row;
-  EXPECT_THAT(said(gzip(text)), HasSubstr("expands to more than 100 times its size"));
-  EXPECT_EQ(said(text), "nothing") << "the same text, not compressed";
+  EXPECT_THAT(said_of_lines(gzip(text)), HasSubstr("expands to more than 100 times its size"));
+  EXPECT_EQ(said_of_lines(text), "nothing") << "the same text, not compressed";
   // Small files may be as regular as they like, and a level of compression as files have it passes.
-  EXPECT_EQ(said(gzip(text.substr(0, 900000))), "nothing");
+  EXPECT_EQ(said_of_lines(gzip(text.substr(0, 900000))), "nothing");
   std::string years;
   for (int i = 0; i < 150000; ++i)
     years += std::to_string(i) + ",20.5,3," + std::to_string(i % 40) + ",99000\n";
-  EXPECT_EQ(said(gzip(years)), "nothing");
+  EXPECT_EQ(said_of_lines(gzip(years)), "nothing");
 }
 
 TEST(Gzip, the_size_of_the_text_is_limited_whatever_the_ratio) {
   std::string text;
   for (unsigned i = 1; text.size() < (3 << 20); i = i * 1664525u + 1013904223u)
     text += std::to_string(i) + "\n";
-  EXPECT_EQ(said(gzip(text)), "nothing");
-  EXPECT_THAT(said(gzip(text), {.bytes = 2 << 20}), HasSubstr("more than 2 MB when decompressed"));
+  EXPECT_EQ(said_of_lines(gzip(text)), "nothing");
+  EXPECT_THAT(said_of_lines(gzip(text), {.bytes = 2 << 20}), HasSubstr("more than 2 MB when decompressed"));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Mesh make_mesh(BoxCells cells, double distortion = 0.2) {
+Mesh make_stretched(BoxCells cells, double distortion = 0.2) {
   const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
   RawMesh raw;
   if (comm_rank(world) == 0) {
@@ -37,7 +37,7 @@ std::vector<double> linear_values(const Mesh& mesh) {
 class ProbeIn : public ::testing::TestWithParam<BoxCells> {};
 
 TEST_P(ProbeIn, a_cell_is_exact_for_linear_fields) {
-  const Mesh mesh = make_mesh(GetParam());
+  const Mesh mesh = make_stretched(GetParam());
   const std::vector<double> values = linear_values(mesh);
   for (const double s : {0.13, 0.31, 0.52, 0.77, 0.99}) {
     const Vec3 x(0.5 + 2 * s, 1 - s * s, mesh.dim == 2 ? 0 : 0.75 * s * (1.3 - s));
@@ -51,7 +51,7 @@ TEST_P(ProbeIn, a_cell_is_exact_for_linear_fields) {
 }
 
 TEST_P(ProbeIn, a_mesh_point_is_exactly_that_point) {
-  const Mesh mesh = make_mesh(GetParam());
+  const Mesh mesh = make_stretched(GetParam());
   // A value per point that no interpolation of neighbours would give.
   std::vector<double> values;
   for (const GlobalIndex id : mesh.point_id) values.push_back(double((id * 7919) % 101) + 1.0 / 3);
@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(every_cell_type, ProbeIn,
                                            BoxCells::tetrahedra, BoxCells::prisms, BoxCells::mixed));
 
 TEST(Probe, just_outside_goes_to_the_nearest_place_of_the_boundary) {
-  const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
+  const Mesh mesh = make_stretched(BoxCells::quadrilaterals);
   const Probe probe(mesh, "tip", Vec3(1.03, 1.01, 0), 0.02);
   EXPECT_NEAR((probe.place() - Vec3(1.03, 1, 0)).norm(), 0, 1e-14);
   const auto got = probe.sample(linear_values(mesh), 2);
@@ -84,7 +84,7 @@ TEST(Probe, just_outside_goes_to_the_nearest_place_of_the_boundary) {
 
 TEST(Probe, just_outside_of_a_solid_body_goes_to_its_surface) {
   for (const BoxCells cells : {BoxCells::hexahedra, BoxCells::tetrahedra, BoxCells::prisms}) {
-    const Mesh mesh = make_mesh(cells, 0);
+    const Mesh mesh = make_stretched(cells, 0);
     const Probe probe(mesh, "tip", Vec3(1.03, 0.37, 0.76), 0.02);
     EXPECT_NEAR((probe.place() - Vec3(1.03, 0.37, 0.75)).norm(), 0, 1e-13);
     const auto got = probe.sample(linear_values(mesh), 2);
@@ -95,7 +95,7 @@ TEST(Probe, just_outside_of_a_solid_body_goes_to_its_surface) {
 }
 
 TEST(Probe, far_outside_is_an_error_with_the_distance_on_every_rank) {
-  const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
+  const Mesh mesh = make_stretched(BoxCells::quadrilaterals);
   EXPECT_EQ(
       error_of([&] { Probe(mesh, "tip", Vec3(1.5, 1.25, 0)); }),
       "The probe 'tip' at (1.5, 1.25, 0) is outside the mesh: the nearest point of the mesh is (1.5, 1, 0), "
@@ -103,7 +103,7 @@ TEST(Probe, far_outside_is_an_error_with_the_distance_on_every_rank) {
 }
 
 TEST(Probe, lives_on_exactly_one_rank) {
-  const Mesh mesh = make_mesh(BoxCells::triangles, 0);
+  const Mesh mesh = make_stretched(BoxCells::triangles, 0);
   // On a face between cells: several ranks could claim it.
   const Probe probe(mesh, "p", Vec3(1.3, 0.6, 0));
   double total = 0;

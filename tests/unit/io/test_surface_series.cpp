@@ -18,9 +18,9 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const double nan_time = std::numeric_limits<double>::quiet_NaN();
+const double from_start = std::numeric_limits<double>::quiet_NaN();
 
-Mesh make_mesh(BoxCells cells) {
+Mesh box_of(BoxCells cells) {
   const bool flat = cells == BoxCells::quadrilaterals || cells == BoxCells::triangles;
   RawMesh raw;
   if (comm_rank(world) == 0)
@@ -70,9 +70,9 @@ TEST(SurfaceSeries, each_face_and_point_of_a_patch_is_written_once_where_it_is) 
                                                 {BoxCells::hexahedra, 4},
                                                 {BoxCells::tetrahedra, 3}};
   for (const auto& [cells, corners] : width) {
-    const Mesh mesh = make_mesh(cells);
+    const Mesh mesh = box_of(cells);
     SurfaceSeries series(mesh, {"xmax", "ymin"}, "output.surfaces");
-    series.open(scratch / "", true, nan_time);
+    series.open(scratch / "", true, from_start);
     write(series, mesh, 0.5);
     const Read floor(scratch / "surface-ymin.h5", corners);
     const std::size_t along = mesh.dim == 2 ? 5 : 5 * 2 * (corners == 3 ? 2 : 1),
@@ -97,9 +97,9 @@ TEST(SurfaceSeries, each_face_and_point_of_a_patch_is_written_once_where_it_is) 
 
 TEST(SurfaceSeries, the_index_of_a_plane_scene_holds_edges) {
   const Scratch scratch;
-  const Mesh mesh = make_mesh(BoxCells::triangles);
+  const Mesh mesh = box_of(BoxCells::triangles);
   SurfaceSeries series(mesh, {"ymin"}, "output.surfaces");
-  series.open(scratch / "", false, nan_time);
+  series.open(scratch / "", false, from_start);
   write(series, mesh, 0);
   std::ifstream in(scratch / "surface-ymin.xdmf");
   const std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -109,7 +109,7 @@ TEST(SurfaceSeries, the_index_of_a_plane_scene_holds_edges) {
 }
 
 TEST(SurfaceSeries, all_stands_for_every_patch_and_points_are_flagged_on_all_ranks) {
-  const Mesh mesh = make_mesh(BoxCells::hexahedra);
+  const Mesh mesh = box_of(BoxCells::hexahedra);
   EXPECT_EQ(SurfaceSeries(mesh, {"all"}, "output.surfaces").patches().size(), 6u);
   const SurfaceSeries series(mesh, {"zmin"}, "output.surfaces");
   const auto flags = series.points();
@@ -119,10 +119,10 @@ TEST(SurfaceSeries, all_stands_for_every_patch_and_points_are_flagged_on_all_ran
 
 TEST(SurfaceSeries, a_restart_drops_the_later_times_and_goes_on) {
   const Scratch scratch;
-  const Mesh mesh = make_mesh(BoxCells::hexahedra);
+  const Mesh mesh = box_of(BoxCells::hexahedra);
   {
     SurfaceSeries series(mesh, {"ymin"}, "output.surfaces");
-    series.open(scratch / "", true, nan_time);
+    series.open(scratch / "", true, from_start);
     for (int i = 0; i < 4; ++i) write(series, mesh, 0.25 * i);
   }
   SurfaceSeries series(mesh, {"ymin"}, "output.surfaces");
@@ -135,7 +135,7 @@ TEST(SurfaceSeries, a_restart_drops_the_later_times_and_goes_on) {
 }
 
 TEST(SurfaceSeries, a_name_that_is_no_patch_or_comes_twice_is_refused) {
-  const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
+  const Mesh mesh = box_of(BoxCells::quadrilaterals);
   const auto refused = [&](std::vector<std::string> names) {
     return error_of([&] { SurfaceSeries(mesh, names, "output.surfaces"); });
   };
@@ -146,8 +146,8 @@ TEST(SurfaceSeries, a_name_that_is_no_patch_or_comes_twice_is_refused) {
 
 TEST(SurfaceSeries, a_file_of_another_kind_is_not_continued) {
   const Scratch scratch;
-  const Mesh mesh = make_mesh(BoxCells::quadrilaterals);
-  { FieldWriter writer(mesh, scratch / "", "surface-ymin", true, nan_time); }
+  const Mesh mesh = box_of(BoxCells::quadrilaterals);
+  { FieldWriter writer(mesh, scratch / "", "surface-ymin", true, from_start); }
   SurfaceSeries series(mesh, {"ymin"}, "output.surfaces");
   EXPECT_THAT(error_of([&] { series.open(scratch / "", true, 0.5); }),
               HasSubstr("not a surface output file"));

@@ -38,7 +38,7 @@ class ReadInp : public ::testing::Test {
 };
 
 /// Two cubes, one on the other along z.
-const std::string nodes =
+const std::string two_cubes =
     "*NODE, NSET=Nall\n1, 0,0,0\n2, 1,0,0\n3, 1,1,0\n4, 0,1,0\n5, 0,0,1\n6, 1,0,1\n7, 1,1,1\n8, 0,1,1\n"
     "15, 0,0,2\n16, 1,0,2\n17, 1,1,2\n18, 0,1,2\n";
 const std::string cubes =
@@ -55,7 +55,7 @@ Vec3 area_of(const RawMesh& raw, const std::string& patch) {
 
 TEST_F(ReadInp, surfaces_and_node_sets_are_patches_and_sections_zones) {
   const RawMesh raw = read(
-      "*Heading\r\n two cubes\r\n** a comment\r\n" + nodes + cubes +
+      "*Heading\r\n two cubes\r\n** a comment\r\n" + two_cubes + cubes +
       "*nset, nset=Floor\n1, 2,\n3, 4\n*Nset, NSET=every, GENERATE\n1, 18\n"
       "*ELSET, ELSET=Both\nlow, HIGH\n*SURFACE, NAME=Side,\nTYPE=ELEMENT\nboth, s3\n20, S4\n"
       "*SURFACE, NAME=lid\n20, S2\n*SOLID SECTION, ELSET=LOW, MATERIAL=steel\n*SOLID  SECTION, elset=high, material=rubber\n1.\n"
@@ -76,7 +76,8 @@ TEST_F(ReadInp, faces_are_numbered_as_in_the_manuals) {
   const auto normals = [&](const std::string& element, int faces) {
     std::vector<Vec3> all;
     for (int f = 1; f <= faces; ++f)
-      all.push_back(area_of(read(nodes + element + fmt::format("*SURFACE, NAME=face\n1, S{}\n", f)), "face"));
+      all.push_back(
+          area_of(read(two_cubes + element + fmt::format("*SURFACE, NAME=face\n1, S{}\n", f)), "face"));
     return all;
   };
   EXPECT_THAT(normals("*ELEMENT, TYPE=C3D8R\n1, 1,2,3,4,5,6,7,8\n", 6),
@@ -114,7 +115,7 @@ TEST_F(ReadInp, groups_written_by_gmsh_are_patches) {
 }
 
 TEST_F(ReadInp, included_files_lie_in_the_folder) {
-  write("parts/nodes.txt", nodes);
+  write("parts/nodes.txt", two_cubes);
   const RawMesh raw = read("*INCLUDE, INPUT=parts/nodes.txt\n" + cubes);
   EXPECT_EQ(raw.cell_type.size(), 2u);
   EXPECT_THAT(raw.zones, ElementsAre("low", "high"));
@@ -135,52 +136,52 @@ TEST_F(ReadInp, mistakes_are_told_with_file_and_line) {
   EXPECT_THAT(error("*NODE\n1, 0, 0, 0\n1, 1, 0, 0\n"),
               AllOf(HasSubstr("deck.inp:3:"), HasSubstr("node 1 is defined twice")));
   EXPECT_THAT(error("*NODE, SYSTEM=C\n1, 0, 0, 0\n"), HasSubstr("rectangular"));
-  EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=S4\n1, 1,2,3,4\n"),
+  EXPECT_THAT(error(two_cubes + "*ELEMENT, TYPE=S4\n1, 1,2,3,4\n"),
               AllOf(HasSubstr("deck.inp:14:"), HasSubstr("shells")));
-  EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=CAX4\n1, 1,2,3,4\n"), HasSubstr("axisymmetric"));
-  EXPECT_THAT(error(nodes + "*ELEMENT\n1, 1,2,3,4\n"), HasSubstr("*ELEMENT needs TYPE=..."));
-  EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3\n"),
+  EXPECT_THAT(error(two_cubes + "*ELEMENT, TYPE=CAX4\n1, 1,2,3,4\n"), HasSubstr("axisymmetric"));
+  EXPECT_THAT(error(two_cubes + "*ELEMENT\n1, 1,2,3,4\n"), HasSubstr("*ELEMENT needs TYPE=..."));
+  EXPECT_THAT(error(two_cubes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3\n"),
               AllOf(HasSubstr("deck.inp:15:"), HasSubstr("expected 5 whole numbers")));
-  EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,4,5\n"), HasSubstr("found 6 numbers"));
-  EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,77\n"),
+  EXPECT_THAT(error(two_cubes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,4,5\n"), HasSubstr("found 6 numbers"));
+  EXPECT_THAT(error(two_cubes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,77\n"),
               AllOf(HasSubstr("deck.inp:15:"), HasSubstr("node 77")));
-  EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D8\n1, 1,2,3,3,5,6,7,7\n"), HasSubstr("node 3 twice"));
-  EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,5\n1, 1,2,4,5\n"),
+  EXPECT_THAT(error(two_cubes + "*ELEMENT, TYPE=C3D8\n1, 1,2,3,3,5,6,7,7\n"), HasSubstr("node 3 twice"));
+  EXPECT_THAT(error(two_cubes + "*ELEMENT, TYPE=C3D4\n1, 1,2,3,5\n1, 1,2,4,5\n"),
               AllOf(HasSubstr("deck.inp:16:"), HasSubstr("defined twice")));
-  EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\n10, S7\n"), HasSubstr("'beam, S3'"));
-  EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\n10\n"), HasSubstr("'beam, S3'"));
-  EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\nnone, S1\n"),
+  EXPECT_THAT(error(two_cubes + cubes + "*SURFACE, NAME=a\n10, S7\n"), HasSubstr("'beam, S3'"));
+  EXPECT_THAT(error(two_cubes + cubes + "*SURFACE, NAME=a\n10\n"), HasSubstr("'beam, S3'"));
+  EXPECT_THAT(error(two_cubes + cubes + "*SURFACE, NAME=a\nnone, S1\n"),
               HasSubstr("nor the name of an earlier ELSET"));
-  EXPECT_THAT(error(nodes + cubes + "*SURFACE, NAME=a\n10, S1\n*SURFACE, NAME=b\n10, S1\n"),
+  EXPECT_THAT(error(two_cubes + cubes + "*SURFACE, NAME=a\n10, S1\n*SURFACE, NAME=b\n10, S1\n"),
               AllOf(HasSubstr("(0.5, 0.5, 0)"), HasSubstr("two surfaces, 'a' and 'b'")));
-  EXPECT_THAT(error(nodes + "*ELEMENT, TYPE=C3D4, ELSET=e\n1, 1,2,4,5\n*SURFACE, NAME=a\ne, S5\n"),
+  EXPECT_THAT(error(two_cubes + "*ELEMENT, TYPE=C3D4, ELSET=e\n1, 1,2,4,5\n*SURFACE, NAME=a\ne, S5\n"),
               HasSubstr("S1 to S4 only"));
-  EXPECT_THAT(error(nodes + "*NGEN\n1, 2\n"), HasSubstr("it generates nodes"));
+  EXPECT_THAT(error(two_cubes + "*NGEN\n1, 2\n"), HasSubstr("it generates nodes"));
   EXPECT_THAT(error("*PART, NAME=a\n*END PART\n*PART, NAME=b\n"), HasSubstr("several parts"));
   EXPECT_THAT(error("*INSTANCE, NAME=a, PART=b\n1, 0, 0\n"),
               HasSubstr("transformed instances are not supported"));
-  EXPECT_THAT(error(nodes + "*NSET, NSET=a, GENERATE\n5, 1\n"), HasSubstr("first, last and step"));
+  EXPECT_THAT(error(two_cubes + "*NSET, NSET=a, GENERATE\n5, 1\n"), HasSubstr("first, last and step"));
   EXPECT_THAT(
       error(
-          nodes + cubes +
+          two_cubes + cubes +
           "*SOLID SECTION, ELSET=low\n*SOLID SECTION, ELSET=high\n*ELSET, ELSET=b\n10\n*SOLID SECTION, ELSET=b\n"),
       HasSubstr("has two sections, 'low' and 'b'"));
 }
 
 TEST_F(ReadInp, crafted_sets_cost_neither_memory_nor_time) {
-  std::string grows = nodes + cubes + "*NSET, NSET=s0\n1\n";
+  std::string grows = two_cubes + cubes + "*NSET, NSET=s0\n1\n";
   for (int i = 0; i < 3000; ++i) {
     grows += fmt::format("*NSET, NSET=s{}\n", i + 1);
     for (int k = std::max(0, i - 40); k <= i; ++k) grows += fmt::format("s{}\n", k);
     grows += fmt::format("{}\n", 20 + 3 * i);
   }
-  std::string wide = nodes + cubes + "*NSET, NSET=s\n";
+  std::string wide = two_cubes + cubes + "*NSET, NSET=s\n";
   for (int i = 0; i < 200000; ++i) wide += fmt::format("{}\n", 1 + 2 * i);
   for (int i = 0; i < 1000; ++i) wide += fmt::format("*NSET, NSET=t{}\ns\n", i);
   const auto start = std::chrono::steady_clock::now();
   EXPECT_THAT(error(grows), ::testing::AnyOf(HasSubstr("members"), ::testing::IsEmpty()));
   EXPECT_THAT(error(wide), HasSubstr("members"));
-  EXPECT_EQ(error(nodes + cubes + "*NSET, NSET=all, GENERATE\n1, 2147483647\n"), "");
+  EXPECT_EQ(error(two_cubes + cubes + "*NSET, NSET=all, GENERATE\n1, 2147483647\n"), "");
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 20);
 }
 

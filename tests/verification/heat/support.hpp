@@ -11,6 +11,7 @@
 #include "common/mesh/load.hpp"
 #include "common/parallel/collective.hpp"
 #include "solid_solver/thermal/heat.hpp"
+#include "tests/support/box.hpp"
 
 namespace couplet::testing {
 
@@ -78,10 +79,6 @@ inline HeatParameters steady() {
   HeatParameters p;
   p.analysis = HeatParameters::Analysis::steady;
   return p;
-}
-
-inline int dimension_of(BoxCells cells) {
-  return cells == BoxCells::quadrilaterals || cells == BoxCells::triangles ? 2 : 3;
 }
 
 inline std::vector<std::string> box_patches(int dim) {

@@ -11,6 +11,7 @@
 
 #include "common/mesh/load.hpp"
 #include "solid_solver/solid.hpp"
+#include "tests/support/box.hpp"
 
 namespace couplet::testing {
 
@@ -55,10 +56,6 @@ inline constexpr std::array all_cells{BoxCells::quadrilaterals, BoxCells::triang
 inline const char* name(BoxCells cells) {
   constexpr std::array names{"quadrilaterals", "triangles", "hexahedra", "tetrahedra", "prisms", "mixed"};
   return names.at(std::size_t(cells));
-}
-
-inline int dimension_of(BoxCells cells) {
-  return cells == BoxCells::quadrilaterals || cells == BoxCells::triangles ? 2 : 3;
 }
 
 }  // namespace couplet::testing
