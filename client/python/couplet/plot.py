@@ -4,6 +4,7 @@ unit share a diagram. A line is drawn over the way along it, a plane as a map of
 iterations. Prints the name of each picture."""
 import csv
 import pathlib
+import shlex
 import sys
 
 import matplotlib
@@ -25,6 +26,8 @@ def read(file):
             rows = list(csv.reader(stream))
     except OSError as problem:
         raise Wrong(f"{file}: {problem.strerror}.") from None
+    except (UnicodeDecodeError, csv.Error):
+        raise Wrong(f"{file}: is not a text file; fields: couplet plot {shlex.quote(str(file.parent))} --field NAME") from None
     if len(rows) < 2 or not rows[0] or not rows[0][0].startswith("time"):
         raise Wrong(f"{file}: is no monitor: its first line does not begin with 'time [s]', or there is no row below it.")
     try:

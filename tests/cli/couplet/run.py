@@ -141,6 +141,20 @@ def wrong(folder):
                         (("new", folder / "a"), "is there already"), (("new", folder / "b", "--from", "perpendicular-flop"), "near: perpendicular-flap")):
         result = call(bin_, *words)
         check(" ".join(map(str, words[2:] or words)), result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
+    for name, content, said in (("binary", b"\x85\xff" * 99, "is not a text file"), ("three", b"{simulation: 3, participants: {a: {program: fluid_solver}}}", "simulation"), ("nobody", b"{participants: {a: }}", "participants.a: expected a mapping")):
+        (folder / f"{name}.yaml").write_bytes(content)
+        for command in ("run", "check", *(("explain",) if name != "three" else ())):
+            result = call(bin_, command, folder / f"{name}.yaml")
+            check(f"{command} {name}.yaml", result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
+    picture = folder / "no folder/x.png"  # written nowhere: by who may not write there, too
+    (folder / "m.csv").write_text("time [s],a\n0,1\n1,2\n")
+    result = call(bin_, "plot", folder / "m.csv", "--picture", picture)
+    check("a picture that cannot be written", result.returncode == 1 and f"{picture}: No such file" in result.stderr and "Traceback" not in result.stderr, result.stderr)
+    result = call(bin_, "new", folder / "m.csv/mine")
+    check("a folder that cannot be made", result.returncode in (1, 2) and "m.csv" in result.stderr and "Traceback" not in result.stderr, result.stderr)
+    (folder / "h.csv").write_bytes(b"\x89HDF\xff")
+    result = call(bin_, "plot", folder / "h.csv")
+    check("a file that is no text", result.returncode == 1 and "is not a text file" in result.stderr and "Traceback" not in result.stderr, result.stderr)
     failing = call(bin_, "run", case, "--strict=effects", "--set", "simulation.time-step=0.03", "--set", "coupling.convergence.max-iterations=1")
     check("a run that fails passes its exit code on", failing.returncode == 1 and "failed after" in failing.stderr, f"{failing.returncode} {failing.stderr}")
 

@@ -68,12 +68,17 @@ def dispatch(name, words, prog):
     except (Wrong, yaml.YAMLError, UnicodeDecodeError) as error:
         print(f"{prog}: {error}", file=sys.stderr)
         return 2
+    except OSError as error:  # a folder that may not be written, a full disk
+        if isinstance(error, BrokenPipeError):  # `| head` has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+            return 0
+        if not error.filename:
+            raise
+        print(f"{prog}: {error.filename}: {error.strerror}", file=sys.stderr)
+        return 1
     except KeyboardInterrupt:
         print(f"{prog}: interrupted" + ("; start it again to continue" if name in ("study", "atlas", "accuracy") else ""), file=sys.stderr)
         return 128 + signal.SIGINT
-    except BrokenPipeError:  # `| head` has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-        return 0
 
 
 def main(argv):

@@ -2,6 +2,7 @@
 """Creates your own case: copies one of the gallery, with all files that it names, into a new folder. The case runs as it is; comments
 and order of the YAML are kept."""
 import pathlib
+import shlex
 
 from couplet.runs import gallery
 from couplet.runs.case import expect
@@ -20,5 +21,5 @@ def run(arguments):
     values = dict(s.split("=", 1) for s in arguments.set)
     values |= {f"simulation.{key}": value for key, value in (("end-time", arguments.end_time), ("time-step", arguments.time_step)) if value}
     file = gallery.copy(gallery.find(arguments.source), arguments.folder, values)
-    print(f"{file}: a case like {arguments.source}. couplet check, explain and run take it: couplet run {file}")
+    print(f"{file}: a case like {arguments.source}. couplet check, explain and run take it: couplet run {shlex.quote(str(file))}")
     return 0

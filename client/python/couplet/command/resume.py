@@ -2,6 +2,7 @@
 """Continues a stopped or interrupted run from its last complete checkpoint, with its original ranks and
 settings. A continued run equals the uninterrupted one bit for bit."""
 import pathlib
+import shlex
 
 from couplet.command.run import shown_run
 from couplet.runs import folder as folders
@@ -26,7 +27,7 @@ def run(arguments):
     expect(folder.is_dir(), f"{arguments.folder}: there is no such folder")
     record = folders.read_record(folder)
     expect(record, f"{arguments.folder}: was not started by couplet run (no {folders.RECORD}). Continue with: couplet run CASE --restart {arguments.folder / 'checkpoints'}")
-    expect(folders.checkpoint(folder), f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes them. Start again: couplet run {record['case']}")
+    expect(folders.checkpoint(folder), f"{arguments.folder}: no complete checkpoint to continue from; `simulation.checkpoint.interval` writes them. Start again: couplet run {shlex.quote(str(record['case']))}")
     flags = [*without_restart(record["flags"]), "--restart", str(folder / "checkpoints")]
     job = Job(Case(record["case"], pathlib.Path(record["bin"]).parent), record["ranks"], [*record["sets"], f"simulation.output.folder={folder}", *arguments.set],
               flags, record["alone"], record["with"])

@@ -2,6 +2,7 @@
 """Stops the active run of an output folder after the current step, with a checkpoint to continue from. Finds it on this machine,
 however it was started."""
 import pathlib
+import shlex
 import sys
 
 from couplet.runs import folder as folders
@@ -19,5 +20,5 @@ def run(arguments):
     if not folders.wait_for_end(arguments.folder, arguments.within):
         print(f"couplet stop: not at its end after {arguments.within:g} s; it ends after the step under way", file=sys.stderr)
         return 1
-    print(f"stopped, saved as {folders.checkpoint(arguments.folder)}; continue: couplet resume {arguments.folder}")
+    print(f"stopped, saved as {folders.checkpoint(arguments.folder)}; continue: couplet resume {shlex.quote(str(arguments.folder))}")
     return 0

@@ -8,7 +8,7 @@ import time
 
 from couplet.runs import folder as folders
 from couplet.runs.case import expect
-from couplet.runs.progress import Logs, Progress
+from couplet.runs.progress import Logs, Progress, by_tables
 from couplet.runs.results import Results
 from couplet.runs.terminal import Screen
 
@@ -29,7 +29,8 @@ def ending(folder):
     if not driver:
         return "no run is active here, and none has finished"
     findings = results.findings()
-    text = f"{driver.get('state', 'ended')} at t = {driver.get('time', 0):g} s after {driver.get('steps', 0)} steps, {driver.get('wall', 0):.1f} s"
+    at = f"t = {driver['time']:g} s" if driver.get("steps") else by_tables(folder) or "t = 0 s"  # a resumed run that was done has made no step
+    text = f"{driver.get('state', 'ended')} at {at} after {driver.get('steps', 0)} steps, {driver.get('wall', 0):.1f} s"
     text += f": {driver['reason']}" if driver.get("reason") else ""
     return text + (f"; findings: {', '.join(sorted({f['id'] for f in findings}))}" if findings else "")
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The picture of a case: what its section `plot` declares, what its own plot.py draws, or nothing of its own."""
 import os
+import shlex
 import subprocess
 import sys
 
@@ -26,6 +27,6 @@ def of_case(file, options):
         paths = [str(places.PACKAGE.parent), *filter(None, [os.environ.get("PYTHONPATH")])]
         return subprocess.run([sys.executable, case.file.parent / "plot.py", *([options.picture] if options.picture else [])],
                               env={**os.environ, "PYTHONPATH": os.pathsep.join(paths)}).returncode
-    expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {file}")
+    expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {shlex.quote(str(file))}")
     options.files = [out]
     return None

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws the section `plot` of a case from the output folder of a run, and prints the quantities that it names."""
 import pathlib
+import shlex
 
 import matplotlib
 
@@ -127,6 +128,15 @@ def draw_field(figure, axes, panel, case, out, where):
     return axes
 
 
+def usual_labels(axes, panel):
+    """Of columns that are drawn as they are, where the panel names none: the one of x, and of a lone y."""
+    files = [c for c in panel.get("curves", ()) if "monitor" in c or "table" in c]
+    if files and "label" not in panel.get("x", {}):
+        axes.set_xlabel(files[0].get("x", "time [s]" if "monitor" in files[0] else ""))
+    if len(files) == 1 and "label" not in panel.get("y", {}):
+        axes.set_ylabel(files[0]["y"])
+
+
 def finish(axes, panel):
     for way in "xy":
         given = panel.get(way, {})
@@ -157,7 +167,7 @@ def print_quantities(section, case, out):
 def draw(case, out, picture=None):
     """Draws the picture of the run in the folder `out`; gives its path."""
     section, out = check(case), pathlib.Path(out)
-    expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {case.file}")
+    expect(out.is_dir(), f"{out}: there is no such folder; run the case first: couplet run {shlex.quote(str(case.file))}")
     panels = section["panels"]
     across = min(section.get("columns", min(3, len(panels))), len(panels))
     down = -(-len(panels) // across)
@@ -172,6 +182,8 @@ def draw(case, out, picture=None):
                 axes = draw_field(figure, axes, panel, case, out, where)
             else:
                 draw_curves(axes, panel, case, out, where)
+            if not section.get("share-x"):
+                usual_labels(axes, panel)
             finish(axes, panel)
         if "title" in section:
             figure.suptitle(section["title"], fontsize=10)

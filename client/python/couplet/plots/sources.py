@@ -27,6 +27,8 @@ def columns_of(file):
         text = file.read_text()
     except OSError as problem:
         raise Wrong(f"{file}: {problem.strerror}.") from None
+    except UnicodeDecodeError:
+        raise Wrong(f"{file}: is not a text file.") from None
     lines = [line for line in text.splitlines() if line.strip()]
     comments = [line for line in lines if line.startswith("#")]
     rows = [[cell.strip() for cell in row] for row in csv.reader(line for line in lines if not line.startswith("#"))]
@@ -101,7 +103,8 @@ def source_of(curve, case, out, where):
         columns = {name: values[time == (time[-1] if at is None else time[np.abs(time - at).argmin()])] for name, values in columns.items()}
     found = Source(columns, {}, str(file))
     found.names |= {short: found.column(name, f"{where}.with.{short}") for short, name in curve.get("with", {}).items()}
-    found.names |= {"t": next(iter(columns.values()))}
+    first = next(iter(columns.values()))
+    found.names |= {"t": first, "row": np.arange(len(first), dtype=float)}
     return found
 
 

@@ -38,6 +38,14 @@ def load(text, file=None):
         raise Wrong(f"{file or 'YAML'}{f':{mark.line + 1}:{mark.column + 1}' if mark else ''}: {getattr(error, 'problem', None) or error}") from None
 
 
+def words_of(file):
+    """The text of a file that is to be one."""
+    try:
+        return file.read_text()
+    except UnicodeDecodeError:
+        raise Wrong(f"{file}: is not a text file.") from None
+
+
 def text_of(value):
     """As it would stand in the YAML."""
     return value if isinstance(value, str) else json.dumps(value)
@@ -64,7 +72,7 @@ class Case:
         if self.file.is_dir():
             self.file /= "case.yaml"
         expect(self.file.is_file(), f"{self.file}: this file does not exist.")
-        self.data = load(self.file.read_text(), self.file) or {}
+        self.data = load(words_of(self.file), self.file) or {}
         expect(isinstance(self.data, dict), f"{self.file}: expected a mapping of sections.")
         self.asked, study = self.file, self.data.get("study")
         if "case" in self.data:
@@ -72,7 +80,7 @@ class Case:
             expect(not unknown, f"{self.file}: unknown key '{next(iter(unknown), '')}'; beside 'case' there is only 'study'.")
             self.file = self.file.parent / str(self.data["case"])
             expect(self.file.is_file(), f"{self.asked}: case: {self.file} does not exist.")
-            self.data = {**(load(self.file.read_text(), self.file) or {}), "study": study}
+            self.data = {**(load(words_of(self.file), self.file) or {}), "study": study}
         self.participants = self.data.get("participants") or {}
 
     @property
@@ -112,7 +120,8 @@ class Case:
 
     def program(self, participant):
         entry = self.participants.get(participant)
-        expect(isinstance(entry, dict), f"{self.file}: there is no participant '{participant}'.")
+        expect(participant in self.participants, f"{self.file}: there is no participant '{participant}'.")
+        expect(isinstance(entry, dict), f"{self.file}: participants.{participant}: expected a mapping with at least the key 'program'.")
         return self.build / "bin" / str(entry.get("program", "?"))
 
     def guest(self, participant, played_by=None):

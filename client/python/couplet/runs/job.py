@@ -14,7 +14,7 @@ import time
 
 from couplet import places
 from couplet.runs import folder as folders
-from couplet.runs.case import COUPLER, Case, expect, load
+from couplet.runs.case import COUPLER, Case, expect, load, mapping_of
 from couplet.runs.process import RunFailed, environment, last_words
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -23,7 +23,7 @@ PR_SET_PDEATHSIG = 1
 
 def output_of(case, sets):
     """The output folder, by the case and the arguments of --set."""
-    name = ((case.data.get("simulation") or {}).get("output") or {}).get("folder", "out")
+    name = mapping_of(mapping_of(case.data.get("simulation")).get("output")).get("folder", "out")
     for key, _, value in (words.partition("=") for words in sets):
         given = load(value) if key in ("simulation", "simulation.output") else None
         if isinstance(given, dict):
@@ -140,7 +140,7 @@ class Job:
 
     def run(self, shown=None):
         """Exit code of the job; `shown` gets its words (terminal.Plain: as they are)."""
-        expect(folders.driver(self.output) is None, f"{self.output} is in use by another job that is still running. End it (couplet stop {self.output}), or "
+        expect(folders.driver(self.output) is None, f"{self.output} is in use by another job that is still running. End it (couplet stop {shlex.quote(str(self.output))}), or "
                "give this one another folder: --set simulation.output.folder=...")
         self.recorded, self.started = False, time.monotonic()
         self.process = subprocess.Popen(self.command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=surroundings(),

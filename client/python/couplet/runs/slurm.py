@@ -5,7 +5,7 @@ import shutil
 import subprocess
 
 from couplet import places
-from couplet.runs.case import expect
+from couplet.runs.case import expect, mapping_of
 
 
 def script(job, options):
@@ -15,7 +15,7 @@ def script(job, options):
     words += ["--participant", job.alone] if job.alone else []
     words += [w for s in job.sets for w in ("--set", s)] + job.flags + [w for name, line in job.played_by.items() for w in ("--with", f"{name}={shlex.join(line)}")]
     # Before its time is over the job is asked to end: it saves, and couplet resume goes on.
-    head = {"--job-name": (job.case.data.get("simulation") or {}).get("name", job.case.file.stem), "--ntasks": ranks, "--signal": "B:TERM@60"}
+    head = {"--job-name": mapping_of(job.case.data.get("simulation")).get("name", job.case.file.stem), "--ntasks": ranks, "--signal": "B:TERM@60"}
     head = [f"{name}={value}" for name, value in head.items() if name not in {option.split("=")[0] for option in options}]
     return "\n".join(["#!/bin/bash", *(f"#SBATCH {shlex.quote(word)}" for word in (*head, *options)), "exec " + shlex.join(map(str, words)), ""])
 

@@ -7,6 +7,8 @@ import sys
 import textwrap
 import time
 
+from couplet.runs.case import mapping_of
+
 STATUS = re.compile(r"^\[(\S+) \d+\] (t ?= ?[\d.e+-]+(?:/[\d.e+-]+)? s\s+step.*)")
 WORTH = re.compile(r"\] (warning|error):|^couplet|^ +\[\S+\] ")
 WIDEST, MOST_FINDINGS = 100, 6
@@ -70,7 +72,7 @@ class Digest(Screen):
         return f"{status[:found.end()]}  {rate:.3g} steps/s{status[found.end():]}" if found and rate > 0 else status
 
     def begin(self):
-        simulation = dict(self.job.case.data.get("simulation") or {})
+        simulation = dict(mapping_of(self.job.case.data.get("simulation")))
         simulation |= {key: value for key, _, value in (s.removeprefix("simulation.").partition("=") for s in self.job.sets if s.startswith("simulation."))}
         ranks = self.job.ranks
         names = [self.job.alone] if self.job.alone else list(self.job.case.participants)
