@@ -3,13 +3,15 @@
 """Deflection and von Mises stress along x = y and on the circle r = 2.1 m at mid-thickness against a converged solution.
 Usage: plot.py [PICTURE.png], by default out/elliptic-plate.png"""
 
+import pathlib
+import sys
+
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
-from nine_points import HERE, Plate, errors, map_back, von_mises  # puts the next one on the path
-import couplet  # noqa: E402
+from nine_points import HERE, Plate, errors, map_back, von_mises
 
 
 def reference(file):
@@ -17,7 +19,10 @@ def reference(file):
 
 
 def main():
-    out, picture = couplet.result_of(HERE, "solid")
+    out = HERE / "out"
+    if not (out / "solid").exists():
+        sys.exit(f"There is no result in {out}. Run the case first (see its README).")
+    picture = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else out / "elliptic-plate.png"
     plate = Plate(out / "solid")
     figure, axes = plt.subplots(1, 3, figsize=(13, 4), dpi=130, constrained_layout=True)
     line, circle, paper = map(reference, ("line_x_equals_y.csv", "circle_2.1.csv", "circle_2.1_demirdzic.csv"))

@@ -19,7 +19,7 @@ choose()  # before anybody starts MPI
 
 _PLACES = {
     "participant": ("Client",),
-    "series": ("FieldSeries", "WIDTH", "extrema", "find_series", "passes_a_step", "result_of"),
+    "series": ("FieldSeries", "WIDTH", "extrema", "find_series", "passes_a_step"),
     "surfaces": ("Surface", "find_surface", "surface_names"),
     "runs": ("Case", "Results", "RunFailed", "Wrong", "read_csv", "run"),
 }

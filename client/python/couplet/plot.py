@@ -2,9 +2,7 @@
 """Pictures of what a run wrote: monitors, lines and planes, residuals; of a case the picture that its section `plot` declares. Columns of one
 unit share a diagram. A line is drawn over the way along it, a plane as a map of each column, residuals over all coupling
 iterations. Prints the name of each picture."""
-import csv
 import pathlib
-import shlex
 import sys
 
 import matplotlib
@@ -13,6 +11,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from couplet.plots.sources import columns_of
 from couplet.runs.case import Wrong, expect
 
 PLACES = ("along [-]", "up [-]", "x [m]", "y [m]", "z [m]")
@@ -21,21 +20,10 @@ MOST_LINES = 12  # with names of their own
 
 def read(file):
     """Columns by name; truncated rows (of a run that is still writing) are skipped."""
-    try:
-        with open(file, newline="") as stream:
-            rows = list(csv.reader(stream))
-    except OSError as problem:
-        raise Wrong(f"{file}: {problem.strerror}.") from None
-    except (UnicodeDecodeError, csv.Error):
-        raise Wrong(f"{file}: is not a text file; fields: couplet plot {shlex.quote(str(file.parent))} --field NAME") from None
-    if len(rows) < 2 or not rows[0] or not rows[0][0].startswith("time"):
-        raise Wrong(f"{file}: is no monitor: its first line does not begin with 'time [s]', or there is no row below it.")
-    try:
-        values = np.array([[float(v) for v in row] for row in rows[1:] if len(row) == len(rows[0])])
-    except ValueError as problem:
-        raise Wrong(f"{file}: {problem}.") from None
-    expect(len(values), f"{file}: no row has the {len(rows[0])} values that its first line names.")
-    return dict(zip(rows[0], values.T))
+    columns = columns_of(file)
+    expect(next(iter(columns)).startswith("time") and not np.isnan(next(iter(columns.values()))).any(),
+           f"{file}: is no monitor: its first line does not begin with 'time [s]', or there is no row below it.")
+    return columns
 
 
 def unit_of(name):

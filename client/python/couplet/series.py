@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads what a participant wrote: field series (HDF5)."""
 import pathlib
-import sys
 
 import h5py
 import numpy as np
@@ -101,15 +100,6 @@ def find_series(folder, name="*.h5"):
             if f.attrs.get("format") in (b"couplet fields", "couplet fields"):
                 return FieldSeries(file)
     raise FileNotFoundError(f"no field series in {folder}")
-
-
-def result_of(case, program):
-    """(output folder, picture) of a plot script: the picture is its first argument, by default out/<name of the case>.png.
-    Ends the script where the case has no result."""
-    out = case / "out"
-    if not (out / program).exists():
-        sys.exit(f"There is no result in {out}. Run the case first (see its README).")
-    return out, pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else out / f"{case.name}.png"
 
 
 def extrema(t, y, window=0.15):

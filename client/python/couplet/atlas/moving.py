@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Maps of meshes that move far: mesh_mover alone, and gaps of fluid_solver that close."""
-import pathlib
-
 import numpy as np
 
 from couplet import series
+from couplet.places import ROOT
 
 from .atlas import Axis, Map
 
-CONFIGS = pathlib.Path(__file__).resolve().parents[2] / "configs"
+CONFIGS = ROOT / "configs"
 MOVE = """simulation: {{name: turn, end-time: 1, time-step: 0.05, output: {{folder: out, interval: 1}}, max-step-halvings: 0}}
 participants:
   mover:

@@ -20,11 +20,6 @@ def changed(text, *pairs):
     return text
 
 
-def passes(folder):
-    rows = series.read_csv(folder / "out" / "coupler" / "residuals.csv")
-    return len(rows["step"]) / len(set(rows["step"]))
-
-
 def accelerated(kind, relaxation):
     return f"acceleration: {{type: {kind}, initial-relaxation: {relaxation}, filter: 1e-5}}"
 
@@ -48,7 +43,7 @@ def wall(panel, inverse, dt, runner):
                        (r"scheme: semi-implicit", "scheme: semi-implicit\n  order: structure-first"))
     code, doubted = runner.job(["coupler", "fluid_solver", "toy_wall"], folder,
                                {"case.yaml": text, "channel.geo": (here / "channel.geo").read_text()})
-    return (passes(folder) if code == 0 else math.nan), code, doubted
+    return (series.passes_a_step(folder / "out") if code == 0 else math.nan), code, doubted
 
 
 LID = {"level, IQN-ILS": ("structure", "iqn-ils"), "level, Aitken": ("structure", "aitken"), "without a level": ("none", "iqn-ils")}
@@ -72,7 +67,7 @@ def lid(panel, modulus, dt, runner):
         return math.nan, code, doubted
     volume = series.read_csv(folder / "out" / "coupler" / "volume.csv")
     held = abs(volume["fluid volume error [m^3]"]).max() < 1e-3 * volume["fluid inflow [m^3]"].max()
-    return (passes(folder) if held else math.inf), code, doubted
+    return (series.passes_a_step(folder / "out") if held else math.inf), code, doubted
 
 
 MAPS = [

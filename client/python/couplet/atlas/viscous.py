@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Map of viscous coupling: a flap in a channel (configs/perpendicular-flap, coarse) that weighs less and less beside what friction drags along."""
-import pathlib
-
 import numpy as np
 
 from couplet import series
+from couplet.places import ROOT
 
 from .atlas import Axis, Map
 from .strong import changed
 
-CASE = pathlib.Path(__file__).resolve().parents[2] / "configs" / "perpendicular-flap"
+CASE = ROOT / "configs" / "perpendicular-flap"
 STEPS, VISCOSITY = 24, 1.0
 PANELS = {"explicit": "explicit", "semi-implicit": "semi-implicit", "implicit": "implicit"}
 COARSE = "{n_side: 8, n_tip: 1, growth: 1.5, wall_growth: 1.5, wall_cells: 4}"

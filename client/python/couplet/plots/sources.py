@@ -28,7 +28,7 @@ def columns_of(file):
     except OSError as problem:
         raise Wrong(f"{file}: {problem.strerror}.") from None
     except UnicodeDecodeError:
-        raise Wrong(f"{file}: is not a text file.") from None
+        raise Wrong(f"{file}: is not a text file; fields: couplet plot FOLDER --field NAME") from None
     lines = [line for line in text.splitlines() if line.strip()]
     comments = [line for line in lines if line.startswith("#")]
     rows = [[cell.strip() for cell in row] for row in csv.reader(line for line in lines if not line.startswith("#"))]
@@ -36,6 +36,7 @@ def columns_of(file):
     if all(np.isfinite(number(cell)) for cell in rows[0]) and comments:
         rows.insert(0, [cell.strip() for cell in comments[-1].lstrip("# ").split(",")])
     head, body = rows[0], [r for r in rows[1:] if len(r) == len(rows[0])]
+    expect(body, f"{file}: no row has the {len(head)} values that its first line names.")
     return {name: np.array([number(r[i]) for r in body]) for i, name in enumerate(head)}
 
 

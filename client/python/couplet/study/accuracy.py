@@ -4,15 +4,14 @@ of configs/ lists. The time is that of the whole process on one core, from its s
 peak. What was run before with the same programs is not run again. `couplet study` does the same for any case from a section of
 its YAML."""
 import csv
-import importlib.util
 import pathlib
 import re
-import sys
 import tempfile
 
 from couplet.places import ROOT
 from couplet.runs import Case, Task, Wrong, expect, run_all
 from couplet.study.pictures import divided, figure, finish, looks
+from couplet.study.quantities import module
 
 
 def load(case):
@@ -20,19 +19,15 @@ def load(case):
     if not file.exists():
         there = sorted(f.parent.name for f in (ROOT / "configs").glob("*/accuracy.py"))
         raise Wrong(f"configs/{case}/accuracy.py does not exist. Cases that have one: {', '.join(there)}")
-    sys.path.insert(0, str(file.parent))
-    spec = importlib.util.spec_from_file_location("accuracy_of_case", file)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return module(str(file))
 
 
-def row_of(module, series, mesh, task, record):
+def row_of(runs_of, series, mesh, task, record):
     if record.state != "done":
         print(f"{series}, {mesh}: {record.reason}", flush=True)
         return None
     row = {"series": series, "mesh": mesh, "wall [s]": round(record.wall, 3), "processor [s]": round(record.cpu, 3), "memory [MB]": round(record.memory)}
-    row |= {name: float(f"{value:.4g}") for name, value in module.errors(task.folder).items()}
+    row |= {name: float(f"{value:.4g}") for name, value in runs_of.errors(task.folder).items()}
     print(", ".join(f"{value}" if key in ("series", "mesh") else f"{key} {value}" for key, value in row.items()), flush=True)
     return row
 
@@ -61,22 +56,22 @@ def declare(parser):
 
 
 def run(arguments):
-    module, case = load(arguments.case), Case(ROOT / "configs" / arguments.case / "case.yaml", arguments.build)
+    runs_of, case = load(arguments.case), Case(ROOT / "configs" / arguments.case / "case.yaml", arguments.build)
     picture = arguments.picture or ROOT / "configs" / arguments.case / "out" / "accuracy.png"
     picture.parent.mkdir(parents=True, exist_ok=True)
-    wanted = [(series, mesh, settings) for series, points in module.SERIES.items() for mesh, settings in points.items()
+    wanted = [(series, mesh, settings) for series, points in runs_of.SERIES.items() for mesh, settings in points.items()
               if (not arguments.only or any(w in series for w in arguments.only)) and (not arguments.meshes or mesh in arguments.meshes)]
     with tempfile.TemporaryDirectory(prefix="couplet-accuracy-") as scratch:
         runs = pathlib.Path(scratch) if arguments.picture else picture.parent / "accuracy"
         tasks = [Task(case, f"{series}, {mesh}", runs / re.sub(r"[^\w.+-]+", "_", f"{series}-{mesh}"), settings, repeats=arguments.repeat)
                  for series, mesh, settings in wanted]
         records = run_all(tasks, say=lambda line: None)
-        rows = [row for (series, mesh, _), task in zip(wanted, tasks) if (row := row_of(module, series, mesh, task, records[task]))]
+        rows = [row for (series, mesh, _), task in zip(wanted, tasks) if (row := row_of(runs_of, series, mesh, task, records[task]))]
     expect(rows, "No run succeeded.")
     with open(picture.with_suffix(".csv"), "w", newline="") as file:
         writer = csv.DictWriter(file, rows[0].keys())
         writer.writeheader()
         writer.writerows(rows)
-    draw(module.TITLE, rows, [k for k in rows[0]][5], f"{arguments.clock} [s]", picture)
+    draw(runs_of.TITLE, rows, [k for k in rows[0]][5], f"{arguments.clock} [s]", picture)
     print(f"picture: {picture}, table: {picture.with_suffix('.csv')}")
     return 0

@@ -130,18 +130,26 @@ def error_against_time(title, rows, quantity, clock, file, others=()):
     return finish(made, axes, file, CLOCKS[clock], f"error of {quantity.name}" + ("" if not quantity.given.get("absolute") else f" [{quantity.given.get('unit', '')}]"))
 
 
-def order(title, rows, quantity, refinement, file):
+def over_size(title, rows, value, words):
+    """(figure, [axes], points drawn): a line for each series of which `words`([(size, value), ...]) has something for the legend."""
     found, series, drawn = panels(rows), series_of(rows), []
     styles = looks(found)
     made, axes = figure(title, len(found))
     for one, (heading, some) in zip(axes, found):
         one.set_title(heading, fontsize=8)
         for name, label in some.items():
-            xy = [(r.point.size, r.errors[quantity.name]) for r in series[name] if r.errors.get(quantity.name, 0) > 0]
-            steep, last = (convergence.slope(*zip(*part)) if len(part) > 1 else None for part in (xy, xy[-2:]))
-            if steep is not None and last is not None:
+            xy = [(r.point.size, value(r)) for r in series[name] if value(r) > 0]
+            if len(xy) > 1 and (told := words(xy)):
                 drawn += xy
-                one.loglog(*zip(*xy), **styles[label], label=f"{label}: order {-steep:.2f}, last two {-last:.2f}")
+                one.loglog(*zip(*xy), **styles[label], label=f"{label}: {told}")
+    return made, axes, drawn
+
+
+def order(title, rows, quantity, refinement, file):
+    def words(xy):
+        steep, last = convergence.slope(*zip(*xy)), convergence.slope(*zip(*xy[-2:]))
+        return f"order {-steep:.2f}, last two {-last:.2f}" if steep is not None and last is not None else None
+    made, axes, drawn = over_size(title, rows, lambda r: r.errors.get(quantity.name, 0), words)
     if not drawn:
         return plt.close(made)
     low, high, top = min(x for x, _ in drawn), max(x for x, _ in drawn), max(y for _, y in drawn)
@@ -152,17 +160,10 @@ def order(title, rows, quantity, refinement, file):
 
 
 def growth(title, rows, clock, refinement, file):
-    found, series, drawn = panels(rows), series_of(rows), False
-    styles = looks(found)
-    made, axes = figure(title, len(found))
-    for one, (heading, some) in zip(axes, found):
-        one.set_title(heading, fontsize=8)
-        for name, label in some.items():
-            xy = [(r.point.size, getattr(r.record, clock)) for r in series[name]]
-            exponent = convergence.slope(*zip(*xy[-3:])) if len(xy) > 1 else None
-            if exponent is not None:
-                drawn = True
-                one.loglog(*zip(*xy), **styles[label], label=f"{label}: n^{exponent:.2f}")
+    def words(xy):
+        exponent = convergence.slope(*zip(*xy[-3:]))
+        return f"n^{exponent:.2f}" if exponent is not None else None
+    made, axes, drawn = over_size(title, rows, lambda r: getattr(r.record, clock), words)
     return finish(made, axes, file, f"{refinement} (size n)", CLOCKS[clock]) if drawn else plt.close(made)
 
 
