@@ -131,7 +131,7 @@ def draw(file, options):
 
 
 def declare(parser):
-    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE", help="a monitor, a sample-*.csv or residuals.csv, a folder with such files below it, or CASE.yaml: its section plot (docs/plots.md), else the plot.py beside it, else all files of its run")
+    parser.add_argument("files", nargs="+", type=pathlib.Path, metavar="FILE", help="a monitor, a sample-*.csv or residuals.csv, a folder with such files below it, or CASE.yaml or its folder: its section plot (docs/plots.md), else the plot.py beside it, else all files of its run")
     parser.add_argument("--out", type=pathlib.Path, metavar="FOLDER", help="of CASE.yaml: the output folder of the run (the one that the case names)")
     parser.add_argument("--only", nargs="+", default=[], metavar="WORD", help="only the columns whose name holds one of the words")
     parser.add_argument("--from", dest="low", type=float, metavar="T", help="only from this time on [s]")
@@ -166,7 +166,7 @@ def run(options):
             return 0
         print(fields.draw(options.files[0], options.field, options.picture, options.at, options.component, options.warp))
         return 0
-    if options.files[0].suffix in (".yaml", ".yml"):
+    if options.files[0].suffix in (".yaml", ".yml") or (options.files[0] / "case.yaml").is_file():
         expect(len(options.files) == 1, "one case at a time")
         from couplet.plots.case import of_case
         code = of_case(*options.files, options)

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """The section `plot` of a case: what it draws from which values, what it refuses, and that fields are drawn where the body is."""
 import argparse
+import os
 import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 
 import h5py
 import numpy as np
@@ -141,6 +143,21 @@ with tempfile.TemporaryDirectory(prefix="a case with blanks ") as name:
     series = find_series(out / "solid")
     for warp in (0, 1, 3):
         check(f"places with {warp} times the displacement", np.allclose(fields.places_of(series, 1, warp, "stress"), STILL + warp * MOVE))
+
+    # what the last run did not write is drawn with a warning
+    done = plot(out / "solid/probes.csv")
+    check("no warning of a file of this run", done.returncode == 0 and "earlier run" not in done.stderr, done.stderr)
+    for name, age in (("probes.csv", 100), ("effective.yaml", 50), ("steps.csv", 10)):
+        (out / "solid" / name).touch()
+        os.utime(out / "solid" / name, (time.time() - age, time.time() - age))
+    done = plot(out / "solid/probes.csv")
+    check("a warning of a file of an earlier run", done.returncode == 0 and "probes.csv: is of an earlier run" in done.stderr, done.stderr)
+    os.utime(out / "solid/steps.csv", (time.time() - 60, time.time() - 60))
+    check("none where the run made no step", "earlier run" not in plot(out / "solid/probes.csv").stderr)
+
+    # a folder of a case is its case file
+    done = plot(folder)
+    check("a folder with case.yaml", done.returncode == 0 and f"picture: {picture}" in done.stdout, done)
 
     # no section: the monitors
     done = plot(case_in(folder, None).file)

@@ -72,9 +72,7 @@ def dispatch(name, words, prog):
         if isinstance(error, BrokenPipeError):  # `| head` has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
             return 0
-        if not error.filename:
-            raise
-        print(f"{prog}: {error.filename}: {error.strerror}", file=sys.stderr)
+        print(f"{prog}: " + ": ".join(str(part) for part in (error.filename, error.strerror or error) if part), file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print(f"{prog}: interrupted" + ("; start it again to continue" if name in ("study", "atlas", "accuracy") else ""), file=sys.stderr)

@@ -107,7 +107,7 @@ def span(seconds):
 def line_of_picture(job, out):
     """The command that draws this run."""
     from couplet.plots.case import has_picture
-    if not has_picture(job.case):
+    if not has_picture(job.case) or (job.alone and job.case.coupled):
         return f"couplet plot {shlex.quote(out)}"
     elsewhere = job.output.absolute() != output_of(job.case, ()).absolute()
     return f"couplet plot {shlex.quote(shown(job.case.file))}" + (f" --out {shlex.quote(out)}" if elsewhere else "")

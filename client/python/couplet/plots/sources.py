@@ -7,6 +7,7 @@ import numpy as np
 
 from couplet.plots.section import seconds
 from couplet.runs.case import Wrong, expect
+from couplet.runs.folder import warn_if_older
 from couplet.series import find_series
 from couplet.study.expressions import evaluate
 from couplet.study.quantities import FUNCTIONS
@@ -23,6 +24,7 @@ def number(text):
 
 def columns_of(file):
     """{head: numbers}, what is no number as NaN. The head is the first line without #, or, where that is a row of numbers, the last comment."""
+    warn_if_older(file)
     try:
         text = file.read_text()
     except OSError as problem:

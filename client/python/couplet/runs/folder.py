@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import signal
+import sys
 import time
 
 LOCK, RECORD = ".checkpoints.lock", "job.json"
@@ -71,6 +72,16 @@ def checkpoint(folder):
     """(time [s], name) of the complete checkpoint that has gone furthest; None if there is none."""
     sets = sorted(file.parent.name for file in (pathlib.Path(folder) / "checkpoints").glob("step-*/set.txt"))
     return sets[-1] if sets else None
+
+
+def warn_if_older(file):
+    """Of a file in a participant's folder that the last run there did not write: a monitor that its case no longer names."""
+    try:
+        began, stepped, written = (f.stat().st_mtime for f in (file.parent / "effective.yaml", file.parent / "steps.csv", file))
+    except OSError:
+        return
+    if written < began <= stepped:
+        print(f"warning: {file}: is of an earlier run: the last one in this folder did not write it", file=sys.stderr)
 
 
 def write_record(folder, record):
