@@ -66,7 +66,7 @@ def in_copy(root):
 
 def may_stop(command, leader, said):
     """It is a study, or a program of ours has made a step; scripts that draw pictures come to their end."""
-    return command.startswith("scripts/") or at_work(leader) and re.search(r"\] t ?= ?[\d.e+-]+(/| s)", said.read_text(errors="replace")) is not None
+    return command.startswith("scripts/") and not command.startswith(("scripts/plot", "scripts/couplet plot")) or at_work(leader) and re.search(r"\] t ?= ?[\d.e+-]+(/| s)", said.read_text(errors="replace")) is not None
 
 
 def run(settings, command, root, home):
@@ -102,7 +102,7 @@ def readme(name, root, home):
     for settings, command in found:
         start = time.monotonic()
         code, said, how = run(settings, command, root, home)
-        good = code in {"": (0,), "SIGTERM": (0, 3), "SIGINT": (130,)}.get(how, ()) and "Traceback" not in said or stopped and not how and code == 1
+        good = code in {"": (0,), "SIGTERM": (0, 3), "SIGINT": (130,)}.get(how, ()) and "Traceback" not in said or stopped and not how and code in (1, 2)
         stopped = stopped or bool(how)
         good = good and "left behind" not in said
         check(f"{name}: {command}", good, f"{time.monotonic() - start:.0f} s, exit code {code}{', after ' + how if how else ''}" + ("" if good else "\n" + said[-2500:]))
