@@ -128,7 +128,7 @@ def wrong(folder):
             result = call(bin_, command, case, "--set", change)
             check(f"{command}: {change}", result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
             if command == "run":
-                check("  says what to do, without the launcher's pages", "couplet check" in result.stderr and "mpirun detected" not in result.stderr, result.stderr)
+                check("  says what to do, without the launcher's pages", f"couplet check {case} --set {change}" in result.stderr and "mpirun detected" not in result.stderr, result.stderr)
     text = case.read_text()
     for edited, said in ((text.replace("participants:", "participants: ["), "case.yaml:12:12: "), ("simulation: {}\n", "there are no 'participants'"),
                          (text.replace("program: solid_solver", "program: solid_solvr"), "the program 'solid_solvr' of 'solid'"), ("- a\n- b\n", "expected a mapping")):
@@ -146,6 +146,8 @@ def wrong(folder):
         for command in ("run", "check", *(("explain",) if name != "three" else ())):
             result = call(bin_, command, folder / f"{name}.yaml")
             check(f"{command} {name}.yaml", result.returncode == 2 and said in result.stderr and "Traceback" not in result.stderr, result.stderr)
+    result = call(bin_, "run", case, "--restart", folder / "none")
+    check("what no check of the case finds", result.returncode == 2 and "no complete checkpoint" in result.stderr and "couplet check" not in result.stderr, result.stderr)
     picture = folder / "no folder/x.png"  # written nowhere: by who may not write there, too
     (folder / "m.csv").write_text("time [s],a\n0,1\n1,2\n")
     result = call(bin_, "plot", folder / "m.csv", "--picture", picture)

@@ -136,8 +136,11 @@ def finish(job, code, picture):
     if code == 3 or (job.asked and job.recorded and folders.checkpoint(job.output)):
         print(f"stopped after {took}, saved as {folders.checkpoint(job.output)}; continue: {again}", file=sys.stderr)
         return 3 if code == 3 else code
-    what = {2: f"fix the errors above; all mistakes of the file at once: couplet check {shlex.quote(shown(job.case.file))}"}.get(
-        code, f"from the last checkpoint: {again}" if job.recorded and folders.checkpoint(job.output) else f"logs in {out}")
+    fix = "fix the errors above"
+    if any("cannot start" in line for line in job.last):  # mistakes of the case; others, such as of --restart, it does not know
+        fix += f"; all mistakes of the file at once: couplet check {shlex.quote(shown(job.case.file))}" + "".join(f" --set {shlex.quote(s)}" for s in job.sets)
+    left = f"from the last checkpoint: {again}" if job.recorded and folders.checkpoint(job.output) else f"logs in {out}"
+    what = fix if code == 2 else left
     why = "" if code == 2 else f": {job.last_words()}"  # what is wrong with a case stands just above
     print(f"failed after {took}, exit code {code}{why}\n{what}", file=sys.stderr)
     return code
