@@ -26,23 +26,18 @@ def read(file):
     return columns
 
 
-def unit_of(name):
-    return name[name.rfind("[") + 1 : name.rfind("]")] if "[" in name else "-"
-
-
 def chosen(columns, options):
     names = [n for n in columns if n != next(iter(columns)) and n not in PLACES]
     if options.only:
         names = [n for n in names if any(word in n for word in options.only)]
-        if not names:
-            raise Wrong(f"no column holds {' or '.join(options.only)}; there are: {', '.join(list(columns)[1:])}")
+        expect(names, f"no column holds {' or '.join(options.only)}; there are: {', '.join(list(columns)[1:])}")
     return names
 
 
 def by_unit(names):
     units = {}
     for name in names:
-        units.setdefault(unit_of(name), []).append(name)
+        units.setdefault(name[name.rfind("[") + 1 : name.rfind("]")] if "[" in name else "-", []).append(name)
     return units
 
 
@@ -110,8 +105,7 @@ def draw(file, options):
         low, high = options.low, options.high
         rows = (time >= (-np.inf if low is None else low)) & (time <= (np.inf if high is None else high))
         title = str(file)
-    if not rows.any():
-        raise Wrong(f"{file}: no row between these times; it goes from {time.min():g} s to {time.max():g} s.")
+    expect(rows.any(), f"{file}: no row between these times; it goes from {time.min():g} s to {time.max():g} s.")
     columns = {n: v[rows] for n, v in columns.items()}
     if list(columns)[1] in ("z [m]", "depth [m]"):
         made = profiles(columns, [n for n in names if n != list(columns)[1]], title)
@@ -146,25 +140,15 @@ def declare(parser):
     parser.add_argument("--picture", type=pathlib.Path, metavar="FILE.png", help="by default FILE.png beside FILE.csv; for one file only")
 
 
-def folder_of_run(option, files):
-    expect(len(files) == 1, f"{option}: give one folder of a run")
-    expect(files[0].is_dir(), f"{files[0]}: there is no such folder; has the case been run?")
-
-
 def run(options):
-    if options.mode is not None:
-        folder_of_run("--mode", options.files)
-        from couplet import fields
-        print(fields.draw_mode(options.files[0], options.mode, options.picture))
-        return 0
     expect(options.field or not options.surface, "--surface: name the field that is drawn on it with --field NAME")
-    if options.field:
-        folder_of_run("--field", options.files)
+    if options.field or options.mode is not None:
         from couplet import fields
-        if options.surface:
-            print(fields.draw_surface(options.files[0], options.field, options.surface, options.picture, options.at, options.component, options.warp))
-            return 0
-        print(fields.draw(options.files[0], options.field, options.picture, options.at, options.component, options.warp))
+        folder, look = options.files[0], (options.picture, options.at, options.component, options.warp)
+        expect(len(options.files) == 1, "--field, --mode: give one folder of a run")
+        expect(folder.is_dir(), f"{folder}: there is no such folder; has the case been run?")
+        print(fields.draw_mode(folder, options.mode, options.picture) if options.mode is not None else
+              fields.draw_surface(folder, options.field, options.surface, *look) if options.surface else fields.draw(folder, options.field, *look))
         return 0
     if options.files[0].suffix in (".yaml", ".yml") or (options.files[0] / "case.yaml").is_file():
         expect(len(options.files) == 1, "one case at a time")

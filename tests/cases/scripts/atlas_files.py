@@ -17,7 +17,9 @@ class Stub(atlas.Runner):
     """Starts nothing; what it would start is looked at."""
     started = 0
 
-    def command(self, line, folder, limit=300):
+    def command(self, line, folder, files, limit=300):
+        for file, text in files.items():
+            (folder / file).write_text(text)
         case = yaml.safe_load((folder / "case.yaml").read_text())
         meshes = [p["mesh"] for p in case["participants"].values() if isinstance(p, dict) and "mesh" in p]
         self.started += bool(case["simulation"]) and all((folder / m).is_file() for m in meshes)

@@ -72,19 +72,17 @@ class Runner:
 
     def alone(self, program, folder, files, sets=()):
         """Exit code, and whether the run flags its own result. `files`: {name: text}, with case.yaml among them."""
-        for name, text in files.items():
-            (folder / name).write_text(text)
-        return self.command([self.program(program), "case.yaml", "--strict=effects", *(w for s in sets for w in ("--set", s))], folder)
+        return self.command([self.program(program), "case.yaml", "--strict=effects", *(w for s in sets for w in ("--set", s))], folder, files)
 
     def job(self, programs, folder, files):
-        for name, text in files.items():
-            (folder / name).write_text(text)
         line = ["mpirun", "--oversubscribe"]
         for i, name in enumerate(programs):
             line += [":"] * (i > 0) + ["-n", "1", self.program(name), "case.yaml", "--strict=effects"]
-        return self.command(line, folder)
+        return self.command(line, folder, files)
 
-    def command(self, line, folder, limit=300):
+    def command(self, line, folder, files, limit=300):
+        for name, text in files.items():
+            (folder / name).write_text(text)
         try:
             result = subprocess.run([str(w) for w in line], cwd=folder, env=environment(), capture_output=True, text=True, timeout=limit)
         except subprocess.TimeoutExpired:

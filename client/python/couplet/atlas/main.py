@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The atlas of stability: where each scheme is stable and where it fails, from runs of the programs. Writes MAP.csv and MAP.png and,
 for docs/stability, docs/stability.md. Exit code 1 if a square is a wrong result without a guard or warning."""
+import collections
 import pathlib
 import tempfile
 import time
@@ -30,9 +31,7 @@ def page(maps, folder):
         squares = atlas.read(folder / f"{m.name}.csv")
         if not squares:
             continue
-        counts = {}
-        for s in squares.values():
-            counts[s.outcome] = counts.get(s.outcome, 0) + 1
+        counts = collections.Counter(s.outcome for s in squares.values())
         text += f"\n## {m.title}\n\n{m.about}\n\n![{m.title}](stability/{m.name}.png)\n\n"
         text += f"*{m.criterion}; {', '.join(f'{n} {o}' for o, n in sorted(counts.items()))}: [table](stability/{m.name}.csv).*\n"
     if lost := cases.missing(ROOT):

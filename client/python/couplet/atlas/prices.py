@@ -98,10 +98,9 @@ def measure(scene, build, scratch):
     """[(effect or "", seconds, MB, processes)]: the scene itself, then what each effect adds."""
     plain = cost(scene, {}, build, scratch)
     rows = [("", *plain)]
-    for name, keys in scene.adds.items():
-        rows.append((name, *(a - b for a, b in zip(cost(scene, keys, build, scratch), plain))))
-    for name, keys in scene.lacks.items():
-        rows.append((name, *(b - a for a, b in zip(cost(scene, keys, build, scratch), plain))))
+    for sign, effects in ((1, scene.adds), (-1, scene.lacks)):
+        for name, keys in effects.items():
+            rows.append((name, *(sign * (a - b) for a, b in zip(cost(scene, keys, build, scratch), plain))))
     return rows
 
 

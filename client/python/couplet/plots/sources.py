@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
 """Values of the curves that a section `plot` names: from monitors, tables beside the case, fields of the last output, functions."""
-import csv
 import re
 
 import numpy as np
@@ -8,6 +7,7 @@ import numpy as np
 from couplet.plots.section import seconds
 from couplet.runs.case import Wrong, expect
 from couplet.runs.folder import warn_if_older
+from couplet.runs.results import read_csv
 from couplet.series import find_series
 from couplet.study.expressions import evaluate
 from couplet.study.quantities import FUNCTIONS
@@ -26,20 +26,17 @@ def columns_of(file):
     """{head: numbers}, what is no number as NaN. The head is the first line without #, or, where that is a row of numbers, the last comment."""
     warn_if_older(file)
     try:
-        text = file.read_text()
+        lines = [line for line in file.read_text().splitlines() if line.strip()]
     except OSError as problem:
         raise Wrong(f"{file}: {problem.strerror}.") from None
     except UnicodeDecodeError:
         raise Wrong(f"{file}: is not a text file; fields: couplet plot FOLDER --field NAME") from None
-    lines = [line for line in text.splitlines() if line.strip()]
-    comments = [line for line in lines if line.startswith("#")]
-    rows = [[cell.strip() for cell in row] for row in csv.reader(line for line in lines if not line.startswith("#"))]
+    comments, rows = [line for line in lines if line.startswith("#")], [line for line in lines if not line.startswith("#")]
     expect(rows, f"{file}: there is no row in it.")
-    if all(np.isfinite(number(cell)) for cell in rows[0]) and comments:
-        rows.insert(0, [cell.strip() for cell in comments[-1].lstrip("# ").split(",")])
-    head, body = rows[0], [r for r in rows[1:] if len(r) == len(rows[0])]
-    expect(body, f"{file}: no row has the {len(head)} values that its first line names.")
-    return {name: np.array([number(r[i]) for r in body]) for i, name in enumerate(head)}
+    is_bare = comments and all(np.isfinite(number(cell)) for cell in rows[0].split(","))
+    columns = read_csv(file, [cell.strip() for cell in comments[-1].lstrip("# ").split(",")] if is_bare else None)
+    expect(len(next(iter(columns.values()))), f"{file}: no row has the {len(columns)} values that its first line names.")
+    return {name: values if values.dtype == float else np.array([number(v) for v in values]) for name, values in columns.items()}
 
 
 class Source:

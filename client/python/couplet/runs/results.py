@@ -5,11 +5,11 @@ import json
 import pathlib
 
 
-def read_csv(file):
-    """Columns of a CSV by their heads; text stays text, and a truncated row (of a run that is still writing) is skipped."""
+def read_csv(file, heads=None):
+    """Columns of a CSV by their heads (those given, or its first line); text stays text, a truncated row (of a run that still writes) is skipped."""
     import numpy as np  # late: who only starts runs needs none
     with open(file, newline="") as lines:
-        rows = list(csv.reader(line for line in lines if not line.startswith("#")))
+        rows = [*([heads] if heads else []), *csv.reader(line for line in lines if line.strip() and not line.startswith("#"))]
     head, body = [h.strip() for h in rows[0]], [r for r in rows[1:] if len(r) == len(rows[0])]
     columns = {}
     for i, name in enumerate(head):
