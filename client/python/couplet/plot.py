@@ -48,7 +48,7 @@ def curves(x, label, columns, names, log, title):
         for name in some:
             y = np.abs(columns[name]) if log else columns[name]
             if np.isfinite(y).any():
-                ax.plot(x, y, lw=1, marker="." if len(x) < 30 else None, label=name[: name.rfind("[")].strip() or name)
+                ax.plot(x, y, lw=1, marker="." if len(x) < 30 else None, label=name.partition(" [")[0])
         if log:
             ax.set_yscale("log")
         ax.set_ylabel(f"[{unit}]")

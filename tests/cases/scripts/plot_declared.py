@@ -144,6 +144,11 @@ with tempfile.TemporaryDirectory(prefix="a case with blanks ") as name:
     for warp in (0, 1, 3):
         check(f"places with {warp} times the displacement", np.allclose(fields.places_of(series, 1, warp, "stress"), STILL + warp * MOVE))
 
+    # names of curves, with and without a unit
+    from couplet.plot import curves
+    axes = curves(t, "t", {"relative residual": t, "tip x [m]": t}, ["relative residual", "tip x [m]"], False, "").axes
+    check("a legend has the whole name", [a.get_legend_handles_labels()[1] for a in axes] == [["relative residual"], ["tip x"]])
+
     # what the last run did not write is drawn with a warning
     done = plot(out / "solid/probes.csv")
     check("no warning of a file of this run", done.returncode == 0 and "earlier run" not in done.stderr, done.stderr)
