@@ -12,6 +12,7 @@
 
 #include "common/mesh/quality.hpp"
 #include "common/parallel/collective.hpp"
+#include "mesh_mover/cell_corners.hpp"
 
 namespace couplet::mesh_mover {
 
@@ -20,58 +21,6 @@ const std::array<const char*, MeshState::n_measures> measure_names{
     "largest angle [degree]", "largest f_A [1]",           "largest f_AR [1]"};
 
 namespace {
-
-using Pair = std::array<int, 2>;
-using Corner = std::array<int, 4>;  // the corner, then its edges' ends: right-handed in a good cell
-
-// VTK order. Corners of a pyramid: those of its base, the apex has four edges.
-struct CellShape {
-  std::vector<Pair> edges;
-  std::vector<Corner> corners;
-  double scale = 1;  // of the Jacobian of the ideal cell
-};
-
-const CellShape& shape_of(CellType type) {
-  static const CellShape triangle{
-      {{0, 1}, {1, 2}, {2, 0}}, {{0, 1, 2, -1}, {1, 2, 0, -1}, {2, 0, 1, -1}}, 2 / std::sqrt(3.0)};
-  static const CellShape quadrilateral{{{0, 1}, {1, 2}, {2, 3}, {3, 0}},
-                                       {{0, 1, 3, -1}, {1, 2, 0, -1}, {2, 3, 1, -1}, {3, 0, 2, -1}}};
-  static const CellShape tetrahedron{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
-                                     {{0, 1, 2, 3}, {1, 2, 0, 3}, {2, 0, 1, 3}, {3, 0, 2, 1}},
-                                     std::sqrt(2.0)};
-  static const CellShape hexahedron{
-      {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}},
-      {{0, 1, 3, 4},
-       {1, 2, 0, 5},
-       {2, 3, 1, 6},
-       {3, 0, 2, 7},
-       {4, 7, 5, 0},
-       {5, 4, 6, 1},
-       {6, 5, 7, 2},
-       {7, 6, 4, 3}}};
-  static const CellShape prism{
-      {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}},
-      {{0, 1, 2, 3}, {1, 2, 0, 4}, {2, 0, 1, 5}, {3, 5, 4, 0}, {4, 3, 5, 1}, {5, 4, 3, 2}},
-      2 / std::sqrt(3.0)};
-  static const CellShape pyramid{{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 4}, {1, 4}, {2, 4}, {3, 4}},
-                                 {{0, 1, 3, 4}, {1, 2, 0, 4}, {2, 3, 1, 4}, {3, 0, 2, 4}},
-                                 std::sqrt(2.0)};
-  switch (type) {
-    case CellType::triangle:
-      return triangle;
-    case CellType::quadrilateral:
-      return quadrilateral;
-    case CellType::tetrahedron:
-      return tetrahedron;
-    case CellType::hexahedron:
-      return hexahedron;
-    case CellType::prism:
-      return prism;
-    case CellType::pyramid:
-      return pyramid;
-  }
-  return triangle;
-}
 
 bool least_is_worst(int measure) {
   return measure == MeshState::volume_ratio || measure == MeshState::scaled_jacobian;
@@ -103,7 +52,7 @@ Guard::Guard(const Mesh& mesh, const Parameters& parameters)
 }
 
 Guard::Shape Guard::shape(Index cell, std::span<const Vec3> points) const {
-  const CellShape& kind = shape_of(mesh_.cell_type[cell]);
+  const CellCorners& kind = corners_of(mesh_.cell_type[cell]);
   const auto corner = mesh_.cell_points[cell];
   Shape s{0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (const auto& [a, b] : kind.edges) {
@@ -111,7 +60,7 @@ Guard::Shape Guard::shape(Index cell, std::span<const Vec3> points) const {
     s.longest = std::max(s.longest, length);
     s.shortest = std::min(s.shortest, length);
   }
-  for (const Corner& k : kind.corners) {
+  for (const CellCorner& k : kind.corners) {
     const Vec3& x = points[corner[k[0]]];
     const Vec3 a = points[corner[k[1]]] - x, b = points[corner[k[2]]] - x;
     double jacobian = 0;

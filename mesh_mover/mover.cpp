@@ -10,6 +10,7 @@
 #include "common/mesh/load.hpp"
 #include "common/mesh/quality.hpp"
 #include "common/parallel/collective.hpp"
+#include "mesh_mover/barrier/barrier_motion.hpp"
 #include "mesh_mover/laplacian.hpp"
 #include "mesh_mover/pseudo_solid.hpp"
 #include "mesh_mover/rotations.hpp"
@@ -122,6 +123,9 @@ void Mover::make_method() {
     case Method::pseudo_solid:
       method_ = std::make_unique<PseudoSolid>(*on, parameters_, volumes);
       break;
+    case Method::barrier:
+      method_ = std::make_unique<BarrierMotion>(*on, parameters_, volumes);
+      break;
     case Method::rotations:
       method_ = std::make_unique<Rotations>(*on, parameters_, volumes);
       break;
@@ -158,6 +162,22 @@ std::vector<double> Mover::prescribed(const Exchange& in) const {
       values[std::size_t(interface_.points()[i]) * dim + c] = at_interface[i * dim + c];
   if (incremental())
     for (std::size_t i = 0; i < values.size(); ++i) values[i] -= accepted_[i];
+  return values;
+}
+
+std::vector<double> Mover::body_velocities() const {
+  std::vector<double> values;
+  if (moving_.empty()) return values;
+  values.assign(displacement_.size(), 0.0);
+  for (const Moving& moving : moving_) {
+    std::vector<Vec3> reference;
+    for (const Index v : moving.points) reference.push_back(mesh_.reference_points[v]);
+    const std::vector<Vec3> velocity = moving.motion.velocities(reference, step_.time + step_.dt, step_.dt);
+    for (std::size_t i = 0; i < velocity.size(); ++i)
+      for (int c = 0; c < mesh_.dim; ++c)
+        values[std::size_t(moving.points[i]) * mesh_.dim + c] = velocity[i][c];
+  }
+  mesh_.points.update_ghosts(values, mesh_.dim);
   return values;
 }
 
@@ -204,7 +224,7 @@ Exchange Mover::solve(const Exchange& in) {
     if (sink_) sink_->send_failure();
     throw;
   }
-  if (sink_) sink_->send(displacement_);
+  if (sink_) sink_->send(displacement_, body_velocities());
   return {};
 }
 

@@ -53,6 +53,8 @@ class Mover final : public Participant {
   void set_up_moving();
   void make_method();
   std::vector<double> prescribed(const Exchange& in) const;
+  /// Of the points of patches that move by themselves, zero elsewhere; empty without such patches.
+  std::vector<double> body_velocities() const;
   void refuse_torn() const;
   /// Points and geometry for displacement_, made once a motion. Collective.
   void place();

@@ -54,11 +54,13 @@ void declare_method(config::Section& s, Parameters& p) {
   s.choice("method", p.method,
            {{"laplacian", Method::laplacian},
             {"pseudo-solid", Method::pseudo_solid},
-            {"rotations", Method::rotations}})
+            {"rotations", Method::rotations},
+            {"barrier", Method::barrier}})
       .doc(
           "laplacian: each component separately, cheapest; pseudo-solid: an elastic body, tolerates bending "
           "and rotation; rotations: rotation and displacement of the surface are propagated into the mesh, "
-          "tolerates the largest rotations");
+          "tolerates the largest rotations; barrier: least distortion of the cells, which grows without "
+          "bound as a cell flattens: cannot fold, costs several linear solves per motion");
   s.choice("form", p.form,
            {{"auto", Form::automatic}, {"total", Form::total}, {"incremental", Form::incremental}})
       .doc(

@@ -35,6 +35,7 @@ enum class Method {
   laplacian,     ///< thesis (4.11)
   pseudo_solid,  ///< thesis (4.10)
   rotations,     ///< Laplacian of the rotations of the surface and of what is left
+  barrier,       ///< least distortion, infinite for a flat cell
 };
 /// What the displacement is relative to.
 enum class Form {

@@ -11,6 +11,7 @@ FLOORS = {
     "fluid_solver": ["parameters", "state", "boundary", "turbulence", "motion", "pressure", "step", "judge", "output", "."],
     "coupler": ["parameters", "exchange", "mapping", "acceleration", "judge", "output", "."],
     "thermocline": ["base", "material", "weather", "plant", "bed", "wall", "economics", "model", "judge", "."],
+    "mesh_mover": [".", "barrier"],
     "plate_modal": ["model", "motion", "."],
     "common/elasticity": [".", "thesis", "symmetric", "prestress", "tied", "finite", "solve"],
     "common/mesh": [".", "msh", "inp", "gmsh"],
@@ -20,6 +21,7 @@ FLOORS = {
 
 # Functions of a class above, written where their subject is.
 UPWARDS = {
+    ("mesh_mover/mover.cpp", "mesh_mover/barrier/barrier_motion.hpp"),  # makes the method
     ("fluid_solver/motion/rotating_frame.cpp", "fluid_solver/step/fluid.hpp"),
     ("fluid_solver/motion/turning_walls.cpp", "fluid_solver/step/fluid.hpp"),
 }

@@ -80,7 +80,9 @@ INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
                                          std::pair{Method::laplacian, Form::incremental},
                                          std::pair{Method::pseudo_solid, Form::total},
                                          std::pair{Method::pseudo_solid, Form::incremental},
-                                         std::pair{Method::rotations, Form::total}));
+                                         std::pair{Method::rotations, Form::total},
+                                         std::pair{Method::barrier, Form::total},
+                                         std::pair{Method::barrier, Form::incremental}));
 
 }  // namespace
 }  // namespace couplet::mesh_mover::test

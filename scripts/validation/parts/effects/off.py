@@ -67,6 +67,7 @@ EFFECTS = [
     Own("solid_solver", "step control", ("time-step-control={tolerance: 1 mm}",), ("solid_solver/motion/step_control.cpp",)),
     Own("mesh_mover", "elastic mesh motion", ("method=pseudo-solid",), ("mesh_mover/pseudo_solid.cpp",)),
     Own("mesh_mover", "rotations carried into the mesh", ("method=rotations",), ("mesh_mover/rotations.cpp",)),
+    Own("mesh_mover", "mesh motion by a barrier", ("method=barrier",), ("mesh_mover/barrier/barrier_motion.cpp",)),
     Own("plate_modal", "contact with a seat", ("contact={height: -1 cm}",), ("plate_modal/motion/contact.cpp",)),
     Own("plate_modal", "pressures of the case", ("load={upper-pressure: 1}",), ("plate_modal/motion/pressure_load.cpp",)),
     Own("thermocline", "shell", SHELL, ("thermocline/wall/shell.cpp",)),

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_mover/barrier/barrier_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/base/error.hpp"
+#include "common/parallel/collective.hpp"
+
+namespace couplet::mesh_mover {
+namespace {
+
+// Share of its volume that a simplex keeps in a step.
+constexpr double least_kept = 0.1;
+// Of a Newton step, -g . d over the energy and the weights: nearly the square of the mean change of the deformation
+// gradient. Below the first the mesh is at rest; below the second if it comes to rest slowly, as cells do that are
+// pressed to the verge of buckling; below the third the boundary moves on.
+constexpr double at_rest = 1e-8, slowly_at_rest = 1e-6, nearly_at_rest = 1e-2, slow = 0.1;
+// Factor by which the energy may grow as the boundary moves, beside the sum of the weights.
+constexpr double most_growth = 2;
+constexpr double linear_tolerance = 1e-3;
+constexpr int most_steps = 200;
+// Energy over the sum of the weights from which on no valid mesh is expected: cells of a thousandth of their width.
+constexpr double most_energy = 1e6;
+// Of the Armijo rule.
+constexpr double least_decrease = 1e-4, shortest_step = 1e-8;
+
+LinearOptions options_of(const Mesh& mesh, const LinearOptions& wanted) {
+  LinearOptions options;
+  options.method = wanted.method == LinearMethod::direct_symmetric && mesh.dim == 2
+                       ? LinearMethod::cg_direct
+                       : LinearMethod::cg_multigrid;
+  options.relative_tolerance = linear_tolerance;
+  options.max_iterations = std::max(wanted.max_iterations, 500);
+  return options;
+}
+
+}  // namespace
+
+BarrierMotion::BarrierMotion(const Mesh& mesh, const Parameters& parameters, std::span<const double> volumes)
+    : mesh_(mesh),
+      dim_(mesh.dim),
+      simplices_(make_simplices(
+          mesh, parameters.stiffening,
+          volumes.empty() ? mesh.reference.volume : std::vector<double>(volumes.begin(), volumes.end()))),
+      held_(find_held_points(mesh, parameters)),
+      system_(mesh, simplices_, held_),
+      displacement_(std::size_t(mesh.points.n_local()) * mesh.dim, 0.0) {
+  solver_ = std::make_unique<LinearSolver>("the mesh displacement", system_.matrix(),
+                                           options_of(mesh, parameters.linear));
+}
+
+double BarrierMotion::remaining(std::span<const double> prescribed, std::span<const double> u,
+                                std::vector<double>& way) const {
+  double most = 0;
+  for (Index v = 0; v < mesh_.points.n_local(); ++v) {
+    if (held_.moved[v].isZero(0)) continue;
+    Vec3 left = Vec3::Zero();
+    for (int c = 0; c < dim_; ++c)
+      left[c] = prescribed[std::size_t(v) * dim_ + c] - u[std::size_t(v) * dim_ + c];
+    left = held_.moved[v] * left;
+    for (int c = 0; c < dim_; ++c) way[std::size_t(v) * dim_ + c] = left[c];
+    most = std::max(most, left.cwiseAbs().maxCoeff());
+  }
+  return max(mesh_.comm, most);
+}
+
+/// The largest of 1, 1/2, 1/4, ... times `limit` whose energy is at most `most` + `slope` times it.
+double BarrierMotion::line_search(std::vector<double>& u, double limit, double most, double slope) {
+  for (double share = limit; share > shortest_step; share /= 2) {
+    for (std::size_t i = 0; i < u.size(); ++i) trial_[i] = u[i] + share * direction_[i];
+    const double energy = system_.energy(trial_);
+    if (energy <= most + slope * share) {
+      energy_ = energy;
+      u = trial_;
+      return share;
+    }
+  }
+  throw SolveFailure(
+      "method: barrier: Newton's line search failed: no step along its direction lowers the distortion.");
+}
+
+bool BarrierMotion::find_direction(const std::vector<double>& u, const std::vector<double>& way,
+                                   BarrierSystem::Hessian hessian) {
+  const std::size_t owned = std::size_t(mesh_.points.n_owned()) * dim_;
+  system_.assemble(u, way, residual_, hessian);
+  std::ranges::fill(direction_, 0.0);
+  try {
+    const SolveStatistics s = solver_->solve(residual_, {direction_.data(), owned});
+    last_.iterations += s.iterations;
+    last_.seconds += s.seconds;
+  } catch (const SolveFailure&) {
+    if (hessian == BarrierSystem::Hessian::projected) throw;
+    solver_->refresh();
+    return false;  // not positive definite
+  }
+  slope_ = 0;
+  for (std::size_t i = 0; i < owned; ++i) slope_ -= residual_[i] * direction_[i];
+  slope_ = sum(mesh_.comm, slope_);
+  return slope_ <= 0;
+}
+
+double BarrierMotion::advance(std::vector<double>& u, const std::vector<double>& way, bool moves) {
+  const bool exact = find_direction(u, way, BarrierSystem::Hessian::exact);
+  if (!exact) find_direction(u, way, BarrierSystem::Hessian::projected);
+  for (std::size_t i = 0; i < residual_.size(); ++i) direction_[i] += way[i];
+  mesh_.points.update_ghosts(direction_, dim_);
+  const double limit = system_.largest_step(u, direction_, least_kept);
+  return moves ? line_search(u, limit, most_growth * energy_ + simplices_.total, 0)
+               : line_search(u, limit, energy_ + 1e-13 * simplices_.total, least_decrease * slope_);
+}
+
+std::vector<double> BarrierMotion::solve(std::span<const double> prescribed) {
+  last_ = {};
+  solver_->refresh();  // so that a run that was stopped goes on with the same preconditioner
+  std::vector<double> u = displacement_, way(u.size(), 0.0);
+  const std::vector<double> none(u.size(), 0.0);
+  direction_.assign(u.size(), 0.0);
+  trial_.assign(u.size(), 0.0);
+  energy_ = system_.energy(u);
+  bool arrived = remaining(prescribed, u, way) == 0, relaxed = true;
+  double before = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < most_steps; ++step) {
+    if (!arrived && relaxed) {
+      arrived = advance(u, way, true) == 1;
+      if (arrived)
+        arrive(prescribed, u);
+      else
+        remaining(prescribed, u, way);
+      relaxed = arrived;
+      continue;
+    }
+    const bool whole = advance(u, none, false) == 1;
+    const double change = -slope_ / (simplices_.total + energy_);
+    relaxed = change < nearly_at_rest;
+    if (arrived && whole && (change < at_rest || (change < slowly_at_rest && change > slow * before))) {
+      displacement_ = u;
+      return u;
+    }
+    before = change;
+    if (energy_ > most_energy * simplices_.total) break;
+  }
+  const Vec3 x = system_.worst_place(u);
+  throw SolveFailure(
+      "method: barrier: no valid mesh was found; the cells near ({:.6g}, {:.6g}, {:.6g}) m leave "
+      "no room for the motion. Try a smaller time step, or let the walls there slide (type: slip).",
+      x.x(), x.y(), x.z());
+}
+
+/// To the last bit.
+void BarrierMotion::arrive(std::span<const double> prescribed, std::vector<double>& u) const {
+  for (Index v = 0; v < mesh_.points.n_local(); ++v)
+    if (held_.moved[v].topLeftCorner(dim_, dim_).isIdentity(0))
+      for (int c = 0; c < dim_; ++c) u[std::size_t(v) * dim_ + c] = prescribed[std::size_t(v) * dim_ + c];
+}
+
+}  // namespace couplet::mesh_mover

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesh_mover/barrier/barrier_system.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "common/parallel/collective.hpp"
+#include "mesh_mover/barrier/distortion.hpp"
+#include "mesh_mover/barrier/feasible_step.hpp"
+
+namespace couplet::mesh_mover {
+namespace {
+
+/// Edges of a simplex: of the reference places plus a displacement, or of a displacement alone.
+template <int D>
+struct SimplexEdges {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  const Mesh& mesh;
+  const Simplices& simplices;
+
+  Matrix placed(Index s, std::span<const double> u) const {
+    const Index* p = simplices.points.data() + std::size_t(s) * (D + 1);
+    Matrix edges = of(s, u);
+    for (int i = 0; i < D; ++i)
+      edges.col(i) += (mesh.reference_points[p[i + 1]] - mesh.reference_points[p[0]]).template head<D>();
+    return edges;
+  }
+  Matrix of(Index s, std::span<const double> u) const {
+    const Index* p = simplices.points.data() + std::size_t(s) * (D + 1);
+    const auto at = [&](Index v) {
+      return Eigen::Map<const Eigen::Matrix<double, D, 1>>(u.data() + std::size_t(v) * D);
+    };
+    Matrix edges;
+    for (int i = 0; i < D; ++i) edges.col(i) = at(p[i + 1]) - at(p[0]);
+    return edges;
+  }
+  Eigen::Map<const Matrix> inverse(Index s) const {
+    return Eigen::Map<const Matrix>(simplices.inverse.data() + std::size_t(s) * D * D);
+  }
+};
+
+template <int D>
+double energy_here(const SimplexEdges<D>& edges, std::span<const double> u) {
+  double sum = 0;
+  for (Index s = 0; s < edges.simplices.n_owned; ++s) {
+    const Eigen::Matrix<double, D, D> f = edges.placed(s, u) * edges.inverse(s);
+    if (!(f.determinant() > 0)) return std::numeric_limits<double>::infinity();
+    sum += edges.simplices.weight[s] * Distortion<D>::energy(f);
+  }
+  return sum;
+}
+
+// det(A + a B) as a polynomial of a.
+std::array<double, 4> determinant(const Eigen::Matrix2d& a, const Eigen::Matrix2d& b) {
+  return {a.determinant(), a(0, 0) * b(1, 1) + b(0, 0) * a(1, 1) - a(0, 1) * b(1, 0) - b(0, 1) * a(1, 0),
+          b.determinant(), 0};
+}
+std::array<double, 4> determinant(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  const auto cofactors = [](const Eigen::Matrix3d& m) {
+    Eigen::Matrix3d c;
+    c.col(0) = m.col(1).cross(m.col(2));
+    c.col(1) = m.col(2).cross(m.col(0));
+    c.col(2) = m.col(0).cross(m.col(1));
+    return c;
+  };
+  return {a.determinant(), cofactors(a).cwiseProduct(b).sum(), cofactors(b).cwiseProduct(a).sum(),
+          b.determinant()};
+}
+
+/// The simplex that is distorted most and its energy per weight; -1: there is none here.
+template <int D>
+std::pair<Index, double> worst_here(const SimplexEdges<D>& edges, std::span<const double> u) {
+  std::pair<Index, double> worst{-1, -1};
+  for (Index s = 0; s < edges.simplices.n_owned; ++s) {
+    const double energy = Distortion<D>::energy(edges.placed(s, u) * edges.inverse(s));
+    if (energy > worst.second) worst = {s, energy};
+  }
+  return worst;
+}
+
+template <int D>
+double step_here(const SimplexEdges<D>& edges, std::span<const double> u, std::span<const double> direction,
+                 double least) {
+  double step = 1;
+  for (Index s = 0; s < edges.simplices.n_owned; ++s) {
+    std::array<double, 4> c = determinant(edges.placed(s, u), edges.of(s, direction));
+    c[0] *= 1 - least;
+    step = first_root(c, step);
+  }
+  return step;
+}
+
+}  // namespace
+
+BarrierSystem::BarrierSystem(const Mesh& mesh, const Simplices& simplices, const HeldPoints& held)
+    : mesh_(mesh), simplices_(simplices), held_(held), dim_(mesh.dim) {
+  make_pattern();
+}
+
+void BarrierSystem::make_pattern() {
+  const Index n = mesh_.points.n_owned();
+  const int corners = dim_ + 1;
+  std::vector<std::vector<Index>> around(n);
+  for (Index s = 0; s < simplices_.size(); ++s) {
+    const Index* p = simplices_.points.data() + std::size_t(s) * corners;
+    for (int k = 0; k < corners; ++k)
+      if (p[k] < n) around[p[k]].insert(around[p[k]].end(), p, p + corners);
+  }
+  for (Index v = 0; v < n; ++v) {
+    around[v].push_back(v);  // a point of no simplex: the apex of a pyramid that is alone on its rank
+    std::ranges::sort(around[v]);
+    around[v].erase(std::unique(around[v].begin(), around[v].end()), around[v].end());
+    diagonal_.push_back(graph_.offset[v] +
+                        static_cast<Index>(std::ranges::lower_bound(around[v], v) - around[v].begin()));
+    graph_.push_row(around[v]);
+  }
+  for (Index s = 0; s < simplices_.size(); ++s) {
+    const Index* p = simplices_.points.data() + std::size_t(s) * corners;
+    for (int k = 0; k < corners; ++k)
+      for (int l = 0; l < corners; ++l) {
+        const auto row = p[k] < n ? graph_[p[k]] : std::span<const Index>{};
+        entry_.push_back(p[k] < n ? graph_.offset[p[k]] +
+                                        static_cast<Index>(std::ranges::lower_bound(row, p[l]) - row.begin())
+                                  : -1);
+      }
+  }
+  blocks_.assign(graph_.index.size() * dim_ * dim_, 0.0);
+  std::vector<GlobalIndex> row, column;
+  for (Index v = 0; v < n; ++v)
+    for (const Index w : graph_[v])
+      for (int i = 0; i < dim_; ++i)
+        for (int j = 0; j < dim_; ++j) {
+          row.push_back(mesh_.points.global(v) * dim_ + i);
+          column.push_back(mesh_.points.global(w) * dim_ + j);
+        }
+  matrix_ = std::make_unique<SparseMatrix>(mesh_.comm, GlobalIndex(n) * dim_, std::move(row),
+                                           std::move(column), dim_);
+}
+
+double BarrierSystem::energy(std::span<const double> u) const {
+  return sum(mesh_.comm, dim_ == 2 ? energy_here(SimplexEdges<2>{mesh_, simplices_}, u)
+                                   : energy_here(SimplexEdges<3>{mesh_, simplices_}, u));
+}
+
+double BarrierSystem::largest_step(std::span<const double> u, std::span<const double> direction,
+                                   double least) const {
+  return min(mesh_.comm, dim_ == 2 ? step_here(SimplexEdges<2>{mesh_, simplices_}, u, direction, least)
+                                   : step_here(SimplexEdges<3>{mesh_, simplices_}, u, direction, least));
+}
+
+// Per simplex with the gradients b_k of its corner functions: g_k = w P b_k, H_kl = w b_k . d2W/dF2 . b_l, in the frame
+// of its stretches.
+template <int D>
+void BarrierSystem::add_simplices(std::span<const double> u, std::span<const double> known,
+                                  std::vector<double>& residual, Hessian hessian) {
+  using Matrix = Eigen::Matrix<double, D, D>;
+  using Vector = Eigen::Matrix<double, D, 1>;
+  const SimplexEdges<D> edges{mesh_, simplices_};
+  const Index n = mesh_.points.n_owned();
+  Matrix h[D + 1][D + 1];
+  for (Index s = 0; s < simplices_.size(); ++s) {
+    const Index* p = simplices_.points.data() + std::size_t(s) * (D + 1);
+    const Index* entry = entry_.data() + std::size_t(s) * (D + 1) * (D + 1);
+    const double w = simplices_.weight[s];
+    const Matrix inverse = edges.inverse(s), f = edges.placed(s, u) * inverse;
+    const Matrix stress = w * Distortion<D>::stress(f);
+    const auto t = Distortion<D>::tangent(f, hessian == Hessian::projected);
+    const Matrix gradients = t.v.transpose() * inverse.transpose();  // of corners 1 .. D, turned
+    for (int k = 0; k <= D; ++k) h[k][0].setZero(), h[0][k].setZero();
+    for (int k = 1; k <= D; ++k)
+      for (int l = 1; l <= k; ++l) {
+        Matrix turned;
+        for (int i = 0; i < D; ++i)
+          for (int j = 0; j < D; ++j)
+            turned(i, j) = i == j ? 0 : t.across(i, j) * gradients(j, k - 1) * gradients(i, l - 1);
+        for (int i = 0; i < D; ++i)
+          for (int j = 0; j < D; ++j) turned(i, i) += t.own(i, j) * gradients(j, k - 1) * gradients(j, l - 1);
+        h[k][l] = w * (t.u * turned * t.u.transpose());
+        if (k != l) h[l][k] = h[k][l].transpose();
+      }
+    for (int k = 1; k <= D; ++k) {
+      for (int l = 1; l <= D; ++l) h[k][0] -= h[k][l];
+      h[0][k] = h[k][0].transpose();
+      h[0][0] -= h[0][k];
+    }
+    Vector force[D + 1];
+    force[0].setZero();
+    for (int k = 1; k <= D; ++k) {
+      force[k] = stress * inverse.row(k - 1).transpose();
+      force[0] -= force[k];
+    }
+    for (int k = 0; k <= D; ++k) {
+      if (p[k] >= n) continue;
+      for (int l = 0; l <= D; ++l) {
+        force[k] += h[k][l] * Eigen::Map<const Vector>(known.data() + std::size_t(p[l]) * D);
+        Eigen::Map<Eigen::Matrix<double, D, D, Eigen::RowMajor>>(
+            blocks_.data() + std::size_t(entry[k * (D + 1) + l]) * D * D) += h[k][l];
+      }
+      Eigen::Map<Vector>(residual.data() + std::size_t(p[k]) * D) -= force[k];
+    }
+  }
+}
+
+/// P H P + (I - P) in the owned rows, the unit entries of the size of the others.
+template <int D>
+void BarrierSystem::finish_rows(std::vector<double>& residual) {
+  using Block = Eigen::Matrix<double, D, D, Eigen::RowMajor>;
+  const Block identity = Block::Identity();
+  for (Index v = 0; v < mesh_.points.n_owned(); ++v) {
+    const Block mine = held_.free[v].template topLeftCorner<D, D>();
+    const bool is_free = mine == identity;
+    Eigen::Map<Block> own(blocks_.data() + std::size_t(diagonal_[v]) * D * D);
+    const double size = own.trace() > 0 ? own.trace() / D : 1;
+    for (Index e = graph_.offset[v]; e < graph_.offset[v + 1]; ++e) {
+      const Block other = held_.free[graph_.index[e]].template topLeftCorner<D, D>();
+      if (is_free && other == identity) continue;
+      Eigen::Map<Block> block(blocks_.data() + std::size_t(e) * D * D);
+      block = (mine * block * other).eval();
+    }
+    if (is_free) continue;
+    own += size * (identity - mine);
+    Eigen::Map<Eigen::Matrix<double, D, 1>> r(residual.data() + std::size_t(v) * D);
+    r = (mine * r).eval();
+  }
+}
+
+Vec3 BarrierSystem::worst_place(std::span<const double> u) const {
+  const auto [simplex, energy] = dim_ == 2 ? worst_here(SimplexEdges<2>{mesh_, simplices_}, u)
+                                           : worst_here(SimplexEdges<3>{mesh_, simplices_}, u);
+  struct Entry {
+    double energy;
+    std::array<double, 3> place{};
+  } here{energy};
+  for (int i = 0; simplex >= 0 && i <= dim_; ++i) {
+    const Index v = simplices_.points[std::size_t(simplex) * (dim_ + 1) + i];
+    for (int c = 0; c < dim_; ++c)
+      here.place[c] += (mesh_.reference_points[v][c] + u[std::size_t(v) * dim_ + c]) / (dim_ + 1);
+  }
+  const std::vector<Entry> all = all_gather(mesh_.comm, std::vector<Entry>{here});
+  const Entry& worst = *std::ranges::max_element(all, {}, &Entry::energy);
+  return {worst.place[0], worst.place[1], worst.place[2]};
+}
+
+void BarrierSystem::assemble(std::span<const double> u, std::span<const double> known,
+                             std::vector<double>& residual, Hessian hessian) {
+  std::ranges::fill(blocks_, 0.0);
+  residual.assign(std::size_t(mesh_.points.n_owned()) * dim_, 0.0);
+  if (dim_ == 2) {
+    add_simplices<2>(u, known, residual, hessian);
+    finish_rows<2>(residual);
+  } else {
+    add_simplices<3>(u, known, residual, hessian);
+    finish_rows<3>(residual);
+  }
+  matrix_->fill(blocks_);
+}
+
+}  // namespace couplet::mesh_mover

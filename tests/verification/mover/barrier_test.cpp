@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// Mesh motion that cannot fold, each case beside a method that does fold there.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "common/base/error.hpp"
+#include "common/mesh/load.hpp"
+#include "mesh_mover/barrier/barrier_motion.hpp"
+#include "mesh_mover/barrier/distortion.hpp"
+#include "mesh_mover/barrier/feasible_step.hpp"
+#include "plate_case.hpp"
+
+namespace couplet::mesh_mover::test {
+namespace {
+
+using std::numbers::pi;
+
+template <class T>
+class DistortionOf : public testing::Test {};
+using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(DistortionOf, Dimensions);
+
+template <int D>
+Eigen::Matrix<double, D, D> some_gradient() {
+  Eigen::Matrix<double, D, D> f;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j)
+      f(i, j) = (i == j ? 0.7 + 0.4 * i : 0) + 0.3 * std::sin(1 + 2.3 * i + 5.1 * j);
+  return f;
+}
+
+/// d2W/dF2 : G of the tangent in the frame of the stretches.
+template <int D>
+Eigen::Matrix<double, D, D> apply(const typename Distortion<D>::Tangent& t,
+                                  const Eigen::Matrix<double, D, D>& g) {
+  const Eigen::Matrix<double, D, D> turned = t.u.transpose() * g * t.v;
+  return t.u * (t.own.cwiseProduct(turned) + t.across.cwiseProduct(turned.transpose())) * t.v.transpose();
+}
+
+TYPED_TEST(DistortionOf, stress_and_tangent_are_the_derivatives_of_the_energy) {
+  constexpr int D = TypeParam::value;
+  using Matrix = Eigen::Matrix<double, D, D>;
+  const Matrix f = some_gradient<D>();
+  const Matrix g = some_gradient<D>().transpose() * some_gradient<D>() - 0.5 * Matrix::Identity();
+  const double h = 1e-5;
+  const double slope = (Distortion<D>::energy(f + h * g) - Distortion<D>::energy(f - h * g)) / (2 * h);
+  EXPECT_NEAR(Distortion<D>::stress(f).cwiseProduct(g).sum(), slope, 1e-6 * std::abs(slope));
+  const Matrix change = (Distortion<D>::stress(f + h * g) - Distortion<D>::stress(f - h * g)) / (2 * h);
+  EXPECT_LT((apply<D>(Distortion<D>::tangent(f, false), g) - change).norm(), 1e-6 * change.norm());
+}
+
+TYPED_TEST(DistortionOf, is_zero_for_rotations_alone_and_projected_has_no_negative_curvature) {
+  constexpr int D = TypeParam::value;
+  using Matrix = Eigen::Matrix<double, D, D>;
+  const Tensor3 turn = Eigen::AngleAxisd(1.1, Vec3::UnitZ()).toRotationMatrix();
+  const Matrix r = turn.topLeftCorner<D, D>();
+  EXPECT_NEAR(Distortion<D>::energy(r), 0, 1e-14);
+  EXPECT_LT(Distortion<D>::stress(r).norm(), 1e-14);
+  Matrix squeezed = r;
+  squeezed.col(0) *= 0.3;
+  EXPECT_NEAR(Distortion<D>::energy(squeezed), 0.09 + 1 / 0.09 - 2, 1e-12);
+  Matrix odd = Matrix::Zero();  // turns what is squeezed
+  odd(0, 1) = 1, odd(1, 0) = -1;
+  const Matrix g = r * odd;
+  EXPECT_LT(apply<D>(Distortion<D>::tangent(squeezed, false), g).cwiseProduct(g).sum(), -1);
+  EXPECT_GE(apply<D>(Distortion<D>::tangent(squeezed, true), g).cwiseProduct(g).sum(), -1e-12);
+}
+
+TEST(FeasibleStep, finds_the_first_zero_and_stays_before_it) {
+  EXPECT_EQ(first_root({1, 1, 1, 1}, 1), 1);
+  EXPECT_EQ(first_root({1, -0.9, 0, 0}, 1), 1);
+  EXPECT_NEAR(first_root({1, -4, 0, 0}, 1), 0.25, 3e-4);
+  EXPECT_LE(first_root({1, -4, 0, 0}, 1), 0.25);
+  // (1 - a / 0.2) (1 - a / 0.3) (1 - a / 0.9): falls, rises, falls.
+  const double p = 1 / 0.2, q = 1 / 0.3, r = 1 / 0.9;
+  EXPECT_NEAR(first_root({1, -(p + q + r), p * q + p * r + q * r, -p * q * r}, 1), 0.2, 3e-4);
+  EXPECT_EQ(first_root({1, -(p + q + r), p * q + p * r + q * r, -p * q * r}, 0.19), 0.19);
+  // Touches nothing between its extrema.
+  EXPECT_EQ(first_root({1, -4, 4.1, 0}, 1), 1);
+}
+
+Parameters block(int kind, Method method, BoundaryMotion walls) {
+  Parameters p;
+  p.mesh = "frame.geo";
+  p.mesh_parameters = {{"kind", kind}, {"n", kind == 2 ? 2 : 6}};
+  p.dimension = kind == 2 ? 3 : 2;
+  p.method = method;
+  for (const char* wall : {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"})
+    if (p.dimension == 3 || wall[0] != 'z') p.boundaries[wall].motion = walls;
+  p.boundaries["block"].motion = BoundaryMotion::moving;
+  const bool slides = walls == BoundaryMotion::slip;
+  p.boundaries["block"].prescribed.translation = {{slides ? "0.475*t" : "0"}, {"0.475*t"}};
+  if (p.dimension == 3) p.boundaries["block"].prescribed.translation.push_back({"0"});
+  return p;
+}
+
+ParticipantContext in_test_data() {
+  ParticipantContext c = context();
+  c.case_folder = COUPLET_TEST_DATA;
+  return c;
+}
+
+class BlockInAFrame : public testing::TestWithParam<std::pair<int, BoundaryMotion>> {};
+
+/// To 5 % of its gaps: to the wall above, or, where walls slide, into a corner.
+TEST_P(BlockInAFrame, closes_its_gaps_to_a_twentieth_where_the_laplacian_folds) {
+  const auto [kind, walls] = GetParam();
+  Mover mover(block(kind, Method::barrier, walls), in_test_data());
+  mover.initialise();
+  run(mover, 0, 1, 20);
+  EXPECT_GT(mover.state().worst[MeshState::scaled_jacobian].value, 0);
+  EXPECT_GT(mover.state().worst[MeshState::volume_ratio].value, 1e-4);
+  RecordProperty("least scaled Jacobian",
+                 std::to_string(mover.state().worst[MeshState::scaled_jacobian].value));
+  Mover laplacian(block(kind, Method::laplacian, walls), in_test_data());
+  laplacian.initialise();
+  try {
+    run(laplacian, 0, 1, 20);
+    FAIL() << "the Laplacian came through";
+  } catch (const SolveFailure& e) {
+    EXPECT_THAT(e.what(), testing::ContainsRegex("inverts cell|intersect itself"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BlockInAFrame,
+                         testing::Values(std::pair{0, BoundaryMotion::fixed},
+                                         std::pair{1, BoundaryMotion::fixed},
+                                         std::pair{2, BoundaryMotion::fixed},
+                                         std::pair{0, BoundaryMotion::slip},
+                                         std::pair{1, BoundaryMotion::slip}));
+
+/// The corner of the block would pass the diagonal of the fixed corner cell: no mesh has such cells.
+TEST(Barrier, refuses_what_no_mesh_can_follow) {
+  Parameters p = block(1, Method::barrier, BoundaryMotion::fixed);
+  p.boundaries["block"].prescribed.translation = {{"0.475*t"}, {"0.475*t"}};
+  Mover mover(p, in_test_data());
+  mover.initialise();
+  try {
+    run(mover, 0, 1, 20);
+    FAIL() << "accepted";
+  } catch (const SolveFailure& e) {
+    EXPECT_THAT(e.what(), testing::ContainsRegex("no valid mesh was found.*near \\(1.9"));
+  }
+}
+
+TEST(Barrier, turns_a_plate_by_half_a_turn_and_back_where_the_laplacian_folds) {
+  for (const Method method : {Method::barrier, Method::laplacian}) {
+    Parameters p = plate_in_a_square(method, Form::total);
+    turn_by(p, "pi*t");
+    Mover mover(p, context());
+    mover.initialise();
+    if (method == Method::laplacian) {
+      EXPECT_THROW(run(mover, 0, 1, 36), SolveFailure);
+      continue;
+    }
+    run(mover, 0, 1, 36);
+    EXPECT_GT(mover.state().worst[MeshState::scaled_jacobian].value, 0.02);
+    run(mover, 1, 0, 36);
+    EXPECT_LT(largest_difference(MPI_COMM_WORLD, mover.displacement(),
+                                 std::vector<double>(mover.displacement().size())),
+              1e-4 / 16);  // of the edges
+  }
+}
+
+/// On a turned box, so that no plane is normal to an axis: a corner point rests, one at an edge slides along it.
+TEST(Barrier, slides_along_planes_and_edges_of_any_direction) {
+  RawMesh raw = make_box(BoxCells::mixed, {4, 4, 4}, Vec3::Zero(), Vec3::Ones());
+  const Tensor3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  for (Vec3& x : raw.points) x = turn * x;
+  const Mesh mesh = distribute(MPI_COMM_WORLD, raw);
+  Parameters p;
+  p.dimension = 3;
+  for (const Patch& patch : mesh.patches) p.boundaries[patch.name].motion = BoundaryMotion::slip;
+  p.boundaries["xmin"].motion = BoundaryMotion::fixed;
+  p.boundaries["xmax"].motion = BoundaryMotion::interface;
+  p.stiffening = 0;
+  BarrierMotion barrier(mesh, p);
+  const auto pushed = [&](double way) {
+    std::vector<double> d(std::size_t(mesh.points.n_local()) * 3, 0.0);
+    for (Index v = 0; v < mesh.points.n_local(); ++v) {
+      const Vec3 x = turn.transpose() * mesh.reference_points[v];
+      if (x.x() > 0.999) Eigen::Map<Vec3>(d.data() + 3 * v) = turn * Vec3(way, 0, 0);
+    }
+    return d;
+  };
+  const std::vector<double> d = barrier.solve(pushed(0.8));
+  double across = 0, along = 0;
+  for (Index v = 0; v < mesh.points.n_local(); ++v) {
+    const Vec3 x = turn.transpose() * mesh.reference_points[v];
+    const Vec3 u = turn.transpose() * Eigen::Map<const Vec3>(d.data() + 3 * v);
+    // Uniform stretch has least distortion.
+    along = std::max(along, std::abs(u.x() - 0.8 * x.x()));
+    across = std::max({across, std::abs(u.y()), std::abs(u.z())});
+  }
+  EXPECT_LT(max(mesh.comm, along), 1e-3);
+  EXPECT_LT(max(mesh.comm, across), 1e-3);
+}
+
+TEST(Barrier, periodic_patches_are_refused_by_name) {
+  const Mesh mesh =
+      distribute(MPI_COMM_SELF, make_box(BoxCells::quadrilaterals, {2, 2, 1}, Vec3::Zero(), Vec3::Ones()));
+  Parameters p;
+  p.dimension = 2;
+  for (const Patch& patch : mesh.patches) p.boundaries[patch.name].motion = BoundaryMotion::fixed;
+  p.boundaries["ymax"].motion = BoundaryMotion::periodic;
+  try {
+    BarrierMotion barrier(mesh, p);
+    FAIL() << "accepted";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("boundaries.ymax"));
+  }
+}
+
+}  // namespace
+}  // namespace couplet::mesh_mover::test
