@@ -10,8 +10,9 @@
 
 namespace {
 
-int run(const couplet::Job& job, const couplet::CouplingParameters& parameters) {
+int run(const couplet::Job& job, const couplet::CouplingParameters& read) {
   using namespace couplet;
+  const CouplingParameters parameters = read.in_force();
   log::info("{}", summary(effects_of(coupling_effect_cards(), parameters)));
   std::vector<std::unique_ptr<Channel>> channels;
   for (const Member& m : job.members)
@@ -43,7 +44,7 @@ int main(int argc, char** argv) {
       "couples a fluid, a structure and a mesh mover, or participants of any kind, each a separate program",
       true, [&](couplet::config::Section& section) { declare(section, parameters); },
       [&](const couplet::EffectScene&) {
-        return couplet::effects_of(couplet::coupling_effect_cards(), parameters);
+        return couplet::effects_of(couplet::coupling_effect_cards(), parameters.in_force());
       }};
   return couplet::run_job(argc, argv, kind, [&](const couplet::Job& job) { return run(job, parameters); });
 }

@@ -66,15 +66,17 @@ void FluidParticipant<D>::set_up_motion() {
   const FluidParameters& parameters = fluid_->parameters();
   const auto& bodies = fluid_->boundary().body_patches();
   if (!parameters.motion) {
-    if (!bodies.empty())
-      throw Error("boundaries.{}: a wall of type 'body' moves by the section 'motion', which is missing.",
-                  bodies.front()->name);
+    if (!bodies.empty() && !motion_)
+      throw Error(
+          "boundaries.{}: a wall of type 'body' moves by the section 'motion' or with a mesh mover (`coupling.mesh`, "
+          "where it has type 'moving' with its own 'motion'); both are missing.",
+          bodies.front()->name);
     return;
   }
   if (motion_)
     throw Error(
         "motion: this fluid has a mesh mover, which already moves its mesh. Remove one of them; a wall that "
-        "a mesh mover moves by itself has type 'moving-wall' here.");
+        "a mesh mover moves by itself ('type: moving' there) has type 'body' here.");
   prescribed_ = std::make_unique<PrescribedMotion>(*parameters.motion, D);
   const double start = fluid_->state().time;
   const double largest = max(mesh_.comm, prescribed_->largest_displacement(mesh_.reference_points, start));
@@ -108,7 +110,7 @@ Interface FluidParticipant<D>::initialise() {
 template <int D>
 void FluidParticipant<D>::tell_impulse() const {
   const Boundary<D>& boundary = fluid_->boundary();
-  if (boundary.body_patches().empty() || fluid_->state().start != Start::at_rest) return;
+  if (boundary.body_patches().empty() || !prescribed_ || fluid_->state().start != Start::at_rest) return;
   Vectors<D> w(mesh_.boundary.n_owned()), no_turn;
   const double speed = set_body_start(mesh_, boundary, *fluid_->parameters().motion, step_.time, w, no_turn);
   if (speed > 0 && comm_rank(mesh_.comm) == 0)
@@ -178,11 +180,10 @@ template <int D>
 void FluidParticipant<D>::prepare(const Vectors<D>& w) {
   w_ = w;
   renewed_now_ = false;
-  if (step_.scheme != Scheme::semi_implicit || !predicted_) {
-    points_ = receive_points();
+  if (!predicted_) {
     fluid_->prepare(points_, w);
     renewal_.start(w);
-    predicted_ = true;
+    predicted_ = step_.scheme == Scheme::semi_implicit;
     return;
   }
   if (!renewal_.wanted(mesh_.comm, w, fluid_->unseen_share(w))) return;
@@ -192,6 +193,7 @@ void FluidParticipant<D>::prepare(const Vectors<D>& w) {
 
 template <int D>
 Exchange FluidParticipant<D>::solve(const Exchange& in) {
+  if (!predicted_) points_ = receive_points();
   const Vectors<D> w = wall_velocity(in);
   if (yields() && step_.scheme != Scheme::standalone) {
     if (fluid_->boundary().asks_for_mass()) take_wall_mass(in);

@@ -64,6 +64,8 @@ class FluidParticipant final : public Participant, public EstimatesError {
   std::vector<Vec3> body_velocities(const Patch& patch) const;
   std::vector<double> wall_load(const Exchange& in) const;
   void take_wall_mass(const Exchange& in);
+  /// By the case, or by a mesh mover that moves some by itself.
+  bool moves_bodies() const { return prescribed_ || (motion_ && !fluid_->boundary().body_patches().empty()); }
   bool yields() const { return interface_ && fluid_->boundary().yields(); }
   double wall_displacement(const Exchange& in) const;
   bool stands_still() const { return interface_ && !motion_ && step_.scheme != Scheme::standalone; }

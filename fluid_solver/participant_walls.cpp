@@ -3,16 +3,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/error.hpp"
 #include "common/parallel/collective.hpp"
 #include "fluid_solver/motion/turning_walls.hpp"
 #include "fluid_solver/participant.hpp"
 
 namespace couplet::fluid {
 
-/// One a corner of each face of the patch, at the end of the step.
+/// One a corner of each face of the patch, at the end of the step. After receive_points().
 template <int D>
 std::vector<Vec3> FluidParticipant<D>::body_velocities(const Patch& patch) const {
   std::vector<Vec3> corners;
+  if (!prescribed_) {
+    const std::vector<double>& given = motion_->velocity();
+    if (given.empty())
+      throw Error("boundaries.{}: the mesh mover does not move this body: set 'type: moving' there.",
+                  patch.name);
+    for (Index f = patch.first; f < patch.first + patch.count; ++f)
+      for (const Index v : mesh_.face_points[f]) {
+        corners.push_back(Vec3::Zero());
+        corners.back().template head<D>() = Eigen::Map<const Vec<D>>(given.data() + std::size_t(v) * D);
+      }
+    return corners;
+  }
   for (Index f = patch.first; f < patch.first + patch.count; ++f)
     for (const Index v : mesh_.face_points[f]) corners.push_back(mesh_.reference_points[v]);
   return prescribed_->velocities(corners, step_.time + step_.dt, step_.dt);
@@ -37,7 +50,7 @@ void FluidParticipant<D>::add_body_velocity(Vectors<D>& w) const {
 template <int D>
 Vectors<D> FluidParticipant<D>::wall_turn(const Exchange& in) const {
   const bool coupled = interface_ && step_.scheme != Scheme::standalone;
-  if (!coupled && !prescribed_) return {};
+  if (!coupled && !moves_bodies()) return {};
   Vectors<D> turn(mesh_.boundary.n_owned(), Vec<D>::Zero());
   const std::vector<Vec3>& points = points_.empty() ? mesh_.reference_points : points_;
   for (const Patch* patch : fluid_->boundary().body_patches())
@@ -65,9 +78,9 @@ Vectors<D> FluidParticipant<D>::wall_turn(const Exchange& in) const {
 template <int D>
 Vectors<D> FluidParticipant<D>::wall_velocity(const Exchange& in) const {
   const bool coupled = interface_ && step_.scheme != Scheme::standalone;
-  if (!coupled && !prescribed_) return {};
+  if (!coupled && !moves_bodies()) return {};
   Vectors<D> w(mesh_.boundary.n_owned(), Vec<D>::Zero());
-  if (prescribed_) add_body_velocity(w);
+  if (moves_bodies()) add_body_velocity(w);
   if (!coupled) return w;
   const auto given = in.find("velocity");
   const std::vector<double> at_points =

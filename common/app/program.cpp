@@ -16,6 +16,9 @@ namespace {
 
 Scheme scheme_of(const Job& job) {
   if (job.alone) return Scheme::standalone;
+  const bool moves_alone = !config::text_of(*job.document, "coupling.structure.participant") &&
+                           config::texts_of(*job.document, "coupling.exchange.participants").empty();
+  if (moves_alone) return Scheme::explicit_;  // a fluid and its mesh: there is nothing to iterate
   const std::string word = config::text_of(*job.document, "coupling.scheme").value_or("semi-implicit");
   if (word == "explicit") return Scheme::explicit_;
   return word == "implicit" ? Scheme::implicit : Scheme::semi_implicit;

@@ -16,7 +16,8 @@ constexpr int motion_tag = 7101;
 const char* const mover_name = "the mesh mover";
 const char* const fluid_name = "the fluid";
 
-/// A message is the status, then dim values a point in the order that both sides agreed on.
+/// A message is the status, then dim values a point in the order that both sides agreed on: displacements, and
+/// velocities where there are such.
 enum class Status : int { moved, failed };
 
 /// The points that one rank of the other program gives or takes.
@@ -132,6 +133,7 @@ class Source final : public MeshMotionSource {
 
   std::vector<double> receive() override {
     std::vector<double> values(std::size_t(n_points_) * dim_);
+    velocity_.clear();
     bool failed = false;
     for (const Peer& peer : from_) {
       const std::vector<char> bytes = receive_bytes(peers_, peer.rank, motion_tag, mover_name);
@@ -140,16 +142,24 @@ class Source final : public MeshMotionSource {
         failed = true;
         continue;
       }
-      assert(message.size() == 1 + peer.points.size() * dim_);
-      for (std::size_t i = 0; i < peer.points.size(); ++i)
-        for (int c = 0; c < dim_; ++c)
-          values[std::size_t(peer.points[i]) * dim_ + c] = message[1 + i * dim_ + c];
+      const std::size_t size = peer.points.size() * dim_;
+      assert(message.size() == 1 + size || message.size() == 1 + 2 * size);
+      take(peer, std::span(message).subspan(1, size), values);
+      if (message.size() == 1 + size) continue;
+      velocity_.resize(values.size());
+      take(peer, std::span(message).subspan(1 + size, size), velocity_);
     }
     if (failed) throw SolveFailure("The mesh mover could not move the mesh.");
     return values;
   }
 
+  const std::vector<double>& velocity() const override { return velocity_; }
+
  private:
+  void take(const Peer& peer, std::span<const double> from, std::vector<double>& values) const {
+    for (std::size_t i = 0; i < peer.points.size(); ++i)
+      for (int c = 0; c < dim_; ++c) values[std::size_t(peer.points[i]) * dim_ + c] = from[i * dim_ + c];
+  }
   /// Equal numbers with other places would pass unseen and move the wrong points.
   void compare_points(const Mesh& mesh) {
     const std::vector<double> theirs = receive();
@@ -174,6 +184,7 @@ class Source final : public MeshMotionSource {
   int dim_;
   Index n_points_;
   std::vector<Peer> from_;
+  std::vector<double> velocity_;
 };
 
 class Sink final : public MeshMotionSink {
@@ -198,7 +209,7 @@ class Sink final : public MeshMotionSink {
     }
     std::vector<double> points;
     for (const Vec3& x : mesh.reference_points) points.insert(points.end(), x.begin(), x.begin() + dim_);
-    send(points);
+    send(points, {});
     if (any_of_source(peers, mesh.comm, false, false))
       throw_other_points(
           ": their points have different "
@@ -216,11 +227,13 @@ class Sink final : public MeshMotionSink {
     }
   }
 
-  void send(std::span<const double> displacement) override {
+  void send(std::span<const double> displacement, std::span<const double> velocity) override {
     for (Outgoing& to : to_) {
       start(to, Status::moved);
-      for (const Index p : to.peer.points)
-        for (int c = 0; c < dim_; ++c) to.message.push_back(displacement[std::size_t(p) * dim_ + c]);
+      for (const std::span<const double> values : {displacement, velocity})
+        for (std::size_t i = 0; i < to.peer.points.size() && !values.empty(); ++i)
+          for (int c = 0; c < dim_; ++c)
+            to.message.push_back(values[std::size_t(to.peer.points[i]) * dim_ + c]);
       post(to);
     }
   }

@@ -21,14 +21,18 @@ class MeshMotionSource {
   /// points) [m] at t^{n+1} of the step that was begun. Throws SolveFailure if the mover could not move the
   /// mesh.
   virtual std::vector<double> receive() = 0;
+  /// Velocity of every local point at the same time [m/s], which came with it: of bodies that the mover moves by
+  /// itself, zero elsewhere. Empty without such bodies.
+  virtual const std::vector<double>& velocity() const = 0;
 };
 
 /// The other end, in the mover.
 class MeshMotionSink {
  public:
   virtual ~MeshMotionSink() = default;
-  /// `displacement`: dim values for every local point of the mover's mesh, ghosts up to date.
-  virtual void send(std::span<const double> displacement) = 0;
+  /// `displacement`, `velocity`: dim values for every local point of the mover's mesh, ghosts up to date; no velocity
+  /// where the mover moves no body by itself.
+  virtual void send(std::span<const double> displacement, std::span<const double> velocity = {}) = 0;
   /// Tells the fluid that there is no motion to wait for (the mover failed; it reports the reason to the
   /// coupler).
   virtual void send_failure() = 0;

@@ -20,6 +20,7 @@ void check_dimensions(const std::vector<Side>& sides, const std::string& structu
 }  // namespace
 
 void check_roles(const CouplingParameters& p, const std::vector<Side>& sides) {
+  if (p.moves_alone()) return;  // neither has an interface
   if (!p.exchange && p.structure) check_dimensions(sides, p.structure->participant);
   const auto check = [&](const char* role, const std::optional<CouplingParameters::Role>& who) {
     if (!who) return;

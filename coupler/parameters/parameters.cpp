@@ -47,10 +47,13 @@ std::string problem_of_roles(const CouplingParameters& p) {
       return "`mesh` serves only the fluid and is not one of the exchange's participants";
     return list.size() < 2 ? "an exchange needs two participants or more" : "";
   }
+  if (p.moves_alone())
+    return p.fluid->participant != p.mesh->participant ? ""
+                                                       : "fluid and mesh must be two different participants";
   if (!p.fluid || !p.structure)
     return fmt::format(
-        "'{}' is missing; a coupling has 'fluid' and 'structure' (each with its participant), or "
-        "'exchange'",
+        "'{}' is missing; a coupling has 'fluid' and 'structure' (each with its participant), 'fluid' and "
+        "'mesh' (whose bodies move as the case prescribes), or 'exchange'",
         p.fluid ? "structure" : "fluid");
   return p.fluid->participant != p.structure->participant
              ? ""
@@ -198,9 +201,10 @@ void declare(config::Section& section, CouplingParameters& p) {
           "pressure and structure iterated; implicit: everything iterated");
   declare_role(section, "fluid", p.fluid,
                "participant that receives the interface motion and gives the load");
-  declare_role(section, "structure", p.structure,
-               "participant that receives the load and gives the "
-               "interface motion");
+  declare_role(
+      section, "structure", p.structure,
+      "participant that receives the load and gives the interface motion; absent with `mesh`: bodies move as the "
+      "mesh mover's boundaries prescribe (type: moving), nothing is iterated");
   declare_role(section, "mesh", p.mesh,
                "participant that moves the mesh of the fluid; absent: the mesh is "
                "at rest");

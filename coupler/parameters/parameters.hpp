@@ -66,6 +66,14 @@ struct CouplingParameters {
   std::map<std::string, WatchParameters> watch;
   /// What follows when a guard finds that the coupling itself makes the motion.
   enum class OnDivergence { stop, warn } on_divergence = OnDivergence::stop;
+  /// A fluid whose bodies the mesh mover moves as the case prescribes: there is no structure, nothing to iterate.
+  bool moves_alone() const { return fluid && mesh && !structure && !exchange; }
+  /// The same with the scheme that is in force: one pass where nothing is iterated.
+  CouplingParameters in_force() const {
+    CouplingParameters p = *this;
+    if (moves_alone()) p.scheme = Scheme::explicit_;
+    return p;
+  }
 };
 void declare(config::Section& section, CouplingParameters& parameters);
 

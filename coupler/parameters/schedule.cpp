@@ -33,6 +33,8 @@ Schedule schedule_of(const CouplingParameters& p) {
   if (p.exchange) {
     s.group = p.exchange->participants;
     s.side_by_side = p.exchange->order == CouplingParameters::Exchange::Order::parallel;
+  } else if (p.moves_alone()) {
+    s.group = {p.fluid->participant};
   } else {
     s.group = {p.fluid.value().participant, p.structure.value().participant};
     if (p.order == CouplingParameters::Exchange::Order::structure_first) std::swap(s.group[0], s.group[1]);

@@ -142,7 +142,7 @@ void declare_boundary(config::Section& s, BoundaryParameters& b) {
       "inlet: prescribed velocity; outlet: prescribed pressure; convective-outlet: the flow leaves with the "
       "mean outflow speed, with zero mean pressure; no-slip: wall at rest; moving-wall: wall with a "
       "prescribed velocity; slip, symmetry: no normal flow, no friction; periodic: outflow re-enters at the "
-      "partner; interface: wall that moves with the structure; body: wall that moves by 'motion'",
+      "partner; interface: wall that moves with the structure; body: wall that moves by 'motion', or by its own motion in the mesh mover (type: moving there)",
       true);
 }
 

@@ -19,9 +19,11 @@ class Motion final : public MeshMotionSource {
         displacement.push_back(c == 1 ? moved_by * x.x() * (2 - x.x()) * (1 - x.y()) : 0);
     return displacement;
   }
+  const std::vector<double>& velocity() const override { return none_; }
 
  private:
   const Mesh& mesh_;
+  std::vector<double> none_;
 };
 
 /// A channel whose lower wall moves, with or without its mesh.

@@ -113,9 +113,19 @@ class Cast {
     for (const std::string& patch : config::keys_of(document_, walls)) {
       const std::string key = fmt::format("participants.{}.boundaries.{}.type", *mover, patch);
       const auto type = config::text_of(document_, key);
-      if (config::text_of(document_, walls + "." + patch + ".type") != "interface" || !type ||
-          type == "interface")
-        continue;
+      const auto wall = config::text_of(document_, walls + "." + patch + ".type");
+      if (!type || !wall) continue;
+      if (*wall == "body" && *type != "moving")
+        say(key,
+            fmt::format(
+                "the wall '{}' is a body in '{}', which the mesh mover must move: set `type: moving` with "
+                "its `motion`",
+                patch, *fluid));
+      if (*wall == "no-slip" && *type == "moving")
+        say(walls + "." + patch + ".type",
+            fmt::format("the wall '{}' is moved by '{}', but in '{}' it is at rest: set `type: body`", patch,
+                        *mover, *fluid));
+      if (*wall != "interface" || *type == "interface") continue;
       say(key,
           fmt::format("'{}' holds the wall '{}' fixed by `type: {}`, but in '{}' it is an interface that the "
                       "structure moves, so the mesh would not follow. Set `type: interface`",

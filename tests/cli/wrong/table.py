@@ -308,8 +308,18 @@ case.yaml:16:3: participants.solid: this participant has no role in `coupling` (
 """, ("structure: {participant: solid}", "structure: {participant: solids}")),
     coupler("role missing", """
 case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
-case.yaml:35:1: coupling.structure: 'structure' is missing; a coupling has 'fluid' and 'structure' (each with its participant), or 'exchange'.
 """, ("  structure: {participant: solid}\n", "")),
+    coupler("a body that the mover does not move", """
+case.yaml:34:13: participants.mover.boundaries.top.type: the wall 'top' is a body in 'fluid', which the mesh mover must move: set `type: moving` with its `motion`.
+""", ("top: {type: slip}", "top: {type: body}")),
+    coupler("a wall at rest that the mover moves", """
+case.yaml:15:13: participants.fluid.boundaries.top.type: the wall 'top' is moved by 'mover', but in 'fluid' it is at rest: set `type: body`.
+""", ("top: {type: slip}", "top: {type: no-slip}"), ("top: {type: fixed}\ncoupling", "top: {type: moving, motion: {translation: [0, t]}}\ncoupling")),
+    coupler("two roles missing", """
+case.yaml:16:3: participants.solid: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
+case.yaml:26:3: participants.mover: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
+case.yaml:35:1: coupling.structure: 'structure' is missing; a coupling has 'fluid' and 'structure' (each with its participant), 'fluid' and 'mesh' (whose bodies move as the case prescribes), or 'exchange'.
+""", ("  structure: {participant: solid}\n", ""), ("  mesh: {participant: mover}\n", "")),
     coupler("participant without a role", """
 case.yaml:26:3: participants.mover: this participant has no role in `coupling` (fluid, structure, mesh or exchange): assign one, or remove the participant.
 """, ("  mesh: {participant: mover}\n", "")),

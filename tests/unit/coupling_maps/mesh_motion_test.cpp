@@ -63,9 +63,13 @@ TEST_P(MeshMotion, every_local_point_of_the_fluid_gets_its_own_displacement) {
   if (is_mover) {
     const auto sink = make_mesh_motion_sink(peers, mesh);
     for (int step = 0; step < 3; ++step) sink->send(expected(step));
+    sink->send(expected(3), expected(4));
   } else {
     const auto source = make_mesh_motion_source(peers, mesh);
     for (int step = 0; step < 3; ++step) EXPECT_EQ(source->receive(), expected(step)) << "step " << step;
+    EXPECT_TRUE(source->velocity().empty());
+    EXPECT_EQ(source->receive(), expected(3));
+    EXPECT_EQ(source->velocity(), expected(4));
   }
 }
 
