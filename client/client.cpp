@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "socket_link.hpp"
 #include "transports.hpp"
 #include "wire.hpp"
 
@@ -23,8 +24,11 @@ namespace {
 
 using namespace couplet::wire;
 
+Link* way = nullptr;  // of the client that joined last
+
 [[noreturn]] void end_the_job(const std::string& text) {
   std::fprintf(stderr, "couplet client: %s\n", text.c_str());
+  if (way != nullptr) way->fail(text);
   std::fflush(nullptr);
   MPI_Abort(MPI_COMM_WORLD, 1);
   std::abort();
@@ -34,7 +38,8 @@ using namespace couplet::wire;
 
 struct couplet_client {
   std::string participant;
-  MPI_Comm comm = MPI_COMM_NULL, coupler = MPI_COMM_NULL;
+  MPI_Comm comm = MPI_COMM_NULL;
+  std::unique_ptr<Link> coupler;
   int rank = 0;
   Surface surface;
   std::vector<Datum> takes, gives;
@@ -91,9 +96,7 @@ void describe(couplet_client& c) {
   MPI_Bcast(&c.surface.dim, 1, MPI_INT, 0, c.comm);
   c.vertex_cut = cut(c.comm, c.surface.vertices());
   c.face_cut = cut(c.comm, c.surface.faces());
-  int ranks = 0;
-  MPI_Comm_remote_size(c.coupler, &ranks);
-  c.peers = peers_of(c.vertex_cut, c.face_cut, c.rank, ranks);
+  c.peers = peers_of(c.vertex_cut, c.face_cut, c.rank, c.coupler->ranks());
   c.described = true;
 }
 
@@ -116,15 +119,15 @@ void send_reply(couplet_client& c) {
     head.data(first ? c.gives : std::vector<Datum>{});
     head.list(first ? c.vertex_cut : std::vector<std::int64_t>{0});
     head.list(first ? c.face_cut : std::vector<std::int64_t>{0});
-    send(c.coupler, 0, reply_tag, head.bytes(), MPI_BYTE);
+    c.coupler->send(0, reply_tag, head.bytes());
   }
   if (first)
-    for (const Peer& p : c.peers) send(c.coupler, p.rank, places_tag, c.surface.cut_out(p), MPI_BYTE);
+    for (const Peer& p : c.peers) c.coupler->send(p.rank, places_tag, c.surface.cut_out(p));
   if ((c.command.op == solve || first) && c.status == 0)
     for (const Peer& p : c.peers) {
       std::vector<Stretch> parts;
       for (auto& [name, values] : c.output) part_of(c, p, *find(c.gives, name), values, parts);  // by name
-      if (!parts.empty()) send(c.coupler, p.rank, output_tag, parts);
+      if (!parts.empty()) c.coupler->send(p.rank, output_tag, parts);
     }
   for (auto& [name, values] : c.output) c.spare[name].swap(values);
   c.output.clear();
@@ -150,14 +153,14 @@ void receive_input(couplet_client& c) {
   for (const Peer& p : c.peers) {
     std::vector<Stretch> parts;
     for (const Datum* d : present) part_of(c, p, *d, c.input[d->name], parts);
-    if (!parts.empty() && !receive(c.coupler, p.rank, input_tag, parts))
+    if (!parts.empty() && !c.coupler->receive(p.rank, input_tag, parts))
       end_the_job("a message with values does not have the announced length.");
   }
 }
 
 void receive_command(couplet_client& c) {
   std::vector<char> head;
-  if (c.rank == 0) head = receive<char>(c.coupler, 0, command_tag, MPI_BYTE);
+  if (c.rank == 0) head = c.coupler->receive(0, command_tag);
   auto n = std::int64_t(head.size());
   broadcast(c.comm, &n, sizeof n);
   head.resize(std::size_t(n));
@@ -184,7 +187,11 @@ void check_output(couplet_client& c) {
 
 extern "C" {
 
-couplet_client* couplet_join(const char* participant, const char* program) try {
+couplet_client* couplet_join(const char* participant, const char* program) {
+  return couplet_join_with(participant, program, MPI_COMM_WORLD);
+}
+
+couplet_client* couplet_join_with(const char* participant, const char* program, MPI_Comm processes) try {
   int up = 0;
   MPI_Initialized(&up);
   if (!up) {
@@ -194,13 +201,19 @@ couplet_client* couplet_join(const char* participant, const char* program) try {
   auto c = std::make_unique<couplet_client>();
   c->started_mpi = !up;
   c->participant = participant;
-  const Place place = join(participant, program);
-  if (!place.starts) {
-    MPI_Finalize();
-    std::exit(2);
+  if (const char* file = std::getenv("COUPLET_JOIN"); file != nullptr && *file != 0) {
+    MPI_Comm_dup(processes, &c->comm);
+    c->coupler = link_by_socket(file, participant, c->comm);
+  } else {
+    const Place place = join(participant, program);
+    if (!place.starts) {
+      MPI_Finalize();
+      std::exit(2);
+    }
+    c->comm = place.comm;
+    c->coupler = link_by_mpi(place.coupler);
   }
-  c->comm = place.comm;
-  c->coupler = place.coupler;
+  way = c->coupler.get();
   MPI_Comm_rank(c->comm, &c->rank);
   return c.release();
 } catch (const std::exception& error) {
@@ -301,6 +314,8 @@ void couplet_report(couplet_client* c, int64_t iterations, double error, double 
 }
 
 void couplet_leave(couplet_client* c) {
+  c->coupler->leave();
+  if (way == c->coupler.get()) way = nullptr;
   const bool finalise = c->started_mpi;
   delete c;
   if (finalise) MPI_Finalize();

@@ -40,6 +40,10 @@ enum couplet_event {
  * a machine with some of them may choose one that the others do not have). `participant`: its name under
  * `participants:` of the case; `program`: of that entry. */
 couplet_client* couplet_join(const char* participant, const char* program);
+/* The same for a program that is launched separately from the job: where the environment has COUPLET_JOIN=FILE, both functions
+ * join through the relay that wrote FILE (docs/protocol.md, "Launched separately"), collective over `processes`, which are all
+ * of the participant (couplet_join: MPI_COMM_WORLD). Without COUPLET_JOIN `processes` is not looked at. */
+couplet_client* couplet_join_with(const char* participant, const char* program, MPI_Comm processes);
 /* The processes of this participant. */
 MPI_Comm couplet_comm(const couplet_client* c);
 

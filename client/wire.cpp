@@ -147,25 +147,62 @@ class Layout {
   std::size_t total_ = 0;
 };
 
+class MpiLink : public Link {
+ public:
+  explicit MpiLink(MPI_Comm coupler) : coupler_(coupler) {}
+
+  int ranks() const override {
+    int n = 0;
+    MPI_Comm_remote_size(coupler_, &n);
+    return n;
+  }
+
+  void send(int to, int tag, const std::vector<char>& bytes) override {
+    wire::send(coupler_, to, tag, bytes, MPI_BYTE);
+  }
+
+  void send(int to, int tag, const std::vector<Stretch>& parts) override {
+    const Layout layout(parts);
+    MPI_Request request;
+    MPI_Isend(MPI_BOTTOM, 1, layout.type(), to, tag, coupler_, &request);
+    wait(request);
+  }
+
+  std::vector<char> receive(int from, int tag) override {
+    return wire::receive<char>(coupler_, from, tag, MPI_BYTE);
+  }
+
+  bool receive(int from, int tag, const std::vector<Stretch>& parts) override {
+    const Layout layout(parts);
+    MPI_Status status;
+    MPI_Message message = await_message(coupler_, from, tag, status);
+    int bytes = 0;
+    MPI_Get_count(&status, MPI_BYTE, &bytes);
+    if (std::size_t(bytes) != layout.total() * sizeof(double)) return false;
+    MPI_Mrecv(MPI_BOTTOM, 1, layout.type(), &message, MPI_STATUS_IGNORE);
+    return true;
+  }
+
+ private:
+  MPI_Comm coupler_;
+};
+
 }  // namespace
 
-void send(MPI_Comm peers, int to, int tag, const std::vector<Stretch>& parts) {
-  const Layout layout(parts);
-  MPI_Request request;
-  MPI_Isend(MPI_BOTTOM, 1, layout.type(), to, tag, peers, &request);
-  wait(request);
-}
-
-bool receive(MPI_Comm peers, int from, int tag, const std::vector<Stretch>& parts) {
-  const Layout layout(parts);
+bool receive_any(MPI_Comm peers, int& from, int& tag, std::vector<char>& bytes) {
+  int there = 0, count = 0;
+  MPI_Message message;
   MPI_Status status;
-  MPI_Message message = await_message(peers, from, tag, status);
-  int bytes = 0;
-  MPI_Get_count(&status, MPI_BYTE, &bytes);
-  if (std::size_t(bytes) != layout.total() * sizeof(double)) return false;
-  MPI_Mrecv(MPI_BOTTOM, 1, layout.type(), &message, MPI_STATUS_IGNORE);
+  MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, peers, &there, &message, &status);
+  if (!there) return false;
+  MPI_Get_count(&status, MPI_BYTE, &count);
+  bytes.resize(std::size_t(count));
+  MPI_Mrecv(bytes.data(), count, MPI_BYTE, &message, MPI_STATUS_IGNORE);
+  from = status.MPI_SOURCE, tag = status.MPI_TAG;
   return true;
 }
+
+std::unique_ptr<Link> link_by_mpi(MPI_Comm coupler) { return std::make_unique<MpiLink>(coupler); }
 
 Command unpack(const std::vector<char>& head) {
   Reader in(head);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "couplet.h"
+#include "link.hpp"
 
 namespace couplet::wire {
 
@@ -125,15 +126,6 @@ void send(MPI_Comm peers, int to, int tag, const std::vector<T>& values, MPI_Dat
   wait(request);
 }
 
-/// Part of an array. Several travel as one message, one after the other, without being copied together.
-struct Stretch {
-  double* first;
-  std::size_t count;
-};
-void send(MPI_Comm peers, int to, int tag, const std::vector<Stretch>& parts);
-/// False if a message of another length came.
-bool receive(MPI_Comm peers, int from, int tag, const std::vector<Stretch>& parts);
-
 inline MPI_Message await_message(MPI_Comm peers, int from, int tag, MPI_Status& status) {
   const auto since = std::chrono::steady_clock::now();
   MPI_Message message;
@@ -154,6 +146,9 @@ std::vector<T> receive(MPI_Comm peers, int from, int tag, MPI_Datatype type) {
   MPI_Mrecv(values.data(), count, type, &message, MPI_STATUS_IGNORE);
   return values;
 }
+
+/// The next message of any sender and tag, if there is one.
+bool receive_any(MPI_Comm peers, int& from, int& tag, std::vector<char>& bytes);
 
 inline void broadcast(MPI_Comm comm, void* data, std::size_t size) {
   MPI_Request request;

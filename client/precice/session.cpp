@@ -20,23 +20,24 @@ void end_the_job(const std::string& text) {
   std::_Exit(1);
 }
 
-couplet_client* joined(const std::string& participant) {
+couplet_client* joined(const std::string& participant, const MPI_Comm* processes) {
   static std::map<std::string, couplet_client*> clients;
   const auto found = clients.find(participant);
   if (found != clients.end()) return found->second;
-  return clients[participant] = couplet_join(participant.c_str(), "precice");
+  return clients[participant] = couplet_join_with(participant.c_str(), "precice",
+                                                  processes == nullptr ? MPI_COMM_WORLD : *processes);
 }
 
 }  // namespace couplet::dropin
 
 extern "C" MPI_Comm couplet_precice_comm(const char* participant) {
-  return couplet_comm(couplet::dropin::joined(participant));
+  return couplet_comm(couplet::dropin::joined(participant, nullptr));
 }
 
 namespace couplet::dropin {
 
 Session::Session(Configuration c, int rank, int size, void* communicator) : configuration(std::move(c)) {
-  job = joined(configuration.participant);
+  job = joined(configuration.participant, static_cast<const MPI_Comm*>(communicator));
   int its_rank = 0, its_size = 0;
   MPI_Comm_rank(couplet_comm(job), &its_rank);
   MPI_Comm_size(couplet_comm(job), &its_size);

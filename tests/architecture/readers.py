@@ -11,6 +11,9 @@ READING = (r"\bstd::(?:ifstream|fstream|filebuf|basic_ifstream|from_chars|getlin
 # Every file that does, each with its reason.
 READERS = {
     "client/examples/spring_cylinder.cpp": "an example of a program of somebody else, which reads its own checkpoint",
+    "client/address.cpp": "the client knows nothing of common: the one reader of a relay's file and of greetings",
+    "client/relay/main.cpp": "the client knows nothing of common: the relay's command line",
+    "client/socket_link.cpp": "the client knows nothing of common: seconds of COUPLET_JOIN_WAIT, the relay's answer",
     "client/transports.cpp": "the client knows nothing of common: the system's settings of MPI",
     "client/wire.cpp": "the client knows nothing of common: fields of messages",
     "client/precice/configuration.cpp": "the first lines of a case, which name the XML that it was made of",

@@ -10,6 +10,7 @@
 """
 import atexit
 import math
+import os
 import struct
 import sys
 import time
@@ -17,22 +18,12 @@ import time
 import numpy
 from mpi4py import MPI  # MPI starts here
 
+from couplet.relay import OverMpi, OverSocket, wait as _wait
+
 VERSION, COMMAND, REPLY, HELLO = 5, 0x434F4D4D, 0x5245504C, 0x434F55504C4554
 JOIN_TAG, COMMAND_TAG, REPLY_TAG, INPUT_TAG, PLACES_TAG, OUTPUT_TAG = 100, 101, 102, 103, 104, 105
 EVENTS = {2: "begin", 3: "solve", 4: "accept", 5: "output", 6: "save", 7: "load"}
 INITIALISE, SOLVE, FINALISE = 1, 3, 8
-
-
-def _pause(since):
-    """Between two looks at what is awaited: the core belongs to the others."""
-    waited = time.monotonic() - since
-    time.sleep(0 if waited < 8e-5 else min(waited / 16, 2.5e-4))
-
-
-def _wait(request):
-    since = time.monotonic()
-    while not request.Test():
-        _pause(since)
 
 
 def _integers(*values):
@@ -70,12 +61,27 @@ class _Reader:
 class Client:
     def __init__(self, participant, program):
         """Takes part in the start of the job, collective over all processes of the participant. Ends the program with
-        exit code 2 if the job does not start."""
-        world = MPI.COMM_WORLD
+        exit code 2 if the job does not start. With COUPLET_JOIN=FILE in the environment the program was launched separately (all
+        of MPI.COMM_WORLD is the participant) and joins through the relay that wrote FILE."""
         self.participant, self._takes, self._gives = participant, [], []
         self._xyz = self._centres = self._areas = numpy.zeros((0, 3))
         self._corners, self._dimension, self._advised, self._pending = [], 3, math.inf, False
         self._begun = self.dt = 0.0
+        self._over, self._link = False, None
+        if file := os.environ.get("COUPLET_JOIN"):
+            self.comm = MPI.COMM_WORLD.Dup()
+            try:
+                self._link = OverSocket(file, participant, VERSION, self.comm)
+            except (OSError, ValueError) as error:
+                self._end(error)
+        else:
+            self.comm, coupler = self._join(participant, program)
+            self._link = OverMpi(coupler)
+        atexit.register(self._leave)
+
+    def _join(self, participant, program):
+        """Handshake, roll call and connection, collective over the whole job: own communicator, and that to the coupler."""
+        world = MPI.COMM_WORLD
         hello, everyone = numpy.array([HELLO, VERSION, 1, 0], "i8"), numpy.zeros(4 * world.size, "i8")
         _wait(world.Iallgather(hello, everyone))
         if (everyone[0::4] != HELLO).any() or (everyone[1::4] != VERSION).any():
@@ -92,11 +98,8 @@ class Client:
         if worst[0]:
             MPI.Finalize()
             sys.exit(2)
-        order = list(dict.fromkeys(participants))
-        self.comm = world.Split(order.index(participant), world.rank)
-        self._coupler = self.comm.Create_intercomm(0, world, participants.index("coupler"), JOIN_TAG)
-        self._over = False
-        atexit.register(self._leave)
+        comm = world.Split(list(dict.fromkeys(participants)).index(participant), world.rank)
+        return comm, comm.Create_intercomm(0, world, participants.index("coupler"), JOIN_TAG)
 
     def _leave(self):
         """A program that ends before the job (an exception, sys.exit) takes the job along: MPI_Finalize would wait for ever."""
@@ -141,6 +144,7 @@ class Client:
                 self._send_reply()
                 if self.operation == FINALISE:
                     self._over = True
+                    self._link.leave()
                     return None
             self._receive_command()
             if self.operation == INITIALISE and self.sub_steps > 1:
@@ -175,18 +179,21 @@ class Client:
 
     def _end(self, why):
         print(f"couplet client: {why}", file=sys.stderr, flush=True)
+        if self._link is not None:
+            self._link.fail(str(why))
         MPI.COMM_WORLD.Abort(1)
 
     def _receive(self, rank, tag):
-        since, status = time.monotonic(), MPI.Status()
-        while (message := self._coupler.Improbe(rank, tag, status)) is None:
-            _pause(since)
-        data = bytearray(status.Get_count(MPI.BYTE))
-        message.Recv([data, MPI.BYTE])
-        return data
+        try:
+            return self._link.receive(rank, tag)
+        except OSError as error:
+            self._end(error)
 
-    def _send(self, data, rank, tag, kind=MPI.BYTE):
-        _wait(self._coupler.Isend([data, kind], rank, tag))
+    def _send(self, data, rank, tag):
+        try:
+            self._link.send(data, rank, tag)
+        except OSError as error:
+            self._end(error)
 
     def _receive_command(self):
         head = self._receive(0, COMMAND_TAG) if self.comm.rank == 0 else bytearray()
@@ -217,7 +224,7 @@ class Client:
 
     def _peers(self):
         """(rank of the coupler, slice of my vertices, slice of my faces) for all that share some."""
-        ranks, mine = self._coupler.Get_remote_size(), self.comm.rank
+        ranks, mine = self._link.ranks, self.comm.rank
         list_ = []
         for c in range(ranks):
             slices = []
@@ -277,5 +284,5 @@ class Client:
             parts = [self._output[n][slices[next(d for d in self._gives if d[0] == n)[2]]].ravel() for n in names]
             values = numpy.concatenate(parts)
             if values.size:
-                self._send(values, rank, OUTPUT_TAG, MPI.DOUBLE)
+                self._send(values, rank, OUTPUT_TAG)
         self._pending = False

@@ -104,6 +104,17 @@ def run(scheme, left="c++", right="c++", steps=(1, 1), ranks=None, initialize="t
         return {name: motion(folder, name, (ranks or {}).get(name, 1)) for name in words}
 
 
+def launch_separately(folder, words, ranks, ways):
+    """The same with each participant started by an mpirun of its own; ways: how its relay listens. Exit codes and all that was said."""
+    relays = {name: [build / "bin/relay", name, "--listen", ways[name]] for name in words}
+    own = {name: value for name, value in environment.items() if not name.startswith(("OMPI_COMM", "PMIX_"))}
+    started = [subprocess.Popen(list(map(str, [*mpirun, "-n", ranks[name], *line])), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                env={**own, "COUPLET_JOIN": f"{name}.relay"}) for name, line in words.items()]
+    done = launch(folder, relays, ranks=ranks)
+    said = [p.communicate(timeout=60)[0] for p in started]
+    return [done.returncode, *(p.returncode for p in started)], [done.stdout + done.stderr, *said]
+
+
 # -- the same schemes, computed here ------------------------------------------------------------------------------------
 X, SPRING, WINDOW = np.arange(6.0), 15.0, 0.1
 START = {"Left": 1 - 0.1 * X, "Right": 0.3 * X - 0.5}
@@ -195,6 +206,32 @@ def ranks():
         words = {name: [*programs["c++"], name, "precice-config.xml", 1] for name in ("Left", "Right")}
         done = launch(folder, words, ranks={"Left": 2})
         check("rank and size of another communicator are refused", done.returncode != 0 and "was constructed as process 0 of 1, but is process" in done.stderr, done.stderr[-300:])
+
+
+def separately():
+    ways = {"Left": "unix", "Right": "tcp:lo"}
+    for kinds, ranks in ((("c++", "c++"), {"Left": 3, "Right": 2, "coupler": 2}), (("python", "c"), {"Left": 1, "Right": 1, "coupler": 1})):
+        wanted = run("serial-implicit", *kinds, ranks=ranks if kinds[0] == "c++" else None)
+        with tempfile.TemporaryDirectory() as folder:
+            folder = pathlib.Path(folder)
+            imported(folder, configuration("serial-implicit"))
+            words = {name: [*programs[kind], name, "precice-config.xml", 1, *(["parallel"] if kinds[0] == "c++" else [])] for name, kind in zip(("Left", "Right"), kinds)}
+            codes, said = launch_separately(folder, words, ranks, ways)
+            check(f"{kinds[0]} and {kinds[1]} on {ranks['Left']} and {ranks['Right']} processes, each launched separately: all end well", codes == [0, 0, 0], "" if not any(codes) else said)
+            for name in words:
+                found = motion(folder, name, ranks[name])
+                check(f"{name}: the values of one launch, bit for bit", found.shape == wanted[name].shape and (found == wanted[name]).all(), f"{abs(found - wanted[name]).max():.1e}")
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        imported(folder, configuration("serial-implicit"))
+        words = {name: [*programs["c++"], name, "precice-config.xml", 1, "parallel"] for name in ("Left", "Right")}
+        relays = {name: [build / "bin/relay", name, "--wait", "4"] for name in words}
+        own = {name: value for name, value in environment.items() if not name.startswith(("OMPI_COMM", "PMIX_"))}
+        guests = [subprocess.Popen(list(map(str, [*mpirun, "-n", n, *words[name]])), cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                   env={**own, "COUPLET_JOIN": f"{name}.relay"}) for name, n in (("Left", 2), ("Right", 1))]
+        done = launch(folder, relays)
+        said = [g.communicate(timeout=60)[0] for g in guests]
+        check("another number of processes than the relay's is refused", done.returncode != 0 and "has 2 processes, its relay 1" in said[0], said[0][-300:])
 
 
 MESHES = """<precice-configuration>
@@ -295,5 +332,5 @@ def imports():
         check("what differs is said", "not with waveform-degree 3" in ask("--force").stdout)
 
 
-{"languages": languages, "schemes": schemes, "ranks": ranks, "meshes": meshes, "wrong": wrong, "import": imports}[what]()
+{"languages": languages, "schemes": schemes, "ranks": ranks, "meshes": meshes, "wrong": wrong, "import": imports, "separate": separately}[what]()
 sys.exit(1 if failed else 0)

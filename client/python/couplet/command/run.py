@@ -19,6 +19,7 @@ def declare(parser):
     parser.add_argument("-n", "--ranks", action="append", default=[], metavar="NAME=N", help="ranks of participants (fluid=4,solid=2), or one number for all together, divided by measured or expected work")
     parser.add_argument("--participant", metavar="NAME", help="this participant alone, without the others")
     parser.add_argument("--with", dest="played_by", action="append", default=[], metavar="NAME=COMMAND", help="the command of an external participant")
+    parser.add_argument("--separate", action="append", default=[], metavar="NAME[=tcp:INTERFACE]", help="this external participant is launched separately, with COUPLET_JOIN in its environment; it is reached on this machine, or on one network interface")
     parser.add_argument("--bin", type=pathlib.Path, metavar="FOLDER", help="the folder bin/ with the programs")
     parser.add_argument("--print", action="store_true", help="shows the launch line and runs nothing")
     parser.add_argument("--slurm", nargs="?", const="", metavar="OPTIONS", help="hands the run to Slurm as a batch job, with these options of sbatch; with --print shows the script")
@@ -60,6 +61,17 @@ def ranks_of(words, case):
     return {name: int(n) for name, n in found.items()}
 
 
+def relays(words, case):
+    """{participant: command of the relay that stands in the job for it}; prints how the participants are to be started."""
+    found = {}
+    for word in words:
+        name, _, listen = word.partition("=")
+        address = pathlib.Path.cwd() / f"{name}.relay"
+        found[name] = [str(case.build / "bin/relay"), name, "--listen", listen or "unix", "--address", str(address)]
+        print(f"'{name}' is launched separately: COUPLET_JOIN={shlex.quote(str(address))} PROGRAM ...", file=sys.stderr, flush=True)
+    return found
+
+
 def build_of(folder):
     if folder is not None:
         expect(folder.is_dir(), f"--bin {folder}: there is no such folder")
@@ -72,7 +84,7 @@ def run(arguments):
     case = Case(arguments.case, build_of(arguments.bin))
     expect(all("=" in s for s in arguments.set), "--set: expected a.b=value")
     job = Job(case, ranks_of(arguments.ranks, case), arguments.set, flags_of(arguments), arguments.participant,
-              {name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()})
+              {**{name: shlex.split(words) for name, words in pairs(arguments.played_by, "--with").items()}, **relays(arguments.separate, case)})
     if arguments.slurm is not None:
         from couplet.runs import slurm
         return slurm.hand_over(job, shlex.split(arguments.slurm), arguments.print)

@@ -6,6 +6,7 @@ import pathlib
 import re
 import shlex
 import shutil
+import subprocess
 
 from validation.job import Bar
 
@@ -142,6 +143,31 @@ def cost(job):
     return f"{1e3 * by_precice:.1f} ms, client {1e3 * native:.1f} ms: {by_precice / native:.2f}x (load {os.getloadavg()[0]:.0f}); {same}", len(sums) == 1 and by_precice <= 1.2 * native
 
 
+def cost_of_sockets(job):
+    """The same window of the client itself, both participants launched separately and joined over sockets."""
+    where = job.scratch / "cost-sockets"
+    where.mkdir(exist_ok=True)
+    (where / "two.xml").write_text(TWO)
+    program, ratios, sums = f"{job.build}/bin/tests/precice_cost native", {}, set()
+    for kind in ("native", "unix", "tcp:lo") * 3:
+        words = [f"exec {program} {name} two.xml {VERTICES}" for name in ("One", "Two")]
+        if kind != "native":
+            own = "env -u OMPI_COMM_WORLD_SIZE -u PMIX_RANK"
+            guests = [f"COUPLET_JOIN={name}.relay {own} {program} {name} two.xml {VERTICES}" for name in ("One", "Two")]
+            started = [subprocess.Popen(["sh", "-c", g], cwd=where, stdout=subprocess.PIPE, text=True) for g in guests]
+            words = [f"exec {job.build}/bin/relay {name} --listen {kind}" for name in ("One", "Two")]
+        said = coupled(job, where, where / "two.xml", words)
+        if kind != "native":
+            said = "".join(p.communicate()[0] for p in started)
+        found = re.findall(r"([\d.]+) s a window, sum (\S+)", said)
+        ratios.setdefault(kind, []).append(max(float(s) for s, _ in found))
+        sums.add(tuple(sorted(total for _, total in found)))
+    least = {kind: min(values) for kind, values in ratios.items()}
+    text = ", ".join(f"{kind} {1e3 * least[kind]:.1f} ms ({least[kind] / least['native']:.2f}x)" for kind in ("unix", "tcp:lo"))
+    return (f"client by MPI {1e3 * least['native']:.1f} ms, {text} (load {os.getloadavg()[0]:.0f}); {'the same' if len(sums) == 1 else 'other'} sums of all values",
+            len(sums) == 1 and max(least.values()) <= 2 * least["native"])
+
+
 # -- configurations -----------------------------------------------------------------------------------------------------
 def configurations(job):
     source = folder("COUPLET_PRECICE_TUTORIALS")
@@ -167,5 +193,6 @@ BARS = [
     Bar("oscillator of the tutorials, unchanged, Newmark, 4 sub-steps", "reported", oscillator),
     Bar("preCICE's solver dummies in C, C++ and Fortran, unchanged, each against the C++ one", "run to the end", dummies),
     Bar(f"a window of {VERTICES} vertices, 3 components each way, against the client itself", "at most 1.2x, values equal bit for bit", cost),
+    Bar(f"a window of {VERTICES} vertices, both participants over sockets", "at most 2x the client by MPI, values equal bit for bit", cost_of_sockets),
     Bar("couplet import of every precice-config.xml of the tutorials", "a valid case, or refused by the name of the feature", configurations),
 ]
