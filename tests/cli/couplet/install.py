@@ -87,7 +87,7 @@ def deb(folder, home):
     for program in sorted((root / "bin").iterdir()):
         if program.name != "couplet":
             libraries = subprocess.run(["ldd", program], capture_output=True, text=True).stdout
-            check(f"libraries of {program.name}", "not found" not in libraries and str(build) not in libraries and "libpetsc" in libraries, libraries[:200])
+            check(f"libraries of {program.name}", "not found" not in libraries and str(build) not in libraries and ("libmpi" if program.name == "relay" else "libpetsc") in libraries, libraries[:200])
     named = [f for f in root.rglob("*") if f.is_file() and str(build).encode() in f.read_bytes()]
     check("no file names the place where it was built", not named, named)
     outside = [f for f in (folder / "root").rglob("*") if f.is_file() and f.relative_to(root).parts[0] not in ("bin", "share", "lib", "include")]
