@@ -83,7 +83,7 @@ def changed(path, value):
 CURVE = ("panels", 0, "curves", 0)
 WRONG = [  # when the case is checked
     (("panel",), 1, "plot: unknown key 'panel'; allowed: "), (("panels",), None, "plot: the key 'panels' is missing"), (("panels",), [], "expected at least 1 values"),
-    (("size",), [1], "plot.size: expected 2 values, found 1"), (("file",), "../x.png", "plot.file: '../x.png'"), (("panels", 0, "field"), "stress", "panels[0]: expected either curves or field"),
+    (("size",), [1], "plot.size: expected 2 values, found 1"), (("size",), [1e6, 1], "plot.size: expected width and height from 1 to 100 inch"), (("file",), "../x.png", "plot.file: '../x.png'"), (("panels", 0, "field"), "stress", "panels[0]: expected either curves or field"),
     (("panels", 0, "warp"), 2, "panels[0]: 'warp' belongs to a field"), (("panels", 2, "participant"), "fluid", "there is no participant 'fluid'; there are: solid"),
     (("panels", 2, "at"), "soon", "panels[2].at: 'soon' is no time"), ((*CURVE, "table"), "tip.csv", "curves[0]: expected one of monitor, table"), ((*CURVE, "y"), None, "the key 'y' is missing"),
     ((*CURVE, "style"), "wavy", "curves[0].style: 'wavy'; allowed: line, points"), ((*CURVE, "extrema"), "yes", "curves[0].extrema: expected true or false, found 'yes'"),
@@ -91,6 +91,7 @@ WRONG = [  # when the case is checked
 LATE = [  # when it is drawn
     ((*CURVE, "y"), "1000*z", "curves[0].y: 'z'; valid are numbers"), ((*CURVE, "y"), "__import__('os')", "curves[0].y: "), ((*CURVE, "monitor"), "solid/prob.csv", "there is no "),
     ((*CURVE, "with"), {"y": "tip"}, "curves[0].with.y: "), (("panels", 1, "curves", 0, "with"), {"s": "strain"}, "there is no field 'strain'; there are: stress"), (("panels", 1, "curves", 0, "where"), "x > 9", "no row of solid's fields is left"),
+    ((*CURVE, "colour"), "notacolour", "plot.panels[0]: 'notacolour'"), (("panels", 2, "colours"), "bogus", "plot.panels[2]: 'bogus'"), (("title",), "$\\nosuch$", "plot: "),
     (("quantities", "tip", "probe"), "top", "plot.quantities.tip: ")]
 
 argparse.ArgumentParser(description=__doc__).parse_args()
@@ -152,12 +153,14 @@ with tempfile.TemporaryDirectory(prefix="a case with blanks ") as name:
     # what the last run did not write is drawn with a warning
     done = plot(out / "solid/probes.csv")
     check("no warning of a file of this run", done.returncode == 0 and "earlier run" not in done.stderr, done.stderr)
-    for name, age in (("probes.csv", 100), ("effective.yaml", 50), ("steps.csv", 10)):
+    for name, age in (("probes.csv", 100), ("effective.yaml", 50)):
         (out / "solid" / name).touch()
         os.utime(out / "solid" / name, (time.time() - age, time.time() - age))
+    check("none while the run works", "earlier run" not in plot(out / "solid/probes.csv").stderr)
+    (out / "solid/run.json").write_text('{"steps": 3}')
     done = plot(out / "solid/probes.csv")
     check("a warning of a file of an earlier run", done.returncode == 0 and "probes.csv: is of an earlier run" in done.stderr, done.stderr)
-    os.utime(out / "solid/steps.csv", (time.time() - 60, time.time() - 60))
+    (out / "solid/run.json").write_text('{"steps": 0}')
     check("none where the run made no step", "earlier run" not in plot(out / "solid/probes.csv").stderr)
 
     # a folder of a case is its case file

@@ -175,6 +175,7 @@ def draw(case, out, picture=None):
     figure, grid = plt.subplots(down, across, figsize=size, dpi=130, squeeze=False, constrained_layout=True, sharex=section.get("share-x", False))
     for axes in grid.flat[len(panels):]:
         axes.axis("off")
+    where = f"{case.file}: plot"
     try:
         for k, (axes, panel) in enumerate(zip(grid.flat, panels)):
             where = f"{case.file}: plot.panels[{k}]"
@@ -185,10 +186,13 @@ def draw(case, out, picture=None):
             if not section.get("share-x"):
                 usual_labels(axes, panel)
             finish(axes, panel)
+        where = f"{case.file}: plot"
         if "title" in section:
             figure.suptitle(section["title"], fontsize=10)
         picture = pathlib.Path(picture or out / section.get("file", f"{case.file.resolve().parent.name}.png"))
         figure.savefig(picture)
+    except ValueError as problem:  # a colour or a formula of a title that matplotlib does not know
+        raise Wrong(f"{where}: {' '.join(str(problem).split())[:300]}") from None
     finally:
         plt.close(figure)
     if "quantities" in section:

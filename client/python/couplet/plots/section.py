@@ -102,6 +102,7 @@ def check(case):
     section, place = case.data["plot"], f"{case.file}: plot"
     follow(section, PLOT, place)
     file = section.get("file", "x.png")
+    expect(all(1 <= v <= 100 for v in section.get("size", ())), f"{place}.size: expected width and height from 1 to 100 inch, found {section.get('size')}.")
     expect("/" not in file and file.endswith(".png"), f"{place}.file: '{file}'; expected a name that ends in .png: it lies in the output folder.")
     for i, panel in enumerate(section["panels"]):
         where = f"{place}.panels[{i}]"

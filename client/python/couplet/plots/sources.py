@@ -55,7 +55,8 @@ class Source:
             return self.columns[str(text)]
         try:
             size = len(next(iter(self.columns.values())))
-            return np.broadcast_to(evaluate(text, self.names, {**FUNCTIONS, **dict(functions)}), size).astype(float)
+            with np.errstate(all="ignore"):  # what is no number is not drawn
+                return np.broadcast_to(evaluate(text, self.names, {**FUNCTIONS, **dict(functions)}), size).astype(float)
         except ValueError as error:
             raise Wrong(f"{where}: {error}; {self.place} has: {', '.join(self.columns)}.") from None
 

@@ -77,10 +77,11 @@ def checkpoint(folder):
 def warn_if_older(file):
     """Of a file in a participant's folder that the last run there did not write: a monitor that its case no longer names."""
     try:
-        began, stepped, written = (f.stat().st_mtime for f in (file.parent / "effective.yaml", file.parent / "steps.csv", file))
-    except OSError:
+        began, written = ((file.parent / "effective.yaml").stat().st_mtime, file.stat().st_mtime)
+        steps = json.loads((file.parent / "run.json").read_text())["steps"]  # there is none while it runs
+    except (OSError, ValueError, KeyError, TypeError):
         return
-    if written < began <= stepped:
+    if written < began and steps > 0:
         print(f"warning: {file}: is of an earlier run: the last one in this folder did not write it", file=sys.stderr)
 
 
